@@ -1,0 +1,16 @@
+# Installs libraries and headers so that another project can `find_package(psygen)`.
+include(CMakePackageConfigHelpers)
+
+get_property(psygen_libraries GLOBAL PROPERTY PSYGEN_LIBRARIES)
+install(TARGETS ${psygen_libraries} psygen_settings EXPORT psygen_targets)
+set_target_properties(psygen_settings PROPERTIES EXPORT_NAME settings)
+install(EXPORT psygen_targets NAMESPACE psygen:: FILE psygen-targets.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
+install(DIRECTORY ecs engine shaders DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/psygen
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
+configure_package_config_file(cmake/psygen-config.cmake.in psygen-config.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
+write_basic_package_version_file(psygen-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/psygen-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)

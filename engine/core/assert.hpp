@@ -1,0 +1,23 @@
+// Contracts. PSYGEN_ASSERT(condition, "sentence") ends the program when a caller broke a contract;
+// it is checked when NDEBUG is not defined. PSYGEN_CHECK is checked in every build.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace psygen::core {
+[[noreturn]] inline void contract_broken(const char* file, int line, const char* condition,
+                                         const char* sentence) {
+  std::fprintf(stderr, "%s:%d: contract broken: %s (%s)\n", file, line, sentence, condition);
+  std::abort();
+}
+}  // namespace psygen::core
+
+#define PSYGEN_CHECK(condition, sentence) \
+  ((condition) ? (void)0                  \
+               : ::psygen::core::contract_broken(__FILE__, __LINE__, #condition, sentence))
+#ifdef NDEBUG
+#define PSYGEN_ASSERT(condition, sentence) ((void)sizeof(condition))
+#else
+#define PSYGEN_ASSERT(condition, sentence) PSYGEN_CHECK(condition, sentence)
+#endif

@@ -1,0 +1,69 @@
+// Where things are. A position is a block (integers) and metres inside it, so that precision does
+// not depend on the distance from the origin. Metres; +Y is up; right-handed; block (x, z) spans
+// local [0, size) on both axes. Not a transform hierarchy.
+#pragma once
+
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+
+#include "engine/core/hash.hpp"
+
+namespace psygen::core {
+
+struct BlockCoord {
+  std::int32_t x = 0;
+  std::int32_t z = 0;
+  friend constexpr auto operator<=>(const BlockCoord&, const BlockCoord&) = default;
+};
+static_assert(sizeof(BlockCoord) == 8);
+
+// Axis-aligned box in metres, relative to a frame that the user of the box names.
+struct Bounds {
+  glm::vec3 min{0.0F};
+  glm::vec3 max{0.0F};
+  glm::vec3 center() const { return (min + max) * 0.5F; }
+  glm::vec3 half_extent() const { return (max - min) * 0.5F; }
+  friend bool operator==(const Bounds&, const Bounds&) = default;
+};
+
+struct WorldPosition {
+  BlockCoord block;
+  glm::dvec3 local{
+      0.0};  // metres from the block's corner; x and z in [0, block size) when normalised
+};
+
+// The same place with local x and z in [0, block_size_m). Block indices wrap at 2^32.
+inline WorldPosition normalised(WorldPosition p, double block_size_m) {
+  const double steps_x = std::floor(p.local.x / block_size_m);
+  const double steps_z = std::floor(p.local.z / block_size_m);
+  const auto wrap = [](std::int32_t index, double steps) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(index) +
+                                     static_cast<std::uint32_t>(static_cast<std::int64_t>(steps)));
+  };
+  p.block = {wrap(p.block.x, steps_x), wrap(p.block.z, steps_z)};
+  p.local.x -= steps_x * block_size_m;
+  p.local.z -= steps_z * block_size_m;
+  return p;
+}
+
+// Metres from `origin` to the corner of `block`, exact as long as they are within 2^31 blocks.
+inline glm::dvec3 offset_m(BlockCoord block, const WorldPosition& origin, double block_size_m) {
+  const auto difference = [](std::int32_t a, std::int32_t b) {
+    return static_cast<double>(
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b)));
+  };
+  return {difference(block.x, origin.block.x) * block_size_m - origin.local.x, -origin.local.y,
+          difference(block.z, origin.block.z) * block_size_m - origin.local.z};
+}
+
+struct BlockCoordHash {
+  std::size_t operator()(BlockCoord b) const {
+    return static_cast<std::size_t>(mix64((std::uint64_t{static_cast<std::uint32_t>(b.x)} << 32) |
+                                          static_cast<std::uint32_t>(b.z)));
+  }
+};
+
+}  // namespace psygen::core

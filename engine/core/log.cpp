@@ -1,0 +1,31 @@
+#include "engine/core/log.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace psygen::core {
+namespace {
+spdlog::logger& logger() {
+  static const auto instance = [] {
+    auto created = spdlog::stderr_color_mt("psygen");
+    created->set_pattern("psygen: %^%l%$: %v");
+    return created;
+  }();
+  return *instance;
+}
+}  // namespace
+
+void log_info(std::string_view message) {
+  logger().info(message);
+}
+void log_warning(std::string_view message) {
+  logger().warn(message);
+}
+void log_error(std::string_view message) {
+  logger().error(message);
+}
+void set_log_quiet(bool quiet) {
+  logger().set_level(quiet ? spdlog::level::warn : spdlog::level::info);
+}
+
+}  // namespace psygen::core

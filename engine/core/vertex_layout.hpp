@@ -1,0 +1,42 @@
+// The two vertex formats, written by modelers (engine/models) and read by the shaders
+// (shaders/terrain.vert, shaders/model.vert). Seam between synthesis and rendering.
+#pragma once
+
+#include <cstdint>
+
+namespace psygen::core {
+
+enum class VertexLayout : std::uint8_t { kTerrain = 0, kModel = 1 };
+
+// A terrain vertex. Position in the block: x = grid_x · cell_m, z = grid_z · cell_m,
+// y = height_min + height/65535 · height_range (the two figures are the same for the whole world,
+// so that neighbouring blocks agree bit for bit). Bit 7 of grid_x marks a skirt vertex, which hangs
+// below its twin by the skirt depth of the draw; the index itself is in bits 0–6 (0 … 127).
+struct TerrainVertex {
+  std::uint8_t grid_x;
+  std::uint8_t grid_z;
+  std::uint16_t height;         // unorm16 over the world's height range
+  std::uint16_t coarse_height;  // height of the next coarser level here, for morphing
+  std::int8_t normal_x;         // octahedral normal, snorm8 twice
+  std::int8_t normal_z;
+};
+static_assert(sizeof(TerrainVertex) == 8);
+inline constexpr std::uint8_t kTerrainSkirtBit = 0x80;
+
+// A vertex of a tree, rock or any other model. Position is snorm16 within the mesh's box:
+// p = center + half_extent · position / 32767, metres, local to the model's foot.
+struct ModelVertex {
+  std::int16_t position[3];
+  std::uint8_t ambient;    // unorm8: baked ambient visibility, 255 = open sky
+  std::uint8_t sway;       // unorm8: how much the wind moves it, 0 = not at all
+  std::int16_t normal[2];  // octahedral, snorm16
+  std::uint8_t colour[3];  // linear-light albedo, stored with sqrt: albedo = (c/255)^2
+  std::uint8_t material;   // 0 solid (bark, stone), 1 leaf (lit from both sides)
+};
+static_assert(sizeof(ModelVertex) == 16);
+
+constexpr std::uint32_t vertex_stride_bytes(VertexLayout layout) {
+  return layout == VertexLayout::kTerrain ? sizeof(TerrainVertex) : sizeof(ModelVertex);
+}
+
+}  // namespace psygen::core
