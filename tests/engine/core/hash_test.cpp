@@ -1,0 +1,65 @@
+#include "engine/core/hash.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+namespace psygen::core {
+namespace {
+
+TEST(Hash, Mix64IsTheFinaliserOfSplitMix64) {
+  // The reference generator seeded with 0 and with 1234567 (first output each).
+  EXPECT_EQ(mix64(0), 0xE220A8397B1DCDAFull);
+  EXPECT_EQ(mix64(1234567), 6457827717110365317ull);
+}
+
+TEST(Hash, StreamsOfDifferentBlocksIndicesAndPurposesDiffer) {
+  std::set<std::uint64_t> seen;
+  for (std::int32_t x : {-1, 0, 1}) {
+    for (std::int32_t z : {-1, 0, 1}) {
+      for (std::uint32_t index = 0; index < 10; ++index) {
+        for (const Purpose purpose : {Purpose::kPosition, Purpose::kSeed}) {
+          seen.insert(RandomStream(7, x, z, index, purpose).next_u64());
+        }
+      }
+    }
+  }
+  EXPECT_EQ(seen.size(), 9u * 10u * 2u);
+}
+
+TEST(Hash, IntegersCoverTheirRangeAndNothingElse) {
+  RandomStream random(1, 2, 3, 4, Purpose::kParameters);
+  std::array<int, 3> count{};
+  for (int i = 0; i < 3000; ++i) {
+    const std::int64_t v = random.next_integer(3, 5);
+    ASSERT_GE(v, 3);
+    ASSERT_LE(v, 5);
+    ++count[static_cast<std::size_t>(v - 3)];
+  }
+  for (const int c : count)
+    EXPECT_NEAR(c, 1000, 150);
+}
+
+TEST(Hash, RealsAreUniform) {
+  RandomStream random(1, 0, 0, 0, Purpose::kPosition);
+  double sum = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const double v = random.next_real(-2.0, 4.0);
+    ASSERT_GE(v, -2.0);
+    ASSERT_LT(v, 4.0);
+    sum += v;
+  }
+  EXPECT_NEAR(sum / 10000, 1.0, 0.06);
+}
+
+TEST(Hash, BytesAndSeedBothMatter) {
+  std::array<std::byte, 9> bytes{};
+  const std::uint64_t zero = hash_bytes(bytes);
+  EXPECT_NE(hash_bytes(bytes, 1), zero);
+  bytes[8] = std::byte{1};
+  EXPECT_NE(hash_bytes(bytes), zero);
+}
+
+}  // namespace
+}  // namespace psygen::core

@@ -1,0 +1,39 @@
+#include "engine/core/heap_geometry_memory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace psygen::core {
+namespace {
+
+TEST(HeapGeometryMemory, GivesWritableSpansOfTheSizesAskedFor) {
+  HeapGeometryMemory memory(1 << 20);
+  const auto reservation = memory.reserve(VertexLayout::kModel, 10, 33);
+  ASSERT_TRUE(reservation);
+  EXPECT_EQ(reservation->vertices.size(), 160u);
+  EXPECT_EQ(reservation->indices.size(), 33u);
+  std::ranges::fill(reservation->vertices, std::byte{7});
+  std::ranges::fill(reservation->indices, std::uint16_t{9});
+  memory.commit(reservation->range);
+  EXPECT_EQ(memory.vertex_bytes(reservation->range)[159], std::byte{7});
+  EXPECT_EQ(memory.indices(reservation->range)[32], 9);
+}
+
+TEST(HeapGeometryMemory, RefusesWhatDoesNotFitAndCountsExactly) {
+  HeapGeometryMemory memory(1000);
+  const std::uint32_t bytes = memory.charged_bytes(VertexLayout::kTerrain, 50, 3);
+  const auto first = memory.reserve(VertexLayout::kTerrain, 50, 3);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(memory.used_bytes(), bytes);
+  ASSERT_TRUE(memory.reserve(VertexLayout::kTerrain, 50, 3));
+  const auto third = memory.reserve(VertexLayout::kTerrain, 50, 3);
+  ASSERT_FALSE(third);
+  EXPECT_EQ(third.error().code, ErrorCode::kOutOfMemory);
+  memory.release(first->range);
+  EXPECT_EQ(memory.used_bytes(), bytes);
+  EXPECT_TRUE(memory.reserve(VertexLayout::kTerrain, 50, 3));
+}
+
+}  // namespace
+}  // namespace psygen::core

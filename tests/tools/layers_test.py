@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Holds the layers of docs/architecture.md: scans #include lines and fails on a forbidden arrow.
+
+usage: layers_test.py SOURCE_DIR
+       layers_test.py --self-test
+"""
+import pathlib
+import re
+import sys
+
+# folder -> folders of this project whose headers it may include (its own always)
+MAY_KNOW = {
+    "ecs": set(),
+    "engine/core": set(),
+    "engine/models": {"engine/core"},
+    "engine/world": {"engine/core", "engine/models"},
+    "engine/synthesis": {"engine/core", "engine/models"},
+    "engine/visibility": {"engine/core"},
+    "engine/image": {"engine/core"},
+    "engine/render": {"engine/core", "engine/image", "shaders"},
+    "engine/platform": {"engine/core"},
+    "engine/telemetry": {"engine/core"},
+    "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/synthesis",
+                     "engine/visibility", "engine/image", "engine/render", "engine/platform",
+                     "engine/telemetry"},
+    "shaders": set(),
+}
+MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene"}
+MAY_KNOW["game"] = MAY_KNOW["engine/app"] | {"engine/app"}
+MAY_KNOW["editor"] = MAY_KNOW["game"]
+
+# library header -> the only folders that may include it
+ONLY_IN = {
+    r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform"},
+    r"^GLFW/": {"engine/platform"},
+    r"^OpenImageIO/": {"engine/image"},
+    r"^toml\+\+/": {"engine/world"},
+    r"^nlohmann/": {"engine/telemetry", "game"},
+    r"^CLI/": {"game"},
+    r"^spdlog/": {"engine/core"},
+    r"^Q[A-Z]|^Qt": {"editor"},
+}
+THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
+NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/visibility"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def folder_of(path):
+    """The layer that a path relative to the root belongs to, or None."""
+    parts = pathlib.PurePosixPath(path).parts
+    if parts[0] == "engine" and len(parts) > 2:
+        return "/".join(parts[:2])
+    return parts[0] if parts[0] in MAY_KNOW else None
+
+
+def violations(path, lines):
+    """Sentences about the forbidden includes of one file."""
+    layer = folder_of(path)
+    found = []
+    for number, line in enumerate(lines, 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        name = match.group(2)
+        where = f"{path}:{number}"
+        target = folder_of(name)
+        if target and target != layer and target not in MAY_KNOW[layer]:
+            found.append(f"{where}: {layer} must not know {target} ({name})")
+        if not target and match.group(1) == '"' and name.split("/")[0] in ("engine", "tests", "tools"):
+            found.append(f"{where}: {name} is not in a layer that {layer} may know")
+        for pattern, folders in ONLY_IN.items():
+            if re.search(pattern, name) and layer not in folders:
+                found.append(f"{where}: only {', '.join(sorted(folders))} may include {name}")
+        if THREADS.match(name) and layer in NO_THREADS:
+            found.append(f"{where}: {layer} knows no threads ({name})")
+    return found
+
+
+def self_test():
+    bad = {
+        "engine/models/a.cpp": '#include "engine/synthesis/cache.hpp"',
+        "ecs/a.hpp": '#include "engine/core/error.hpp"',
+        "engine/scene/a.cpp": "#include <vulkan/vulkan.h>",
+        "engine/world/a.cpp": "#include <thread>",
+        "engine/app/a.cpp": '#include "game/main.hpp"',
+        "engine/core/a.cpp": '#include "tests/engine/core/fake.hpp"',
+    }
+    for path, line in bad.items():
+        assert violations(path, [line]), f"not noticed: {path}: {line}"
+    assert not violations("engine/world/a.cpp", ['#include "engine/models/registry.hpp"'])
+    assert not violations("engine/synthesis/a.cpp", ["#include <thread>"])
+    print("layers: the scanner notices forbidden arrows")
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return self_test()
+    root = pathlib.Path(sys.argv[1])
+    found, scanned = [], 0
+    for top in ("ecs", "engine", "game", "editor", "shaders"):
+        for file in sorted((root / top).rglob("*")):
+            if file.suffix in (".hpp", ".cpp", ".h", ".inl"):
+                scanned += 1
+                found += violations(file.relative_to(root).as_posix(),
+                                    file.read_text(encoding="utf-8").splitlines())
+    print("\n".join(found) or f"layers: {scanned} files, no forbidden arrow")
+    assert scanned > 20, "the scan found too few files to mean anything"
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs what psygen needs on Debian 12, and only what is missing.
+#   tools/setup.sh          to build, run and test
+#   tools/setup.sh --ci     also what the complete check needs (clang-format)
+set -euo pipefail
+
+packages=(
+  build-essential python3 cmake ninja-build ccache git pkg-config
+  libglfw3-dev libglm-dev libvulkan-dev libvulkan-volk-dev vulkan-validationlayers
+  mesa-vulkan-drivers glslc spirv-tools libopenimageio-dev libexpected-dev libcli11-dev
+  libtomlplusplus-dev nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev
+  libimgui-dev libstb-dev libgtest-dev libgmock-dev libbenchmark-dev
+  xvfb openbox xdotool x11-utils
+)
+[ "${1:-}" = "--ci" ] && packages+=(clang-format)
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||
+    missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+if ! command -v apt-get >/dev/null; then
+  echo "setup: this is not Debian; please install the counterparts of: ${missing[*]}" >&2
+  exit 1
+fi
+sudo=""
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || {
+    echo "setup: run as root, or install these packages first: ${missing[*]}" >&2
+    exit 1
+  }
+  sudo="sudo"
+fi
+echo "setup: installing ${#missing[@]} packages: ${missing[*]}" >&2
+$sudo apt-get update -qq
+DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Builds psygen and runs every test. Sets up a fresh Debian 12 first (packages through apt).
+#   tools/test.sh [PRESET] [ctest arguments...]      PRESET: release (default), dev, asan, tsan
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+tools/setup.sh
+preset="${1:-release}"
+shift || true
+case "$preset" in
+  release | dev | asan | tsan) ;;
+  *) echo "usage: tools/test.sh [release|dev|asan|tsan] [ctest arguments...]" >&2; exit 2 ;;
+esac
+
+# Sanitizers: the first report fails the test; drivers of other people may leak.
+export ASAN_OPTIONS="detect_leaks=1:abort_on_error=0:strict_string_checks=1"
+export LSAN_OPTIONS="suppressions=$PWD/tools/lsan.supp:print_suppressions=0"
+export TSAN_OPTIONS="suppressions=$PWD/tools/tsan.supp:halt_on_error=1:second_deadlock_stack=1"
+export UBSAN_OPTIONS="print_stacktrace=1"
+
+cmake --preset "$preset" >/dev/null
+cmake --build --preset "$preset"
+ctest --preset "$preset" --parallel 2 "$@"
