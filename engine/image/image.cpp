@@ -1,0 +1,45 @@
+#include "engine/image/image.hpp"
+
+#include "engine/core/assert.hpp"
+#include "engine/core/hash.hpp"
+
+namespace psygen::image {
+namespace {
+
+std::size_t offset_of(const Image& image, std::uint32_t x, std::uint32_t y) {
+  PSYGEN_ASSERT(x < image.width && y < image.height, "a pixel outside the picture");
+  return (std::size_t{y} * image.width + x) * 4;
+}
+
+}  // namespace
+
+std::span<const std::uint8_t, 4> Image::pixel(std::uint32_t x, std::uint32_t y) const {
+  return std::span<const std::uint8_t, 4>(rgba.data() + offset_of(*this, x, y), 4);
+}
+
+std::span<std::uint8_t, 4> Image::pixel(std::uint32_t x, std::uint32_t y) {
+  return std::span<std::uint8_t, 4>(rgba.data() + offset_of(*this, x, y), 4);
+}
+
+Image make_image(std::uint32_t width, std::uint32_t height, std::uint8_t red, std::uint8_t green,
+                 std::uint8_t blue, std::uint8_t alpha) {
+  Image image{width, height, std::vector<std::uint8_t>(std::size_t{width} * height * 4)};
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    image.rgba[i] = red;
+    image.rgba[i + 1] = green;
+    image.rgba[i + 2] = blue;
+    image.rgba[i + 3] = alpha;
+  }
+  return image;
+}
+
+bool is_valid(const Image& image) {
+  return image.rgba.size() == std::size_t{image.width} * image.height * 4;
+}
+
+std::uint64_t hash(const Image& image) {
+  const std::uint64_t size = (std::uint64_t{image.width} << 32) | image.height;
+  return core::combine(core::hash_bytes(std::as_bytes(std::span(image.rgba))), size);
+}
+
+}  // namespace psygen::image

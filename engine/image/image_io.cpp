@@ -1,0 +1,161 @@
+#include "engine/image/image_io.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "engine/image/picture_header.hpp"
+#include "engine/image/replace_file.hpp"
+
+namespace psygen::image {
+namespace {
+
+using core::ErrorCode;
+using Bytes = std::vector<std::uint8_t>;
+
+tl::unexpected<core::Error> fail_at(ErrorCode code, const std::filesystem::path& path,
+                                    const std::string& sentence) {
+  return core::fail(code, fmt::format("{}: {}", path.string(), sentence));
+}
+
+core::Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return fail_at(ErrorCode::kIo, path, error ? error.message() : "is not a regular file");
+  }
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  if (error) return fail_at(ErrorCode::kIo, path, error.message());
+  if (size > max_bytes) {
+    return fail_at(ErrorCode::kOverBudget, path,
+                   fmt::format("the file has {} bytes; at most {} are allowed", size, max_bytes));
+  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             &std::fclose);
+  if (!file) return fail_at(ErrorCode::kIo, path, "cannot be opened for reading");
+  Bytes bytes(size);
+  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
+    return fail_at(ErrorCode::kIo, path, "cannot be read to its end");
+  }
+  return bytes;
+}
+
+core::Result<PictureHeader> checked_header(const std::filesystem::path& path, const Bytes& bytes,
+                                           const ImageLimits& limits) {
+  const auto header = read_picture_header(bytes);
+  if (!header) return fail_at(ErrorCode::kParse, path, "is not a PNG or JPEG picture");
+  const std::uint64_t pixels = std::uint64_t{header->width} * header->height;
+  if (pixels == 0) return fail_at(ErrorCode::kParse, path, "the picture has no pixels");
+  if (header->width > limits.max_width || header->height > limits.max_height ||
+      pixels > limits.max_bytes / 4) {
+    return fail_at(ErrorCode::kOverBudget, path,
+                   fmt::format("the picture is {} x {}; at most {} x {} and {} bytes are allowed",
+                               header->width, header->height, limits.max_width, limits.max_height,
+                               limits.max_bytes));
+  }
+  return *header;
+}
+
+// 1 to 4 channels to red, green, blue, alpha.
+void expand_channels(const Bytes& source, std::size_t channels, Bytes& rgba) {
+  const bool grey = channels <= 2;
+  const bool has_alpha = channels == 2 || channels == 4;
+  for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
+    const std::uint8_t* from = source.data() + i * channels;
+    rgba[i * 4] = from[0];
+    rgba[i * 4 + 1] = grey ? from[0] : from[1];
+    rgba[i * 4 + 2] = grey ? from[0] : from[2];
+    rgba[i * 4 + 3] = has_alpha ? from[channels - 1] : std::uint8_t{255};
+  }
+}
+
+core::Result<Image> decode(const std::filesystem::path& path, const Bytes& bytes,
+                           const PictureHeader& header) {
+  OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
+  const char* format = header.format == PictureFormat::kPng ? "png" : "jpeg";
+  const auto input = OIIO::ImageInput::create(format);
+  if (!input) return fail_at(ErrorCode::kInternal, path, OIIO::geterror());
+  input->threads(1);
+  OIIO::ImageSpec spec;
+  OIIO::ImageSpec configuration;
+  configuration.attribute("oiio:UnassociatedAlpha", 1);
+  if (!input->set_ioproxy(&reader) || !input->open("picture", spec, configuration)) {
+    return fail_at(ErrorCode::kParse, path, "cannot be decoded: " + input->geterror());
+  }
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  if (std::cmp_not_equal(spec.width, header.width) ||
+      std::cmp_not_equal(spec.height, header.height) || channels < 1 || channels > 4) {
+    return fail_at(ErrorCode::kParse, path, "its headers contradict each other");
+  }
+  Image image = make_image(header.width, header.height);
+  Bytes source(image.rgba.size() / 4 * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, source.data())) {
+    return fail_at(ErrorCode::kParse, path, "cannot be decoded: " + input->geterror());
+  }
+  expand_channels(source, channels, image.rgba);
+  return image;
+}
+
+core::Result<Bytes> encode_png(const std::filesystem::path& path, const Image& image) {
+  Bytes bytes;
+  OIIO::Filesystem::IOVecOutput writer(bytes);
+  const auto output = OIIO::ImageOutput::create("png");
+  if (!output) return fail_at(ErrorCode::kInternal, path, OIIO::geterror());
+  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 4,
+                       OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  if (!output->set_ioproxy(&writer) || !output->open("picture.png", spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, image.rgba.data()) || !output->close()) {
+    return fail_at(ErrorCode::kIo, path, "cannot be encoded: " + output->geterror());
+  }
+  return bytes;
+}
+
+// OpenImageIO and the decoders below it may throw; nothing of that leaves this file.
+template <class Function>
+auto without_exceptions(const std::filesystem::path& path, const Function& function)
+    -> decltype(function()) {
+  try {
+    return function();
+  } catch (const std::bad_alloc&) {
+    return fail_at(ErrorCode::kOutOfMemory, path, "not enough memory for the picture");
+  } catch (const std::exception& exception) {
+    return fail_at(ErrorCode::kParse, path,
+                   std::string("cannot be processed: ") + exception.what());
+  }
+}
+
+}  // namespace
+
+core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits) {
+  return without_exceptions(path, [&]() -> core::Result<Image> {
+    return read_file(path, limits.max_file_bytes).and_then([&](const Bytes& bytes) {
+      return checked_header(path, bytes, limits).and_then([&](const PictureHeader& header) {
+        return decode(path, bytes, header);
+      });
+    });
+  });
+}
+
+core::Result<void> write_png(const std::filesystem::path& path, const Image& image) {
+  constexpr std::uint32_t kLargest = 1U << 20;  // pixels per side
+  if (image.width == 0 || image.height == 0 || !is_valid(image) || image.width > kLargest ||
+      image.height > kLargest) {
+    return fail_at(ErrorCode::kInvalidArgument, path,
+                   fmt::format("a picture of {} x {} pixels with {} bytes cannot be written",
+                               image.width, image.height, image.rgba.size()));
+  }
+  return without_exceptions(path, [&]() -> core::Result<void> {
+    return encode_png(path, image).and_then([&](const Bytes& bytes) {
+      return replace_file(path, bytes);
+    });
+  });
+}
+
+}  // namespace psygen::image

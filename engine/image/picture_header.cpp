@@ -1,0 +1,67 @@
+#include "engine/image/picture_header.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace psygen::image {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::array<std::uint8_t, 8> kPngSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+constexpr std::array<std::uint8_t, 3> kJpegSignature{0xFF, 0xD8, 0xFF};
+
+template <std::size_t N>
+bool starts_with(Bytes bytes, const std::array<std::uint8_t, N>& signature) {
+  return bytes.size() >= N && std::equal(signature.begin(), signature.end(), bytes.begin());
+}
+
+std::uint32_t big_endian(Bytes bytes) {
+  std::uint32_t value = 0;
+  for (const std::uint8_t byte : bytes)
+    value = (value << 8) | byte;
+  return value;
+}
+
+// Signature, then the chunk IHDR: length, type, width, height (PNG specification, 11.2.2).
+std::optional<PictureHeader> png_header(Bytes bytes) {
+  constexpr std::array<std::uint8_t, 4> kType{'I', 'H', 'D', 'R'};
+  if (bytes.size() < 33 || !starts_with(bytes.subspan(12), kType)) return std::nullopt;
+  return PictureHeader{PictureFormat::kPng, big_endian(bytes.subspan(16, 4)),
+                       big_endian(bytes.subspan(20, 4))};
+}
+
+// A start-of-frame marker: C0 … CF without the tables C4 and CC and the extension C8.
+bool is_start_of_frame(std::uint8_t marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+// Segments (FF, marker, length, …) until a start of frame (ITU T.81, B.2.2).
+std::optional<PictureHeader> jpeg_header(Bytes bytes) {
+  std::size_t at = 2;
+  while (at + 9 <= bytes.size() && bytes[at] == 0xFF) {
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == 0xFF) {  // a fill byte
+      ++at;
+      continue;
+    }
+    if (is_start_of_frame(marker)) {
+      return PictureHeader{PictureFormat::kJpeg, big_endian(bytes.subspan(at + 7, 2)),
+                           big_endian(bytes.subspan(at + 5, 2))};
+    }
+    const std::uint32_t length = big_endian(bytes.subspan(at + 2, 2));
+    if (length < 2 || marker == 0xD9 || marker == 0xDA) return std::nullopt;
+    at += 2 + std::size_t{length};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes) {
+  if (starts_with(bytes, kPngSignature)) return png_header(bytes);
+  if (starts_with(bytes, kJpegSignature)) return jpeg_header(bytes);
+  return std::nullopt;
+}
+
+}  // namespace psygen::image

@@ -1,0 +1,24 @@
+// The size that a PNG or JPEG file claims to have, read from its first markers without a decoder
+// and without allocating, so that a claim can be refused before anything is made for it. Not a
+// validation: the rest of the file may still be damaged.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace psygen::image {
+
+enum class PictureFormat : std::uint8_t { kPng, kJpeg };
+
+struct PictureHeader {
+  PictureFormat format = PictureFormat::kPng;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
+// None when the bytes are neither format or end before the size. Linear in the number of markers.
+std::optional<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes);
+
+}  // namespace psygen::image

@@ -1,0 +1,18 @@
+// Replaces a file's content as a whole: after a crash or a full disk the old content or the new
+// content is there, never a mix. POSIX. Any thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "engine/core/error.hpp"
+
+namespace psygen::image {
+
+// Writes a temporary file in the same folder, fsync, rename, fsync of the folder. The temporary
+// file is removed when anything fails. Refuses a path that exists and is not a regular file.
+core::Result<void> replace_file(const std::filesystem::path& path,
+                                std::span<const std::uint8_t> bytes);
+
+}  // namespace psygen::image

@@ -1,0 +1,158 @@
+#include "engine/image/image_io.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+#include "tests/engine/image/test_files.hpp"
+
+namespace psygen::image {
+namespace {
+
+using core::ErrorCode;
+
+const std::filesystem::path kJpeg =
+    std::filesystem::path(PSYGEN_SOURCE_DIR) / "tests/engine/image/data/two_halves.jpg";
+
+void put_big_endian(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
+  for (std::size_t i = 0; i < 4; ++i)
+    bytes[at + i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
+}
+
+// A written PNG whose header claims another size; the checksum of the header is made to fit, so
+// that the claim itself is what has to be refused.
+std::vector<std::uint8_t> png_that_claims(const std::filesystem::path& path, std::uint32_t width,
+                                          std::uint32_t height) {
+  EXPECT_TRUE(write_png(path, make_image(1, 1)));
+  std::vector<std::uint8_t> bytes = bytes_of(path);
+  put_big_endian(bytes, 16, width);
+  put_big_endian(bytes, 20, height);
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (std::size_t i = 12; i < 29; ++i) {
+    crc ^= bytes[i];
+    for (int bit = 0; bit < 8; ++bit)
+      crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  put_big_endian(bytes, 29, ~crc);
+  return bytes;
+}
+
+TEST(ImageIo, APngComesBackBitForBitWithItsAlpha) {
+  const TemporaryFolder folder;
+  const Image image = noise_image(67, 31);
+  ASSERT_TRUE(write_png(folder / "noise.png", image));
+  const auto read = read_image(folder / "noise.png");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, image);
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(ImageIo, ReadsAJpegWhateverItIsCalled) {
+  const TemporaryFolder folder;
+  std::filesystem::copy_file(kJpeg, folder / "picture.png");
+  const auto read = read_image(folder / "picture.png");
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->width, 24U);
+  ASSERT_EQ(read->height, 16U);
+  EXPECT_NEAR(read->pixel(2, 8)[1], 40, 8);
+  EXPECT_NEAR(read->pixel(21, 8)[1], 120, 8);
+  EXPECT_EQ(read->pixel(2, 8)[3], 255);
+}
+
+TEST(ImageIo, RefusesAHugeHeaderInASmallFileBeforeAllocating) {
+  const TemporaryFolder folder;
+  std::vector<std::uint8_t> bytes = png_that_claims(folder / "a.png", 65536, 65536);
+  bytes.resize(100);
+  write_bytes(folder / "huge.png", bytes);
+  const auto read = read_image(folder / "huge.png");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kOverBudget);
+  EXPECT_NE(read.error().message.find("65536 x 65536"), std::string::npos);
+}
+
+TEST(ImageIo, RefusesAHugeJpegHeaderBeforeTheDecoderSeesIt) {
+  const TemporaryFolder folder;
+  std::vector<std::uint8_t> bytes = bytes_of(kJpeg);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t frame = text.find("\xFF\xC0");
+  ASSERT_NE(frame, std::string_view::npos);
+  for (std::size_t i = frame + 5; i < frame + 9; ++i)
+    bytes[i] = 0xFF;
+  bytes[frame + 1] = 0xC2;
+  write_bytes(folder / "huge.jpg", bytes);
+  EXPECT_EQ(read_image(folder / "huge.jpg").error().code, ErrorCode::kOverBudget);
+}
+
+TEST(ImageIo, EachLimitIsChecked) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", make_image(20, 10)));
+  EXPECT_TRUE(read_image(folder / "a.png", {20, 10, 800, 10'000}));
+  for (const ImageLimits limits :
+       {ImageLimits{19, 10, 800, 10'000}, ImageLimits{20, 9, 800, 10'000},
+        ImageLimits{20, 10, 799, 10'000}, ImageLimits{20, 10, 800, 50}}) {
+    EXPECT_EQ(read_image(folder / "a.png", limits).error().code, ErrorCode::kOverBudget);
+  }
+}
+
+TEST(ImageIo, RefusesAPictureWithoutPixels) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.png", png_that_claims(folder / "a.png", 0, 7));
+  EXPECT_EQ(read_image(folder / "a.png").error().code, ErrorCode::kParse);
+}
+
+TEST(ImageIo, APngCutOffAtAnyByteIsAnErrorWithThePath) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", noise_image(5, 5)));
+  const std::vector<std::uint8_t> bytes = bytes_of(folder / "a.png");
+  // The last 12 bytes are the end marker, which decoders do not need.
+  for (std::size_t length = 0; length + 12 < bytes.size(); ++length) {
+    write_bytes(folder / "cut.png", std::span(bytes).first(length));
+    const auto read = read_image(folder / "cut.png");
+    ASSERT_FALSE(read) << "cut to " << length << " of " << bytes.size();
+    EXPECT_EQ(read.error().code, ErrorCode::kParse);
+    EXPECT_EQ(read.error().message.find((folder / "cut.png").string()), 0U);
+  }
+}
+
+TEST(ImageIo, AnyDamagedByteGivesAPictureOfTheSameSizeOrAnError) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", noise_image(5, 5)));
+  for (const std::vector<std::uint8_t>& bytes : {bytes_of(folder / "a.png"), bytes_of(kJpeg)}) {
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      std::vector<std::uint8_t> damaged = bytes;
+      damaged[i] ^= static_cast<std::uint8_t>(1U << (i % 8));
+      write_bytes(folder / "damaged", damaged);
+      const auto read = read_image(folder / "damaged", {4096, 4096, 1 << 24, 1 << 20});
+      EXPECT_TRUE(!read || is_valid(*read)) << "byte " << i;
+    }
+  }
+}
+
+TEST(ImageIo, AFileOfAnotherKindIsAParseErrorAndAMissingOneIsAnIoError) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "empty.png", {});
+  EXPECT_EQ(read_image(folder / "empty.png").error().code, ErrorCode::kParse);
+  write_bytes(folder / "zeros.png", std::vector<std::uint8_t>(5000));
+  EXPECT_EQ(read_image(folder / "zeros.png").error().code, ErrorCode::kParse);
+  EXPECT_EQ(read_image(folder / "none.png").error().code, ErrorCode::kIo);
+  EXPECT_EQ(read_image(folder.path()).error().code, ErrorCode::kIo);
+}
+
+TEST(ImageIo, DoesNotWriteAPictureThatIsNotValid) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(write_png(folder / "a.png", Image{}).error().code, ErrorCode::kInvalidArgument);
+  EXPECT_EQ(write_png(folder / "a.png", Image{4, 4, std::vector<std::uint8_t>(63)}).error().code,
+            ErrorCode::kInvalidArgument);
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
+TEST(ImageIo, AnUnwritablePlaceIsAnIoErrorWithThePath) {
+  const auto result = write_png("/proc/psygen/a.png", make_image(1, 1));
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ErrorCode::kIo);
+  EXPECT_NE(result.error().message.find("/proc/psygen/a.png"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace psygen::image

@@ -1,0 +1,68 @@
+#include "engine/image/picture_header.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string_view>
+#include <vector>
+
+#include "engine/core/hash.hpp"
+
+namespace psygen::image {
+namespace {
+
+using namespace std::string_view_literals;
+
+std::vector<std::uint8_t> bytes_of(std::string_view text) {
+  return {text.begin(), text.end()};
+}
+
+constexpr auto kPng =
+    "\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR\0\0\x01\x02\0\0\0\x03\x08\x06\0\0\0\0\0\0\0"sv;
+constexpr auto kJpeg =
+    "\xFF\xD8\xFF\xE0\0\x04"
+    "ab\xFF\xFF\xC4\0\x03z\xFF\xC2\0\x0B\x08\0\x07\x01\x00\x01\x01\x11\0"sv;
+
+TEST(PictureHeader, ReadsTheSizeOfAPng) {
+  const auto header = read_picture_header(bytes_of(kPng));
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header->format, PictureFormat::kPng);
+  EXPECT_EQ(header->width, 258U);
+  EXPECT_EQ(header->height, 3U);
+}
+
+TEST(PictureHeader, SkipsSegmentsAndFillBytesOfAJpegUntilItsFrame) {
+  const auto header = read_picture_header(bytes_of(kJpeg));
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header->format, PictureFormat::kJpeg);
+  EXPECT_EQ(header->width, 256U);
+  EXPECT_EQ(header->height, 7U);
+}
+
+TEST(PictureHeader, IsNoneForEveryTruncationBeforeTheSize) {
+  for (const std::string_view file : {kPng.substr(0, 33), kJpeg.substr(0, 23)}) {
+    ASSERT_TRUE(read_picture_header(bytes_of(file)));
+    for (std::size_t length = 0; length < file.size(); ++length) {
+      EXPECT_FALSE(read_picture_header(bytes_of(file.substr(0, length)))) << length;
+    }
+  }
+}
+
+TEST(PictureHeader, IsNoneForOtherFiles) {
+  EXPECT_FALSE(read_picture_header(bytes_of("GIF89a, which is not read")));
+  EXPECT_FALSE(
+      read_picture_header(bytes_of("\x89PNG\r\n\x1A\n but then nothing that is a header"sv)));
+}
+
+TEST(PictureHeader, SurvivesRandomBytesAfterASignature) {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    std::vector<std::uint8_t> bytes =
+        bytes_of(seed % 2 == 0 ? kPng.substr(0, 8) : kJpeg.substr(0, 3));
+    for (std::uint64_t i = 0; i < seed % 64; ++i)
+      bytes.push_back(static_cast<std::uint8_t>(core::combine(seed, i) >> 56));
+    const auto header = read_picture_header(bytes);
+    EXPECT_TRUE(!header || bytes.size() >= 12);
+  }
+}
+
+}  // namespace
+}  // namespace psygen::image
