@@ -1,0 +1,39 @@
+// The broadleaf tree: a stochastic L-system whose nodes draw their own number of branches, meshed
+// at six levels of detail from one skeleton (paper, section 5.2, eq. 4; docs/models.md, "Tree").
+// Leaf triangles are seen from both sides: draw trees without back-face culling. Not a species
+// library: one grammar whose looks are parameters.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "engine/models/model_type.hpp"
+
+namespace psygen::models {
+
+// Positions in the schema of the type "tree".
+enum TreeParameter : std::size_t {
+  kTreeSeed = 0,
+  kTreeIterations,
+  kTreeBranches,
+  kTreeSizeM,
+  kTreeRadiusM,
+  kTreeBranchAngle,
+  kTreeAngleVariation,
+  kTreeLengthDecay,
+  kTreeRadiusDecay,
+  kTreeTropism,
+  kTreeCurvature,
+  kTreeFlare,
+  kTreeLeafScale,
+  kTreeLeafHue,
+  kTreeColourVariation,
+  kTreeBarkTone,
+  kTreeParameterCount
+};
+
+// Levels 0 … 5: on average over the paper's ranges about 5,000, 1,200, 300, 80, 23 and 11
+// triangles. Needs at most 256 KiB of stack; nothing on the heap.
+std::unique_ptr<ModelType> make_tree_type();
+
+}  // namespace psygen::models
