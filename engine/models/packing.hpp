@@ -1,0 +1,83 @@
+// How numbers become the bytes of a vertex (engine/core/vertex_layout.hpp): snorm and unorm with
+// rounding to nearest, octahedral normals, colours stored as square roots. Same bits everywhere:
+// only additions, multiplications, divisions and square roots. Not a general pixel-format library.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "engine/core/coordinates.hpp"
+#include "engine/core/vertex_layout.hpp"
+
+namespace psygen::models {
+
+// Nearest integer to `v`, halves upwards. Requires |v| < 2^23.
+inline std::int32_t round_to_int(float v) {
+  const float shifted = v + 0.5F;
+  const auto truncated = static_cast<std::int32_t>(shifted);
+  return truncated - (static_cast<float>(truncated) > shifted ? 1 : 0);
+}
+
+// v in [-1, 1] to snorm8 (±127) and snorm16 (±32767); v in [0, 1] to unorm8. Outside: clamped.
+inline std::int8_t pack_snorm8(float v) {
+  return static_cast<std::int8_t>(round_to_int(std::clamp(v, -1.0F, 1.0F) * 127.0F));
+}
+inline std::int16_t pack_snorm16(float v) {
+  return static_cast<std::int16_t>(round_to_int(std::clamp(v, -1.0F, 1.0F) * 32767.0F));
+}
+inline std::uint8_t pack_unorm8(float v) {
+  return static_cast<std::uint8_t>(round_to_int(std::clamp(v, 0.0F, 1.0F) * 255.0F));
+}
+// Albedo in [0, 1], linear light, stored as its square root: albedo = (byte / 255)².
+inline std::uint8_t pack_albedo(float albedo) {
+  return pack_unorm8(std::sqrt(std::max(albedo, 0.0F)));
+}
+
+// Octahedral mapping around +Y: directions with y >= 0 fill the diamond |e.x| + |e.y| <= 1, where
+// e = (x, z) / (|x| + |y| + |z|); those with y < 0 are folded outwards into the corners of the
+// square. `n` need not have unit length but must not be zero.
+inline glm::vec2 encode_octahedral(const glm::vec3& n) {
+  const float scale = 1.0F / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  const float x = n.x * scale, z = n.z * scale;
+  if (n.y >= 0.0F) return {x, z};
+  return {(1.0F - std::abs(z)) * (x >= 0.0F ? 1.0F : -1.0F),
+          (1.0F - std::abs(x)) * (z >= 0.0F ? 1.0F : -1.0F)};
+}
+// The unit vector of an encoded direction (what the shaders do).
+inline glm::vec3 decode_octahedral(glm::vec2 e) {
+  glm::vec3 n{e.x, 1.0F - std::abs(e.x) - std::abs(e.y), e.y};
+  const float fold = std::max(-n.y, 0.0F);
+  n.x += n.x >= 0.0F ? -fold : fold;
+  n.z += n.z >= 0.0F ? -fold : fold;
+  return n * (1.0F / std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z));
+}
+
+// Packs points of one box as snorm16: p = center + half_extent · packed / 32767.
+class BoxPacker {
+ public:
+  explicit BoxPacker(const core::Bounds& box) : center_(box.center()) {
+    const glm::vec3 half = box.half_extent();
+    scale_ = {half.x > 0 ? 1 / half.x : 0, half.y > 0 ? 1 / half.y : 0,
+              half.z > 0 ? 1 / half.z : 0};
+  }
+  void pack(const glm::vec3& p, std::int16_t (&out)[3]) const {
+    out[0] = pack_snorm16((p.x - center_.x) * scale_.x);
+    out[1] = pack_snorm16((p.y - center_.y) * scale_.y);
+    out[2] = pack_snorm16((p.z - center_.z) * scale_.z);
+  }
+
+ private:
+  glm::vec3 center_;
+  glm::vec3 scale_;
+};
+
+inline glm::vec3 unpack_position(const core::ModelVertex& v, const core::Bounds& box) {
+  return box.center() +
+         box.half_extent() *
+             (glm::vec3(v.position[0], v.position[1], v.position[2]) * (1.0F / 32767.0F));
+}
+
+}  // namespace psygen::models
