@@ -1,0 +1,80 @@
+#include "engine/models/model_type.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace psygen::models {
+namespace {
+
+// Costs as people read them: the number itself while it is small, a power of two beyond.
+std::string predicted_cost(double log2_triangles) {
+  if (!std::isfinite(log2_triangles)) return "predicted cost: unbounded";
+  if (log2_triangles < 40)
+    return fmt::format("predicted cost: {:.0f} triangles", std::exp2(log2_triangles));
+  return fmt::format("predicted cost: 2^{:.1f} triangles", log2_triangles);
+}
+
+std::string value_text(const ParameterSpec& spec, const Parameters& p, std::size_t i) {
+  return spec.type == ParameterType::kInteger ? fmt::format("{}", p.integer(i))
+                                              : fmt::format("{:g}", p.real(i));
+}
+
+bool is_allowed(const ParameterSpec& spec, const Parameters& p, std::size_t i) {
+  // A 64-bit integer converts to the nearest double; bounds beyond 2^53 only occur as ±2^63.
+  const double value =
+      spec.type == ParameterType::kInteger ? static_cast<double>(p.integer(i)) : p.real(i);
+  return value >= spec.hard_min && value <= spec.hard_max;  // false for NaN
+}
+
+}  // namespace
+
+Parameters default_parameters(const ModelType& type) {
+  Parameters p;
+  const std::span<const ParameterSpec> specs = type.parameters();
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (specs[i].type == ParameterType::kInteger) {
+      p.set_integer(i, static_cast<std::int64_t>(specs[i].default_value));
+    } else {
+      p.set_real(i, specs[i].default_value);
+    }
+  }
+  return p;
+}
+
+int parameter_index(const ModelType& type, std::string_view name) {
+  const std::span<const ParameterSpec> specs = type.parameters();
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (specs[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+core::Result<void> validate(const ModelType& type, const Parameters& p, double max_log2_cost) {
+  const std::span<const ParameterSpec> specs = type.parameters();
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const ParameterSpec& spec = specs[i];
+    if (is_allowed(spec, p, i)) continue;
+    return core::fail(
+        core::ErrorCode::kInvalidArgument,
+        fmt::format("{}: {} = {} is not allowed: it must be {} from {:g} to {:g}{}{} "
+                    "({})",
+                    type.name(), spec.name, value_text(spec, p, i),
+                    spec.type == ParameterType::kInteger ? "an integer" : "a number", spec.hard_min,
+                    spec.hard_max, spec.unit.empty() ? "" : " ", spec.unit == "1" ? "" : spec.unit,
+                    predicted_cost(type.log2_cost(p))));
+  }
+  const double cost = type.log2_cost(p);
+  if (cost <= max_log2_cost) return {};
+  std::string values;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (specs[i].type != ParameterType::kInteger || specs[i].source == ParameterSource::kPlaced)
+      continue;
+    values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", specs[i].name, p.integer(i));
+  }
+  return core::fail(core::ErrorCode::kOverBudget,
+                    fmt::format("{}: {} together are too large ({}; allowed: 2^{:g})", type.name(),
+                                values, predicted_cost(cost), max_log2_cost));
+}
+
+}  // namespace psygen::models

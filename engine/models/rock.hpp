@@ -1,0 +1,31 @@
+// A rock: midpoint displacement on a tetrahedron (paper, section 5.2, eq. 1; docs/models.md,
+// "Rock"). Watertight, outward-facing and around its own centre for all legal parameters; stands in
+// the ground with its lower third. Faceted: every triangle has vertices of its own.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "engine/models/model_type.hpp"
+
+namespace psygen::models {
+
+// Positions in the schema of the type "rock".
+enum RockParameter : std::size_t {
+  kRockSeed = 0,
+  kRockSubdivisions,
+  kRockRadiusM,
+  kRockAmplitude,
+  kRockDecay,
+  kRockAlbedo,
+  kRockWarmth,
+  kRockMoss,
+  kRockParameterCount
+};
+
+// Level l has max(subdivisions − l, 0) subdivisions: 4·4^n triangles exactly, and thrice as many
+// core::ModelVertex. Corners that two levels share have the same places. Needs 256 KiB of stack;
+// nothing on the heap.
+std::unique_ptr<ModelType> make_rock_type();
+
+}  // namespace psygen::models

@@ -1,0 +1,35 @@
+// The parameters of a terrain as its kernels use them. Shared by the mesh (terrain.cpp) and the
+// ground queries (terrain_ground.cpp).
+#pragma once
+
+#include <cstdint>
+
+#include "engine/models/model_type.hpp"
+#include "engine/models/ridged_noise.hpp"
+
+namespace psygen::models {
+
+struct TerrainShape {
+  RidgedNoise noise;
+  int size;
+  int node_level;
+  double cell_m;   // between neighbouring vertices of level 0, of this node level
+  float relief_m;  // height of the quantised value 65535; 0 is height 0
+  float quantum;   // noise → quantised value
+  float metres;    // noise → metres
+
+  explicit TerrainShape(const Parameters& p);
+
+  // World coordinate of vertex 0 of a block, in cells of node level 0. Any vertex i of the same
+  // block has block_origin() + i · 2^node_level.
+  std::int64_t block_origin(std::int64_t block) const {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(block * (size - 1)) << node_level);
+  }
+  std::uint16_t quantise(float noise_value) const {
+    const float scaled = noise_value * quantum + 0.5F;
+    return static_cast<std::uint16_t>(
+        static_cast<std::int32_t>(scaled < 65535.0F ? (scaled > 0.0F ? scaled : 0.0F) : 65535.0F));
+  }
+};
+
+}  // namespace psygen::models
