@@ -21,16 +21,17 @@ inline glm::vec3 normalised3(const glm::vec3& v) {
 
 // sin(2πx) for any x of moderate size, absolute error below 3e-7.
 inline float sin_turns(float x) {
-  x -= std::floor(x + 0.5F);                                         // [-1/2, 1/2]
+  x -= std::floor(x + 0.5F);                                        // [-1/2, 1/2]
   const float folded = std::min(std::max(x, -0.5F - x), 0.5F - x);  // [-1/4, 1/4], same sine
   const float y = folded * 6.28318530717958648F;
   const float z = y * y;
-  return y *
-         (1.0F +
-          z * (-1.0F / 6 +
-               z * (1.0F / 120 + z * (-1.0F / 5040 + z * (1.0F / 362880 - z * (1.0F / 39916800))))));
+  return y * (1.0F + z * (-1.0F / 6 +
+                          z * (1.0F / 120 +
+                               z * (-1.0F / 5040 + z * (1.0F / 362880 - z * (1.0F / 39916800))))));
 }
-inline float cos_turns(float x) { return sin_turns(x + 0.25F); }
+inline float cos_turns(float x) {
+  return sin_turns(x + 0.25F);
+}
 
 // Two unit vectors perpendicular to the unit vector d and to each other, continuous wherever d.y
 // keeps its sign (after Duff et al. 2017, with y for z).

@@ -14,10 +14,18 @@ float tip_or(bool tip, float radius, float taper) {
   return tip ? 0.0F : radius * taper;
 }
 
+// What is left of a branch that would end at `end`: all inside the envelope, less further out.
+float kept_share(const TreeShape& s, const glm::vec3& end) {
+  const float x = end.x / s.envelope_across, z = end.z / s.envelope_across;
+  const float y = (end.y - s.envelope_y) / s.envelope_up;
+  return 1.0F / std::max(1.0F, x * x + y * y + z * z);
+}
+
 void grow_trunk(const TreeShape& s, int depth, TreeSkeleton& out) {
   const std::uint64_t looks = core::mix64(s.root_key ^ kLooksSalt);
   const Fractions u(looks), w(core::mix64(looks));
   out.key[0] = s.root_key;
+  out.parent[0] = 0;
   out.base[0] = glm::vec3(0.0F);
   out.direction[0] = normalised3({0.16F * (u.f[0] - 0.5F), 1.0F, 0.16F * (u.f[1] - 0.5F)});
   out.bend[0] = s.curvature * 0.5F * glm::vec3(w.f[0] - 0.5F, 0.0F, w.f[1] - 0.5F);
@@ -34,12 +42,11 @@ void grow_branch(const TreeShape& s, TreeSkeleton& out, std::uint32_t parent, st
   const Fractions u(looks), w(core::mix64(looks));
   const bool leader = number == 0;
   const float along =
-      leader ? 0.0F
-             : (static_cast<float>(number - 1) + 0.7F * u.f[0]) / static_cast<float>(of - 1);
-  const float t = 1.0F - 0.6F * along;
+      leader ? 0.0F : (static_cast<float>(number - 1) + 0.7F * u.f[0]) / static_cast<float>(of - 1);
+  const float t = 1.0F - (parent == 0 ? 0.3F : 0.6F) * along;
 
   const float jitter = 1.0F + s.angle_variation * (2.0F * u.f[1] - 1.0F);
-  const float tilt = s.angle_turns * jitter * (leader ? 0.4F : 0.8F + 0.5F * along);
+  const float tilt = leader ? 0.0F : s.angle_turns * jitter * (0.75F + 0.4F * along);
   const float start = static_cast<float>((out.key[parent] >> 24) & 0xFFFFU) * (1.0F / 65536.0F);
   const float azimuth = start + kGoldenTurns * static_cast<float>(number) +
                         0.3F * s.angle_variation * (u.f[2] - 0.5F);
@@ -47,17 +54,20 @@ void grow_branch(const TreeShape& s, TreeSkeleton& out, std::uint32_t parent, st
   const Frame frame = frame_around(tangent);
   const glm::vec3 side = cos_turns(azimuth) * frame.u + sin_turns(azimuth) * frame.v;
   glm::vec3 direction = cos_turns(tilt) * tangent + sin_turns(tilt) * side;
-  direction.y += s.tropism;
+  direction.y += leader ? 0.5F * s.tropism : s.tropism;
 
   const float start_radius = out.radius_start[parent];
   const float radius_there = start_radius + t * (out.radius_end[parent] - start_radius);
   out.key[i] = key;
+  out.parent[i] = parent;
   out.base[i] = out.point(parent, t);
   out.direction[i] = normalised3(direction);
   out.bend[i] = s.curvature * 0.5F * glm::vec3(w.f[0] - 0.5F, w.f[1] - 0.5F, w.f[2] - 0.5F);
   out.bend[i].y += 0.35F * s.tropism;
-  out.length[i] = out.length[parent] * s.length_decay * (0.85F + 0.3F * u.f[3]) *
-                  (leader ? 1.0F : 0.85F + 0.4F * (1.0F - t));
+  const float length = out.length[parent] * s.length_decay * (0.85F + 0.3F * u.f[3]) *
+                       (leader ? 1.0F : 0.85F + 0.4F * (1.0F - t));
+  const glm::vec3 end = out.base[i] + length * (out.direction[i] + out.bend[i]);
+  out.length[i] = length * kept_share(s, end);
   out.radius_start[i] = radius_there * (leader ? 1.0F : s.radius_decay);
   out.radius_end[i] = tip_or(tip, out.radius_start[i], 0.72F);
 }
@@ -80,7 +90,16 @@ TreeShape::TreeShape(const Parameters& p)
       leaf_scale(static_cast<float>(p.real(kTreeLeafScale))),
       leaf_hue(static_cast<float>(p.real(kTreeLeafHue))),
       colour_variation(static_cast<float>(p.real(kTreeColourVariation))),
-      bark_tone(static_cast<float>(p.real(kTreeBarkTone))) {}
+      bark_tone(static_cast<float>(p.real(kTreeBarkTone))) {
+  float length = size_m, sum = 0.0F;
+  for (int i = 0; i < iterations; ++i) {
+    length *= length_decay;
+    sum += length;
+  }
+  envelope_across = 0.25F * size_m + 0.40F * sum;
+  envelope_up = 0.25F * size_m + 0.40F * sum;
+  envelope_y = 1.0F * size_m + 0.40F * sum;
+}
 
 TreeCount count_tree(const TreeShape& shape) {
   TreeCount result;

@@ -30,6 +30,8 @@ struct TreeShape {
   float length_decay, radius_decay;
   float tropism, curvature, flare;
   float leaf_scale, leaf_hue, colour_variation, bark_tone;
+  // The ellipsoid that branches are kept in: centre (0, envelope_y, 0), half axes in metres.
+  float envelope_y, envelope_across, envelope_up;
 };
 
 // Number of branches that the node of this key has: m − 2 … m + 2, at least 1.
@@ -59,7 +61,7 @@ struct TreeSkeleton {
   std::array<std::uint64_t, kMaxTreeNodes> key;
   std::array<glm::vec3, kMaxTreeNodes> base, direction, bend;
   std::array<float, kMaxTreeNodes> length, radius_start, radius_end;
-  std::array<std::uint32_t, kMaxTreeNodes> budget;
+  std::array<std::uint32_t, kMaxTreeNodes> parent, budget;
 
   glm::vec3 point(std::uint32_t i, float t) const {
     return base[i] + length[i] * (t * direction[i] + (t * t) * bend[i]);
