@@ -97,35 +97,41 @@ double TreeType::level_error_m(const Parameters& p, int level) const {
 core::Bounds TreeType::bounds(const Parameters& p) const {
   const TreeShape s(p);
   const Reach reach = reach_of(s);
-  const double foliage = 1.5 * s.size_m;
-  const auto across = static_cast<float>(0.35 * reach.trunk + reach.branches + foliage +
-                                         s.radius_m * (1.2 + 2.0 * s.flare));
-  const auto up = static_cast<float>(reach.trunk + reach.branches + foliage);
-  return {{-across, -sink_m(s) * 1.05F, -across}, {across, up, across}};
+  const double foliage = 0.6 * s.size_m + 0.3 * s.envelope_across * s.leaf_scale;
+  const double across = std::min(reach.branches, 1.35 * s.envelope_across) + foliage;
+  const double foot = s.radius_m * (1.2 + 2.0 * s.flare);
+  const double up = std::min(reach.branches, s.envelope_y - s.size_m + 1.35 * s.envelope_up);
+  const auto side = static_cast<float>(std::max(0.35 * reach.trunk + across, foot));
+  const auto top = static_cast<float>(reach.trunk + up + foliage);
+  const float bottom = -1.1F * sink_m(s) - 0.12F * static_cast<float>(foot);
+  return {{-side, bottom, -side}, {side, top, side}};
 }
 
 MeshSize TreeType::mesh_size(const Parameters& p, int level) const {
   const TreeShape s(p);
-  std::uint32_t vertices = 0, triangles = 0;
+  std::uint32_t vertices = 0, triangles = 0, sprays = 0;
   if (level >= 4) {
     vertices = kConeVertices + (level == 4 ? kBallVertices : kOctahedronVertices);
     triangles = kConeTriangles + (level == 4 ? kBallTriangles : kOctahedronTriangles);
+  } else if (level >= 2) {  // trunk and, at level 2, its branches
+    const TubePlan trunk = tube_plan(level, 0, false);
+    const TubePlan branch = tube_plan(level, 1, s.iterations == 1);
+    const std::uint32_t children = child_count(s.root_key, s.branches);
+    sprays = spray_count(level, 0);
+    vertices = trunk.vertices() + children * branch.vertices() + kConeVertices;
+    triangles = trunk.triangles() + children * branch.triangles() + kConeTriangles;
   } else {
     const TreeCount count = count_tree(s);
+    sprays = spray_count(level, count.tips());
     for (int depth = 0; depth <= count.depth; ++depth) {
       const TubePlan plan = tube_plan(level, depth, depth == count.depth);
       const std::uint32_t nodes = count.nodes[static_cast<std::size_t>(depth)];
       vertices += nodes * plan.vertices();
       triangles += nodes * plan.triangles();
     }
-    if (level >= 2) {
-      vertices += kConeVertices;
-      triangles += kConeTriangles;
-    }
-    const std::uint32_t sprays = spray_count(level, count.tips());
-    vertices += sprays * kSprayVertices;
-    triangles += sprays * kSprayTriangles;
   }
+  vertices += sprays * kSprayVertices;
+  triangles += sprays * kSprayTriangles;
   return {vertices, triangles * 3, 0, core::VertexLayout::kModel};
 }
 
@@ -146,7 +152,7 @@ double TreeType::log2_cost(const Parameters& p) const {
 core::Bounds TreeType::synthesize(const Parameters& p, int level, const MeshView& out) const {
   const TreeShape s(p);
   MeshWriter writer(bounds(p), out);
-  const int depth = count_tree(s).depth;
+  const int depth = tip_depth(s);
   TreeSkeleton skeleton;
   grow_tree(s, depth, kCrownPaths, skeleton);
   const TreeCrown crown = crown_of(s, skeleton);

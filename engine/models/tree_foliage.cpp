@@ -84,10 +84,11 @@ float inverse_root(std::uint32_t x) {
 Foliage foliage(const TreeShape& shape, int level, const TreeCrown& crown, std::uint32_t tips,
                 std::uint32_t sprays) {
   const SprayForm& form = spray_form(level);
-  const float fitting = form.length * crown.radius * inverse_root(sprays) * shape.leaf_scale;
+  const float fitting = (level == 1 ? 1.08F : 1.0F) * form.length * crown.radius *
+                        inverse_root(sprays) * shape.leaf_scale;
   const float length = std::min(fitting, 2.0F * shape.size_m);
   const float cluster = std::min(2.1F * crown.radius * inverse_root(tips), 0.6F * crown.radius);
-  const float outgrown = 0.36F * length / crown.radius;
+  const float outgrown = 0.28F * length / crown.radius;
   const float pull = level == 0 ? 1.0F : std::max(1.0F - outgrown, 0.5F);
   return {shape, crown, form, tree_tint(shape), length, cluster, pull};
 }
@@ -144,7 +145,7 @@ glm::vec3 anchor(const TreeSkeleton& s, std::uint32_t i, float f) {
 }  // namespace
 
 std::uint32_t spray_count(int level, std::uint32_t tips) {
-  if (level == 0) return std::clamp(7U * tips / 2U, 512U, 7168U);
+  if (level == 0) return std::clamp(10U * tips / 3U, 512U, 7168U);
   if (level == 1) return std::clamp(tips, 128U, 1536U);
   return level == 2 ? 64 : kCrownPaths;
 }
@@ -206,16 +207,16 @@ void mesh_hull(const TreeShape& shape, int level, const TreeCrown& crown, MeshWr
   const bool ball = level == 4;
   const Tint tint = tree_tint(shape);
   const std::uint32_t first = out.vertex_count();
-  const float grow = ball ? 1.12F : 1.3F;
+  const float grow = ball ? 1.05F : 1.3F;
   for (std::uint32_t k = 0; k < (ball ? kBallVertices : kOctahedronVertices); ++k) {
     const float* corner = ball ? kBall[k] : kOctahedron[k];
     const glm::vec3 unit{corner[0], corner[1], corner[2]};
     const Fractions a(core::mix64(shape.root_key + kSpraySalt * (k + 1)));
     const glm::vec3 place = crown.center + crown.half * unit * (grow * (0.85F + 0.3F * a.f[0]));
     const Colour colour = leaf_colour(tint.hue + 0.1F * shape.colour_variation * (a.f[1] - 0.5F));
-    out.vertex(place, {pack_unorm8(0.9F * crown_ambient(crown, place)), 200,
+    out.vertex(place, {pack_unorm8((ball ? 0.78F : 0.7F) * crown_ambient(crown, place)), 200,
                        pack_normal(normalised3(unit + glm::vec3(0.0F, 0.2F, 0.0F))),
-                       packed(colour, tint.brightness), kLeaf});
+                       packed(colour, 0.9F * tint.brightness), kLeaf});
   }
   const std::uint32_t* indices = ball ? kBallIndices : kOctahedronIndices;
   for (std::uint32_t k = 0; k < 3 * (ball ? kBallTriangles : kOctahedronTriangles); k += 3)

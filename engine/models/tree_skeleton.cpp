@@ -130,6 +130,15 @@ TreeCount count_tree(const TreeShape& shape) {
   return result;
 }
 
+int tip_depth(const TreeShape& shape) {
+  std::uint64_t most = 1, total = 1;
+  for (int i = 0; i < shape.iterations && total <= kMaxTreeNodes; ++i) {
+    most *= static_cast<std::uint64_t>(shape.branches) + 2;
+    total += most;
+  }
+  return total <= kMaxTreeNodes ? shape.iterations : count_tree(shape).depth;
+}
+
 void grow_tree(const TreeShape& shape, int depth, std::uint32_t max_tips, TreeSkeleton& out) {
   grow_trunk(shape, depth, out);
   out.budget[0] = max_tips;

@@ -50,6 +50,9 @@ struct TreeCount {
   std::uint32_t tips() const { return nodes[static_cast<std::size_t>(depth)]; }
 };
 TreeCount count_tree(const TreeShape& shape);
+// The depth of the tips, which is count_tree(shape).depth, without counting where no draw of
+// branches could reach kMaxTreeNodes.
+int tip_depth(const TreeShape& shape);
 
 // Branch i runs from base along base + length · (t · direction + t² · bend), t in [0, 1].
 // Branches of one depth are contiguous, in order of their parents. About 220 KiB, meant for the
@@ -71,7 +74,7 @@ struct TreeSkeleton {
   TreeSkeleton() {}  // leaves the arrays unwritten
 };
 
-// Grows the skeleton to the depth of `counted`, following at most `max_tips` paths from the root
+// Grows the skeleton to `depth` (tip_depth()), following at most `max_tips` paths from the root
 // to tips (evenly shared out among the children on the way); kWholeTree grows all. The trunk and
 // every branch on a path are exactly those of the whole tree.
 void grow_tree(const TreeShape& shape, int depth, std::uint32_t max_tips, TreeSkeleton& out);
