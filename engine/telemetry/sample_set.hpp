@@ -1,0 +1,35 @@
+// Samples of one quantity that arrive too often to keep them all: thousands per second, each with
+// the moment it was taken. Keeps all of them up to its capacity and a uniform choice of them beyond
+// (reservoir sampling, Vitter 1985, algorithm R), deterministically. Memory is bounded; adding is
+// O(1) and does not allocate. One thread.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace psygen::telemetry {
+
+class SampleSet {
+ public:
+  explicit SampleSet(std::size_t capacity = std::size_t{1} << 17);
+
+  // Values that are not finite are left out.
+  void add(double time_s, double value);
+  std::uint64_t added_count() const { return added_; }
+  // The kept values taken at `from_s` or later, in no particular order. When samples were dropped,
+  // the largest of all is still among them.
+  std::vector<double> values_since(double from_s) const;
+
+ private:
+  struct Sample {
+    double time_s;
+    double value;
+  };
+
+  std::size_t capacity_;
+  std::uint64_t added_ = 0;
+  Sample largest_{0, 0};
+  std::vector<Sample> samples_;
+};
+
+}  // namespace psygen::telemetry

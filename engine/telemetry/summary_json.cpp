@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/telemetry/output_file.hpp"
+#include "engine/telemetry/summary.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Turns figures into values or nulls and collects the reasons of the nulls.
+class Writer {
+ public:
+  Json figure(const std::string& path, const Figure& figure) {
+    if (!figure.has_value()) return missing(path, figure.reason);
+    if (!std::isfinite(*figure)) return missing(path, "the figure is not a finite number");
+    return *figure;
+  }
+  Json count(const std::string& path, const Count& count) {
+    return count.has_value() ? Json(*count) : missing(path, count.reason);
+  }
+  Json hash(const std::string& path, const Count& hash) {
+    return hash.has_value() ? Json(fmt::format("{:016x}", *hash)) : missing(path, hash.reason);
+  }
+  Json number(const std::string& path, double value) { return figure(path, Figure(value)); }
+  const Json& reasons() const { return reasons_; }
+
+ private:
+  Json missing(const std::string& path, const std::string& reason) {
+    reasons_[path] = reason;
+    return nullptr;
+  }
+  Json reasons_ = Json::object();
+};
+
+Json world_json(const WorldFacts& world, Writer& w) {
+  return {{"name", world.name},
+          {"seed", world.seed},
+          {"blocks", world.blocks},
+          {"triangles", w.count("world.triangles", world.triangles)},
+          {"bytes_paper", w.count("world.bytes_paper", world.bytes_paper)},
+          {"bytes", w.count("world.bytes", world.bytes)}};
+}
+
+Json run_json(const Summary& s, Writer& w) {
+  return {{"paradigm", s.run.paradigm},
+          {"policy", s.run.policy},
+          {"modelers", s.run.modelers},
+          {"width", s.run.width},
+          {"height", s.run.height},
+          {"frames", s.run.frames},
+          {"seconds", w.number("run.seconds", s.run.seconds)},
+          {"lod", s.run.lod},
+          {"fixed_step", w.figure("run.fixed_step", s.run.fixed_step)},
+          {"warmup_seconds", w.number("run.warmup_seconds", s.run.warmup_seconds)},
+          {"measured_frames", s.run.measured_frames}};
+}
+
+Json frame_json(const FrameTimes& t, Writer& w) {
+  return {{"mean", w.figure("frame_ms.mean", t.mean)}, {"p50", w.figure("frame_ms.p50", t.p50)},
+          {"p95", w.figure("frame_ms.p95", t.p95)},    {"p99", w.figure("frame_ms.p99", t.p99)},
+          {"p999", w.figure("frame_ms.p999", t.p999)}, {"max", w.figure("frame_ms.max", t.max)}};
+}
+
+Json systems_json(const std::vector<SystemTimes>& systems, Writer& w) {
+  Json result = Json::object();
+  for (const SystemTimes& system : systems) {
+    const std::string path = "system_ms." + system.name;
+    result[system.name] = {{"p50", w.figure(path + ".p50", system.p50)},
+                           {"p99", w.figure(path + ".p99", system.p99)}};
+  }
+  return result;
+}
+
+Json missing_json(const Summary& s, Writer& w) {
+  const auto& wait = s.missing.time_to_visible_ms;
+  const std::string path = "missing.time_to_visible_ms";
+  return {
+      {"frames", w.count("missing.frames", s.missing.frames)},
+      {"nodes_p99", w.figure("missing.nodes_p99", s.missing.nodes_p99)},
+      {"pixels_max_percent", w.figure("missing.pixels_max_percent", s.missing.pixels_max_percent)},
+      {"time_to_visible_ms",
+       {{"p50", w.figure(path + ".p50", wait.p50)},
+        {"p99", w.figure(path + ".p99", wait.p99)},
+        {"max", w.figure(path + ".max", wait.max)}}}};
+}
+
+Json cache_json(const Summary& s, Writer& w) {
+  const auto& cache = s.cache;
+  return {
+      {"budget_bytes", cache.budget_bytes},
+      {"peak_bytes", w.count("cache.peak_bytes", cache.peak_bytes)},
+      {"hits", w.count("cache.hits", cache.hits)},
+      {"misses", w.count("cache.misses", cache.misses)},
+      {"evictions", w.count("cache.evictions", cache.evictions)},
+      {"regenerations", w.count("cache.regenerations", cache.regenerations)},
+      {"prefetch_hit_percent", w.figure("cache.prefetch_hit_percent", cache.prefetch_hit_percent)}};
+}
+
+Json synthesis_json(const Summary& s, Writer& w) {
+  const auto& synthesis = s.synthesis;
+  const std::string error = "synthesis.cost_error_percent";
+  return {{"models", w.count("synthesis.models", synthesis.models)},
+          {"triangles", w.count("synthesis.triangles", synthesis.triangles)},
+          {"bytes", w.count("synthesis.bytes", synthesis.bytes)},
+          {"seconds", w.figure("synthesis.seconds", synthesis.seconds)},
+          {"triangles_per_second",
+           w.figure("synthesis.triangles_per_second", synthesis.triangles_per_second)},
+          {"cost_error_percent",
+           {{"p50", w.figure(error + ".p50", synthesis.cost_error_percent.p50)},
+            {"p95", w.figure(error + ".p95", synthesis.cost_error_percent.p95)}}}};
+}
+
+}  // namespace
+
+std::string to_json(const Summary& s) {
+  Writer w;
+  Json json;
+  json["schema"] = kSummarySchema;
+  json["world"] = world_json(s.world, w);
+  json["device"] = {{"name", s.device.name}, {"driver", s.device.driver}, {"api", s.device.api}};
+  json["run"] = run_json(s, w);
+  json["frame_ms"] = frame_json(s.frame_ms, w);
+  json["low1_fps"] = w.figure("low1_fps", s.low1_fps);
+  json["hitches"] = w.count("hitches", s.hitches);
+  json["stutter_percent"] = w.figure("stutter_percent", s.stutter_percent);
+  json["system_ms"] = systems_json(s.system_ms, w);
+  json["missing"] = missing_json(s, w);
+  json["cache"] = cache_json(s, w);
+  json["synthesis"] = synthesis_json(s, w);
+  json["draw"] = {{"triangles_p50", w.figure("draw.triangles_p50", s.draw.triangles_p50)},
+                  {"draws_p50", w.figure("draw.draws_p50", s.draw.draws_p50)},
+                  {"floor_ratio", w.figure("draw.floor_ratio", s.draw.floor_ratio)}};
+  json["memory"] = {{"peak_rss_bytes", w.count("memory.peak_rss_bytes", s.memory.peak_rss_bytes)}};
+  json["hash"] = {{"world", w.hash("hash.world", s.hash.world)},
+                  {"images", w.hash("hash.images", s.hash.images)}};
+  json["reasons"] = w.reasons();
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+core::Result<void> write_summary_json(const std::filesystem::path& path, const Summary& summary) {
+  return write_text_file(path, to_json(summary));
+}
+
+}  // namespace psygen::telemetry

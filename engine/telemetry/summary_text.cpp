@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "engine/telemetry/summary.hpp"
+#include "engine/telemetry/units.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+std::string plain(double value) {
+  return three_digits(value);
+}
+std::string milliseconds(double value) {
+  return three_digits(value) + " ms";
+}
+std::string percent(double value) {
+  return three_digits(value) + " %";
+}
+
+// Lines of a title, a label and a text.
+class Table {
+ public:
+  void section(std::string_view title) { title_ = title; }
+  void row(std::string_view label, std::string_view text) {
+    fmt::format_to(std::back_inserter(text_), "{:<10} {:<18} {}\n", title_, label, text);
+    title_ = "";
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+  std::string_view title_;
+};
+
+std::string blocks_text(const WorldFacts& world) {
+  if (world.blocks[0] == 0 || world.blocks[1] == 0) return "endless";
+  return fmt::format("{} x {} blocks", world.blocks[0], world.blocks[1]);
+}
+
+void add_run(Table& table, const Summary& s) {
+  table.section("world");
+  table.row("name",
+            fmt::format("{}, seed {}, {}", s.world.name, s.world.seed, blocks_text(s.world)));
+  table.row("if generated",
+            fmt::format("{} triangles, {} ({} in the paper's format)",
+                        or_dash(s.world.triangles, count_text), or_dash(s.world.bytes, bytes_text),
+                        or_dash(s.world.bytes_paper, bytes_text)));
+  table.section("run");
+  table.row("device", s.device.name);
+  table.row("how", fmt::format("{}, {}, {} modeler{}, {} x {}, levels of detail {}", s.run.paradigm,
+                               s.run.policy, s.run.modelers, s.run.modelers == 1 ? "" : "s",
+                               s.run.width, s.run.height, s.run.lod ? "on" : "off"));
+  table.row("length", fmt::format("{} frames in {} s, {} measured after {} s of warm-up",
+                                  s.run.frames, three_digits(s.run.seconds), s.run.measured_frames,
+                                  three_digits(s.run.warmup_seconds)));
+}
+
+void add_frames(Table& table, const Summary& s) {
+  const auto fps = [](double ms) { return ms > 0 ? three_digits(1000.0 / ms) : std::string("–"); };
+  table.section("frame");
+  table.row("median", fmt::format("{} ({} frames/s)", or_dash(s.frame_ms.p50, milliseconds),
+                                  or_dash(s.frame_ms.p50, fps)));
+  table.row("p95, p99, max", fmt::format("{}, {}, {}", or_dash(s.frame_ms.p95, milliseconds),
+                                         or_dash(s.frame_ms.p99, milliseconds),
+                                         or_dash(s.frame_ms.max, milliseconds)));
+  table.row("lowest 1 %", or_dash(s.low1_fps, plain) + " frames/s");
+  table.row("hitches", fmt::format("{}, {} of the time in stutter", or_dash(s.hitches, plain),
+                                   or_dash(s.stutter_percent, percent)));
+  table.row("drawn (median)",
+            fmt::format("{} triangles in {} draws", or_dash(s.draw.triangles_p50, count_text),
+                        or_dash(s.draw.draws_p50, plain)));
+  table.section("systems");
+  for (const SystemTimes& system : s.system_ms) {
+    table.row(system.name, fmt::format("p50 {}, p99 {}", or_dash(system.p50, milliseconds),
+                                       or_dash(system.p99, milliseconds)));
+  }
+}
+
+void add_streaming(Table& table, const Summary& s) {
+  const auto& wait = s.missing.time_to_visible_ms;
+  table.section("missing");
+  table.row("frames with holes", or_dash(s.missing.frames, plain));
+  table.row("pixels, worst", or_dash(s.missing.pixels_max_percent, percent));
+  table.row("time to visible", fmt::format("p50 {}, p99 {}", or_dash(wait.p50, milliseconds),
+                                           or_dash(wait.p99, milliseconds)));
+  table.section("cache");
+  table.row("peak", fmt::format("{} of {}", or_dash(s.cache.peak_bytes, bytes_text),
+                                bytes_text(static_cast<double>(s.cache.budget_bytes))));
+  table.row("hits, misses",
+            fmt::format("{}, {}; {} evictions, {} regenerations", or_dash(s.cache.hits, count_text),
+                        or_dash(s.cache.misses, count_text), or_dash(s.cache.evictions, count_text),
+                        or_dash(s.cache.regenerations, count_text)));
+  table.section("synthesis");
+  table.row("made",
+            fmt::format("{} models, {} triangles, {}", or_dash(s.synthesis.models, count_text),
+                        or_dash(s.synthesis.triangles, count_text),
+                        or_dash(s.synthesis.bytes, bytes_text)));
+  table.row("speed",
+            or_dash(s.synthesis.triangles_per_second, count_text) + " triangles per busy second");
+  table.row("cost error",
+            fmt::format("p50 {}, p95 {}", or_dash(s.synthesis.cost_error_percent.p50, percent),
+                        or_dash(s.synthesis.cost_error_percent.p95, percent)));
+  table.section("memory");
+  table.row("resident, peak", or_dash(s.memory.peak_rss_bytes, bytes_text));
+}
+
+}  // namespace
+
+std::string to_text(const Summary& summary) {
+  Table table;
+  add_run(table, summary);
+  add_frames(table, summary);
+  add_streaming(table, summary);
+  return table.take();
+}
+
+}  // namespace psygen::telemetry

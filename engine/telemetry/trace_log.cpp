@@ -1,0 +1,142 @@
+#include "engine/telemetry/trace_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/assert.hpp"
+#include "engine/telemetry/output_file.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace
+
+TraceLog::TraceLog(std::size_t max_spans_per_track) : max_spans_(max_spans_per_track) {
+  PSYGEN_CHECK(max_spans_ > 0, "a trace needs room for a span");
+}
+
+TraceLog::Track TraceLog::add_ring(std::string_view name, bool is_counter) {
+  PSYGEN_CHECK(rings_.size() < UINT16_MAX, "too many tracks in a trace");
+  rings_.push_back({std::string(name), is_counter, {}, 0});
+  rings_.back().spans.reserve(max_spans_);
+  return static_cast<Track>(rings_.size() - 1);
+}
+
+TraceLog::Track TraceLog::add_track(std::string_view name) {
+  return add_ring(name, false);
+}
+
+TraceLog::Track TraceLog::add_counter(std::string_view name) {
+  return add_ring(name, true);
+}
+
+TraceLog::Name TraceLog::intern(std::string_view name) {
+  const auto [entry, is_new] =
+      ids_.try_emplace(std::string(name), static_cast<Name>(names_.size()));
+  if (is_new) {
+    PSYGEN_CHECK(names_.size() < UINT16_MAX, "too many names in a trace");
+    names_.emplace_back(name);
+  }
+  return entry->second;
+}
+
+void TraceLog::add(Ring& ring, const Span& span) {
+  if (ring.spans.size() < max_spans_) {
+    ring.spans.push_back(span);
+  } else {
+    ring.spans[ring.added % max_spans_] = span;
+  }
+  ++ring.added;
+}
+
+void TraceLog::add_span(Track track, Name name, double start_s, double end_s,
+                        std::uint64_t argument) {
+  PSYGEN_ASSERT(track < rings_.size() && !rings_[track].is_counter, "a span on no track");
+  PSYGEN_ASSERT(name < names_.size(), "a span with a name that was not interned");
+  if (!(end_s >= start_s)) return;
+  add(rings_[track], {start_s, end_s - start_s, argument, name});
+}
+
+void TraceLog::add_value(Track counter, double time_s, double value) {
+  PSYGEN_ASSERT(counter < rings_.size() && rings_[counter].is_counter, "a value on no counter");
+  if (!std::isfinite(time_s) || !std::isfinite(value)) return;
+  add(rings_[counter], {time_s, value, kNoArgument, 0});
+}
+
+std::uint64_t TraceLog::kept_count() const {
+  std::uint64_t count = 0;
+  for (const Ring& ring : rings_)
+    count += ring.spans.size();
+  return count;
+}
+
+std::uint64_t TraceLog::dropped_count() const {
+  std::uint64_t count = 0;
+  for (const Ring& ring : rings_)
+    count += ring.added - ring.spans.size();
+  return count;
+}
+
+double TraceLog::earliest_s() const {
+  double earliest = std::numeric_limits<double>::infinity();
+  for (const Ring& ring : rings_) {
+    for (const Span& span : ring.spans)
+      earliest = std::min(earliest, span.start_s);
+  }
+  return std::isfinite(earliest) ? earliest : 0.0;
+}
+
+core::Result<void> TraceLog::write(const std::filesystem::path& path) const {
+  constexpr double kMicroseconds = 1e6;
+  std::vector<std::string> names;
+  for (const std::string& name : names_)
+    names.push_back(quoted(name));
+  const double origin = earliest_s();
+  OutputFile file(path);
+  file.write(R"({"displayTimeUnit":"ms","otherData":{"spans_dropped":)");
+  file.write(fmt::format("\"{}\"}},\n\"traceEvents\":[\n", dropped_count()));
+  file.write(R"({"ph":"M","pid":1,"name":"process_name","args":{"name":"psygen"}})");
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
+    const Ring& ring = rings_[i];
+    const std::string track = quoted(ring.name);
+    if (!ring.is_counter) {
+      file.write(
+          fmt::format(",\n{{\"ph\":\"M\",\"pid\":1,\"tid\":{0},\"name\":\"thread_name\","
+                      "\"args\":{{\"name\":{1}}}}},\n{{\"ph\":\"M\",\"pid\":1,\"tid\":{0},"
+                      "\"name\":\"thread_sort_index\",\"args\":{{\"sort_index\":{0}}}}}",
+                      i, track));
+    }
+    // Oldest first: a full ring starts where the next span would be written.
+    const std::size_t first = ring.added > ring.spans.size() ? ring.added % max_spans_ : 0;
+    for (std::size_t k = 0; k < ring.spans.size(); ++k) {
+      const Span& span = ring.spans[(first + k) % ring.spans.size()];
+      const double time_us = (span.start_s - origin) * kMicroseconds;
+      if (ring.is_counter) {
+        file.write(
+            fmt::format(",\n{{\"ph\":\"C\",\"pid\":1,\"ts\":{:.3f},\"name\":{},"
+                        "\"args\":{{\"value\":{}}}}}",
+                        time_us, track, span.length_or_value));
+        continue;
+      }
+      file.write(
+          fmt::format(",\n{{\"ph\":\"X\",\"pid\":1,\"tid\":{},\"ts\":{:.3f},\"dur\":{:.3f},"
+                      "\"name\":{}",
+                      i, time_us, span.length_or_value * kMicroseconds, names[span.name]));
+      file.write(span.argument == kNoArgument
+                     ? std::string("}")
+                     : fmt::format(",\"args\":{{\"id\":{}}}}}", span.argument));
+    }
+  }
+  file.write("\n]}\n");
+  return file.close();
+}
+
+}  // namespace psygen::telemetry

@@ -1,0 +1,66 @@
+// What happened when: spans on named tracks (the main thread's systems, each modeler's jobs) and
+// counters over time, written as Chrome trace events that Perfetto and chrome://tracing open.
+// Adding costs a few stores. Memory is bounded: each track keeps its newest spans. Main thread
+// only: modelers hand their times over in their results.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/core/error.hpp"
+
+namespace psygen::telemetry {
+
+class TraceLog {
+ public:
+  using Track = std::uint16_t;
+  using Name = std::uint16_t;
+  static constexpr std::uint64_t kNoArgument = UINT64_MAX;
+
+  explicit TraceLog(std::size_t max_spans_per_track = std::size_t{1} << 16);
+
+  // A row in the viewer; tracks stand in the order of their creation. At most 65,535 of each.
+  Track add_track(std::string_view name);
+  Track add_counter(std::string_view name);
+  // The id of a span's name; the same text gives the same id. For use before the hot path.
+  Name intern(std::string_view name);
+
+  // Times in seconds of core::monotonic_seconds(). Spans of a track may nest but not overlap.
+  // `argument` is shown with the span: a frame's number, a model's key.
+  void add_span(Track track, Name name, double start_s, double end_s,
+                std::uint64_t argument = kNoArgument);
+  void add_value(Track counter, double time_s, double value);
+
+  std::uint64_t kept_count() const;
+  std::uint64_t dropped_count() const;
+  // trace.json. The earliest kept time becomes 0. Fails with kIo and the path.
+  core::Result<void> write(const std::filesystem::path& path) const;
+
+ private:
+  struct Span {
+    double start_s;
+    double length_or_value;  // seconds, or a counter's value
+    std::uint64_t argument;
+    Name name;
+  };
+  struct Ring {
+    std::string name;
+    bool is_counter = false;
+    std::vector<Span> spans;
+    std::uint64_t added = 0;
+  };
+  Track add_ring(std::string_view name, bool is_counter);
+  void add(Ring& ring, const Span& span);
+  double earliest_s() const;
+
+  std::size_t max_spans_;
+  std::vector<Ring> rings_;
+  std::vector<std::string> names_;
+  std::unordered_map<std::string, Name> ids_;
+};
+
+}  // namespace psygen::telemetry

@@ -1,0 +1,48 @@
+// Figures as people read them. Three significant digits, decimal prefixes for counts, binary ones
+// for bytes. For reports and terminals, not for files that programs read.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "engine/telemetry/measured.hpp"
+
+namespace psygen::telemetry {
+
+// 3 significant digits, no exponent: 0.123, 1.23, 12.3, 123, 1234.
+inline std::string three_digits(double value) {
+  const double size = std::abs(value);
+  const int decimals = size == 0 || size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : 3;
+  return fmt::format("{:.{}f}", value, decimals);
+}
+
+inline std::string with_prefix(double value, double step, const std::array<const char*, 6>& units) {
+  std::size_t i = 0;
+  while (i + 1 < units.size() && std::abs(value) >= step * 0.9995) {
+    value /= step;
+    ++i;
+  }
+  const std::string number = i == 0 ? fmt::format("{:.0f}", value) : three_digits(value);
+  return units[i][0] == '\0' ? number : number + " " + units[i];
+}
+
+inline std::string bytes_text(double bytes) {
+  return with_prefix(bytes, 1024.0, {"B", "KiB", "MiB", "GiB", "TiB", "PiB"});
+}
+
+// 12.3 thousand, 32.8 billion.
+inline std::string count_text(double count) {
+  return with_prefix(count, 1000.0,
+                     {"", "thousand", "million", "billion", "trillion", "quadrillion"});
+}
+
+// The value through `text`, or a dash.
+template <class T, class Text>
+std::string or_dash(const Measured<T>& measured, const Text& text) {
+  return measured.has_value() ? text(static_cast<double>(*measured)) : std::string("–");
+}
+
+}  // namespace psygen::telemetry
