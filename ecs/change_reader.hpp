@@ -1,0 +1,75 @@
+// One consumer of the changes of a tracked component. Every reader has bits of its own: what one
+// has drained is still new to another. A row counts as changed when it was created, landed on,
+// added, or marked; a new reader has seen nothing, so everything is new to it. Belongs to the
+// world's thread and must not outlive its world.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "ecs/query.hpp"
+#include "ecs/storage.hpp"
+
+namespace psygen::ecs {
+
+// Whether a reader also collects the entities that lost the component. Who asks for it must drain.
+enum class Removed : bool { kIgnore, kReport };
+
+template <Component C>
+class ChangeReader {
+  static_assert(is_tracked<C>(),
+                "only a tracked component has changes: ComponentTraits<C>::tracked");
+
+ public:
+  ChangeReader(ChangeReader&& other) noexcept
+      : storage_(std::exchange(other.storage_, nullptr)), state_(other.state_) {}
+  ChangeReader& operator=(ChangeReader&& other) noexcept {
+    std::swap(storage_, other.storage_);
+    std::swap(state_, other.state_);
+    return *this;
+  }
+  ~ChangeReader() {
+    if (storage_ != nullptr) storage_->remove_reader(*state_);
+  }
+
+  // Calls f(std::span<const Entity>, std::span<const C>) once per run of neighbouring rows that
+  // changed since the last drain; exactly these rows are visited. Returns how many. `f` may mark
+  // and land, but not create, destroy, add or remove.
+  template <class F>
+  std::size_t drain(F&& f) {
+    const detail::IterationGuard guard(storage_->iteration(), detail::kQuery<const C>);
+    std::size_t visited = 0;
+    for (const auto& table : storage_->tables()) {
+      if (table == nullptr || !table->signature().contains(state_->component)) continue;
+      const Entity* entities = table->entities();
+      const C* rows = detail::rows_of<C>(table->column_data(state_->component));
+      state_->bits_of_table[table->id()].drain([&](std::uint32_t first, std::uint32_t count) {
+        visited += count;
+        f(std::span<const Entity>(entities + first, count),
+          std::span<const C>(rows + first, count));
+      });
+    }
+    return visited;
+  }
+
+  // Calls f(std::span<const Entity>) with the entities that died or lost C since the last call, in
+  // that order, and forgets them. Entities that came and went in between are among them.
+  template <class F>
+  std::size_t drain_removed(F&& f) {
+    PSYGEN_ECS_ASSERT(state_->reports_removed, "make the reader with Removed::kReport");
+    const std::vector<Entity> removed = std::exchange(state_->removed, {});
+    if (!removed.empty()) f(std::span<const Entity>(removed));
+    return removed.size();
+  }
+
+ private:
+  friend class World;
+  ChangeReader(detail::Storage& storage, detail::ReaderState& state)
+      : storage_(&storage), state_(&state) {}
+
+  detail::Storage* storage_;
+  detail::ReaderState* state_;
+};
+
+}  // namespace psygen::ecs

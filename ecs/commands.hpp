@@ -1,0 +1,137 @@
+// Structural changes written down while a query is iterated, and applied afterwards in the order in
+// which they were recorded. Neighbouring commands of the same form are one batch. A Commands
+// belongs to one thread; every thread may have its own. Entities that die before apply are skipped.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "ecs/world.hpp"
+
+namespace psygen::ecs {
+
+class Commands {
+ public:
+  Commands() = default;
+  Commands(Commands&&) noexcept = default;
+  Commands& operator=(Commands&&) noexcept = default;
+
+  // One entity with these components and values.
+  template <Component... Cs>
+  void create(Cs... values) {
+    using List = CreateList<Cs...>;
+    std::apply([&](auto&... rows) { (rows.push_back(std::move(values)), ...); },
+               list<List>().values);
+  }
+  void destroy(Entity entity) { list<DestroyList>().entities.push_back(entity); }
+  void destroy(std::span<const Entity> entities) {
+    auto& all = list<DestroyList>().entities;
+    all.insert(all.end(), entities.begin(), entities.end());
+  }
+  // Gives the entity a C with this value, or sets the one that it has.
+  template <Component C>
+  void add(Entity entity, C value = {}) {
+    list<AddList<C>>().results.push_back({entity, std::move(value)});
+  }
+  template <Component C>
+  void remove(Entity entity) {
+    list<RemoveList<C>>().entities.push_back(entity);
+  }
+
+  bool empty() const { return batches_.empty(); }
+  // Carries everything out and forgets it. Not while a query of this world is iterated.
+  void apply(World& world);
+
+ private:
+  struct DestroyList {
+    std::vector<Entity> entities;
+    void apply(World& world) { world.destroy(entities); }
+  };
+  template <class... Cs>
+  struct CreateList {
+    std::tuple<std::vector<Cs>...> values;
+    void apply(World& world);
+  };
+  template <class C>
+  struct AddList {
+    std::vector<Landing<C>> results;
+    void apply(World& world);
+  };
+  template <class C>
+  struct RemoveList {
+    std::vector<Entity> entities;
+    void apply(World& world) { world.remove<C>(entities); }
+  };
+
+  // A list of any of these types, owned.
+  class Batch {
+   public:
+    template <class List>
+    explicit Batch(std::type_identity<List>) : list_(new List), verbs_(&kVerbs<List>) {}
+    ~Batch() {
+      if (list_ != nullptr) verbs_->drop(list_);
+    }
+    Batch(Batch&& other) noexcept
+        : list_(std::exchange(other.list_, nullptr)), verbs_(other.verbs_) {}
+    Batch& operator=(Batch&& other) noexcept {
+      std::swap(list_, other.list_);
+      std::swap(verbs_, other.verbs_);
+      return *this;
+    }
+    template <class List>
+    List* as() {
+      return verbs_ == &kVerbs<List> ? static_cast<List*>(list_) : nullptr;
+    }
+    void apply(World& world) { verbs_->apply(list_, world); }
+
+   private:
+    struct Verbs {
+      void (*apply)(void* list, World& world);
+      void (*drop)(void* list);
+    };
+    template <class List>
+    static constexpr Verbs kVerbs{
+        [](void* list, World& world) { static_cast<List*>(list)->apply(world); },
+        [](void* list) { delete static_cast<List*>(list); }};
+
+    void* list_;
+    const Verbs* verbs_;
+  };
+
+  template <class List>
+  List& list() {
+    List* last = batches_.empty() ? nullptr : batches_.back().as<List>();
+    if (last != nullptr) return *last;
+    return *batches_.emplace_back(std::type_identity<List>{}).template as<List>();
+  }
+
+  std::vector<Batch> batches_;
+};
+
+template <class... Cs>
+void Commands::CreateList<Cs...>::apply(World& world) {
+  const std::size_t count = std::get<0>(values).size();
+  const Created<Cs...> created = world.create<Cs...>(count);
+  const auto fill = [&]<class C>(std::span<C> rows) {
+    auto& from = std::get<std::vector<C>>(values);
+    for (std::size_t i = 0; i < count; ++i)
+      rows[i] = std::move(from[i]);
+  };
+  (fill(created.template column<Cs>()), ...);
+}
+
+template <class C>
+void Commands::AddList<C>::apply(World& world) {
+  std::vector<Entity> entities;
+  entities.reserve(results.size());
+  for (const Landing<C>& result : results)
+    entities.push_back(result.entity);
+  world.add<C>(entities);
+  world.land_moved<C>(results);
+}
+
+}  // namespace psygen::ecs

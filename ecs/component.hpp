@@ -1,0 +1,166 @@
+// What the library knows about a component type: its name, whether changes are tracked, and how
+// batches of rows are built, moved and destroyed. One constant table per type; its address is the
+// type's identity. Users specialise ComponentTraits; the rest is internal.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace psygen::ecs {
+
+// Describes a component type once. Specialise it to say more than the defaults; each member may be
+// left out:
+//   static constexpr std::string_view name = "mesh";   default: the type's name
+//   static constexpr bool tracked = true;              default: false, no change bits
+template <class C>
+struct ComponentTraits {};
+
+// Any movable value type. Moving and destroying must not throw; constructing may.
+template <class C>
+concept Component =
+    std::is_object_v<C> && std::is_same_v<C, std::remove_cv_t<C>> && !std::is_array_v<C> &&
+    std::is_default_constructible_v<C> && std::is_nothrow_move_constructible_v<C> &&
+    std::is_nothrow_destructible_v<C> && alignof(C) <= 64;
+
+template <class C>
+constexpr bool is_tracked() {
+  if constexpr (requires { ComponentTraits<C>::tracked; }) return ComponentTraits<C>::tracked;
+  return false;
+}
+
+namespace detail {
+
+template <class C>
+constexpr std::string_view type_name() {
+  std::string_view text = __PRETTY_FUNCTION__;
+  text.remove_prefix(text.find("C = ") + 4);
+  return text.substr(0, text.find_first_of(";]"));
+}
+
+}  // namespace detail
+
+template <class C>
+constexpr std::string_view component_name() {
+  if constexpr (requires { ComponentTraits<C>::name; }) return ComponentTraits<C>::name;
+  return detail::type_name<C>();
+}
+
+namespace detail {
+
+// Row `from` goes to row `to`, which holds no object before; `from` holds none afterwards.
+struct RowMove {
+  std::uint32_t to;
+  std::uint32_t from;
+};
+
+inline constexpr std::size_t kPrefetchAhead = 16;
+
+struct ComponentInfo {
+  std::string_view name;
+  std::size_t size_bytes;
+  std::size_t alignment;
+  bool tracked;
+  // Value-initialises rows [first, first + count); `fresh` says that their memory reads as zero.
+  // When a constructor throws, none of these rows holds an object.
+  void (*construct)(std::byte* column, std::size_t first, std::size_t count, bool fresh);
+  // Null for trivial destructors.
+  void (*destroy_range)(std::byte* column, std::size_t first, std::size_t count);
+  void (*destroy_rows)(std::byte* column, const std::uint32_t* rows, std::size_t count);
+  void (*relocate_within)(std::byte* column, const RowMove* moves, std::size_t count);
+  // Rows of `source`, in this order, to rows first, first + 1, ... of `target`.
+  void (*relocate_into)(std::byte* target, std::size_t first, std::byte* source,
+                        const std::uint32_t* rows, std::size_t count);
+};
+
+template <class C>
+C* rows_of(std::byte* column) {
+  return std::launder(reinterpret_cast<C*>(column));
+}
+
+template <class C>
+void relocate(C* to, C* from) {
+  if constexpr (std::is_trivially_copyable_v<C>) {
+    std::memcpy(static_cast<void*>(to), static_cast<const void*>(from), sizeof(C));
+  } else {
+    ::new (static_cast<void*>(to)) C(std::move(*from));
+    std::destroy_at(from);
+  }
+}
+
+// Trivially copyable rows are copies of one value-initialised row: one memset, or nothing where
+// that row is all zeros and the memory is fresh.
+template <class C>
+void construct_rows(std::byte* column, std::size_t first, std::size_t count, bool fresh) {
+  C* rows = reinterpret_cast<C*>(column) + first;
+  if constexpr (std::is_trivially_copyable_v<C>) {
+    alignas(C) std::byte model[sizeof(C)]{};
+    ::new (static_cast<void*>(model)) C();
+    const bool zero =
+        std::all_of(model, model + sizeof(C), [](std::byte b) { return b == std::byte{0}; });
+    if (!zero) {
+      for (std::size_t i = 0; i < count; ++i) {
+        std::memcpy(static_cast<void*>(rows + i), model, sizeof(C));
+      }
+    } else if (!fresh) {
+      std::memset(static_cast<void*>(rows), 0, count * sizeof(C));
+    }
+  } else {
+    std::uninitialized_value_construct_n(rows, count);
+  }
+}
+
+template <class C>
+void destroy_range_of(std::byte* column, std::size_t first, std::size_t count) {
+  std::destroy_n(rows_of<C>(column) + first, count);
+}
+
+template <class C>
+void destroy_rows_of(std::byte* column, const std::uint32_t* rows, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i)
+    std::destroy_at(rows_of<C>(column) + rows[i]);
+}
+
+template <class C>
+void relocate_within_column(std::byte* column, const RowMove* moves, std::size_t count) {
+  C* rows = rows_of<C>(column);
+  const std::size_t far = count > kPrefetchAhead ? count - kPrefetchAhead : 0;
+  for (std::size_t i = 0; i < far; ++i) {
+    __builtin_prefetch(rows + moves[i + kPrefetchAhead].to, 1);
+    relocate(rows + moves[i].to, rows + moves[i].from);
+  }
+  for (std::size_t i = far; i < count; ++i)
+    relocate(rows + moves[i].to, rows + moves[i].from);
+}
+
+template <class C>
+void relocate_into_column(std::byte* target, std::size_t first, std::byte* source,
+                          const std::uint32_t* rows, std::size_t count) {
+  C* to = reinterpret_cast<C*>(target) + first;
+  C* from = rows_of<C>(source);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i + kPrefetchAhead < count) __builtin_prefetch(from + rows[i + kPrefetchAhead]);
+    relocate(to + i, from + rows[i]);
+  }
+}
+
+template <Component C>
+inline constexpr ComponentInfo kComponentInfo{
+    component_name<C>(),
+    sizeof(C),
+    alignof(C),
+    is_tracked<C>(),
+    construct_rows<C>,
+    std::is_trivially_destructible_v<C> ? nullptr : destroy_range_of<C>,
+    std::is_trivially_destructible_v<C> ? nullptr : destroy_rows_of<C>,
+    relocate_within_column<C>,
+    relocate_into_column<C>};
+
+}  // namespace detail
+}  // namespace psygen::ecs

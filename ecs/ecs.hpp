@@ -1,0 +1,11 @@
+// The one header to include: entities, components in columns, and batch verbs. See README.md for a
+// tour. Knows nothing but the standard library and, for its memory, mmap.
+#pragma once
+
+#include "ecs/accessor.hpp"
+#include "ecs/change_reader.hpp"
+#include "ecs/commands.hpp"
+#include "ecs/component.hpp"
+#include "ecs/entity.hpp"
+#include "ecs/query.hpp"
+#include "ecs/world.hpp"

@@ -1,0 +1,31 @@
+// The handle of an entity: 8 bytes, an index into the world's slots and the generation of that
+// slot. A handle owns nothing. When the entity dies its slot's generation moves on, so a kept
+// handle is recognised as stale in every build.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace psygen::ecs {
+
+struct Entity {
+  std::uint32_t index = UINT32_MAX;
+  std::uint32_t generation = 0;  // 0 is never given to an entity
+  friend constexpr bool operator==(Entity, Entity) = default;
+};
+static_assert(sizeof(Entity) == 8);
+
+// Equal to no entity that ever lived.
+inline constexpr Entity kNullEntity{};
+
+}  // namespace psygen::ecs
+
+template <>
+struct std::hash<psygen::ecs::Entity> {
+  std::size_t operator()(psygen::ecs::Entity entity) const noexcept {
+    const std::uint64_t key = (std::uint64_t{entity.generation} << 32) | entity.index;
+    const std::uint64_t mixed = (key ^ (key >> 29)) * 0x9E3779B97F4A7C15ull;
+    return static_cast<std::size_t>(mixed ^ (mixed >> 32));
+  }
+};

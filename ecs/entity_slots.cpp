@@ -1,0 +1,40 @@
+#include "ecs/entity_slots.hpp"
+
+#include <algorithm>
+
+#include "ecs/check.hpp"
+
+namespace psygen::ecs::detail {
+
+EntitySlots::EntitySlots(std::size_t max_entities, std::uint32_t first_generation)
+    : memory_(max_entities * sizeof(Slot)),
+      max_entities_(std::min<std::size_t>(max_entities, UINT32_MAX)),
+      first_generation_(std::max(first_generation, 1U)) {}
+
+void EntitySlots::issue(std::span<Entity> out, std::uint32_t table, std::uint32_t first_row) {
+  const std::size_t reused = std::min(out.size(), free_.size());
+  const std::uint32_t* top = free_.data() + free_.size();
+  for (std::size_t i = 0; i < reused; ++i) {
+    const std::uint32_t index = *--top;
+    Slot& slot = slots()[index];
+    slot.table = table;
+    slot.row = first_row + static_cast<std::uint32_t>(i);
+    out[i] = {index, slot.generation};
+  }
+  free_.resize(free_.size() - reused);
+
+  const std::size_t fresh = out.size() - reused;
+  if (fresh == 0) return;
+  if (fresh > max_entities_ - count_) give_up("more entities than WorldLimits::max_entities");
+  const std::size_t need_bytes = (count_ + fresh) * sizeof(Slot);
+  if (need_bytes > memory_.committed_bytes()) {
+    const std::size_t ahead = std::max(need_bytes, memory_.committed_bytes() * 2);
+    memory_.commit(std::max(need_bytes, std::min(ahead, memory_.capacity_bytes())));
+  }
+  for (std::size_t i = reused; i < out.size(); ++i) {
+    slots()[count_] = {first_generation_, table, first_row + static_cast<std::uint32_t>(i)};
+    out[i] = {count_++, first_generation_};
+  }
+}
+
+}  // namespace psygen::ecs::detail

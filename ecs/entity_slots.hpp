@@ -1,0 +1,69 @@
+// Where every entity is: slot i tells the generation, table and row of the entity with index i.
+// A free slot already has its next generation, so that old handles are stale. A slot whose
+// generations are used up retires: it is never given out again. 12 bytes per entity.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ecs/entity.hpp"
+#include "ecs/reserved_memory.hpp"
+
+namespace psygen::ecs::detail {
+
+inline constexpr std::uint32_t kNowhere = 0;  // the table of a free slot; no real table has this id
+
+struct Slot {
+  std::uint32_t generation;
+  std::uint32_t table;
+  std::uint32_t row;
+};
+static_assert(sizeof(Slot) == 12);
+
+class EntitySlots {
+ public:
+  // `first_generation` (at least 1) is the generation of a slot's first entity.
+  EntitySlots(std::size_t max_entities, std::uint32_t first_generation);
+
+  // The slot that the handle's index names, when the generation fits as well. A forged handle may
+  // name a free slot: its table is kNowhere.
+  Slot* find(Entity entity) const {
+    if (entity.index >= count_) return nullptr;
+    Slot* slot = slots() + entity.index;
+    return slot->generation == entity.generation ? slot : nullptr;
+  }
+  Slot& operator[](std::uint32_t index) const { return slots()[index]; }
+  void prefetch(Entity entity) const {
+    if (entity.index < count_) __builtin_prefetch(slots() + entity.index);
+  }
+
+  // Handles for rows first_row, first_row + 1, ... of a table, written to `out`.
+  void issue(std::span<Entity> out, std::uint32_t table, std::uint32_t first_row);
+  // The entity of a living slot dies.
+  void release(Slot& slot) {
+    slot.table = kNowhere;
+    if (++slot.generation != 0) {
+      free_.push_back(static_cast<std::uint32_t>(&slot - slots()));
+    } else {
+      ++retired_;
+    }
+  }
+
+  std::size_t living() const { return count_ - free_.size() - retired_; }
+  std::size_t retired() const { return retired_; }
+  std::size_t committed_bytes() const { return memory_.committed_bytes(); }
+
+ private:
+  Slot* slots() const { return reinterpret_cast<Slot*>(memory_.data()); }
+
+  ReservedMemory memory_;
+  std::vector<std::uint32_t> free_;  // last in, first out: recently used slots are in cache
+  std::size_t max_entities_;
+  std::size_t retired_ = 0;
+  std::uint32_t count_ = 0;  // slots ever used
+  std::uint32_t first_generation_;
+};
+
+}  // namespace psygen::ecs::detail

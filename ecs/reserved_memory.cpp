@@ -1,0 +1,75 @@
+#include "ecs/reserved_memory.hpp"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "ecs/check.hpp"
+
+namespace psygen::ecs::detail {
+namespace {
+
+constexpr std::size_t kHugePageBytes = std::size_t{2} << 20;
+constexpr std::size_t kSmallestStepBytes = std::size_t{64} << 10;
+constexpr std::size_t kSmallestReservationBytes = std::size_t{1} << 20;
+
+constexpr std::size_t round_up(std::size_t value, std::size_t step) {
+  return (value + step - 1) / step * step;
+}
+
+void* reserve_address_space(std::size_t bytes) {
+  void* address =
+      ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return address == MAP_FAILED ? nullptr : address;
+}
+
+}  // namespace
+
+ReservedMemory::ReservedMemory(std::size_t bytes, std::size_t skew_bytes) {
+  PSYGEN_ECS_ASSERT(skew_bytes % 64 == 0 && skew_bytes < 4096, "skew is 0, 64, ... 4032");
+  std::size_t wanted = std::max(bytes, kSmallestReservationBytes);
+  for (; mapping_ == nullptr && wanted >= kSmallestReservationBytes; wanted /= 2) {
+    mapping_bytes_ = round_up(wanted + skew_bytes, kHugePageBytes) + kHugePageBytes;
+    mapping_ = static_cast<std::byte*>(reserve_address_space(mapping_bytes_));
+  }
+  if (mapping_ == nullptr) give_up("no address space is left for a column");
+  const auto address = reinterpret_cast<std::uintptr_t>(mapping_);
+  const std::size_t lead = round_up(address, kHugePageBytes) - address;
+  data_ = mapping_ + lead + skew_bytes;
+  capacity_bytes_ = mapping_bytes_ - lead - skew_bytes;
+  ::madvise(mapping_, mapping_bytes_, MADV_HUGEPAGE);  // a wish; refusal changes nothing
+}
+
+ReservedMemory::~ReservedMemory() {
+  if (mapping_ != nullptr) ::munmap(mapping_, mapping_bytes_);
+}
+
+ReservedMemory::ReservedMemory(ReservedMemory&& other) noexcept {
+  *this = std::move(other);
+}
+
+ReservedMemory& ReservedMemory::operator=(ReservedMemory&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(committed_bytes_, other.committed_bytes_);
+  std::swap(capacity_bytes_, other.capacity_bytes_);
+  std::swap(mapping_, other.mapping_);
+  std::swap(mapping_bytes_, other.mapping_bytes_);
+  return *this;
+}
+
+void ReservedMemory::grow(std::size_t bytes) {
+  if (bytes > capacity_bytes_) give_up("a table or the handles are full; raise WorldLimits");
+  const std::size_t step = bytes >= kHugePageBytes ? kHugePageBytes : kSmallestStepBytes;
+  const std::size_t skew_bytes = reinterpret_cast<std::uintptr_t>(data_) % kHugePageBytes;
+  std::byte* base = data_ - skew_bytes;
+  const std::size_t usable = round_up(bytes + skew_bytes, step);
+  const std::size_t clamped = std::min(usable, capacity_bytes_ + skew_bytes);
+  if (::mprotect(base, clamped, PROT_READ | PROT_WRITE) != 0) {
+    give_up("the system has no more memory for a column");
+  }
+  committed_bytes_ = clamped - skew_bytes;
+}
+
+}  // namespace psygen::ecs::detail

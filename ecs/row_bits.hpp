@@ -1,0 +1,80 @@
+// One bit per row with one summary bit per 64 rows: which rows of a column changed since a reader
+// last looked. Marking is O(1); draining costs one summary word per 4096 rows plus the marked rows.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace psygen::ecs::detail {
+
+class RowBits {
+ public:
+  // Bits for rows [0, count) exist afterwards; new ones are clear.
+  void reserve_rows(std::size_t count) {
+    if (count > words_.size() * 64) grow(count);
+  }
+
+  void mark(std::uint32_t row) {
+    words_[row / 64] |= bit(row % 64);
+    summary_[row / 4096] |= bit(row / 64 % 64);
+    any_ = true;
+  }
+  void mark_range(std::uint32_t first, std::uint32_t count);
+  void clear_range(std::uint32_t first, std::uint32_t count);
+  // Row `to` takes over the bit of row `from`.
+  void copy_bit(std::uint32_t to, const RowBits& source, std::uint32_t from) {
+    if (source.test(from)) {
+      mark(to);
+    } else {
+      words_[to / 64] &= ~bit(to % 64);
+    }
+  }
+  bool test(std::uint32_t row) const { return (words_[row / 64] & bit(row % 64)) != 0; }
+  bool any() const { return any_; }  // false only when every bit is clear
+  void prefetch(std::uint32_t row) const { __builtin_prefetch(words_.data() + row / 64, 1); }
+
+  // Clears every marked row and calls f(first, count) once per maximal run of them, ascending.
+  // `f` may mark: rows behind the current run come up in the next drain.
+  template <class F>
+  void drain(F&& f);
+
+ private:
+  static constexpr std::uint64_t bit(std::uint32_t i) { return std::uint64_t{1} << i; }
+  void grow(std::size_t count);
+
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t> summary_;
+  bool any_ = false;
+};
+
+template <class F>
+void RowBits::drain(F&& f) {
+  if (!any_) return;
+  any_ = false;
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;  // the run not yet handed out; empty when equal
+  for (std::uint32_t s = 0; s < summary_.size(); ++s) {
+    for (std::uint64_t blocks = std::exchange(summary_[s], 0); blocks != 0; blocks &= blocks - 1) {
+      const std::uint32_t w = s * 64 + static_cast<std::uint32_t>(std::countr_zero(blocks));
+      std::uint64_t word = std::exchange(words_[w], 0);
+      for (std::uint32_t row = w * 64; word != 0;) {
+        const int gap = std::countr_zero(word);
+        const int length = std::countr_one(word >> gap);
+        row += static_cast<std::uint32_t>(gap);
+        if (row != end) {
+          if (begin != end) f(begin, end - begin);
+          begin = row;
+        }
+        row += static_cast<std::uint32_t>(length);
+        end = row;
+        word = gap + length < 64 ? word >> (gap + length) : 0;
+      }
+    }
+  }
+  if (begin != end) f(begin, end - begin);
+}
+
+}  // namespace psygen::ecs::detail

@@ -1,0 +1,54 @@
+// A set of component types of one world: which columns a table has, which a query wants.
+// Four words; at most 256 component types per world.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace psygen::ecs::detail {
+
+using ComponentId = std::uint16_t;
+inline constexpr std::size_t kMaxComponents = 256;
+inline constexpr ComponentId kNoComponent = UINT16_MAX;
+
+class Signature {
+ public:
+  void insert(ComponentId id) { words_[id / 64] |= bit(id); }
+  bool contains(ComponentId id) const { return (words_[id / 64] & bit(id)) != 0; }
+  bool includes(const Signature& other) const {
+    std::uint64_t missing = 0;
+    for (std::size_t i = 0; i < words_.size(); ++i)
+      missing |= other.words_[i] & ~words_[i];
+    return missing == 0;
+  }
+  bool intersects(const Signature& other) const {
+    std::uint64_t shared = 0;
+    for (std::size_t i = 0; i < words_.size(); ++i)
+      shared |= other.words_[i] & words_[i];
+    return shared != 0;
+  }
+  // This set with all of `added` and then without any of `removed`.
+  Signature changed(const Signature& added, const Signature& removed) const {
+    Signature result;
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      result.words_[i] = (words_[i] | added.words_[i]) & ~removed.words_[i];
+    }
+    return result;
+  }
+  std::uint64_t hash() const {
+    std::uint64_t h = 0;
+    for (const std::uint64_t word : words_) {
+      h = (h ^ word) * 0x9E3779B97F4A7C15ull;
+      h ^= h >> 32;
+    }
+    return h;
+  }
+  friend bool operator==(const Signature&, const Signature&) = default;
+
+ private:
+  static std::uint64_t bit(ComponentId id) { return std::uint64_t{1} << (id % 64); }
+  std::array<std::uint64_t, kMaxComponents / 64> words_{};
+};
+
+}  // namespace psygen::ecs::detail

@@ -1,0 +1,282 @@
+#include "ecs/storage.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace psygen::ecs::detail {
+namespace {
+
+constexpr std::uint32_t kInTransit = UINT32_MAX;  // the row of an entity that changes its kind
+
+// Columns that are walked together start at different offsets in a page.
+std::size_t skew_bytes(std::size_t column) {
+  return (column + 1) * 320 % 4096;
+}
+
+std::size_t place_of(const ComponentInfo& info, std::size_t places) {
+  const auto address = reinterpret_cast<std::uintptr_t>(&info);
+  return static_cast<std::size_t>((address >> 3) * 0x9E3779B97F4A7C15ull >> 40) % places;
+}
+
+}  // namespace
+
+Storage::Storage(const WorldLimits& limits)
+    : limits_(limits), slots_(limits.max_entities, limits.first_generation) {
+  tables_.emplace_back(nullptr);
+  table_index_.assign(64, 0);
+  id_index_.fill(kNoComponent);
+}
+
+Storage::~Storage() = default;
+
+ComponentId Storage::find_id(const ComponentInfo& info) const {
+  for (std::size_t i = place_of(info, id_index_.size());; i = (i + 1) % id_index_.size()) {
+    const ComponentId id = id_index_[i];
+    if (id == kNoComponent || records_[id]->info == &info) return id;
+  }
+}
+
+ComponentId Storage::id_of(const ComponentInfo& info) {
+  if (const ComponentId known = find_id(info); known != kNoComponent) return known;
+  if (records_.size() == kMaxComponents) give_up("more than 256 component types in one world");
+  const auto id = static_cast<ComponentId>(records_.size());
+  auto& record = *records_.emplace_back(std::make_unique<ComponentRecord>());
+  record.info = &info;
+  record.column_of_table.assign(tables_.size(), nullptr);
+  std::size_t i = place_of(info, id_index_.size());
+  while (id_index_[i] != kNoComponent)
+    i = (i + 1) % id_index_.size();
+  id_index_[i] = id;
+  return id;
+}
+
+Table& Storage::table_for(const Signature& kind) {
+  const std::size_t mask = table_index_.size() - 1;
+  for (std::size_t i = kind.hash() & mask; table_index_[i] != 0; i = (i + 1) & mask) {
+    Table& table = *tables_[table_index_[i]];
+    if (table.signature() == kind) return table;
+  }
+  return make_table(kind);
+}
+
+Table& Storage::make_table(const Signature& kind) {
+  const auto id = static_cast<std::uint32_t>(tables_.size());
+  std::vector<Column> columns;
+  for (std::size_t c = 0; c < records_.size(); ++c) {
+    if (!kind.contains(static_cast<ComponentId>(c))) continue;
+    const ComponentInfo& info = *records_[c]->info;
+    columns.push_back(
+        {&info, static_cast<ComponentId>(c),
+         ReservedMemory(limits_.max_rows_per_table * info.size_bytes, skew_bytes(columns.size()))});
+  }
+  Table& table = *tables_.emplace_back(
+      std::make_unique<Table>(id, kind, std::move(columns), limits_.max_rows_per_table));
+  for (std::size_t c = 0; c < records_.size(); ++c) {
+    records_[c]->column_of_table.push_back(table.column_data(static_cast<ComponentId>(c)));
+    for (auto& reader : records_[c]->readers)
+      reader->bits_of_table.emplace_back();
+  }
+  if (tables_.size() * 2 > table_index_.size()) table_index_.assign(table_index_.size() * 2, 0);
+  const std::size_t mask = table_index_.size() - 1;
+  for (std::uint32_t t = 1; t < tables_.size(); ++t) {
+    std::size_t i = tables_[t]->signature().hash() & mask;
+    while (table_index_[i] != 0 && table_index_[i] != t)
+      i = (i + 1) & mask;
+    table_index_[i] = t;
+  }
+  return table;
+}
+
+template <class F>
+void Storage::for_each_reader(const Table& table, F&& f) {
+  for (const Column& column : table.columns()) {
+    for (auto& reader : records_[column.id]->readers)
+      f(*reader);
+  }
+}
+
+void Storage::mark_new_rows(const Table& table, std::uint32_t first, std::size_t count,
+                            const Signature& which) {
+  for_each_reader(table, [&](ReaderState& reader) {
+    RowBits& bits = reader.bits_of_table[table.id()];
+    bits.reserve_rows(table.rows());
+    if (which.contains(reader.component)) {
+      bits.mark_range(first, static_cast<std::uint32_t>(count));
+    }
+  });
+}
+
+Storage::Batch Storage::create(const Signature& kind, std::size_t count) {
+  expect_no_iteration("create");
+  Table& table = table_for(kind);
+  table.reserve_more(count);
+  table.construct_new_rows(count, Signature{});
+  const std::uint32_t first = table.add_rows(count);
+  slots_.issue({table.entities() + first, count}, table.id(), first);
+  mark_new_rows(table, first, count, kind);
+  return {&table, first};
+}
+
+void Storage::report_removed(const Table& table, const Signature& which) {
+  for_each_reader(table, [&](ReaderState& reader) {
+    if (!reader.reports_removed || !which.contains(reader.component)) return;
+    for (const std::uint32_t row : table.leaving)
+      reader.removed.push_back(table.entities()[row]);
+  });
+}
+
+// The objects of the leaving rows are gone; fills the holes and lets handles and bits follow.
+void Storage::remove_leaving_rows(Table& table) {
+  const std::uint32_t old_rows = table.rows();
+  table.close_holes(table.leaving, moves_);
+  const Entity* entities = table.entities();
+  for (std::size_t i = 0; i < moves_.size(); ++i) {
+    if (i + kPrefetchAhead < moves_.size()) {
+      slots_.prefetch(entities[moves_[i + kPrefetchAhead].to]);
+    }
+    slots_[entities[moves_[i].to].index].row = moves_[i].to;
+  }
+  for_each_reader(table, [&](ReaderState& reader) {
+    RowBits& bits = reader.bits_of_table[table.id()];
+    if (!bits.any()) return;
+    for (const RowMove& move : moves_)
+      bits.copy_bit(move.to, bits, move.from);
+    bits.clear_range(table.rows(), old_rows - table.rows());
+  });
+  table.leaving.clear();
+}
+
+std::size_t Storage::destroy(std::span<const Entity> entities) {
+  expect_no_iteration("destroy");
+  std::size_t died = 0;
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (i + kPrefetchAhead < entities.size()) slots_.prefetch(entities[i + kPrefetchAhead]);
+    Slot* slot = living(entities[i]);
+    if (slot == nullptr) continue;
+    Table& table = *tables_[slot->table];
+    if (table.leaving.empty()) touched_.push_back(&table);
+    table.leaving.push_back(slot->row);
+    slots_.release(*slot);
+    ++died;
+  }
+  for (Table* table : touched_) {
+    report_removed(*table, table->signature());
+    table->destroy_rows(table->leaving, table->signature());
+    remove_leaving_rows(*table);
+  }
+  touched_.clear();
+  return died;
+}
+
+std::size_t Storage::change_kind(std::span<const Entity> entities, const Signature& added,
+                                 const Signature& removed) {
+  expect_no_iteration("add or remove");
+  const Table* last = nullptr;
+  bool last_changes = false;
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (i + kPrefetchAhead < entities.size()) slots_.prefetch(entities[i + kPrefetchAhead]);
+    Slot* slot = living(entities[i]);
+    if (slot == nullptr || slot->row == kInTransit) continue;
+    Table& table = *tables_[slot->table];
+    if (&table != last) {
+      last = &table;
+      last_changes = !(table.signature().changed(added, removed) == table.signature());
+    }
+    if (!last_changes) continue;
+    if (table.leaving.empty()) touched_.push_back(&table);
+    table.leaving.push_back(slot->row);
+    slot->row = kInTransit;
+    ++moved;
+  }
+
+  // When a component's constructor throws, the entities that have not moved yet stay as they are.
+  struct Unwind {
+    Storage& storage;
+    ~Unwind() {
+      for (Table* table : storage.touched_) {
+        for (const std::uint32_t row : table->leaving) {
+          storage.slots_[table->entities()[row].index].row = row;
+        }
+        table->leaving.clear();
+      }
+      storage.touched_.clear();
+    }
+  } const unwind{*this};
+  for (Table* table : touched_) {
+    transfer(*table, table_for(table->signature().changed(added, removed)));
+  }
+  return moved;
+}
+
+void Storage::transfer(Table& source, Table& target) {
+  const std::size_t count = source.leaving.size();
+  target.reserve_more(count);
+  target.construct_new_rows(count, source.signature());
+  const std::uint32_t first = target.add_rows(count);
+  report_removed(source, source.signature().changed({}, target.signature()));
+  mark_new_rows(target, first, count, target.signature().changed({}, source.signature()));
+
+  for (const Column& column : target.columns()) {
+    std::byte* from = source.column_data(column.id);
+    if (from == nullptr) continue;
+    column.info->relocate_into(column.memory.data(), first, from, source.leaving.data(), count);
+    for (auto& reader : records_[column.id]->readers) {
+      const RowBits& old_bits = reader->bits_of_table[source.id()];
+      RowBits& new_bits = reader->bits_of_table[target.id()];
+      for (std::size_t i = 0; i < count && old_bits.any(); ++i) {
+        new_bits.copy_bit(first + static_cast<std::uint32_t>(i), old_bits, source.leaving[i]);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Entity entity = source.entities()[source.leaving[i]];
+    const std::uint32_t row = first + static_cast<std::uint32_t>(i);
+    target.entities()[row] = entity;
+    slots_[entity.index].table = target.id();
+    slots_[entity.index].row = row;
+  }
+  source.destroy_rows(source.leaving, source.signature().changed({}, target.signature()));
+  remove_leaving_rows(source);
+}
+
+ReaderState& Storage::add_reader(ComponentId id, bool reports_removed) {
+  auto& reader = *records_[id]->readers.emplace_back(std::make_unique<ReaderState>());
+  reader.component = id;
+  reader.reports_removed = reports_removed;
+  reader.bits_of_table.resize(tables_.size());
+  for (const auto& table : tables_) {
+    if (table == nullptr || !table->signature().contains(id)) continue;
+    reader.bits_of_table[table->id()].reserve_rows(table->rows());
+    reader.bits_of_table[table->id()].mark_range(0, table->rows());
+  }
+  return reader;
+}
+
+void Storage::remove_reader(const ReaderState& reader) {
+  std::erase_if(records_[reader.component]->readers,
+                [&](const auto& owned) { return owned.get() == &reader; });
+}
+
+void Storage::structural_change_inside(std::string_view verb) const {
+  std::string sentence = "structural change (";
+  sentence.append(verb).append(") while iterating <");
+  const auto* query = iteration_.query.load(std::memory_order_relaxed);
+  for (std::size_t i = 0; query != nullptr && i < query->size(); ++i) {
+    if (i > 0) sentence += ", ";
+    if (!(*query)[i].writes) sentence += "const ";
+    sentence.append((*query)[i].name);
+  }
+  give_up(sentence += ">; record it in Commands and apply them afterwards");
+}
+
+std::size_t Storage::committed_bytes() const {
+  std::size_t bytes = slots_.committed_bytes();
+  for (const auto& table : tables_) {
+    if (table != nullptr) bytes += table->committed_bytes();
+  }
+  return bytes;
+}
+
+}  // namespace psygen::ecs::detail

@@ -1,0 +1,158 @@
+// The untyped core of a world: component types, tables, handles, change bits, and the batch verbs
+// that change structure. `World` puts types on top; nobody else uses it. One thread changes it;
+// const functions may run on several threads while nothing changes.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ecs/check.hpp"
+#include "ecs/component.hpp"
+#include "ecs/entity.hpp"
+#include "ecs/entity_slots.hpp"
+#include "ecs/row_bits.hpp"
+#include "ecs/signature.hpp"
+#include "ecs/table.hpp"
+
+namespace psygen::ecs {
+
+// How much address space a world reserves. Address space is not memory: raising these is cheap.
+struct WorldLimits {
+  std::size_t max_entities = std::size_t{1} << 28;
+  std::size_t max_rows_per_table = std::size_t{1} << 26;
+  // The generation of a slot's first entity, at least 1. Near UINT32_MAX, slots retire soon.
+  std::uint32_t first_generation = 1;
+};
+
+namespace detail {
+
+// What one consumer of a component's changes has not seen yet.
+struct ReaderState {
+  ComponentId component = kNoComponent;
+  bool reports_removed = false;
+  std::vector<RowBits> bits_of_table;  // by table id
+  std::vector<Entity> removed;
+};
+
+struct ComponentRecord {
+  const ComponentInfo* info = nullptr;
+  std::vector<std::byte*> column_of_table;  // by table id; null where the table lacks it
+  std::vector<std::unique_ptr<ReaderState>> readers;
+};
+
+struct QueryTerm {
+  std::string_view name;
+  bool writes;
+};
+
+// Which query is being iterated; structural changes meanwhile break the contract.
+struct IterationState {
+  std::atomic<std::uint32_t> depth{0};
+  std::atomic<const std::span<const QueryTerm>*> query{nullptr};
+};
+
+class IterationGuard {
+ public:
+  IterationGuard(IterationState& state, const std::span<const QueryTerm>& query) : state_(state) {
+    state_.depth.fetch_add(1, std::memory_order_relaxed);
+    outer_ = state_.query.exchange(&query, std::memory_order_relaxed);
+  }
+  ~IterationGuard() {
+    state_.query.store(outer_, std::memory_order_relaxed);
+    state_.depth.fetch_sub(1, std::memory_order_relaxed);
+  }
+  IterationGuard(const IterationGuard&) = delete;
+  IterationGuard& operator=(const IterationGuard&) = delete;
+
+ private:
+  IterationState& state_;
+  const std::span<const QueryTerm>* outer_;
+};
+
+class Storage {
+ public:
+  struct Batch {
+    Table* table = nullptr;
+    std::uint32_t first = 0;
+  };
+
+  explicit Storage(const WorldLimits& limits);
+  ~Storage();
+  Storage(const Storage&) = delete;
+  Storage& operator=(const Storage&) = delete;
+
+  ComponentId id_of(const ComponentInfo& info);          // registers it when it is new
+  ComponentId find_id(const ComponentInfo& info) const;  // kNoComponent when it is new
+  ComponentRecord& record(ComponentId id) { return *records_[id]; }
+  const ComponentRecord& record(ComponentId id) const { return *records_[id]; }
+  std::span<const std::unique_ptr<Table>> tables() const { return tables_; }  // [0] is null
+  const EntitySlots& slots() const { return slots_; }
+
+  // The slot of a living entity, else null.
+  Slot* living(Entity entity) const {
+    Slot* slot = slots_.find(entity);
+    return slot != nullptr && slot->table != kNowhere ? slot : nullptr;
+  }
+
+  Batch create(const Signature& kind, std::size_t count);
+  std::size_t destroy(std::span<const Entity> entities);
+  std::size_t change_kind(std::span<const Entity> entities, const Signature& added,
+                          const Signature& removed);
+  void reserve(const Signature& kind, std::size_t count) { table_for(kind).reserve_more(count); }
+
+  ReaderState& add_reader(ComponentId id, bool reports_removed);
+  void remove_reader(const ReaderState& reader);
+  static void mark(ComponentRecord& record, std::uint32_t table, std::uint32_t row) {
+    for (auto& reader : record.readers)
+      reader->bits_of_table[table].mark(row);
+  }
+  static void mark_range(ComponentRecord& record, std::uint32_t table, std::uint32_t first,
+                         std::uint32_t count) {
+    for (auto& reader : record.readers)
+      reader->bits_of_table[table].mark_range(first, count);
+  }
+
+  // Ends the program in checked builds when a query is being iterated.
+  void expect_no_iteration(std::string_view verb) const {
+#ifndef NDEBUG
+    if (iteration_.depth.load(std::memory_order_relaxed) != 0) structural_change_inside(verb);
+#else
+    (void)verb;
+#endif
+  }
+  IterationState& iteration() const {
+    return iteration_;
+  }
+  std::size_t committed_bytes() const;
+
+ private:
+  [[noreturn]] void structural_change_inside(std::string_view verb) const;
+  Table& table_for(const Signature& kind);
+  Table& make_table(const Signature& kind);
+  void mark_new_rows(const Table& table, std::uint32_t first, std::size_t count,
+                     const Signature& which);
+  void report_removed(const Table& table, const Signature& which);
+  void remove_leaving_rows(Table& table);
+  void transfer(Table& source, Table& target);
+  template <class F>
+  void for_each_reader(const Table& table, F&& f);
+
+  WorldLimits limits_;
+  EntitySlots slots_;
+  std::vector<std::unique_ptr<ComponentRecord>> records_;
+  std::vector<std::unique_ptr<Table>> tables_;
+  std::vector<std::uint32_t> table_index_;  // open addressing by signature; 0 is empty
+  std::array<ComponentId, 2 * kMaxComponents> id_index_;  // open addressing by ComponentInfo*
+  std::vector<Table*> touched_;                           // scratch of the batch verbs
+  std::vector<RowMove> moves_;
+  mutable IterationState iteration_;
+};
+
+}  // namespace detail
+}  // namespace psygen::ecs

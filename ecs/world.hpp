@@ -1,0 +1,290 @@
+// The world: entities, their components in tables, and verbs that work on batches.
+// Every verb takes a span or a count; single look-ups are for tools and tests. A structural change
+// (create, destroy, add, remove) invalidates spans and pointers into columns, and must not happen
+// while a query is iterated: checked builds stop and name the query; use Commands. Component
+// constructors and destructors must not touch the world. One thread changes a world; const
+// functions may run on several threads while nobody changes it. When a component's constructor
+// throws, the exception passes through and no entity was created.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "ecs/accessor.hpp"
+#include "ecs/change_reader.hpp"
+#include "ecs/query.hpp"
+#include "ecs/storage.hpp"
+
+namespace psygen::ecs {
+
+// What create made: entity i owns row i of every column. Valid until the next structural change.
+template <class... Cs>
+struct Created {
+  std::span<const Entity> entities;
+  std::tuple<std::span<Cs>...> columns;
+
+  template <class C>
+  std::span<C> column() const {
+    return std::get<std::span<C>>(columns);
+  }
+};
+
+// A value that arrives for an entity which may have died meanwhile.
+template <class C>
+struct Landing {
+  Entity entity;
+  C value;
+};
+
+struct LandReport {
+  std::size_t landed = 0;
+  std::size_t stale = 0;  // dead, or without the component
+  friend bool operator==(const LandReport&, const LandReport&) = default;
+};
+
+class World {
+ public:
+  explicit World(const WorldLimits& limits = {}) : storage_(limits) {}
+
+  // ---- structure -------------------------------------------------------------------------------
+
+  // `count` entities with these components, value-initialised, in contiguous rows. Tracked
+  // components count as changed. O(count).
+  template <Component... Cs>
+  Created<Cs...> create(std::size_t count);
+
+  // Ends these entities; stale handles and repetitions are skipped. Returns how many died.
+  // O(handles); touches only the columns of the kinds concerned.
+  std::size_t destroy(std::span<const Entity> entities) { return storage_.destroy(entities); }
+
+  // Gives these entities value-initialised components, or takes components away; everything else
+  // keeps its value. Who already has them all (has none of them), or is dead, is skipped. Returns
+  // how many changed.
+  template <Component... Cs>
+  std::size_t add(std::span<const Entity> entities) {
+    return storage_.change_kind(entities, signature<Cs...>(), {});
+  }
+  template <Component... Cs>
+  std::size_t remove(std::span<const Entity> entities) {
+    return storage_.change_kind(entities, {}, signature<Cs...>());
+  }
+
+  // Prepares the kind with exactly these components for `count` further entities.
+  template <Component... Cs>
+  void reserve(std::size_t count) {
+    storage_.reserve(signature<Cs...>(), count);
+  }
+
+  // ---- values ----------------------------------------------------------------------------------
+
+  // Writes each value in place and marks it changed; later ones win. Stale handles are dropped.
+  template <Component C>
+  LandReport land(std::span<const Landing<C>> results) {
+    return land_from<C>(results);
+  }
+  // The same, moving the values out of `results`.
+  template <Component C>
+  LandReport land_moved(std::span<Landing<C>> results) {
+    return land_from<C>(results);
+  }
+
+  bool alive(Entity entity) const { return storage_.living(entity) != nullptr; }
+  // How many entities are alive.
+  std::size_t size() const { return storage_.slots().living(); }
+
+  // The entity's component, null when the entity is dead or has none; valid until the next
+  // structural change. Whoever follows many handles holds an accessor instead.
+  template <Component C>
+  C* get(Entity entity) {
+    return find<C>(entity);
+  }
+  template <Component C>
+  const C* get(Entity entity) const {
+    return find<C>(entity);
+  }
+  template <Component C>
+  Accessor<C> accessor() {
+    return {storage_.slots(), record<C>()};
+  }
+  template <class C>
+  requires std::is_const_v<C> Accessor<C> accessor() {
+    return {storage_.slots(), record<std::remove_const_t<C>>()};
+  }
+
+  // ---- iteration -------------------------------------------------------------------------------
+
+  // Calls f(std::span<const Entity>, std::span<Cs>...) once per non-empty table that has all of Cs
+  // and none of Ws. Write `const C` for what is only read. With a first parameter
+  // `TableRows<Cs...>`, f can mark the rows that it changed.
+  template <class... Cs, class F, class... Ws>
+  void each(F&& f, Without<Ws...> without = {}) {
+    each_in<Cs...>(storage_, f, without);
+  }
+  template <class... Cs, class F, class... Ws>
+  void each(F&& f, Without<Ws...> without = {}) const {
+    static_assert((std::is_const_v<Cs> && ...), "a const World is only read: ask for const C");
+    each_in<Cs...>(storage_, f, without);
+  }
+
+  // How many entities have all of these components.
+  template <Component... Cs>
+  std::size_t count() const {
+    std::size_t total = 0;
+    each<const Cs...>(
+        [&](std::span<const Entity> rows, std::span<const Cs>...) { total += rows.size(); });
+    return total;
+  }
+
+  // ---- changes ---------------------------------------------------------------------------------
+
+  // Says that C was written through a span or a pointer. Stale handles are skipped.
+  template <Component C>
+  void mark_changed(std::span<const Entity> entities);
+  template <Component C>
+  void mark_changed(Entity entity) {
+    mark_changed<C>(std::span<const Entity>(&entity, 1));
+  }
+
+  // A further consumer of C's changes; to it, all rows are new.
+  template <Component C>
+  ChangeReader<C> reader(Removed removed = Removed::kIgnore) {
+    static_assert(is_tracked<C>(), "only a tracked component has changes");
+    return {storage_, storage_.add_reader(storage_.id_of(detail::kComponentInfo<C>),
+                                          removed == Removed::kReport)};
+  }
+
+  // ---- figures ---------------------------------------------------------------------------------
+
+  std::size_t table_count() const { return storage_.tables().size() - 1; }
+  // Slots whose generations are used up.
+  std::size_t retired_slots() const { return storage_.slots().retired(); }
+  // Memory of handles and columns that is usable now; what was never touched costs nothing.
+  std::size_t committed_bytes() const { return storage_.committed_bytes(); }
+
+ private:
+  template <class C>
+  detail::ComponentRecord& record() {
+    return storage_.record(storage_.id_of(detail::kComponentInfo<C>));
+  }
+  template <class... Cs>
+  detail::Signature signature() {
+    static_assert(detail::kDistinct<Cs...>, "a component type occurs once in a kind");
+    detail::Signature result;
+    (result.insert(storage_.id_of(detail::kComponentInfo<Cs>)), ...);
+    return result;
+  }
+  template <class C>
+  C* find(Entity entity) const;
+  template <class C, class L>
+  LandReport land_from(std::span<L> results);
+  template <class... Cs, class S, class F, class... Ws>
+  static void each_in(S& storage, F& f, Without<Ws...>);
+
+  detail::Storage storage_;
+};
+
+template <Component... Cs>
+Created<Cs...> World::create(std::size_t count) {
+  const detail::Storage::Batch batch = storage_.create(signature<Cs...>(), count);
+  const auto column = [&]<class C>(std::type_identity<C>) {
+    const detail::ComponentId id = storage_.find_id(detail::kComponentInfo<C>);
+    return std::span<C>(detail::rows_of<C>(batch.table->column_data(id)) + batch.first, count);
+  };
+  return {{batch.table->entities() + batch.first, count}, {column(std::type_identity<Cs>{})...}};
+}
+
+template <class C>
+C* World::find(Entity entity) const {
+  const detail::ComponentId id = storage_.find_id(detail::kComponentInfo<C>);
+  const detail::Slot* slot = storage_.slots().find(entity);
+  if (id == detail::kNoComponent || slot == nullptr) return nullptr;
+  std::byte* column = storage_.record(id).column_of_table[slot->table];
+  return column == nullptr ? nullptr : detail::rows_of<C>(column) + slot->row;
+}
+
+template <class C, class L>
+LandReport World::land_from(std::span<L> results) {
+  detail::ComponentRecord& target = record<C>();
+  const detail::EntitySlots& slots = storage_.slots();
+  LandReport report;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (i + detail::kPrefetchAhead < results.size()) {
+      slots.prefetch(results[i + detail::kPrefetchAhead].entity);
+    }
+    L& result = results[i];
+    const detail::Slot* slot = slots.find(result.entity);
+    std::byte* column = slot == nullptr ? nullptr : target.column_of_table[slot->table];
+    if (column == nullptr) {
+      ++report.stale;
+      continue;
+    }
+    C* row = detail::rows_of<C>(column) + slot->row;
+    if constexpr (std::is_const_v<L> && std::is_copy_assignable_v<C>) {
+      *row = result.value;
+    } else {
+      static_assert(!std::is_const_v<L>, "values of this type cannot be copied: use land_moved");
+      *row = std::move(result.value);
+    }
+    if constexpr (is_tracked<C>()) storage_.mark(target, slot->table, slot->row);
+    ++report.landed;
+  }
+  return report;
+}
+
+template <class... Cs, class S, class F, class... Ws>
+void World::each_in(S& storage, F& f, Without<Ws...>) {
+  static_assert(detail::kDistinct<Cs...>, "a component type occurs once in a query");
+  constexpr std::size_t kColumns = sizeof...(Cs);
+  const std::array<detail::ComponentId, kColumns> ids{
+      storage.find_id(detail::kComponentInfo<std::remove_const_t<Cs>>)...};
+  detail::Signature wanted;
+  for (const detail::ComponentId id : ids) {
+    if (id == detail::kNoComponent) return;
+    wanted.insert(id);
+  }
+  detail::Signature unwanted;
+  for (const detail::ComponentId id : std::array<detail::ComponentId, sizeof...(Ws)>{
+           storage.find_id(detail::kComponentInfo<Ws>)...}) {
+    if (id != detail::kNoComponent) unwanted.insert(id);
+  }
+
+  const detail::IterationGuard guard(storage.iteration(), detail::kQuery<Cs...>);
+  const auto visit = [&]<std::size_t... I>(const detail::Table& table, std::index_sequence<I...>) {
+    const std::size_t rows = table.rows();
+    const std::span<const Entity> entities(table.entities(), rows);
+    if constexpr (std::is_invocable_v<F&, std::span<const Entity>, std::span<Cs>...>) {
+      f(entities, std::span<Cs>(detail::rows_of<std::remove_const_t<Cs>>(table.column_data(ids[I])),
+                                rows)...);
+    } else {
+      f(TableRows<Cs...>(storage, table), entities,
+        std::span<Cs>(detail::rows_of<std::remove_const_t<Cs>>(table.column_data(ids[I])),
+                      rows)...);
+    }
+  };
+  for (const auto& table : storage.tables()) {
+    if (table == nullptr || table->rows() == 0) continue;
+    if (!table->signature().includes(wanted) || table->signature().intersects(unwanted)) continue;
+    visit(*table, std::make_index_sequence<kColumns>{});
+  }
+}
+
+template <Component C>
+void World::mark_changed(std::span<const Entity> entities) {
+  static_assert(is_tracked<C>(), "only a tracked component is marked: ComponentTraits<C>::tracked");
+  detail::ComponentRecord& target = record<C>();
+  const detail::EntitySlots& slots = storage_.slots();
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (i + detail::kPrefetchAhead < entities.size()) {
+      slots.prefetch(entities[i + detail::kPrefetchAhead]);
+    }
+    const detail::Slot* slot = slots.find(entities[i]);
+    if (slot == nullptr || target.column_of_table[slot->table] == nullptr) continue;
+    storage_.mark(target, slot->table, slot->row);
+  }
+}
+
+}  // namespace psygen::ecs

@@ -1,0 +1,50 @@
+#include "ecs/reserved_memory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <utility>
+
+namespace psygen::ecs::detail {
+namespace {
+
+TEST(ReservedMemory, what_it_holds_never_moves_while_it_grows) {
+  ReservedMemory memory(std::size_t{64} << 20, 320);
+  memory.commit(1);
+  std::byte* first = memory.data();
+  *first = std::byte{42};
+  for (std::size_t bytes = 1000; bytes < std::size_t{16} << 20; bytes *= 3) {
+    memory.commit(bytes);
+    ASSERT_GE(memory.committed_bytes(), bytes);
+    memory.data()[bytes - 1] = std::byte{1};
+  }
+  EXPECT_EQ(memory.data(), first);
+  EXPECT_EQ(*first, std::byte{42});
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(first) % 64, 0U);
+}
+
+TEST(ReservedMemory, fresh_memory_reads_as_zero_to_its_last_byte) {
+  ReservedMemory memory(std::size_t{1} << 20);
+  memory.commit(memory.capacity_bytes());
+  EXPECT_GE(memory.capacity_bytes(), std::size_t{1} << 20);
+  EXPECT_EQ(memory.data()[memory.capacity_bytes() - 1], std::byte{0});
+}
+
+TEST(ReservedMemory, an_absurd_reservation_is_cut_to_what_the_system_gives) {
+  ReservedMemory memory(std::size_t{1} << 60);
+  EXPECT_GE(memory.capacity_bytes(), std::size_t{1} << 20);
+  memory.commit(4096);
+  memory.data()[4095] = std::byte{1};
+}
+
+TEST(ReservedMemory, moving_hands_the_range_over) {
+  ReservedMemory memory(std::size_t{1} << 20);
+  memory.commit(1);
+  std::byte* data = memory.data();
+  ReservedMemory other(std::move(memory));
+  EXPECT_EQ(other.data(), data);
+  other.data()[0] = std::byte{1};
+}
+
+}  // namespace
+}  // namespace psygen::ecs::detail

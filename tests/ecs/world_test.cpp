@@ -1,0 +1,235 @@
+#include "ecs/world.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/ecs/components.hpp"
+
+namespace psygen::ecs {
+namespace {
+
+using namespace test;
+
+std::vector<Entity> copy(std::span<const Entity> entities) {
+  return {entities.begin(), entities.end()};
+}
+
+TEST(World, created_columns_are_contiguous_aligned_and_value_initialised) {
+  World world;
+  for (int round = 0; round < 3; ++round) {
+    const auto created = world.create<Position, Health, Aligned>(1000);
+    ASSERT_EQ(created.entities.size(), 1000U);
+    EXPECT_EQ(created.column<Position>().size(), 1000U);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(created.column<Aligned>().data()) % 64, 0U);
+    for (std::size_t i = 0; i < 1000; ++i) {
+      ASSERT_EQ(created.column<Position>()[i].x, 0.0F);
+      ASSERT_EQ(created.column<Health>()[i].points, 100);
+      ASSERT_EQ(world.get<Health>(created.entities[i]), &created.column<Health>()[i]);
+    }
+    std::ranges::fill(created.column<Position>(), Position{1, 2, 3});
+    std::ranges::fill(created.column<Health>(), Health{1});
+    world.destroy(copy(created.entities.subspan(100)));
+  }
+  EXPECT_EQ(world.size(), 300U);
+}
+
+TEST(World, creating_nothing_gives_empty_spans) {
+  World world;
+  const auto created = world.create<Position>(0);
+  EXPECT_TRUE(created.entities.empty());
+  EXPECT_TRUE(created.column<Position>().empty());
+  EXPECT_EQ(world.size(), 0U);
+}
+
+TEST(World, the_order_of_component_types_does_not_make_another_kind) {
+  World world;
+  world.create<Position, Velocity>(1);
+  world.create<Velocity, Position>(1);
+  EXPECT_EQ(world.table_count(), 1U);
+}
+
+TEST(World, a_thousand_parents_do_not_make_a_thousand_tables) {
+  World world;
+  std::vector<std::vector<Entity>> children;
+  for (int parent = 0; parent < 1000; ++parent) {
+    children.push_back(copy(world.create<Position, Mesh>(10).entities));
+  }
+  EXPECT_EQ(world.table_count(), 1U);
+  EXPECT_EQ(world.destroy(children[500]), 10U);
+  EXPECT_EQ(world.size(), 9990U);
+}
+
+TEST(World, stale_handles_are_recognised_after_their_slot_is_reused) {
+  World world;
+  const Entity old = world.create<Position>(1).entities[0];
+  EXPECT_EQ(world.destroy({&old, 1}), 1U);
+  const Entity young = world.create<Position>(1).entities[0];
+  EXPECT_EQ(young.index, old.index);
+  EXPECT_FALSE(world.alive(old));
+  EXPECT_TRUE(world.alive(young));
+  EXPECT_EQ(world.get<Position>(old), nullptr);
+  EXPECT_EQ(world.destroy({&old, 1}), 0U);
+  EXPECT_FALSE(world.alive(kNullEntity));
+}
+
+TEST(World, a_forged_handle_to_a_free_slot_is_not_alive) {
+  World world;
+  const Entity entity = world.create<Position>(1).entities[0];
+  world.destroy({&entity, 1});
+  const Entity forged{entity.index, entity.generation + 1};
+  EXPECT_FALSE(world.alive(forged));
+  EXPECT_EQ(world.get<Position>(forged), nullptr);
+  EXPECT_EQ(world.destroy({&forged, 1}), 0U);
+}
+
+TEST(World, a_handle_named_twice_dies_once) {
+  World world;
+  const Entity a = world.create<Position>(2).entities[0];
+  const std::vector<Entity> twice{a, a};
+  EXPECT_EQ(world.destroy(twice), 1U);
+  EXPECT_EQ(world.size(), 1U);
+}
+
+TEST(World, handles_stay_distinct_when_generations_run_out) {
+  World world({.first_generation = UINT32_MAX - 2});
+  std::vector<Entity> seen;
+  for (int round = 0; round < 10; ++round) {
+    const Entity entity = world.create<Position>(1).entities[0];
+    EXPECT_THAT(seen, testing::Not(testing::Contains(entity)));
+    seen.push_back(entity);
+    world.destroy({&entity, 1});
+  }
+  EXPECT_EQ(world.retired_slots(), 3U);
+  for (const Entity entity : seen)
+    EXPECT_FALSE(world.alive(entity));
+}
+
+TEST(World, landing_writes_in_place_and_drops_stale_results) {
+  World world;
+  const auto entities = copy(world.create<Mesh>(4).entities);
+  const Entity meshless = world.create<Position>(1).entities[0];
+  world.destroy(std::span(entities).first(1));
+  const std::vector<Landing<Mesh>> results{{entities[0], {10}}, {entities[1], {11}},
+                                           {meshless, {12}},    {kNullEntity, {13}},
+                                           {entities[3], {14}}, {entities[3], {15}}};
+  EXPECT_EQ(world.land<Mesh>(results), (LandReport{3, 3}));
+  EXPECT_EQ(world.get<Mesh>(entities[1])->id, 11U);
+  EXPECT_EQ(world.get<Mesh>(entities[2])->id, 0U);
+  EXPECT_EQ(world.get<Mesh>(entities[3])->id, 15U);
+}
+
+TEST(World, landing_of_a_component_nobody_has_drops_everything) {
+  World world;
+  const Entity entity = world.create<Position>(1).entities[0];
+  const std::vector<Landing<Mesh>> results{{entity, {1}}};
+  EXPECT_EQ(world.land<Mesh>(results), (LandReport{0, 1}));
+}
+
+TEST(World, move_only_components_land_and_survive_every_verb) {
+  World world;
+  const auto entities = copy(world.create<Owner, Position>(100).entities);
+  std::vector<Landing<Owner>> results;
+  for (int i = 0; i < 100; ++i) {
+    results.push_back({entities[static_cast<std::size_t>(i)], {std::make_unique<int>(i)}});
+  }
+  EXPECT_EQ(world.land_moved<Owner>(results), (LandReport{100, 0}));
+  EXPECT_EQ(world.destroy(std::span(entities).first(30)), 30U);
+  EXPECT_EQ(world.add<Velocity>(std::span(entities).subspan(20, 30)), 20U);
+  for (std::size_t i = 30; i < 100; ++i) {
+    EXPECT_EQ(*world.get<Owner>(entities[i])->value, static_cast<int>(i));
+  }
+  EXPECT_EQ(world.remove<Owner>(std::span(entities).last(10)), 10U);
+  EXPECT_EQ(world.get<Owner>(entities[99]), nullptr);
+}
+
+TEST(World, a_throwing_constructor_leaves_no_entity_and_no_object_behind) {
+  {
+    World world;
+    world.create<Throwing, Owner>(5);
+    Throwing::fuse = 3;
+    EXPECT_THROW((world.create<Throwing, Owner>(10)), std::runtime_error);
+    Throwing::fuse = -1;
+    EXPECT_EQ(world.size(), 5U);
+    EXPECT_EQ(Throwing::alive, 5);
+    EXPECT_EQ(world.create<Throwing>(2).column<Throwing>()[1].value, 7);
+  }
+  EXPECT_EQ(Throwing::alive, 0);
+}
+
+TEST(World, a_throwing_constructor_while_adding_leaves_the_entities_as_they_were) {
+  {
+    World world;
+    const auto entities = copy(world.create<Position>(5).entities);
+    Throwing::fuse = 2;
+    EXPECT_THROW(world.add<Throwing>(entities), std::runtime_error);
+    Throwing::fuse = -1;
+    EXPECT_EQ(Throwing::alive, 0);
+    for (const Entity entity : entities) {
+      EXPECT_NE(world.get<Position>(entity), nullptr);
+      EXPECT_EQ(world.get<Throwing>(entity), nullptr);
+    }
+    EXPECT_EQ(world.add<Throwing>(entities), 5U);
+    EXPECT_EQ(world.destroy(std::span(entities).first(2)), 2U);
+    EXPECT_EQ(Throwing::alive, 3);
+  }
+  EXPECT_EQ(Throwing::alive, 0);
+}
+
+TEST(World, adding_and_removing_keeps_the_other_values) {
+  World world;
+  const auto created = world.create<Position>(10);
+  const auto entities = copy(created.entities);
+  for (std::size_t i = 0; i < 10; ++i)
+    created.column<Position>()[i].x = static_cast<float>(i);
+  const std::vector<Entity> some{entities[2], entities[7], entities[2], kNullEntity};
+  EXPECT_EQ((world.add<Velocity, Health>(some)), 2U);
+  EXPECT_EQ((world.add<Velocity, Health>(some)), 0U);
+  EXPECT_EQ(world.get<Health>(entities[7])->points, 100);
+  EXPECT_EQ(world.count<Velocity>(), 2U);
+  EXPECT_EQ(world.remove<Velocity>(entities), 2U);
+  EXPECT_EQ(world.count<Velocity>(), 0U);
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(world.get<Position>(entities[i])->x, static_cast<float>(i));
+  }
+}
+
+TEST(World, columns_keep_their_address_while_a_kind_grows) {
+  World world;
+  const auto first = world.create<Position>(1);
+  const Position* address = first.column<Position>().data();
+  const Entity entity = first.entities[0];
+  for (int i = 0; i < 100; ++i)
+    world.create<Position>(1000);
+  EXPECT_EQ(world.get<Position>(entity), address);
+}
+
+TEST(World, reserving_commits_memory_ahead) {
+  World world;
+  world.reserve<Position>(100000);
+  const std::size_t bytes = world.committed_bytes();
+  world.create<Position>(100);
+  EXPECT_GE(bytes, 100000 * (sizeof(Position) + sizeof(Entity)));
+}
+
+#ifndef NDEBUG
+TEST(WorldDeathTest, a_structural_change_while_iterating_names_the_query) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  World world;
+  world.create<Mesh, Health>(1);
+  const auto misuse = [&] {
+    world.each<const Mesh, Health>([&](auto, auto, auto) { world.create<Position>(1); });
+  };
+  EXPECT_DEATH(misuse(), "structural change .create. while iterating <const mesh, .*Health>");
+}
+#endif
+
+TEST(WorldDeathTest, a_full_world_ends_with_a_message) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  World world({.max_entities = 10});
+  EXPECT_DEATH(world.create<Position>(11), "max_entities");
+}
+
+}  // namespace
+}  // namespace psygen::ecs
