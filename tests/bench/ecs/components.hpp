@@ -1,0 +1,55 @@
+// What the benchmarks of ecs measure with: components of a typical moving thing, the same shape as
+// arrays written by hand, and shuffled orders. Every benchmark has a twin on the arrays: the floor.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "ecs/ecs.hpp"
+
+namespace psygen::ecs::bench {
+
+inline constexpr std::size_t kEntities = 1'000'000;
+
+struct Position {
+  float x, y, z;
+};
+struct Velocity {
+  float x, y, z;
+};
+struct Mass {
+  float kilograms;
+};
+struct Mesh {
+  std::uint64_t id;
+  std::uint32_t state;
+};
+
+inline std::vector<std::uint32_t> shuffled(std::size_t count, std::uint32_t seed) {
+  std::vector<std::uint32_t> order(count);
+  for (std::size_t i = 0; i < count; ++i)
+    order[i] = static_cast<std::uint32_t>(i);
+  std::ranges::shuffle(order, std::mt19937(seed));
+  return order;
+}
+
+template <class T>
+std::vector<T> permuted(std::span<const T> values, std::uint32_t seed) {
+  std::vector<T> result;
+  result.reserve(values.size());
+  for (const std::uint32_t i : shuffled(values.size(), seed))
+    result.push_back(values[i]);
+  return result;
+}
+
+}  // namespace psygen::ecs::bench
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::bench::Mesh> {
+  static constexpr std::string_view name = "mesh";
+  static constexpr bool tracked = true;
+};

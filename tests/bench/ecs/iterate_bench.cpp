@@ -1,0 +1,119 @@
+// Walking columns, and following handles to single values.
+#include <benchmark/benchmark.h>
+
+#include "tests/bench/ecs/floor.hpp"
+
+namespace psygen::ecs::bench {
+namespace {
+
+void integrate(Position* positions, const Velocity* velocities, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    positions[i].x += velocities[i].x * 0.016F;
+    positions[i].y += velocities[i].y * 0.016F;
+    positions[i].z += velocities[i].z * 0.016F;
+  }
+}
+
+void integrate_light(Position* positions, const Velocity* velocities, const Mass* masses,
+                     std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float step = 0.016F * masses[i].kilograms;
+    positions[i].x += velocities[i].x * step;
+    positions[i].y += velocities[i].y * step;
+    positions[i].z += velocities[i].z * step;
+  }
+}
+
+void per_entity(benchmark::State& state, std::size_t entities) {
+  state.SetItemsProcessed(static_cast<std::int64_t>(entities) * state.iterations());
+}
+
+void iterate_2(benchmark::State& state) {
+  World world;
+  world.create<Position, Velocity>(kEntities);
+  for (auto _ : state) {
+    world.each<Position, const Velocity>([](auto, auto positions, auto velocities) {
+      integrate(positions.data(), velocities.data(), positions.size());
+    });
+    benchmark::ClobberMemory();
+  }
+  per_entity(state, kEntities);
+}
+BENCHMARK(iterate_2)->Name("iterate_2/ecs");
+
+void iterate_2_floor(benchmark::State& state) {
+  FloorTable table;
+  table.create(kEntities);
+  std::memset(table.positions.data(), 0, kEntities * sizeof(Position));
+  std::memset(table.velocities.data(), 0, kEntities * sizeof(Velocity));
+  for (auto _ : state) {
+    integrate(table.positions.data(), table.velocities.data(), kEntities);
+    benchmark::ClobberMemory();
+  }
+  per_entity(state, kEntities);
+}
+BENCHMARK(iterate_2_floor)->Name("iterate_2/floor");
+
+void iterate_3_half(benchmark::State& state) {
+  World world;
+  world.create<Position, Velocity, Mass>(kEntities / 2);
+  world.create<Position, Velocity>(kEntities / 2);
+  for (auto _ : state) {
+    world.each<Position, const Velocity, const Mass>(
+        [](auto, auto positions, auto velocities, auto masses) {
+          integrate_light(positions.data(), velocities.data(), masses.data(), positions.size());
+        });
+    benchmark::ClobberMemory();
+  }
+  per_entity(state, kEntities / 2);
+}
+BENCHMARK(iterate_3_half)->Name("iterate_3_half_match/ecs");
+
+void iterate_3_half_floor(benchmark::State& state) {
+  FloorTable table;
+  table.create(kEntities / 2);
+  std::memset(table.positions.data(), 0, kEntities / 2 * sizeof(Position));
+  std::memset(table.velocities.data(), 0, kEntities / 2 * sizeof(Velocity));
+  std::memset(table.masses.data(), 0, kEntities / 2 * sizeof(Mass));
+  for (auto _ : state) {
+    integrate_light(table.positions.data(), table.velocities.data(), table.masses.data(),
+                    kEntities / 2);
+    benchmark::ClobberMemory();
+  }
+  per_entity(state, kEntities / 2);
+}
+BENCHMARK(iterate_3_half_floor)->Name("iterate_3_half_match/floor");
+
+void random_get(benchmark::State& state) {
+  World world;
+  const auto entities = permuted(world.create<Position, Mesh>(kEntities).entities, 1);
+  const Accessor<const Mesh> meshes = world.accessor<const Mesh>();
+  for (auto _ : state) {
+    std::uint64_t sum = 0;
+    for (const Entity entity : entities) {
+      if (const Mesh* mesh = meshes.get(entity)) sum += mesh->id;
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+  per_entity(state, kEntities);
+}
+BENCHMARK(random_get)->Name("random_get/ecs");
+
+void random_get_floor(benchmark::State& state) {
+  FloorTable table;
+  table.create(kEntities);
+  std::memset(static_cast<void*>(table.meshes.data()), 0, kEntities * sizeof(Mesh));
+  const auto entities = permuted(std::span<const Entity>(table.entities.data(), kEntities), 1);
+  for (auto _ : state) {
+    std::uint64_t sum = 0;
+    for (const Entity entity : entities) {
+      if (table.alive(entity)) sum += table.meshes[table.slots[entity.index].row].id;
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+  per_entity(state, kEntities);
+}
+BENCHMARK(random_get_floor)->Name("random_get/floor");
+
+}  // namespace
+}  // namespace psygen::ecs::bench
