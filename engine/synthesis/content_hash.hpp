@@ -1,0 +1,39 @@
+// Proof that two runs made the same world. A mesh's hash covers its key and every byte written; the
+// world's is a sum, so that neither the number of modelers nor the order of completion matters.
+// Pure functions; any thread.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/models/model_type.hpp"
+#include "engine/synthesis/mesh_key.hpp"
+
+namespace psygen::synthesis {
+
+// `mesh` is fully written. Shared indices are covered by the key (they depend on the level alone).
+inline std::uint64_t content_hash(const MeshKey& key, const models::MeshView& mesh) {
+  const std::uint64_t h =
+      core::combine(hash_of(key), core::hash_bytes({mesh.vertices.data(), mesh.vertices.size()}));
+  return core::combine(h, core::hash_bytes(std::as_bytes(mesh.indices)));
+}
+
+class WorldHash {
+ public:
+  void add(std::uint64_t mesh_hash) {
+    sum_ += core::mix64(mesh_hash);
+    ++count_;
+  }
+  // Another part of the same world.
+  void add(const WorldHash& part) {
+    sum_ += part.sum_;
+    count_ += part.count_;
+  }
+  std::uint64_t count() const { return count_; }
+  std::uint64_t value() const { return core::combine(sum_, count_); }
+
+ private:
+  std::uint64_t sum_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace psygen::synthesis

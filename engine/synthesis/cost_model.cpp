@@ -1,0 +1,203 @@
+#include "engine/synthesis/cost_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+#include "engine/core/clock.hpp"
+#include "engine/synthesis/synthesize.hpp"
+
+namespace psygen::synthesis {
+namespace {
+constexpr double kDefaultSecondsPerOperation = 5e-9;
+constexpr double kLearningRate = 0.05;    // of one observation, in the logarithm of c
+constexpr double kLargestSurprise = 4.0;  // one observation counts as at most this factor
+constexpr std::size_t kErrorWindow = 4096;
+}  // namespace
+
+double quantile(std::span<double> values, double p) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const double h = p * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::size_t>(h);
+  const std::size_t high = std::min(low + 1, values.size() - 1);
+  return values[low] + (values[high] - values[low]) * (h - static_cast<double>(low));
+}
+
+CostModel::CostModel(const models::Registry& registry) : registry_(registry) {
+  constants_.resize(registry.size());
+  for (std::size_t m = 0; m < registry.size(); ++m) {
+    const int levels = registry[static_cast<models::ModelIndex>(m)].level_count();
+    constants_[m].assign(static_cast<std::size_t>(std::max(levels, 1)),
+                         kDefaultSecondsPerOperation);
+  }
+}
+
+double& CostModel::constant(models::ModelIndex model, int level) {
+  return constants_[model][static_cast<std::size_t>(level)];
+}
+
+double CostModel::seconds_per_operation(models::ModelIndex model, int level) const {
+  if (model >= constants_.size()) return kDefaultSecondsPerOperation;
+  const auto& levels = constants_[model];
+  return levels[static_cast<std::size_t>(
+      std::clamp(level, 0, static_cast<int>(levels.size()) - 1))];
+}
+
+double CostModel::complexity(models::ModelIndex model, const models::Parameters& parameters,
+                             int level) const {
+  if (model >= registry_.size()) return 1;
+  try {  // types of users may throw; nothing of ours does
+    const double x = registry_[model].complexity(parameters, level);
+    return std::isfinite(x) && x > 0 ? x : 1;
+  } catch (...) {
+    return 1;
+  }
+}
+
+double CostModel::predict_from(models::ModelIndex model, int level, double complexity) const {
+  const double seconds = seconds_per_operation(model, level) * complexity;
+  return std::clamp(seconds, 1e-9, 1e6);
+}
+
+double CostModel::predict(models::ModelIndex model, const models::Parameters& parameters,
+                          int level) const {
+  return predict_from(model, level, complexity(model, parameters, level));
+}
+
+void CostModel::observe(models::ModelIndex model, int level, double complexity,
+                        double predicted_seconds, double seconds) {
+  if (model >= constants_.size() || level < 0 ||
+      static_cast<std::size_t>(level) >= constants_[model].size() || !(seconds > 0) ||
+      !(complexity > 0)) {
+    return;
+  }
+  double& c = constant(model, level);
+  const double surprise =
+      std::clamp(seconds / (complexity * c), 1 / kLargestSurprise, kLargestSurprise);
+  c *= std::pow(surprise, kLearningRate);
+  const auto error = static_cast<float>(std::abs(predicted_seconds - seconds) / seconds * 100);
+  if (recent_errors_.size() < kErrorWindow) {
+    recent_errors_.push_back(error);
+  } else {
+    recent_errors_[next_error_++ % kErrorWindow] = error;
+  }
+}
+
+CostError CostModel::error() const {
+  std::vector<double> errors(recent_errors_.begin(), recent_errors_.end());
+  CostError e;
+  e.count = errors.size();
+  e.p50_percent = quantile(errors, 0.50);
+  e.p95_percent = quantile(errors, 0.95);
+  return e;
+}
+
+// The least time of a few measurements, or nothing if the type failed or the time is up.
+std::optional<CostModel::Measurement> CostModel::measure(const CostSample& sample, int level,
+                                                         const CalibrationOptions& options,
+                                                         double deadline_s,
+                                                         CalibrationReport& report) const {
+  const models::ModelType& type = registry_[sample.model];
+  const auto destination = HeapDestination::make(type, sample.parameters, level);
+  if (!destination) {
+    report.failures.push_back(destination.error().message);
+    return std::nullopt;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  int repeats = 1;
+  for (int round = 0; round <= options.rounds; ++round) {  // the first one warms up and sizes
+    if (options.wall_clock() >= deadline_s) break;
+    const double start = options.cpu_clock();
+    for (int i = 0; i < repeats; ++i) {
+      const SynthesisOutcome outcome =
+          synthesize_guarded(type, sample.parameters, level, destination->view());
+      if (!outcome.ok) {
+        report.failures.push_back(outcome.error);
+        return std::nullopt;
+      }
+    }
+    const double each = (options.cpu_clock() - start) / repeats;
+    ++report.measurements;
+    least = std::min(least, each);
+    if (round == 0) {
+      const double want = options.seconds_per_measurement / std::max(each, 1e-8);
+      repeats = static_cast<int>(std::clamp(std::ceil(want), 1.0, 1000.0));
+    }
+  }
+  if (!std::isfinite(least) || least <= 0) return std::nullopt;
+  return Measurement{least, complexity(sample.model, sample.parameters, level)};
+}
+
+LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
+                                            std::span<const CostSample> samples,
+                                            const CalibrationOptions& options, double deadline_s,
+                                            CalibrationReport& report,
+                                            std::vector<double>& errors) {
+  std::vector<Measurement> measured;
+  std::vector<double> ratios;
+  for (const CostSample& s : samples) {
+    if (s.model != model) continue;
+    const double expected = predict(model, s.parameters, level) * (options.rounds + 1);
+    if (options.wall_clock() + expected >= deadline_s) continue;
+    if (const auto m = measure(s, level, options, deadline_s, report)) {
+      measured.push_back(*m);
+      ratios.push_back(m->seconds / m->complexity);
+    }
+  }
+  LevelCalibration result{model, level, constant(model, level), 0,
+                          static_cast<std::uint32_t>(measured.size())};
+  if (measured.empty()) return result;
+  const double c = quantile(ratios, 0.5);
+  for (int finer = level; finer >= 0; --finer)  // the best guess for levels not measured yet
+    constant(model, finer) = c;
+  std::vector<double> level_errors;
+  for (const Measurement& m : measured)
+    level_errors.push_back(std::abs(m.seconds - c * m.complexity) / m.seconds * 100);
+  errors.insert(errors.end(), level_errors.begin(), level_errors.end());
+  result.seconds_per_operation = c;
+  result.fit_error_percent = quantile(level_errors, 0.5);
+  return result;
+}
+
+CalibrationReport CostModel::calibrate(std::span<const CostSample> samples,
+                                       const CalibrationOptions& given,
+                                       const std::function<void(double)>& progress) {
+  CalibrationOptions options = given;
+  if (!options.wall_clock) options.wall_clock = core::monotonic_seconds;
+  if (!options.cpu_clock) options.cpu_clock = core::thread_cpu_seconds;
+  std::vector<CostSample> defaults;
+  if (samples.empty()) {
+    for (std::size_t m = 0; m < registry_.size(); ++m) {
+      const auto model = static_cast<models::ModelIndex>(m);
+      defaults.push_back({model, models::default_parameters(registry_[model])});
+    }
+    samples = defaults;
+  }
+  const double start = options.wall_clock();
+  std::size_t total = 0, done = 0;
+  for (const auto& levels : constants_)
+    total += levels.size();
+  CalibrationReport report;
+  std::vector<double> errors;
+  for (std::size_t m = 0; m < constants_.size(); ++m) {
+    // Each type may use its share of what is left, so that a slow one does not starve the rest.
+    const double now = options.wall_clock();
+    const double left = start + options.seconds_limit - now;
+    const double share = left / static_cast<double>(constants_.size() - m);
+    for (int level = static_cast<int>(constants_[m].size()) - 1; level >= 0; --level) {
+      report.levels.push_back(calibrate_level(static_cast<models::ModelIndex>(m), level, samples,
+                                              options, now + share, report, errors));
+      if (progress) progress(static_cast<double>(++done) / static_cast<double>(total));
+    }
+  }
+  report.fit_error_percent_p50 = quantile(errors, 0.50);
+  report.fit_error_percent_p95 = quantile(errors, 0.95);
+  report.seconds = options.wall_clock() - start;
+  return report;
+}
+
+}  // namespace psygen::synthesis

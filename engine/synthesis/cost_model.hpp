@@ -1,0 +1,106 @@
+// How long a synthesis takes: predicted time = c · complexity(parameters, level), with one measured
+// c per model type and level (paper, sections 5.2 and 6: the constants are computed at start-up).
+// Calibrated in well under a second, then refined by every finished request; the error of its own
+// predictions is kept, so that a schedule never rests on a figure that nobody checked.
+// One thread. Not a profiler. predict() and observe() are O(1) beside the type's complexity().
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/models/registry.hpp"
+
+namespace psygen::synthesis {
+
+struct CostSample {
+  models::ModelIndex model = 0;
+  models::Parameters parameters;
+};
+
+struct CalibrationOptions {
+  // Wall-clock time after which nothing more is measured. A level whose predicted time does not fit
+  // any more is skipped, so that only a model that is slower than its own formula says can run
+  // over.
+  double seconds_limit = 0.4;
+  // Short syntheses are repeated until one measurement is at least this long.
+  double seconds_per_measurement = 20e-6;
+  int rounds = 3;                           // measurements per sample and level; the least counts
+  std::function<double()> wall_clock = {};  // default: core::monotonic_seconds
+  std::function<double()> cpu_clock = {};   // default: core::thread_cpu_seconds
+};
+
+struct LevelCalibration {
+  models::ModelIndex model = 0;
+  int level = 0;
+  double seconds_per_operation = 0;  // c
+  double fit_error_percent = 0;  // median over the samples of |measured − c·complexity|/measured
+  std::uint32_t samples = 0;     // 0: skipped, c was carried over from a coarser level
+};
+
+struct CalibrationReport {
+  std::vector<LevelCalibration> levels;
+  double seconds = 0;                // wall-clock time spent
+  double fit_error_percent_p50 = 0;  // over all samples and levels
+  double fit_error_percent_p95 = 0;
+  std::uint64_t measurements = 0;
+  std::vector<std::string> failures;  // "rock level 2 threw: ...": those are not measured
+};
+
+struct CostError {
+  std::uint64_t count = 0;  // observations over which the percentiles are taken, at most 4,096
+  double p50_percent = 0;   // of |predicted − measured| / measured
+  double p95_percent = 0;
+};
+
+class CostModel {
+ public:
+  // Before calibration c is 5 ns for every type.
+  explicit CostModel(const models::Registry& registry);
+
+  // Measures the samples (or, without any, each type's defaults) at every level, coarsest first.
+  // `progress`, if given, is called with a fraction in [0, 1] after each type and level.
+  CalibrationReport calibrate(std::span<const CostSample> samples = {},
+                              const CalibrationOptions& options = {},
+                              const std::function<void(double)>& progress = {});
+
+  // Operations by the type's formula; 1 where the formula fails (throws, NaN, not positive).
+  double complexity(models::ModelIndex model, const models::Parameters& parameters,
+                    int level) const;
+  // Seconds of one core. Finite and positive for any model and level.
+  double predict(models::ModelIndex model, const models::Parameters& parameters, int level) const;
+  double predict_from(models::ModelIndex model, int level, double complexity) const;
+
+  // A finished synthesis: what had been predicted, what it took (seconds of one core).
+  void observe(models::ModelIndex model, int level, double complexity, double predicted_seconds,
+               double seconds);
+  CostError error() const;
+  double seconds_per_operation(models::ModelIndex model, int level) const;
+
+ private:
+  struct Measurement {
+    double seconds;
+    double complexity;
+  };
+  std::optional<Measurement> measure(const CostSample& sample, int level,
+                                     const CalibrationOptions& options, double deadline_s,
+                                     CalibrationReport& report) const;
+  LevelCalibration calibrate_level(models::ModelIndex model, int level,
+                                   std::span<const CostSample> samples,
+                                   const CalibrationOptions& options, double deadline_s,
+                                   CalibrationReport& report, std::vector<double>& errors);
+  double& constant(models::ModelIndex model, int level);
+
+  const models::Registry& registry_;
+  std::vector<std::vector<double>> constants_;  // [model][level]
+  std::vector<float> recent_errors_;            // ring, in percent
+  std::size_t next_error_ = 0;
+};
+
+// The p-quantile (0 … 1) by linear interpolation at h = p(N − 1); 0 for no values. Reorders them.
+double quantile(std::span<double> values, double p);
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,144 @@
+// The part of GeometryCache that keeps the budget: what is used, what is on its way back, and which
+// meshes go. The order of eviction is selected once per batch and then walked.
+#include <algorithm>
+#include <utility>
+
+#include "engine/synthesis/geometry_cache.hpp"
+
+namespace psygen::synthesis {
+namespace {
+constexpr std::size_t kCandidateBatch = 256;
+}  // namespace
+
+void GeometryCache::begin_batch() {
+  waiting_bytes_ = 0;
+  out_of_memory_in_batch_ = false;
+  limit_bytes_ = std::min(budget_bytes_, limit_bytes_ + budget_bytes_ / 64 + 1);
+  enforce_budget();
+}
+
+void GeometryCache::set_budget(std::uint64_t bytes) {
+  budget_bytes_ = bytes;
+  limit_bytes_ = bytes;
+  enforce_budget();
+}
+
+// A range that a frame in flight still reads stays in used_bytes() after its release. Those bytes
+// come back by themselves, so nothing else need be evicted for them: they are counted apart.
+void GeometryCache::observe_memory() {
+  const std::uint64_t used = memory_.used_bytes();
+  if (used < last_used_bytes_) {
+    returning_bytes_ -= std::min(returning_bytes_, last_used_bytes_ - used);
+  }
+  last_used_bytes_ = used;
+  stats_.peak_bytes = std::max(stats_.peak_bytes, used);
+}
+
+void GeometryCache::give_back(const core::GeometryRange& range) {
+  observe_memory();
+  memory_.release(range);
+  returning_bytes_ += range.bytes;
+  observe_memory();
+}
+
+core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const models::MeshSize& size,
+                                                                      Rank rank) {
+  const std::uint32_t own_indices = size.shared_indices == 0 ? size.index_count : 0;
+  const std::uint64_t need = memory_.charged_bytes(size.layout, size.vertex_count, own_indices);
+  const auto refuse = [this] {
+    ++stats_.refusals;
+    return core::fail(core::ErrorCode::kOverBudget, "the geometry budget has no room for a mesh");
+  };
+  if (!make_room(need, rank)) return refuse();
+  auto place = memory_.reserve(size.layout, size.vertex_count, own_indices);
+  if (!place) {
+    ++stats_.out_of_memory;
+    if (std::exchange(out_of_memory_in_batch_, true)) return place;
+    limit_bytes_ = std::min(limit_bytes_, std::max(last_used_bytes_, budget_bytes_ / 16));
+    if (!make_room(need, rank)) return place;
+    place = memory_.reserve(size.layout, size.vertex_count, own_indices);
+    if (!place) return place;
+  }
+  if (memory_.used_bytes() > budget_bytes_) {  // charged more than it had said
+    give_back(place->range);
+    return refuse();
+  }
+  observe_memory();
+  return place;
+}
+
+// True when `need` bytes can be reserved now. Evicts only if that makes enough room, now or once
+// the memory has given the bytes back; in the second case they are promised to this request.
+bool GeometryCache::make_room(std::uint64_t need, Rank rank) {
+  observe_memory();
+  if (need > limit_bytes_) return false;
+  const auto wanted = [&] { return last_used_bytes_ + waiting_bytes_ + need; };
+  if (wanted() <= limit_bytes_) return true;
+  const std::uint64_t coming = limit_bytes_ + returning_bytes_;
+  if (wanted() > coming && !evict(wanted() - coming, &rank)) return false;
+  if (wanted() <= limit_bytes_) return true;
+  waiting_bytes_ += need;
+  return false;
+}
+
+void GeometryCache::enforce_budget() {
+  observe_memory();
+  const std::uint64_t allowed = budget_bytes_ + returning_bytes_;
+  if (last_used_bytes_ > allowed) evict(last_used_bytes_ - allowed, nullptr);
+}
+
+// Evicts the worst meshes until `bytes` are on their way back. For a request: all or nothing, and
+// only what it may evict. Without one (a smaller budget): whatever there is.
+bool GeometryCache::evict(std::uint64_t bytes, const Rank* request) {
+  for (std::size_t count = kCandidateBatch;; count *= 4) {
+    if (!candidates_valid_) select_candidates(count);
+    std::uint64_t found = 0;
+    std::size_t end = next_candidate_;
+    while (end < candidates_.size() && found < bytes) {
+      const MeshRecord& r = records_[candidates_[end].slot];
+      if (request != nullptr && !may_evict(*request, r.rank)) return false;
+      found += r.range.bytes;
+      ++end;
+    }
+    const bool enough = found >= bytes;
+    if (enough || (request == nullptr && candidates_complete_)) {
+      while (next_candidate_ < end)
+        evict_slot(candidates_[next_candidate_++].slot);
+      return enough;
+    }
+    if (candidates_complete_) return false;
+    candidates_valid_ = false;
+  }
+}
+
+void GeometryCache::select_candidates(std::size_t count) {
+  candidates_.clear();
+  next_candidate_ = 0;
+  for (Slot s = 0; s < evictable_.size(); ++s) {
+    if (evictable_[s] != 0) candidates_.push_back({evictable_[s], s});
+  }
+  const auto worse = [](const Candidate& a, const Candidate& b) {
+    return a.order != b.order ? a.order > b.order : a.slot < b.slot;
+  };
+  candidates_complete_ = candidates_.size() <= count;
+  if (!candidates_complete_) {
+    const auto middle = candidates_.begin() + static_cast<std::ptrdiff_t>(count);
+    std::nth_element(candidates_.begin(), middle, candidates_.end(), worse);
+    candidates_.resize(count);
+  }
+  std::sort(candidates_.begin(), candidates_.end(), worse);
+  candidates_valid_ = true;
+}
+
+void GeometryCache::evict_slot(Slot slot) {
+  MeshRecord& r = records_[slot];
+  evictions_.push_back({r.owner, r.key, {slot, r.generation}});
+  evicted_keys_.insert(hash_of(r.key));
+  ++stats_.evictions;
+  --stats_.ready;
+  give_back(r.range);
+  evictable_[slot] = 0;  // already taken off the candidates, which stay valid
+  free_slot(slot);
+}
+
+}  // namespace psygen::synthesis

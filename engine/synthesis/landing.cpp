@@ -1,0 +1,28 @@
+#include "engine/synthesis/landing.hpp"
+
+namespace psygen::synthesis {
+
+LandingReport land(std::span<const Completion> completions, GeometryCache& cache, CostModel* cost) {
+  LandingReport report;
+  for (const Completion& c : completions) {
+    if (c.late) {
+      cache.settle(c.handle);
+      ++report.settled;
+    } else if (!c.ok) {
+      cache.fail(c.handle, c.error, c.abandoned);
+      ++report.failed;
+    } else {
+      if (cost != nullptr) {
+        cost->observe(c.key.model, c.key.level, c.complexity, c.predicted_seconds, c.seconds);
+      }
+      cache.complete(c.handle, c.tight);
+      const MeshRecord* record = cache.get(c.handle);  // may be evicted or released already
+      if (record == nullptr || record->state != MeshState::kReady) continue;
+      ++report.ready;
+      report.bytes += record->range.bytes;
+    }
+  }
+  return report;
+}
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,126 @@
+#include "engine/synthesis/modeler.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "engine/core/clock.hpp"
+#include "engine/synthesis/content_hash.hpp"
+#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/thread_priority.hpp"
+
+namespace psygen::synthesis {
+namespace {
+// For a counter with one writer.
+template <class T>
+void add(std::atomic<T>& counter, T value) {
+  counter.store(counter.load(std::memory_order_relaxed) + value, std::memory_order_relaxed);
+}
+
+Completion completion_of(const Request& request, std::uint32_t modeler) {
+  Completion c;
+  c.handle = request.handle;
+  c.key = request.key;
+  c.owner = request.owner;
+  c.modeler = modeler;
+  c.complexity = request.complexity;
+  c.predicted_seconds = request.predicted_seconds;
+  return c;
+}
+}  // namespace
+
+void Modeler::run(Workshop& workshop) {
+  name_this_thread(fmt::format("modeler-{}", number_));
+  if (workshop.lowest_priority) lower_priority_of_this_thread();
+  double cpu_mark = core::thread_cpu_seconds();
+  while (!workshop.stop.load(std::memory_order_acquire)) {
+    const std::uint32_t epoch = workshop.board.epoch();
+    if (workshop.board.claim(*reader_, current_)) {
+      if (!execute(workshop, cpu_mark)) break;
+    } else {
+      // stop is set before the epoch moves, so that it cannot be missed here.
+      if (!workshop.stop.load(std::memory_order_acquire)) workshop.board.wait(epoch);
+      cpu_mark = core::thread_cpu_seconds();
+    }
+  }
+  exited_.store(true, std::memory_order_release);
+}
+
+bool Modeler::execute(Workshop& workshop, double& cpu_mark) {
+  Completion c = completion_of(current_, number_);
+  c.started_s = workshop.clock();
+  started_s_.store(c.started_s, std::memory_order_relaxed);
+  ++serial_;
+  state_.store(serial_ * 4 + kWorking, std::memory_order_release);
+
+  SynthesisOutcome outcome =
+      synthesize_guarded((*workshop.registry)[current_.key.model], current_.parameters,
+                         current_.key.level, current_.destination);
+  c.ok = outcome.ok;
+  c.tight = outcome.tight;
+  c.error = std::move(outcome.error);
+  const double cpu = core::thread_cpu_seconds();
+  c.seconds = cpu - cpu_mark;
+  cpu_mark = cpu;
+  c.finished_s = workshop.clock();
+  if (workshop.hash_content && c.ok) {
+    c.content_hash = content_hash(current_.key, current_.destination);
+    cpu_mark = core::thread_cpu_seconds();
+  }
+
+  std::uint64_t expected = serial_ * 4 + kWorking;
+  if (!state_.compare_exchange_strong(expected, serial_ * 4 + kIdle, std::memory_order_acq_rel)) {
+    c.ok = false;
+    c.late = true;
+    c.error = "given up before it was done";
+    queue_.push(std::move(c));
+    return false;
+  }
+  count(c);
+  queue_.push(std::move(c));
+  finished_.store(finished_.load(std::memory_order_relaxed) + 1, std::memory_order_seq_cst);
+  if (workshop.waiting.load(std::memory_order_seq_cst)) {
+    const std::lock_guard lock(workshop.mutex);
+    workshop.finished.notify_one();
+  }
+  return true;
+}
+
+void Modeler::count(const Completion& c) {
+  add(counters_.cpu_seconds, c.seconds);
+  add(counters_.busy_seconds, c.finished_s - c.started_s);
+  if (!c.ok) {
+    add(counters_.failed, std::uint64_t{1});
+    return;
+  }
+  add(counters_.models, std::uint64_t{1});
+  add(counters_.triangles, std::uint64_t{current_.size.triangle_count()});
+  add(counters_.bytes, std::uint64_t{current_.destination.vertices.size() +
+                                     current_.destination.indices.size_bytes()});
+}
+
+bool Modeler::is_older(double limit_s) const {
+  const std::uint64_t state = state_.load(std::memory_order_acquire);
+  return (state & kPhaseMask) == kWorking && started_s_.load(std::memory_order_relaxed) < limit_s;
+}
+
+bool Modeler::give_up_if_older(double limit_s, double now_s, Completion& out) {
+  std::uint64_t state = state_.load(std::memory_order_acquire);
+  if ((state & kPhaseMask) != kWorking) return false;
+  const double started_s = started_s_.load(std::memory_order_relaxed);
+  if (started_s >= limit_s) return false;
+  // Fails if the request ended meanwhile, even if another one runs by now: the serial differs.
+  if (!state_.compare_exchange_strong(state, (state & ~std::uint64_t{kPhaseMask}) | kGivenUp,
+                                      std::memory_order_acq_rel)) {
+    return false;
+  }
+  out = completion_of(current_, number_);
+  out.abandoned = true;
+  out.started_s = started_s;
+  out.finished_s = now_s;
+  out.error = fmt::format("level {} was given up after {:.1f} s without an end", out.key.level,
+                          now_s - started_s);
+  return true;
+}
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,85 @@
+// A worker that executes one request at a time (paper, section 5.1: Modeler). It claims from the
+// board, writes into the destination of the request, and queues a completion; it takes no lock and
+// sees nothing else. The main thread may give up a modeler whose model hangs: from then on the
+// modeler only reports when it let go of the destination, and ends.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+
+#include "engine/synthesis/completion_queue.hpp"
+#include "engine/synthesis/plan_board.hpp"
+
+namespace psygen::synthesis {
+
+// What all modelers share. Held by each of them, so that one that hangs outlives the manager
+// safely.
+struct Workshop {
+  const models::Registry* registry = nullptr;
+  std::function<double()> clock;  // called from all threads
+  bool lowest_priority = true;
+  bool hash_content = false;
+  PlanBoard board;
+  std::atomic<bool> stop{false};
+  // Only for a main thread that waits for completions: modelers lock only while `waiting`.
+  std::atomic<bool> waiting{false};
+  std::mutex mutex;
+  std::condition_variable finished;
+};
+
+// Counters with one writer, the modeler, readable from anywhere.
+struct ModelerCounters {
+  std::atomic<std::uint64_t> models{0}, failed{0}, triangles{0}, bytes{0};
+  std::atomic<double> cpu_seconds{0}, busy_seconds{0};
+};
+
+class Modeler {
+ public:
+  Modeler(std::uint32_t number, std::shared_ptr<PlanBoard::Reader> reader)
+      : number_(number), reader_(std::move(reader)) {}
+
+  // The thread's function: works until workshop.stop or until it was given up.
+  void run(Workshop& workshop);
+
+  // Main thread. If the present request runs since before `limit_s` (workshop clock): gives it up
+  // and fills `out` with its failed completion.
+  bool give_up_if_older(double limit_s, double now_s, Completion& out);
+  // Main thread: whether a request that runs now was started before `limit_s`.
+  bool is_older(double limit_s) const;
+
+  bool given_up() const {
+    return (state_.load(std::memory_order_acquire) & kPhaseMask) == kGivenUp;
+  }
+
+  std::uint32_t number() const { return number_; }
+  const std::shared_ptr<PlanBoard::Reader>& reader() const { return reader_; }
+  CompletionQueue& queue() { return queue_; }
+  const ModelerCounters& counters() const { return counters_; }
+  // Requests whose completions are queued, late ones not counted.
+  std::uint64_t finished() const { return finished_.load(std::memory_order_seq_cst); }
+  // The thread touches nothing any more and can be joined at once.
+  bool exited() const { return exited_.load(std::memory_order_acquire); }
+
+ private:
+  enum Phase : std::uint64_t { kIdle = 0, kWorking = 1, kGivenUp = 2, kPhaseMask = 3 };
+  // False if the request was given up meanwhile.
+  bool execute(Workshop& workshop, double& cpu_mark);
+  void count(const Completion& completion);
+
+  const std::uint32_t number_;
+  const std::shared_ptr<PlanBoard::Reader> reader_;
+  Request current_;  // written while idle only
+  std::uint64_t serial_ = 0;
+  alignas(64) std::atomic<std::uint64_t> state_{kIdle};  // serial number of the request · 4 + phase
+  std::atomic<double> started_s_{0};
+  std::atomic<std::uint64_t> finished_{0};
+  std::atomic<bool> exited_{false};
+  ModelerCounters counters_;
+  CompletionQueue queue_;
+};
+
+}  // namespace psygen::synthesis

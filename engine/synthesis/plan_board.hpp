@@ -1,0 +1,56 @@
+// Where the newest plan hangs: an immutable array of requests with an atomic cursor. One thread
+// (the main thread) publishes and closes; any number of modelers claim. Each request is claimed
+// exactly once or returned by close(), never both. Lock-free: a claim is one fetch_add; a plan is
+// reused only when no modeler's reader names it (hazard pointers; Michael 2004).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/synthesis/request.hpp"
+
+namespace psygen::synthesis {
+
+class PlanBoard {
+  struct Plan {
+    std::vector<Request> requests;
+    alignas(64) std::atomic<std::uint64_t> cursor{0};
+  };
+
+ public:
+  // The plan that a modeler is looking at. One per modeler, made by add_reader().
+  struct alignas(64) Reader {
+    std::atomic<const Plan*> plan{nullptr};
+  };
+
+  // Main thread. Readers live as long as whoever holds them; the board keeps its share.
+  std::shared_ptr<Reader> add_reader();
+  void remove_reader(const std::shared_ptr<Reader>& reader);
+
+  // Main thread: hangs up a plan and wakes whoever waits. Requires that the last one is closed.
+  void publish(std::vector<Request>&& requests);
+  // Main thread: nobody claims from the current plan any more. Appends what nobody claimed, in
+  // order, and returns how many requests had been claimed from it.
+  std::size_t close(std::vector<Request>& unclaimed);
+
+  // Modelers: the next request of the newest plan, or false when there is none.
+  bool claim(Reader& reader, Request& out);
+  // Modelers: number of the newest plan, and sleeping until there is a newer one than `seen`.
+  std::uint32_t epoch() const { return epoch_.load(std::memory_order_acquire); }
+  void wait(std::uint32_t seen) const { epoch_.wait(seen, std::memory_order_acquire); }
+  // Any thread: wakes every sleeper although there is no new plan.
+  void wake_all();
+
+ private:
+  static constexpr std::uint64_t kClosed = std::uint64_t{1} << 62;
+  std::unique_ptr<Plan> take_plan();
+
+  alignas(64) std::atomic<Plan*> current_{nullptr};
+  alignas(64) std::atomic<std::uint32_t> epoch_{0};
+  std::vector<std::unique_ptr<Plan>> plans_;  // the current one is last; others may still be read
+  std::vector<std::shared_ptr<Reader>> readers_;
+};
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,143 @@
+#include "engine/synthesis/planner.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "engine/core/assert.hpp"
+
+namespace psygen::synthesis {
+
+// Where the unclaimed request of this mesh is in reclaimed_, or kNone.
+std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
+  const auto it = std::lower_bound(
+      by_slot_.begin(), by_slot_.end(), handle.slot,
+      [&](std::uint32_t position, Slot slot) { return reclaimed_[position].handle.slot < slot; });
+  return it != by_slot_.end() && reclaimed_[*it].handle == handle ? *it : kNone;
+}
+
+// Fills items_ with the wants that need a request, in serving order, and marks what is kept.
+void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
+                       Policy policy, PlanReport& report) {
+  by_slot_.resize(reclaimed_.size());
+  std::iota(by_slot_.begin(), by_slot_.end(), 0u);
+  std::sort(by_slot_.begin(), by_slot_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return reclaimed_[a].handle.slot < reclaimed_[b].handle.slot;
+  });
+  kept_.assign(reclaimed_.size(), false);
+  items_.clear();
+  for (std::uint32_t i = 0; i < wants.size(); ++i) {
+    const Want& want = wants[i];
+    PSYGEN_ASSERT(want.parameters != nullptr, "a want needs parameters");
+    const MeshHandle handle = cache.find(want.key);
+    std::uint32_t reclaimed = kNone;
+    if (handle) {
+      const MeshState state = cache.get(handle)->state;
+      if (state == MeshState::kRequested) reclaimed = reclaimed_position(handle);
+      if (reclaimed == kNone) {
+        ++(state == MeshState::kReady    ? report.ready
+           : state == MeshState::kFailed ? report.failed
+                                         : report.in_flight);
+        if (state == MeshState::kRequested) {
+          cache.adopt(handle, want.owner, want.rank);
+        }
+        continue;
+      }
+      kept_[reclaimed] = true;
+    }
+    const double complexity =
+        reclaimed == kNone ? cost.complexity(want.key.model, *want.parameters, want.key.level)
+                           : reclaimed_[reclaimed].complexity;
+    const double predicted = cost.predict_from(want.key.model, want.key.level, complexity);
+    // First come, first served: what was requested before comes before what is new.
+    const std::uint64_t arrival = reclaimed == kNone ? reclaimed_.size() + i : reclaimed;
+    items_.push_back({{want.rank, want.deadline_s, predicted, arrival}, i, complexity, reclaimed});
+  }
+  std::sort(items_.begin(), items_.end(), [policy](const Item& a, const Item& b) {
+    return served_before(policy, a.order, b.order);
+  });
+  last_first_.clear();
+  for (const Item& item : items_) {
+    if (item.reclaimed != kNone) last_first_.push_back(item.reclaimed);
+  }
+}
+
+void Planner::give_back_unwanted(GeometryCache& cache, PlanReport& report) {
+  for (std::size_t i = 0; i < reclaimed_.size(); ++i) {
+    if (kept_[i]) continue;
+    cache.cancel(reclaimed_[i].handle);
+    ++report.cancelled;
+  }
+}
+
+// Gives back the reservation that would be served last, so that its room can serve a better one.
+bool Planner::give_back_last(GeometryCache& cache, PlanReport& report) {
+  while (!last_first_.empty()) {
+    const std::uint32_t position = last_first_.back();
+    last_first_.pop_back();
+    if (!kept_[position]) continue;  // carried into the plan already, or named by two wants
+    kept_[position] = false;
+    cache.cancel(reclaimed_[position].handle);
+    ++report.cancelled;
+    return true;
+  }
+  return false;
+}
+
+void Planner::add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report) {
+  if (item.reclaimed != kNone && kept_[item.reclaimed]) {
+    kept_[item.reclaimed] = false;  // from now on it is the plan's
+    Request& request = reclaimed_[item.reclaimed];
+    request.owner = want.owner;
+    request.predicted_seconds = item.order.predicted_seconds;
+    cache.adopt(request.handle, want.owner, want.rank);
+    plan_.push_back(request);
+    ++report.carried;
+    report.predicted_seconds += item.order.predicted_seconds;
+    return;
+  }
+  if (cache.find(want.key)) return;  // a second want of the same mesh
+  auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank);
+  while (!handle && handle.error().code == core::ErrorCode::kOverBudget &&
+         give_back_last(cache, report)) {
+    handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank);
+  }
+  if (!handle) {
+    const bool failed = handle.error().code == core::ErrorCode::kSynthesisFailed;
+    ++(failed ? report.failed : report.refused);
+    return;
+  }
+  const MeshRecord& record = *cache.get(*handle);
+  plan_.push_back({*handle, want.key, *want.parameters, record.destination, record.size,
+                   item.complexity, item.order.predicted_seconds, want.owner});
+  ++report.reserved;
+  report.predicted_seconds += item.order.predicted_seconds;
+}
+
+PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
+                         SynthesisManager& manager, const PlanLimits& limits, Policy policy) {
+  PlanReport report;
+  reclaimed_ = manager.reclaim();
+  cache.begin_batch();
+  sort_out(wants, cache, cost, policy, report);
+  give_back_unwanted(cache, report);
+
+  plan_.clear();
+  const double enough = limits.seconds_ahead * std::max(manager.modeler_count(), 1u);
+  std::size_t next = 0;
+  for (; next < items_.size(); ++next) {
+    if (report.predicted_seconds >= enough || plan_.size() >= limits.max_requests ||
+        report.refused >= limits.max_refusals) {
+      break;
+    }
+    add(items_[next], wants[items_[next].want], cache, report);
+  }
+  report.deferred = static_cast<std::uint32_t>(items_.size() - next);
+  while (give_back_last(cache, report)) {
+  }
+  report.published = static_cast<std::uint32_t>(plan_.size());
+  manager.publish(std::exchange(plan_, {}));
+  return report;
+}
+
+}  // namespace psygen::synthesis

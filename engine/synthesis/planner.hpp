@@ -1,0 +1,78 @@
+// From what is wanted to a plan. Every tick the caller says what it wants now; the planner takes
+// back what no modeler claimed of the last plan, keeps the reservations that are still wanted,
+// gives the others back, reserves for the next ones in the order of a policy until the modelers
+// have enough to do for a while, and publishes. So a request is never stale for longer than a tick,
+// and memory is reserved only for what is about to be written.
+//
+// Main thread. O(n log n) for n wants. Not the judge of what is wanted (visibility, scene).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/synthesis/cost_model.hpp"
+#include "engine/synthesis/geometry_cache.hpp"
+#include "engine/synthesis/policy.hpp"
+#include "engine/synthesis/synthesis_manager.hpp"
+
+namespace psygen::synthesis {
+
+struct Want {
+  MeshKey key;
+  const models::Parameters* parameters = nullptr;  // read during plan() only
+  std::uint64_t owner = 0;
+  Rank rank;             // of the request; also decides what it may evict
+  float deadline_s = 0;  // seconds from now until it is visible; for Policy::kDeadline
+};
+
+struct PlanLimits {
+  double seconds_ahead = 0.25;  // predicted work per modeler in one plan
+  std::uint32_t max_requests = 4096;
+  std::uint32_t max_refusals = 16;  // reservations refused by the budget before giving up
+};
+
+struct PlanReport {
+  std::uint32_t published = 0;  // requests in the new plan: carried + reserved
+  std::uint32_t carried = 0;    // unclaimed ones of the last plan that are wanted still
+  std::uint32_t reserved = 0;
+  std::uint32_t cancelled = 0;                         // reservations given back
+  std::uint32_t ready = 0, in_flight = 0, failed = 0;  // wants that need no request
+  std::uint32_t refused = 0;     // no room: the caller should want coarser levels
+  std::uint32_t deferred = 0;    // beyond the limits; want them again in the next tick
+  double predicted_seconds = 0;  // of the whole plan, one core
+};
+
+class Planner {
+ public:
+  // Replaces the manager's plan. Wants may repeat a key (the first in the order counts). A ready or
+  // failed mesh is left as it is; a requested one takes over rank and owner of its want.
+  PlanReport plan(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
+                  SynthesisManager& manager, const PlanLimits& limits = {},
+                  Policy policy = Policy::kDeadline);
+
+ private:
+  struct Item {
+    ScheduleKey order;
+    std::uint32_t want;
+    double complexity;
+    std::uint32_t reclaimed;  // position in reclaimed_, or kNone
+  };
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+
+  void sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
+                Policy policy, PlanReport& report);
+  std::uint32_t reclaimed_position(MeshHandle handle) const;
+  void give_back_unwanted(GeometryCache& cache, PlanReport& report);
+  bool give_back_last(GeometryCache& cache, PlanReport& report);
+  void add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report);
+
+  std::vector<Request> reclaimed_;
+  std::vector<std::uint32_t> by_slot_;  // positions in reclaimed_, sorted by slot
+  std::vector<bool> kept_;              // of reclaimed_: wanted, and not given back
+  std::vector<Item> items_;
+  std::vector<std::uint32_t> last_first_;  // wanted ones of reclaimed_ in serving order
+  std::vector<Request> plan_;
+};
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,43 @@
+// What goes to the modelers and what comes back: values, both of them. A modeler needs nothing but
+// its request; it never sees the cache, the world or the renderer.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/models/registry.hpp"
+#include "engine/synthesis/mesh_key.hpp"
+
+namespace psygen::synthesis {
+
+struct Request {
+  MeshHandle handle;
+  MeshKey key;
+  models::Parameters parameters;
+  models::MeshView destination;  // reserved for this request; written by whoever claims it
+  models::MeshSize size;
+  double complexity = 0;         // operations by the type's formula
+  double predicted_seconds = 0;  // of one core
+  std::uint64_t owner = 0;
+};
+
+struct Completion {
+  MeshHandle handle;
+  MeshKey key;
+  std::uint64_t owner = 0;
+  bool ok = false;
+  // Given up by the watchdog: the modeler still holds the destination, and a second completion of
+  // the same handle with `late` set follows when it lets go. Both have ok == false.
+  bool abandoned = false;
+  bool late = false;
+  std::uint32_t modeler = 0;
+  std::string error;   // if not ok: one sentence that names the model and the level
+  double seconds = 0;  // CPU time of the modeler's thread, claiming included
+  double started_s = 0, finished_s = 0;  // by the manager's clock, for traces
+  double complexity = 0;                 // as requested, for CostModel::observe()
+  double predicted_seconds = 0;
+  core::Bounds tight;
+  std::uint64_t content_hash = 0;  // if the manager hashes content, else 0
+};
+
+}  // namespace psygen::synthesis

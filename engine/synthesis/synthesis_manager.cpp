@@ -1,0 +1,203 @@
+#include "engine/synthesis/synthesis_manager.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <system_error>
+#include <utility>
+
+#include "engine/core/clock.hpp"
+#include "engine/core/log.hpp"
+
+namespace psygen::synthesis {
+namespace {
+// How often a blocked main thread looks at the watchdog.
+constexpr std::chrono::milliseconds kWatchdogPeriod{20};
+constexpr std::chrono::microseconds kExitPeriod{100};
+
+ModelerStats stats_of(const Modeler& modeler) {
+  const ModelerCounters& c = modeler.counters();
+  return {modeler.number(),
+          c.models.load(std::memory_order_relaxed),
+          c.failed.load(std::memory_order_relaxed),
+          c.triangles.load(std::memory_order_relaxed),
+          c.bytes.load(std::memory_order_relaxed),
+          c.cpu_seconds.load(std::memory_order_relaxed),
+          c.busy_seconds.load(std::memory_order_relaxed)};
+}
+}  // namespace
+
+unsigned modeler_count_for(unsigned requested) {
+  if (requested > 0) return requested;
+  return std::max(std::thread::hardware_concurrency(), 2u) - 1;
+}
+
+SynthesisManager::SynthesisManager(const models::Registry& registry,
+                                   const SynthesisOptions& options)
+    : workshop_(std::make_shared<Workshop>()),
+      watchdog_seconds_(options.watchdog_seconds),
+      replacements_left_(options.max_replacements) {
+  workshop_->registry = &registry;
+  workshop_->clock = options.clock ? options.clock : core::monotonic_seconds;
+  workshop_->lowest_priority = options.lowest_priority;
+  workshop_->hash_content = options.hash_content;
+  for (unsigned i = 0; i < modeler_count_for(options.modelers); ++i) {
+    if (!start_modeler()) break;
+  }
+}
+
+SynthesisManager::~SynthesisManager() {
+  close_plan();
+  workshop_->stop.store(true, std::memory_order_release);
+  workshop_->board.wake_all();
+  for (Worker& w : active_)
+    leave(w);
+  for (Worker& w : retired_)
+    leave(w);
+}
+
+void SynthesisManager::leave(Worker& worker) {
+  while (!worker.modeler->exited()) {
+    const bool hangs =
+        watchdog_seconds_ > 0 && worker.modeler->is_older(workshop_->clock() - watchdog_seconds_);
+    if (hangs || worker.modeler->given_up()) {
+      worker.thread.detach();
+      return;
+    }
+    std::this_thread::sleep_for(kExitPeriod);
+  }
+  worker.thread.join();
+}
+
+bool SynthesisManager::start_modeler() {
+  Worker worker;
+  worker.modeler = std::make_shared<Modeler>(next_number_, workshop_->board.add_reader());
+  try {
+    worker.thread =
+        std::thread([workshop = workshop_, modeler = worker.modeler] { modeler->run(*workshop); });
+  } catch (const std::system_error& e) {
+    workshop_->board.remove_reader(worker.modeler->reader());
+    core::log_error(fmt::format("no thread for modeler {}: {}", next_number_, e.what()));
+    return false;
+  }
+  ++next_number_;
+  active_.push_back(std::move(worker));
+  return true;
+}
+
+void SynthesisManager::publish(std::vector<Request>&& plan) {
+  close_plan();
+  published_ += plan.size();
+  workshop_->board.publish(std::move(plan));
+}
+
+void SynthesisManager::close_plan() {
+  const std::size_t before = unclaimed_.size();
+  workshop_->board.close(unclaimed_);
+  reclaimed_ += unclaimed_.size() - before;
+}
+
+std::vector<Request> SynthesisManager::reclaim() {
+  close_plan();
+  return std::exchange(unclaimed_, {});
+}
+
+std::size_t SynthesisManager::collect(std::vector<Completion>& out) {
+  const std::size_t before = out.size();
+  run_watchdog();
+  std::move(abandoned_.begin(), abandoned_.end(), std::back_inserter(out));
+  abandoned_.clear();
+  for (Worker& w : active_)
+    w.modeler->queue().drain(out);
+  drain_retired(out);
+  return out.size() - before;
+}
+
+void SynthesisManager::run_watchdog() {
+  if (watchdog_seconds_ <= 0) return;
+  const double now = workshop_->clock();
+  for (std::size_t i = 0; i < active_.size();) {
+    Completion c;
+    if (!active_[i].modeler->give_up_if_older(now - watchdog_seconds_, now, c)) {
+      ++i;
+      continue;
+    }
+    c.error = fmt::format("{} {}", (*workshop_->registry)[c.key.model].name(), c.error);
+    core::log_warning(fmt::format("modeler {} hangs: {}", c.modeler, c.error));
+    hung_.push_back({c.handle, c.key, c.owner, c.modeler, c.started_s});
+    abandoned_.push_back(std::move(c));
+    ++given_up_;
+    retired_.push_back(std::move(active_[i]));
+    active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (replacements_left_ > 0 && start_modeler()) --replacements_left_;
+  }
+}
+
+// Hung modelers still have completions of before; those that came back are joined and counted.
+void SynthesisManager::drain_retired(std::vector<Completion>& out) {
+  std::erase_if(retired_, [&](Worker& w) {
+    const bool exited = w.modeler->exited();  // read first: nothing is queued after it
+    w.modeler->queue().drain(out);
+    if (!exited) return false;
+    w.thread.join();
+    workshop_->board.remove_reader(w.modeler->reader());
+    buried_.push_back(stats_of(*w.modeler));
+    buried_finished_ += w.modeler->finished();
+    std::erase_if(hung_, [&](const HungRequest& h) { return h.modeler == w.modeler->number(); });
+    return true;
+  });
+}
+
+std::uint64_t SynthesisManager::outstanding() const {
+  std::uint64_t done = reclaimed_ + given_up_ + buried_finished_;
+  for (const Worker& w : active_)
+    done += w.modeler->finished();
+  for (const Worker& w : retired_)
+    done += w.modeler->finished();
+  return published_ - done;
+}
+
+bool SynthesisManager::wait_all() {
+  workshop_->waiting.store(true, std::memory_order_seq_cst);
+  bool all = true;
+  while (outstanding() > 0) {
+    if (active_.empty()) {
+      all = false;
+      break;
+    }
+    {
+      // A modeler notifies under the lock, so nothing is missed between looking and sleeping.
+      std::unique_lock lock(workshop_->mutex);
+      if (outstanding() == 0) break;
+      workshop_->finished.wait_until(lock, std::chrono::system_clock::now() + kWatchdogPeriod);
+    }
+    run_watchdog();
+  }
+  workshop_->waiting.store(false, std::memory_order_seq_cst);
+  return all;
+}
+
+SynthesisStats SynthesisManager::stats() const {
+  SynthesisStats s;
+  s.published = published_;
+  s.reclaimed = reclaimed_;
+  s.given_up = given_up_;
+  s.modelers = buried_;
+  for (const Worker& w : active_)
+    s.modelers.push_back(stats_of(*w.modeler));
+  for (const Worker& w : retired_)
+    s.modelers.push_back(stats_of(*w.modeler));
+  std::sort(s.modelers.begin(), s.modelers.end(),
+            [](const ModelerStats& a, const ModelerStats& b) { return a.modeler < b.modeler; });
+  for (const ModelerStats& m : s.modelers) {
+    s.models += m.models;
+    s.failed += m.failed;
+    s.triangles += m.triangles;
+    s.bytes += m.bytes;
+    s.cpu_seconds += m.cpu_seconds;
+  }
+  return s;
+}
+
+}  // namespace psygen::synthesis

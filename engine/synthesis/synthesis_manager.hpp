@@ -1,0 +1,110 @@
+// Keeps the modelers busy (paper, section 5.1: Synthesis Manager). The main thread publishes a
+// plan, a sorted array of requests; modelers claim the next one whenever they are free, which
+// balances the load by itself. Cancelling and re-prioritising is replacing the plan. The watchdog
+// gives up requests that never end and puts a new modeler in place of the one that hangs.
+//
+// Main thread only. Decides neither what is requested nor in which order (planner.hpp), and does
+// not touch the cache (landing.hpp). Nothing here blocks except wait_all() and the destructor.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "engine/synthesis/modeler.hpp"
+#include "engine/synthesis/request.hpp"
+
+namespace psygen::synthesis {
+
+struct SynthesisOptions {
+  unsigned modelers = 0;               // 0: number of cores − 1, at least 1
+  bool lowest_priority = true;         // nice 19 per thread, where the system can
+  bool hash_content = false;           // fill Completion::content_hash
+  double watchdog_seconds = 10;        // a request that runs longer is given up; 0: never
+  unsigned max_replacements = 8;       // modelers started in place of hung ones, altogether
+  std::function<double()> clock = {};  // thread-safe; default: core::monotonic_seconds
+};
+
+// Number of modelers that `requested` (0: default) stands for on this machine.
+unsigned modeler_count_for(unsigned requested);
+
+struct ModelerStats {
+  std::uint32_t modeler = 0;
+  std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
+  double cpu_seconds = 0;   // of its thread, in requests
+  double busy_seconds = 0;  // by the clock, in requests
+};
+
+struct SynthesisStats {
+  std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
+  double cpu_seconds = 0;  // of all modelers
+  std::uint64_t published = 0, reclaimed = 0, given_up = 0;
+  std::vector<ModelerStats> modelers;  // those that hung included
+};
+
+// A request that the watchdog gave up and whose modeler has not come back.
+struct HungRequest {
+  MeshHandle handle;
+  MeshKey key;
+  std::uint64_t owner = 0;
+  std::uint32_t modeler = 0;
+  double started_s = 0;
+};
+
+class SynthesisManager {
+ public:
+  // `registry` outlives the manager, and any modeler that hangs at the end of the program.
+  explicit SynthesisManager(const models::Registry& registry, const SynthesisOptions& options = {});
+  // Joins within the time of the requests that run now; what is unclaimed is dropped. A modeler
+  // that overruns the watchdog is left to itself: its request's destination must stay valid until
+  // the process ends (a program in this state should leave without tearing its memory down).
+  ~SynthesisManager();
+  SynthesisManager(const SynthesisManager&) = delete;
+  SynthesisManager& operator=(const SynthesisManager&) = delete;
+
+  // Replaces the plan. Modelers take requests from the front. What nobody claimed of the plan
+  // before is not lost: the next reclaim() returns it.
+  void publish(std::vector<Request>&& plan);
+  // Closes the plan; returns what nobody claimed, in order. Everything else was or will be
+  // collected.
+  std::vector<Request> reclaim();
+  // Appends the completions that have arrived, in order per modeler; returns how many. Runs the
+  // watchdog. Each claimed request has exactly one completion (plus a `late` one if abandoned).
+  std::size_t collect(std::vector<Completion>& out);
+  // Blocks until every published request is finished or given up. For tools, tests and the lazy
+  // paradigm; the tick never calls it. False if no modeler is left to finish them.
+  bool wait_all();
+
+  // Requests published and neither reclaimed nor finished.
+  std::uint64_t outstanding() const;
+  unsigned modeler_count() const { return static_cast<unsigned>(active_.size()); }
+  const std::vector<HungRequest>& hung() const { return hung_; }
+  SynthesisStats stats() const;
+
+ private:
+  struct Worker {
+    std::shared_ptr<Modeler> modeler;
+    std::thread thread;
+  };
+  bool start_modeler();
+  void run_watchdog();
+  void drain_retired(std::vector<Completion>& out);
+  void close_plan();
+  void leave(Worker& worker);
+
+  std::shared_ptr<Workshop> workshop_;
+  double watchdog_seconds_;
+  unsigned replacements_left_;
+  std::uint32_t next_number_ = 0;
+  std::vector<Worker> active_;
+  std::vector<Worker> retired_;  // hung, or back from it and not yet joined
+  std::vector<HungRequest> hung_;
+  std::vector<Completion> abandoned_;  // not yet collected
+  std::vector<Request> unclaimed_;     // of closed plans, not yet returned
+  std::vector<ModelerStats> buried_;   // figures of modelers that are gone
+  std::uint64_t published_ = 0, reclaimed_ = 0, given_up_ = 0, buried_finished_ = 0;
+};
+
+}  // namespace psygen::synthesis

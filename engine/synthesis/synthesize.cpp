@@ -1,0 +1,63 @@
+#include "engine/synthesis/synthesize.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+#include <new>
+
+namespace psygen::synthesis {
+namespace {
+bool is_box(const core::Bounds& b) {
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(b.min[i]) || !std::isfinite(b.max[i]) || b.min[i] > b.max[i]) return false;
+  }
+  return true;
+}
+
+std::string named(const models::ModelType& type, int level, std::string_view what) {
+  return fmt::format("{} level {} {}", type.name(), level, what);
+}
+}  // namespace
+
+SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models::Parameters& p,
+                                    int level, const models::MeshView& out) {
+  try {  // types of users may throw; nothing of ours does
+    const core::Bounds tight = type.synthesize(p, level, out);
+    if (is_box(tight)) return {true, tight, {}};
+    return {false, {}, named(type, level, "returned bounds that are not a box")};
+  } catch (const std::exception& e) {
+    return {false, {}, named(type, level, fmt::format("threw: {}", e.what()))};
+  } catch (...) {
+    return {false, {}, named(type, level, "threw something that is no std::exception")};
+  }
+}
+
+core::Result<HeapDestination> HeapDestination::make(const models::ModelType& type,
+                                                    const models::Parameters& p, int level) {
+  HeapDestination d;
+  try {
+    d.size_ = type.mesh_size(p, level);
+  } catch (...) {
+    return core::fail(core::ErrorCode::kSynthesisFailed,
+                      named(type, level, "threw while telling its size"));
+  }
+  if (d.size_.vertex_count > 65536 || d.size_.index_count > (1u << 26)) {
+    return core::fail(core::ErrorCode::kOverBudget,
+                      named(type, level, "is larger than a mesh with 16-bit indices can be"));
+  }
+  d.vertex_bytes_ = std::size_t{d.size_.vertex_count} * core::vertex_stride_bytes(d.size_.layout);
+  d.own_indices_ = d.size_.shared_indices == 0 ? d.size_.index_count : 0;
+  d.memory_.reset(new (std::nothrow) std::byte[d.vertex_bytes_ + d.own_indices_ * 2]);
+  if (!d.memory_) {
+    return core::fail(core::ErrorCode::kOutOfMemory, "the heap has no memory for a mesh");
+  }
+  return d;
+}
+
+models::MeshView HeapDestination::view() const {
+  return {{memory_.get(), vertex_bytes_},
+          {reinterpret_cast<std::uint16_t*>(memory_.get() + vertex_bytes_), own_indices_}};
+}
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,39 @@
+// One guarded call of a model type: whatever it throws becomes a sentence, and a box that is not a
+// box is a failure. Also heap memory of the right size for a single mesh (calibration, tools).
+// Stateless; usable from any thread. What a type writes beyond its spans cannot be caught here.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "engine/models/model_type.hpp"
+
+namespace psygen::synthesis {
+
+struct SynthesisOutcome {
+  bool ok = false;
+  core::Bounds tight;  // if ok
+  std::string error;   // else one sentence that names the model and the level
+};
+
+// Calls type.synthesize(); `out` has exactly the sizes of mesh_size(p, level).
+SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models::Parameters& p,
+                                    int level, const models::MeshView& out);
+
+class HeapDestination {
+ public:
+  // Fails with kSynthesisFailed if the type cannot tell its size, kOverBudget beyond 16-bit meshes,
+  // kOutOfMemory if the heap is exhausted.
+  static core::Result<HeapDestination> make(const models::ModelType& type,
+                                            const models::Parameters& p, int level);
+  const models::MeshSize& size() const { return size_; }
+  models::MeshView view() const;
+
+ private:
+  models::MeshSize size_;
+  std::size_t vertex_bytes_ = 0, own_indices_ = 0;
+  std::unique_ptr<std::byte[]> memory_;
+};
+
+}  // namespace psygen::synthesis
