@@ -120,7 +120,8 @@ struct RidgeRow {
       const float ridge = offset - std::abs(noise[i]);
       const float signal = weights[i] * (ridge * ridge);
       values[i] += signal * amplitude;
-      weights[i] = std::min(std::max(gain * signal, 0.0F), 1.0F);
+      const float next = gain * signal;  // never negative
+      weights[i] = next < 1.0F ? next : 1.0F;
     }
   }
 };

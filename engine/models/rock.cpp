@@ -110,19 +110,38 @@ void displace(const RockShape& shape, std::span<const RockTopology::Edge> parent
   }
 }
 
-// Colour, ambient light and packed place of a vertex. `up` is the y of its normal.
+// Colour and ambient light of a vertex at `height` metres over the ground. `up` is the y of its
+// smooth normal.
 void paint(const RockShape& shape, float moss, float height, float up, float grain,
            core::ModelVertex& out) {
   const float rise = std::clamp((height / shape.stretch.y + 0.2F) * 0.8F, 0.0F, 1.0F);
   out.ambient = pack_unorm8((0.3F + 0.7F * rise) * (0.8F + 0.2F * up));
   const float cover = moss * std::clamp((up - 0.35F) * 2.5F + grain * 0.8F, 0.0F, 1.0F);
-  const glm::vec3 stone = shape.colour * (1.0F + 0.22F * grain) * (0.75F + 0.25F * rise);
+  const glm::vec3 stone = shape.colour * ((1.0F + 0.22F * grain) * (0.75F + 0.25F * rise));
   const glm::vec3 colour = stone + (glm::vec3(0.07F, 0.11F, 0.03F) - stone) * cover;
   out.colour[0] = pack_albedo(colour.x);
   out.colour[1] = pack_albedo(colour.y);
   out.colour[2] = pack_albedo(colour.z);
   out.sway = 0;
   out.material = 0;
+}
+
+// Writes the triangles with facets: each corner takes place and colour of its vertex and a normal
+// between the triangle's and the vertex's. `face` holds unit normals.
+void write_facets(std::span<const std::uint16_t> corners, std::span<const glm::vec3> face,
+                  std::span<const glm::vec3> normal, std::span<const core::ModelVertex> vertices,
+                  std::byte* out) {
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    std::array<core::ModelVertex, 3> triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint16_t v = corners[i + k];
+      triangle[k] = vertices[v];
+      const glm::vec2 packed = encode_octahedral(normal[v] + (face[i / 3] - normal[v]) * kFacet);
+      triangle[k].normal[0] = pack_snorm16(packed.x);
+      triangle[k].normal[1] = pack_snorm16(packed.y);
+    }
+    std::memcpy(out + i * sizeof(core::ModelVertex), triangle.data(), sizeof triangle);
+  }
 }
 
 int subdivisions_at(const Parameters& p, int level) {
@@ -214,37 +233,23 @@ core::Bounds RockType::synthesize(const Parameters& p, int level, const MeshView
     box.max = glm::max(box.max, position[v]);
     normal[v] = glm::vec3(0.0F);
   }
-  const auto face_normal = [&](std::size_t first) {
-    const glm::vec3 a = position[corners[first]];
-    return glm::cross(position[corners[first + 1]] - a, position[corners[first + 2]] - a);
-  };
+  std::array<glm::vec3, rock_triangles(kMaxSubdivisions)> face;
   for (std::size_t i = 0; i < corners.size(); i += 3) {
-    const glm::vec3 face = face_normal(i);
+    const glm::vec3 a = position[corners[i]];
+    const glm::vec3 area = glm::cross(position[corners[i + 1]] - a, position[corners[i + 2]] - a);
     for (std::size_t k = 0; k < 3; ++k)
-      normal[corners[i + k]] += face;
+      normal[corners[i + k]] += area;
+    face[i / 3] = area * (1.0F / std::sqrt(glm::dot(area, area)));
   }
-  for (std::uint32_t v = 0; v < rock_vertices(n); ++v)
-    normal[v] *= 1.0F / std::sqrt(glm::dot(normal[v], normal[v]));
-
+  std::array<core::ModelVertex, kMaxVertices> vertices;
   const BoxPacker packer(bounds(p));
   const auto moss = static_cast<float>(p.real(kRockMoss));
-  for (std::size_t i = 0; i < corners.size(); i += 3) {
-    glm::vec3 face = face_normal(i);
-    face *= 1.0F / std::sqrt(glm::dot(face, face));
-    std::array<core::ModelVertex, 3> triangle;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint16_t v = corners[i + k];
-      glm::vec3 blended = normal[v] + (face - normal[v]) * kFacet;
-      blended *= 1.0F / std::sqrt(glm::dot(blended, blended));
-      const glm::vec2 packed = encode_octahedral(blended);
-      packer.pack(position[v], triangle[k].position);
-      triangle[k].normal[0] = pack_snorm16(packed.x);
-      triangle[k].normal[1] = pack_snorm16(packed.y);
-      paint(shape, moss, position[v].y, blended.y, Signed(shape.key, 2 + v).f[1], triangle[k]);
-    }
-    std::memcpy(out.vertices.data() + i * sizeof(core::ModelVertex), triangle.data(),
-                sizeof triangle);
+  for (std::uint32_t v = 0; v < rock_vertices(n); ++v) {
+    normal[v] *= 1.0F / std::sqrt(glm::dot(normal[v], normal[v]));
+    packer.pack(position[v], vertices[v].position);
+    paint(shape, moss, position[v].y, normal[v].y, Signed(shape.key, 2 + v).f[1], vertices[v]);
   }
+  write_facets(corners, face, normal, vertices, out.vertices.data());
   return box;
 }
 

@@ -24,7 +24,7 @@ enum RockParameter : std::size_t {
 };
 
 // Level l has max(subdivisions − l, 0) subdivisions: 4·4^n triangles exactly, and thrice as many
-// core::ModelVertex. Corners that two levels share have the same places. Needs 256 KiB of stack;
+// core::ModelVertex. Corners that two levels share have the same places. Needs 640 KiB of stack;
 // nothing on the heap.
 std::unique_ptr<ModelType> make_rock_type();
 

@@ -8,7 +8,6 @@
 
 #include "engine/core/assert.hpp"
 #include "engine/models/exact_math.hpp"
-#include "engine/models/packing.hpp"
 #include "engine/models/terrain_grid.hpp"
 #include "engine/models/terrain_shape.hpp"
 
@@ -30,14 +29,14 @@ constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
     {"size", kInteger, "vertices", 64, kMinTerrainSize, kMaxTerrainSize, 16, 128,
      "vertices per side of a block"},
     {"cell_m", kReal, "m", 1, 0.01, 1000, 0.25, 16, "distance between neighbouring vertices"},
-    {"height", kReal, "1", 1, 0, 4, 0.5, 1.5,
+    {"height", kReal, "1", 1.2, 0, 4, 0.5, 1.5,
      "fractal increment H: the larger, the smoother; octave o counts lacunarity^(-H o)"},
     {"lacunarity", kReal, "1", 2, 1, 4, 1.5, 3, "ratio of the frequencies of two octaves"},
     {"octaves", kInteger, "", 9, 1, kMaxOctaves, 1, 12, "number of layers of noise"},
-    {"offset", kReal, "1", 1, 0, 4, 0.7, 1.2, "height of the ridges before squaring"},
+    {"offset", kReal, "1", 0.88, 0, 4, 0.7, 1.2, "height of the ridges before squaring"},
     {"gain", kReal, "1", 2, 0, 100, 1, 4, "how much an octave weighs on the next"},
-    {"feature_m", kReal, "m", 420, 1, 1e5, 50, 2000, "width of the largest features"},
-    {"relief_m", kReal, "m", 150, 0.01, 1e5, 10, 500, "highest height that is possible"},
+    {"feature_m", kReal, "m", 600, 1, 1e5, 50, 2000, "width of the largest features"},
+    {"relief_m", kReal, "m", 120, 0.01, 1e5, 10, 500, "highest height that is possible"},
 };
 
 // Sample positions along one axis: every vertex of the level with its neighbours one cell away.
@@ -66,23 +65,56 @@ struct SampleAxis {
   std::size_t vertex(std::size_t k) const { return 1 + k * step; }
 };
 
-// Height of the next coarser level at vertex (x, z): its triangle's plane, rounded to nearest.
-// `ratio` is the number of cells of this level in a cell of the next.
-std::uint16_t coarse_height(const std::uint16_t* heights, int n, int ratio, int x, int z) {
-  const int fx = x % ratio, fz = z % ratio;
-  const std::uint16_t* const corner = heights + (z - fz) * n + (x - fx);
-  if (fx == 0 && fz == 0) return *corner;
-  const int across = fx != 0 ? corner[ratio] : 0;  // beyond the border where it does not count
-  const int down = fz != 0 ? corner[ratio * n] : 0;
-  int sum = 0;
-  if (fx + fz <= ratio) {
-    sum = corner[0] * (ratio - fx - fz) + across * fx + down * fz;
-  } else {
-    sum =
-        corner[ratio * n + ratio] * (fx + fz - ratio) + across * (ratio - fz) + down * (ratio - fx);
+using HeightGrid = std::array<std::uint16_t, kMaxTerrainSize * kMaxTerrainSize>;
+
+// Heights of the next coarser level at the vertices of row z: on its triangles' planes, rounded to
+// nearest. `ratio` is the number of cells of this level in a cell of the next.
+void coarse_row(const HeightGrid& heights, int n, int ratio, int z, std::uint16_t* out) {
+  const int fz = z % ratio;
+  // (2·sum + ratio) / (2·ratio) in whole numbers: the added half keeps it away from the next one.
+  const double inverse = 0.5 / ratio;
+  const auto rounded = [=](int sum) {
+    return static_cast<std::uint16_t>(static_cast<std::int32_t>((2 * sum + ratio + 0.5) * inverse));
+  };
+  const std::uint16_t* const near = heights.data() + (z - fz) * n;
+  const std::uint16_t* const far = fz == 0 ? near : near + ratio * n;
+  for (int x = 0; x + 1 < n; x += ratio) {
+    const int h00 = near[x], h10 = near[x + ratio], h01 = far[x], h11 = far[x + ratio];
+    for (int fx = 0; fx < ratio; ++fx) {
+      const int sum = fx + fz <= ratio
+                          ? h00 * (ratio - fx - fz) + h10 * fx + h01 * fz
+                          : h11 * (fx + fz - ratio) + h10 * (ratio - fz) + h01 * (ratio - fx);
+      out[x + fx] = rounded(sum);
+    }
   }
-  return static_cast<std::uint16_t>((2 * sum + ratio) / (2 * ratio));
+  const int sum = near[n - 1] * (ratio - fz) + far[n - 1] * fz;
+  out[n - 1] = rounded(sum);
 }
+
+// One row of samples as separate arrays: the vertices and their neighbours one cell away.
+struct SampleRow {
+  std::array<float, kMaxTerrainSize> west, east, north, south;
+
+  SampleRow(const float* centre, std::size_t samples_per_row, std::size_t step, std::size_t n) {
+    const float *const up = centre - samples_per_row, *const down = centre + samples_per_row;
+    for (std::size_t x = 0; x < n; ++x) {
+      west[x] = centre[static_cast<std::ptrdiff_t>(x * step) - 1];
+      east[x] = centre[x * step + 1];
+      north[x] = up[x * step];
+      south[x] = down[x * step];
+    }
+  }
+  // Octahedral normals of the row; `scale` turns the difference of two samples into a slope.
+  void normals(float scale, std::size_t n, std::int8_t* out_x, std::int8_t* out_z) const {
+    for (std::size_t x = 0; x < n; ++x) {
+      const float nx = (west[x] - east[x]) * scale;
+      const float nz = (north[x] - south[x]) * scale;
+      const float to_snorm8 = 127.0F / (std::abs(nx) + 1.0F + std::abs(nz));
+      out_x[x] = static_cast<std::int8_t>(static_cast<std::int32_t>(nx * to_snorm8 + 128.5F) - 128);
+      out_z[x] = static_cast<std::int8_t>(static_cast<std::int32_t>(nz * to_snorm8 + 128.5F) - 128);
+    }
+  }
+};
 
 class TerrainType final : public ModelType {
  public:
@@ -167,36 +199,28 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
                        noise, stride);
 
   const auto n = static_cast<std::size_t>(grid.n);
-  std::array<std::uint16_t, kMaxTerrainSize * kMaxTerrainSize> heights;
-  std::uint16_t lowest = 65535, highest = 0;
+  HeightGrid heights;
   for (std::size_t z = 0; z < n; ++z) {
-    const float* const row = &noise[rows.vertex(z) * stride];
-    for (std::size_t x = 0; x < n; ++x) {
-      const std::uint16_t height = shape.quantise(row[columns.vertex(x)]);
-      lowest = std::min(lowest, height);
-      highest = std::max(highest, height);
-      heights[z * n + x] = height;
-    }
+    const float* const row = &noise[rows.vertex(z) * stride + columns.vertex(0)];
+    for (std::size_t x = 0; x < n; ++x)
+      heights[z * n + x] = shape.quantise(row[x * columns.step]);
   }
-
   const int coarser = TerrainGrid(grid.size, std::min(level + 1, kTerrainLevels - 1)).stride;
-  const int ratio = coarser / grid.stride;
   const float slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m);
   std::array<core::TerrainVertex, kMaxTerrainSize * kMaxTerrainSize> vertices;
+  std::array<std::uint16_t, kMaxTerrainSize> coarse;
+  std::array<std::int8_t, kMaxTerrainSize> normal_x, normal_z;
   for (std::size_t z = 0; z < n; ++z) {
-    for (std::size_t x = 0; x < n; ++x) {
-      const float* const at = &noise[rows.vertex(z) * stride + columns.vertex(x)];
-      const glm::vec3 normal{(at[-1] - at[1]) * slope_scale, 1.0F,
-                             (*(at - stride) - at[stride]) * slope_scale};
-      const glm::vec2 packed = encode_octahedral(normal);
-      vertices[z * n + x] = {
-          static_cast<std::uint8_t>(static_cast<int>(x) * grid.stride),
-          static_cast<std::uint8_t>(static_cast<int>(z) * grid.stride),
-          heights[z * n + x],
-          coarse_height(heights.data(), grid.n, ratio, static_cast<int>(x), static_cast<int>(z)),
-          pack_snorm8(packed.x),
-          pack_snorm8(packed.y)};
-    }
+    coarse_row(heights, grid.n, coarser / grid.stride, static_cast<int>(z), coarse.data());
+    SampleRow(&noise[rows.vertex(z) * stride + columns.vertex(0)], stride, columns.step, n)
+        .normals(slope_scale, n, normal_x.data(), normal_z.data());
+    for (std::size_t x = 0; x < n; ++x)
+      vertices[z * n + x] = {static_cast<std::uint8_t>(x * static_cast<std::size_t>(grid.stride)),
+                             static_cast<std::uint8_t>(z * static_cast<std::size_t>(grid.stride)),
+                             heights[z * n + x],
+                             coarse[x],
+                             normal_x[x],
+                             normal_z[x]};
   }
   std::memcpy(out.vertices.data(), vertices.data(), n * n * sizeof(core::TerrainVertex));
   std::byte* skirt = out.vertices.data() + n * n * sizeof(core::TerrainVertex);
@@ -206,9 +230,10 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
     std::memcpy(skirt, &twin, sizeof twin);
     skirt += sizeof twin;
   }
+  const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.begin() + n * n);
   core::Bounds box = bounds(p);
-  box.min.y = shape.relief_m * (static_cast<float>(lowest) / 65535.0F);
-  box.max.y = shape.relief_m * (static_cast<float>(highest) / 65535.0F);
+  box.min.y = shape.relief_m * (static_cast<float>(*lowest) / 65535.0F);
+  box.max.y = shape.relief_m * (static_cast<float>(*highest) / 65535.0F);
   return box;
 }
 

@@ -28,7 +28,7 @@ struct TerrainShape {
   std::uint16_t quantise(float noise_value) const {
     const float scaled = noise_value * quantum + 0.5F;
     return static_cast<std::uint16_t>(
-        static_cast<std::int32_t>(scaled < 65535.0F ? (scaled > 0.0F ? scaled : 0.0F) : 65535.0F));
+        static_cast<std::int32_t>(scaled < 65535.0F ? scaled : 65535.0F));
   }
 };
 
