@@ -38,7 +38,7 @@ class MeshWriter {
     for (int axis = 0; axis < 3; ++axis) {
       const float snorm = (position[axis] - center_[axis]) * scale_[axis];
       const float clamped = std::min(std::max(snorm, -32767.0F), 32767.0F);
-      const auto q = static_cast<std::int16_t>(static_cast<int>(clamped + 32768.5F) - 32768);
+      const std::int16_t q = rounded(clamped);
       v.position[axis] = q;
       low_[axis] = std::min(low_[axis], q);
       high_[axis] = std::max(high_[axis], q);
@@ -58,10 +58,34 @@ class MeshWriter {
     to[2] = static_cast<std::uint16_t>(c);
     index_count_ += 3;
   }
+  // Room for vertices and indices that the caller writes, each byte once; see include().
+  std::byte* append_vertices(std::uint32_t count) {
+    std::byte* first = vertices_ + std::size_t{vertex_count_} * sizeof(core::ModelVertex);
+    vertex_count_ += count;
+    return first;
+  }
+  std::uint16_t* append_indices(std::uint32_t count) {
+    std::uint16_t* first = indices_ + index_count_;
+    index_count_ += count;
+    return first;
+  }
+  // Widens written() by positions in packed units, not yet rounded, in [-32767, 32767].
+  void include(int axis, float low, float high) {
+    low_[axis] = std::min(low_[axis], rounded(low));
+    high_[axis] = std::max(high_[axis], rounded(high));
+  }
+  // Packed position = (position - box_center()) · box_scale(), then clamped and rounded.
+  const glm::vec3& box_center() const { return center_; }
+  const glm::vec3& box_scale() const { return scale_; }
   // The box of all vertices written, as a reader will unpack them.
   core::Bounds written() const;
 
  private:
+  // Halves upwards; v in [-32767, 32767].
+  static std::int16_t rounded(float v) {
+    return static_cast<std::int16_t>(static_cast<int>(v + 32768.5F) - 32768);
+  }
+
   glm::vec3 center_, scale_, half_;
   std::int16_t low_[3] = {32767, 32767, 32767}, high_[3] = {-32767, -32767, -32767};
   std::byte* vertices_;
@@ -79,9 +103,10 @@ inline std::array<std::int16_t, 2> pack_normal(const glm::vec3& n) {
 struct TreeCrown {
   glm::vec3 center;
   glm::vec3 half;  // half axes in metres; x and z are equal
-  float radius;    // their mean
+  glm::vec3 inverse_half;
+  float radius;  // their mean
   // Position relative to the ellipsoid: length 1 on its surface.
-  glm::vec3 relative(const glm::vec3& p) const { return (p - center) / half; }
+  glm::vec3 relative(const glm::vec3& p) const { return (p - center) * inverse_half; }
 };
 // `sample` holds the paths grown with kCrownPaths.
 TreeCrown crown_of(const TreeShape& shape, const TreeSkeleton& sample);
@@ -105,8 +130,24 @@ inline constexpr std::uint32_t kSprayVertices = 6, kSprayTriangles = 4;
 inline constexpr std::uint32_t kBallVertices = 12, kBallTriangles = 20;
 inline constexpr std::uint32_t kOctahedronVertices = 6, kOctahedronTriangles = 8;
 
-// Baked ambient visibility at a place in or below the crown, in [0, 1].
-float crown_ambient(const TreeCrown& crown, const glm::vec3& p);
+// Baked ambient visibility in or below the crown, in [0, 1], from a position relative to it.
+inline float ambient_of(float x, float y, float z) {
+  const float out = std::min(std::sqrt(x * x + y * y + z * z), 1.2F) * (1.0F / 1.2F);
+  const float height = std::min(std::max(0.5F + 0.5F * y, 0.0F), 1.0F);
+  return (0.3F + 0.7F * out * out) * (0.6F + 0.4F * height);
+}
+inline float crown_ambient(const TreeCrown& crown, const glm::vec3& p) {
+  const glm::vec3 r = crown.relative(p);
+  return ambient_of(r.x, r.y, r.z);
+}
+
+// Stored (square root) leaf colour over the hue: deep green, green, yellow, orange, red.
+std::array<float, 3> leaf_colour(float hue);
+// Hue and brightness of a whole tree, about which its leaves vary.
+struct LeafTint {
+  float hue, brightness;
+};
+LeafTint leaf_tint(const TreeShape& shape);
 
 void mesh_bark(const TreeShape& shape, int level, const TreeSkeleton& skeleton,
                const TreeCrown& crown, MeshWriter& out);
