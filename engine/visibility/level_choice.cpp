@@ -1,0 +1,43 @@
+#include "engine/visibility/level_choice.hpp"
+
+#include <algorithm>
+
+#include "engine/core/assert.hpp"
+
+namespace psygen::visibility {
+namespace {
+
+// The last of the levels from 0 on whose error is at most `allowed_m`; false for NaN.
+int coarsest_within(std::span<const float> errors_m, float allowed_m) {
+  int level = 0;
+  while (level + 1 < static_cast<int>(errors_m.size()) &&
+         errors_m[static_cast<std::size_t>(level) + 1] <= allowed_m)
+    ++level;
+  return level;
+}
+
+}  // namespace
+
+int choose_level(std::span<const float> level_errors_m, float distance_m, float pixels_per_radian,
+                 float max_error_pixels, int current_level) {
+  const float allowed_m = max_error_pixels * std::max(distance_m, 0.0F) / pixels_per_radian;
+  const int level = coarsest_within(level_errors_m, allowed_m);
+  if (current_level < 0 || level <= current_level) return level;
+  return std::max(current_level, coarsest_within(level_errors_m, allowed_m * kCoarserShare));
+}
+
+void choose_levels(std::span<const float> level_errors_m, std::uint32_t level_count,
+                   std::span<const float> distances_m, float pixels_per_radian,
+                   float max_error_pixels, std::span<std::uint8_t> levels) {
+  PSYGEN_ASSERT(distances_m.size() == levels.size(), "there is one level for each distance");
+  PSYGEN_ASSERT(level_errors_m.size() == levels.size() * level_count,
+                "there is one error for each level of each mesh");
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const int current = levels[i] == kNoCurrentLevel ? -1 : levels[i];
+    levels[i] = static_cast<std::uint8_t>(
+        choose_level(level_errors_m.subspan(i * level_count, level_count), distances_m[i],
+                     pixels_per_radian, max_error_pixels, current));
+  }
+}
+
+}  // namespace psygen::visibility

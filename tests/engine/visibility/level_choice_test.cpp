@@ -1,0 +1,98 @@
+#include "engine/visibility/level_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace psygen::visibility {
+namespace {
+
+constexpr std::array kErrors{0.0F, 0.1F, 0.4F, 1.6F};
+constexpr float kPixelsPerRadian = 745;
+constexpr float kPixels = 2;
+
+int choose(float distance_m, int current = -1, float pixels = kPixels) {
+  return choose_level(kErrors, distance_m, kPixelsPerRadian, pixels, current);
+}
+
+TEST(LevelChoice, TheErrorOfTheChosenLevelStaysWithinTheAllowedPixelsAndTheNextWouldNot) {
+  for (float distance = 0.5F; distance < 3000; distance *= 1.03F) {
+    const auto level = static_cast<std::size_t>(choose(distance));
+    EXPECT_LE(projected_size_pixels(kErrors[level], distance, kPixelsPerRadian), kPixels * 1.001F);
+    if (level + 1 == kErrors.size()) continue;
+    EXPECT_GT(projected_size_pixels(kErrors[level + 1], distance, kPixelsPerRadian),
+              kPixels * 0.999F);
+  }
+}
+
+TEST(LevelChoice, LevelsGrowWithDistanceAndWithTheAllowedError) {
+  for (const int current : {-1, 0, 2, 3}) {
+    int last = 0;
+    for (float distance = 0.1F; distance < 5000; distance *= 1.01F) {
+      const int level = choose(distance, current);
+      EXPECT_GE(level, last);
+      last = level;
+    }
+    EXPECT_EQ(last, 3);
+    last = 0;
+    for (float pixels = 0.01F; pixels < 100; pixels *= 1.05F) {
+      const int level = choose(200, current, pixels);
+      EXPECT_GE(level, last);
+      last = level;
+    }
+  }
+}
+
+TEST(LevelChoice, OnTheBorderOfTwoLevelsTheShownOneStays) {
+  // Level 2 is allowed from 149 m on, and comes from 186.25 m on.
+  EXPECT_EQ(choose(150), 2);
+  EXPECT_EQ(choose(150, 1), 1);
+  EXPECT_EQ(choose(185, 1), 1);
+  EXPECT_EQ(choose(187, 1), 2);
+  EXPECT_EQ(choose(150, 2), 2);
+  EXPECT_EQ(choose(148, 2), 1);
+}
+
+TEST(LevelChoice, ShakingAroundABorderChangesTheLevelOnce) {
+  int level = choose(140), changes = 0;
+  for (int i = 0; i < 100; ++i) {
+    const int next = choose(i % 2 == 0 ? 147.0F : 152.0F, level);
+    changes += next != level ? 1 : 0;
+    level = next;
+  }
+  EXPECT_LE(changes, 1);
+}
+
+TEST(LevelChoice, InsideOfAMeshOrAtANonsensicalDistanceTheFinestLevelIsTaken) {
+  EXPECT_EQ(choose(0), 0);
+  EXPECT_EQ(choose(-5, 3), 0);
+  EXPECT_EQ(choose(std::numeric_limits<float>::quiet_NaN()), 0);
+}
+
+TEST(LevelChoice, AMeshOfOneLevelOrOfNoneHasLevelZero) {
+  EXPECT_EQ(choose_level(std::array{0.0F}, 1e6F, kPixelsPerRadian, kPixels, -1), 0);
+  EXPECT_EQ(choose_level({}, 1e6F, kPixelsPerRadian, kPixels, -1), 0);
+}
+
+TEST(LevelChoice, TheBatchChoosesLikeTheSingleFunction) {
+  std::vector<float> errors, distances;
+  std::vector<std::uint8_t> levels, expected;
+  for (int i = 0; i < 200; ++i) {
+    const float scale = 1.0F + static_cast<float>(i % 7);
+    for (const float e : kErrors)
+      errors.push_back(e * scale);
+    distances.push_back(static_cast<float>(i * i) * 0.2F);
+    levels.push_back(i % 5 == 4 ? kNoCurrentLevel : static_cast<std::uint8_t>(i % 5));
+    const int current = i % 5 == 4 ? -1 : i % 5;
+    expected.push_back(static_cast<std::uint8_t>(
+        choose_level(std::span(errors).last(kErrors.size()), distances.back(), kPixelsPerRadian,
+                     kPixels, current)));
+  }
+  choose_levels(errors, kErrors.size(), distances, kPixelsPerRadian, kPixels, levels);
+  EXPECT_EQ(levels, expected);
+}
+
+}  // namespace
+}  // namespace psygen::visibility
