@@ -45,10 +45,9 @@ float trunk_t(std::uint32_t segments, std::uint32_t ring) {
   return static_cast<float>(ring) / static_cast<float>(segments);
 }
 
-// A pseudo-random factor in [0, 1) for ring vertex k of a branch with this hash.
-float vertex_noise(std::uint64_t hash, std::uint32_t k) {
-  const std::uint32_t x = static_cast<std::uint32_t>(hash >> (k & 31U)) ^ (k * 0x9E3779B9U);
-  return static_cast<float>((x * 0x85EBCA6BU) >> 16) * (1.0F / 65536.0F);
+// A pseudo-random number in 0 … 7 for vertex k of a branch with this hash.
+std::uint32_t vertex_noise(std::uint64_t hash, std::uint32_t k) {
+  return static_cast<std::uint32_t>(hash >> (3 * k % 61)) & 7U;
 }
 
 std::array<std::uint8_t, 3> bark_colour(const TreeShape& shape, float brightness) {
@@ -60,11 +59,21 @@ std::array<std::uint8_t, 3> bark_colour(const TreeShape& shape, float brightness
   return result;
 }
 
+// What all branches of a mesh have in common.
+struct Bark {
+  const TreeShape& shape;
+  const TreeSkeleton& skeleton;
+  const TreeCrown& crown;
+  std::array<std::uint8_t, 3> colours[8];
+};
+
 struct Tube {
   TubePlan plan;
-  Frame frame;
+  std::uint32_t node;
   std::uint64_t hash;
-  std::uint8_t sway_start, sway_end;
+  float sway_start, sway_end;
+  glm::vec3 around[kMaxSides];  // from the axis, perpendicular to the branch's start
+  std::array<std::int16_t, 2> normal[kMaxSides];
 };
 
 float bark_ambient(const TreeShape& shape, const TreeCrown& crown, const glm::vec3& p) {
@@ -72,43 +81,45 @@ float bark_ambient(const TreeShape& shape, const TreeCrown& crown, const glm::ve
   return contact * crown_ambient(crown, p);
 }
 
-void write_ring(const TreeShape& shape, const TreeSkeleton& s, const TreeCrown& crown,
-                std::uint32_t node, const Tube& tube, std::uint32_t ring, MeshWriter& out) {
+void write_ring(const Bark& bark, const Tube& tube, std::uint32_t ring, MeshWriter& out) {
+  const TreeSkeleton& s = bark.skeleton;
+  const std::uint32_t node = tube.node, segments = tube.plan.segments;
   const bool trunk = node == 0;
-  const float t = trunk ? trunk_t(tube.plan.segments, ring)
-                        : static_cast<float>(ring) / static_cast<float>(tube.plan.segments);
+  const float t =
+      trunk ? trunk_t(segments, ring) : static_cast<float>(ring) / static_cast<float>(segments);
   glm::vec3 middle = s.point(node, t);
-  if (trunk && ring == 0) middle.y -= sink_m(shape);
-  const glm::vec3 tangent = normalised3(s.direction[node] + 2.0F * t * s.bend[node]);
+  if (trunk && ring == 0) middle.y -= sink_m(bark.shape);
   const float start = s.radius_start[node];
   const float radius = start + t * (s.radius_end[node] - start);
-  const float near_foot = trunk ? std::max(1.0F - 3.0F * t, 0.0F) : 0.0F;
-  const float coarse =
-      tube.plan.segments >= 3 ? 1.0F : 0.3F * static_cast<float>(tube.plan.segments);
-  const float flare = shape.flare * near_foot * near_foot * coarse;
-  const std::uint8_t ambient = pack_unorm8(bark_ambient(shape, crown, middle));
-  const auto sway =
-      static_cast<std::uint8_t>(static_cast<float>(tube.sway_start) +
-                                t * static_cast<float>(tube.sway_end - tube.sway_start));
-  const Circle& unit = circle(tube.plan.sides);
-  const std::uint32_t corners =
-      tube.plan.pointed && ring == tube.plan.segments ? 1 : tube.plan.sides;
+  float flare = 0.0F;
+  if (trunk) {
+    const float near_foot = std::max(1.0F - 3.0F * t, 0.0F);
+    const float coarse = segments >= 3 ? 1.0F : 0.3F * static_cast<float>(segments);
+    flare = bark.shape.flare * near_foot * near_foot * coarse;
+  }
+  const glm::vec3 turn = 2.0F * t * s.bend[node];
+  MeshWriter::Look look{pack_unorm8(bark_ambient(bark.shape, bark.crown, middle)),
+                        static_cast<std::uint8_t>(static_cast<int>(
+                            tube.sway_start + t * (tube.sway_end - tube.sway_start))),
+                        {},
+                        {},
+                        0};
+  const std::uint32_t corners = tube.plan.pointed && ring == segments ? 1 : tube.plan.sides;
   for (std::uint32_t side = 0; side < corners; ++side) {
-    glm::vec3 normal = unit.x[side] * tube.frame.u + unit.z[side] * tube.frame.v;
-    normal -= dot3(normal, tangent) * tangent;
-    const float lobe = 0.4F + 1.2F * vertex_noise(tube.hash, side);  // roots
-    const float noise = vertex_noise(tube.hash, 16 + ring * kMaxSides + side);
-    out.vertex(middle + (radius * (1.0F + flare * lobe)) * normal,
-               {ambient, sway, pack_normal(normal), bark_colour(shape, 0.84F + 0.3F * noise), 0});
+    const glm::vec3& around = tube.around[side];
+    const glm::vec3 sheared = around - dot3(around, turn) * s.direction[node];
+    const float lobe = 0.4F + 0.16F * static_cast<float>(vertex_noise(tube.hash, side));  // roots
+    look.normal = tube.normal[side];
+    look.colour = bark.colours[vertex_noise(tube.hash, ring * kMaxSides + side + 5)];
+    out.vertex(middle + (radius * (1.0F + flare * lobe)) * sheared, look);
   }
 }
 
-void write_tube(const TreeShape& shape, const TreeSkeleton& s, const TreeCrown& crown,
-                std::uint32_t node, const Tube& tube, MeshWriter& out) {
+void write_tube(const Bark& bark, const Tube& tube, MeshWriter& out) {
   const std::uint32_t first = out.vertex_count();
   const std::uint32_t sides = tube.plan.sides;
   for (std::uint32_t ring = 0; ring <= tube.plan.segments; ++ring)
-    write_ring(shape, s, crown, node, tube, ring, out);
+    write_ring(bark, tube, ring, out);
   for (std::uint32_t ring = 0; ring < tube.plan.segments; ++ring) {
     const std::uint32_t low = first + ring * sides, high = low + sides;
     const bool apex = tube.plan.pointed && ring + 1 == tube.plan.segments;
@@ -124,9 +135,19 @@ void write_tube(const TreeShape& shape, const TreeSkeleton& s, const TreeCrown& 
   }
 }
 
-std::uint8_t sway_at(int depth, int tips_depth) {
-  const int d = std::max(tips_depth, 1);
-  return static_cast<std::uint8_t>(std::min(30 + 170 * depth / d, 200));
+void enclose(const Bark& bark, std::uint32_t node, Tube& tube) {
+  tube.node = node;
+  tube.hash = core::mix64(bark.skeleton.key[node] ^ kBarkSalt);
+  const Frame frame = frame_around(bark.skeleton.direction[node]);
+  const Circle& unit = circle(tube.plan.sides);
+  for (std::uint32_t side = 0; side < tube.plan.sides; ++side) {
+    tube.around[side] = unit.x[side] * frame.u + unit.z[side] * frame.v;
+    tube.normal[side] = pack_normal(tube.around[side]);
+  }
+}
+
+float sway_at(int depth, int tips_depth) {
+  return static_cast<float>(std::min(30 + 170 * depth / std::max(tips_depth, 1), 200));
 }
 
 // Three triangles from a ring about `from` to the crown's centre.
@@ -161,17 +182,20 @@ TubePlan tube_plan(int level, int depth, bool tip) {
 
 void mesh_bark(const TreeShape& shape, int level, const TreeSkeleton& skeleton,
                const TreeCrown& crown, MeshWriter& out) {
+  Bark bark{shape, skeleton, crown, {}};
+  for (int i = 0; i < 8; ++i)
+    bark.colours[i] = bark_colour(shape, 0.84F + 0.04F * static_cast<float>(i));
   for (int depth = 0; depth <= skeleton.depth; ++depth) {
-    const TubePlan plan = tube_plan(level, depth, depth == skeleton.depth);
-    if (plan.sides == 0) continue;
+    Tube tube;
+    tube.plan = tube_plan(level, depth, depth == skeleton.depth);
+    if (tube.plan.sides == 0) continue;
+    tube.sway_start = depth == 0 ? 0.0F : sway_at(depth - 1, skeleton.depth);
+    tube.sway_end = sway_at(depth, skeleton.depth);
     const auto d = static_cast<std::size_t>(depth);
-    const std::uint8_t start = depth == 0 ? std::uint8_t{0} : sway_at(depth - 1, skeleton.depth);
-    const std::uint8_t end = sway_at(depth, skeleton.depth);
-    for (std::uint32_t i = skeleton.first[d]; i < skeleton.first[d + 1]; ++i)
-      write_tube(shape, skeleton, crown, i,
-                 {plan, frame_around(skeleton.direction[i]),
-                  core::mix64(skeleton.key[i] ^ kBarkSalt), start, end},
-                 out);
+    for (std::uint32_t i = skeleton.first[d]; i < skeleton.first[d + 1]; ++i) {
+      enclose(bark, i, tube);
+      write_tube(bark, tube, out);
+    }
   }
 }
 

@@ -19,9 +19,9 @@ inline glm::vec3 normalised3(const glm::vec3& v) {
   return v * (1.0F / std::sqrt(dot3(v, v) + 1e-20F));
 }
 
-// sin(2πx) for any x of moderate size, absolute error below 3e-7.
+// sin(2πx) for |x| < 64, absolute error below 3e-7.
 inline float sin_turns(float x) {
-  x -= std::floor(x + 0.5F);                                        // [-1/2, 1/2]
+  x -= static_cast<float>(static_cast<int>(x + 64.5F) - 64);        // [-1/2, 1/2]
   const float folded = std::min(std::max(x, -0.5F - x), 0.5F - x);  // [-1/4, 1/4], same sine
   const float y = folded * 6.28318530717958648F;
   const float z = y * y;

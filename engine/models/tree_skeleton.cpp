@@ -46,14 +46,19 @@ void grow_branch(const TreeShape& s, TreeSkeleton& out, std::uint32_t parent, st
   const float t = 1.0F - (parent == 0 ? 0.3F : 0.6F) * along;
 
   const float jitter = 1.0F + s.angle_variation * (2.0F * u.f[1] - 1.0F);
-  const float tilt = leader ? 0.0F : s.angle_turns * jitter * (0.75F + 0.4F * along);
-  const float start = static_cast<float>((out.key[parent] >> 24) & 0xFFFFU) * (1.0F / 65536.0F);
-  const float azimuth = start + kGoldenTurns * static_cast<float>(number) +
-                        0.3F * s.angle_variation * (u.f[2] - 0.5F);
   const glm::vec3 tangent = normalised3(out.direction[parent] + 2.0F * t * out.bend[parent]);
-  const Frame frame = frame_around(tangent);
-  const glm::vec3 side = cos_turns(azimuth) * frame.u + sin_turns(azimuth) * frame.v;
-  glm::vec3 direction = cos_turns(tilt) * tangent + sin_turns(tilt) * side;
+  glm::vec3 direction = tangent;
+  if (!leader) {
+    const float tilt = s.angle_turns * jitter * (0.75F + 0.4F * along);
+    const float start =
+        static_cast<float>(static_cast<std::int32_t>((out.key[parent] >> 24) & 0xFFFFU)) *
+        (1.0F / 65536.0F);
+    const float azimuth = start + kGoldenTurns * static_cast<float>(number) +
+                          0.3F * s.angle_variation * (u.f[2] - 0.5F);
+    const Frame frame = frame_around(tangent);
+    const glm::vec3 side = cos_turns(azimuth) * frame.u + sin_turns(azimuth) * frame.v;
+    direction = cos_turns(tilt) * tangent + sin_turns(tilt) * side;
+  }
   direction.y += leader ? 0.5F * s.tropism : s.tropism;
 
   const float start_radius = out.radius_start[parent];
