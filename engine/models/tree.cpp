@@ -35,21 +35,6 @@ constexpr ParameterSpec kSchema[kTreeParameterCount] = {
     {"bark_tone", kReal, "1", 0.55, 0, 1, 0, 1, "from grey (0) to brown (1)"},
 };
 
-// Average number of branches of a node: the mean of max(1, m + k) over k = −2 … 2.
-double mean_children(double branches) {
-  double sum = 0;
-  for (int k = -2; k <= 2; ++k)
-    sum += std::max(1.0, branches + k);
-  return sum / 5;
-}
-
-std::uint32_t expected_tips(const TreeShape& s) {
-  double tips = 1;
-  for (int i = 0; i < s.iterations; ++i)
-    tips *= mean_children(s.branches);
-  return static_cast<std::uint32_t>(std::clamp(tips, 1.0, double{kMaxTreeNodes}));
-}
-
 // How far branches reach from the trunk's end and from the axis: geometric sums of upper bounds.
 struct Reach {
   double trunk, branches;
@@ -86,12 +71,9 @@ class TreeType final : public ModelType {
 };
 
 double TreeType::level_error_m(const Parameters& p, int level) const {
-  if (level == 0) return 0;
+  static constexpr double kShare[kTreeLevels] = {0.0, 0.05, 0.085, 0.17, 0.33, 0.6};
   const TreeShape s(p);
-  const double radius = 0.5 * reach_of(s).branches + 0.3 * s.size_m;
-  const std::uint32_t tips = expected_tips(s);
-  const double sprays = level <= 3 ? spray_count(level, tips) : (level == 4 ? 7 : 3);
-  return 0.6 * radius / std::sqrt(sprays);
+  return kShare[level] * (2 * s.envelope_across + s.envelope_up) / 3;
 }
 
 core::Bounds TreeType::bounds(const Parameters& p) const {

@@ -126,10 +126,10 @@ void write_tube(const Bark& bark, const Tube& tube, MeshWriter& out) {
     for (std::uint32_t side = 0; side < sides; ++side) {
       const std::uint32_t next = side + 1 == sides ? 0 : side + 1;
       if (apex) {
-        out.triangle(low + side, high, low + next);
+        out.triangle(low + side, low + next, high);
       } else {
-        out.triangle(low + side, high + side, low + next);
-        out.triangle(low + next, high + side, high + next);
+        out.triangle(low + side, low + next, high + side);
+        out.triangle(low + next, high + next, high + side);
       }
     }
   }

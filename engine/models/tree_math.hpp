@@ -33,7 +33,7 @@ inline float cos_turns(float x) {
   return sin_turns(x + 0.25F);
 }
 
-// Two unit vectors perpendicular to the unit vector d and to each other, continuous wherever d.y
+// Unit vectors with u × v = d for the unit vector d, continuous wherever d.y
 // keeps its sign (after Duff et al. 2017, with y for z).
 struct Frame {
   glm::vec3 u, v;
@@ -42,7 +42,7 @@ inline Frame frame_around(const glm::vec3& d) {
   const float sign = d.y >= 0.0F ? 1.0F : -1.0F;
   const float a = -1.0F / (sign + d.y);
   const float b = d.z * d.x * a;
-  return {{sign * b, -sign * d.z, 1.0F + sign * d.z * d.z * a}, {1.0F + d.x * d.x * a, -d.x, b}};
+  return {{sign * b, -sign * d.z, 1.0F + sign * d.z * d.z * a}, {sign + d.x * d.x * a, -d.x, b}};
 }
 
 // Four fractions in [0, 1) with 16 bits each.

@@ -30,7 +30,7 @@ constexpr SprayForm kPatch{{0.0F, 0.22F, 0.74F, 1.0F, 0.66F, 0.30F},
                            {0.12F, 0.06F, 0.0F, 0.16F, 0.0F, 0.06F},
                            {0, 1, 5, 1, 2, 5, 2, 4, 5, 2, 3, 4}};
 // Length of a spray such that `count` of them fill a crown of radius 1, times √count.
-constexpr float kFillingLength[4] = {6.2F, 6.7F, 4.4F, 4.4F};
+constexpr float kFillingLength[4] = {6.7F, 7.1F, 4.4F, 4.4F};
 
 // What all sprays of one mesh have in common.
 struct Foliage {
