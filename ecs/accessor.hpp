@@ -14,23 +14,31 @@ class Accessor {
  public:
   // The entity's component, null when the entity is dead or has none. The pointer is valid until
   // the next structural change.
-  C* get(Entity entity) const {
-    const detail::Slot* slot = slots_->find(entity);
-    if (slot == nullptr) return nullptr;
-    std::byte* column = record_->column_of_table[slot->table];
-    return column == nullptr ? nullptr
-                             : detail::rows_of<std::remove_const_t<C>>(column) + slot->row;
-  }
+  C* get(Entity entity) const { return find(entity).value; }
 
   // A hint that get(entity) follows soon: loads where the entity is, not the component itself.
   void prefetch(Entity entity) const { slots_->prefetch(entity); }
 
  private:
   friend class World;
-  Accessor(const detail::EntitySlots& slots, const detail::ComponentRecord& record)
-      : slots_(&slots), record_(&record) {}
+  struct Found {
+    C* value;  // null for dead entities and those without the component
+    detail::RowPlace at;
+  };
+  Found find(Entity entity) const {
+    const detail::Slot* slot = slots_->find(entity);
+    if (slot == nullptr) return {nullptr, {}};
+    const detail::RowPlace at = directory_->place_of(slot->location);
+    std::byte* column = record_->column_of_table[at.table];
+    if (column == nullptr) return {nullptr, {}};
+    return {detail::rows_of<std::remove_const_t<C>>(column) + at.row, at};
+  }
+
+  Accessor(const detail::Storage& storage, const detail::ComponentRecord& record)
+      : slots_(&storage.slots()), directory_(&storage.directory()), record_(&record) {}
 
   const detail::EntitySlots* slots_;
+  const detail::RowDirectory* directory_;
   const detail::ComponentRecord* record_;
 };
 

@@ -11,14 +11,13 @@ EntitySlots::EntitySlots(std::size_t max_entities, std::uint32_t first_generatio
       max_entities_(std::min<std::size_t>(max_entities, UINT32_MAX)),
       first_generation_(std::max(first_generation, 1U)) {}
 
-void EntitySlots::issue(std::span<Entity> out, std::uint32_t table, std::uint32_t first_row) {
+void EntitySlots::issue(std::span<Entity> out, std::uint32_t first_location) {
   const std::size_t reused = std::min(out.size(), free_.size());
   const std::uint32_t* top = free_.data() + free_.size();
   for (std::size_t i = 0; i < reused; ++i) {
     const std::uint32_t index = *--top;
     Slot& slot = slots()[index];
-    slot.table = table;
-    slot.row = first_row + static_cast<std::uint32_t>(i);
+    slot.location = first_location + static_cast<std::uint32_t>(i);
     out[i] = {index, slot.generation};
   }
   free_.resize(free_.size() - reused);
@@ -32,7 +31,7 @@ void EntitySlots::issue(std::span<Entity> out, std::uint32_t table, std::uint32_
     memory_.commit(std::max(need_bytes, std::min(ahead, memory_.capacity_bytes())));
   }
   for (std::size_t i = reused; i < out.size(); ++i) {
-    slots()[count_] = {first_generation_, table, first_row + static_cast<std::uint32_t>(i)};
+    slots()[count_] = {first_generation_, first_location + static_cast<std::uint32_t>(i)};
     out[i] = {count_++, first_generation_};
   }
 }

@@ -1,6 +1,6 @@
-// Where every entity is: slot i tells the generation, table and row of the entity with index i.
+// Where every entity is: slot i tells the generation and location of the entity with index i.
 // A free slot already has its next generation, so that old handles are stale. A slot whose
-// generations are used up retires: it is never given out again. 12 bytes per entity.
+// generations are used up retires: it is never given out again. 8 bytes per entity.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,15 @@
 
 #include "ecs/entity.hpp"
 #include "ecs/reserved_memory.hpp"
+#include "ecs/row_directory.hpp"
 
 namespace psygen::ecs::detail {
 
-inline constexpr std::uint32_t kNowhere = 0;  // the table of a free slot; no real table has this id
-
 struct Slot {
   std::uint32_t generation;
-  std::uint32_t table;
-  std::uint32_t row;
+  std::uint32_t location;  // see RowDirectory; kNowhere while free
 };
-static_assert(sizeof(Slot) == 12);
+static_assert(sizeof(Slot) == 8);
 
 class EntitySlots {
  public:
@@ -28,7 +26,7 @@ class EntitySlots {
   EntitySlots(std::size_t max_entities, std::uint32_t first_generation);
 
   // The slot that the handle's index names, when the generation fits as well. A forged handle may
-  // name a free slot: its table is kNowhere.
+  // name a free slot: its location is kNowhere.
   Slot* find(Entity entity) const {
     if (entity.index >= count_) return nullptr;
     Slot* slot = slots() + entity.index;
@@ -39,11 +37,11 @@ class EntitySlots {
     if (entity.index < count_) __builtin_prefetch(slots() + entity.index);
   }
 
-  // Handles for rows first_row, first_row + 1, ... of a table, written to `out`.
-  void issue(std::span<Entity> out, std::uint32_t table, std::uint32_t first_row);
+  // Handles for the rows at first_location, first_location + 1, ..., written to `out`.
+  void issue(std::span<Entity> out, std::uint32_t first_location);
   // The entity of a living slot dies.
   void release(Slot& slot) {
-    slot.table = kNowhere;
+    slot.location = kNowhere;
     if (++slot.generation != 0) {
       free_.push_back(static_cast<std::uint32_t>(&slot - slots()));
     } else {

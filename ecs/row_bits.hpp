@@ -2,6 +2,7 @@
 // last looked. Marking is O(1); draining costs one summary word per 4096 rows plus the marked rows.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -37,7 +38,7 @@ class RowBits {
   void prefetch(std::uint32_t row) const { __builtin_prefetch(words_.data() + row / 64, 1); }
 
   // Clears every marked row and calls f(first, count) once per maximal run of them, ascending.
-  // `f` may mark: rows behind the current run come up in the next drain.
+  // `f` may mark: such rows come up later in this drain or in the next one.
   template <class F>
   void drain(F&& f);
 
@@ -52,29 +53,43 @@ class RowBits {
 
 template <class F>
 void RowBits::drain(F&& f) {
+  struct Run {
+    std::uint32_t first;
+    std::uint32_t end;
+  };
   if (!any_) return;
   any_ = false;
-  std::uint32_t begin = 0;
-  std::uint32_t end = 0;  // the run not yet handed out; empty when equal
+  // Runs are collected before they are handed out: two short loops instead of one long one. The
+  // last run stays behind, because the next word may continue it.
+  std::array<Run, 256> runs;
+  std::size_t last = 0;
+  runs[0] = {UINT32_MAX, UINT32_MAX};  // empty, and no row continues it
+  const auto hand_out = [&](std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (runs[i].first != runs[i].end) f(runs[i].first, runs[i].end - runs[i].first);
+    }
+  };
   for (std::uint32_t s = 0; s < summary_.size(); ++s) {
     for (std::uint64_t blocks = std::exchange(summary_[s], 0); blocks != 0; blocks &= blocks - 1) {
       const std::uint32_t w = s * 64 + static_cast<std::uint32_t>(std::countr_zero(blocks));
       std::uint64_t word = std::exchange(words_[w], 0);
-      for (std::uint32_t row = w * 64; word != 0;) {
-        const int gap = std::countr_zero(word);
-        const int length = std::countr_one(word >> gap);
-        row += static_cast<std::uint32_t>(gap);
-        if (row != end) {
-          if (begin != end) f(begin, end - begin);
-          begin = row;
-        }
-        row += static_cast<std::uint32_t>(length);
-        end = row;
-        word = gap + length < 64 ? word >> (gap + length) : 0;
+      if (last + 32 >= runs.size()) {  // a word has at most 32 runs
+        hand_out(last);
+        runs[0] = runs[last];
+        last = 0;
+      }
+      while (word != 0) {
+        const std::uint64_t lowest = word & (~word + 1);
+        const std::uint64_t carried = word + lowest;  // the lowest run becomes zeros and a one
+        const std::uint32_t first = w * 64 + static_cast<std::uint32_t>(std::countr_zero(word));
+        const std::uint32_t end = w * 64 + static_cast<std::uint32_t>(std::countr_zero(carried));
+        if (first != runs[last].end) runs[++last].first = first;
+        runs[last].end = end;
+        word &= carried;
       }
     }
   }
-  if (begin != end) f(begin, end - begin);
+  hand_out(last + 1);
 }
 
 }  // namespace psygen::ecs::detail

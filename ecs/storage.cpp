@@ -7,8 +7,6 @@
 namespace psygen::ecs::detail {
 namespace {
 
-constexpr std::uint32_t kInTransit = UINT32_MAX;  // the row of an entity that changes its kind
-
 // Columns that are walked together start at different offsets in a page.
 std::size_t skew_bytes(std::size_t column) {
   return (column + 1) * 320 % 4096;
@@ -110,10 +108,15 @@ void Storage::mark_new_rows(const Table& table, std::uint32_t first, std::size_t
 Storage::Batch Storage::create(const Signature& kind, std::size_t count) {
   expect_no_iteration("create");
   Table& table = table_for(kind);
-  table.reserve_more(count);
+  table.reserve_more(count, directory_);
   table.construct_new_rows(count, Signature{});
   const std::uint32_t first = table.add_rows(count);
-  slots_.issue({table.entities() + first, count}, table.id(), first);
+  for (std::size_t done = 0; done < count;) {  // neighbours within a chunk have neighbouring names
+    const std::uint32_t row = first + static_cast<std::uint32_t>(done);
+    const std::size_t step = std::min<std::size_t>(count - done, kChunkRows - row % kChunkRows);
+    slots_.issue({table.entities() + row, step}, table.location(row));
+    done += step;
+  }
   mark_new_rows(table, first, count, kind);
   return {&table, first};
 }
@@ -135,7 +138,7 @@ void Storage::remove_leaving_rows(Table& table) {
     if (i + kPrefetchAhead < moves_.size()) {
       slots_.prefetch(entities[moves_[i + kPrefetchAhead].to]);
     }
-    slots_[entities[moves_[i].to].index].row = moves_[i].to;
+    slots_[entities[moves_[i].to].index].location = table.location(moves_[i].to);
   }
   for_each_reader(table, [&](ReaderState& reader) {
     RowBits& bits = reader.bits_of_table[table.id()];
@@ -154,9 +157,10 @@ std::size_t Storage::destroy(std::span<const Entity> entities) {
     if (i + kPrefetchAhead < entities.size()) slots_.prefetch(entities[i + kPrefetchAhead]);
     Slot* slot = living(entities[i]);
     if (slot == nullptr) continue;
-    Table& table = *tables_[slot->table];
+    const RowPlace at = directory_.place_of(slot->location);
+    Table& table = *tables_[at.table];
     if (table.leaving.empty()) touched_.push_back(&table);
-    table.leaving.push_back(slot->row);
+    table.leaving.push_back(at.row);
     slots_.release(*slot);
     ++died;
   }
@@ -178,16 +182,17 @@ std::size_t Storage::change_kind(std::span<const Entity> entities, const Signatu
   for (std::size_t i = 0; i < entities.size(); ++i) {
     if (i + kPrefetchAhead < entities.size()) slots_.prefetch(entities[i + kPrefetchAhead]);
     Slot* slot = living(entities[i]);
-    if (slot == nullptr || slot->row == kInTransit) continue;
-    Table& table = *tables_[slot->table];
+    if (slot == nullptr || slot->location == kInTransit) continue;
+    const RowPlace at = directory_.place_of(slot->location);
+    Table& table = *tables_[at.table];
     if (&table != last) {
       last = &table;
       last_changes = !(table.signature().changed(added, removed) == table.signature());
     }
     if (!last_changes) continue;
     if (table.leaving.empty()) touched_.push_back(&table);
-    table.leaving.push_back(slot->row);
-    slot->row = kInTransit;
+    table.leaving.push_back(at.row);
+    slot->location = kInTransit;
     ++moved;
   }
 
@@ -197,7 +202,7 @@ std::size_t Storage::change_kind(std::span<const Entity> entities, const Signatu
     ~Unwind() {
       for (Table* table : storage.touched_) {
         for (const std::uint32_t row : table->leaving) {
-          storage.slots_[table->entities()[row].index].row = row;
+          storage.slots_[table->entities()[row].index].location = table->location(row);
         }
         table->leaving.clear();
       }
@@ -212,7 +217,7 @@ std::size_t Storage::change_kind(std::span<const Entity> entities, const Signatu
 
 void Storage::transfer(Table& source, Table& target) {
   const std::size_t count = source.leaving.size();
-  target.reserve_more(count);
+  target.reserve_more(count, directory_);
   target.construct_new_rows(count, source.signature());
   const std::uint32_t first = target.add_rows(count);
   report_removed(source, source.signature().changed({}, target.signature()));
@@ -234,8 +239,7 @@ void Storage::transfer(Table& source, Table& target) {
     const Entity entity = source.entities()[source.leaving[i]];
     const std::uint32_t row = first + static_cast<std::uint32_t>(i);
     target.entities()[row] = entity;
-    slots_[entity.index].table = target.id();
-    slots_[entity.index].row = row;
+    slots_[entity.index].location = target.location(row);
   }
   source.destroy_rows(source.leaving, source.signature().changed({}, target.signature()));
   remove_leaving_rows(source);

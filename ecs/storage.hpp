@@ -17,6 +17,7 @@
 #include "ecs/entity.hpp"
 #include "ecs/entity_slots.hpp"
 #include "ecs/row_bits.hpp"
+#include "ecs/row_directory.hpp"
 #include "ecs/signature.hpp"
 #include "ecs/table.hpp"
 
@@ -93,24 +94,34 @@ class Storage {
   const ComponentRecord& record(ComponentId id) const { return *records_[id]; }
   std::span<const std::unique_ptr<Table>> tables() const { return tables_; }  // [0] is null
   const EntitySlots& slots() const { return slots_; }
+  const RowDirectory& directory() const { return directory_; }
 
   // The slot of a living entity, else null.
   Slot* living(Entity entity) const {
     Slot* slot = slots_.find(entity);
-    return slot != nullptr && slot->table != kNowhere ? slot : nullptr;
+    return slot != nullptr && slot->location != kNowhere ? slot : nullptr;
   }
 
   Batch create(const Signature& kind, std::size_t count);
   std::size_t destroy(std::span<const Entity> entities);
   std::size_t change_kind(std::span<const Entity> entities, const Signature& added,
                           const Signature& removed);
-  void reserve(const Signature& kind, std::size_t count) { table_for(kind).reserve_more(count); }
+  void reserve(const Signature& kind, std::size_t count) {
+    table_for(kind).reserve_more(count, directory_);
+  }
 
   ReaderState& add_reader(ComponentId id, bool reports_removed);
   void remove_reader(const ReaderState& reader);
-  static void mark(ComponentRecord& record, std::uint32_t table, std::uint32_t row) {
+  static void mark(ComponentRecord& record, RowPlace at) {
     for (auto& reader : record.readers)
-      reader->bits_of_table[table].mark(row);
+      reader->bits_of_table[at.table].mark(at.row);
+  }
+  static void mark(ComponentRecord& record, std::span<const RowPlace> rows) {
+    for (auto& reader : record.readers) {
+      RowBits* const bits_of_table = reader->bits_of_table.data();
+      for (const RowPlace at : rows)
+        bits_of_table[at.table].mark(at.row);
+    }
   }
   static void mark_range(ComponentRecord& record, std::uint32_t table, std::uint32_t first,
                          std::uint32_t count) {
@@ -145,6 +156,7 @@ class Storage {
 
   WorldLimits limits_;
   EntitySlots slots_;
+  RowDirectory directory_;
   std::vector<std::unique_ptr<ComponentRecord>> records_;
   std::vector<std::unique_ptr<Table>> tables_;
   std::vector<std::uint32_t> table_index_;  // open addressing by signature; 0 is empty

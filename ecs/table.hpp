@@ -12,6 +12,7 @@
 #include "ecs/component.hpp"
 #include "ecs/entity.hpp"
 #include "ecs/reserved_memory.hpp"
+#include "ecs/row_directory.hpp"
 #include "ecs/signature.hpp"
 
 namespace psygen::ecs::detail {
@@ -42,8 +43,13 @@ class Table {
     return at == kNoColumn ? nullptr : columns_[at].memory.data();
   }
 
-  // Makes room for `count` more rows, without objects in them.
-  void reserve_more(std::size_t count);
+  // The name of a row, filled or to be filled within the last reserve_more.
+  std::uint32_t location(std::uint32_t row) const {
+    return chunks_[row / kChunkRows] + row % kChunkRows;
+  }
+
+  // Makes room for `count` more rows, without objects in them, and names them.
+  void reserve_more(std::size_t count, RowDirectory& directory);
   // Builds rows [rows(), rows() + count) of the columns that are not in `except`. When a
   // constructor throws, everything built here is destroyed again.
   void construct_new_rows(std::size_t count, const Signature& except);
@@ -74,7 +80,8 @@ class Table {
   Signature signature_;
   std::vector<Column> columns_;
   ReservedMemory entities_;
-  std::vector<std::uint64_t> dead_;  // scratch: which of the last rows are leaving
+  std::vector<std::uint32_t> chunks_;  // location of every 4096th row
+  std::vector<std::uint64_t> dead_;    // scratch: which of the last rows are leaving
   std::array<std::uint8_t, kMaxComponents> column_of_;
 };
 

@@ -108,11 +108,11 @@ class World {
   }
   template <Component C>
   Accessor<C> accessor() {
-    return {storage_.slots(), record<C>()};
+    return {storage_, record<C>()};
   }
   template <class C>
   requires std::is_const_v<C> Accessor<C> accessor() {
-    return {storage_.slots(), record<std::remove_const_t<C>>()};
+    return {storage_, record<std::remove_const_t<C>>()};
   }
 
   // ---- iteration -------------------------------------------------------------------------------
@@ -200,36 +200,32 @@ Created<Cs...> World::create(std::size_t count) {
 template <class C>
 C* World::find(Entity entity) const {
   const detail::ComponentId id = storage_.find_id(detail::kComponentInfo<C>);
-  const detail::Slot* slot = storage_.slots().find(entity);
-  if (id == detail::kNoComponent || slot == nullptr) return nullptr;
-  std::byte* column = storage_.record(id).column_of_table[slot->table];
-  return column == nullptr ? nullptr : detail::rows_of<C>(column) + slot->row;
+  if (id == detail::kNoComponent) return nullptr;
+  return Accessor<C>(storage_, storage_.record(id)).get(entity);
 }
 
 template <class C, class L>
 LandReport World::land_from(std::span<L> results) {
   detail::ComponentRecord& target = record<C>();
-  const detail::EntitySlots& slots = storage_.slots();
+  const Accessor<C> rows(storage_, target);
   LandReport report;
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (i + detail::kPrefetchAhead < results.size()) {
-      slots.prefetch(results[i + detail::kPrefetchAhead].entity);
+      rows.prefetch(results[i + detail::kPrefetchAhead].entity);
     }
     L& result = results[i];
-    const detail::Slot* slot = slots.find(result.entity);
-    std::byte* column = slot == nullptr ? nullptr : target.column_of_table[slot->table];
-    if (column == nullptr) {
+    const typename Accessor<C>::Found found = rows.find(result.entity);
+    if (found.value == nullptr) {
       ++report.stale;
       continue;
     }
-    C* row = detail::rows_of<C>(column) + slot->row;
     if constexpr (std::is_const_v<L> && std::is_copy_assignable_v<C>) {
-      *row = result.value;
+      *found.value = result.value;
     } else {
       static_assert(!std::is_const_v<L>, "values of this type cannot be copied: use land_moved");
-      *row = std::move(result.value);
+      *found.value = std::move(result.value);
     }
-    if constexpr (is_tracked<C>()) storage_.mark(target, slot->table, slot->row);
+    if constexpr (is_tracked<C>()) storage_.mark(target, found.at);
     ++report.landed;
   }
   return report;
@@ -276,15 +272,22 @@ template <Component C>
 void World::mark_changed(std::span<const Entity> entities) {
   static_assert(is_tracked<C>(), "only a tracked component is marked: ComponentTraits<C>::tracked");
   detail::ComponentRecord& target = record<C>();
-  const detail::EntitySlots& slots = storage_.slots();
+  const Accessor<C> rows(storage_, target);
+  std::array<detail::RowPlace, 128> found;  // resolved first, marked then: two short loops
+  std::size_t count = 0;
   for (std::size_t i = 0; i < entities.size(); ++i) {
     if (i + detail::kPrefetchAhead < entities.size()) {
-      slots.prefetch(entities[i + detail::kPrefetchAhead]);
+      rows.prefetch(entities[i + detail::kPrefetchAhead]);
     }
-    const detail::Slot* slot = slots.find(entities[i]);
-    if (slot == nullptr || target.column_of_table[slot->table] == nullptr) continue;
-    storage_.mark(target, slot->table, slot->row);
+    const typename Accessor<C>::Found row = rows.find(entities[i]);
+    found[count] = row.at;
+    count += row.value != nullptr ? 1 : 0;
+    if (count == found.size()) {
+      storage_.mark(target, found);
+      count = 0;
+    }
   }
+  storage_.mark(target, std::span(found).first(count));
 }
 
 }  // namespace psygen::ecs

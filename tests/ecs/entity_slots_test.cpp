@@ -10,30 +10,30 @@ namespace {
 TEST(EntitySlots, a_freed_slot_is_reused_with_the_next_generation) {
   EntitySlots slots(100, 1);
   std::array<Entity, 3> first{};
-  slots.issue(first, 1, 0);
+  slots.issue(first, 4096);
   EXPECT_EQ(first[2], (Entity{2, 1}));
   slots.release(*slots.find(first[1]));
   EXPECT_EQ(slots.find(first[1]), nullptr);
   std::array<Entity, 2> second{};
-  slots.issue(second, 2, 7);
+  slots.issue(second, 8199);
   EXPECT_EQ(second[0], (Entity{1, 2}));
   EXPECT_EQ(second[1], (Entity{3, 1}));
-  EXPECT_EQ(slots.find(second[1])->row, 8U);
+  EXPECT_EQ(slots.find(second[1])->location, 8200U);
   EXPECT_EQ(slots.living(), 4U);
 }
 
 TEST(EntitySlots, a_slot_whose_generations_are_used_up_retires) {
   EntitySlots slots(100, UINT32_MAX - 1);
   std::array<Entity, 1> entity{};
-  slots.issue(entity, 1, 0);
+  slots.issue(entity, 4096);
   EXPECT_EQ(entity[0], (Entity{0, UINT32_MAX - 1}));
   slots.release(*slots.find(entity[0]));
-  slots.issue(entity, 1, 0);
+  slots.issue(entity, 4096);
   EXPECT_EQ(entity[0], (Entity{0, UINT32_MAX}));
   slots.release(*slots.find(entity[0]));
   EXPECT_EQ(slots.retired(), 1U);
   EXPECT_EQ(slots.find({0, UINT32_MAX}), nullptr);
-  slots.issue(entity, 1, 0);
+  slots.issue(entity, 4096);
   EXPECT_EQ(entity[0].index, 1U);
   EXPECT_EQ(slots.living(), 1U);
 }
@@ -41,7 +41,7 @@ TEST(EntitySlots, a_slot_whose_generations_are_used_up_retires) {
 TEST(EntitySlots, handles_that_were_never_given_out_are_not_found) {
   EntitySlots slots(100, 1);
   std::array<Entity, 1> entity{};
-  slots.issue(entity, 1, 0);
+  slots.issue(entity, 4096);
   EXPECT_EQ(slots.find(kNullEntity), nullptr);
   EXPECT_EQ(slots.find({1, 1}), nullptr);
   EXPECT_EQ(slots.find({0, 0}), nullptr);

@@ -35,18 +35,41 @@ TEST(RowBits, the_first_row_and_whole_words_are_runs_of_their_own) {
   EXPECT_EQ(drain(bits), (Runs{{0, 1}, {64, 64}}));
 }
 
-TEST(RowBits, rows_marked_behind_the_current_run_wait_for_the_next_drain) {
+TEST(RowBits, rows_marked_while_draining_are_not_lost) {
   RowBits bits;
-  bits.reserve_rows(1000);
-  bits.mark(10);
-  bits.mark(500);
-  Runs seen;
-  bits.drain([&](std::uint32_t first, std::uint32_t count) {
-    seen.emplace_back(first, count);
-    bits.mark(3);
-  });
-  EXPECT_EQ(seen, (Runs{{10, 1}, {500, 1}}));
-  EXPECT_EQ(drain(bits), (Runs{{3, 1}}));
+  bits.reserve_rows(100000);
+  for (std::uint32_t row = 0; row < 100000; row += 100)
+    bits.mark(row);
+  std::set<std::uint32_t> seen;
+  const auto note = [&](std::uint32_t first, std::uint32_t count) {
+    EXPECT_EQ(count, 1U);
+    EXPECT_TRUE(seen.insert(first).second) << "each mark is seen once";
+    if (first % 100 == 0) bits.mark((first * 7 + 50) % 100000);
+  };
+  bits.drain(note);
+  EXPECT_GE(seen.size(), 1000U);
+  bits.drain(note);
+  EXPECT_EQ(seen.size(), 2000U);
+  EXPECT_EQ(drain(bits), Runs{});
+}
+
+TEST(RowBits, every_pattern_of_runs_within_a_word_is_drained) {
+  std::mt19937_64 random(7);
+  for (int round = 0; round < 2000; ++round) {
+    const std::uint64_t word = round == 0 ? ~std::uint64_t{0} : random() | (random() & random());
+    RowBits bits;
+    bits.reserve_rows(256);
+    std::uint64_t seen = 0;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+      if (((word >> i) & 1) != 0) bits.mark(64 + i);
+    }
+    for (const auto& [first, count] : drain(bits)) {
+      for (std::uint32_t row = first; row < first + count; ++row) {
+        seen |= std::uint64_t{1} << (row - 64);
+      }
+    }
+    ASSERT_EQ(seen, word);
+  }
 }
 
 TEST(RowBits, random_marks_and_clears_agree_with_a_set) {

@@ -1,0 +1,45 @@
+// Names every row of every table with one 32-bit number, so that a slot needs no more. Rows are
+// named in chunks of 4096: the upper 20 bits of a location choose a chunk, which belongs to one
+// table, and the lower 12 a row in it. Location 0 and the rest of chunk 0 are nowhere.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ecs/check.hpp"
+
+namespace psygen::ecs::detail {
+
+inline constexpr std::uint32_t kChunkRows = 4096;
+inline constexpr std::uint32_t kNowhere = 0;             // the location of a free slot
+inline constexpr std::uint32_t kInTransit = UINT32_MAX;  // of an entity that is being moved
+
+struct RowPlace {
+  std::uint32_t table;
+  std::uint32_t row;
+};
+
+class RowDirectory {
+ public:
+  RowDirectory() : chunks_{{0, 0}} {}
+
+  // Names rows [first_row, first_row + 4096) of a table; returns the location of the first.
+  std::uint32_t add_chunk(std::uint32_t table, std::uint32_t first_row) {
+    if (chunks_.size() == kMaxChunks) give_up("more than four billion rows in one world");
+    chunks_.push_back({table, first_row});
+    return static_cast<std::uint32_t>(chunks_.size() - 1) * kChunkRows;
+  }
+
+  // Table 0 for locations that are nowhere. Not for kInTransit.
+  RowPlace place_of(std::uint32_t location) const {
+    const RowPlace chunk = chunks_[location / kChunkRows];
+    return {chunk.table, chunk.row + location % kChunkRows};
+  }
+
+ private:
+  static constexpr std::size_t kMaxChunks = UINT32_MAX / kChunkRows;
+  std::vector<RowPlace> chunks_;  // table and first row
+};
+
+}  // namespace psygen::ecs::detail
