@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <utility>
 
 #include "engine/core/clock.hpp"
 #include "engine/synthesis/synthesize.hpp"
@@ -137,28 +138,31 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
                                             const CalibrationOptions& options, double deadline_s,
                                             CalibrationReport& report,
                                             std::vector<double>& errors) {
+  std::vector<std::pair<double, const CostSample*>> cheapest_first;
+  for (const CostSample& s : samples) {
+    if (s.model == model) cheapest_first.emplace_back(complexity(model, s.parameters, level), &s);
+  }
+  std::sort(cheapest_first.begin(), cheapest_first.end());
   std::vector<Measurement> measured;
   std::vector<double> ratios;
-  for (const CostSample& s : samples) {
-    if (s.model != model) continue;
-    const double expected = predict(model, s.parameters, level) * (options.rounds + 1);
-    if (options.wall_clock() + expected >= deadline_s) continue;
-    if (const auto m = measure(s, level, options, deadline_s, report)) {
-      measured.push_back(*m);
-      ratios.push_back(m->seconds / m->complexity);
-    }
+  for (const auto& [operations, sample] : cheapest_first) {
+    const double expected = predict_from(model, level, operations) * (options.rounds + 1);
+    if (options.wall_clock() + expected >= deadline_s) break;
+    const auto m = measure(*sample, level, options, deadline_s, report);
+    if (!m) continue;
+    measured.push_back(*m);
+    ratios.push_back(m->seconds / m->complexity);
+    const double c = quantile(ratios, 0.5);
+    for (int finer = level; finer >= 0; --finer)  // the best guess for what is not measured yet
+      constant(model, finer) = c;
   }
-  LevelCalibration result{model, level, constant(model, level), 0,
-                          static_cast<std::uint32_t>(measured.size())};
+  const double c = constant(model, level);
+  LevelCalibration result{model, level, c, 0, static_cast<std::uint32_t>(measured.size())};
   if (measured.empty()) return result;
-  const double c = quantile(ratios, 0.5);
-  for (int finer = level; finer >= 0; --finer)  // the best guess for levels not measured yet
-    constant(model, finer) = c;
   std::vector<double> level_errors;
   for (const Measurement& m : measured)
     level_errors.push_back(std::abs(m.seconds - c * m.complexity) / m.seconds * 100);
   errors.insert(errors.end(), level_errors.begin(), level_errors.end());
-  result.seconds_per_operation = c;
   result.fit_error_percent = quantile(level_errors, 0.5);
   return result;
 }

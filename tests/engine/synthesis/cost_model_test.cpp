@@ -1,0 +1,179 @@
+#include "engine/synthesis/cost_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/engine/synthesis/fake_models.hpp"
+
+namespace psygen::synthesis {
+namespace {
+using testing::FakeModel;
+using testing::parameters_of;
+using testing::registry_of;
+
+// A clock that models move: each synthesis takes what its formula says.
+struct VirtualTime {
+  double now = 0;
+  std::uint64_t calls = 0;
+  double seconds_per_vertex = 1e-6;
+  double seconds_fixed = 0;
+
+  models::Registry registry() {
+    return registry_of(std::make_unique<testing::ScriptedModel>(
+        "timed", [this](const models::Parameters& p, int level) {
+          ++calls;
+          now += seconds_fixed + seconds_per_vertex * static_cast<double>(p.integer(1) >> level);
+        }));
+  }
+  CalibrationOptions options(double limit = 0.4) {
+    CalibrationOptions o;
+    o.seconds_limit = limit;
+    o.wall_clock = o.cpu_clock = [this] { return now; };
+    return o;
+  }
+};
+
+std::vector<CostSample> samples_of(std::initializer_list<std::int64_t> vertices) {
+  std::vector<CostSample> samples;
+  for (const std::int64_t n : vertices)
+    samples.push_back({0, parameters_of(1, n)});
+  return samples;
+}
+
+TEST(CostModel, CalibrationFindsTheConstantOfALinearCost) {
+  VirtualTime time;
+  const models::Registry registry = time.registry();
+  CostModel cost(registry);
+  const auto samples = samples_of({32, 64, 128, 256});
+  const CalibrationReport report = cost.calibrate(samples, time.options());
+  EXPECT_NEAR(cost.predict(0, parameters_of(1, 1000), 0), 1e-3, 1e-9);
+  EXPECT_NEAR(cost.predict(0, parameters_of(1, 1000), 2), 0.25e-3, 1e-9);
+  EXPECT_NEAR(report.fit_error_percent_p95, 0, 1e-6);
+  EXPECT_EQ(report.levels.size(), 3u);
+  for (const LevelCalibration& level : report.levels)
+    EXPECT_EQ(level.samples, 4u);
+}
+
+TEST(CostModel, AFormulaThatDoesNotFitIsReportedAsFitError) {
+  VirtualTime time;
+  time.seconds_fixed = 200e-6;  // the formula knows nothing of it
+  const models::Registry registry = time.registry();
+  CostModel cost(registry);
+  const CalibrationReport report = cost.calibrate(samples_of({8, 64, 512}), time.options());
+  EXPECT_GT(report.fit_error_percent_p95, 20);
+}
+
+TEST(CostModel, CalibrationStaysWithinItsLimit) {
+  VirtualTime time;
+  time.seconds_per_vertex = 1e-3;  // the full level of the largest sample alone takes 4 s
+  const models::Registry registry = time.registry();
+  CostModel cost(registry);
+  const CalibrationReport report = cost.calibrate(samples_of({16, 64, 4096}), time.options(0.4));
+  EXPECT_LE(report.seconds, 0.4);
+  EXPECT_GT(report.measurements, 0u);
+  // What was skipped is predicted from the levels and samples that were measured.
+  EXPECT_NEAR(cost.predict(0, parameters_of(1, 4096), 0), 4.096, 1e-6);
+}
+
+TEST(CostModel, AModelFarSlowerThanExpectedEndsItsMeasurementsAfterOne) {
+  VirtualTime time;
+  time.seconds_fixed = 3;
+  const models::Registry registry = time.registry();
+  CostModel cost(registry);
+  const CalibrationReport report = cost.calibrate({}, time.options(0.4));
+  EXPECT_EQ(time.calls, 1u);
+  EXPECT_NEAR(report.seconds, 3, 1e-3);
+}
+
+TEST(CostModel, RealCalibrationWithoutSamplesUsesDefaultsAndReportsProgress) {
+  models::Registry registry;
+  ASSERT_TRUE(registry.add(std::make_unique<FakeModel>("a")));
+  ASSERT_TRUE(registry.add(std::make_unique<FakeModel>("b")));
+  CostModel cost(registry);
+  std::vector<double> progress;
+  const CalibrationReport report =
+      cost.calibrate({}, {}, [&](double fraction) { progress.push_back(fraction); });
+  EXPECT_EQ(report.levels.size(), 6u);
+  EXPECT_TRUE(report.failures.empty());
+  ASSERT_EQ(progress.size(), 6u);
+  EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
+  EXPECT_EQ(progress.back(), 1.0);
+  EXPECT_GT(cost.predict(1, parameters_of(1, 1000), 0), 0);
+}
+
+TEST(CostModel, TypesThatMisbehaveAreNamedAndDoNotStopTheOthers) {
+  models::Registry registry;
+  ASSERT_TRUE(registry.add(std::make_unique<testing::ScriptedModel>(
+      "thrower", [](const models::Parameters&, int) { throw std::runtime_error("no"); })));
+  ASSERT_TRUE(registry.add(std::make_unique<testing::SizelessModel>()));
+  ASSERT_TRUE(registry.add(std::make_unique<testing::LyingModel>()));
+  ASSERT_TRUE(registry.add(std::make_unique<FakeModel>("good")));
+  CostModel cost(registry);
+  const CalibrationReport report = cost.calibrate();
+  EXPECT_EQ(report.failures.size(), 9u);  // three types, three levels each
+  EXPECT_NE(report.failures[0].find("thrower level 2 threw: no"), std::string::npos);
+  EXPECT_GT(report.levels.back().samples, 0u);
+  for (models::ModelIndex model = 0; model < 5; ++model) {
+    const double seconds = cost.predict(model, parameters_of(1, 100), 7);
+    EXPECT_TRUE(std::isfinite(seconds) && seconds > 0) << model;
+  }
+}
+
+TEST(CostModel, ObservationsMoveTheConstantToTheTruthWithoutOvershooting) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  CostModel cost(registry);
+  const auto p = parameters_of(1, 100);
+  const double stale = cost.predict(0, p, 0);
+  const double truth = stale * 3;
+  for (int i = 0; i < 500; ++i)  // all were predicted long ago
+    cost.observe(0, 0, cost.complexity(0, p, 0), stale, truth);
+  EXPECT_NEAR(cost.predict(0, p, 0) / truth, 1, 0.01);
+  EXPECT_NEAR(cost.predict(0, p, 1) / (stale / 2), 1, 1e-9);  // other levels keep theirs
+}
+
+TEST(CostModel, OneOutlierMovesTheConstantLittle) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  CostModel cost(registry);
+  const auto p = parameters_of(1, 100);
+  const double before = cost.predict(0, p, 0);
+  cost.observe(0, 0, 100, before, 1000.0);
+  EXPECT_LT(cost.predict(0, p, 0) / before, 1.1);
+}
+
+TEST(CostModel, ErrorPercentilesAreThoseOfItsPredictions) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  CostModel cost(registry);
+  EXPECT_EQ(cost.error().count, 0u);
+  for (int percent = 0; percent <= 100; ++percent)
+    cost.observe(0, 0, 100, 1.0 + percent / 100.0, 1.0);
+  EXPECT_EQ(cost.error().count, 101u);
+  EXPECT_NEAR(cost.error().p50_percent, 50, 1e-4);
+  EXPECT_NEAR(cost.error().p95_percent, 95, 1e-4);
+  for (int i = 0; i < 5000; ++i)
+    cost.observe(0, 0, 100, 1.2, 1.0);
+  EXPECT_EQ(cost.error().count, 4096u);
+  EXPECT_NEAR(cost.error().p50_percent, 20, 1e-4);
+}
+
+TEST(CostModel, NonsenseIsNotObserved) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  CostModel cost(registry);
+  cost.observe(5, 0, 1, 1, 1);
+  cost.observe(0, -1, 1, 1, 1);
+  cost.observe(0, 99, 1, 1, 1);
+  cost.observe(0, 0, 0, 1, 1);
+  cost.observe(0, 0, 1, 1, std::nan(""));
+  EXPECT_EQ(cost.error().count, 0u);
+}
+
+TEST(CostModel, QuantilesInterpolateLinearly) {
+  std::vector<double> values{4, 1, 3, 2};
+  EXPECT_DOUBLE_EQ(quantile(values, 0.0), 1);
+  EXPECT_DOUBLE_EQ(quantile(values, 0.5), 2.5);
+  EXPECT_DOUBLE_EQ(quantile(values, 1.0), 4);
+  EXPECT_DOUBLE_EQ(quantile({}, 0.5), 0);
+}
+
+}  // namespace
+}  // namespace psygen::synthesis

@@ -1,0 +1,235 @@
+// The budget under pressure: random loads against a model, memory that returns late or fails.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "engine/synthesis/geometry_cache.hpp"
+#include "tests/engine/synthesis/fake_memory.hpp"
+#include "tests/engine/synthesis/fake_models.hpp"
+
+namespace psygen::synthesis {
+namespace {
+using testing::FakeMemory;
+using testing::FakeModel;
+using testing::key_of;
+using testing::parameters_of;
+using testing::registry_of;
+
+Rank random_rank(core::RandomStream& random) {
+  const auto group = static_cast<RankGroup>(random.next_integer(0, 5));
+  return Rank::by_layer(group, static_cast<std::uint32_t>(random.next_integer(0, 4)),
+                        static_cast<float>(random.next_integer(0, 5)) * 16);
+}
+
+// What the test believes to be in the cache.
+struct Believed {
+  MeshHandle handle;
+  Rank rank;
+  std::uint64_t bytes;
+  bool ready;
+};
+using Model = std::map<std::uint32_t, Believed>;
+
+// Each eviction took the worst that was ready, and only what the request may evict.
+void expect_lawful(std::span<const Eviction> evictions, Model& model, const Rank* request) {
+  for (const Eviction& e : evictions) {
+    const auto victim = model.find(static_cast<std::uint32_t>(e.owner));
+    ASSERT_NE(victim, model.end());
+    ASSERT_EQ(victim->second.handle, e.handle);
+    ASSERT_TRUE(victim->second.ready);
+    if (request != nullptr) {
+      ASSERT_TRUE(may_evict(*request, victim->second.rank));
+    }
+    for (const auto& [owner, other] : model) {
+      if (other.ready) {
+        ASSERT_LE(eviction_order(other.rank), eviction_order(victim->second.rank));
+      }
+    }
+    model.erase(victim);
+  }
+}
+
+void expect_same(const GeometryCache& cache, const Model& model) {
+  std::uint32_t ready = 0, requested = 0;
+  for (const auto& [owner, b] : model) {
+    const MeshRecord* record = cache.get(b.handle);
+    ASSERT_NE(record, nullptr);
+    ASSERT_EQ(record->state, b.ready ? MeshState::kReady : MeshState::kRequested);
+    ASSERT_EQ(record->rank, b.rank);
+    ++(b.ready ? ready : requested);
+  }
+  ASSERT_EQ(cache.stats().ready, ready);
+  ASSERT_EQ(cache.stats().requested, requested);
+}
+
+Model::iterator pick(Model& model, core::RandomStream& random, bool ready) {
+  std::vector<Model::iterator> fitting;
+  for (auto it = model.begin(); it != model.end(); ++it) {
+    if (it->second.ready == ready) fitting.push_back(it);
+  }
+  return fitting.empty() ? model.end() : fitting[random.next_u64() % fitting.size()];
+}
+
+void run_random_load(std::uint64_t seed, int frames_in_flight) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  FakeMemory memory(1 << 24, frames_in_flight);
+  std::uint64_t budget = 60'000;
+  GeometryCache cache(memory, registry, budget);
+  Model model;
+  core::RandomStream random(seed, 0, 0, 0, core::Purpose::kParameters);
+  for (std::uint32_t step = 0; step < 2500; ++step) {
+    const std::int64_t what = random.next_integer(0, 9);
+    const std::uint64_t used_before = memory.used_bytes();
+    const Rank rank = random_rank(random);
+    if (what <= 4) {
+      const auto p = parameters_of(step, random.next_integer(1, 200));
+      const auto handle = cache.reserve(key_of(step, p), p, step, rank);
+      expect_lawful(cache.take_evictions(), model, &rank);
+      if (handle) model[step] = {*handle, rank, cache.get(*handle)->range.bytes, false};
+      ASSERT_LE(memory.used_bytes(), std::max(budget, used_before));
+    } else if (what <= 6) {
+      const auto it = pick(model, random, false);
+      if (it == model.end()) continue;
+      it->second.ready = true;
+      cache.complete(it->second.handle, {});
+      expect_lawful(cache.take_evictions(), model, nullptr);
+    } else if (what == 7) {
+      const auto it = pick(model, random, random.next_integer(0, 1) == 0);
+      if (it == model.end()) continue;
+      it->second.rank = rank;
+      cache.set_rank(it->second.handle, rank);
+    } else if (what == 8) {
+      const bool ready = random.next_integer(0, 1) == 0;
+      const auto it = pick(model, random, ready);
+      if (it == model.end()) continue;
+      ready ? cache.release(it->second.handle) : cache.cancel(it->second.handle);
+      model.erase(it);
+    } else {
+      memory.end_frame();
+      if (step % 400 == 9) {
+        budget = static_cast<std::uint64_t>(random.next_integer(10'000, 80'000));
+        cache.set_budget(budget);
+      }
+      cache.begin_batch();
+      expect_lawful(cache.take_evictions(), model, nullptr);
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_same(cache, model)) << step;
+  }
+  EXPECT_GT(cache.stats().evictions, 50u);
+}
+
+TEST(Eviction, RandomLoadsNeverExceedTheBudgetAndAlwaysTakeTheWorst) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    ASSERT_NO_FATAL_FAILURE(run_random_load(seed, 0)) << seed;
+}
+
+TEST(Eviction, RandomLoadsNeverExceedTheBudgetWhenMemoryReturnsFramesLater) {
+  for (std::uint64_t seed = 4; seed <= 6; ++seed)
+    ASSERT_NO_FATAL_FAILURE(run_random_load(seed, 3)) << seed;
+}
+
+// 80 vertices: 1,760 bytes.
+constexpr std::uint64_t kMeshBytes = 1760;
+Rank prefetch(float distance) {
+  return Rank::by_layer(RankGroup::kPrefetch, 0, distance);
+}
+
+class PressureTest : public ::testing::Test {
+ protected:
+  MeshHandle reserve(std::uint32_t index, Rank rank) {
+    const auto p = parameters_of(index, 80);
+    return cache.reserve(key_of(index, p), p, index, rank).value_or(kNoMesh);
+  }
+  void fill(std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i)
+      cache.complete(reserve(i, prefetch(static_cast<float>(16 + i * 16))), {});
+  }
+  models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  FakeMemory memory{1 << 20, 2};
+  GeometryCache cache{memory, registry, 8 * kMeshBytes};
+};
+
+TEST_F(PressureTest, OneRequestThatWaitsForTheGpuEvictsOnceAndNotAgainEveryTick) {
+  fill(8);
+  EXPECT_FALSE(reserve(100, prefetch(0)));
+  EXPECT_EQ(cache.stats().evictions, 1u);
+  memory.end_frame();
+  cache.begin_batch();
+  EXPECT_FALSE(reserve(100, prefetch(0)));
+  EXPECT_EQ(cache.stats().evictions, 1u);
+  memory.end_frame();
+  cache.begin_batch();
+  EXPECT_TRUE(reserve(100, prefetch(0)));
+  EXPECT_EQ(cache.stats().evictions, 1u);
+  EXPECT_EQ(memory.used_bytes(), 8 * kMeshBytes);
+}
+
+TEST_F(PressureTest, EachOfSeveralWaitingRequestsGetsItsOwnRoom) {
+  fill(8);
+  for (std::uint32_t i = 0; i < 3; ++i)
+    EXPECT_FALSE(reserve(100 + i, prefetch(0)));
+  EXPECT_EQ(cache.stats().evictions, 3u);
+  memory.end_frame();
+  memory.end_frame();
+  cache.begin_batch();
+  for (std::uint32_t i = 0; i < 3; ++i)
+    EXPECT_TRUE(reserve(100 + i, prefetch(0)));
+  EXPECT_EQ(cache.stats().evictions, 3u);
+}
+
+TEST_F(PressureTest, AHalvedBudgetIsMetWithinTheNextFramesWithoutEvictingTooMuch) {
+  fill(8);
+  cache.set_budget(4 * kMeshBytes);
+  for (int frame = 0; frame < 2; ++frame) {
+    memory.end_frame();
+    cache.begin_batch();
+  }
+  EXPECT_EQ(memory.used_bytes(), 4 * kMeshBytes);
+  EXPECT_EQ(cache.stats().evictions, 4u);
+}
+
+TEST_F(PressureTest, BytesOfOthersInTheSameMemoryCountAgainstTheBudget) {
+  fill(6);
+  const auto other = memory.reserve(core::VertexLayout::kModel, 80, 240);
+  ASSERT_TRUE(other);
+  EXPECT_TRUE(reserve(100, prefetch(0)));
+  EXPECT_FALSE(reserve(101, prefetch(0)));  // full: one of the six must go first
+  EXPECT_EQ(cache.stats().evictions, 1u);
+  EXPECT_LE(cache.stats().peak_bytes, 8 * kMeshBytes);
+}
+
+TEST_F(PressureTest, MemoryThatRunsOutOnceIsSurvivedAndTheLimitRecovers) {
+  FakeMemory immediate(1 << 20, 0);
+  GeometryCache other(immediate, registry, 8 * kMeshBytes);
+  const auto p = parameters_of(1, 80);
+  for (std::uint32_t i = 0; i < 4; ++i)
+    other.complete(*other.reserve(key_of(i, p), p, i, prefetch(100)), {});
+  immediate.fail_next_reservations(1);
+  EXPECT_TRUE(other.reserve(key_of(50, p), p, 50, prefetch(0)));  // one was evicted, then it fits
+  EXPECT_EQ(other.stats().out_of_memory, 1u);
+  EXPECT_EQ(other.stats().evictions, 1u);
+  EXPECT_EQ(other.stats().limit_bytes, 4 * kMeshBytes);
+  for (int tick = 0; tick < 64; ++tick)
+    other.begin_batch();
+  EXPECT_EQ(other.stats().limit_bytes, 8 * kMeshBytes);
+}
+
+TEST_F(PressureTest, MemoryThatAlwaysFailsCostsOneEvictionATickAndIsAnError) {
+  FakeMemory immediate(1 << 20, 0);
+  GeometryCache other(immediate, registry, 16 * kMeshBytes);
+  const auto p = parameters_of(1, 80);
+  for (std::uint32_t i = 0; i < 8; ++i)
+    other.complete(*other.reserve(key_of(i, p), p, i, prefetch(100)), {});
+  immediate.fail_next_reservations(1000);
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    const auto refused = other.reserve(key_of(100 + i, p), p, 1, prefetch(0));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, core::ErrorCode::kOutOfMemory);
+  }
+  EXPECT_EQ(other.stats().evictions, 1u);
+  EXPECT_EQ(other.stats().ready, 7u);
+}
+
+}  // namespace
+}  // namespace psygen::synthesis

@@ -1,0 +1,232 @@
+#include "engine/synthesis/planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/synthesis/landing.hpp"
+#include "tests/engine/synthesis/fake_models.hpp"
+
+namespace psygen::synthesis {
+namespace {
+using testing::Gate;
+using testing::key_of;
+using testing::parameters_of;
+using testing::registry_of;
+using testing::ScriptedModel;
+
+constexpr std::uint64_t kMeshBytes = 1760;  // 80 vertices
+
+Rank hole(float distance) {
+  return Rank::by_layer(RankGroup::kVisibleHole, 0, distance);
+}
+Rank prefetch(float distance) {
+  return Rank::by_layer(RankGroup::kPrefetch, 0, distance);
+}
+
+// One modeler that works only while the gate is open.
+class PlannerTest : public ::testing::Test {
+ protected:
+  ~PlannerTest() override { gate.open(); }
+  Want want(std::uint32_t index, Rank rank, float deadline_s = 0) {
+    parameters.push_back(std::make_unique<models::Parameters>(parameters_of(index, 80)));
+    return {key_of(index, *parameters.back()), parameters.back().get(), index, rank, deadline_s};
+  }
+  std::vector<Want> wants_of(std::initializer_list<std::uint32_t> indices) {
+    std::vector<Want> wants;
+    for (const std::uint32_t i : indices)
+      wants.push_back(want(i, hole(static_cast<float>(i * 100))));
+    return wants;
+  }
+  PlanReport plan(const std::vector<Want>& wants) {
+    return planner.plan(wants, cache, cost, manager, limits, policy);
+  }
+  std::vector<std::uint64_t> unclaimed_owners() {
+    std::vector<std::uint64_t> owners;
+    std::vector<Request> back = manager.reclaim();
+    for (const Request& r : back)
+      owners.push_back(r.owner);
+    manager.publish(std::move(back));
+    return owners;
+  }
+  // Lets the modeler take one request and hang on it, so that the rest of any plan is unclaimed.
+  void block_modeler() {
+    plan({want(9999, hole(0))});
+    gate.await(1);
+  }
+  void finish_all() {
+    gate.open();
+    manager.wait_all();
+    std::vector<Completion> done;
+    manager.collect(done);
+    land(done, cache, &cost);
+  }
+
+  Gate gate;
+  std::vector<std::unique_ptr<models::Parameters>> parameters;
+  models::Registry registry =
+      registry_of(std::make_unique<ScriptedModel>("gated", [this](const auto& p, int) {
+        if (p.integer(0) == 666) throw std::runtime_error("the beast");
+        gate.wait();
+      }));
+  core::HeapGeometryMemory memory{1 << 20};
+  GeometryCache cache{memory, registry, 6 * kMeshBytes};
+  CostModel cost{registry};
+  PlanLimits limits{1e9, 4096, 16};
+  Policy policy = Policy::kDeadline;
+  SynthesisManager manager{registry, {.modelers = 1, .watchdog_seconds = 0}};
+  Planner planner;
+};
+
+TEST_F(PlannerTest, WantsBecomeRequestsInOrderAndThenReadyMeshes) {
+  block_modeler();
+  const PlanReport report = plan(wants_of({3, 1, 2}));
+  EXPECT_EQ(report.published, 3u);
+  EXPECT_EQ(report.reserved, 3u);
+  EXPECT_GT(report.predicted_seconds, 0);
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{1, 2, 3}));
+  finish_all();
+  const PlanReport next = plan(wants_of({1, 2, 3}));
+  EXPECT_EQ(next.ready, 3u);
+  EXPECT_EQ(next.published, 0u);
+}
+
+TEST_F(PlannerTest, UnclaimedReservationsAreCarriedOverOrGivenBack) {
+  block_modeler();
+  plan(wants_of({1, 2, 3}));
+  const PlanReport report = plan(wants_of({2, 3, 4}));
+  EXPECT_EQ(report.carried, 2u);
+  EXPECT_EQ(report.reserved, 1u);
+  EXPECT_EQ(report.cancelled, 1u);
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{2, 3, 4}));
+  EXPECT_FALSE(cache.find(want(1, hole(0)).key));
+  EXPECT_EQ(memory.used_bytes(), 4 * kMeshBytes);  // the blocked one and three
+}
+
+TEST_F(PlannerTest, ACarriedRequestTakesOverRankAndOwnerOfItsNewWant) {
+  block_modeler();
+  plan({want(1, prefetch(5))});
+  Want again = want(1, hole(2));
+  again.owner = 55;
+  plan({again});
+  const MeshRecord* record = cache.get(cache.find(again.key));
+  EXPECT_EQ(record->owner, 55u);
+  EXPECT_EQ(record->rank, hole(2));
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{55}));
+}
+
+TEST_F(PlannerTest, AMeshInTheHandsOfAModelerIsNeitherCancelledNorRequestedAgain) {
+  block_modeler();
+  const PlanReport wanted = plan({want(9999, hole(0))});
+  EXPECT_EQ(wanted.in_flight, 1u);
+  EXPECT_EQ(wanted.published, 0u);
+  const PlanReport unwanted = plan({});
+  EXPECT_EQ(unwanted.cancelled, 0u);
+  EXPECT_EQ(memory.used_bytes(), kMeshBytes);
+}
+
+TEST_F(PlannerTest, EnoughPredictedWorkEndsThePlanAndTheRestIsDeferred) {
+  block_modeler();
+  limits.seconds_ahead = 2.5 * cost.predict(0, parameters_of(1, 80), 0);
+  const PlanReport report = plan(wants_of({1, 2, 3, 4, 5}));
+  EXPECT_EQ(report.published, 3u);
+  EXPECT_EQ(report.deferred, 2u);
+  // Reservations of the last plan that fall behind the horizon are given back.
+  const PlanReport next = plan({want(10, hole(1)), want(11, hole(2)), want(12, hole(3)),
+                                want(1, hole(4)), want(2, hole(5)), want(3, hole(6))});
+  EXPECT_EQ(next.published, 3u);
+  EXPECT_EQ(next.cancelled, 3u);
+  EXPECT_EQ(next.carried, 0u);
+  limits = {1e9, 2, 16};
+  EXPECT_EQ(plan(wants_of({1, 2, 3})).published, 2u);
+}
+
+TEST_F(PlannerTest, ABetterWantTakesTheRoomOfTheWorstUnclaimedReservation) {
+  block_modeler();
+  plan(wants_of({1, 2, 3, 4, 5}));  // the cache is full with what is in flight
+  auto wants = wants_of({1, 2, 3, 4, 5});
+  wants.push_back(want(100, hole(0)));
+  const PlanReport report = plan(wants);
+  EXPECT_EQ(report.cancelled, 1u);
+  EXPECT_EQ(report.refused, 1u);  // the fifth comes last now and finds no room
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{100, 1, 2, 3, 4}));
+}
+
+TEST_F(PlannerTest, AFullCacheRefusesAFewAndGivesUpWithoutThrashing) {
+  finish_all();
+  for (const std::uint32_t i : {1u, 2u, 3u, 4u, 5u, 6u}) {
+    plan({want(i, hole(static_cast<float>(i)))});
+    finish_all();
+  }
+  limits.max_refusals = 3;
+  std::vector<Want> wants;
+  for (std::uint32_t i = 0; i < 50; ++i)
+    wants.push_back(want(100 + i, prefetch(static_cast<float>(i))));
+  const PlanReport report = plan(wants);
+  EXPECT_EQ(report.refused, 3u);
+  EXPECT_EQ(report.deferred, 47u);
+  EXPECT_EQ(report.published, 0u);
+  EXPECT_TRUE(cache.take_evictions().empty());
+}
+
+TEST_F(PlannerTest, RepeatedWantsMakeOneRequest) {
+  block_modeler();
+  const PlanReport fresh = plan({want(1, hole(1)), want(1, hole(2))});
+  EXPECT_EQ(fresh.published, 1u);
+  const PlanReport carried = plan({want(1, hole(1)), want(1, hole(2))});
+  EXPECT_EQ(carried.published, 1u);
+  EXPECT_EQ(carried.cancelled, 0u);
+}
+
+TEST_F(PlannerTest, AFailedMeshIsNotRequestedAgainAndAgain) {
+  finish_all();
+  plan({want(666, hole(1))});
+  finish_all();
+  const Want beast = want(666, hole(1));
+  EXPECT_EQ(cache.get(cache.find(beast.key))->state, MeshState::kFailed);
+  EXPECT_EQ(cache.failure_reason(cache.find(beast.key)), "gated level 0 threw: the beast");
+  const PlanReport report = plan({beast});
+  EXPECT_EQ(report.failed, 1u);
+  EXPECT_EQ(report.published, 0u);
+}
+
+TEST_F(PlannerTest, FifoServesWhatWasRequestedBeforeAheadOfWhatIsNew) {
+  policy = Policy::kFifo;
+  block_modeler();
+  plan(wants_of({5, 4}));
+  plan(wants_of({1, 4, 5}));
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{5, 4, 1}));
+}
+
+TEST_F(PlannerTest, DeadlinesOrderWhatIsPredicted) {
+  block_modeler();
+  plan({want(1, Rank::by_deadline(3, 1), 3), want(2, Rank::by_deadline(1, 9), 1), want(3, hole(7)),
+        want(4, prefetch(0), 9)});
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{3, 2, 1, 4}));
+}
+
+TEST_F(PlannerTest, LandingDropsStaleHandlesAndKeepsHungDestinations) {
+  const auto p = parameters_of(1, 80);
+  const MeshHandle hung = *cache.reserve(key_of(1, p), p, 1, hole(1));
+  const MeshHandle stale = *cache.reserve(key_of(2, p), p, 2, hole(1));
+  const MeshHandle fine = *cache.reserve(key_of(3, p), p, 3, hole(1));
+  cache.cancel(stale);
+  std::vector<Completion> done(4);
+  done[0].handle = hung;
+  done[0].abandoned = true;
+  done[1].handle = stale;
+  done[1].ok = true;
+  done[2].handle = fine;
+  done[2].ok = true;
+  done[3].handle = hung;
+  done[3].late = true;
+  const LandingReport first = land({done.data(), 3}, cache, nullptr);
+  EXPECT_EQ(first.ready, 1u);
+  EXPECT_EQ(first.failed, 1u);
+  EXPECT_EQ(first.bytes, kMeshBytes);
+  EXPECT_EQ(memory.used_bytes(), 2 * kMeshBytes);
+  EXPECT_EQ(land({done.data() + 3, 1}, cache, nullptr).settled, 1u);
+  EXPECT_EQ(memory.used_bytes(), kMeshBytes);
+}
+
+}  // namespace
+}  // namespace psygen::synthesis

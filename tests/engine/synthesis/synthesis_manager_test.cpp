@@ -1,0 +1,361 @@
+#include "engine/synthesis/synthesis_manager.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "engine/synthesis/content_hash.hpp"
+#include "engine/synthesis/synthesize.hpp"
+#include "tests/engine/synthesis/fake_models.hpp"
+
+namespace psygen::synthesis {
+namespace {
+using testing::FakeModel;
+using testing::Gate;
+using testing::key_of;
+using testing::parameters_of;
+using testing::registry_of;
+using testing::ScriptedModel;
+
+// Requests with destinations of their own, without a cache.
+class Jobs {
+ public:
+  explicit Jobs(const models::Registry& registry) : registry_(registry) {}
+  Request make(std::uint32_t index, models::ModelIndex model = 0, std::int64_t vertices = 20) {
+    const auto p = parameters_of(index, vertices);
+    const auto level = static_cast<std::uint16_t>(index % 2);
+    places_.push_back(*HeapDestination::make(registry_[model], p, level));
+    Request r;
+    r.handle = {index, 1};
+    r.key = key_of(index, p, model, level);
+    r.parameters = p;
+    r.destination = places_.back().view();
+    r.size = places_.back().size();
+    r.owner = index;
+    return r;
+  }
+  std::vector<Request> make_many(std::uint32_t first, std::uint32_t count) {
+    std::vector<Request> requests;
+    for (std::uint32_t i = 0; i < count; ++i)
+      requests.push_back(make(first + i));
+    return requests;
+  }
+
+ private:
+  const models::Registry& registry_;
+  std::vector<HeapDestination> places_;
+};
+
+SynthesisOptions with(unsigned modelers) {
+  SynthesisOptions options;
+  options.modelers = modelers;
+  options.hash_content = true;
+  options.watchdog_seconds = 0;
+  return options;
+}
+
+std::vector<Completion> run(const models::Registry& registry, unsigned modelers,
+                            std::vector<Request> plan) {
+  SynthesisManager manager(registry, with(modelers));
+  manager.publish(std::move(plan));
+  EXPECT_TRUE(manager.wait_all());
+  std::vector<Completion> done;
+  manager.collect(done);
+  return done;
+}
+
+std::uint64_t world_hash(const std::vector<Completion>& done) {
+  WorldHash hash;
+  for (const Completion& c : done)
+    hash.add(c.content_hash);
+  return hash.value();
+}
+
+TEST(SynthesisManager, OneToEightModelersAndAnyOrderMakeTheSameWorld) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  const std::vector<Request> plan = jobs.make_many(0, 200);
+  WorldHash serial;
+  for (const Request& r : plan) {
+    ASSERT_TRUE(synthesize_guarded(registry[0], r.parameters, r.key.level, r.destination).ok);
+    serial.add(content_hash(r.key, r.destination));
+  }
+  core::RandomStream random(3, 0, 0, 0, core::Purpose::kParameters);
+  for (const unsigned modelers : {1u, 2u, 3u, 8u}) {
+    std::vector<Request> shuffled = plan;
+    for (std::size_t i = shuffled.size(); i > 1; --i)
+      std::swap(shuffled[i - 1], shuffled[random.next_u64() % i]);
+    const auto done = run(registry, modelers, shuffled);
+    EXPECT_EQ(done.size(), 200u);
+    EXPECT_EQ(world_hash(done), serial.value()) << modelers;
+  }
+}
+
+TEST(SynthesisManager, ACompletionSaysWhatWasAskedAndWhatItTook) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  Request request = jobs.make(42);
+  request.complexity = 7;
+  request.predicted_seconds = 0.5;
+  const auto done = run(registry, 1, {request});
+  ASSERT_EQ(done.size(), 1u);
+  const Completion& c = done[0];
+  EXPECT_TRUE(c.ok);
+  EXPECT_EQ(c.handle, request.handle);
+  EXPECT_EQ(c.key, request.key);
+  EXPECT_EQ(c.owner, 42u);
+  EXPECT_EQ(c.complexity, 7);
+  EXPECT_EQ(c.predicted_seconds, 0.5);
+  EXPECT_GE(c.seconds, 0);
+  EXPECT_LE(c.started_s, c.finished_s);
+  EXPECT_EQ(c.tight.max, glm::vec3(0.5F));
+  EXPECT_EQ(c.content_hash, content_hash(request.key, request.destination));
+}
+
+TEST(SynthesisManager, RequestsAreClaimedInTheOrderOfThePlan) {
+  std::vector<std::int64_t> order;  // one modeler: no race
+  const models::Registry registry = registry_of(std::make_unique<ScriptedModel>(
+      "order", [&](const models::Parameters& p, int) { order.push_back(p.integer(0)); }));
+  Jobs jobs(registry);
+  run(registry, 1, {jobs.make(5), jobs.make(3), jobs.make(9)});
+  EXPECT_EQ(order, (std::vector<std::int64_t>{5, 3, 9}));
+}
+
+TEST(SynthesisManager, UnderConstantReplanningEveryRequestIsDoneOnceOrReclaimedOnce) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  constexpr std::uint32_t kCount = 1000;
+  std::vector<Request> pending = jobs.make_many(0, kCount);
+  std::map<std::uint64_t, int> seen;
+  std::vector<Completion> done;
+  SynthesisManager manager(registry, with(3));
+  core::RandomStream random(5, 0, 0, 0, core::Purpose::kParameters);
+  while (done.size() < kCount) {
+    // Everything or only a part is planned, sometimes twice without reclaiming in between.
+    const auto some =
+        static_cast<std::size_t>(random.next_integer(0, static_cast<std::int64_t>(pending.size())));
+    std::vector<Request> plan(pending.end() - static_cast<std::ptrdiff_t>(some), pending.end());
+    pending.resize(pending.size() - some);
+    manager.publish(std::move(plan));
+    if (random.next_integer(0, 2) > 0) {
+      const std::vector<Request> back = manager.reclaim();
+      pending.insert(pending.end(), back.begin(), back.end());
+    }
+    manager.collect(done);
+    std::this_thread::yield();
+  }
+  const std::vector<Request> rest = manager.reclaim();
+  EXPECT_TRUE(rest.empty());
+  manager.collect(done);
+  for (const Completion& c : done) {
+    EXPECT_TRUE(c.ok);
+    ++seen[c.owner];
+  }
+  EXPECT_EQ(done.size(), kCount);
+  EXPECT_EQ(seen.size(), kCount);
+  const SynthesisStats stats = manager.stats();
+  EXPECT_EQ(stats.models, kCount);
+  EXPECT_EQ(stats.published, stats.reclaimed + kCount);
+}
+
+TEST(SynthesisManager, ReclaimReturnsWhatIsUnclaimedInOrderAndLeavesWhatRuns) {
+  Gate gate;
+  const models::Registry registry = registry_of(std::make_unique<ScriptedModel>(
+      "gated", [&](const models::Parameters&, int) { gate.wait(); }));
+  Jobs jobs(registry);
+  SynthesisManager manager(registry, with(1));
+  manager.publish(jobs.make_many(0, 4));
+  gate.await(1);
+  const std::vector<Request> back = manager.reclaim();
+  ASSERT_EQ(back.size(), 3u);
+  for (std::uint32_t i = 0; i < 3; ++i)
+    EXPECT_EQ(back[i].owner, i + 1);
+  EXPECT_TRUE(manager.reclaim().empty());
+  EXPECT_EQ(manager.outstanding(), 1u);
+  gate.open();
+  EXPECT_TRUE(manager.wait_all());
+  std::vector<Completion> done;
+  EXPECT_EQ(manager.collect(done), 1u);
+  EXPECT_EQ(done[0].owner, 0u);
+}
+
+TEST(SynthesisManager, APlanPublishedOverAnotherLosesNothing) {
+  Gate gate;
+  const models::Registry registry = registry_of(std::make_unique<ScriptedModel>(
+      "gated", [&](const models::Parameters&, int) { gate.wait(); }));
+  Jobs jobs(registry);
+  SynthesisManager manager(registry, with(1));
+  manager.publish(jobs.make_many(0, 3));
+  gate.await(1);
+  manager.publish(jobs.make_many(10, 2));
+  const std::vector<Request> back = manager.reclaim();
+  EXPECT_EQ(back.size(), 4u);  // two of the first plan, two of the second
+  gate.open();
+}
+
+TEST(SynthesisManager, AModelThatThrowsFailsAloneAndItsModelerGoesOn) {
+  models::Registry registry;
+  ASSERT_TRUE(registry.add(std::make_unique<ScriptedModel>("moody", [](const auto& p, int) {
+    if (p.integer(0) % 3 == 0) throw std::runtime_error("not today");
+    if (p.integer(0) % 3 == 1) throw 42;
+  })));
+  ASSERT_TRUE(registry.add(std::make_unique<testing::LyingModel>()));
+  Jobs jobs(registry);
+  std::vector<Request> plan = jobs.make_many(0, 9);
+  plan.push_back(jobs.make(9, 1));
+  const auto done = run(registry, 2, plan);
+  ASSERT_EQ(done.size(), 10u);
+  for (const Completion& c : done) {
+    EXPECT_EQ(c.ok, c.owner < 9 && c.owner % 3 == 2) << c.owner;
+    if (c.owner == 0) {
+      EXPECT_EQ(c.error, "moody level 0 threw: not today");
+    }
+    if (c.owner == 1) {
+      EXPECT_EQ(c.error, "moody level 1 threw something that is no std::exception");
+    }
+    if (c.owner == 9) {
+      EXPECT_EQ(c.error, "lying level 1 returned bounds that are not a box");
+    }
+  }
+}
+
+// Hangs on requests with an even seed until the gate opens; time moves only by hand.
+class HangingTest : public ::testing::Test {
+ protected:
+  SynthesisOptions options(unsigned modelers) {
+    SynthesisOptions o;
+    o.modelers = modelers;
+    o.watchdog_seconds = 10;
+    o.clock = [this] { return now.load(); };
+    return o;
+  }
+  std::atomic<double> now{100};
+  Gate gate;
+  models::Registry registry =
+      registry_of(std::make_unique<ScriptedModel>("hanging", [this](const auto& p, int) {
+        if (p.integer(0) % 2 == 0) gate.wait();
+      }));
+  Jobs jobs{registry};
+  std::vector<Completion> done;
+};
+
+TEST_F(HangingTest, TheWatchdogGivesUpAHungRequestAndTheOthersGoOnWithANewModeler) {
+  SynthesisManager manager(registry, options(1));
+  manager.publish({jobs.make(0), jobs.make(1), jobs.make(3)});
+  gate.await(1);
+  now = 109;
+  EXPECT_EQ(manager.collect(done), 0u);
+  EXPECT_TRUE(manager.hung().empty());
+  now = 111;
+  EXPECT_TRUE(manager.wait_all());  // 1 and 3 need the new modeler
+  manager.collect(done);
+  ASSERT_EQ(done.size(), 3u);
+  EXPECT_FALSE(done[0].ok);
+  EXPECT_TRUE(done[0].abandoned);
+  EXPECT_EQ(done[0].owner, 0u);
+  EXPECT_EQ(done[0].error, "hanging level 0 was given up after 11.0 s without an end");
+  EXPECT_TRUE(done[1].ok && done[2].ok);
+  ASSERT_EQ(manager.hung().size(), 1u);
+  EXPECT_EQ(manager.hung()[0].owner, 0u);
+  EXPECT_EQ(manager.modeler_count(), 1u);
+
+  gate.open();
+  done.clear();
+  while (manager.collect(done) == 0)
+    std::this_thread::yield();
+  ASSERT_EQ(done.size(), 1u);
+  EXPECT_TRUE(done[0].late);
+  EXPECT_FALSE(done[0].ok);
+  EXPECT_EQ(done[0].owner, 0u);
+  while (!manager.hung().empty())
+    manager.collect(done);
+  EXPECT_EQ(manager.stats().given_up, 1u);
+  EXPECT_EQ(manager.stats().models, 2u);
+}
+
+TEST_F(HangingTest, WhenEveryModelerHangsAndNoneIsLeftWaitingEnds) {
+  SynthesisOptions o = options(2);
+  o.max_replacements = 0;
+  SynthesisManager manager(registry, o);
+  manager.publish({jobs.make(0), jobs.make(2), jobs.make(4)});
+  gate.await(2);
+  now = 200;
+  manager.collect(done);
+  EXPECT_EQ(done.size(), 2u);
+  EXPECT_EQ(manager.modeler_count(), 0u);
+  EXPECT_FALSE(manager.wait_all());
+  EXPECT_EQ(manager.reclaim().size(), 1u);
+  gate.open();
+  while (!manager.hung().empty())
+    manager.collect(done);
+}
+
+TEST_F(HangingTest, TheDestructorDoesNotWaitForAModelThatHangs) {
+  {
+    SynthesisManager manager(registry, options(1));
+    manager.publish({jobs.make(0)});
+    gate.await(1);
+    now = 200;
+  }
+  gate.open();  // the modeler is on its own now; it touches only what it shares with nobody
+  SUCCEED();
+}
+
+TEST(SynthesisManager, IdleManagersAndDroppedPlansEndCleanly) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  { SynthesisManager idle(registry, with(4)); }
+  {
+    SynthesisManager busy(registry, with(4));
+    busy.publish(jobs.make_many(0, 500));
+  }
+  SynthesisManager empty(registry, with(2));
+  empty.publish({});
+  EXPECT_TRUE(empty.wait_all());
+  EXPECT_TRUE(empty.reclaim().empty());
+}
+
+TEST(SynthesisManager, StatisticsAddUpOverTheModelers) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  SynthesisManager manager(registry, with(2));
+  std::vector<Request> plan;
+  for (std::uint32_t i = 0; i < 50; ++i)
+    plan.push_back(jobs.make(2 * i));  // level 0: 20 vertices, 20 triangles
+  manager.publish(std::move(plan));
+  EXPECT_TRUE(manager.wait_all());
+  const SynthesisStats stats = manager.stats();
+  EXPECT_EQ(stats.models, 50u);
+  EXPECT_EQ(stats.triangles, 50u * 20);
+  EXPECT_EQ(stats.bytes, 50u * (20 * 16 + 60 * 2));
+  ASSERT_EQ(stats.modelers.size(), 2u);
+  EXPECT_EQ(stats.modelers[0].models + stats.modelers[1].models, 50u);
+  EXPECT_GE(modeler_count_for(0), 1u);
+  EXPECT_EQ(modeler_count_for(5), 5u);
+}
+
+TEST(CompletionQueue, HandsOverEverythingInOrderAcrossSegments) {
+  CompletionQueue queue;
+  constexpr std::uint64_t kCount = 10'000;
+  std::thread producer([&] {
+    for (std::uint64_t i = 0; i < kCount; ++i) {
+      Completion c;
+      c.owner = i;
+      c.error = "number " + std::to_string(i);
+      queue.push(std::move(c));
+    }
+  });
+  std::vector<Completion> out;
+  while (out.size() < kCount)
+    queue.drain(out);
+  producer.join();
+  for (std::uint64_t i = 0; i < kCount; ++i) {
+    ASSERT_EQ(out[i].owner, i);
+    ASSERT_EQ(out[i].error, "number " + std::to_string(i));
+  }
+  EXPECT_EQ(queue.drain(out), 0u);
+}
+
+}  // namespace
+}  // namespace psygen::synthesis
