@@ -74,10 +74,11 @@ std::string cards(const Summary& s) {
                "visible to drawn, p99: " + shown(s.missing.time_to_visible_ms.p99, ms));
   html += card(over ? "bad" : "", "Largest cache", shown(s.cache.peak_bytes, bytes_text), "",
                "of a budget of " + bytes_text(static_cast<double>(s.cache.budget_bytes)));
-  html += card("", "Synthesis", shown(s.synthesis.triangles_per_second, count_text), "triangles/s",
+  html += card("", "Synthesis, triangles per second",
+               shown(s.synthesis.triangles_per_second, count_text), "",
                shown(s.synthesis.models, count_text) + " models, per busy modeler");
-  html += card("", "The whole world", shown(s.world.triangles, count_text), "triangles",
-               shown(s.world.bytes, bytes_text) + " if it were all generated");
+  html += card("", "The whole world, triangles", shown(s.world.triangles, count_text), "",
+               shown(s.world.bytes_paper, size_text) + " in the paper's format");
   html += card("", "Resident memory, peak", shown(s.memory.peak_rss_bytes, bytes_text), "",
                shown(s.draw.triangles_p50, count_text) + " triangles in the median frame");
   return html + "</div>\n";
@@ -118,7 +119,7 @@ Plot systems_plot(const FrameLog& log, const Summary&, Plot plot) {
   plot.kind = PlotKind::kStacked;
   std::vector<double> rest = column(log, [](const auto& r) { return r.frame_ms; });
   for (std::size_t i = 0; i < log.systems().size(); ++i) {
-    PlotSeries series{log.systems()[i], static_cast<int>(i % 8) + 1, {}};
+    PlotSeries series{log.systems()[i], static_cast<int>((i + 2) % 8) + 1, {}};
     series.values = column(log, [i](const auto& r) { return r.system_ms[i]; });
     for (std::size_t k = 0; k < rest.size(); ++k)
       rest[k] -= series.values[k];
@@ -223,9 +224,9 @@ std::string world_facts(const Summary& s) {
   facts.add("blocks", endless ? std::string("endless")
                               : fmt::format("{} × {}", s.world.blocks[0], s.world.blocks[1]));
   facts.add("triangles", shown(s.world.triangles, count_text));
-  facts.add("size", shown(s.world.bytes, bytes_text));
-  facts.add("size in the paper's format", shown(s.world.bytes_paper, bytes_text));
-  facts.add("world hash",
+  facts.add("size", shown(s.world.bytes, size_text));
+  facts.add("size in the paper's format", shown(s.world.bytes_paper, size_text));
+  facts.add("hash",
             shown(s.hash.world, [&](double) { return fmt::format("{:016x}", *s.hash.world); }));
   return facts.end();
 }

@@ -15,7 +15,7 @@ namespace {
 
 // The drawing in the units of its view box.
 constexpr double kWidth = 1000, kHeight = 250;
-constexpr double kLeft = 60, kRight = 988, kTop = 14, kBottom = 206;
+constexpr double kLeft = 60, kRight = 888, kTop = 14, kBottom = 206;
 constexpr std::size_t kMaxColumns = 900;
 
 // Neighbouring frames drawn as one.
@@ -77,7 +77,7 @@ class Drawing {
     draw_series();
     for (const PlotLevel& level : plot_.levels)
       draw_level(level);
-    text_ += "<line class=\"cursor\" y1=\"14\" y2=\"206\" x1=\"-9\" x2=\"-9\"/></svg>";
+    text_ += "<line class=\"cursor\" visibility=\"hidden\" y1=\"14\" y2=\"206\"/></svg>";
     return std::move(text_);
   }
 
@@ -209,12 +209,13 @@ class Drawing {
     }
   }
 
+  // The label stands right of the drawing, so that curves do not run through it.
   void draw_level(const PlotLevel& level) {
     const double y = y_of(level.value);
     fmt::format_to(out(),
                    "<line class=\"level\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>"
-                   "<text class=\"level\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>",
-                   kLeft, kRight, y, y, kRight - 4, level.label_below ? y + 15 : y - 6,
+                   "<text class=\"level\" x=\"{}\" y=\"{:.1f}\">{}</text>",
+                   kLeft, kRight, y, y, kRight + 6, level.label_below ? y + 11 : y - 1,
                    escaped(level.label));
   }
 

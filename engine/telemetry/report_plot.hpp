@@ -21,7 +21,7 @@ struct PlotSeries {
   std::vector<double> values;  // one per entry of Plot::times_s
 };
 
-// A dashed horizontal line with a label at its right end.
+// A dashed horizontal line with a label right of it, just above or below its height.
 struct PlotLevel {
   std::string label;
   double value = 0;

@@ -78,18 +78,18 @@ for (const figure of document.querySelectorAll("figure")) {
   const data = JSON.parse(figure.querySelector("script").textContent);
   const svg = figure.querySelector("svg"), cursor = svg.querySelector(".cursor");
   const readout = figure.querySelector(".readout");
-  const hide = () => { readout.hidden = true; cursor.setAttribute("x1", -9);
-    cursor.setAttribute("x2", -9); };
+  const hide = () => { readout.hidden = true; cursor.setAttribute("visibility", "hidden"); };
   svg.addEventListener("pointerleave", hide);
   svg.addEventListener("pointermove", event => {
     const box = svg.getBoundingClientRect();
     const x = (event.clientX - box.left) / box.width * 1000;
-    if (!data.x.length || x < 50) return hide();
+    if (!data.x.length || x < 50 || x > 900) return hide();
     let low = 0, high = data.x.length - 1;
     while (low < high) { const middle = (low + high) >> 1;
       if (data.x[middle] < x) low = middle + 1; else high = middle; }
     if (low > 0 && x - data.x[low - 1] < data.x[low] - x) low--;
     cursor.setAttribute("x1", data.x[low]); cursor.setAttribute("x2", data.x[low]);
+    cursor.setAttribute("visibility", "visible");
     readout.replaceChildren();
     const add = (tag, text) => { const line = document.createElement(tag);
       line.textContent = text; readout.append(line); };

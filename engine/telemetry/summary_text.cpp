@@ -11,6 +11,9 @@ namespace {
 std::string plain(double value) {
   return three_digits(value);
 }
+std::string whole(double value) {
+  return fmt::format("{:.0f}", value);
+}
 std::string milliseconds(double value) {
   return three_digits(value) + " ms";
 }
@@ -44,8 +47,8 @@ void add_run(Table& table, const Summary& s) {
             fmt::format("{}, seed {}, {}", s.world.name, s.world.seed, blocks_text(s.world)));
   table.row("if generated",
             fmt::format("{} triangles, {} ({} in the paper's format)",
-                        or_dash(s.world.triangles, count_text), or_dash(s.world.bytes, bytes_text),
-                        or_dash(s.world.bytes_paper, bytes_text)));
+                        or_dash(s.world.triangles, count_text), or_dash(s.world.bytes, size_text),
+                        or_dash(s.world.bytes_paper, size_text)));
   table.section("run");
   table.row("device", s.device.name);
   table.row("how", fmt::format("{}, {}, {} modeler{}, {} x {}, levels of detail {}", s.run.paradigm,
@@ -65,11 +68,11 @@ void add_frames(Table& table, const Summary& s) {
                                          or_dash(s.frame_ms.p99, milliseconds),
                                          or_dash(s.frame_ms.max, milliseconds)));
   table.row("lowest 1 %", or_dash(s.low1_fps, plain) + " frames/s");
-  table.row("hitches", fmt::format("{}, {} of the time in stutter", or_dash(s.hitches, plain),
+  table.row("hitches", fmt::format("{}, {} of the time in stutter", or_dash(s.hitches, whole),
                                    or_dash(s.stutter_percent, percent)));
   table.row("drawn (median)",
             fmt::format("{} triangles in {} draws", or_dash(s.draw.triangles_p50, count_text),
-                        or_dash(s.draw.draws_p50, plain)));
+                        or_dash(s.draw.draws_p50, whole)));
   table.section("systems");
   for (const SystemTimes& system : s.system_ms) {
     table.row(system.name, fmt::format("p50 {}, p99 {}", or_dash(system.p50, milliseconds),
@@ -80,7 +83,7 @@ void add_frames(Table& table, const Summary& s) {
 void add_streaming(Table& table, const Summary& s) {
   const auto& wait = s.missing.time_to_visible_ms;
   table.section("missing");
-  table.row("frames with holes", or_dash(s.missing.frames, plain));
+  table.row("frames with holes", or_dash(s.missing.frames, whole));
   table.row("pixels, worst", or_dash(s.missing.pixels_max_percent, percent));
   table.row("time to visible", fmt::format("p50 {}, p99 {}", or_dash(wait.p50, milliseconds),
                                            or_dash(wait.p99, milliseconds)));

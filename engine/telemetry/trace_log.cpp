@@ -94,47 +94,53 @@ double TraceLog::earliest_s() const {
   return std::isfinite(earliest) ? earliest : 0.0;
 }
 
-core::Result<void> TraceLog::write(const std::filesystem::path& path) const {
+void TraceLog::write_ring(OutputFile& file, std::size_t track, double origin_s,
+                          std::span<const std::string> quoted_names) const {
   constexpr double kMicroseconds = 1e6;
+  const Ring& ring = rings_[track];
+  const std::string title = quoted(ring.name);
+  if (!ring.is_counter) {
+    file.write(
+        fmt::format(",\n{{\"ph\":\"M\",\"pid\":1,\"tid\":{0},\"name\":\"thread_name\","
+                    "\"args\":{{\"name\":{1}}}}},\n{{\"ph\":\"M\",\"pid\":1,\"tid\":{0},"
+                    "\"name\":\"thread_sort_index\",\"args\":{{\"sort_index\":{0}}}}}",
+                    track, title));
+  }
+  // Oldest first: a full ring starts where the next span would be written.
+  const std::size_t first = ring.added > ring.spans.size() ? ring.added % max_spans_ : 0;
+  for (std::size_t k = 0; k < ring.spans.size(); ++k) {
+    const Span& span = ring.spans[(first + k) % ring.spans.size()];
+    const double time_us = (span.start_s - origin_s) * kMicroseconds;
+    if (ring.is_counter) {
+      file.write(
+          fmt::format(",\n{{\"ph\":\"C\",\"pid\":1,\"ts\":{:.3f},\"name\":{},"
+                      "\"args\":{{\"value\":{}}}}}",
+                      time_us, title, span.length_or_value));
+      continue;
+    }
+    file.write(
+        fmt::format(",\n{{\"ph\":\"X\",\"pid\":1,\"tid\":{},\"ts\":{:.3f},\"dur\":{:.3f},"
+                    "\"name\":{}",
+                    track, time_us, span.length_or_value * kMicroseconds, quoted_names[span.name]));
+    file.write(span.argument == kNoArgument
+                   ? std::string("}")
+                   : fmt::format(",\"args\":{{\"id\":{}}}}}", span.argument));
+  }
+}
+
+core::Result<void> TraceLog::write(const std::filesystem::path& path) const {
   std::vector<std::string> names;
   for (const std::string& name : names_)
     names.push_back(quoted(name));
-  const double origin = earliest_s();
+  const double origin_s = earliest_s();
   OutputFile file(path);
-  file.write(R"({"displayTimeUnit":"ms","otherData":{"spans_dropped":)");
-  file.write(fmt::format("\"{}\"}},\n\"traceEvents\":[\n", dropped_count()));
+  file.write(
+      fmt::format("{{\"displayTimeUnit\":\"ms\",\"otherData\":{{\"spans_dropped\":\"{}\"}},\n"
+                  "\"traceEvents\":[\n",
+                  dropped_count()));
   file.write(R"({"ph":"M","pid":1,"name":"process_name","args":{"name":"psygen"}})");
-  for (std::size_t i = 0; i < rings_.size(); ++i) {
-    const Ring& ring = rings_[i];
-    const std::string track = quoted(ring.name);
-    if (!ring.is_counter) {
-      file.write(
-          fmt::format(",\n{{\"ph\":\"M\",\"pid\":1,\"tid\":{0},\"name\":\"thread_name\","
-                      "\"args\":{{\"name\":{1}}}}},\n{{\"ph\":\"M\",\"pid\":1,\"tid\":{0},"
-                      "\"name\":\"thread_sort_index\",\"args\":{{\"sort_index\":{0}}}}}",
-                      i, track));
-    }
-    // Oldest first: a full ring starts where the next span would be written.
-    const std::size_t first = ring.added > ring.spans.size() ? ring.added % max_spans_ : 0;
-    for (std::size_t k = 0; k < ring.spans.size(); ++k) {
-      const Span& span = ring.spans[(first + k) % ring.spans.size()];
-      const double time_us = (span.start_s - origin) * kMicroseconds;
-      if (ring.is_counter) {
-        file.write(
-            fmt::format(",\n{{\"ph\":\"C\",\"pid\":1,\"ts\":{:.3f},\"name\":{},"
-                        "\"args\":{{\"value\":{}}}}}",
-                        time_us, track, span.length_or_value));
-        continue;
-      }
-      file.write(
-          fmt::format(",\n{{\"ph\":\"X\",\"pid\":1,\"tid\":{},\"ts\":{:.3f},\"dur\":{:.3f},"
-                      "\"name\":{}",
-                      i, time_us, span.length_or_value * kMicroseconds, names[span.name]));
-      file.write(span.argument == kNoArgument
-                     ? std::string("}")
-                     : fmt::format(",\"args\":{{\"id\":{}}}}}", span.argument));
-    }
-  }
+  for (std::size_t track = 0; track < rings_.size(); ++track)
+    write_ring(file, track, origin_s, names);
   file.write("\n]}\n");
   return file.close();
 }

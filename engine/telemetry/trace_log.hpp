@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -14,6 +15,8 @@
 #include "engine/core/error.hpp"
 
 namespace psygen::telemetry {
+
+class OutputFile;
 
 class TraceLog {
  public:
@@ -56,6 +59,8 @@ class TraceLog {
   Track add_ring(std::string_view name, bool is_counter);
   void add(Ring& ring, const Span& span);
   double earliest_s() const;
+  void write_ring(OutputFile& file, std::size_t track, double origin_s,
+                  std::span<const std::string> quoted_names) const;
 
   std::size_t max_spans_;
   std::vector<Ring> rings_;

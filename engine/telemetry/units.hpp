@@ -1,5 +1,6 @@
-// Figures as people read them. Three significant digits, decimal prefixes for counts, binary ones
-// for bytes. For reports and terminals, not for files that programs read.
+// Figures as people read them. Three significant digits, decimal prefixes for counts and
+// sizes of worlds, binary ones for memory. For reports and terminals, not for files that programs
+// read.
 #pragma once
 
 #include <fmt/format.h>
@@ -31,6 +32,11 @@ inline std::string with_prefix(double value, double step, const std::array<const
 
 inline std::string bytes_text(double bytes) {
   return with_prefix(bytes, 1024.0, {"B", "KiB", "MiB", "GiB", "TiB", "PiB"});
+}
+
+// Sizes of data on no particular device, in the decimal units of disks: 8.40 TB.
+inline std::string size_text(double bytes) {
+  return with_prefix(bytes, 1000.0, {"B", "kB", "MB", "GB", "TB", "PB"});
 }
 
 // 12.3 thousand, 32.8 billion.

@@ -1,0 +1,54 @@
+// A camera that flies: WASD along and across the view, E and Q up and down, mouse or arrow keys to
+// turn, wheel for the speed, shift faster, control slower. Speeds follow the keys smoothly and the
+// same way at every frame rate. A pure function of pose, input and time; knows no window and no
+// world (it flies through mountains). Nothing that is not a number gets into the pose.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "engine/core/camera.hpp"
+#include "engine/platform/input.hpp"
+
+namespace psygen::platform {
+
+struct FlyCameraSettings {
+  double speed_m_s = 20.0;  // without shift and control
+  double min_speed_m_s = 0.5;
+  double max_speed_m_s = 2000.0;
+  double wheel_factor = 1.25;  // of the speed per step
+  double shift_factor = 5.0;
+  double control_factor = 0.2;
+  double response_s = 0.12;      // time to 63 % of a new speed
+  double mouse_rad_px = 0.0025;  // turn per pixel
+  double arrow_rad_s = 1.4;      // turn by arrow keys
+  double max_pitch_rad = 1.55;   // just below straight up and down
+  double max_step_s = 0.25;      // longer frames count as this
+};
+
+class FlyCamera {
+ public:
+  explicit FlyCamera(const FlyCameraSettings& settings = {});
+
+  // The pose `dt_s` seconds after `pose`. The position is not normalised to its block. A pose that
+  // is not valid comes back as it was; so does one that the flight would make invalid.
+  core::CameraPose update(const core::CameraPose& pose, const InputState& input, double dt_s);
+
+  // Speed in metres per second at which the keys move the camera, without shift and control.
+  double speed_m_s() const { return speed_m_s_; }
+  // Present velocity in metres per second: +X, up, +Z. For prediction.
+  glm::dvec3 velocity_m_s() const { return velocity_m_s_; }
+  // Stands still at once, for teleports.
+  void stop();
+
+ private:
+  void turn(core::CameraPose& pose, const InputState& input, double dt_s);
+  void change_speed(double wheel);
+  glm::dvec3 wanted_velocity(const core::CameraPose& pose, const InputState& input) const;
+
+  FlyCameraSettings settings_;
+  double speed_m_s_;
+  glm::dvec3 velocity_m_s_{0.0};
+  glm::dvec2 arrow_rad_s_{0.0};  // present turn by arrow keys: right, up
+};
+
+}  // namespace psygen::platform

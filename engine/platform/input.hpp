@@ -1,0 +1,36 @@
+// What the person at the keyboard and mouse did since the last frame. A plain value that tests make
+// up and the window fills in; knows no window system.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <glm/vec2.hpp>
+
+namespace psygen::platform {
+
+// Keys by their place on a US keyboard, so that WASD is the same block of keys everywhere. Left and
+// right shift, control and alt are one key each.
+enum class Key : std::uint8_t {
+  kA, kB, kC, kD, kE, kF, kG, kH, kI, kJ, kK, kL, kM, kN, kO, kP, kQ, kR, kS, kT, kU, kV, kW, kX,
+  kY, kZ,
+  k0, k1, k2, k3, k4, k5, k6, k7, k8, k9,
+  kF1, kF2, kF3, kF4, kF5, kF6, kF7, kF8, kF9, kF10, kF11, kF12,
+  kUp, kDown, kLeft, kRight, kPageUp, kPageDown, kHome, kEnd,
+  kShift, kControl, kAlt, kSpace, kTab, kEnter, kEscape, kBackspace,
+  kCount
+};
+using KeySet = std::bitset<static_cast<std::size_t>(Key::kCount)>;
+
+struct InputState {
+  KeySet held;         // down at the end of the frame
+  KeySet went_down;    // pressed during the frame, even if released again; not repeated while held
+  glm::dvec2 look_px{0.0};  // mouse movement while looking: right, down; pixels
+  double wheel = 0;         // steps; positive is away from the person
+  bool looking = false;     // the right button is down or the pointer is captured
+  bool resized = false;     // the framebuffer changed its size; ask the window for the new one
+
+  bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
+  bool was_pressed(Key key) const { return went_down[static_cast<std::size_t>(key)]; }
+};
+
+}  // namespace psygen::platform

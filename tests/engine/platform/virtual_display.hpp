@@ -1,0 +1,31 @@
+// A display of its own for a test: Xvfb with the openbox window manager, and xdotool as the person
+// at its keyboard and mouse. Ends with the object. DISPLAY points to it meanwhile.
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace psygen::platform {
+
+class VirtualDisplay {
+ public:
+  // None when Xvfb or openbox cannot be started.
+  static std::unique_ptr<VirtualDisplay> start();
+  ~VirtualDisplay();
+  VirtualDisplay(const VirtualDisplay&) = delete;
+  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
+
+  // Runs xdotool with these arguments and waits for it; true when it succeeded.
+  bool xdotool(std::vector<std::string> arguments) const;
+
+ private:
+  VirtualDisplay() = default;
+  pid_t server_ = -1;
+  pid_t window_manager_ = -1;
+  std::string display_before_;
+};
+
+}  // namespace psygen::platform

@@ -1,0 +1,146 @@
+#include "engine/platform/window.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "tests/engine/platform/virtual_display.hpp"
+
+namespace psygen::platform {
+namespace {
+
+// Polls until `condition(input)` holds; false when it does not within some hundred events.
+template <class Condition>
+bool eventually(Window& window, const Condition& condition) {
+  for (int i = 0; i < 300; ++i) {
+    if (condition(window.poll())) return true;
+    window.wait_events(0.05);
+  }
+  return false;
+}
+
+class WindowOnADisplay : public testing::Test {
+ protected:
+  void SetUp() override {
+    display_ = VirtualDisplay::start();
+    ASSERT_NE(display_, nullptr) << "these tests need xvfb, openbox and xdotool";
+    auto created = Window::create({"psygen window test", {640, 360}, true});
+    ASSERT_TRUE(created) << created.error().message;
+    window_ = std::move(*created);
+    ASSERT_TRUE(eventually(*window_, [&](const InputState&) {
+      return window_->framebuffer_size() == core::Extent{640, 360};
+    }));
+  }
+  // The window manager gives the keyboard to the window; the pointer is put into its middle.
+  void take_focus() {
+    ASSERT_TRUE(display_->xdotool({"search", "--sync", "--onlyvisible", "--name",
+                                   "psygen window test", "windowactivate", "--sync", "mousemove",
+                                   "--window", "%1", "320", "180"}));
+    window_->poll();
+  }
+
+  std::unique_ptr<VirtualDisplay> display_;
+  std::unique_ptr<Window> window_;
+};
+
+TEST(Window, WithoutADisplayIsOneSentenceInsteadOfAWindow) {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  const auto created = Window::create({});
+  ASSERT_FALSE(created);
+  EXPECT_EQ(created.error().code, core::ErrorCode::kNoDevice);
+  EXPECT_EQ(created.error().message.rfind("no window can be opened here: ", 0), 0U);
+  EXPECT_EQ(created.error().message.find('\n'), std::string::npos);
+}
+
+TEST_F(WindowOnADisplay, TellsWhenAndToWhatItWasResized) {
+  EXPECT_FALSE(window_->poll().resized);
+  window_->set_size({801, 455});
+  bool told = false;
+  EXPECT_TRUE(eventually(*window_, [&](const InputState& input) {
+    told = told || input.resized;
+    return told && window_->framebuffer_size() == core::Extent{801, 455};
+  }));
+}
+
+TEST_F(WindowOnADisplay, HasNoPixelsWhileItIsMinimised) {
+  window_->minimise();
+  EXPECT_TRUE(eventually(*window_, [&](const InputState&) { return window_->minimised(); }));
+  EXPECT_EQ(window_->framebuffer_size(), (core::Extent{0, 0}));
+  window_->restore();
+  EXPECT_TRUE(eventually(*window_, [&](const InputState&) { return !window_->minimised(); }));
+  EXPECT_EQ(window_->framebuffer_size(), (core::Extent{640, 360}));
+}
+
+TEST_F(WindowOnADisplay, ClosesWhenThePersonAsksForIt) {
+  EXPECT_FALSE(window_->should_close());
+  take_focus();
+  ASSERT_TRUE(display_->xdotool({"key", "alt+F4"}));
+  EXPECT_TRUE(eventually(*window_, [&](const InputState&) { return window_->should_close(); }));
+}
+
+TEST_F(WindowOnADisplay, TellsWhichKeysAreHeldAndWhichWentDown) {
+  take_focus();
+  ASSERT_TRUE(display_->xdotool({"keydown", "w"}));
+  EXPECT_TRUE(
+      eventually(*window_, [](const InputState& input) { return input.was_pressed(Key::kW); }));
+  const InputState later = window_->poll();
+  EXPECT_TRUE(later.is_held(Key::kW));
+  EXPECT_FALSE(later.was_pressed(Key::kW));
+  ASSERT_TRUE(display_->xdotool({"keyup", "w"}));
+  EXPECT_TRUE(
+      eventually(*window_, [](const InputState& input) { return !input.is_held(Key::kW); }));
+  ASSERT_TRUE(display_->xdotool({"key", "F12"}));
+  EXPECT_TRUE(
+      eventually(*window_, [](const InputState& input) { return input.was_pressed(Key::kF12); }));
+}
+
+TEST_F(WindowOnADisplay, MouseTurnsTheCameraOnlyWhileTheRightButtonIsDown) {
+  take_focus();
+  glm::dvec2 look{0.0};
+  const auto sum = [&](const InputState& input) {
+    look += input.look_px;
+    return false;
+  };
+  ASSERT_TRUE(display_->xdotool({"mousemove_relative", "--", "30", "0"}));
+  for (int i = 0; i < 5; ++i) {
+    sum(window_->poll());
+    window_->wait_events(0.01);
+  }
+  EXPECT_EQ(look, glm::dvec2(0.0));
+  ASSERT_TRUE(display_->xdotool({"mousedown", "3"}));
+  EXPECT_TRUE(eventually(*window_, [](const InputState& input) { return input.looking; }));
+  ASSERT_TRUE(display_->xdotool({"mousemove_relative", "--", "25", "10"}));
+  EXPECT_TRUE(eventually(*window_, [&](const InputState& input) {
+    sum(input);
+    return look.x > 0 && look.y > 0;
+  }));
+  ASSERT_TRUE(display_->xdotool({"mouseup", "3"}));
+  EXPECT_TRUE(eventually(*window_, [](const InputState& input) { return !input.looking; }));
+}
+
+TEST_F(WindowOnADisplay, TheWheelCountsItsSteps) {
+  take_focus();
+  ASSERT_TRUE(display_->xdotool({"click", "--repeat", "3", "--delay", "1", "4"}));
+  double steps = 0;
+  EXPECT_TRUE(eventually(*window_, [&](const InputState& input) {
+    steps += input.wheel;
+    return steps >= 3;
+  }));
+  EXPECT_EQ(steps, 3.0);
+}
+
+TEST_F(WindowOnADisplay, ClosesByRequestAndOutlivesAnotherWindow) {
+  auto second = Window::create({"second", {100, 100}, false});
+  ASSERT_TRUE(second) << second.error().message;
+  second->reset();
+  window_->set_title("still here");
+  window_->poll();
+  EXPECT_FALSE(window_->should_close());
+  window_->request_close();
+  EXPECT_TRUE(window_->should_close());
+}
+
+}  // namespace
+}  // namespace psygen::platform

@@ -1,0 +1,103 @@
+#include "engine/telemetry/frame_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "tests/engine/telemetry/synthetic_flight.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);)
+    lines.push_back(line);
+  return lines;
+}
+
+TEST(FrameLog, LeavesOutTheFramesThatStartDuringTheWarmUp) {
+  FrameLog log({"render"});
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    FrameRecord record;
+    record.index = i;
+    record.time_s = 0.25 * static_cast<double>(i);
+    log.add(record);
+  }
+  ASSERT_EQ(log.frames_since(1.0).size(), 6U);
+  EXPECT_EQ(log.frames_since(1.0).front().index, 4U);
+  EXPECT_TRUE(log.frames_since(100.0).empty());
+}
+
+TEST(FrameLog, CountsTheFramesForWhichItHasNoRoom) {
+  FrameLog log({"render"}, 3);
+  for (int i = 0; i < 5; ++i)
+    log.add({});
+  EXPECT_EQ(log.frames().size(), 3U);
+  EXPECT_EQ(log.dropped_frames(), 2U);
+}
+
+TEST(FrameLog, AddingAFrameNeverMovesTheOthers) {
+  FrameLog log({"render"}, 1000);
+  log.add({});
+  const FrameRecord* first = log.frames().data();
+  for (int i = 0; i < 999; ++i)
+    log.add({});
+  EXPECT_EQ(log.frames().data(), first);
+}
+
+TEST(FrameLog, CostErrorIsRelativeToWhatTheModelTook) {
+  FrameLog log({});
+  log.add_cost_error(0, 1.5e-3, 1e-3);
+  log.add_cost_error(0, 1.0e-3, 2e-3);
+  log.add_cost_error(0, 1.0e-3, 0);
+  const std::vector<double> errors = log.cost_error_percent().values_since(0);
+  ASSERT_EQ(errors.size(), 2U);
+  EXPECT_NEAR(errors[0], 50.0, 1e-9);
+  EXPECT_NEAR(errors[1], 50.0, 1e-9);
+}
+
+TEST(FramesCsv, HasAHeaderAndOneRowPerFrameWithTheSameNumberOfFields) {
+  const TemporaryFolder folder;
+  const FrameLog log = synthetic_flight(25);
+  ASSERT_TRUE(write_frames_csv(folder / "frames.csv", log));
+  const std::vector<std::string> lines = lines_of(text_of(folder / "frames.csv"));
+  ASSERT_EQ(lines.size(), 26U);
+  for (const std::string& line : lines)
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 6 + 8 + 17 - 1) << line;
+  EXPECT_EQ(lines[0].rfind("frame,time_s,frame_ms,", 0), 0U);
+  EXPECT_NE(lines[0].find(",input_ms,streaming_ms,visibility_ms,"), std::string::npos);
+  EXPECT_EQ(lines[25].rfind("24,", 0), 0U);
+}
+
+TEST(FramesCsv, HoldsTheValuesUnderTheirNames) {
+  const TemporaryFolder folder;
+  FrameLog log({"render"});
+  FrameRecord r;
+  r.index = 7;
+  r.time_s = 1.5;
+  r.frame_ms = 16.25;
+  r.system_ms[0] = 12.5F;
+  r.triangles = 123'456;
+  r.cache_bytes = 1ULL << 33;
+  log.add(r);
+  ASSERT_TRUE(write_frames_csv(folder / "frames.csv", log));
+  EXPECT_EQ(
+      lines_of(text_of(folder / "frames.csv"))[1],
+      "7,1.500000,16.2500,0.0000,0.0000,0.0000,12.5000,123456,0,0,0,0,0.0000,8589934592,0,0,0,"
+      "0,0,0,0,0,0,0.000000");
+}
+
+TEST(FramesCsv, ReportsAFullDiskAndAMissingFolderWithThePath) {
+  const FrameLog log = synthetic_flight(1000);
+  const auto full = write_frames_csv("/dev/full", log);
+  ASSERT_FALSE(full);
+  EXPECT_EQ(full.error().code, core::ErrorCode::kIo);
+  EXPECT_NE(full.error().message.find("/dev/full"), std::string::npos);
+  EXPECT_EQ(write_frames_csv("/nowhere/frames.csv", log).error().code, core::ErrorCode::kIo);
+}
+
+}  // namespace
+}  // namespace psygen::telemetry

@@ -1,0 +1,53 @@
+#include "engine/telemetry/output_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/telemetry/synthetic_flight.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+TEST(OutputFile, HoldsWhatWasWrittenAndReplacesWhatWasThere) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_text_file(folder / "a.txt", "something long"));
+  OutputFile file(folder / "a.txt");
+  file.write("one ");
+  file.write("two");
+  ASSERT_TRUE(file.close());
+  EXPECT_EQ(text_of(folder / "a.txt"), "one two");
+}
+
+TEST(OutputFile, TellsAboutAFullDiskEvenWhenEverythingFitsIntoItsBuffer) {
+  const auto result = write_text_file("/dev/full", "x");
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, core::ErrorCode::kIo);
+  EXPECT_EQ(result.error().message.rfind("/dev/full: cannot be written: ", 0), 0U);
+}
+
+TEST(OutputFile, GoesOnQuietlyAfterAnErrorUntilItIsClosed) {
+  OutputFile file("/nowhere/a.txt");
+  file.write("lost");
+  EXPECT_FALSE(file.close());
+}
+
+TEST(OutputFolder, IsCreatedWithTheFoldersAboveItAndMayExist) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(create_output_folder(folder / "a/b/c"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder / "a/b/c"));
+  EXPECT_TRUE(create_output_folder(folder / "a/b/c"));
+}
+
+TEST(OutputFolder, CannotBeWhereAFileIsOrWhereNothingMayBeCreated) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_text_file(folder / "file", "x"));
+  for (const auto& path :
+       {folder / "file", folder / "file/below", std::filesystem::path("/proc/psygen/out")}) {
+    const auto result = create_output_folder(path);
+    ASSERT_FALSE(result) << path;
+    EXPECT_EQ(result.error().code, core::ErrorCode::kIo);
+    EXPECT_NE(result.error().message.find(path.string()), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace psygen::telemetry

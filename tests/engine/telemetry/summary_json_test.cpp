@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "engine/telemetry/summary.hpp"
+#include "tests/engine/telemetry/synthetic_flight.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+using nlohmann::json;
+
+json::json_pointer pointer(std::string path) {
+  for (char& c : path)
+    c = c == '.' ? '/' : c;
+  return json::json_pointer("/" + path);
+}
+
+TEST(SummaryJson, CarriesEveryFieldOfTheDefinition) {
+  const json j = json::parse(to_json(summarise(synthetic_flight(), synthetic_facts(), 1.0)));
+  for (const char* path : {"schema",
+                           "world.name",
+                           "world.seed",
+                           "world.blocks",
+                           "world.triangles",
+                           "world.bytes_paper",
+                           "world.bytes",
+                           "device.name",
+                           "device.driver",
+                           "device.api",
+                           "run.paradigm",
+                           "run.policy",
+                           "run.modelers",
+                           "run.width",
+                           "run.height",
+                           "run.frames",
+                           "run.seconds",
+                           "run.lod",
+                           "run.fixed_step",
+                           "frame_ms.mean",
+                           "frame_ms.p50",
+                           "frame_ms.p95",
+                           "frame_ms.p99",
+                           "frame_ms.p999",
+                           "frame_ms.max",
+                           "low1_fps",
+                           "hitches",
+                           "stutter_percent",
+                           "system_ms.render.p50",
+                           "system_ms.render.p99",
+                           "missing.frames",
+                           "missing.nodes_p99",
+                           "missing.pixels_max_percent",
+                           "missing.time_to_visible_ms.p50",
+                           "missing.time_to_visible_ms.p99",
+                           "missing.time_to_visible_ms.max",
+                           "cache.budget_bytes",
+                           "cache.peak_bytes",
+                           "cache.hits",
+                           "cache.misses",
+                           "cache.evictions",
+                           "cache.regenerations",
+                           "cache.prefetch_hit_percent",
+                           "synthesis.models",
+                           "synthesis.triangles",
+                           "synthesis.bytes",
+                           "synthesis.seconds",
+                           "synthesis.triangles_per_second",
+                           "synthesis.cost_error_percent.p50",
+                           "synthesis.cost_error_percent.p95",
+                           "draw.triangles_p50",
+                           "draw.draws_p50",
+                           "draw.floor_ratio",
+                           "memory.peak_rss_bytes",
+                           "hash.world",
+                           "hash.images"}) {
+    EXPECT_TRUE(j.contains(pointer(path))) << path;
+  }
+  EXPECT_EQ(j["schema"], "psygen.summary/1");
+  EXPECT_EQ(j["world"]["blocks"], json::array({512, 512}));
+  EXPECT_EQ(j["hash"]["world"], "0123456789abcdef");
+  EXPECT_EQ(j["run"]["lod"], true);
+}
+
+void expect_reasons_for_nulls(const json& j, const json& reasons, const std::string& path) {
+  for (const auto& [key, value] : j.items()) {
+    const std::string here = path.empty() ? key : path + "." + key;
+    if (value.is_object()) expect_reasons_for_nulls(value, reasons, here);
+    if (value.is_null()) {
+      ASSERT_TRUE(reasons.contains(here)) << here;
+      EXPECT_FALSE(reasons[here].get<std::string>().empty()) << here;
+    }
+  }
+}
+
+TEST(SummaryJson, EveryNullHasAReasonAndEveryReasonANull) {
+  for (const std::uint64_t frames : {0U, 1U, 50U, 1500U}) {
+    json j = json::parse(to_json(summarise(synthetic_flight(frames), synthetic_facts(), 0.0)));
+    const json reasons = j["reasons"];
+    j.erase("reasons");
+    expect_reasons_for_nulls(j, reasons, "");
+    for (const auto& [path, reason] : reasons.items())
+      EXPECT_TRUE(j.at(pointer(path)).is_null()) << path;
+  }
+}
+
+TEST(SummaryJson, TooFewFramesAreNullWithTheNumberThatIsNeeded) {
+  const json j = json::parse(to_json(summarise(synthetic_flight(50), synthetic_facts(), 0.0)));
+  EXPECT_TRUE(j["frame_ms"]["p95"].is_number());
+  EXPECT_TRUE(j["frame_ms"]["p99"].is_null());
+  EXPECT_EQ(j["reasons"]["frame_ms.p99"], "needs at least 100 values, there are 50");
+  EXPECT_EQ(j["reasons"]["run.fixed_step"], "the flight follows the clock");
+}
+
+TEST(SummaryJson, SurvivesNamesThatAreNotTextAndFiguresThatAreNotNumbers) {
+  RunFacts facts = synthetic_facts();
+  facts.world.name = "broken \xFF\xFE \"name\"\n";
+  facts.floor_ratio = std::numeric_limits<double>::quiet_NaN();
+  facts.prefetch_hit_percent = std::numeric_limits<double>::infinity();
+  const json j = json::parse(to_json(summarise(synthetic_flight(10), facts, 0.0)));
+  EXPECT_TRUE(j["draw"]["floor_ratio"].is_null());
+  EXPECT_TRUE(j["cache"]["prefetch_hit_percent"].is_null());
+  EXPECT_EQ(j["reasons"]["draw.floor_ratio"], "the figure is not a finite number");
+}
+
+TEST(SummaryJson, KeepsAll64BitsOfSeedsAndSizes) {
+  RunFacts facts = synthetic_facts();
+  facts.world.seed = UINT64_MAX;
+  facts.world.bytes = (1ULL << 63) + 1;
+  const json j = json::parse(to_json(summarise(synthetic_flight(2), facts, 0.0)));
+  EXPECT_EQ(j["world"]["seed"].get<std::uint64_t>(), UINT64_MAX);
+  EXPECT_EQ(j["world"]["bytes"].get<std::uint64_t>(), (1ULL << 63) + 1);
+}
+
+TEST(SummaryJson, GoesIntoAFileOrSaysWhyNot) {
+  const TemporaryFolder folder;
+  const Summary s = summarise(synthetic_flight(10), synthetic_facts(), 0.0);
+  ASSERT_TRUE(write_summary_json(folder / "summary.json", s));
+  EXPECT_EQ(text_of(folder / "summary.json"), to_json(s));
+  EXPECT_EQ(write_summary_json("/dev/full", s).error().code, core::ErrorCode::kIo);
+}
+
+}  // namespace
+}  // namespace psygen::telemetry
