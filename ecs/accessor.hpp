@@ -14,7 +14,10 @@ class Accessor {
  public:
   // The entity's component, null when the entity is dead or has none. The pointer is valid until
   // the next structural change.
-  C* get(Entity entity) const { return find(entity).value; }
+  C* get(Entity entity) const {
+    const detail::Slot* slot = slots_->find(entity);
+    return slot == nullptr ? nullptr : row_at(slot->location);
+  }
 
   // A hint that get(entity) follows soon: loads where the entity is, not the component itself.
   void prefetch(Entity entity) const { slots_->prefetch(entity); }
@@ -28,10 +31,12 @@ class Accessor {
   Found find(Entity entity) const {
     const detail::Slot* slot = slots_->find(entity);
     if (slot == nullptr) return {nullptr, {}};
-    const detail::RowPlace at = directory_->place_of(slot->location);
-    std::byte* column = record_->column_of_table[at.table];
-    if (column == nullptr) return {nullptr, {}};
-    return {detail::rows_of<std::remove_const_t<C>>(column) + at.row, at};
+    return {row_at(slot->location), directory_->place_of(slot->location)};
+  }
+  C* row_at(std::uint32_t location) const {
+    std::byte* rows = record_->rows_of_chunk[location / detail::kChunkRows];
+    if (rows == nullptr) return nullptr;
+    return detail::rows_of<std::remove_const_t<C>>(rows) + location % detail::kChunkRows;
   }
 
   Accessor(const detail::Storage& storage, const detail::ComponentRecord& record)

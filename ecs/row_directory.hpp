@@ -31,6 +31,9 @@ class RowDirectory {
     return static_cast<std::uint32_t>(chunks_.size() - 1) * kChunkRows;
   }
 
+  // Chunks so far, chunk 0 included.
+  std::size_t chunk_count() const { return chunks_.size(); }
+
   // Table 0 for locations that are nowhere. Not for kInTransit.
   RowPlace place_of(std::uint32_t location) const {
     const RowPlace chunk = chunks_[location / kChunkRows];

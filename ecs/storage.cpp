@@ -41,7 +41,7 @@ ComponentId Storage::id_of(const ComponentInfo& info) {
   const auto id = static_cast<ComponentId>(records_.size());
   auto& record = *records_.emplace_back(std::make_unique<ComponentRecord>());
   record.info = &info;
-  record.column_of_table.assign(tables_.size(), nullptr);
+  record.rows_of_chunk.assign(directory_.chunk_count(), nullptr);
   std::size_t i = place_of(info, id_index_.size());
   while (id_index_[i] != kNoComponent)
     i = (i + 1) % id_index_.size();
@@ -71,7 +71,6 @@ Table& Storage::make_table(const Signature& kind) {
   Table& table = *tables_.emplace_back(
       std::make_unique<Table>(id, kind, std::move(columns), limits_.max_rows_per_table));
   for (std::size_t c = 0; c < records_.size(); ++c) {
-    records_[c]->column_of_table.push_back(table.column_data(static_cast<ComponentId>(c)));
     for (auto& reader : records_[c]->readers)
       reader->bits_of_table.emplace_back();
   }
@@ -84,6 +83,20 @@ Table& Storage::make_table(const Signature& kind) {
     table_index_[i] = t;
   }
   return table;
+}
+
+// Room for `count` more rows, and every component knows where its rows of the new chunks are.
+void Storage::make_room(Table& table, std::size_t count) {
+  const std::size_t known = directory_.chunk_count();
+  table.reserve_more(count, directory_);
+  for (std::size_t chunk = known; chunk < directory_.chunk_count(); ++chunk) {
+    const RowPlace first = directory_.place_of(static_cast<std::uint32_t>(chunk) * kChunkRows);
+    for (std::size_t c = 0; c < records_.size(); ++c) {
+      std::byte* column = table.column_data(static_cast<ComponentId>(c));
+      records_[c]->rows_of_chunk.push_back(
+          column == nullptr ? nullptr : column + first.row * records_[c]->info->size_bytes);
+    }
+  }
 }
 
 template <class F>
@@ -108,7 +121,7 @@ void Storage::mark_new_rows(const Table& table, std::uint32_t first, std::size_t
 Storage::Batch Storage::create(const Signature& kind, std::size_t count) {
   expect_no_iteration("create");
   Table& table = table_for(kind);
-  table.reserve_more(count, directory_);
+  make_room(table, count);
   table.construct_new_rows(count, Signature{});
   const std::uint32_t first = table.add_rows(count);
   for (std::size_t done = 0; done < count;) {  // neighbours within a chunk have neighbouring names
@@ -217,7 +230,7 @@ std::size_t Storage::change_kind(std::span<const Entity> entities, const Signatu
 
 void Storage::transfer(Table& source, Table& target) {
   const std::size_t count = source.leaving.size();
-  target.reserve_more(count, directory_);
+  make_room(target, count);
   target.construct_new_rows(count, source.signature());
   const std::uint32_t first = target.add_rows(count);
   report_removed(source, source.signature().changed({}, target.signature()));

@@ -43,7 +43,7 @@ struct ReaderState {
 
 struct ComponentRecord {
   const ComponentInfo* info = nullptr;
-  std::vector<std::byte*> column_of_table;  // by table id; null where the table lacks it
+  std::vector<std::byte*> rows_of_chunk;  // by chunk; null where its table lacks the component
   std::vector<std::unique_ptr<ReaderState>> readers;
 };
 
@@ -106,9 +106,7 @@ class Storage {
   std::size_t destroy(std::span<const Entity> entities);
   std::size_t change_kind(std::span<const Entity> entities, const Signature& added,
                           const Signature& removed);
-  void reserve(const Signature& kind, std::size_t count) {
-    table_for(kind).reserve_more(count, directory_);
-  }
+  void reserve(const Signature& kind, std::size_t count) { make_room(table_for(kind), count); }
 
   ReaderState& add_reader(ComponentId id, bool reports_removed);
   void remove_reader(const ReaderState& reader);
@@ -146,6 +144,7 @@ class Storage {
   [[noreturn]] void structural_change_inside(std::string_view verb) const;
   Table& table_for(const Signature& kind);
   Table& make_table(const Signature& kind);
+  void make_room(Table& table, std::size_t count);
   void mark_new_rows(const Table& table, std::uint32_t first, std::size_t count,
                      const Signature& which);
   void report_removed(const Table& table, const Signature& which);

@@ -209,8 +209,9 @@ TEST(World, reserving_commits_memory_ahead) {
   World world;
   world.reserve<Position>(100000);
   const std::size_t bytes = world.committed_bytes();
-  world.create<Position>(100);
   EXPECT_GE(bytes, 100000 * (sizeof(Position) + sizeof(Entity)));
+  const auto created = world.create<Position>(100000);
+  EXPECT_EQ(world.get<Position>(created.entities[99999]), &created.column<Position>()[99999]);
 }
 
 #ifndef NDEBUG
