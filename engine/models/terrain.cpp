@@ -180,8 +180,8 @@ double TerrainType::complexity(const Parameters& p, int level) const {
 }
 
 double TerrainType::log2_cost(const Parameters& p) const {
-  const double cells = static_cast<double>(p.integer(kTerrainSize)) - 1;
-  return 1 + 2 * std::log2(std::max(cells, 1.0));
+  const double cells = std::max(static_cast<double>(p.integer(kTerrainSize)) - 1, 1.0);
+  return 1 + std::log2(cells) + std::log2(cells + 4);  // with skirts
 }
 
 core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshView& out) const {

@@ -1,0 +1,92 @@
+// The rock once more, as docs/models.md defines it: in double precision, with a list of edges and a
+// plain recursion over subdivisions. The tests hold the engine's places to it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "engine/core/hash.hpp"
+
+namespace psygen::models::test {
+
+struct RockOracle {
+  std::uint64_t seed = 0;
+  int subdivisions = 2;
+  double radius = 1, amplitude = 0.2, decay = 0.5;
+
+  std::vector<glm::dvec3> places = {};  // of the vertices, metres over the foot
+  std::vector<std::array<int, 3>> triangles = {};
+
+  // Number `field` (0 … 3) of item `index`, in [−1, 1).
+  double random(std::uint64_t index, int field) const {
+    const std::uint64_t h = core::mix64(core::mix64(seed) + 0x9E3779B97F4A7C15ull * (index + 1));
+    return static_cast<double>((h >> (16 * field)) & 0xFFFF) / 32768.0 - 1;
+  }
+
+  void build() {
+    const double w = std::abs(random(0, 3)) + 0.1;
+    const glm::dvec3 axis{random(0, 0), random(0, 1), random(0, 2)};
+    const double length = std::sqrt(glm::dot(axis, axis) + w * w);
+    const auto turned = [&](const glm::dvec3& v) {
+      const glm::dvec3 q = axis / length;
+      return v + 2.0 * (w / length) * glm::cross(q, v) + 2.0 * glm::cross(q, glm::cross(q, v));
+    };
+    const int signs[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    std::vector<double> radii;
+    for (int v = 0; v < 4; ++v) {
+      const auto item = static_cast<std::uint64_t>(2 + v);
+      const glm::dvec3 corner =
+          glm::dvec3(signs[v][0], signs[v][1], signs[v][2]) / std::sqrt(3.0) +
+          0.15 * glm::dvec3(random(item, 0), random(item, 1), random(item, 2));
+      radii.push_back(1 + amplitude * random(item, 3));
+      places.push_back(glm::normalize(turned(corner)) * radii.back());
+    }
+    triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+    std::vector<std::pair<int, int>> edges = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    for (int n = 1; n <= subdivisions; ++n)
+      split(edges, radii, amplitude * std::pow(decay, n));
+    stretch();
+  }
+
+ private:
+  void split(std::vector<std::pair<int, int>>& edges, std::vector<double>& radii, double size) {
+    std::map<std::pair<int, int>, int> middle;
+    std::vector<std::pair<int, int>> finer;
+    for (const auto& [a, b] : edges) {
+      const int v = static_cast<int>(places.size());
+      const double r = (radii[static_cast<std::size_t>(a)] + radii[static_cast<std::size_t>(b)]) /
+                       2 * (1 + size * random(static_cast<std::uint64_t>(2 + v), 0));
+      radii.push_back(r);
+      places.push_back(r * glm::normalize(places[static_cast<std::size_t>(a)] +
+                                          places[static_cast<std::size_t>(b)]));
+      middle[std::minmax(a, b)] = v;
+      finer.push_back({a, v});
+      finer.push_back({v, b});
+    }
+    std::vector<std::array<int, 3>> parts;
+    for (const auto& t : triangles) {
+      const int m0 = middle[std::minmax(t[0], t[1])];
+      const int m1 = middle[std::minmax(t[1], t[2])];
+      const int m2 = middle[std::minmax(t[2], t[0])];
+      parts.insert(parts.end(), {{t[0], m0, m2}, {t[1], m1, m0}, {t[2], m2, m1}, {m0, m1, m2}});
+      finer.insert(finer.end(), {{m0, m2}, {m1, m0}, {m2, m1}});
+    }
+    edges = finer;
+    triangles = parts;
+  }
+
+  void stretch() {
+    const glm::dvec3 scale{1 + 0.2 * random(1, 0), 0.75 + 0.15 * random(1, 1),
+                           1 + 0.2 * random(1, 2)};
+    for (glm::dvec3& p : places)
+      p = p * scale * radius + glm::dvec3(0, 0.45 * scale.y * radius, 0);
+  }
+};
+
+}  // namespace psygen::models::test

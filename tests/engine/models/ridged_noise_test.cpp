@@ -1,0 +1,175 @@
+#include "engine/models/ridged_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "engine/models/exact_math.hpp"
+#include "tests/engine/models/oracle_terrain.hpp"
+
+namespace psygen::models {
+namespace {
+
+using test::TerrainOracle;
+
+RidgedSettings settings_of(const TerrainOracle& o) {
+  return {o.seed, o.height, o.lacunarity, o.octaves, o.offset, o.gain, o.cells_per_step};
+}
+
+std::vector<float> evaluate(const RidgedNoise& noise, const std::vector<std::int64_t>& columns,
+                            const std::vector<std::int64_t>& rows) {
+  std::vector<float> values(columns.size() * rows.size());
+  noise.evaluate(columns, rows, values, columns.size());
+  return values;
+}
+
+std::vector<std::int64_t> range(std::int64_t first, std::int64_t step, int count) {
+  std::vector<std::int64_t> result;
+  for (int i = 0; i < count; ++i)
+    result.push_back(first + i * step);
+  return result;
+}
+
+double correlation(const std::vector<float>& a, const std::vector<float>& b) {
+  double ma = 0, mb = 0, aa = 0, bb = 0, ab = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ma += a[i];
+    mb += b[i];
+  }
+  ma /= static_cast<double>(a.size());
+  mb /= static_cast<double>(b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    aa += (a[i] - ma) * (a[i] - ma);
+    bb += (b[i] - mb) * (b[i] - mb);
+    ab += (a[i] - ma) * (b[i] - mb);
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+TEST(RidgedNoise, EqualsTheOracleForRandomSettingsAnywhere) {
+  core::RandomStream random(3, 0, 0, 0, core::Purpose::kParameters);
+  for (int trial = 0; trial < 40; ++trial) {
+    const TerrainOracle oracle{.seed = random.next_u64(),
+                               .height = random.next_real(0.3, 2),
+                               .lacunarity = random.next_real(1.2, 3.5),
+                               .offset = random.next_real(0, 1.5),
+                               .gain = random.next_real(0, 4),
+                               .cells_per_step = random.next_real(1e-4, 0.1),
+                               .octaves = static_cast<int>(random.next_integer(1, 12))};
+    const RidgedNoise noise(settings_of(oracle));
+    EXPECT_NEAR(noise.max_value() / oracle.max_value(), 1, 1e-12);
+    const auto columns = range(random.next_integer(-(1LL << 38), 1LL << 38), trial % 7 + 1, 9);
+    const auto rows = range(random.next_integer(-(1LL << 38), 1LL << 38), trial % 5 + 1, 7);
+    const std::vector<float> values = evaluate(noise, columns, rows);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        EXPECT_NEAR(values[r * columns.size() + c], oracle.value(columns[c], rows[r]),
+                    1e-5 * oracle.max_value());
+    }
+  }
+}
+
+TEST(RidgedNoise, HasTheSameBitsHoweverSamplesAreGrouped) {
+  const RidgedNoise noise({.seed = 11, .cells_per_step = 0.013});
+  const auto columns = range(-70, 1, 140), rows = range(1'000'000, 1, 20);
+  const std::vector<float> all = evaluate(noise, columns, rows);
+  for (const std::int64_t step : {2, 3, 9, 63}) {
+    for (std::size_t r = 0; r < rows.size(); r += static_cast<std::size_t>(step)) {
+      std::vector<std::int64_t> some;
+      for (std::size_t c = 0; c < columns.size(); c += static_cast<std::size_t>(step))
+        some.push_back(columns[c]);
+      const std::vector<float> values = evaluate(noise, some, {rows[r]});
+      for (std::size_t c = 0; c < some.size(); ++c)
+        ASSERT_EQ(values[c], all[r * columns.size() + c * static_cast<std::size_t>(step)]);
+    }
+  }
+  const std::vector<float> backwards = evaluate(noise, {columns[9], columns[2]}, {rows[5]});
+  EXPECT_EQ(backwards[0], all[5 * columns.size() + 9]);
+  EXPECT_EQ(backwards[1], all[5 * columns.size() + 2]);
+}
+
+TEST(RidgedNoise, LatticePointsOfTheFirstOctaveAreNotTheHighestPoints) {
+  const TerrainOracle oracle{.seed = 5, .cells_per_step = 1.0 / 256};
+  const RidgedNoise noise(settings_of(oracle));
+  int near_the_top = 0;
+  double sum = 0, squares = 0;
+  constexpr int kPoints = 400;
+  for (int i = 0; i < kPoints; ++i) {
+    // The world coordinate nearest to lattice point i of octave 0.
+    const auto nearest = [&](std::uint64_t lattice_of_zero, int cell) {
+      const std::uint64_t fraction = lattice_of_zero & 0xFFFFFFFFU;
+      return cell * 256 - static_cast<std::int64_t>((fraction + (1U << 23)) >> 24);
+    };
+    const float value = evaluate(noise, {nearest(oracle.lattice_x(0, 0), i)},
+                                 {nearest(oracle.lattice_z(0, 0), 7 * i)})[0];
+    const double share = value / noise.max_value();
+    near_the_top += share > 0.9 ? 1 : 0;
+    sum += share;
+    squares += share * share;
+  }
+  EXPECT_LT(near_the_top, kPoints / 5);  // all of them if the octaves shared their lattice
+  EXPECT_GT(squares / kPoints - std::pow(sum / kPoints, 2), 1e-3);
+}
+
+TEST(RidgedNoise, LatticesOfFineOctavesLeaveNoTrace) {
+  // Octave 3 has a lattice line every 32 steps. The mean over rows must not depend on where the
+  // column lies between two of them by more than chance.
+  const TerrainOracle oracle{.seed = 8, .cells_per_step = 1.0 / 256, .octaves = 6};
+  const RidgedNoise noise(settings_of(oracle));
+  std::array<double, 32> mean{};
+  double total = 0, squares = 0;
+  constexpr int kTiles = 24;
+  for (int tile = 0; tile < kTiles; ++tile) {
+    const auto columns = range(tile * 12'800, 1, 128), rows = range(tile * 9'100, 257, 128);
+    const std::vector<float> values = evaluate(noise, columns, rows);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      mean[i % 32] += values[i];
+      total += values[i];
+      squares += static_cast<double>(values[i]) * static_cast<double>(values[i]);
+    }
+  }
+  const double count = kTiles * 128.0 * 128.0;
+  const double deviation = std::sqrt(squares / count - std::pow(total / count, 2));
+  for (const double m : mean)
+    EXPECT_NEAR(m * 32 / count, total / count, 0.12 * deviation);
+}
+
+TEST(RidgedNoise, LooksTheSameAlongBothAxes) {
+  double along_x = 0, along_z = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const RidgedNoise noise({.seed = seed, .cells_per_step = 0.02});
+    const auto axis = range(0, 1, 128);
+    const std::vector<float> v = evaluate(noise, axis, axis);
+    for (std::size_t z = 0; z + 1 < 128; ++z) {
+      for (std::size_t x = 0; x + 1 < 128; ++x) {
+        along_x += std::pow(v[z * 128 + x + 1] - v[z * 128 + x], 2);
+        along_z += std::pow(v[(z + 1) * 128 + x] - v[z * 128 + x], 2);
+      }
+    }
+  }
+  EXPECT_NEAR(along_x / along_z, 1, 0.1);
+}
+
+TEST(RidgedNoise, NeighbouringSeedsAndOctavesAreUnrelated) {
+  // One sample per lattice cell, at the same place in each: only hashes differ between samples.
+  const auto axis = range(1, 4, 128);
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const RidgedNoise a({.seed = seed, .octaves = 2, .cells_per_step = 0.25});
+    const RidgedNoise b({.seed = seed + 1, .octaves = 2, .cells_per_step = 0.25});
+    EXPECT_LT(std::abs(correlation(evaluate(a, axis, axis), evaluate(b, axis, axis))), 0.05);
+  }
+}
+
+TEST(ExactMath, PowersEqualTheLibrarys) {
+  core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
+  for (int i = 0; i < 2000; ++i) {
+    const double base = random.next_real(1e-3, 1e3), exponent = random.next_real(-4, 4);
+    EXPECT_NEAR(exact_pow(base, exponent) / std::pow(base, exponent), 1, 1e-13);
+  }
+  EXPECT_EQ(exact_pow(2, 0), 1);
+  EXPECT_EQ(exact_pow(1, -3.7), 1);
+}
+
+}  // namespace
+}  // namespace psygen::models

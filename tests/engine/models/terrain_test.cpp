@@ -1,0 +1,236 @@
+#include "engine/models/terrain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "engine/models/packing.hpp"
+#include "engine/models/terrain_grid.hpp"
+#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/models/oracle_terrain.hpp"
+
+namespace psygen::models {
+namespace {
+
+using core::TerrainVertex;
+using test::Mesh;
+using test::synthesize;
+
+constexpr std::int64_t kFar = std::numeric_limits<std::int32_t>::max();
+
+class Terrain : public ::testing::Test {
+ protected:
+  std::unique_ptr<ModelType> type = make_terrain_type();
+  Parameters paper = default_parameters(*type);
+
+  Parameters at(std::int64_t x, std::int64_t z) const {
+    Parameters p = paper;
+    p.set_integer(kTerrainBlockX, x);
+    p.set_integer(kTerrainBlockZ, z);
+    return p;
+  }
+  std::vector<TerrainVertex> vertices(const Parameters& p, int level) const {
+    return synthesize(*type, p, level).vertices<TerrainVertex>();
+  }
+};
+
+bool same(const TerrainVertex& a, const TerrainVertex& b) {
+  return a.height == b.height && a.normal_x == b.normal_x && a.normal_z == b.normal_z;
+}
+
+TEST_F(Terrain, OfThePaperHas7938TrianglesAndItsSkirtsApart) {
+  EXPECT_EQ(terrain_surface_triangles(paper, 0), 7938u);
+  const MeshSize size = type->mesh_size(paper, 0);
+  EXPECT_EQ(size.vertex_count, 64u * 64 + 4 * 63);
+  EXPECT_EQ(size.triangle_count(), 7938u + 2 * 4 * 63);
+  EXPECT_DOUBLE_EQ(type->complexity(paper, 0), 9 * 64 * 64);
+  EXPECT_DOUBLE_EQ(terrain_block_size_m(paper), 63);
+}
+
+TEST_F(Terrain, KeepsEveryVertexOfACoarserLevelInTheFinerOne) {
+  EXPECT_EQ(terrain_strides(64), (std::array<int, 4>{1, 3, 9, 63}));
+  EXPECT_EQ(terrain_strides(65), (std::array<int, 4>{1, 4, 16, 64}));
+  EXPECT_EQ(terrain_strides(127), (std::array<int, 4>{1, 3, 18, 126}));
+  EXPECT_EQ(terrain_strides(128), (std::array<int, 4>{1, 127, 127, 127}));
+  for (int size = kMinTerrainSize; size <= kMaxTerrainSize; ++size) {
+    const std::array<int, 4> strides = terrain_strides(size);
+    EXPECT_EQ(strides[3], size - 1);
+    for (std::size_t level = 1; level < 4; ++level)
+      EXPECT_EQ(strides[level] % strides[level - 1], 0) << size;
+  }
+}
+
+TEST_F(Terrain, HeightsEqualTheOracleHereAndAtTheEndOfTheWorld) {
+  for (const std::int64_t block : {std::int64_t{0}, std::int64_t{-1}, kFar, -kFar - 1}) {
+    const Parameters p = at(block, 5 - block / 2);
+    const test::TerrainOracle oracle{
+        .seed = static_cast<std::uint64_t>(p.integer(kTerrainSeed)),
+        .height = p.real(kTerrainHeight),
+        .lacunarity = p.real(kTerrainLacunarity),
+        .offset = p.real(kTerrainOffset),
+        .gain = p.real(kTerrainGain),
+        .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM),
+        .octaves = 9};
+    const std::vector<TerrainVertex> mesh = vertices(p, 0);
+    for (int z = 0; z < 64; z += 7) {
+      for (int x = 0; x < 64; x += 5) {
+        const double expected =
+            oracle.value(p.integer(kTerrainBlockX) * 63 + x, p.integer(kTerrainBlockZ) * 63 + z) /
+            oracle.max_value();
+        EXPECT_NEAR(mesh[static_cast<std::size_t>(z * 64 + x)].height / 65535.0, expected,
+                    1e-5 + 0.5 / 65535);
+      }
+    }
+  }
+}
+
+TEST_F(Terrain, NeighboursAgreeBitForBitAlongTheirSeams) {
+  for (const auto& [x, z] :
+       {std::pair{std::int64_t{0}, std::int64_t{0}}, {-3, 7}, {kFar - 1, -kFar}}) {
+    const auto here = vertices(at(x, z), 0), east = vertices(at(x + 1, z), 0),
+               south = vertices(at(x, z + 1), 0);
+    for (std::size_t i = 0; i < 64; ++i) {
+      ASSERT_TRUE(same(here[i * 64 + 63], east[i * 64]));
+      ASSERT_TRUE(same(here[63 * 64 + i], south[i]));
+    }
+  }
+}
+
+TEST_F(Terrain, LevelsAgreeBitForBitAtSharedVertices) {
+  for (const int size : {64, 65, 62, 128, 5}) {
+    Parameters p = at(-9, kFar);
+    p.set_integer(kTerrainSize, size);
+    const auto fine = vertices(p, 0);
+    for (int level = 1; level < type->level_count(); ++level) {
+      const TerrainGrid grid(size, level);
+      const auto coarse = vertices(p, level);
+      for (std::uint32_t v = 0; v < grid.surface_vertices(); ++v) {
+        const auto twin = static_cast<std::size_t>(coarse[v].grid_z * size + coarse[v].grid_x);
+        ASSERT_TRUE(same(coarse[v], fine[twin])) << size << " level " << level;
+      }
+    }
+  }
+}
+
+TEST_F(Terrain, NodesOfHigherLevelsShareHeightsWithTheBlocksBelow) {
+  Parameters node = at(-2, 1);
+  node.set_integer(kTerrainNodeLevel, 1);
+  const auto wide = vertices(node, 0);
+  const auto block = vertices(at(-4, 2), 0);  // its first quarter
+  for (std::size_t z = 0; z < 32; ++z) {
+    for (std::size_t x = 0; x < 32; ++x)
+      ASSERT_EQ(wide[z * 64 + x].height, block[2 * z * 64 + 2 * x].height);
+  }
+  EXPECT_DOUBLE_EQ(terrain_block_size_m(node), 126);
+  EXPECT_FLOAT_EQ(type->bounds(node).max.x, 126.0F);
+}
+
+TEST_F(Terrain, CoarseHeightsLieOnTheNextLevelsTriangles) {
+  for (int level = 0; level < 3; ++level) {
+    const TerrainGrid grid(64, level), next(64, level + 1);
+    const auto mesh = vertices(at(4, 4), level), coarse = vertices(at(4, 4), level + 1);
+    const int ratio = next.stride / grid.stride;
+    for (int z = 0; z < grid.n; ++z) {
+      for (int x = 0; x < grid.n; ++x) {
+        const int cx = std::min(x / ratio, next.n - 2), cz = std::min(z / ratio, next.n - 2);
+        const double u = static_cast<double>(x - cx * ratio) / ratio;
+        const double v = static_cast<double>(z - cz * ratio) / ratio;
+        const auto h = [&](int dx, int dz) {
+          return static_cast<double>(
+              coarse[static_cast<std::size_t>((cz + dz) * next.n + cx + dx)].height);
+        };
+        const double plane = u + v <= 1
+                                 ? h(0, 0) * (1 - u - v) + h(1, 0) * u + h(0, 1) * v
+                                 : h(1, 1) * (u + v - 1) + h(1, 0) * (1 - v) + h(0, 1) * (1 - u);
+        ASSERT_NEAR(mesh[static_cast<std::size_t>(z * grid.n + x)].coarse_height, plane, 0.5001);
+      }
+    }
+  }
+  for (const TerrainVertex& v : vertices(at(4, 4), 3))
+    EXPECT_EQ(v.coarse_height, v.height);
+}
+
+TEST_F(Terrain, NormalsFollowTheSlopesAndPointUp) {
+  const auto mesh = vertices(at(2, 3), 0);
+  const auto relief = static_cast<float>(paper.real(kTerrainReliefM));
+  for (std::size_t z = 1; z < 63; ++z) {
+    for (std::size_t x = 1; x < 63; ++x) {
+      const auto h = [&](std::size_t i) {
+        return static_cast<float>(mesh[i].height) / 65535.0F * relief;
+      };
+      const std::size_t i = z * 64 + x;
+      const glm::vec3 expected =
+          glm::normalize(glm::vec3((h(i - 1) - h(i + 1)) / 2, 1.0F, (h(i - 64) - h(i + 64)) / 2));
+      const glm::vec3 normal =
+          decode_octahedral({mesh[i].normal_x / 127.0F, mesh[i].normal_z / 127.0F});
+      ASSERT_GT(normal.y, 0);
+      ASSERT_GT(glm::dot(normal, expected), 0.9995F);
+    }
+  }
+}
+
+TEST_F(Terrain, WithItsSkirtsFacesUpAndOutwards) {
+  for (int level = 0; level < 4; ++level) {
+    const TerrainGrid grid(64, level);
+    const Mesh mesh = synthesize(*type, paper, level);
+    const auto v = mesh.vertices<TerrainVertex>();
+    const auto place = [&](std::uint16_t i) {
+      const bool skirt = (v[i].grid_x & core::kTerrainSkirtBit) != 0;
+      return glm::vec3(v[i].grid_x & 0x7F,
+                       static_cast<float>(v[i].height) / 65535.0F * 120.0F - (skirt ? 20.0F : 0.0F),
+                       v[i].grid_z);
+    };
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+      const glm::vec3 a = place(mesh.indices[i]), b = place(mesh.indices[i + 1]),
+                      c = place(mesh.indices[i + 2]);
+      const glm::vec3 normal = glm::cross(b - a, c - a);
+      if (i < 3 * terrain_surface_triangles(paper, level)) {
+        ASSERT_GT(normal.y, 0);
+      } else {
+        const glm::vec3 outward = (a + b + c) / 3.0F - glm::vec3(31.5F, 0, 31.5F);
+        ASSERT_GT(normal.x * outward.x + normal.z * outward.z, 0);
+      }
+    }
+    for (std::uint32_t k = 0; k < grid.border_vertices(); ++k) {
+      const TerrainVertex& twin = v[grid.border_vertex(k)];
+      const TerrainVertex& skirt = v[grid.surface_vertices() + k];
+      EXPECT_TRUE(same(twin, skirt));
+      EXPECT_EQ(skirt.grid_x, twin.grid_x | core::kTerrainSkirtBit);
+      EXPECT_EQ(skirt.grid_z, twin.grid_z);
+      EXPECT_EQ(skirt.coarse_height, twin.coarse_height);
+    }
+  }
+}
+
+TEST_F(Terrain, LevelErrorIsAnHonestEstimate) {
+  for (int level = 1; level < 4; ++level) {
+    double largest = 0;
+    const TerrainGrid grid(64, level);
+    for (std::int64_t block = 0; block < 6; ++block) {
+      const Parameters p = at(block * 11, block * 5);
+      const auto coarse = vertices(p, level);
+      for (const TerrainVertex& v : vertices(p, 0)) {
+        if ((v.grid_x & core::kTerrainSkirtBit) != 0) continue;
+        const int cx = std::min(v.grid_x / grid.stride, grid.n - 2);
+        const int cz = std::min(v.grid_z / grid.stride, grid.n - 2);
+        const auto h = [&](int dx, int dz) {
+          return static_cast<double>(
+              coarse[static_cast<std::size_t>((cz + dz) * grid.n + cx + dx)].height);
+        };
+        const double x = static_cast<double>(v.grid_x) / grid.stride - cx;
+        const double z = static_cast<double>(v.grid_z) / grid.stride - cz;
+        const double plane =
+            x + z <= 1 ? h(0, 0) + x * (h(1, 0) - h(0, 0)) + z * (h(0, 1) - h(0, 0))
+                       : h(1, 1) + (1 - x) * (h(0, 1) - h(1, 1)) + (1 - z) * (h(1, 0) - h(1, 1));
+        largest = std::max(largest, std::abs(plane - v.height) / 65535 * 120);
+      }
+    }
+    const double estimate = type->level_error_m(paper, level);
+    EXPECT_GT(estimate, largest / 3) << "level " << level << ": measured " << largest;
+    EXPECT_LT(estimate, largest * 3) << "level " << level << ": measured " << largest;
+  }
+}
+
+}  // namespace
+}  // namespace psygen::models
