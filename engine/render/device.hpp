@@ -1,0 +1,54 @@
+// Choosing a physical device and making the logical one: queue, function table, what it offers.
+// Private to engine/render.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/render/instance.hpp"
+#include "engine/render/types.hpp"
+#include "engine/render/vulkan.hpp"
+
+namespace psygen::render {
+
+// A physical device that has everything the renderer needs.
+struct DeviceCandidate {
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  std::uint32_t queue_family = 0;  // graphics, and presenting where there is a surface
+  int rank = 0;                    // higher is better: discrete, integrated, virtual, software
+  DeviceInfo info;
+};
+
+// Best first. With a surface only devices that can present to it.
+std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR surface);
+
+// The best candidate whose name contains `name` (any when empty); kNoDevice with the names there
+// are.
+core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& candidates,
+                                            const std::string& name);
+
+class Device {
+ public:
+  static core::Result<std::unique_ptr<Device>> create(const DeviceCandidate& candidate,
+                                                      bool windowed);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VolkDeviceTable vk{};
+  VkDevice handle = VK_NULL_HANDLE;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t queue_family = 0;
+  VkPhysicalDeviceMemoryProperties memory{};
+  std::uint32_t max_image_side = 0;  // pixels
+  std::uint32_t max_multi_draw = 0;  // 0: no VK_EXT_multi_draw
+  double timestamp_period_ns = 0;    // 0: no timestamps on the queue
+  DeviceInfo info;
+
+ private:
+  Device() = default;
+};
+
+}  // namespace psygen::render

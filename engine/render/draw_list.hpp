@@ -1,0 +1,64 @@
+// From the draws of a frame to what is submitted: the data of each draw for the shaders, and runs
+// of draws that share buffers. Keeps the given order within windows of draws and gathers those of
+// the same buffers inside a window. Plain memory, no Vulkan; reused from frame to frame.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/core/vertex_layout.hpp"
+#include "engine/render/types.hpp"
+#include "shaders/shared.h"
+
+namespace psygen::render {
+
+// One shared index list within the buffer of all of them.
+struct IndexList {
+  std::uint32_t first_index = 0;
+  std::uint32_t index_count = 0;
+};
+
+// Same layout as VkMultiDrawIndexedInfoEXT.
+struct IndexedDraw {
+  std::uint32_t first_index = 0;
+  std::uint32_t index_count = 0;
+  std::int32_t vertex_offset = 0;
+};
+
+// Draws [first, first + count) with the same vertex layout and buffers.
+struct DrawRun {
+  core::VertexLayout layout = core::VertexLayout::kModel;
+  bool shared = false;  // indices from the shared lists, else from the pool block
+  std::uint32_t pool_block = 0;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+class DrawList {
+ public:
+  static constexpr std::size_t kWindow = 512;  // draws whose order may be changed
+
+  // Replaces the list: terrain first, then models. `lists` is indexed by shared_indices − 1.
+  void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
+             std::span<const IndexList> lists);
+
+  std::span<const DrawRun> runs() const { return runs_; }
+  std::span<const IndexedDraw> draws() const { return draws_; }
+  std::span<const shaders::DrawData> data() const { return data_; }  // parallel to draws()
+  std::uint64_t triangle_count() const { return triangle_count_; }
+
+ private:
+  template <class Draw>
+  void add(std::span<const Draw> input, std::span<const IndexList> lists);
+  template <class Draw>
+  void append(const Draw& draw, std::span<const IndexList> lists);
+
+  std::vector<DrawRun> runs_;
+  std::vector<IndexedDraw> draws_;
+  std::vector<shaders::DrawData> data_;
+  std::vector<std::uint64_t> order_;  // (buffers, position) of a window
+  std::uint64_t triangle_count_ = 0;
+};
+
+}  // namespace psygen::render

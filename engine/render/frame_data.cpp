@@ -1,0 +1,73 @@
+#include "engine/render/frame_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace psygen::render {
+
+namespace {
+
+// The slow pattern of the ground repeats after 64 lattice points of 32 m (terrain.vert).
+constexpr double kPatternPeriod = 2048.0;
+
+float pattern_coordinate(std::int32_t block, double block_size_m, double local) {
+  const double metres = std::fmod(static_cast<double>(block) * block_size_m, kPatternPeriod);
+  const double inside = std::fmod(metres + local, kPatternPeriod);
+  return static_cast<float>(inside < 0 ? inside + kPatternPeriod : inside);
+}
+
+void set_camera(shaders::FrameData& out, const FrameInput& input, core::Extent size) {
+  const glm::mat4 rotation = core::view_rotation(input.pose);
+  out.clip_from_camera = core::projection_matrix(input.projection) * rotation;
+  const auto row = [&](int i) { return glm::vec3(rotation[0][i], rotation[1][i], rotation[2][i]); };
+  const float tangent = std::tan(input.projection.vertical_fov * 0.5F);
+  out.ray_right = {row(0) * tangent * input.projection.aspect, 0.0F};
+  out.ray_down = {-row(1) * tangent, 0.0F};
+  out.ray_forward = {-row(2), 0.0F};
+  const core::WorldPosition& at = input.pose.position;
+  const bool anchored = input.block_size_m > 0;
+  out.ground_anchor = {
+      anchored ? pattern_coordinate(at.block.x, input.block_size_m, at.local.x) : 0.0F,
+      anchored ? pattern_coordinate(at.block.z, input.block_size_m, at.local.z) : 0.0F,
+      static_cast<float>(size.width), static_cast<float>(size.height)};
+}
+
+void set_light(shaders::FrameData& out, const FrameInput& input) {
+  const Light& light = input.light;
+  const float e = light.exposure;
+  const float altitude = static_cast<float>(input.pose.position.local.y);
+  const float exponent = std::clamp(light.haze_height_falloff * altitude, -20.0F, 20.0F);
+  const float length = glm::length(light.sun_direction);
+  const glm::vec3 sun = length > 0 ? light.sun_direction / length : glm::vec3(0, 1, 0);
+  out.sun_direction = {sun, light.time_seconds};
+  out.sun_colour = {light.sun_colour * e, light.haze_density * std::exp(-exponent)};
+  out.zenith_colour = {light.zenith_colour * e, light.haze_height_falloff};
+  out.horizon_colour = {light.horizon_colour * e, altitude};
+  out.ground_colour = {light.ground_colour * e, input.block_size_m > 0 ? 1.0F : 0.0F};
+  out.haze_colour = {light.haze_colour * e, light.cloud_cover};
+}
+
+void set_palette(shaders::FrameData& out, const TerrainPalette& palette) {
+  const auto blend = [](float metres) { return std::max(metres, 1e-3F); };
+  out.grass = {palette.grass, palette.sand_end_m};
+  out.forest = {palette.forest, palette.dry_start_m};
+  out.dry = {palette.dry, blend(palette.dry_blend_m)};
+  out.rock = {palette.rock, palette.rock_slope_start};
+  out.snow = {palette.snow, std::max(palette.rock_slope_full, palette.rock_slope_start + 1e-3F)};
+  out.sand = {palette.sand, blend(palette.sand_blend_m)};
+  out.snow_line = {palette.snow_start_m, blend(palette.snow_blend_m), blend(palette.snow_slope_max),
+                   0.0F};
+}
+
+}  // namespace
+
+shaders::FrameData frame_data(const FrameInput& input, core::Extent size) {
+  shaders::FrameData out{};
+  set_camera(out, input, size);
+  set_light(out, input);
+  set_palette(out, input.palette);
+  return out;
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,131 @@
+#include "engine/render/frame_slot.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
+#include "engine/render/swapchain.hpp"
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+
+constexpr std::uint64_t kFirstDraws = 4096;
+
+Result<Buffer> storage_buffer(const Device& device, std::uint64_t bytes) {
+  return make_buffer(device, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite);
+}
+
+Result<UniqueQueryPool> make_queries(const Device& device) {
+  VkQueryPoolCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+  info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  info.queryCount = 2;
+  VkQueryPool made = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateQueryPool(device.handle, &info, nullptr, &made);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a query pool");
+  return UniqueQueryPool(device.vk, device.handle, made);
+}
+
+}  // namespace
+
+Result<void> FrameSlot::create(const Device& device, Pipelines& pipelines) {
+  VkCommandPoolCreateInfo pool_info{};
+  pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  pool_info.queueFamilyIndex = device.queue_family;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  VkResult result = device.vk.vkCreateCommandPool(device.handle, &pool_info, nullptr, &pool);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a command pool");
+  pool_ = UniqueCommandPool(device.vk, device.handle, pool);
+  VkCommandBufferAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  info.commandPool = pool;
+  info.commandBufferCount = 1;
+  result = device.vk.vkAllocateCommandBuffers(device.handle, &info, &commands_);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a command buffer");
+
+  Result<UniqueSemaphore> acquired = make_semaphore(device);
+  if (!acquired) return tl::unexpected(acquired.error());
+  acquired_ = std::move(*acquired);
+  if (device.timestamp_period_ns > 0) {
+    Result<UniqueQueryPool> queries = make_queries(device);
+    if (!queries) return tl::unexpected(queries.error());
+    queries_ = std::move(*queries);
+  }
+  Result<Buffer> frame = make_buffer(device, sizeof(shaders::FrameData),
+                                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::kWrite);
+  if (!frame) return tl::unexpected(frame.error());
+  Result<Buffer> draws = storage_buffer(device, kFirstDraws * sizeof(shaders::DrawData));
+  if (!draws) return tl::unexpected(draws.error());
+  Result<Buffer> glyphs =
+      storage_buffer(device, Overlay::kMaxQuads * 6 * sizeof(shaders::OverlayVertex));
+  if (!glyphs) return tl::unexpected(glyphs.error());
+  Result<VkDescriptorSet> set = pipelines.make_set(device);
+  if (!set) return tl::unexpected(set.error());
+  frame_ = std::move(*frame);
+  draws_ = std::move(*draws);
+  glyphs_ = std::move(*glyphs);
+  set_ = *set;
+  pipelines.write_set(device, set_, frame_, draws_, glyphs_);
+  return {};
+}
+
+Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,
+                              const shaders::FrameData& frame,
+                              std::span<const shaders::DrawData> draws,
+                              std::span<const shaders::OverlayVertex> glyphs) {
+  if (draws.size_bytes() > draws_.bytes) {
+    Result<Buffer> larger = storage_buffer(device, std::bit_ceil(draws.size_bytes()));
+    if (!larger) return tl::unexpected(larger.error());
+    draws_ = std::move(*larger);
+    pipelines.write_set(device, set_, frame_, draws_, glyphs_);
+  }
+  std::memcpy(frame_.mapped, &frame, sizeof(frame));
+  if (!draws.empty()) std::memcpy(draws_.mapped, draws.data(), draws.size_bytes());
+  if (!glyphs.empty()) std::memcpy(glyphs_.mapped, glyphs.data(), glyphs.size_bytes());
+  return {};
+}
+
+Result<void> FrameSlot::begin(const Device& device) {
+  VkResult result = device.vk.vkResetCommandPool(device.handle, pool_.get(), 0);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "resetting a command pool");
+  VkCommandBufferBeginInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  result = device.vk.vkBeginCommandBuffer(commands_, &info);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "beginning a command buffer");
+  if (queries_.get() != VK_NULL_HANDLE) {
+    device.vk.vkCmdResetQueryPool(commands_, queries_.get(), 0, 2);
+  }
+  return {};
+}
+
+Result<void> FrameSlot::end(const Device& device) {
+  const VkResult result = device.vk.vkEndCommandBuffer(commands_);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "ending a command buffer");
+  return {};
+}
+
+void FrameSlot::write_timestamp(const Device& device, bool last) {
+  if (queries_.get() == VK_NULL_HANDLE) return;
+  device.vk.vkCmdWriteTimestamp2(
+      commands_,
+      last ? VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT : VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT,
+      queries_.get(), last ? 1 : 0);
+}
+
+std::optional<double> FrameSlot::read_gpu_ms(const Device& device) const {
+  if (queries_.get() == VK_NULL_HANDLE || submitted_value == 0) return std::nullopt;
+  std::array<std::uint64_t, 2> ticks{};
+  const VkResult result =
+      device.vk.vkGetQueryPoolResults(device.handle, queries_.get(), 0, 2, sizeof(ticks),
+                                      ticks.data(), sizeof(ticks[0]), VK_QUERY_RESULT_64_BIT);
+  if (result != VK_SUCCESS || ticks[1] < ticks[0]) return std::nullopt;
+  return static_cast<double>(ticks[1] - ticks[0]) * device.timestamp_period_ns * 1e-6;
+}
+
+}  // namespace psygen::render

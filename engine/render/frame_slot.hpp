@@ -1,0 +1,48 @@
+// What one frame in flight owns: commands, the buffers that the CPU writes for it, timestamps.
+// Touched by the CPU only after the device has passed the slot's last value. Private to
+// engine/render.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "engine/render/draw_list.hpp"
+#include "engine/render/memory.hpp"
+#include "engine/render/pipelines.hpp"
+#include "shaders/shared.h"
+
+namespace psygen::render {
+
+class FrameSlot {
+ public:
+  core::Result<void> create(const Device& device, Pipelines& pipelines);
+
+  // Copies a frame's data into the slot's buffers; they grow where needed (kOutOfMemory).
+  core::Result<void> write(const Device& device, const Pipelines& pipelines,
+                           const shaders::FrameData& frame,
+                           std::span<const shaders::DrawData> draws,
+                           std::span<const shaders::OverlayVertex> glyphs);
+
+  // Starts recording from nothing; end() makes the commands ready to submit.
+  core::Result<void> begin(const Device& device);
+  core::Result<void> end(const Device& device);
+  VkCommandBuffer commands() const { return commands_; }
+  VkDescriptorSet set() const { return set_; }
+  VkSemaphore acquired() const { return acquired_.get(); }
+
+  // Timestamps at the edges of the pass; device time of the last finished frame of this slot.
+  void write_timestamp(const Device& device, bool last);
+  std::optional<double> read_gpu_ms(const Device& device) const;
+
+  std::uint64_t submitted_value = 0;  // of the timeline; 0: never
+
+ private:
+  UniqueCommandPool pool_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  Buffer frame_, draws_, glyphs_;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  UniqueSemaphore acquired_;
+  UniqueQueryPool queries_;
+};
+
+}  // namespace psygen::render

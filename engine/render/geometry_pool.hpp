@@ -1,0 +1,86 @@
+// The renderer's geometry memory: a few large blocks of mapped memory, each one buffer that holds
+// vertices and indices, with an offset allocator per block. Blocks are made when they are first
+// needed and kept; their sum never exceeds the budget. A released range is reused only when the
+// device has passed the last frame submitted before the release. Main thread; knows no Vulkan: a
+// BlockSource makes the blocks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/core/geometry_memory.hpp"
+#include "engine/render/offset_allocator.hpp"
+
+namespace psygen::render {
+
+class GeometryPool final : public core::GeometryMemory {
+ public:
+  static constexpr std::uint64_t kBlockBytes = 64ull << 20;
+  static constexpr std::uint32_t kUnitBytes = 16;  // so that offsets are whole for every stride
+
+  // Makes the memory of the next block of `bytes` and returns where it is mapped, 16-byte aligned.
+  // It stays until the pool's owner ends it, after the pool.
+  using BlockSource = std::function<core::Result<std::byte*>(std::uint64_t bytes)>;
+
+  // `budget_bytes` is rounded down to 16.
+  GeometryPool(std::uint64_t budget_bytes, BlockSource source);
+
+  core::Result<core::GeometryReservation> reserve(core::VertexLayout layout,
+                                                  std::uint32_t vertex_count,
+                                                  std::uint32_t index_count) override;
+  void commit(const core::GeometryRange& range) override;
+  void release(const core::GeometryRange& range) override;
+  std::uint32_t charged_bytes(core::VertexLayout layout, std::uint32_t vertex_count,
+                              std::uint32_t index_count) const override;
+  std::uint64_t used_bytes() const override { return used_bytes_; }
+  std::uint64_t capacity_bytes() const override { return budget_bytes_; }
+  bool zero_copy() const override { return true; }
+  std::span<const std::byte> vertex_bytes(const core::GeometryRange& range) const override;
+  std::span<const std::uint16_t> indices(const core::GeometryRange& range) const override;
+
+  // A frame was submitted that signals `value` and may read every committed range.
+  void frame_submitted(std::uint64_t value) { submitted_ = value; }
+  // The device has passed `value`: ranges released before the frame after it become free.
+  void frames_finished(std::uint64_t value);
+
+  bool is_committed(const core::GeometryRange& range) const;
+  std::size_t block_count() const { return blocks_.size(); }
+  std::uint64_t block_bytes_total() const { return block_bytes_total_; }
+
+ private:
+  enum class SlotState : std::uint8_t { kFree, kReserved, kCommitted, kReleased };
+  struct Slot {
+    std::uint32_t block = 0, node = 0;
+    std::uint32_t offset_bytes = 0, vertex_bytes = 0, index_count = 0, bytes = 0;
+    SlotState state = SlotState::kFree;
+  };
+  struct Block {
+    std::byte* mapped;
+    OffsetAllocator allocator;
+  };
+  struct Pending {
+    std::uint64_t value;
+    std::uint32_t id;
+  };
+
+  core::Result<std::uint32_t> allocate_slot(std::uint32_t bytes);
+  core::Result<void> add_block(std::uint32_t least_bytes);
+  void free_slot(std::uint32_t id);
+
+  std::uint64_t budget_bytes_;
+  BlockSource source_;
+  std::uint64_t used_bytes_ = 0;
+  std::uint64_t block_bytes_total_ = 0;
+  std::uint64_t submitted_ = 0;
+  std::uint64_t finished_ = 0;
+  std::vector<Block> blocks_;
+  std::vector<Slot> slots_;
+  std::vector<std::uint32_t> spare_slots_;
+  std::deque<Pending> pending_;  // in order of value
+};
+
+}  // namespace psygen::render

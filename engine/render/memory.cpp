@@ -1,0 +1,217 @@
+#include "engine/render/memory.hpp"
+
+#include <cstring>
+#include <initializer_list>
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+
+// Memory of the first type that has one of the wished-for sets of properties, in order, and has
+// room. A heap that does not hold the allocation four times over is left to others.
+Result<UniqueMemory> allocate(const Device& device, const VkMemoryRequirements& needs,
+                              std::initializer_list<VkMemoryPropertyFlags> wishes) {
+  VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  for (const VkMemoryPropertyFlags wish : wishes) {
+    for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
+      const VkMemoryType& type = device.memory.memoryTypes[i];
+      if ((needs.memoryTypeBits >> i & 1u) == 0 || (type.propertyFlags & wish) != wish) continue;
+      if (device.memory.memoryHeaps[type.heapIndex].size / 4 < needs.size) continue;
+      VkMemoryAllocateInfo info{};
+      info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+      info.allocationSize = needs.size;
+      info.memoryTypeIndex = i;
+      VkDeviceMemory memory = VK_NULL_HANDLE;
+      result = device.vk.vkAllocateMemory(device.handle, &info, nullptr, &memory);
+      if (result == VK_SUCCESS) return UniqueMemory(device.vk, device.handle, memory);
+    }
+  }
+  return vulkan_failure(result, "allocating device memory");
+}
+
+constexpr VkMemoryPropertyFlags kMapped =
+    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+
+}  // namespace
+
+Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes, VkBufferUsageFlags usage,
+                           MemoryUse use) {
+  Buffer made;
+  made.bytes = bytes;
+  VkBufferCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = bytes;
+  info.usage = usage;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkResult result = device.vk.vkCreateBuffer(device.handle, &info, nullptr, &buffer);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a buffer");
+  made.buffer = UniqueBuffer(device.vk, device.handle, buffer);
+
+  VkMemoryRequirements needs{};
+  device.vk.vkGetBufferMemoryRequirements(device.handle, buffer, &needs);
+  const VkMemoryPropertyFlags extra = use == MemoryUse::kWrite ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
+                                                               : VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+  Result<UniqueMemory> memory = allocate(device, needs, {kMapped | extra, kMapped});
+  if (!memory) return tl::unexpected(memory.error());
+  made.memory = std::move(*memory);
+  result = device.vk.vkBindBufferMemory(device.handle, buffer, made.memory.get(), 0);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "binding a buffer to its memory");
+  void* mapped = nullptr;
+  result = device.vk.vkMapMemory(device.handle, made.memory.get(), 0, VK_WHOLE_SIZE, 0, &mapped);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "mapping device memory");
+  made.mapped = static_cast<std::byte*>(mapped);
+  return made;
+}
+
+Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
+                         VkImageUsageFlags usage, VkImageAspectFlags aspect) {
+  Image made;
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = format;
+  info.extent = {size.width, size.height, 1};
+  info.mipLevels = 1;
+  info.arrayLayers = 1;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.usage = usage;
+  VkImage image = VK_NULL_HANDLE;
+  VkResult result = device.vk.vkCreateImage(device.handle, &info, nullptr, &image);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image");
+  made.image = UniqueImage(device.vk, device.handle, image);
+
+  VkMemoryRequirements needs{};
+  device.vk.vkGetImageMemoryRequirements(device.handle, image, &needs);
+  Result<UniqueMemory> memory = allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
+  if (!memory) return tl::unexpected(memory.error());
+  made.memory = std::move(*memory);
+  result = device.vk.vkBindImageMemory(device.handle, image, made.memory.get(), 0);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "binding an image to its memory");
+
+  VkImageViewCreateInfo view_info{};
+  view_info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  view_info.image = image;
+  view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view_info.format = format;
+  view_info.subresourceRange = {aspect, 0, 1, 0, 1};
+  VkImageView view = VK_NULL_HANDLE;
+  result = device.vk.vkCreateImageView(device.handle, &view_info, nullptr, &view);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image view");
+  made.view = UniqueImageView(device.vk, device.handle, view);
+  return made;
+}
+
+VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect) {
+  VkImageMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.image = image;
+  barrier.subresourceRange = {aspect, 0, 1, 0, 1};
+  return barrier;
+}
+
+void image_barrier(const Device& device, VkCommandBuffer commands,
+                   const VkImageMemoryBarrier2& barrier) {
+  VkDependencyInfo dependency{};
+  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  dependency.imageMemoryBarrierCount = 1;
+  dependency.pImageMemoryBarriers = &barrier;
+  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+Result<OneTimeCommands> begin_once(const Device& device) {
+  OneTimeCommands once;
+  VkCommandPoolCreateInfo pool_info{};
+  pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool_info.queueFamilyIndex = device.queue_family;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  VkResult result = device.vk.vkCreateCommandPool(device.handle, &pool_info, nullptr, &pool);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a command pool");
+  once.pool = UniqueCommandPool(device.vk, device.handle, pool);
+  VkCommandBufferAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  info.commandPool = pool;
+  info.commandBufferCount = 1;
+  result = device.vk.vkAllocateCommandBuffers(device.handle, &info, &once.commands);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a command buffer");
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  result = device.vk.vkBeginCommandBuffer(once.commands, &begin);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "beginning a command buffer");
+  return once;
+}
+
+Result<void> finish_once(const Device& device, OneTimeCommands& once) {
+  VkResult result = device.vk.vkEndCommandBuffer(once.commands);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "ending a command buffer");
+  VkSemaphoreTypeCreateInfo type{};
+  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  VkSemaphoreCreateInfo semaphore_info{};
+  semaphore_info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+  semaphore_info.pNext = &type;
+  VkSemaphore semaphore = VK_NULL_HANDLE;
+  result = device.vk.vkCreateSemaphore(device.handle, &semaphore_info, nullptr, &semaphore);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a semaphore");
+  const UniqueSemaphore owner(device.vk, device.handle, semaphore);
+
+  VkCommandBufferSubmitInfo commands{};
+  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
+  commands.commandBuffer = once.commands;
+  VkSemaphoreSubmitInfo signal{};
+  signal.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
+  signal.semaphore = semaphore;
+  signal.value = 1;
+  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  VkSubmitInfo2 submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
+  submit.commandBufferInfoCount = 1;
+  submit.pCommandBufferInfos = &commands;
+  submit.signalSemaphoreInfoCount = 1;
+  submit.pSignalSemaphoreInfos = &signal;
+  result = device.vk.vkQueueSubmit2(device.queue, 1, &submit, VK_NULL_HANDLE);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "submitting commands");
+
+  VkSemaphoreWaitInfo wait{};
+  wait.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+  wait.semaphoreCount = 1;
+  wait.pSemaphores = &semaphore;
+  wait.pValues = &signal.value;
+  result = device.vk.vkWaitSemaphores(device.handle, &wait, kDeviceTimeoutNs);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "waiting for the device");
+  return {};
+}
+
+Result<void> upload_image(const Device& device, const Image& image, core::Extent size,
+                          std::span<const std::byte> pixels) {
+  Result<Buffer> staging =
+      make_buffer(device, pixels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::kWrite);
+  if (!staging) return tl::unexpected(staging.error());
+  std::memcpy(staging->mapped, pixels.data(), pixels.size());
+  return run_once(device, [&](VkCommandBuffer commands) {
+    VkImageMemoryBarrier2 barrier = barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    image_barrier(device, commands, barrier);
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {size.width, size.height, 1};
+    device.vk.vkCmdCopyBufferToImage(commands, staging->buffer.get(), image.image.get(),
+                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+    barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    image_barrier(device, commands, barrier);
+  });
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,69 @@
+// Buffers and images with memory of their own, and the one copy that start-up needs. A handful of
+// large allocations; meshes do not come from here (geometry_pool.hpp). Private to engine/render.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "engine/core/surface_provider.hpp"
+#include "engine/render/device.hpp"
+
+namespace psygen::render {
+
+struct Buffer {
+  UniqueMemory memory;  // ends after the buffer
+  UniqueBuffer buffer;
+  std::byte* mapped = nullptr;
+  std::uint64_t bytes = 0;
+};
+
+struct Image {
+  UniqueMemory memory;
+  UniqueImage image;
+  UniqueImageView view;
+};
+
+enum class MemoryUse : std::uint8_t {
+  kWrite,  // written by the CPU, read by the device: device-local where that is possible
+  kRead,   // read back by the CPU: cached where that is possible
+};
+
+// A mapped, coherent buffer.
+core::Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes,
+                                 VkBufferUsageFlags usage, MemoryUse use);
+
+// A device-local 2-D image with one mip level.
+core::Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
+                               VkImageUsageFlags usage, VkImageAspectFlags aspect);
+
+// Fills an image made with TRANSFER_DST and SAMPLED and leaves it readable by shaders. Waits.
+core::Result<void> upload_image(const Device& device, const Image& image, core::Extent size,
+                                std::span<const std::byte> pixels);
+
+// Runs `record(commands)` on the queue and waits for it.
+template <class Record>
+core::Result<void> run_once(const Device& device, Record&& record);
+
+// Moves an image between layouts; one full barrier between the stages.
+void image_barrier(const Device& device, VkCommandBuffer commands,
+                   const VkImageMemoryBarrier2& barrier);
+VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect);
+
+// Implementation of run_once.
+struct OneTimeCommands {
+  UniqueCommandPool pool;
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+};
+core::Result<OneTimeCommands> begin_once(const Device& device);
+core::Result<void> finish_once(const Device& device, OneTimeCommands& once);
+
+template <class Record>
+core::Result<void> run_once(const Device& device, Record&& record) {
+  core::Result<OneTimeCommands> once = begin_once(device);
+  if (!once) return tl::unexpected(once.error());
+  record(once->commands);
+  return finish_once(device, *once);
+}
+
+}  // namespace psygen::render

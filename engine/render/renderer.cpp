@@ -1,0 +1,62 @@
+#include "engine/render/renderer.hpp"
+
+#include "engine/render/renderer_impl.hpp"
+
+namespace psygen::render {
+
+using core::Result;
+
+Renderer::Renderer(std::unique_ptr<RendererImpl> impl) : impl_(std::move(impl)) {}
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
+  auto impl = std::make_unique<RendererImpl>(options);
+  if (Result<void> made = impl->create(); !made) return tl::unexpected(made.error());
+  return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
+}
+
+core::GeometryMemory& Renderer::geometry() {
+  return impl_->geometry();
+}
+
+Result<std::uint32_t> Renderer::upload_shared_indices(std::span<const std::uint16_t> indices) {
+  return impl_->add_shared_indices(indices);
+}
+
+Result<FrameResult> Renderer::render(const FrameInput& input) {
+  return impl_->render(input);
+}
+Result<Picture> Renderer::capture() {
+  return impl_->capture();
+}
+Result<void> Renderer::resize(core::Extent size) {
+  return impl_->resize(size);
+}
+core::Extent Renderer::size() const {
+  return impl_->size();
+}
+const DeviceInfo& Renderer::device() const {
+  return impl_->info();
+}
+std::vector<std::string> Renderer::validation_messages() const {
+  return impl_->messages();
+}
+Result<double> Renderer::replay_floor_ms(int repeats) {
+  return impl_->replay_floor_ms(repeats);
+}
+void Renderer::wait_idle() {
+  impl_->wait_idle();
+}
+
+Result<std::vector<DeviceInfo>> list_devices() {
+  Result<std::unique_ptr<Instance>> instance = Instance::create("psygen", false, nullptr);
+  if (!instance) return tl::unexpected(instance.error());
+  const std::vector<DeviceCandidate> candidates = find_devices(**instance, VK_NULL_HANDLE);
+  if (candidates.empty()) return tl::unexpected(choose_device(candidates, "").error());
+  std::vector<DeviceInfo> devices;
+  for (const DeviceCandidate& candidate : candidates)
+    devices.push_back(candidate.info);
+  return devices;
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,362 @@
+#include "engine/render/renderer_impl.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "engine/core/assert.hpp"
+#include "engine/core/clock.hpp"
+#include "engine/render/frame_data.hpp"
+
+namespace psygen::render {
+
+using core::ErrorCode;
+using core::Result;
+
+namespace {
+
+double ms_since(double start_seconds) {
+  return (core::monotonic_seconds() - start_seconds) * 1e3;
+}
+
+bool is_empty(core::Extent extent) {
+  return extent.width == 0 || extent.height == 0;
+}
+
+Result<UniqueSemaphore> make_timeline(const Device& device) {
+  VkSemaphoreTypeCreateInfo type{};
+  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  VkSemaphoreCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+  info.pNext = &type;
+  VkSemaphore made = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateSemaphore(device.handle, &info, nullptr, &made);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a semaphore");
+  return UniqueSemaphore(device.vk, device.handle, made);
+}
+
+VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
+                                     VkPipelineStageFlags2 stage) {
+  VkSemaphoreSubmitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
+  info.semaphore = semaphore;
+  info.value = value;
+  info.stageMask = stage;
+  return info;
+}
+
+}  // namespace
+
+RendererImpl::RendererImpl(const RendererOptions& options) : options_(options) {}
+
+RendererImpl::~RendererImpl() {
+  if (device_) wait_idle();
+}
+
+// Remembers that the device was lost, after which nothing is submitted any more.
+template <class T>
+Result<T> RendererImpl::noted(Result<T> result) {
+  if (!result && result.error().code == ErrorCode::kDeviceLost) lost_ = true;
+  return result;
+}
+
+Result<void> RendererImpl::create_device() {
+  Result<std::unique_ptr<Instance>> instance =
+      Instance::create(options_.application_name, options_.validation, options_.surface);
+  if (!instance) return tl::unexpected(instance.error());
+  instance_ = std::move(*instance);
+  if (options_.surface != nullptr) {
+    Result<UniqueSurface> surface = make_surface(*instance_, *options_.surface);
+    if (!surface) return tl::unexpected(surface.error());
+    surface_ = std::move(*surface);
+  }
+  Result<DeviceCandidate> chosen =
+      choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
+  if (!chosen) return tl::unexpected(chosen.error());
+  Result<std::unique_ptr<Device>> device = Device::create(*chosen, options_.surface != nullptr);
+  if (!device) return tl::unexpected(device.error());
+  device_ = std::move(*device);
+  if (options_.surface != nullptr) {
+    const Result<VkFormat> format = colour_format_for(*device_, surface_);
+    if (!format) return tl::unexpected(format.error());
+    colour_format_ = *format;
+  }
+  const bool wanted = options_.submission == Submission::kPushed ||
+                      (options_.submission == Submission::kAuto && device_->info.software);
+  pushed_ = wanted || device_->max_multi_draw == 0;
+  return {};
+}
+
+Result<void> RendererImpl::create() {
+  const std::uint64_t largest = std::uint64_t{1} << 40;
+  if (options_.surface == nullptr && is_empty(options_.size)) {
+    return core::fail(ErrorCode::kInvalidArgument, "a picture needs at least one pixel");
+  }
+  if (options_.geometry_budget_bytes == 0 || options_.geometry_budget_bytes > largest) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      "the geometry budget must be between 1 byte and 1 TiB");
+  }
+  if (Result<void> made = create_device(); !made) return made;
+  pool_ =
+      std::make_unique<GeometryPool>(options_.geometry_budget_bytes,
+                                     [this](std::uint64_t bytes) { return add_pool_block(bytes); });
+  Result<UniqueSemaphore> timeline = make_timeline(*device_);
+  if (!timeline) return tl::unexpected(timeline.error());
+  timeline_ = std::move(*timeline);
+  if (Result<void> made = shared_.create(*device_); !made) return made;
+  if (Result<void> made = pipelines_.create(*device_, colour_format_, pushed_, overlay_,
+                                            static_cast<std::uint32_t>(kFramesInFlight));
+      !made) {
+    return made;
+  }
+  for (FrameSlot& slot : slots_) {
+    if (Result<void> made = slot.create(*device_, pipelines_); !made) return made;
+  }
+  if (Result<void> warmed = warm_up(); !warmed) return warmed;
+  return options_.surface == nullptr ? create_targets(options_.size) : Result<void>{};
+}
+
+Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
+  Result<Buffer> block = make_buffer(
+      *device_, bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
+      MemoryUse::kWrite);
+  if (!block) return core::fail(ErrorCode::kOutOfMemory, block.error().message);
+  pool_blocks_.push_back(std::move(*block));
+  return pool_blocks_.back().mapped;
+}
+
+Result<void> RendererImpl::create_targets(core::Extent extent) {
+  const std::uint32_t side = device_->max_image_side;
+  if (is_empty(extent) || extent.width > side || extent.height > side) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("a picture has 1 to {} pixels a side on this device, not {} x {}",
+                                  side, extent.width, extent.height));
+  }
+  wait_idle();
+  targets_.reset();
+  has_picture_ = false;
+  Result<Targets> made = make_targets(*device_, colour_format_, extent);
+  if (!made) return tl::unexpected(made.error());
+  targets_ = std::move(*made);
+  return {};
+}
+
+Result<void> RendererImpl::warm_up() {
+  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16});
+  if (!small) return tl::unexpected(small.error());
+  FrameSlot& slot = slots_[0];
+  const FrameInput nothing;
+  if (Result<void> written =
+          slot.write(*device_, pipelines_, frame_data(nothing, {16, 16}),
+                     std::vector<shaders::DrawData>(1), std::vector<shaders::OverlayVertex>(3));
+      !written) {
+    return written;
+  }
+  if (Result<void> begun = slot.begin(*device_); !begun) return begun;
+  record_warm_up(*device_, pipelines_, slot, *small, shared_.buffer(), pushed_);
+  if (Result<void> ended = slot.end(*device_); !ended) return ended;
+  if (Result<void> submitted = submit(slot, false); !submitted) return submitted;
+  return wait_for(slot);
+}
+
+Result<void> RendererImpl::wait_for(FrameSlot& slot) {
+  const VkSemaphore timeline = timeline_.get();
+  VkSemaphoreWaitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+  info.semaphoreCount = 1;
+  info.pSemaphores = &timeline;
+  info.pValues = &slot.submitted_value;
+  const VkResult waited = device_->vk.vkWaitSemaphores(device_->handle, &info, kDeviceTimeoutNs);
+  if (waited != VK_SUCCESS) return vulkan_failure(waited, "waiting for a frame");
+  std::uint64_t passed = 0;
+  const VkResult asked = device_->vk.vkGetSemaphoreCounterValue(device_->handle, timeline, &passed);
+  if (asked != VK_SUCCESS) return vulkan_failure(asked, "asking for the finished frames");
+  pool_->frames_finished(passed);
+  return {};
+}
+
+Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
+  VkCommandBufferSubmitInfo commands{};
+  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
+  commands.commandBuffer = slot.commands();
+  const VkSemaphoreSubmitInfo wait =
+      semaphore_info(slot.acquired(), 0, VK_PIPELINE_STAGE_2_COPY_BIT);
+  std::vector<VkSemaphoreSubmitInfo> signals{
+      semaphore_info(timeline_.get(), frame_value_ + 1, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)};
+  if (windowed) {
+    signals.push_back(
+        semaphore_info(swapchain_.finished(), 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT));
+  }
+  VkSubmitInfo2 info{};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
+  info.waitSemaphoreInfoCount = windowed ? 1 : 0;
+  info.pWaitSemaphoreInfos = &wait;
+  info.commandBufferInfoCount = 1;
+  info.pCommandBufferInfos = &commands;
+  info.signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size());
+  info.pSignalSemaphoreInfos = signals.data();
+  const VkResult result = device_->vk.vkQueueSubmit2(device_->queue, 1, &info, VK_NULL_HANDLE);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "submitting a frame");
+  slot.submitted_value = ++frame_value_;
+  pool_->frame_submitted(frame_value_);
+  return {};
+}
+
+Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
+  if (Result<void> begun = slot.begin(*device_); !begun) return begun;
+  const ScenePass pass{
+      list_, {pool_blocks_, shared_.buffer()}, static_cast<std::uint32_t>(glyphs_.size()), pushed_};
+  record_scene(*device_, pipelines_, slot, *targets_, pass);
+  if (windowed) {
+    record_copy_to_window(*device_, slot.commands(), *targets_, swapchain_.image(),
+                          swapchain_.extent());
+  }
+  return slot.end(*device_);
+}
+
+// Camera values that cannot be drawn keep the last ones that could.
+void RendererImpl::remember_valid(const FrameInput& input) {
+  const core::Projection& p = input.projection;
+  const bool drawable = p.vertical_fov > 0.001F && p.vertical_fov < 3.13F && p.aspect > 0.001F &&
+                        p.aspect < 1000.0F && p.near_m > 0.0F && p.near_m < 1e6F;
+  if (core::is_valid(input.pose)) last_pose_ = input.pose;
+  if (drawable) last_projection_ = p;
+}
+
+Result<FrameResult> RendererImpl::render(const FrameInput& input) {
+  if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
+  if (options_.surface != nullptr) {
+    const Result<bool> shown = noted(prepare_window());
+    if (!shown) return tl::unexpected(shown.error());
+    if (!*shown) return FrameResult{};
+  }
+  if (!targets_) {
+    return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
+  }
+  remember_valid(input);
+  return noted(draw_frame(input, slots_[(frame_value_ + 1) % kFramesInFlight]));
+}
+
+Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot& slot) {
+  const bool windowed = options_.surface != nullptr;
+  FrameResult out;
+  const double wait_start = core::monotonic_seconds();
+  if (Result<void> waited = wait_for(slot); !waited) return tl::unexpected(waited.error());
+  if (const std::optional<double> gpu = slot.read_gpu_ms(*device_); gpu && has_list_) gpu_ms_ = gpu;
+  double waited_ms = ms_since(wait_start);
+
+  const double build_start = core::monotonic_seconds();
+  FrameInput checked = input;
+  checked.pose = last_pose_.value_or(core::CameraPose{});
+  checked.projection = last_projection_.value_or(core::Projection{});
+  list_.build(input.terrain, input.models, shared_.lists());
+  overlay_.lay_out(input.overlay_lines, glyphs_);
+  frame_ = frame_data(checked, targets_->extent);
+  if (Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
+      !written) {
+    return tl::unexpected(written.error());
+  }
+  double cpu_ms = ms_since(build_start);
+
+  if (windowed) {
+    const double acquire_start = core::monotonic_seconds();
+    const Result<WindowState> acquired = acquire_window(slot);
+    if (!acquired) return tl::unexpected(acquired.error());
+    if (*acquired == WindowState::kNotNow) return out;
+    waited_ms += ms_since(acquire_start);
+  }
+  const double record_start = core::monotonic_seconds();
+  if (Result<void> recorded = record(slot, windowed); !recorded) {
+    return tl::unexpected(recorded.error());
+  }
+  if (Result<void> submitted = submit(slot, windowed); !submitted) {
+    return tl::unexpected(submitted.error());
+  }
+  cpu_ms += ms_since(record_start);
+  has_picture_ = has_list_ = true;
+  out.presented = true;
+  if (windowed) {
+    const Result<bool> presented = present();
+    if (!presented) return tl::unexpected(presented.error());
+    out.presented = *presented;
+  }
+  out.draws = static_cast<std::uint32_t>(list_.draws().size());
+  out.triangles = list_.triangle_count();
+  out.cpu_ms = cpu_ms;
+  out.wait_ms = waited_ms;
+  out.gpu_ms = gpu_ms_;
+  return out;
+}
+
+Result<Picture> RendererImpl::capture() {
+  if (!has_picture_ || lost_) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      "there is no picture before the first frame of this size");
+  }
+  Picture picture;
+  picture.width = targets_->extent.width;
+  picture.height = targets_->extent.height;
+  picture.rgba.resize(std::size_t{picture.width} * picture.height * 4);
+  Result<Buffer> buffer = make_buffer(*device_, picture.rgba.size(),
+                                      VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::kRead);
+  if (!buffer) return tl::unexpected(buffer.error());
+  const Result<void> copied = noted(run_once(*device_, [&](VkCommandBuffer commands) {
+    record_copy_to_buffer(*device_, commands, *targets_, buffer->buffer.get());
+  }));
+  if (!copied) return tl::unexpected(copied.error());
+  std::memcpy(picture.rgba.data(), buffer->mapped, picture.rgba.size());
+  if (colour_format_ == VK_FORMAT_B8G8R8A8_UNORM) {
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
+      std::swap(picture.rgba[i], picture.rgba[i + 2]);
+  }
+  return picture;
+}
+
+Result<void> RendererImpl::resize(core::Extent size) {
+  if (options_.surface != nullptr) {
+    swapchain_stale_ = true;
+    return {};
+  }
+  if (targets_ && targets_->extent == size) return {};
+  return noted(create_targets(size));
+}
+
+Result<double> RendererImpl::replay_floor_ms(int repeats) {
+  PSYGEN_CHECK(repeats >= 1, "the floor needs at least one repeat");
+  if (!has_picture_ || lost_) {
+    return core::fail(ErrorCode::kInvalidArgument, "there is no frame to draw again");
+  }
+  wait_idle();
+  // Both slots are filled once; then every interval is one frame with the next one in flight.
+  const int lead = static_cast<int>(kFramesInFlight);
+  std::vector<double> intervals;
+  double last = core::monotonic_seconds();
+  for (int i = 0; i < repeats + lead; ++i) {
+    FrameSlot& slot = slots_[(frame_value_ + 1) % kFramesInFlight];
+    const Result<void> drawn =
+        noted(wait_for(slot)
+                  .and_then([&] {
+                    return slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
+                  })
+                  .and_then([&] { return record(slot, false); })
+                  .and_then([&] { return submit(slot, false); }));
+    if (!drawn) return tl::unexpected(drawn.error());
+    const double now = core::monotonic_seconds();
+    if (i >= lead) intervals.push_back((now - last) * 1e3);
+    last = now;
+  }
+  wait_idle();
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
+void RendererImpl::wait_idle() {
+  if (lost_ || device_->vk.vkDeviceWaitIdle(device_->handle) != VK_SUCCESS) return;
+  if (pool_) pool_->frames_finished(frame_value_);
+}
+
+}  // namespace psygen::render

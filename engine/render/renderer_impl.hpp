@@ -1,0 +1,97 @@
+// The renderer behind renderer.hpp: owns every Vulkan object, in order of creation. Private to
+// engine/render.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/render/device.hpp"
+#include "engine/render/frame_slot.hpp"
+#include "engine/render/geometry_pool.hpp"
+#include "engine/render/overlay.hpp"
+#include "engine/render/pipelines.hpp"
+#include "engine/render/scene_recorder.hpp"
+#include "engine/render/shared_index_lists.hpp"
+#include "engine/render/swapchain.hpp"
+#include "engine/render/types.hpp"
+
+namespace psygen::render {
+
+class RendererImpl {
+ public:
+  static constexpr std::size_t kFramesInFlight = 2;
+
+  explicit RendererImpl(const RendererOptions& options);
+  ~RendererImpl();
+  RendererImpl(const RendererImpl&) = delete;
+  RendererImpl& operator=(const RendererImpl&) = delete;
+
+  // To be called once, before everything else; after a failure only destruction is allowed.
+  core::Result<void> create();
+
+  core::GeometryMemory& geometry() { return *pool_; }
+  core::Result<std::uint32_t> add_shared_indices(std::span<const std::uint16_t> indices) {
+    return shared_.add(indices);
+  }
+  core::Result<FrameResult> render(const FrameInput& input);
+  core::Result<Picture> capture();
+  core::Result<void> resize(core::Extent size);
+  core::Extent size() const { return targets_ ? targets_->extent : core::Extent{}; }
+  const DeviceInfo& info() const { return device_->info; }
+  std::vector<std::string> messages() const { return instance_->messages(); }
+  core::Result<double> replay_floor_ms(int repeats);
+  void wait_idle();
+
+ private:
+  enum class WindowState : std::uint8_t { kReady, kNotNow };
+
+  core::Result<void> create_device();
+  core::Result<void> create_targets(core::Extent extent);
+  core::Result<void> warm_up();
+  core::Result<std::byte*> add_pool_block(std::uint64_t bytes);
+
+  core::Result<void> wait_for(FrameSlot& slot);
+  core::Result<bool> prepare_window();
+  core::Result<void> recreate_surface();
+  core::Result<WindowState> acquire_window(FrameSlot& slot);
+  core::Result<void> record(FrameSlot& slot, bool windowed);
+  core::Result<void> submit(FrameSlot& slot, bool windowed);
+  core::Result<bool> present();
+  core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
+  void remember_valid(const FrameInput& input);
+  template <class T>
+  core::Result<T> noted(core::Result<T> result);
+
+  RendererOptions options_;
+  Overlay overlay_;
+  std::unique_ptr<Instance> instance_;
+  UniqueSurface surface_;
+  std::unique_ptr<Device> device_;
+  VkFormat colour_format_ = VK_FORMAT_R8G8B8A8_UNORM;
+  bool pushed_ = false;
+  std::vector<Buffer> pool_blocks_;
+  std::unique_ptr<GeometryPool> pool_;
+  SharedIndexLists shared_;
+  Pipelines pipelines_;
+  std::array<FrameSlot, kFramesInFlight> slots_;
+  UniqueSemaphore timeline_;
+  std::optional<Targets> targets_;
+  Swapchain swapchain_;
+  core::Extent seen_framebuffer_;  // the window's size when the swapchain was made
+  bool swapchain_stale_ = true;
+
+  std::uint64_t frame_value_ = 0;  // last value submitted to the timeline
+  bool has_picture_ = false;
+  bool has_list_ = false;
+  bool lost_ = false;
+  std::optional<core::CameraPose> last_pose_;
+  std::optional<core::Projection> last_projection_;
+  DrawList list_;
+  shaders::FrameData frame_{};
+  std::vector<shaders::OverlayVertex> glyphs_;
+  std::optional<double> gpu_ms_;
+};
+
+}  // namespace psygen::render

@@ -1,0 +1,70 @@
+// The window's part of the renderer: when the swapchain is made, made again, or not there.
+#include "engine/render/renderer_impl.hpp"
+
+namespace psygen::render {
+
+using core::Result;
+
+// True when there is a swapchain and targets of its size; false while the window has no pixels.
+Result<bool> RendererImpl::prepare_window() {
+  const core::Extent size = options_.surface->framebuffer_size();
+  if (size.width == 0 || size.height == 0) return false;
+  if (swapchain_.exists() && !swapchain_stale_ && size == seen_framebuffer_) return true;
+  wait_idle();
+  Result<SwapchainState> made = swapchain_.create(*device_, surface_, size, options_.vsync);
+  if (made && *made == SwapchainState::kSurfaceLost) {
+    if (Result<void> again = recreate_surface(); !again) return tl::unexpected(again.error());
+    made = swapchain_.create(*device_, surface_, size, options_.vsync);
+  }
+  if (!made) return tl::unexpected(made.error());
+  if (*made != SwapchainState::kReady) return false;
+  seen_framebuffer_ = size;
+  swapchain_stale_ = false;
+  if (targets_ && targets_->extent == swapchain_.extent()) return true;
+  if (Result<void> targets = create_targets(swapchain_.extent()); !targets) {
+    swapchain_stale_ = true;
+    return tl::unexpected(targets.error());
+  }
+  return true;
+}
+
+Result<void> RendererImpl::recreate_surface() {
+  wait_idle();
+  swapchain_.destroy();
+  surface_ = {};
+  Result<UniqueSurface> made = make_surface(*instance_, *options_.surface);
+  if (!made) return tl::unexpected(made.error());
+  surface_ = std::move(*made);
+  swapchain_stale_ = true;
+  return {};
+}
+
+// A stale swapchain is made again by the next frame; this one is not shown.
+Result<RendererImpl::WindowState> RendererImpl::acquire_window(FrameSlot& slot) {
+  const Result<SwapchainState> acquired = swapchain_.acquire(*device_, slot.acquired());
+  if (!acquired) return tl::unexpected(acquired.error());
+  switch (*acquired) {
+    case SwapchainState::kReady:
+      return WindowState::kReady;
+    case SwapchainState::kNotNow:
+      return WindowState::kNotNow;
+    case SwapchainState::kStale:
+      swapchain_stale_ = true;
+      return WindowState::kNotNow;
+    case SwapchainState::kSurfaceLost:
+      break;
+  }
+  if (Result<void> again = recreate_surface(); !again) return tl::unexpected(again.error());
+  return WindowState::kNotNow;
+}
+
+Result<bool> RendererImpl::present() {
+  const Result<SwapchainState> shown = swapchain_.present(*device_);
+  if (!shown) return tl::unexpected(shown.error());
+  if (*shown == SwapchainState::kStale) swapchain_stale_ = true;
+  if (*shown != SwapchainState::kSurfaceLost) return true;
+  if (Result<void> again = recreate_surface(); !again) return tl::unexpected(again.error());
+  return false;
+}
+
+}  // namespace psygen::render

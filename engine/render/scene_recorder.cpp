@@ -1,0 +1,259 @@
+#include "engine/render/scene_recorder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace psygen::render {
+
+using core::Result;
+
+static_assert(sizeof(IndexedDraw) == sizeof(VkMultiDrawIndexedInfoEXT));
+static_assert(offsetof(IndexedDraw, index_count) ==
+              offsetof(VkMultiDrawIndexedInfoEXT, indexCount));
+static_assert(offsetof(IndexedDraw, vertex_offset) ==
+              offsetof(VkMultiDrawIndexedInfoEXT, vertexOffset));
+
+namespace {
+
+void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets) {
+  VkImageMemoryBarrier2 colour = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  colour.srcStageMask =
+      VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
+  colour.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  colour.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  colour.dstAccessMask =
+      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
+  colour.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  VkImageMemoryBarrier2 depth = barrier_of(targets.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT);
+  depth.srcStageMask = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+  depth.srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+  depth.dstStageMask =
+      VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+  depth.dstAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+                        VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+  depth.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  const std::array barriers{colour, depth};
+  VkDependencyInfo dependency{};
+  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  dependency.imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size());
+  dependency.pImageMemoryBarriers = barriers.data();
+  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+  targets.colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+
+  VkRenderingAttachmentInfo colour_info{};
+  colour_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  colour_info.imageView = targets.colour.view.get();
+  colour_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  colour_info.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  // the sky fills what nothing covers
+  colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  VkRenderingAttachmentInfo depth_info{};
+  depth_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  depth_info.imageView = targets.depth.view.get();
+  depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;  // to 0, infinitely far
+  depth_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  const VkRect2D area{{0, 0}, {targets.extent.width, targets.extent.height}};
+  VkRenderingInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  info.renderArea = area;
+  info.layerCount = 1;
+  info.colorAttachmentCount = 1;
+  info.pColorAttachments = &colour_info;
+  info.pDepthAttachment = &depth_info;
+  device.vk.vkCmdBeginRendering(commands, &info);
+  const VkViewport viewport{0.0F,
+                            0.0F,
+                            static_cast<float>(targets.extent.width),
+                            static_cast<float>(targets.extent.height),
+                            0.0F,
+                            1.0F};
+  device.vk.vkCmdSetViewport(commands, 0, 1, &viewport);
+  device.vk.vkCmdSetScissor(commands, 0, 1, &area);
+}
+
+void bind_set(const Device& device, const Pipelines& pipelines, const FrameSlot& slot) {
+  const VkDescriptorSet set = slot.set();
+  device.vk.vkCmdBindDescriptorSets(slot.commands(), VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                    pipelines.layout(), 0, 1, &set, 0, nullptr);
+}
+
+void bind_pipeline(const Device& device, VkCommandBuffer commands, VkPipeline pipeline) {
+  device.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+}
+
+void draw_pushed(const Device& device, VkCommandBuffer commands, VkPipelineLayout layout,
+                 const DrawList& list, const DrawRun& run) {
+  for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+    const IndexedDraw& draw = list.draws()[i];
+    device.vk.vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_VERTEX_BIT, 0,
+                                 sizeof(shaders::DrawData), &list.data()[i]);
+    device.vk.vkCmdDrawIndexed(commands, draw.index_count, 1, draw.first_index, draw.vertex_offset,
+                               0);
+  }
+}
+
+void draw_many(const Device& device, VkCommandBuffer commands, const DrawList& list,
+               const DrawRun& run) {
+  for (std::uint32_t done = 0; done < run.count; done += device.max_multi_draw) {
+    const std::uint32_t first = run.first + done;
+    const std::uint32_t count = std::min(run.count - done, device.max_multi_draw);
+    device.vk.vkCmdDrawMultiIndexedEXT(
+        commands, count,
+        reinterpret_cast<const VkMultiDrawIndexedInfoEXT*>(list.draws().data() + first), 1, first,
+        sizeof(IndexedDraw), nullptr);
+  }
+}
+
+void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                 const ScenePass& pass) {
+  VkPipeline bound = VK_NULL_HANDLE;
+  VkBuffer bound_vertices = VK_NULL_HANDLE, bound_indices = VK_NULL_HANDLE;
+  for (const DrawRun& run : pass.list.runs()) {
+    const VkPipeline pipeline =
+        run.layout == core::VertexLayout::kTerrain ? pipelines.terrain() : pipelines.model();
+    const VkBuffer vertices = pass.buffers.pool_blocks[run.pool_block].buffer.get();
+    const VkBuffer indices = run.shared ? pass.buffers.shared_indices : vertices;
+    if (pipeline != bound) bind_pipeline(device, commands, pipeline);
+    if (vertices != bound_vertices) {
+      const VkDeviceSize zero = 0;
+      device.vk.vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
+    }
+    if (indices != bound_indices) {
+      device.vk.vkCmdBindIndexBuffer(commands, indices, 0, VK_INDEX_TYPE_UINT16);
+    }
+    bound = pipeline;
+    bound_vertices = vertices;
+    bound_indices = indices;
+    if (pass.pushed) {
+      draw_pushed(device, commands, pipelines.layout(), pass.list, run);
+    } else {
+      draw_many(device, commands, pass.list, run);
+    }
+  }
+}
+
+void draw_sky_and_text(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                       std::uint32_t glyph_vertex_count) {
+  bind_pipeline(device, commands, pipelines.sky());
+  device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  if (glyph_vertex_count == 0) return;
+  bind_pipeline(device, commands, pipelines.overlay());
+  device.vk.vkCmdDraw(commands, glyph_vertex_count, 1, 0, 0);
+}
+
+void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& targets) {
+  if (targets.colour_layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL) return;
+  VkImageMemoryBarrier2 barrier = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  barrier.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT;
+  barrier.oldLayout = targets.colour_layout;
+  barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+  image_barrier(device, commands, barrier);
+  targets.colour_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+}
+
+constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+
+}  // namespace
+
+Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent) {
+  Targets targets;
+  targets.extent = extent;
+  Result<Image> colour = make_image(
+      device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+      VK_IMAGE_ASPECT_COLOR_BIT);
+  if (!colour) return tl::unexpected(colour.error());
+  targets.colour = std::move(*colour);
+  Result<Image> depth =
+      make_image(device, extent, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                 VK_IMAGE_ASPECT_DEPTH_BIT);
+  if (!depth) return tl::unexpected(depth.error());
+  targets.depth = std::move(*depth);
+  return targets;
+}
+
+void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                  Targets& targets, const ScenePass& pass) {
+  slot.write_timestamp(device, false);
+  begin_pass(device, slot.commands(), targets);
+  bind_set(device, pipelines, slot);
+  draw_meshes(device, pipelines, slot.commands(), pass);
+  draw_sky_and_text(device, pipelines, slot.commands(), pass.glyph_vertex_count);
+  device.vk.vkCmdEndRendering(slot.commands());
+  slot.write_timestamp(device, true);
+}
+
+void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                    Targets& targets, VkBuffer blank, bool pushed) {
+  const VkCommandBuffer commands = slot.commands();
+  begin_pass(device, commands, targets);
+  bind_set(device, pipelines, slot);
+  const VkDeviceSize zero = 0;
+  device.vk.vkCmdBindVertexBuffers(commands, 0, 1, &blank, &zero);
+  device.vk.vkCmdBindIndexBuffer(commands, blank, 0, VK_INDEX_TYPE_UINT16);
+  for (const VkPipeline pipeline : {pipelines.terrain(), pipelines.model()}) {
+    bind_pipeline(device, commands, pipeline);
+    if (pushed) {
+      const shaders::DrawData data{};
+      device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT, 0,
+                                   sizeof(data), &data);
+      device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
+    } else {
+      const VkMultiDrawIndexedInfoEXT draw{0, 3, 0};
+      device.vk.vkCmdDrawMultiIndexedEXT(commands, 1, &draw, 1, 0, sizeof(draw), nullptr);
+    }
+  }
+  draw_sky_and_text(device, pipelines, commands, 3);
+  device.vk.vkCmdEndRendering(commands);
+}
+
+void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,
+                           VkImage window, core::Extent window_extent) {
+  to_copy_source(device, commands, targets);
+  VkImageMemoryBarrier2 barrier = barrier_of(window, VK_IMAGE_ASPECT_COLOR_BIT);
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;  // where the image is waited for
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  image_barrier(device, commands, barrier);
+  VkImageCopy copy{};
+  copy.srcSubresource = kColourLayer;
+  copy.dstSubresource = kColourLayer;
+  copy.extent = {std::min(targets.extent.width, window_extent.width),
+                 std::min(targets.extent.height, window_extent.height), 1};
+  device.vk.vkCmdCopyImage(commands, targets.colour.image.get(),
+                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, window,
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+  barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_NONE;
+  barrier.dstAccessMask = VK_ACCESS_2_NONE;
+  barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  barrier.newLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
+  image_barrier(device, commands, barrier);
+}
+
+void record_copy_to_buffer(const Device& device, VkCommandBuffer commands, Targets& targets,
+                           VkBuffer buffer) {
+  to_copy_source(device, commands, targets);
+  VkBufferImageCopy copy{};
+  copy.imageSubresource = kColourLayer;
+  copy.imageExtent = {targets.extent.width, targets.extent.height, 1};
+  device.vk.vkCmdCopyImageToBuffer(commands, targets.colour.image.get(),
+                                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &copy);
+  VkMemoryBarrier2 to_host{};
+  to_host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+  to_host.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+  to_host.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  to_host.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
+  to_host.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
+  VkDependencyInfo dependency{};
+  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  dependency.memoryBarrierCount = 1;
+  dependency.pMemoryBarriers = &to_host;
+  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,49 @@
+// Records the one pass of a frame: meshes in the order of the draw list, the sky behind them, text
+// over them; and the copy of the picture out of the target. Private to engine/render.
+#pragma once
+
+#include <span>
+
+#include "engine/render/draw_list.hpp"
+#include "engine/render/frame_slot.hpp"
+#include "engine/render/pipelines.hpp"
+
+namespace psygen::render {
+
+// What is drawn into: colour that can be copied out, and depth that is forgotten after the pass.
+struct Targets {
+  Image colour, depth;
+  core::Extent extent;
+  VkImageLayout colour_layout = VK_IMAGE_LAYOUT_UNDEFINED;  // after the last recorded frame
+};
+core::Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent);
+
+// The buffers that a draw list refers to.
+struct SceneBuffers {
+  std::span<const Buffer> pool_blocks;
+  VkBuffer shared_indices = VK_NULL_HANDLE;
+};
+
+struct ScenePass {
+  const DrawList& list;
+  SceneBuffers buffers;
+  std::uint32_t glyph_vertex_count = 0;
+  bool pushed = false;  // one draw per call with its data pushed, else multi-draw
+};
+
+// Between slot.begin() and slot.end(). Leaves the colour target as an attachment.
+void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                  Targets& targets, const ScenePass& pass);
+
+// Every pipeline once with triangles that cover nothing, so that the driver has compiled them.
+void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                    Targets& targets, VkBuffer blank, bool pushed);
+
+// Copies the colour target to a swapchain image and leaves that ready to be shown.
+void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,
+                           VkImage window, core::Extent window_extent);
+// Copies the colour target into a buffer of width · height · 4 bytes.
+void record_copy_to_buffer(const Device& device, VkCommandBuffer commands, Targets& targets,
+                           VkBuffer buffer);
+
+}  // namespace psygen::render

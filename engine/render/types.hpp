@@ -1,0 +1,124 @@
+// What the renderer is told: options, light, palette, draws; and what it answers. Plain values
+// without any Vulkan type. Metres, seconds, linear colours; positions relative to the camera.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/camera.hpp"
+#include "engine/core/geometry_memory.hpp"
+#include "engine/core/surface_provider.hpp"
+
+namespace psygen::render {
+
+// How meshes reach the device: many per call with their data in a buffer, or one per call with its
+// data pushed (less work per vertex on software devices). kAuto picks by device.
+enum class Submission : std::uint8_t { kAuto, kMultiDraw, kPushed };
+
+struct RendererOptions {
+  std::string application_name = "psygen";
+  std::string device_name;  // part of the device's name; empty: the best there is
+  bool validation = false;  // Khronos layer with synchronization validation; messages are collected
+  core::Extent size{1280, 720};  // of the picture; with a surface the framebuffer's size counts
+  std::uint64_t geometry_budget_bytes = 512ull << 20;  // hard limit of geometry()
+  core::SurfaceProvider* surface = nullptr;  // null: headless; else it outlives the renderer
+  bool vsync = false;
+  Submission submission = Submission::kAuto;  // kMultiDraw without VK_EXT_multi_draw is kPushed
+};
+
+struct DeviceInfo {
+  std::string name;         // "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string driver;       // name and version
+  std::string api_version;  // "1.3.230"
+  bool software = false;
+  bool unified_memory = false;  // geometry is written straight into the device's own memory
+  bool multi_draw = false;      // many meshes in one call
+};
+
+// Sun, sky and air. Colours are linear radiance before `exposure`.
+struct Light {
+  glm::vec3 sun_direction{0.45F, 0.55F, 0.35F};  // towards the sun; need not be unit
+  glm::vec3 sun_colour{3.1F, 2.75F, 2.25F};
+  glm::vec3 zenith_colour{0.13F, 0.28F, 0.62F};
+  glm::vec3 horizon_colour{0.50F, 0.62F, 0.78F};
+  glm::vec3 ground_colour{0.16F, 0.15F, 0.11F};  // light from below
+  glm::vec3 haze_colour{0.66F, 0.72F, 0.80F};    // the sky just above (and below) the horizon
+  float haze_density = 0.0012F;        // at height 0, 1/m; 1/density is where 37 % is left
+  float haze_height_falloff = 0.004F;  // 1/m; 0: the same at every height
+  float exposure = 1.0F;
+  float time_seconds = 0.0F;  // for wind and clouds
+  float cloud_cover = 0.5F;   // 0 clear … 1 overcast
+};
+
+// Linear albedo of the ground and where each kind of ground is. Heights in metres of the world.
+// Slope is 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
+struct TerrainPalette {
+  glm::vec3 grass{0.085F, 0.125F, 0.030F};
+  glm::vec3 forest{0.045F, 0.070F, 0.022F};
+  glm::vec3 dry{0.200F, 0.165F, 0.075F};
+  glm::vec3 rock{0.175F, 0.160F, 0.145F};
+  glm::vec3 snow{0.80F, 0.83F, 0.88F};
+  glm::vec3 sand{0.36F, 0.30F, 0.19F};
+  float sand_end_m = -1e6F, sand_blend_m = 2.0F;    // sand below
+  float dry_start_m = 60.0F, dry_blend_m = 40.0F;   // dry meadow above
+  float snow_start_m = 1e6F, snow_blend_m = 15.0F;  // snow above, except where steep
+  float rock_slope_start = 0.16F, rock_slope_full = 0.34F;
+  float snow_slope_max = 0.40F;  // steeper ground sheds its snow
+};
+
+// Name of "no shared list": the mesh has indices of its own.
+inline constexpr std::uint32_t kNoSharedIndices = 0;
+
+// A tree, rock or any other mesh of core::VertexLayout::kModel.
+struct MeshDraw {
+  core::GeometryRange range;
+  std::uint32_t shared_indices = kNoSharedIndices;  // from upload_shared_indices
+  glm::vec3 origin{0.0F};                           // the mesh's foot
+  glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
+  glm::vec3 box_half_extent{1.0F};
+  float fade = 1.0F;  // 0 … 1, size while a mesh appears
+};
+
+// A grid of core::VertexLayout::kTerrain.
+struct TerrainDraw {
+  core::GeometryRange range;
+  std::uint32_t shared_indices = kNoSharedIndices;
+  glm::vec3 origin{0.0F};                            // the block's corner at world height 0
+  float cell_m = 1.0F;                               // between two grid lines
+  float height_min_m = 0.0F, height_range_m = 1.0F;  // what unorm16 heights span
+  float skirt_m = 0.0F;                              // how far skirt vertices hang down
+  float morph = 0.0F;                                // 0 fine heights … 1 coarse heights
+};
+
+struct FrameInput {
+  core::CameraPose pose;
+  core::Projection projection;
+  Light light;
+  TerrainPalette palette;
+  double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
+  std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
+  std::span<const MeshDraw> models;      // nearest first, committed ranges only
+  std::span<const std::string> overlay_lines;  // text in the top left; empty: none
+};
+
+struct FrameResult {
+  std::uint32_t draws = 0;
+  std::uint64_t triangles = 0;
+  double cpu_ms = 0;             // recording and submission
+  double wait_ms = 0;            // for the frame before the last, and for a swapchain image
+  std::optional<double> gpu_ms;  // latest finished frame; none until there is one
+  bool presented = false;        // windowed: shown; headless: drawn
+};
+
+// Rows from the top, 4 bytes a pixel (red, green, blue, alpha) as shown on a display.
+struct Picture {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+}  // namespace psygen::render

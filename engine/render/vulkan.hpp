@@ -1,0 +1,71 @@
+// Vulkan as this folder sees it: volk's function tables, owning handles, results as errors.
+// Private to engine/render.
+#pragma once
+
+#define VK_NO_PROTOTYPES
+#include <volk.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "engine/core/error.hpp"
+
+namespace psygen::render {
+
+// kOutOfMemory, kDeviceLost or kInternal with a sentence "<what> failed: <result>".
+core::Error vulkan_error(VkResult result, const char* what);
+
+inline tl::unexpected<core::Error> vulkan_failure(VkResult result, const char* what) {
+  return tl::unexpected(vulkan_error(result, what));
+}
+
+// Longest wait for the device; then it counts as lost.
+inline constexpr std::uint64_t kDeviceTimeoutNs = 60'000'000'000;
+
+// An object of a VkDevice that ends with its owner. `Destroy` is the table's function for it.
+template <class T, auto Destroy>
+class DeviceHandle {
+ public:
+  DeviceHandle() = default;
+  DeviceHandle(const VolkDeviceTable& vk, VkDevice device, T handle)
+      : vk_(&vk), device_(device), handle_(handle) {}
+  DeviceHandle(DeviceHandle&& other) noexcept
+      : vk_(other.vk_), device_(other.device_), handle_(std::exchange(other.handle_, {})) {}
+  DeviceHandle& operator=(DeviceHandle&& other) noexcept {
+    std::swap(vk_, other.vk_);
+    std::swap(device_, other.device_);
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~DeviceHandle() {
+    if (handle_ != T{}) (vk_->*Destroy)(device_, handle_, nullptr);
+  }
+  T get() const { return handle_; }
+  const T* address() const { return &handle_; }
+
+ private:
+  const VolkDeviceTable* vk_ = nullptr;
+  VkDevice device_ = VK_NULL_HANDLE;
+  T handle_{};
+};
+
+using UniqueBuffer = DeviceHandle<VkBuffer, &VolkDeviceTable::vkDestroyBuffer>;
+using UniqueImage = DeviceHandle<VkImage, &VolkDeviceTable::vkDestroyImage>;
+using UniqueImageView = DeviceHandle<VkImageView, &VolkDeviceTable::vkDestroyImageView>;
+using UniqueMemory = DeviceHandle<VkDeviceMemory, &VolkDeviceTable::vkFreeMemory>;
+using UniqueSampler = DeviceHandle<VkSampler, &VolkDeviceTable::vkDestroySampler>;
+using UniqueSemaphore = DeviceHandle<VkSemaphore, &VolkDeviceTable::vkDestroySemaphore>;
+using UniqueCommandPool = DeviceHandle<VkCommandPool, &VolkDeviceTable::vkDestroyCommandPool>;
+using UniqueQueryPool = DeviceHandle<VkQueryPool, &VolkDeviceTable::vkDestroyQueryPool>;
+using UniqueShaderModule = DeviceHandle<VkShaderModule, &VolkDeviceTable::vkDestroyShaderModule>;
+using UniquePipeline = DeviceHandle<VkPipeline, &VolkDeviceTable::vkDestroyPipeline>;
+using UniquePipelineLayout =
+    DeviceHandle<VkPipelineLayout, &VolkDeviceTable::vkDestroyPipelineLayout>;
+using UniqueSetLayout =
+    DeviceHandle<VkDescriptorSetLayout, &VolkDeviceTable::vkDestroyDescriptorSetLayout>;
+using UniqueDescriptorPool =
+    DeviceHandle<VkDescriptorPool, &VolkDeviceTable::vkDestroyDescriptorPool>;
+using UniqueSwapchain = DeviceHandle<VkSwapchainKHR, &VolkDeviceTable::vkDestroySwapchainKHR>;
+
+}  // namespace psygen::render

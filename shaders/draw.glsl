@@ -1,0 +1,19 @@
+// Where a vertex shader finds the data of its draw: in push constants (one draw per call, the
+// fastest on software devices, where an indexed load is a loop over lanes) or in a buffer, indexed
+// by the first instance plus the number of the draw within a multi-draw.
+#ifdef PSYGEN_DRAW_PUSHED
+layout(push_constant, std430) uniform Pushed { DrawData pushed; };
+DrawData this_draw() { return pushed; }
+#else
+layout(set = 0, binding = PSYGEN_BINDING_DRAWS, std430) readonly buffer Draws { DrawData draws[]; };
+DrawData this_draw() { return draws[gl_BaseInstance + gl_DrawID]; }
+#endif
+
+// The octahedral map with its pole at +Y (vertex_layout.hpp); `e` in [-1, 1].
+vec3 octahedral_normal(vec2 e) {
+  vec3 n = vec3(e.x, 1.0 - abs(e.x) - abs(e.y), e.y);
+  float fold = max(-n.y, 0.0);
+  n.x += n.x >= 0.0 ? -fold : fold;
+  n.z += n.z >= 0.0 ? -fold : fold;
+  return n * inversesqrt(dot(n, n));
+}

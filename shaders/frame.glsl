@@ -1,0 +1,5 @@
+// The bindings of the one descriptor set that every pipeline uses.
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+
+layout(set = 0, binding = PSYGEN_BINDING_FRAME, std140) uniform Frame { FrameData frame; };

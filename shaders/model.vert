@@ -1,0 +1,48 @@
+// Trees, rocks and every other model: unpacks core::ModelVertex, sways, lights and hazes.
+// Everything per vertex: the fragment shader only writes the interpolated colour.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame.glsl"
+#include "draw.glsl"
+#include "atmosphere.glsl"
+
+layout(location = 0) in uvec4 packed;  // position, ambient, sway, normal, colour, material
+layout(location = 0) out vec3 colour;
+
+vec2 snorm16(uint v) {
+  return max(vec2(int(v << 16) >> 16, int(v) >> 16) * (1.0 / 32767.0), -1.0);
+}
+
+// A smooth wave of period 1 in [-1, 1], without trigonometry (a loop over lanes on software).
+float wave(float t) {
+  float f = abs(fract(t) * 2.0 - 1.0);
+  return (f * f * (3.0 - 2.0 * f)) * 2.0 - 1.0;
+}
+
+void main() {
+  DrawData draw = this_draw();
+  vec2 xy = snorm16(packed.x);
+  float z = max(float(int(packed.y << 16) >> 16) * (1.0 / 32767.0), -1.0);
+  float ambient = float((packed.y >> 16) & 0xFFu) * (1.0 / 255.0);
+  float sway = float(packed.y >> 24) * (1.0 / 255.0);
+  vec3 n = octahedral_normal(snorm16(packed.z));
+  vec3 c = vec3(packed.w & 0xFFu, (packed.w >> 8) & 0xFFu, (packed.w >> 16) & 0xFFu) * (1.0 / 255.0);
+  vec3 albedo = c * c;
+  float leaf = float(packed.w >> 24);
+
+  vec3 p = draw.origin.xyz + draw.scale.xyz * vec3(xy, z);
+  float time = frame.sun_direction.w * 0.31 + draw.origin.w;
+  p.x += sway * 0.12 * draw.scale.w * wave(time + xy.y * 0.3);
+  p.z += sway * 0.09 * draw.scale.w * wave(time * 1.37 + xy.x * 0.4);
+
+  float facing = dot(n, frame.sun_direction.xyz);
+  float solid = max(facing, 0.0);
+  float wrapped = clamp(facing * 0.5 + 0.5, 0.0, 1.0);
+  float through = max(-dot(p, frame.sun_direction.xyz) * -inversesqrt(dot(p, p) + 1e-6), 0.0);
+  float leafy = wrapped * wrapped * 0.85 + 0.35 * through * through * (1.0 - 0.5 * wrapped);
+  float sun = mix(solid, leafy, leaf) * (0.35 + 0.65 * ambient);
+  vec3 light = albedo * (ambient_light(n) * ambient + sun * frame.sun_colour.rgb);
+
+  colour = shown(through_haze(light, p));
+  gl_Position = frame.clip_from_camera * vec4(p, 1.0);
+}

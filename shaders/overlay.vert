@@ -1,0 +1,17 @@
+// Text quads in pixels; the vertices are read from a buffer, six a quad.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame.glsl"
+
+layout(set = 0, binding = PSYGEN_BINDING_GLYPHS, std430) readonly buffer Glyphs {
+  OverlayVertex vertices[];
+};
+layout(location = 0) out vec4 colour;
+layout(location = 1) out vec2 uv;
+
+void main() {
+  OverlayVertex v = vertices[gl_VertexIndex];
+  colour = v.colour;
+  uv = v.place.zw;
+  gl_Position = vec4(v.place.xy / frame.ground_anchor.zw * 2.0 - 1.0, 0.0, 1.0);
+}

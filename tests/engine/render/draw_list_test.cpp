@@ -1,0 +1,91 @@
+#include "engine/render/draw_list.hpp"
+
+#include <gtest/gtest.h>
+
+namespace psygen::render {
+namespace {
+
+MeshDraw model(std::uint32_t block, std::uint32_t first_vertex, std::uint32_t shared) {
+  MeshDraw draw;
+  draw.range.pool_block = block;
+  draw.range.first_vertex = first_vertex;
+  draw.range.first_index = 1000 + first_vertex;
+  draw.range.index_count = 6;
+  draw.range.layout = core::VertexLayout::kModel;
+  draw.shared_indices = shared;
+  return draw;
+}
+
+TEST(DrawList, gathers_draws_of_the_same_buffers_and_keeps_their_order) {
+  const std::vector<MeshDraw> models{model(0, 1, 0), model(0, 2, 1), model(1, 3, 0),
+                                     model(0, 4, 0), model(0, 5, 1), model(1, 6, 0)};
+  const std::vector<IndexList> lists{{7, 9}};
+  DrawList list;
+  list.build({}, models, lists);
+  ASSERT_EQ(list.runs().size(), 3u);
+  std::vector<std::int32_t> order;
+  for (const IndexedDraw& draw : list.draws())
+    order.push_back(draw.vertex_offset);
+  EXPECT_EQ(order, (std::vector<std::int32_t>{1, 4, 2, 5, 3, 6}));
+  EXPECT_TRUE(list.runs()[1].shared);
+  EXPECT_EQ(list.draws()[2].first_index, 7u);
+  EXPECT_EQ(list.draws()[2].index_count, 9u);
+  EXPECT_EQ(list.draws()[0].first_index, 1001u);
+  EXPECT_EQ(list.triangle_count(), 4u * 2 + 2u * 3);
+}
+
+TEST(DrawList, changes_the_order_only_within_a_window) {
+  std::vector<MeshDraw> models;
+  for (std::uint32_t i = 0; i < 2 * DrawList::kWindow; ++i)
+    models.push_back(model(1 - i % 2, i, 0));
+  DrawList list;
+  list.build({}, models, {});
+  ASSERT_EQ(list.draws().size(), models.size());
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const auto was = static_cast<std::size_t>(list.draws()[i].vertex_offset);
+    EXPECT_EQ(i / DrawList::kWindow, was / DrawList::kWindow);
+  }
+  EXPECT_LE(list.runs().size(), 4u);
+}
+
+TEST(DrawList, puts_terrain_first_and_folds_its_least_height_into_the_origin) {
+  TerrainDraw ground;
+  ground.range.layout = core::VertexLayout::kTerrain;
+  ground.range.index_count = 3;
+  ground.origin = {1, 2, 3};
+  ground.height_min_m = 10;
+  ground.height_range_m = 50;
+  ground.cell_m = 0.5F;
+  const std::vector<MeshDraw> models{model(0, 1, 0)};
+  DrawList list;
+  list.build(std::span(&ground, 1), models, {});
+  ASSERT_EQ(list.runs().size(), 2u);
+  EXPECT_EQ(list.runs()[0].layout, core::VertexLayout::kTerrain);
+  EXPECT_EQ(list.data()[0].origin, glm::vec4(1, 12, 3, 0.5F));
+  EXPECT_EQ(list.data()[0].scale.x, 50.0F);
+}
+
+TEST(DrawList, shrinks_a_fading_mesh_towards_its_foot) {
+  MeshDraw draw = model(0, 0, 0);
+  draw.origin = {10, 0, 0};
+  draw.box_center = {0, 4, 0};
+  draw.box_half_extent = {2, 4, 2};
+  draw.fade = 0.5F;
+  DrawList list;
+  list.build({}, std::span(&draw, 1), {});
+  EXPECT_EQ(glm::vec3(list.data()[0].origin), glm::vec3(10, 2, 0));
+  EXPECT_EQ(glm::vec3(list.data()[0].scale), glm::vec3(1, 2, 1));
+}
+
+TEST(DrawList, is_empty_again_when_built_from_nothing) {
+  const std::vector<MeshDraw> models{model(0, 1, 0)};
+  DrawList list;
+  list.build({}, models, {});
+  list.build({}, {}, {});
+  EXPECT_TRUE(list.runs().empty());
+  EXPECT_TRUE(list.draws().empty());
+  EXPECT_EQ(list.triangle_count(), 0u);
+}
+
+}  // namespace
+}  // namespace psygen::render

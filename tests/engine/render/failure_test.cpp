@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "engine/render/renderer.hpp"
+
+namespace psygen::render {
+namespace {
+
+TEST(RendererFailure, an_unknown_device_name_is_answered_with_the_names_there_are) {
+  RendererOptions options;
+  options.device_name = "no such card";
+  const auto renderer = Renderer::create(options);
+  ASSERT_FALSE(renderer);
+  EXPECT_EQ(renderer.error().code, core::ErrorCode::kNoDevice);
+  EXPECT_NE(renderer.error().message.find("no such card"), std::string::npos);
+  const auto devices = list_devices();
+  ASSERT_TRUE(devices) << devices.error().message;
+  ASSERT_FALSE(devices->empty());
+  EXPECT_NE(renderer.error().message.find(devices->front().name), std::string::npos);
+}
+
+TEST(RendererFailure, a_part_of_the_name_chooses_a_device) {
+  const auto devices = list_devices();
+  ASSERT_TRUE(devices) << devices.error().message;
+  RendererOptions options;
+  options.size = {16, 16};
+  options.device_name = devices->back().name.substr(0, 6);
+  const auto renderer = Renderer::create(options);
+  ASSERT_TRUE(renderer) << renderer.error().message;
+  EXPECT_NE((*renderer)->device().name.find(options.device_name), std::string::npos);
+  EXPECT_FALSE((*renderer)->device().driver.empty());
+}
+
+TEST(RendererFailure, a_picture_without_pixels_is_refused) {
+  RendererOptions options;
+  options.size = {0, 720};
+  const auto renderer = Renderer::create(options);
+  ASSERT_FALSE(renderer);
+  EXPECT_EQ(renderer.error().code, core::ErrorCode::kInvalidArgument);
+}
+
+TEST(RendererFailure, a_picture_larger_than_memory_is_refused) {
+  RendererOptions options;
+  options.size = {1u << 30, 1u << 30};
+  EXPECT_FALSE(Renderer::create(options));
+}
+
+// In a process of its own: the environment decides which drivers the loader finds.
+void create_without_drivers() {
+  setenv("VK_ICD_FILENAMES", "/nonexistent/driver.json", 1);
+  setenv("VK_DRIVER_FILES", "/nonexistent/driver.json", 1);
+  const auto renderer = Renderer::create({});
+  const bool clear = !renderer && renderer.error().code == core::ErrorCode::kNoDevice;
+  std::fprintf(stderr, "%s\n", renderer ? "there was a device" : renderer.error().message.c_str());
+  std::_Exit(clear ? 4 : 1);
+}
+
+TEST(RendererFailureDeathTest, a_machine_without_a_driver_gets_one_clear_sentence) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(create_without_drivers(), testing::ExitedWithCode(4), "no Vulkan driver");
+}
+
+}  // namespace
+}  // namespace psygen::render

@@ -1,0 +1,289 @@
+#include "engine/render/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "tests/engine/render/synthetic_scene.hpp"
+
+namespace psygen::render {
+namespace {
+
+constexpr core::Extent kSize{160, 120};
+constexpr int kSide = 65;
+
+struct Pixel {
+  int r, g, b;
+  int sum() const { return r + g + b; }
+};
+
+Pixel at(const Picture& picture, std::uint32_t x, std::uint32_t y) {
+  const std::size_t i = (std::size_t{y} * picture.width + x) * 4;
+  return {picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]};
+}
+
+// A headless renderer with validation: every test ends with "validation had nothing to say".
+class RendererTest : public testing::TestWithParam<Submission> {
+ protected:
+  void SetUp() override {
+    RendererOptions options;
+    options.validation = true;
+    options.size = kSize;
+    options.geometry_budget_bytes = 8 << 20;
+    options.submission = GetParam();
+    auto made = Renderer::create(options);
+    ASSERT_TRUE(made) << made.error().message;
+    renderer_ = std::move(*made);
+    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(kSide));
+    ASSERT_TRUE(grid);
+    grid_ = *grid;
+  }
+  void TearDown() override {
+    if (!renderer_) return;
+    renderer_->wait_idle();
+    expect_no_messages();
+  }
+  void expect_no_messages() {
+    for (const std::string& message : renderer_->validation_messages())
+      ADD_FAILURE() << message;
+  }
+
+  // Flat ground of 640 m around the camera, which stands 10 m above it.
+  void add_ground(float level = 0.0F) {
+    const auto range =
+        synthetic::make_terrain(renderer_->geometry(), kSide, [=](int, int) { return level; });
+    ASSERT_TRUE(range);
+    TerrainDraw draw;
+    draw.range = *range;
+    draw.shared_indices = grid_;
+    draw.origin = {-320.0F, -10.0F, -320.0F};
+    draw.cell_m = 10.0F;
+    draw.height_range_m = 100.0F;
+    terrain_.push_back(draw);
+  }
+  void add_box(glm::vec3 foot, float size_m, glm::vec3 albedo) {
+    const auto range = synthetic::make_box(renderer_->geometry(), albedo);
+    ASSERT_TRUE(range);
+    MeshDraw draw;
+    draw.range = *range;
+    draw.origin = foot;
+    draw.box_center = {0, size_m / 2, 0};
+    draw.box_half_extent = glm::vec3(size_m / 2);
+    models_.push_back(draw);
+  }
+  FrameInput input(double pitch = 0.0) {
+    FrameInput made = synthetic::look(10.0, pitch, renderer_->size());
+    made.terrain = terrain_;
+    made.models = models_;
+    made.light.haze_density = 0.0004F;
+    return made;
+  }
+  Picture draw(const FrameInput& frame) {
+    const auto result = renderer_->render(frame);
+    EXPECT_TRUE(result) << result.error().message;
+    auto picture = renderer_->capture();
+    EXPECT_TRUE(picture) << picture.error().message;
+    return picture ? *picture : Picture{};
+  }
+
+  std::unique_ptr<Renderer> renderer_;
+  std::uint32_t grid_ = 0;
+  std::vector<TerrainDraw> terrain_;
+  std::vector<MeshDraw> models_;
+};
+
+TEST_P(RendererTest, shows_sky_above_the_horizon_and_ground_below_it) {
+  add_ground();
+  const Picture picture = draw(input());
+  ASSERT_EQ(picture.width, kSize.width);
+  ASSERT_EQ(picture.rgba.size(), std::size_t{kSize.width} * kSize.height * 4);
+  for (const std::uint32_t x : {10u, 80u, 150u}) {
+    const Pixel sky = at(picture, x, 8);
+    const Pixel ground = at(picture, x, kSize.height - 8);
+    EXPECT_GT(sky.b, sky.r) << "the sky is blue";
+    EXPECT_GT(ground.g, ground.b) << "the ground is green";
+    EXPECT_GT(sky.sum(), ground.sum());
+  }
+}
+
+TEST_P(RendererTest, counts_what_it_draws) {
+  add_ground();
+  add_box({0, -10, -30}, 8, {0.5F, 0.1F, 0.1F});
+  const auto result = renderer_->render(input());
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->draws, 2u);
+  EXPECT_EQ(result->triangles, 64u * 64 * 2 + 12);
+  EXPECT_TRUE(result->presented);
+  EXPECT_GE(result->cpu_ms, 0.0);
+}
+
+TEST_P(RendererTest, puts_a_box_where_it_stands_and_hides_what_is_behind_it) {
+  add_ground();
+  const Picture before = draw(input());
+  add_box({0, -10, -30}, 12, {0.6F, 0.02F, 0.02F});  // 12 m wide, 30 m ahead
+  add_box({0, -10, -60}, 12, {0.02F, 0.02F, 0.6F});  // behind it, given later
+  add_box({-300, -10, 50}, 12, {0.9F, 0.9F, 0.9F});  // behind the camera
+  const Picture after = draw(input());
+  const Pixel middle = at(after, kSize.width / 2, kSize.height / 2 + 20);
+  EXPECT_GT(middle.r, 2 * middle.b);
+  EXPECT_GT(middle.r, 2 * middle.g);
+  EXPECT_EQ(at(after, 5, 5).sum(), at(before, 5, 5).sum());
+  // The near face is 12 m at 24 m: 2 · 6 / 24 / tan(0.45) of half the height.
+  int red = 0;
+  for (std::uint32_t x = 0; x < kSize.width; ++x)
+    red += at(after, x, kSize.height / 2 + 20).r > 2 * at(after, x, kSize.height / 2 + 20).g;
+  const double expected = 6.0 / 24.0 / std::tan(0.45) * kSize.height;
+  EXPECT_NEAR(red, expected, 2.0);
+}
+
+TEST_P(RendererTest, draws_the_same_picture_again_from_the_same_input) {
+  add_ground();
+  add_box({3, -10, -40}, 9, {0.3F, 0.3F, 0.1F});
+  const Picture first = draw(input(0.1));
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(draw(input(0.1)).rgba, first.rgba);
+}
+
+TEST_P(RendererTest, follows_a_change_of_size) {
+  add_ground();
+  draw(input());
+  ASSERT_TRUE(renderer_->resize({97, 61}));
+  EXPECT_FALSE(renderer_->capture()) << "no frame of this size yet";
+  const Picture picture = draw(input());
+  EXPECT_EQ(picture.width, 97u);
+  EXPECT_EQ(picture.height, 61u);
+  EXPECT_GT(at(picture, 50, 3).b, at(picture, 50, 3).r);
+  EXPECT_GT(at(picture, 50, 58).g, at(picture, 50, 58).b);
+  EXPECT_FALSE(renderer_->resize({0, 0}));
+}
+
+TEST_P(RendererTest, melts_far_ground_into_the_sky_at_the_horizon) {
+  add_ground();
+  FrameInput hazy = input();
+  hazy.light.haze_density = 0.08F;
+  hazy.light.haze_height_falloff = 0.0F;
+  const Picture picture = draw(hazy);
+  for (std::uint32_t x = 4; x < kSize.width; x += 12) {
+    const Pixel above = at(picture, x, kSize.height / 2 - 2);
+    const Pixel below = at(picture, x, kSize.height / 2 + 2);
+    EXPECT_LE(std::abs(above.r - below.r), 3);
+    EXPECT_LE(std::abs(above.g - below.g), 3);
+    EXPECT_LE(std::abs(above.b - below.b), 3);
+  }
+}
+
+TEST_P(RendererTest, colours_the_ground_by_height_and_slope) {
+  FrameInput frame = input(-0.6);
+  add_ground(0.0F);
+  frame = input(-0.6);
+  frame.palette.snow_start_m = 50;
+  frame.palette.snow_blend_m = 1;
+  const Pixel meadow = at(draw(frame), kSize.width / 2, kSize.height / 2);
+  terrain_.front().height_min_m = 100;
+  terrain_.front().origin.y -= 100;
+  frame = input(-0.6);
+  frame.pose.position.local.y = 110;
+  frame.palette.snow_start_m = 50;
+  frame.palette.snow_blend_m = 1;
+  const Pixel snow = at(draw(frame), kSize.width / 2, kSize.height / 2);
+  EXPECT_GT(meadow.g, meadow.b + 20);
+  EXPECT_GT(snow.b, 150);
+  EXPECT_GT(snow.sum(), meadow.sum() + 150);
+}
+
+TEST_P(RendererTest, sways_leaves_with_the_time_and_nothing_else) {
+  add_ground();
+  add_box({0, -10, -30}, 12, {0.6F, 0.02F, 0.02F});
+  FrameInput frame = input();
+  frame.light.cloud_cover = 0.0F;
+  const Picture still = draw(frame);
+  frame.light.time_seconds = 1.0F;
+  const Picture later = draw(frame);
+  const std::size_t half = still.rgba.size() / 2;
+  EXPECT_TRUE(std::equal(still.rgba.begin() + static_cast<std::ptrdiff_t>(half), still.rgba.end(),
+                         later.rgba.begin() + static_cast<std::ptrdiff_t>(half)))
+      << "a box without sway stands still";
+}
+
+TEST_P(RendererTest, writes_overlay_lines_into_the_top_left_only) {
+  add_ground();
+  const Picture plain = draw(input());
+  const std::vector<std::string> lines{"16.7 ms", "123 draws"};
+  FrameInput frame = input();
+  frame.overlay_lines = lines;
+  const Picture written = draw(frame);
+  int changed_left = 0, changed_right = 0;
+  for (std::uint32_t y = 0; y < kSize.height; ++y) {
+    for (std::uint32_t x = 0; x < kSize.width; ++x) {
+      if (at(plain, x, y).sum() == at(written, x, y).sum()) continue;
+      (x < 100 && y < 60 ? changed_left : changed_right)++;
+    }
+  }
+  EXPECT_GT(changed_left, 500);
+  EXPECT_EQ(changed_right, 0);
+}
+
+TEST_P(RendererTest, keeps_the_last_valid_camera_when_given_nonsense) {
+  add_ground();
+  const Picture good = draw(input(0.05));
+  FrameInput bad = input(0.05);
+  bad.pose.position.local.y = std::nan("");
+  bad.projection.vertical_fov = -1.0F;
+  EXPECT_EQ(draw(bad).rgba, good.rgba);
+}
+
+TEST_P(RendererTest, replays_the_last_frame_as_its_floor) {
+  EXPECT_FALSE(renderer_->replay_floor_ms(1)) << "no frame yet";
+  add_ground();
+  const Picture before = draw(input());
+  const auto floor = renderer_->replay_floor_ms(3);
+  ASSERT_TRUE(floor) << floor.error().message;
+  EXPECT_GT(*floor, 0.0);
+  const auto after = renderer_->capture();
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->rgba, before.rgba);
+}
+
+TEST_P(RendererTest, holds_more_draws_than_its_first_buffers) {
+  add_ground();
+  add_box({0, -10, -30}, 4, {0.5F, 0.5F, 0.5F});
+  models_.resize(5000, models_.front());
+  models_.back().origin = {6, -10, -30};
+  models_.back().range = models_.front().range;
+  const auto result = renderer_->render(input());
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_EQ(result->draws, 5001u);
+  const auto picture = renderer_->capture();
+  ASSERT_TRUE(picture);
+  // The last draw found its own data: there is a box at 6 m to the right of the middle.
+  const double x = kSize.width / 2.0 + 6.0 / 28.0 / std::tan(0.45) * kSize.height / 2;
+  const Pixel box = at(*picture, static_cast<std::uint32_t>(x), kSize.height / 2 + 30);
+  EXPECT_LT(std::abs(box.g - box.r), 40);
+  EXPECT_GT(box.sum(), 100);
+}
+
+TEST_P(RendererTest, refuses_index_lists_that_do_not_fit) {
+  const std::vector<std::uint16_t> large(3u << 20);
+  const auto refused = renderer_->upload_shared_indices(large);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::ErrorCode::kOutOfMemory);
+  EXPECT_FALSE(renderer_->upload_shared_indices({}));
+}
+
+TEST_P(RendererTest, reports_device_time_once_a_frame_has_finished) {
+  add_ground();
+  std::optional<double> gpu_ms;
+  for (int i = 0; i < 4; ++i)
+    gpu_ms = renderer_->render(input()).value().gpu_ms;
+  ASSERT_TRUE(gpu_ms);
+  EXPECT_GT(*gpu_ms, 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Submissions, RendererTest,
+                         testing::Values(Submission::kPushed, Submission::kMultiDraw),
+                         [](const testing::TestParamInfo<Submission>& suite) {
+                           return suite.param == Submission::kPushed ? "pushed" : "multi_draw";
+                         });
+
+}  // namespace
+}  // namespace psygen::render

@@ -1,0 +1,115 @@
+#include "tests/engine/render/synthetic_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace psygen::render::synthetic {
+
+using core::GeometryMemory;
+using core::GeometryRange;
+using core::Result;
+
+namespace {
+
+std::int16_t snorm16(float v) {
+  return static_cast<std::int16_t>(std::lround(v * 32767.0F));
+}
+
+core::ModelVertex model_vertex(glm::vec3 position, glm::vec3 normal, glm::vec3 albedo) {
+  core::ModelVertex v{};
+  for (int i = 0; i < 3; ++i) {
+    v.position[i] = snorm16(position[i]);
+    v.colour[i] = static_cast<std::uint8_t>(std::lround(std::sqrt(albedo[i]) * 255.0F));
+  }
+  v.ambient = 255;
+  // Octahedral map of an axis-aligned normal; downwards is a corner.
+  v.normal[0] = snorm16(normal.y < 0 ? 1.0F : normal.x);
+  v.normal[1] = snorm16(normal.y < 0 ? 1.0F : normal.z);
+  return v;
+}
+
+}  // namespace
+
+std::vector<std::uint16_t> grid_indices(int side) {
+  std::vector<std::uint16_t> indices;
+  for (int z = 0; z + 1 < side; ++z) {
+    for (int x = 0; x + 1 < side; ++x) {
+      const int a = z * side + x;
+      for (const int i : {a, a + side, a + 1, a + 1, a + side, a + side + 1})
+        indices.push_back(static_cast<std::uint16_t>(i));
+    }
+  }
+  return indices;
+}
+
+Result<GeometryRange> make_terrain(GeometryMemory& memory, int side, const HeightFunction& height) {
+  const auto count = static_cast<std::uint32_t>(side * side);
+  const auto reserved = memory.reserve(core::VertexLayout::kTerrain, count, 0);
+  if (!reserved) return tl::unexpected(reserved.error());
+  std::vector<core::TerrainVertex> vertices;
+  for (int z = 0; z < side; ++z) {
+    for (int x = 0; x < side; ++x) {
+      const auto h = static_cast<std::uint16_t>(std::lround(height(x, z) * 65535.0F));
+      vertices.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(z), h, h, 0, 0});
+    }
+  }
+  std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
+  memory.commit(reserved->range);
+  return reserved->range;
+}
+
+Result<GeometryRange> make_box(GeometryMemory& memory, glm::vec3 albedo) {
+  const auto reserved = memory.reserve(core::VertexLayout::kModel, 24, 36);
+  if (!reserved) return tl::unexpected(reserved.error());
+  std::vector<core::ModelVertex> vertices;
+  std::vector<std::uint16_t> indices;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {-1.0F, 1.0F}) {
+      glm::vec3 normal(0.0F), u(0.0F), v(0.0F);
+      normal[axis] = sign;
+      u[(axis + 1) % 3] = 1.0F;
+      v[(axis + 2) % 3] = sign;
+      const auto first = static_cast<std::uint16_t>(vertices.size());
+      for (const glm::vec3& p : {normal - u - v, normal + u - v, normal + u + v, normal - u + v})
+        vertices.push_back(model_vertex(p, normal, albedo));
+      for (const int i : {0, 1, 2, 0, 2, 3})
+        indices.push_back(static_cast<std::uint16_t>(first + i));
+    }
+  }
+  std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
+  std::copy(indices.begin(), indices.end(), reserved->indices.begin());
+  memory.commit(reserved->range);
+  return reserved->range;
+}
+
+Result<GeometryRange> make_sheet(GeometryMemory& memory, int side) {
+  const std::vector<std::uint16_t> indices = grid_indices(side);
+  const auto reserved =
+      memory.reserve(core::VertexLayout::kModel, static_cast<std::uint32_t>(side * side),
+                     static_cast<std::uint32_t>(indices.size()));
+  if (!reserved) return tl::unexpected(reserved.error());
+  std::vector<core::ModelVertex> vertices;
+  const float step = 2.0F / static_cast<float>(side - 1);
+  for (int z = 0; z < side; ++z) {
+    for (int x = 0; x < side; ++x) {
+      const glm::vec3 at{static_cast<float>(x) * step - 1.0F, 1.0F - static_cast<float>(z) * step,
+                         0.0F};
+      vertices.push_back(model_vertex(at, {0, 0, 1}, {0.2F, 0.3F, 0.1F}));
+    }
+  }
+  std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
+  std::copy(indices.begin(), indices.end(), reserved->indices.begin());
+  memory.commit(reserved->range);
+  return reserved->range;
+}
+
+FrameInput look(double altitude_m, double pitch, core::Extent size) {
+  FrameInput input;
+  input.pose.position.local = {0.0, altitude_m, 0.0};
+  input.pose.pitch = pitch;
+  input.projection.aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  return input;
+}
+
+}  // namespace psygen::render::synthetic
