@@ -1,0 +1,83 @@
+// Time of a terrain block per level, of its heights alone, and of ground queries; the plain
+// double-precision reference in the same run is the scale.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <numeric>
+#include <vector>
+
+#include "engine/models/ridged_noise.hpp"
+#include "engine/models/terrain.hpp"
+#include "tests/engine/models/oracle_terrain.hpp"
+
+namespace psygen::models {
+namespace {
+
+void report_samples(benchmark::State& state, double samples) {
+  state.counters["per_sample"] =
+      benchmark::Counter(samples * static_cast<double>(state.iterations()),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void terrain_noise_65x65(benchmark::State& state) {
+  const RidgedNoise noise({.seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600});
+  std::array<std::int64_t, 65> columns, rows;
+  std::vector<float> values(65 * 65);
+  std::int64_t block = 0;
+  for (auto _ : state) {
+    std::iota(columns.begin(), columns.end(), 63 * block++);
+    std::iota(rows.begin(), rows.end(), 17 * block);
+    noise.evaluate(columns, rows, values, 65);
+    benchmark::DoNotOptimize(values.data());
+  }
+  report_samples(state, 65 * 65);
+}
+BENCHMARK(terrain_noise_65x65);
+
+void terrain_noise_65x65_reference(benchmark::State& state) {
+  const test::TerrainOracle oracle{
+      .seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600};
+  std::int64_t block = 0;
+  for (auto _ : state) {
+    double sum = 0;
+    for (std::int64_t z = 0; z < 65; ++z) {
+      for (std::int64_t x = 0; x < 65; ++x)
+        sum += oracle.value(63 * block + x, z);
+    }
+    ++block;
+    benchmark::DoNotOptimize(sum);
+  }
+  report_samples(state, 65 * 65);
+}
+BENCHMARK(terrain_noise_65x65_reference);
+
+void terrain_block(benchmark::State& state) {
+  const auto type = make_terrain_type();
+  const int level = static_cast<int>(state.range(0));
+  Parameters p = default_parameters(*type);
+  const MeshSize size = type->mesh_size(p, level);
+  std::vector<std::byte> vertices(size.vertex_count * sizeof(core::TerrainVertex));
+  std::int64_t block = 0;
+  for (auto _ : state) {
+    p.set_integer(kTerrainBlockX, block++);
+    benchmark::DoNotOptimize(type->synthesize(p, level, {vertices, {}}));
+  }
+}
+BENCHMARK(terrain_block)->DenseRange(0, 3)->ArgName("level");
+
+void terrain_ground_63_points(benchmark::State& state) {
+  const Parameters p = default_parameters(*make_terrain_type());
+  std::vector<glm::dvec2> points;
+  for (int i = 0; i < 63; ++i)
+    points.push_back({i + 0.3, 62.6 - i});
+  std::vector<GroundPoint> ground(points.size());
+  std::int32_t block = 0;
+  for (auto _ : state) {
+    sample_ground(p, {block++, 0}, points, ground);
+    benchmark::DoNotOptimize(ground.data());
+  }
+}
+BENCHMARK(terrain_ground_63_points);
+
+}  // namespace
+}  // namespace psygen::models
