@@ -126,7 +126,7 @@ double TreeType::complexity(const Parameters& p, int level) const {
 double TreeType::log2_cost(const Parameters& p) const {
   const double n = std::max(0.0, static_cast<double>(p.integer(kTreeIterations)));
   const double m = std::max(1.0, static_cast<double>(p.integer(kTreeBranches)));
-  const double grown = n * std::log2(m + 2.0) + 5.0;
+  const double grown = std::max(n * std::log2(m + 2.0) + 5.0, 12.0);
   const bool capped = n <= kMaxTreeIterations && m <= kSchema[kTreeBranches].hard_max;
   return capped ? std::min(grown, 15.6) : grown;
 }

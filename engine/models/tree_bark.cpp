@@ -73,7 +73,7 @@ struct Tube {
   std::uint64_t hash;
   float sway_start, sway_end;
   glm::vec3 around[kMaxSides];  // from the axis, perpendicular to the branch's start
-  std::array<std::int16_t, 2> normal[kMaxSides];
+  std::array<std::int16_t, 2> normal[kMaxSides], point_normal;
 };
 
 float bark_ambient(const TreeShape& shape, const TreeCrown& crown, const glm::vec3& p) {
@@ -104,12 +104,13 @@ void write_ring(const Bark& bark, const Tube& tube, std::uint32_t ring, MeshWrit
                         {},
                         {},
                         0};
-  const std::uint32_t corners = tube.plan.pointed && ring == segments ? 1 : tube.plan.sides;
+  const bool point = tube.plan.pointed && ring == segments;
+  const std::uint32_t corners = point ? 1 : tube.plan.sides;
   for (std::uint32_t side = 0; side < corners; ++side) {
     const glm::vec3& around = tube.around[side];
     const glm::vec3 sheared = around - dot3(around, turn) * s.direction[node];
     const float lobe = 0.4F + 0.16F * static_cast<float>(vertex_noise(tube.hash, side));  // roots
-    look.normal = tube.normal[side];
+    look.normal = point ? tube.point_normal : tube.normal[side];
     look.colour = bark.colours[vertex_noise(tube.hash, ring * kMaxSides + side + 5)];
     out.vertex(middle + (radius * (1.0F + flare * lobe)) * sheared, look);
   }
@@ -139,6 +140,7 @@ void enclose(const Bark& bark, std::uint32_t node, Tube& tube) {
   tube.node = node;
   tube.hash = core::mix64(bark.skeleton.key[node] ^ kBarkSalt);
   const Frame frame = frame_around(bark.skeleton.direction[node]);
+  tube.point_normal = pack_normal(bark.skeleton.direction[node]);
   const Circle& unit = circle(tube.plan.sides);
   for (std::uint32_t side = 0; side < tube.plan.sides; ++side) {
     tube.around[side] = unit.x[side] * frame.u + unit.z[side] * frame.v;
