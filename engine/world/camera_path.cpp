@@ -1,0 +1,128 @@
+#include "engine/world/camera_path.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <numbers>
+
+#include "engine/core/assert.hpp"
+#include "engine/models/terrain.hpp"
+
+namespace psygen::world {
+namespace {
+
+// Ground samples within smoothing_s.
+constexpr int kSteps = 12;
+
+Spline spline_of(const std::vector<PathPoint>& points, const auto& value_of) {
+  std::vector<double> times, values;
+  for (const PathPoint& point : points) {
+    times.push_back(point.time_s);
+    values.push_back(value_of(point));
+  }
+  return {times, values};
+}
+
+// Heading of a direction on the map, or `otherwise` for none.
+double heading_of(glm::dvec2 direction, double otherwise) {
+  return glm::length(direction) > 1e-6 ? std::atan2(direction.x, -direction.y) : otherwise;
+}
+
+// Between two points with a heading the camera turns by their difference as written; all other
+// turns go the short way.
+std::vector<double> yaws_of(const std::vector<PathPoint>& points, const Spline& x,
+                            const Spline& z) {
+  std::vector<double> yaws;
+  bool written_before = false;
+  for (const PathPoint& point : points) {
+    const double before = yaws.empty() ? 0 : yaws.back();
+    double yaw = 0;
+    if (point.heading_deg) {
+      yaw = glm::radians(*point.heading_deg);
+    } else if (point.look_at_m) {
+      yaw = heading_of(*point.look_at_m - point.at_m, before);
+    } else {
+      yaw = heading_of({x.slope(point.time_s), z.slope(point.time_s)}, before);
+    }
+    if (!yaws.empty() && !(written_before && point.heading_deg))
+      yaw = before + std::remainder(yaw - before, 2 * std::numbers::pi);
+    written_before = point.heading_deg.has_value();
+    yaws.push_back(yaw);
+  }
+  return yaws;
+}
+
+// The cubic B-spline, 0 outside of (−2, 2).
+double b_spline(double u) {
+  const double a = std::abs(u);
+  if (a >= 2) return 0;
+  return a < 1 ? 2.0 / 3 - a * a * (1 - a / 2) : (2 - a) * (2 - a) * (2 - a) / 6;
+}
+
+}  // namespace
+
+CameraPath::CameraPath(Settings settings, std::vector<PathPoint> points)
+    : settings_(std::move(settings)), points_(std::move(points)) {
+  PSYGEN_ASSERT(!points_.empty(), "a path has a point");
+  PSYGEN_ASSERT(settings_.smoothing_s > 0, "the smoothing time is positive");
+  x_ = spline_of(points_, [](const PathPoint& p) { return p.at_m.x; });
+  z_ = spline_of(points_, [](const PathPoint& p) { return p.at_m.y; });
+  height_ = spline_of(points_, [](const PathPoint& p) { return p.height_m; });
+  pitch_ = spline_of(points_, [](const PathPoint& p) { return glm::radians(p.pitch_deg); });
+  const std::vector<double> yaws = yaws_of(points_, x_, z_);
+  yaw_ = spline_of(points_, [&](const PathPoint& p) {
+    return yaws[static_cast<std::size_t>(&p - points_.data())];
+  });
+}
+
+// Metres from the corner of `block`.
+glm::dvec2 CameraPath::local_of(double t, double block_size_m, core::BlockCoord block) const {
+  const glm::dvec3 corner = core::offset_m(settings_.origin_block, {block, {}}, block_size_m);
+  return {corner.x + x_.value(t), corner.z + z_.value(t)};
+}
+
+// A smooth curve over the ground along the path. Samples lie at fixed times; at each the highest
+// ground within smoothing_s is taken, and a smooth kernel as wide averages these. Every one of them
+// is at least as high as the samples around `t`, so the average is, too.
+double CameraPath::smooth_ground_m(double t, const World& world, core::BlockCoord block,
+                                   double& ground_here_m) const {
+  const double step = settings_.smoothing_s / kSteps;
+  const double first = std::floor(t / step) - 2 * kSteps;
+  constexpr int kCount = 4 * kSteps + 2;
+  std::array<glm::dvec2, kCount + 1> points;
+  for (int i = 0; i < kCount; ++i)
+    points[static_cast<std::size_t>(i)] = local_of((first + i) * step, world.block_size_m(), block);
+  points[kCount] = local_of(t, world.block_size_m(), block);
+  std::array<models::GroundPoint, kCount + 1> ground;
+  models::sample_ground(world.terrain, block, points, ground);
+  ground_here_m = ground[kCount].height_m;
+
+  double sum = 0, weights = 0;
+  for (int i = kSteps; i < kCount - kSteps; ++i) {
+    const double weight = b_spline(2 * ((first + i) * step - t) / settings_.smoothing_s);
+    if (weight == 0) continue;
+    const auto around =
+        std::span(ground).subspan(static_cast<std::size_t>(i - kSteps), 2 * kSteps + 1);
+    sum += weight * std::ranges::max(around, {}, &models::GroundPoint::height_m).height_m;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+core::CameraPose CameraPath::pose_at(double t, const World& world) const {
+  const double time = std::isnan(t) ? points_.front().time_s
+                                    : std::clamp(t, points_.front().time_s, duration_seconds());
+  core::CameraPose pose;
+  pose.position = core::normalised({settings_.origin_block, {x_.value(time), 0, z_.value(time)}},
+                                   world.block_size_m());
+  double ground_m = 0;
+  const double smooth_m = smooth_ground_m(time, world, pose.position.block, ground_m);
+  pose.position.local.y = std::max(smooth_m + height_.value(time), ground_m + kClearance_m);
+  pose.yaw = yaw_.value(time);
+  pose.pitch = std::clamp(pitch_.value(time), -std::numbers::pi / 2, std::numbers::pi / 2);
+  return pose;
+}
+
+}  // namespace psygen::world

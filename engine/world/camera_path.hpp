@@ -1,0 +1,73 @@
+// A flight of the camera: points in time over the ground, joined so that velocity and turn are
+// smooth, read from TOML files (docs/world-files.md). Heights are above the ground of whichever
+// world is flown through. Not a simulation: any time can be asked for. Immutable; any thread.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/camera.hpp"
+#include "engine/world/spline.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+
+inline constexpr int kPathFormat = 1;
+
+struct PathPoint {
+  double time_s = 0;
+  glm::dvec2 at_m{0.0};  // x and z from the corner of the path's origin block
+  double height_m = 2;   // above the ground
+  // Where to look: at a heading, at a place, or, with neither, along the flight.
+  std::optional<double> heading_deg;  // 0 along −Z (north), 90 along +X (east)
+  std::optional<glm::dvec2> look_at_m;
+  double pitch_deg = 0;  // upwards
+};
+
+class CameraPath {
+ public:
+  // The camera never comes nearer to the ground than this.
+  static constexpr double kClearance_m = 2;
+
+  struct Settings {
+    std::string name;
+    core::BlockCoord origin_block;
+    // The height follows the highest ground within this time before and after, so that the flight
+    // over rough ground is calm. In (0, 10].
+    double smoothing_s = 1.5;
+  };
+
+  // At least one point, times strictly growing.
+  CameraPath(Settings settings, std::vector<PathPoint> points);
+
+  const std::string& name() const { return settings_.name; }
+  const std::vector<PathPoint>& points() const { return points_; }
+  // The time of the last point.
+  double duration_seconds() const { return points_.back().time_s; }
+
+  // Where the camera is at time `t` in seconds; the ends are held before the first and after the
+  // last point (and the beginning for NaN). Normalised and valid. About 60 µs.
+  core::CameraPose pose_at(double t, const World& world) const;
+
+ private:
+  double smooth_ground_m(double t, const World& world, core::BlockCoord block,
+                         double& ground_here_m) const;
+  glm::dvec2 local_of(double t, double block_size_m, core::BlockCoord block) const;
+
+  Settings settings_;
+  std::vector<PathPoint> points_;
+  Spline x_, z_, height_, yaw_, pitch_;
+};
+
+// Reads a path file. kParse for texts that are no path file (naming file, line and field), kIo and
+// kOverBudget as load_world().
+core::Result<CameraPath> load_camera_path(const std::filesystem::path& file);
+
+// The same for a text in memory; `file_name` is for messages only.
+core::Result<CameraPath> parse_camera_path(std::string_view text, std::string_view file_name);
+
+}  // namespace psygen::world

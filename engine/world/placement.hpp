@@ -1,0 +1,50 @@
+// What stands where: the models of a block with their parameters, a pure function of world and
+// block. The same on every machine and in any order of blocks. Knows no meshes. Any thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+
+struct Placement {
+  models::ModelIndex model = 0;
+  std::uint32_t index = 0;   // within the block; names the instance
+  glm::vec3 position{0.0F};  // metres from the block's corner; y is the ground under the foot
+  models::Parameters parameters;
+};
+
+// Tries of an instance to find a place that its Scatter allows.
+inline constexpr int kPlacementTries = 24;
+
+// The terrain of one block.
+models::Parameters terrain_parameters(const World& world, core::BlockCoord block);
+
+// An upper bound of the placements of one block: the sum of all counts. Exact where no scatter has
+// a filter.
+std::size_t models_per_block(const World& world);
+
+// Replaces `out` by the placements of `block`, by growing index. An instance that finds no allowed
+// place in kPlacementTries tries is left out; the indices of the others do not change. About 1 µs
+// for each model and try. Does not ask whether the world contains the block.
+void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
+                  std::vector<Placement>& out);
+
+// Sets a parameter of either type; integers are rounded to nearest.
+void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,
+                   double value);
+
+// The parameters of a scatter with everything at the low end of its range.
+models::Parameters scatter_parameters(const models::Registry& registry, const Scatter& scatter);
+
+// The parameters of instance `index` of `block`, which belongs to `scatter`; the same that
+// place_models() gives it.
+models::Parameters draw_parameters(const World& world, const models::Registry& registry,
+                                   const Scatter& scatter, core::BlockCoord block,
+                                   std::uint32_t index);
+
+}  // namespace psygen::world

@@ -1,0 +1,264 @@
+#include "engine/world/table_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace psygen::world {
+namespace {
+
+// What can be written for these limits: "an integer from 1 to 9", "a number, at least 0".
+std::string allowed_text(Limits limits, bool integer) {
+  const std::string_view kind = integer ? "an integer" : "a number";
+  return fmt::format("{} from {:g} to {:g}", kind, limits.low, limits.high);
+}
+
+std::string value_text(const Node& node) {
+  if (node.kind == Node::Kind::kInteger) return fmt::format("{}", node.integer);
+  if (node.kind == Node::Kind::kReal) return fmt::format("{:g}", node.real);
+  return std::string(kind_name(node.kind));
+}
+
+bool is_number(const Node& node) {
+  return node.kind == Node::Kind::kInteger || node.kind == Node::Kind::kReal;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// Keys come from strangers: cut short, and only what any terminal shows.
+std::string shown_key(std::string_view key) {
+  std::string shown(key.substr(0, 60));
+  for (char& c : shown) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return key.size() > shown.size() ? shown + "..." : shown;
+}
+
+}  // namespace
+
+void Problems::add(int line, std::string_view field, std::string_view sentence,
+                   core::ErrorCode code) {
+  if (first_ && line >= first_line_) return;
+  first_ = core::Error{code, fmt::format("{}:{}: {}: {}", file_, line, field, sentence)};
+  first_line_ = line;
+}
+
+TableReader::TableReader(const Node& table, std::string path, int line, Problems& problems)
+    : table_(table), path_(std::move(path)), line_(line), problems_(problems) {}
+
+std::string TableReader::field(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+const Member* TableReader::find(std::string_view key, Presence presence) {
+  known_.emplace_back(key);
+  for (const Member& member : table_.members) {
+    if (member.key == key) return &member;
+  }
+  if (presence == Presence::kRequired) problem(line_, key, "this field is missing");
+  return nullptr;
+}
+
+bool TableReader::check_number(const Node& node, std::string_view name, Limits limits,
+                               bool integer) {
+  const bool right_kind = integer ? node.kind == Node::Kind::kInteger : is_number(node);
+  // False for NaN.
+  if (right_kind && node.real >= limits.low && node.real <= limits.high) return true;
+  problems_.add(node.line, name,
+                fmt::format("{} is not allowed: it must be {}", value_text(node),
+                            allowed_text(limits, integer)));
+  return false;
+}
+
+bool TableReader::read(std::string_view key, double& value, Limits limits, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr || !check_number(member->value, field(key), limits, false)) return false;
+  value = member->value.real;
+  return true;
+}
+
+bool TableReader::read(std::string_view key, float& value, Limits limits, Presence presence) {
+  double wide = 0;
+  if (!read(key, wide, limits, presence)) return false;
+  value = static_cast<float>(wide);
+  return true;
+}
+
+bool TableReader::read(std::string_view key, std::int64_t& value, Limits limits,
+                       Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr || !check_number(member->value, field(key), limits, true)) return false;
+  value = member->value.integer;
+  return true;
+}
+
+bool TableReader::read(std::string_view key, std::string& value, std::size_t max_bytes,
+                       Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr) return false;
+  const Node& node = member->value;
+  const bool plain = std::ranges::none_of(
+      node.text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; });
+  if (node.kind == Node::Kind::kText && !node.text.empty() && node.text.size() <= max_bytes &&
+      plain) {
+    value = node.text;
+    return true;
+  }
+  problem(
+      node.line, key,
+      fmt::format("it must be a string of 1 to {} bytes without control characters", max_bytes));
+  return false;
+}
+
+const Node* TableReader::array_of(std::string_view key, std::size_t count, Limits limits,
+                                  bool integers, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr) return nullptr;
+  const Node& node = member->value;
+  if (node.kind != Node::Kind::kArray || node.items.size() != count) {
+    problem(
+        node.line, key,
+        fmt::format("it must be an array of {}, each {}", count, allowed_text(limits, integers)));
+    return nullptr;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!check_number(node.items[i], fmt::format("{}[{}]", field(key), i), limits, integers))
+      return nullptr;
+  }
+  return &node;
+}
+
+bool TableReader::read(std::string_view key, glm::vec3& value, Limits limits, Presence presence) {
+  const Node* node = array_of(key, 3, limits, false, presence);
+  if (node == nullptr) return false;
+  value = glm::vec3(node->items[0].real, node->items[1].real, node->items[2].real);
+  return true;
+}
+
+bool TableReader::read(std::string_view key, glm::dvec2& value, Limits limits, Presence presence) {
+  const Node* node = array_of(key, 2, limits, false, presence);
+  if (node == nullptr) return false;
+  value = {node->items[0].real, node->items[1].real};
+  return true;
+}
+
+bool TableReader::read_pair(std::string_view key, std::int64_t (&value)[2], Limits limits,
+                            Presence presence) {
+  const Node* node = array_of(key, 2, limits, true, presence);
+  if (node == nullptr) return false;
+  value[0] = node->items[0].integer;
+  value[1] = node->items[1].integer;
+  return true;
+}
+
+std::optional<NumberRange> TableReader::read_range(std::string_view key) {
+  const Member* member = find(key);
+  if (member == nullptr) return std::nullopt;
+  const Node& node = member->value;
+  const bool is_pair = node.kind == Node::Kind::kArray && node.items.size() == 2;
+  const Node& low = is_pair ? node.items[0] : node;
+  const Node& high = is_pair ? node.items[1] : node;
+  if (!is_number(low) || !is_number(high)) {
+    problem(node.line, key, "it must be a number, or [lowest, highest]");
+    return std::nullopt;
+  }
+  if (!std::isfinite(low.real) || !std::isfinite(high.real)) {
+    problem(node.line, key,
+            fmt::format("{} is not allowed: it must be finite",
+                        value_text(std::isfinite(low.real) ? high : low)));
+    return std::nullopt;
+  }
+  if (low.real > high.real) {
+    problem(node.line, key,
+            fmt::format("[{}, {}] is upside down: the lowest value comes first", value_text(low),
+                        value_text(high)));
+    return std::nullopt;
+  }
+  return NumberRange{low.real, high.real,
+                     low.kind == Node::Kind::kInteger && high.kind == Node::Kind::kInteger,
+                     node.line};
+}
+
+const Member* TableReader::table(std::string_view key, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr || member->value.kind == Node::Kind::kTable) return member;
+  problem(member->line, key,
+          fmt::format("it must be a table, [{}], not {}", key, kind_name(member->value.kind)));
+  return nullptr;
+}
+
+std::vector<const Node*> TableReader::tables(std::string_view key, std::size_t max_count) {
+  const Member* member = find(key);
+  if (member == nullptr) return {};
+  const Node& node = member->value;
+  const bool fits = node.kind == Node::Kind::kArray && node.items.size() <= max_count;
+  if (!fits || !std::ranges::all_of(
+                   node.items, [](const Node& item) { return item.kind == Node::Kind::kTable; })) {
+    problem(member->line, key, fmt::format("it must be at most {} tables, [[{}]]", max_count, key));
+    return {};
+  }
+  std::vector<const Node*> found;
+  for (const Node& item : node.items)
+    found.push_back(&item);
+  return found;
+}
+
+void TableReader::finish() {
+  for (const Member& member : table_.members) {
+    if (std::ranges::find(known_, member.key) != known_.end()) continue;
+    const std::string_view nearest = nearest_word(member.key, known_);
+    std::string sentence = "this key is unknown";
+    if (!nearest.empty()) {
+      sentence += fmt::format("; did you mean {}?", nearest);
+    } else {
+      sentence += fmt::format("; known here: {}", fmt::join(known_, ", "));
+    }
+    problem(member.line, shown_key(member.key), sentence);
+  }
+}
+
+void read_format(TableReader& root, int current) {
+  const Member* member = root.find("format", Presence::kRequired);
+  if (member == nullptr) return;
+  const Node& node = member->value;
+  const bool is_integer = node.kind == Node::Kind::kInteger;
+  if (is_integer && node.integer == current) return;
+  root.problem(node.line, "format",
+               is_integer && node.integer > current
+                   ? fmt::format("the file has version {}, which is newer than this program; "
+                                 "allowed: {}",
+                                 node.integer, current)
+                   : fmt::format("it must be {}", current));
+}
+
+std::string_view nearest_word(std::string_view word, const std::vector<std::string>& known) {
+  // Far longer words than any key are near to none; this also bounds the time.
+  if (word.size() > 64) return {};
+  std::string_view nearest;
+  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < fewest) {
+      fewest = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+}  // namespace psygen::world

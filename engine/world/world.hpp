@@ -1,0 +1,132 @@
+// A world: a few numbers that stand for terabytes of geometry (paper, section 4.1). Read from and
+// written to TOML files (docs/world-files.md). Plain values, valid once they come from a file; not
+// geometry, which models synthesise from the parameters. Immutable in use, so any thread may read.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/coordinates.hpp"
+#include "engine/core/error.hpp"
+#include "engine/models/registry.hpp"
+
+namespace psygen::world {
+
+inline constexpr int kWorldFormat = 1;
+inline constexpr std::uint32_t kMaxModelsPerBlock = 16'384;
+
+// A parameter of one instance is drawn uniformly from [low, high]; integers include both ends.
+struct ParameterRange {
+  double low = 0, high = 0;
+  friend bool operator==(const ParameterRange&, const ParameterRange&) = default;
+};
+
+// One kind of model that is scattered over every block.
+struct Scatter {
+  models::ModelIndex model = 0;
+  std::uint32_t count = 0;             // per block
+  std::vector<ParameterRange> ranges;  // one per parameter of the schema; kPlaced ones are unused
+  // Where instances may stand. One that finds no such place is left out (placement.hpp).
+  double min_height_m = -std::numeric_limits<double>::infinity();
+  double max_height_m = std::numeric_limits<double>::infinity();
+  double max_slope_deg = 90;  // of the ground, against the horizontal
+  bool has_filter() const {
+    return min_height_m > -std::numeric_limits<double>::infinity() ||
+           max_height_m < std::numeric_limits<double>::infinity() || max_slope_deg < 90;
+  }
+  friend bool operator==(const Scatter&, const Scatter&) = default;
+};
+
+// Sun, sky and air. Colours are linear radiance before `exposure`.
+struct Sky {
+  double sun_azimuth_deg = 128;  // from −Z (north) over +X (east)
+  double sun_elevation_deg = 44;
+  glm::vec3 sun_colour{3.1F, 2.75F, 2.25F};
+  glm::vec3 zenith_colour{0.13F, 0.28F, 0.62F};
+  glm::vec3 horizon_colour{0.50F, 0.62F, 0.78F};
+  glm::vec3 ground_colour{0.16F, 0.15F, 0.11F};  // light from below
+  glm::vec3 haze_colour{0.66F, 0.72F, 0.80F};
+  double visibility_m = 3260;  // at height 0: where 2 % of the contrast is left
+  double haze_height_m = 250;  // the haze thins out by a factor e in this height
+  double exposure = 1;
+  double cloud_cover = 0.5;  // 0 clear … 1 overcast
+
+  glm::vec3 sun_direction() const;  // unit vector towards the sun
+  // Extinction at height 0 in 1/m, by Koschmieder's law.
+  double haze_density() const { return 3.912 / visibility_m; }
+  friend bool operator==(const Sky&, const Sky&) = default;
+};
+
+// Linear albedo of the ground and where each kind of ground is. Heights in metres of the world;
+// slopes are 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
+struct Palette {
+  glm::vec3 grass{0.085F, 0.125F, 0.030F};
+  glm::vec3 forest{0.045F, 0.070F, 0.022F};
+  glm::vec3 dry{0.200F, 0.165F, 0.075F};
+  glm::vec3 rock{0.175F, 0.160F, 0.145F};
+  glm::vec3 snow{0.80F, 0.83F, 0.88F};
+  glm::vec3 sand{0.36F, 0.30F, 0.19F};
+  double sand_end_m = -1e6, sand_blend_m = 2;    // sand below
+  double dry_start_m = 60, dry_blend_m = 40;     // dry meadow above
+  double snow_start_m = 1e6, snow_blend_m = 15;  // snow above, except where steep
+  double rock_slope_start = 0.16, rock_slope_full = 0.34;
+  double snow_slope_max = 0.40;  // steeper ground sheds its snow
+  friend bool operator==(const Palette&, const Palette&) = default;
+};
+
+struct World {
+  int format = kWorldFormat;
+  std::string name;
+  std::uint64_t seed = 1;                       // below 2^63, which is what files can hold
+  std::int64_t blocks_x = 512, blocks_z = 512;  // 0: endless; else blocks 0 … n − 1 exist
+  models::ModelIndex terrain_model = 0;
+  models::Parameters terrain;  // of the block (0, 0)
+  std::vector<Scatter> scatter;
+  Sky sky;
+  Palette palette;
+
+  double block_size_m() const;  // metres along one side of a block
+  double cell_m() const;        // between neighbouring vertices of the terrain
+  bool contains(core::BlockCoord block) const;
+  bool is_endless() const { return blocks_x == 0 || blocks_z == 0; }
+  friend bool operator==(const World&, const World&) = default;
+};
+
+// Reads a world file. Errors name file, line and field and say what is allowed: kParse for texts
+// that are no world file, kInvalidArgument and kOverBudget for parameters that a model refuses
+// (with the predicted cost), kOverBudget for files above 1 MiB, kIo for files that cannot be read.
+core::Result<World> load_world(const std::filesystem::path& file, const models::Registry& registry);
+
+// The same for a text in memory; `file_name` is for messages only.
+core::Result<World> parse_world(std::string_view text, std::string_view file_name,
+                                const models::Registry& registry);
+
+// The text of a world file that parse_world() turns into an equal world.
+std::string write_world(const World& world, const models::Registry& registry);
+
+// The world if all of it were generated at full detail. Terrain counts without its skirts. An
+// endless world has 0 blocks, models, triangles and bytes.
+struct WorldSize {
+  std::uint64_t blocks = 0;
+  std::uint64_t models = 0;
+  double triangles = 0;
+  double bytes = 0;        // vertices and indices as this engine packs them, shared lists apart
+  double bytes_paper = 0;  // 256 bytes a triangle, as the paper counts
+  bool endless = false;
+  // The average of one block; of endless worlds too.
+  double block_models = 0, block_triangles = 0, block_bytes = 0;
+};
+
+// Without generating anything. Exact for models whose size depends on no random parameter (terrain,
+// rocks of one subdivision); for others the mean over kSizeSamples parameter sets, always the same
+// ones. Where instances must find a place, the share that does is taken from kSizeBlocks blocks.
+inline constexpr std::uint32_t kSizeSamples = 1024;
+inline constexpr std::uint32_t kSizeBlocks = 64;
+WorldSize world_size(const World& world, const models::Registry& registry);
+
+}  // namespace psygen::world

@@ -1,0 +1,91 @@
+#include <algorithm>
+
+#include "engine/models/terrain.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::world {
+namespace {
+
+double mesh_bytes(const models::MeshSize& size) {
+  const std::uint32_t own_indices = size.shared_indices == 0 ? size.index_count : 0;
+  return static_cast<double>(size.vertex_count) * core::vertex_stride_bytes(size.layout) +
+         static_cast<double>(own_indices) * sizeof(std::uint16_t);
+}
+
+// Mean size of one instance of a scatter whose first instance has the index `first`. The samples
+// are instances of the world itself, of blocks in a row.
+struct MeanSize {
+  double triangles = 0, bytes = 0;
+};
+MeanSize mean_size(const World& world, const models::Registry& registry, const Scatter& scatter,
+                   std::uint32_t first) {
+  MeanSize sum;
+  for (std::uint32_t k = 0; k < kSizeSamples; ++k) {
+    const core::BlockCoord block{static_cast<std::int32_t>(k / scatter.count), 0};
+    const models::Parameters p =
+        draw_parameters(world, registry, scatter, block, first + k % scatter.count);
+    const models::MeshSize size = registry[scatter.model].mesh_size(p, 0);
+    sum.triangles += size.triangle_count();
+    sum.bytes += mesh_bytes(size);
+  }
+  return {sum.triangles / kSizeSamples, sum.bytes / kSizeSamples};
+}
+
+// The mean number of instances of each scatter that find a place in a block.
+std::vector<double> placed_per_block(const World& world, const models::Registry& registry) {
+  std::vector<double> counts;
+  bool filtered = false;
+  for (const Scatter& scatter : world.scatter) {
+    counts.push_back(scatter.count);
+    filtered = filtered || scatter.has_filter();
+  }
+  if (!filtered) return counts;
+  std::fill(counts.begin(), counts.end(), 0.0);
+  std::vector<Placement> placements;
+  for (std::uint32_t k = 0; k < kSizeBlocks; ++k) {
+    core::RandomStream random(world.seed, 0, 0, k, core::Purpose::kStructure);
+    const auto coordinate = [&random](std::int64_t blocks) {
+      return static_cast<std::int32_t>(random.next_integer(0, (blocks == 0 ? 65536 : blocks) - 1));
+    };
+    const std::int32_t x = coordinate(world.blocks_x), z = coordinate(world.blocks_z);
+    place_models(world, registry, {x, z}, placements);
+    for (const Placement& placement : placements) {
+      std::size_t s = 0;
+      for (std::uint32_t first = 0; placement.index - first >= world.scatter[s].count; ++s)
+        first += world.scatter[s].count;
+      counts[s] += 1.0 / kSizeBlocks;
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+WorldSize world_size(const World& world, const models::Registry& registry) {
+  WorldSize size;
+  size.endless = world.is_endless();
+  size.blocks = size.endless ? 0
+                             : static_cast<std::uint64_t>(world.blocks_x) *
+                                   static_cast<std::uint64_t>(world.blocks_z);
+  size.block_triangles = models::terrain_surface_triangles(world.terrain, 0);
+  size.block_bytes = mesh_bytes(registry[world.terrain_model].mesh_size(world.terrain, 0));
+  const std::vector<double> counts = placed_per_block(world, registry);
+  std::uint32_t first = 0;
+  for (std::size_t s = 0; s < world.scatter.size(); ++s) {
+    const Scatter& scatter = world.scatter[s];
+    if (scatter.count == 0) continue;
+    const MeanSize mean = mean_size(world, registry, scatter, first);
+    size.block_models += counts[s];
+    size.block_triangles += counts[s] * mean.triangles;
+    size.block_bytes += counts[s] * mean.bytes;
+    first += scatter.count;
+  }
+  const auto blocks = static_cast<double>(size.blocks);
+  size.models = static_cast<std::uint64_t>(blocks * size.block_models + 0.5);
+  size.triangles = blocks * size.block_triangles;
+  size.bytes = blocks * size.block_bytes;
+  size.bytes_paper = size.triangles * 256;
+  return size;
+}
+
+}  // namespace psygen::world
