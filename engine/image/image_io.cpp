@@ -58,6 +58,9 @@ core::Result<PictureHeader> checked_header(const std::filesystem::path& path, co
                                header->width, header->height, limits.max_width, limits.max_height,
                                limits.max_bytes));
   }
+  if (header->format == PictureFormat::kPng && !png_is_whole(bytes)) {
+    return fail_at(ErrorCode::kParse, path, "the PNG is cut off or damaged");
+  }
   return *header;
 }
 

@@ -31,6 +31,25 @@ std::optional<PictureHeader> png_header(Bytes bytes) {
                        big_endian(bytes.subspan(20, 4))};
 }
 
+constexpr std::array<std::uint32_t, 256> crc_table() {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    table[i] = i;
+    for (int bit = 0; bit < 8; ++bit)
+      table[i] = (table[i] >> 1) ^ ((table[i] & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  return table;
+}
+
+// CRC-32 (PNG specification, annex D).
+std::uint32_t crc(Bytes bytes) {
+  static constexpr std::array<std::uint32_t, 256> kTable = crc_table();
+  std::uint32_t value = 0xFFFFFFFFU;
+  for (const std::uint8_t byte : bytes)
+    value = kTable[(value ^ byte) & 0xFFU] ^ (value >> 8);
+  return ~value;
+}
+
 // A start-of-frame marker: C0 … CF without the tables C4 and CC and the extension C8.
 bool is_start_of_frame(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
@@ -57,6 +76,22 @@ std::optional<PictureHeader> jpeg_header(Bytes bytes) {
 }
 
 }  // namespace
+
+bool png_is_whole(Bytes bytes) {
+  if (!starts_with(bytes, kPngSignature)) return false;
+  constexpr std::array<std::uint8_t, 4> kEnd{'I', 'E', 'N', 'D'};
+  bytes = bytes.subspan(kPngSignature.size());
+  // A chunk: length, type, that many bytes, checksum of type and bytes.
+  while (bytes.size() >= 12) {
+    const std::size_t length = big_endian(bytes.first(4));
+    if (length > bytes.size() - 12) return false;
+    const Bytes content = bytes.subspan(4, 4 + length);
+    if (crc(content) != big_endian(bytes.subspan(8 + length, 4))) return false;
+    if (starts_with(content, kEnd)) return true;
+    bytes = bytes.subspan(12 + length);
+  }
+  return false;
+}
 
 std::optional<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes) {
   if (starts_with(bytes, kPngSignature)) return png_header(bytes);

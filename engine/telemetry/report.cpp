@@ -74,9 +74,8 @@ std::string cards(const Summary& s) {
                "visible to drawn, p99: " + shown(s.missing.time_to_visible_ms.p99, ms));
   html += card(over ? "bad" : "", "Largest cache", shown(s.cache.peak_bytes, bytes_text), "",
                "of a budget of " + bytes_text(static_cast<double>(s.cache.budget_bytes)));
-  html += card("", "Synthesis, triangles per second",
-               shown(s.synthesis.triangles_per_second, count_text), "",
-               shown(s.synthesis.models, count_text) + " models, per busy modeler");
+  html += card("", "Triangles made per second", shown(s.synthesis.triangles_per_second, count_text),
+               "", "by a busy modeler; " + shown(s.synthesis.models, count_text) + " models");
   html += card("", "The whole world, triangles", shown(s.world.triangles, count_text), "",
                shown(s.world.bytes_paper, size_text) + " in the paper's format");
   html += card("", "Resident memory, peak", shown(s.memory.peak_rss_bytes, bytes_text), "",
@@ -225,7 +224,7 @@ std::string world_facts(const Summary& s) {
                               : fmt::format("{} × {}", s.world.blocks[0], s.world.blocks[1]));
   facts.add("triangles", shown(s.world.triangles, count_text));
   facts.add("size", shown(s.world.bytes, size_text));
-  facts.add("size in the paper's format", shown(s.world.bytes_paper, size_text));
+  facts.add("paper's format", shown(s.world.bytes_paper, size_text));
   facts.add("hash",
             shown(s.hash.world, [&](double) { return fmt::format("{:016x}", *s.hash.world); }));
   return facts.end();

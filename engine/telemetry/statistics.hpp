@@ -1,4 +1,4 @@
-// The statistics of frame times, exactly as docs/measuring.md defines them. Pure functions over
+// The statistics of frame times. The comments here are their definition. Pure functions over
 // milliseconds in the order of the frames. Two figures are only comparable when both come from
 // here.
 #pragma once

@@ -1,5 +1,5 @@
-// The figures of a run, field by field as in summary.json (docs/measuring.md), and how they are
-// made from a frame log and the facts that only the caller knows. Plain values.
+// The figures of a run, field by field as in summary.json, and how they are made from a frame log
+// and the facts that only the caller knows. Plain values; the statistics are in statistics.hpp.
 #pragma once
 
 #include <array>

@@ -20,21 +20,25 @@ void put_big_endian(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint3
     bytes[at + i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
 }
 
-// A written PNG whose header claims another size; the checksum of the header is made to fit, so
-// that the claim itself is what has to be refused.
+// Makes the checksum of the chunk at `at` fit what the chunk holds now.
+void repair_checksum(std::vector<std::uint8_t>& bytes, std::size_t at, std::size_t length) {
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (std::size_t i = at + 4; i < at + 8 + length; ++i) {
+    crc ^= bytes[i];
+    for (int bit = 0; bit < 8; ++bit)
+      crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  put_big_endian(bytes, at + 8 + length, ~crc);
+}
+
+// A written PNG whose header claims another size, so that the claim is what has to be refused.
 std::vector<std::uint8_t> png_that_claims(const std::filesystem::path& path, std::uint32_t width,
                                           std::uint32_t height) {
   EXPECT_TRUE(write_png(path, make_image(1, 1)));
   std::vector<std::uint8_t> bytes = bytes_of(path);
   put_big_endian(bytes, 16, width);
   put_big_endian(bytes, 20, height);
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (std::size_t i = 12; i < 29; ++i) {
-    crc ^= bytes[i];
-    for (int bit = 0; bit < 8; ++bit)
-      crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
-  }
-  put_big_endian(bytes, 29, ~crc);
+  repair_checksum(bytes, 8, 13);
   return bytes;
 }
 
@@ -105,8 +109,7 @@ TEST(ImageIo, APngCutOffAtAnyByteIsAnErrorWithThePath) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", noise_image(5, 5)));
   const std::vector<std::uint8_t> bytes = bytes_of(folder / "a.png");
-  // The last 12 bytes are the end marker, which decoders do not need.
-  for (std::size_t length = 0; length + 12 < bytes.size(); ++length) {
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
     write_bytes(folder / "cut.png", std::span(bytes).first(length));
     const auto read = read_image(folder / "cut.png");
     ASSERT_FALSE(read) << "cut to " << length << " of " << bytes.size();
@@ -118,15 +121,35 @@ TEST(ImageIo, APngCutOffAtAnyByteIsAnErrorWithThePath) {
 TEST(ImageIo, AnyDamagedByteGivesAPictureOfTheSameSizeOrAnError) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", noise_image(5, 5)));
+  // Every byte of the PNG; every fifth of the JPEG, whose decoder goes on after damage.
   for (const std::vector<std::uint8_t>& bytes : {bytes_of(folder / "a.png"), bytes_of(kJpeg)}) {
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
+    for (std::size_t i = 0; i < bytes.size(); i += bytes[0] == 0xFF ? 5 : 1) {
       std::vector<std::uint8_t> damaged = bytes;
       damaged[i] ^= static_cast<std::uint8_t>(1U << (i % 8));
       write_bytes(folder / "damaged", damaged);
-      const auto read = read_image(folder / "damaged", {4096, 4096, 1 << 24, 1 << 20});
+      const auto read = read_image(folder / "damaged", {64, 64, 1 << 14, 1 << 20});
       EXPECT_TRUE(!read || is_valid(*read)) << "byte " << i;
     }
   }
+}
+
+TEST(ImageIo, PixelsThatTheDecoderCannotUnpackAreAnError) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", noise_image(5, 5)));
+  std::vector<std::uint8_t> bytes = bytes_of(folder / "a.png");
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t chunk = text.find("IDAT") - 4;
+  const std::size_t length = bytes[chunk + 2] * 256U + bytes[chunk + 3];
+  bytes[chunk + 8] = 0xFF;
+  repair_checksum(bytes, chunk, length);
+  write_bytes(folder / "broken.png", bytes);
+  EXPECT_EQ(read_image(folder / "broken.png").error().code, ErrorCode::kParse);
+}
+
+TEST(ImageIo, AHeaderThatClaimsMorePixelsThanThereAreIsAnError) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "more.png", png_that_claims(folder / "a.png", 40, 30));
+  EXPECT_EQ(read_image(folder / "more.png").error().code, ErrorCode::kParse);
 }
 
 TEST(ImageIo, AFileOfAnotherKindIsAParseErrorAndAMissingOneIsAnIoError) {

@@ -47,6 +47,20 @@ TEST(PictureHeader, IsNoneForEveryTruncationBeforeTheSize) {
   }
 }
 
+TEST(PngIsWhole, OnlyUpToItsEndMarkerWithFittingChecksums) {
+  constexpr auto kSmall =
+      "\x89PNG\r\n\x1A\n\0\0\0\x03tEST"
+      "abc\x2B\x67\x05\xA7\0\0\0\0IEND\xAE\x42\x60\x82"sv;
+  std::vector<std::uint8_t> bytes = bytes_of(kSmall);
+  EXPECT_TRUE(png_is_whole(bytes));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::vector<std::uint8_t> damaged = bytes;
+    damaged[i] ^= 0x10;
+    EXPECT_FALSE(png_is_whole(damaged)) << "byte " << i;
+    EXPECT_FALSE(png_is_whole(std::span(bytes).first(i))) << "cut to " << i;
+  }
+}
+
 TEST(PictureHeader, IsNoneForOtherFiles) {
   EXPECT_FALSE(read_picture_header(bytes_of("GIF89a, which is not read")));
   EXPECT_FALSE(
