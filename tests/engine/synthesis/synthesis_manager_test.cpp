@@ -300,10 +300,11 @@ TEST(SynthesisManager, TheDestructorDoesNotWaitForAModelThatHangs) {
         std::make_unique<ScriptedModel>("stuck", [this](const auto&, int) { gate.wait(); }));
     Jobs jobs{registry};
   };
-  static Forever* const forever = new Forever;
+  static auto* const kept = new std::vector<Forever*>;  // one per repetition of this test
+  Forever* const forever = kept->emplace_back(new Forever);
   SynthesisOptions options = with(1);
   options.watchdog_seconds = 10;
-  options.clock = [] { return forever->now.load(); };
+  options.clock = [forever] { return forever->now.load(); };
   {
     SynthesisManager manager(forever->registry, options);
     manager.publish({forever->jobs.make(0)});
