@@ -1,0 +1,169 @@
+#include "engine/app/app.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/core/clock.hpp"
+#include "engine/core/log.hpp"
+#include "engine/image/image_io.hpp"
+#include "engine/models/terrain.hpp"
+#include "engine/telemetry/output_file.hpp"
+#include "engine/telemetry/progress_bar.hpp"
+
+namespace psygen::app {
+namespace {
+
+constexpr double kEyeHeightM = 25.0;
+
+// One progress bar for each label that comes along; nothing where stderr is no terminal.
+class Bars {
+ public:
+  void operator()(std::string_view label, double fraction) {
+    if (!bar_ || label != label_) {
+      label_ = label;
+      bar_ = std::make_unique<telemetry::ProgressBar>(telemetry::stderr_terminal(), label_, 1.0);
+    }
+    bar_->update(fraction);
+  }
+  void finish() { bar_.reset(); }
+
+ private:
+  std::string label_;
+  std::unique_ptr<telemetry::ProgressBar> bar_;
+};
+
+core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins) {
+  models::Registry registry = models::make_standard_registry();
+  for (const Plugin& plugin : plugins) {
+    if (!plugin.register_models) continue;
+    if (auto ok = plugin.register_models(registry); !ok) {
+      return core::fail(ok.error().code,
+                        fmt::format("plugin {}: {}", plugin.name, ok.error().message));
+    }
+  }
+  return registry;
+}
+
+}  // namespace
+
+App::App(Options options) : options_(std::move(options)) {}
+
+App::~App() {
+  scene_.reset();  // its cache gives ranges back to the renderer
+  renderer_.reset();
+  window_.reset();
+}
+
+core::Result<std::unique_ptr<App>> App::create(Options options) {
+  std::unique_ptr<App> app(new App(std::move(options)));
+  if (auto ok = app->open(); !ok) return tl::unexpected(ok.error());
+  return app;
+}
+
+core::Result<void> App::open() {
+  if (!options_.out_folder.empty()) {
+    if (auto ok = telemetry::create_output_folder(options_.out_folder); !ok) return ok;
+  }
+  auto registry = make_registry(options_.plugins);
+  if (!registry) return tl::unexpected(registry.error());
+  auto world = world::load_world(options_.world_file, *registry);
+  if (!world) return tl::unexpected(world.error());
+  if (!options_.path_file.empty()) {
+    auto path = world::load_camera_path(options_.path_file);
+    if (!path) return tl::unexpected(path.error());
+    path_ = std::move(*path);
+  }
+  if (!options_.headless) {
+    auto window = platform::Window::create({"psygen: " + world->name, options_.size, true});
+    if (!window) return tl::unexpected(window.error());
+    window_ = std::move(*window);
+  }
+  render::RendererOptions render_options;
+  render_options.device_name = options_.device_name;
+  render_options.validation = options_.validation;
+  render_options.size = options_.size;
+  render_options.geometry_budget_bytes = options_.scene.budget_bytes;
+  render_options.surface = window_.get();
+  render_options.vsync = options_.vsync;
+  auto renderer = render::Renderer::create(render_options);
+  if (!renderer) return tl::unexpected(renderer.error());
+  renderer_ = std::move(*renderer);
+  core::log_info(fmt::format("drawing with {}", renderer_->device().name));
+
+  trace_ = std::make_unique<telemetry::TraceLog>();
+  Bars bars;
+  auto scene = scene::Scene::create(std::move(*world), std::move(*registry), options_.scene,
+                                    renderer_.get(), trace_.get(), std::ref(bars));
+  bars.finish();
+  if (!scene) return tl::unexpected(scene.error());
+  scene_ = std::move(*scene);
+  pose_ = home();
+
+  std::vector<std::string> systems;
+  for (const scene::System& system : scene::tick_systems())
+    systems.emplace_back(system.name);
+  log_ = std::make_unique<telemetry::FrameLog>(std::move(systems));
+  return {};
+}
+
+core::CameraPose App::home() const {
+  const world::World& world = scene_->state().facts.world;
+  core::CameraPose pose;
+  pose.position.block = {static_cast<std::int32_t>(world.blocks_x / 2),
+                         static_cast<std::int32_t>(world.blocks_z / 2)};
+  const double middle_m = world.block_size_m() / 2;
+  pose.position.local = {middle_m, 0.0, middle_m};
+  pose.position.local.y =
+      models::ground_height_m(world.terrain, pose.position.block, middle_m, middle_m) + kEyeHeightM;
+  pose.pitch = -0.12;
+  return pose;
+}
+
+core::Result<void> App::prepare(const core::CameraPose& first) {
+  Bars bars;
+  const double start_s = core::monotonic_seconds();
+  std::uint64_t meshes = 0;
+  scene_->state().input.size = renderer_->size();
+  if (options_.scene.paradigm == scene::Paradigm::kDataAmplification) {
+    auto amplified = scene_->amplify(first, std::ref(bars));
+    if (!amplified) return tl::unexpected(amplified.error());
+    meshes = *amplified;
+  } else if (options_.prefill &&
+             options_.scene.paradigm == scene::Paradigm::kParallelLazyAmplification) {
+    meshes = scene_->settle(first, std::ref(bars));
+  }
+  bars.finish();
+  if (meshes > 0) {
+    core::log_info(fmt::format("{} meshes synthesised before the first frame in {:.2f} s", meshes,
+                               core::monotonic_seconds() - start_s));
+  }
+  return {};
+}
+
+core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
+  scene::State& state = scene_->state();
+  state.input.pose = pose;
+  state.input.size = renderer_->size();
+  state.clock.real_s = core::monotonic_seconds();
+  scene::tick(state);
+  state.clock.now_s += dt_s;
+  if (state.error) return tl::unexpected(*state.error);
+  for (const Plugin& plugin : options_.plugins) {
+    if (plugin.on_frame) plugin.on_frame(*this, dt_s);
+  }
+  return {};
+}
+
+core::Result<void> App::save_picture(const std::filesystem::path& file) {
+  auto picture = renderer_->capture();
+  if (!picture) return tl::unexpected(picture.error());
+  const image::Image image{picture->width, picture->height, std::move(picture->rgba)};
+  images_hash_ = core::combine(images_hash_, image::hash(image));
+  ++images_;
+  if (auto ok = image::write_png(file, image); !ok) return ok;
+  files_.push_back(file);
+  return {};
+}
+
+}  // namespace psygen::app

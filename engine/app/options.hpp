@@ -1,0 +1,52 @@
+// What an application chooses: world, camera path, picture, outputs. Values only; the command line
+// of `psygen fly` fills one, a game fills its own.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/core/surface_provider.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/scene/settings.hpp"
+
+namespace psygen::app {
+
+class App;
+
+// Code that a game adds. Every member may be empty.
+struct Plugin {
+  std::string name;
+  // Registers model types before the world file is read.
+  std::function<core::Result<void>(models::Registry&)> register_models;
+  // Called once before the first frame and after every tick with the time step in seconds.
+  std::function<void(App&)> on_start;
+  std::function<void(App&, double)> on_frame;
+};
+
+struct Options {
+  std::filesystem::path world_file;
+  std::filesystem::path path_file;   // empty: the camera stands and turns, or the user flies
+  std::filesystem::path out_folder;  // empty: nothing is written
+  core::Extent size{1280, 720};
+  bool headless = false;
+  bool validation = false;
+  bool vsync = true;         // windows only
+  std::string device_name;   // part of a name; empty: the best device
+  double seconds = 0;        // 0: as long as the path; without one 27 s headless, else endless
+  std::uint64_t frames = 0;  // 0: no limit
+  double fixed_step_hz = 0;  // 0: the flight follows the wall clock
+  std::uint64_t images_every = 0;  // every so many frames a PNG; 0: none
+  double warmup_seconds = 1;       // left out of all figures
+  bool prefill = true;             // fill the cache for the first pose before the first frame
+  bool hash_world = true;          // hash.world of the summary (some 50 ms)
+  scene::Settings scene;
+  std::vector<Plugin> plugins;
+  // Set from anywhere (a signal handler, another thread) to end the flight after this frame.
+  const std::atomic<bool>* stop = nullptr;
+};
+
+}  // namespace psygen::app

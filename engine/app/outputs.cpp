@@ -1,0 +1,106 @@
+// What a run leaves behind: the facts of the summary and the files of the output folder.
+#include <fmt/format.h>
+
+#include "engine/app/app.hpp"
+#include "engine/telemetry/process_memory.hpp"
+#include "engine/telemetry/report.hpp"
+
+namespace psygen::app {
+namespace {
+
+constexpr int kFloorRepeats = 15;
+constexpr std::size_t kFloorFrames =
+    31;  // of the end of the flight, that the floor is compared with
+
+telemetry::WorldFacts world_facts(const world::World& world, const models::Registry& registry) {
+  telemetry::WorldFacts facts;
+  facts.name = world.name;
+  facts.seed = world.seed;
+  facts.blocks = {static_cast<std::int64_t>(world.blocks_x),
+                  static_cast<std::int64_t>(world.blocks_z)};
+  const world::WorldSize size = world::world_size(world, registry);
+  if (size.endless) {
+    const auto endless = telemetry::Count::missing("the world is endless");
+    facts.triangles = facts.bytes_paper = facts.bytes = endless;
+  } else {
+    facts.triangles = static_cast<std::uint64_t>(size.triangles);
+    facts.bytes_paper = static_cast<std::uint64_t>(size.bytes_paper);
+    facts.bytes = static_cast<std::uint64_t>(size.bytes);
+  }
+  return facts;
+}
+
+// Median time of the last frames over the time of the last frame's draw lists alone.
+telemetry::Figure floor_ratio(const telemetry::FrameLog& log, render::Renderer& renderer) {
+  const auto frames = log.frames();
+  if (frames.size() < kFloorFrames) {
+    return telemetry::Figure::missing(fmt::format("fewer than {} frames", kFloorFrames));
+  }
+  const auto floor_ms = renderer.replay_floor_ms(kFloorRepeats);
+  if (!floor_ms) return telemetry::Figure::missing(floor_ms.error().message);
+  std::vector<double> last;
+  for (const auto& frame : frames.last(kFloorFrames))
+    last.push_back(frame.frame_ms);
+  std::ranges::nth_element(last, last.begin() + kFloorFrames / 2);
+  return last[kFloorFrames / 2] / *floor_ms;
+}
+
+}  // namespace
+
+telemetry::RunFacts App::run_facts() {
+  const scene::State& state = scene_->state();
+  telemetry::RunFacts facts;
+  facts.world = world_facts(state.facts.world, state.facts.registry);
+  const render::DeviceInfo& device = renderer_->device();
+  facts.device = {device.name, device.driver, device.api_version};
+  const core::Extent size = renderer_->size();
+  facts.run.paradigm = scene::to_string(options_.scene.paradigm);
+  facts.run.policy = synthesis::name_of(options_.scene.policy);
+  facts.run.modelers = state.settings.modelers;
+  facts.run.width = size.width;
+  facts.run.height = size.height;
+  facts.run.lod = options_.scene.levels_of_detail;
+  facts.run.fixed_step = options_.fixed_step_hz > 0
+                             ? telemetry::Figure(options_.fixed_step_hz)
+                             : telemetry::Figure::missing("the flight follows the wall clock");
+  const synthesis::CacheStats cache = state.synthesis.cache->stats();
+  facts.cache_budget_bytes = cache.budget_bytes;
+  facts.cache_peak_bytes = cache.peak_bytes;
+  facts.prefetch_hit_percent =
+      cache.prefetched > 0 ? telemetry::Figure(100.0 * static_cast<double>(cache.prefetch_hits) /
+                                               static_cast<double>(cache.prefetched))
+                           : telemetry::Figure::missing("nothing was synthesised ahead of time");
+  facts.floor_ratio = floor_ratio(*log_, *renderer_);
+  facts.peak_rss_bytes = telemetry::peak_rss_bytes();
+  facts.world_hash = options_.hash_world
+                         ? telemetry::Count(scene::sample_world_hash(
+                               state.facts.world, state.facts.registry, home().position.block))
+                         : telemetry::Count::missing("switched off");
+  facts.images_hash = images_ > 0 ? telemetry::Count(images_hash_)
+                                  : telemetry::Count::missing("no pictures were written");
+  return facts;
+}
+
+core::Result<void> App::write_outputs(const telemetry::Summary& summary) {
+  if (options_.out_folder.empty()) return {};
+  const auto& folder = options_.out_folder;
+  const auto note = [this](const std::filesystem::path& file, core::Result<void> result) {
+    if (result) files_.push_back(file);
+    return result;
+  };
+  if (auto ok =
+          note(folder / "frames.csv", telemetry::write_frames_csv(folder / "frames.csv", *log_));
+      !ok) {
+    return ok;
+  }
+  if (auto ok = note(folder / "summary.json",
+                     telemetry::write_summary_json(folder / "summary.json", summary));
+      !ok) {
+    return ok;
+  }
+  if (auto ok = note(folder / "trace.json", trace_->write(folder / "trace.json")); !ok) return ok;
+  return note(folder / "report.html",
+              telemetry::write_report_html(folder / "report.html", *log_, summary));
+}
+
+}  // namespace psygen::app

@@ -1,0 +1,250 @@
+// Decides what every mesh entity of the window should show, takes from the cache what it has, ranks
+// what it keeps, and plans what is missing. Blocks in view are looked at in every tick in PLP
+// order; those around the camera in turns.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "engine/core/log.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/visibility/level_choice.hpp"
+
+namespace psygen::scene {
+namespace {
+
+using synthesis::Rank;
+using synthesis::RankGroup;
+
+// Blocks out of view are looked at once in so many ticks, and kept this much coarser.
+constexpr std::size_t kAroundTurns = 8;
+constexpr float kAroundErrorFactor = 2.0F;
+
+// Where a block stands in the order of importance, in this tick.
+struct BlockView {
+  glm::vec3 corner{0.0F};  // relative to the camera
+  const Visibility* visibility = nullptr;
+  bool in_view = false;
+  float error_pixels = 0;
+};
+
+class Chooser {
+ public:
+  Chooser(const Settings& settings, const Clock& clock, const Camera& camera,
+          const visibility::Frustum& frustum, ecs::World& entities, Synthesis& synthesis,
+          Counters& counters)
+      : settings_(settings),
+        clock_(clock),
+        camera_(camera),
+        frustum_(frustum),
+        entities_(entities),
+        synthesis_(synthesis),
+        counters_(counters) {}
+
+  void consider(ecs::Entity entity, const BlockView& block, bool is_terrain) {
+    const Placed& placed = *entities_.get<Placed>(entity);
+    Demand& demand = *entities_.get<Demand>(entity);
+    const glm::vec3 center = block.corner + placed.position + placed.box_center;
+    const float distance_m =
+        is_terrain ? block.visibility->distance_m
+                   : std::max(glm::length(center) - placed.radius_m, camera_.projection.near_m);
+    const bool in_view =
+        block.in_view &&
+        (is_terrain || visibility::intersects(frustum_, {center - placed.box_half_extent,
+                                                         center + placed.box_half_extent}));
+    demand.wanted_level = wanted_level(placed, *entities_.get<Detail>(entity), demand, distance_m,
+                                       block.error_pixels, is_terrain);
+    if (in_view) note_in_view(demand);
+    if (demand.wanted_level == kNoLevel) return;
+    provide(entity, demand, in_view, *block.visibility, distance_m);
+  }
+
+ private:
+  std::uint8_t wanted_level(const Placed& placed, const Detail& detail, const Demand& demand,
+                            float distance_m, float error_pixels, bool is_terrain) const {
+    const float size_pixels = 2 * placed.radius_m * camera_.pixels_per_radian /
+                              std::max(distance_m + placed.radius_m, camera_.projection.near_m);
+    if (!is_terrain && size_pixels < static_cast<float>(settings_.min_size_pixels)) return kNoLevel;
+    if (!settings_.levels_of_detail) return 0;
+    const std::span<const float> errors(detail.error_m.data(), detail.level_count);
+    const int current = demand.drawn_level == kNoLevel ? -1 : demand.drawn_level;
+    return static_cast<std::uint8_t>(visibility::choose_level(
+        errors, distance_m, camera_.pixels_per_radian, error_pixels, current));
+  }
+
+  void note_in_view(Demand& demand) {
+    const bool entered = demand.in_view_tick + 1 != clock_.tick;
+    demand.in_view_tick = clock_.tick;
+    if (!entered || demand.wanted_level == kNoLevel) return;
+    if (demand.drawn_level == kNoLevel) {
+      demand.seen_s = static_cast<float>(clock_.real_s);
+    } else {
+      counters_.time_to_visible_ms.push_back(0.0F);
+    }
+  }
+
+  Rank rank_of(RankGroup group, const Visibility& visibility, float distance_m) const {
+    if (synthesis::is_visible(group)) return Rank::by_layer(group, visibility.layer, distance_m);
+    if (std::isfinite(visibility.deadline_s)) {
+      return Rank::by_deadline(visibility.deadline_s, distance_m);
+    }
+    return Rank::by_layer(RankGroup::kPrefetch, visibility.layer, distance_m);
+  }
+
+  // Keeps what is drawn, and sees to it that the wanted level comes.
+  void provide(ecs::Entity entity, Demand& demand, bool in_view, const Visibility& visibility,
+               float distance_m) {
+    if (demand.drawn_level != kNoLevel) {
+      const RankGroup kept = in_view ? RankGroup::kDrawn : RankGroup::kPrefetch;
+      synthesis_.cache->set_rank(entities_.get<Mesh>(entity)->handle,
+                                 rank_of(kept, visibility, distance_m));
+    }
+    if (demand.drawn_level == demand.wanted_level) {
+      demand.requested_level = kNoLevel;
+      return;
+    }
+    const bool hole = demand.drawn_level == kNoLevel;
+    const std::uint8_t level = level_to_request(entity, demand, hole && in_view);
+    if (level == kNoLevel) return;
+    const RankGroup group = !in_view ? RankGroup::kPrefetch
+                            : hole   ? RankGroup::kVisibleHole
+                                     : RankGroup::kVisibleCoarse;
+    request(entity, demand, level, rank_of(group, visibility, distance_m), visibility.deadline_s);
+  }
+
+  // The wanted level; for a hole in view the coarsest one first; another one where it has failed.
+  std::uint8_t level_to_request(ecs::Entity entity, const Demand& demand, bool hole) const {
+    const auto coarsest = static_cast<std::uint8_t>(entities_.get<Detail>(entity)->level_count - 1);
+    const bool coarse_first = hole && settings_.levels_of_detail &&
+                              settings_.paradigm == Paradigm::kParallelLazyAmplification;
+    const std::uint8_t level = coarse_first ? coarsest : demand.wanted_level;
+    if (level != demand.failed_level) return level;
+    if (demand.drawn_level != kNoLevel) return kNoLevel;
+    return level > 0 ? static_cast<std::uint8_t>(level - 1) : kNoLevel;
+  }
+
+  void request(ecs::Entity entity, Demand& demand, std::uint8_t level, Rank rank,
+               float deadline_s) {
+    const Source& source = *entities_.get<Source>(entity);
+    const synthesis::MeshKey key{entities_.get<Placed>(entity)->block, source.index, source.model,
+                                 level, source.parameters_hash};
+    const bool first_time = demand.requested_level != level;
+    demand.requested_level = level;
+    const synthesis::MeshHandle handle =
+        first_time ? synthesis_.cache->look_up(key) : synthesis_.cache->find(key);
+    const synthesis::MeshRecord* record = synthesis_.cache->get(handle);
+    if (record != nullptr && record->state == synthesis::MeshState::kReady) {
+      synthesis_.ready.push_back({entity, handle});
+      synthesis_.cache->set_rank(handle, rank);
+      return;
+    }
+    if (settings_.paradigm == Paradigm::kDataAmplification) return;
+    synthesis_.wants.push_back({key, &source.parameters, owner_of(entity), rank, deadline_s});
+  }
+
+  const Settings& settings_;
+  const Clock& clock_;
+  const Camera& camera_;
+  const visibility::Frustum& frustum_;
+  ecs::World& entities_;
+  Synthesis& synthesis_;
+  Counters& counters_;
+};
+
+void consider_block(Chooser& chooser, ecs::Entity entity, const Camera& camera, double block_size_m,
+                    const Streaming& streaming, const ecs::World& entities, bool in_view,
+                    float error_pixels) {
+  const Block& block = *entities.get<Block>(entity);
+  const BlockView view{glm::vec3(core::offset_m(block.coord, camera.pose.position, block_size_m)),
+                       entities.get<Visibility>(entity), in_view, error_pixels};
+  chooser.consider(entity, view, true);
+  for (const ecs::Entity model : streaming.models.of(block.slab).first(block.model_count)) {
+    chooser.consider(model, view, false);
+  }
+}
+
+// Lazy evaluation keeps nothing: what the last frame drew is given back.
+void forget_last_frame(ecs::World& entities, Synthesis& synthesis) {
+  entities.each<Demand, Mesh>([&synthesis](std::span<const ecs::Entity>, std::span<Demand> demands,
+                                           std::span<Mesh> meshes) {
+    for (std::size_t i = 0; i < demands.size(); ++i) {
+      if (demands[i].drawn_level == kNoLevel) continue;
+      synthesis.cache->release(meshes[i].handle);
+      demands[i].drawn_level = kNoLevel;
+    }
+  });
+}
+
+// Entities whose mesh was taken to make room draw nothing until they get another one.
+void drop_evicted(ecs::World& entities, Synthesis& synthesis) {
+  for (const synthesis::Eviction& eviction : synthesis.cache->take_evictions()) {
+    const ecs::Entity owner = entity_of(eviction.owner);
+    const Mesh* mesh = entities.get<Mesh>(owner);
+    if (mesh != nullptr && mesh->handle == eviction.handle) {
+      entities.get<Demand>(owner)->drawn_level = kNoLevel;
+    }
+  }
+}
+
+// Under pressure everything gets coarser, and finer again when there is room: quickly up, slowly
+// down.
+void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& report,
+                     Synthesis& synthesis, Totals& totals) {
+  constexpr float kUp = 1.15F, kDown = 0.99F, kCoarsest = 64.0F;
+  const bool roomy = static_cast<double>(synthesis.cache->stats().bytes) <
+                     0.8 * static_cast<double>(synthesis.cache->budget_bytes());
+  if (report.refused > 0) {
+    synthesis.coarsening = std::min(synthesis.coarsening * kUp, kCoarsest);
+    if (!totals.warned_budget) {
+      totals.warned_budget = true;
+      core::log_warning(
+          settings.levels_of_detail
+              ? "the geometry budget is too small for this view; drawing coarser levels"
+              : "the geometry budget is too small for this view at full detail; some of it is "
+                "missing");
+    }
+  } else if (roomy) {
+    synthesis.coarsening = std::max(synthesis.coarsening * kDown, 1.0F);
+  }
+}
+
+}  // namespace
+
+void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
+                  const WorldFacts& facts, const Streaming& streaming, const View& view,
+                  ecs::World& entities, Synthesis& synthesis, Counters& counters, Totals& totals) {
+  if (settings.paradigm == Paradigm::kLazyEvaluation) forget_last_frame(entities, synthesis);
+  synthesis.wants.clear();
+  synthesis.ready.clear();
+
+  Chooser chooser(settings, clock, camera, view.frustum, entities, synthesis, counters);
+  const double block_size_m = facts.world.block_size_m();
+  const float error_pixels = static_cast<float>(settings.max_error_pixels) * synthesis.coarsening;
+  for (const ecs::Entity block : view.visible) {
+    consider_block(chooser, block, camera, block_size_m, streaming, entities, true, error_pixels);
+  }
+  if (settings.paradigm == Paradigm::kParallelLazyAmplification) {
+    for (const ecs::Entity block : view.expected) {
+      consider_block(chooser, block, camera, block_size_m, streaming, entities, false,
+                     error_pixels);
+    }
+    for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns) {
+      consider_block(chooser, view.around[i], camera, block_size_m, streaming, entities, false,
+                     error_pixels * kAroundErrorFactor);
+    }
+  }
+  const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
+  const synthesis::PlanLimits limits{
+      wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead,
+      wait ? UINT32_MAX : settings.plan_max_requests};
+  const synthesis::PlanReport report =
+      synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,
+                              *synthesis.manager, limits, settings.policy);
+  counters.requests = static_cast<std::uint32_t>(synthesis.wants.size());
+  counters.refused = static_cast<std::uint32_t>(report.refused);
+  drop_evicted(entities, synthesis);
+  adapt_to_budget(settings, report, synthesis, totals);
+}
+
+}  // namespace psygen::scene

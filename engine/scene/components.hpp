@@ -1,0 +1,95 @@
+// The components of the scene. Plain data, split by who touches it; sizes are part of the contract.
+// A *mesh entity* is anything with a mesh: a block (its terrain), a tree, a rock. Whether a mesh is
+// there yet is a value in `Mesh`, never a difference in archetype. Main thread only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "ecs/ecs.hpp"
+#include "engine/core/coordinates.hpp"
+#include "engine/core/geometry_memory.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/synthesis/geometry_cache.hpp"
+
+namespace psygen::scene {
+
+inline constexpr std::uint8_t kNoLevel = 0xFF;
+inline constexpr std::size_t kMaxLevels = 8;
+
+// A block of the grid. Its models are `count` entities at BlockModels::of(slab).
+struct Block {
+  core::BlockCoord coord;
+  std::uint32_t slab = 0;
+  std::uint32_t model_count = 0;
+};
+static_assert(sizeof(Block) == 16);
+
+// What the visibility system found out about a block in this tick.
+struct Visibility {
+  float distance_m = 0;     // from the camera to the nearest point of the block's box
+  float deadline_s = 0;     // seconds until it is expected in view; 0 in view; +inf not expected
+  std::uint16_t layer = 0;  // PLP layer; the paper's priority is −(layer + 1)
+  std::uint16_t in_view = 0;
+};
+static_assert(sizeof(Visibility) == 12);
+
+// Where a mesh entity stands: block, metres from the block's corner, box relative to its foot.
+struct Placed {
+  core::BlockCoord block;
+  glm::vec3 position{0.0F};
+  glm::vec3 box_center{0.0F};
+  glm::vec3 box_half_extent{0.0F};
+  float radius_m = 0;
+};
+static_assert(sizeof(Placed) == 48);
+
+// Geometric error in metres of each level of detail.
+struct Detail {
+  std::array<float, kMaxLevels> error_m{};
+  std::uint32_t level_count = 0;
+};
+
+// What is synthesised. Cold: read when a request is made.
+struct Source {
+  models::Parameters parameters;
+  std::uint64_t parameters_hash = 0;
+  std::uint32_t index = 0;  // within the block; models count from 0, terrain is kTerrainIndex
+  models::ModelIndex model = 0;
+};
+inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
+
+// The mesh that is resident and drawn. Results of synthesis land here in batches.
+struct Mesh {
+  core::GeometryRange range;
+  synthesis::MeshHandle handle;
+  std::uint32_t shared_indices = 0;  // the renderer's name of the index list, if it is shared
+};
+static_assert(sizeof(Mesh) == 44);
+
+// What is wanted for an entity and what has been done about it. Changes every tick.
+struct Demand {
+  float seen_s = -1;                     // since when it is in view without a mesh; −1: it is not
+  std::uint32_t in_view_tick = 0;        // the last tick in which it was in view
+  std::uint8_t drawn_level = kNoLevel;   // level of Mesh; kNoLevel: there is none
+  std::uint8_t wanted_level = kNoLevel;  // kNoLevel: too small on screen to be drawn
+  std::uint8_t requested_level = kNoLevel;
+  std::uint8_t failed_level = kNoLevel;  // its synthesis failed; it is not asked for again
+};
+static_assert(sizeof(Demand) == 12);
+
+inline std::uint64_t owner_of(ecs::Entity entity) {
+  return (std::uint64_t{entity.generation} << 32) | entity.index;
+}
+inline ecs::Entity entity_of(std::uint64_t owner) {
+  return {static_cast<std::uint32_t>(owner), static_cast<std::uint32_t>(owner >> 32)};
+}
+
+}  // namespace psygen::scene
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::scene::Mesh> {
+  static constexpr std::string_view name = "mesh";
+  static constexpr bool tracked = true;
+};

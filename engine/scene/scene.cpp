@@ -1,0 +1,143 @@
+#include "engine/scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/scene/lighting.hpp"
+#include "engine/scene/systems.hpp"
+
+namespace psygen::scene {
+namespace {
+
+core::Result<void> check(const Settings& settings) {
+  const auto refuse = [](std::string sentence) {
+    return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
+  };
+  if (!(settings.view_distance_m >= 32 && settings.view_distance_m <= 8192)) {
+    return refuse("view distance must be between 32 and 8192 m");
+  }
+  if (!(settings.max_error_pixels > 0 && settings.max_error_pixels <= 1000)) {
+    return refuse("the error of levels of detail must be above 0 and at most 1000 pixels");
+  }
+  if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
+  if (settings.budget_bytes < Scene::kMinBudgetBytes) {
+    return core::fail(core::ErrorCode::kOverBudget,
+                      fmt::format("a budget of {} bytes is too small; at least {} bytes are needed",
+                                  settings.budget_bytes, Scene::kMinBudgetBytes));
+  }
+  return {};
+}
+
+// How far models may rise above their foot: the largest box over the corners of their ranges.
+float models_height(const world::World& world, const models::Registry& registry) {
+  float height_m = 0;
+  for (const world::Scatter& scatter : world.scatter) {
+    const models::ModelType& type = registry[scatter.model];
+    const auto specs = type.parameters();
+    std::vector<std::size_t> ranged;
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      if (scatter.ranges[i].low != scatter.ranges[i].high) ranged.push_back(i);
+    }
+    for (std::uint32_t corner = 0; corner < (1u << std::min<std::size_t>(ranged.size(), 10));
+         ++corner) {
+      models::Parameters p = world::scatter_parameters(registry, scatter);
+      for (std::size_t k = 0; k < std::min<std::size_t>(ranged.size(), 10); ++k) {
+        const world::ParameterRange& range = scatter.ranges[ranged[k]];
+        world::set_parameter(type, p, ranged[k], (corner >> k & 1) != 0 ? range.high : range.low);
+      }
+      height_m = std::max(height_m, type.bounds(p).max.y);
+    }
+  }
+  return height_m;
+}
+
+std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
+  std::vector<world::Placement> placements;
+  const core::BlockCoord block{};
+  world::place_models(facts.world, facts.registry, block, placements);
+  std::vector<synthesis::CostSample> samples{
+      {facts.world.terrain_model, world::terrain_parameters(facts.world, block)}};
+  constexpr std::size_t kPerType = 6;
+  std::vector<std::size_t> taken(facts.registry.size(), 0);
+  for (const world::Placement& placement : placements) {
+    if (taken[placement.model]++ < kPerType) {
+      samples.push_back({placement.model, placement.parameters});
+    }
+  }
+  return samples;
+}
+
+Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
+                   const models::Registry& registry) {
+  Tracing tracing;
+  if (log == nullptr) return tracing;
+  tracing.log = log;
+  tracing.main = log->add_track("main thread");
+  for (const System& system : tick_systems())
+    tracing.systems.push_back(log->intern(system.name));
+  for (std::uint32_t i = 0; i < modelers; ++i) {
+    tracing.modelers.push_back(log->add_track(fmt::format("modeler {}", i)));
+  }
+  for (models::ModelIndex i = 0; i < registry.size(); ++i) {
+    tracing.models.push_back(log->intern(registry[i].name()));
+  }
+  return tracing;
+}
+
+}  // namespace
+
+Scene::~Scene() {
+  // Modelers write into the cache's memory: they end first.
+  state_.synthesis.manager.reset();
+  state_.synthesis.planner.reset();
+  state_.synthesis.cache.reset();
+}
+
+core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::Registry registry,
+                                                   const Settings& settings,
+                                                   render::Renderer* renderer,
+                                                   telemetry::TraceLog* trace,
+                                                   const Progress& progress) {
+  if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
+  std::unique_ptr<Scene> scene(new Scene);
+  State& s = scene->state_;
+  s.settings = settings;
+  WorldFacts& facts = s.facts;
+  facts.world = std::move(world);
+  facts.registry = std::move(registry);
+  facts.light = light_of(facts.world, settings.view_distance_m);
+  facts.palette = palette_of(facts.world);
+  facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(facts.world));
+  facts.cell_m = static_cast<float>(facts.world.cell_m());
+  facts.models_height_m = models_height(facts.world, facts.registry);
+
+  const double blocks = std::ceil(settings.view_distance_m / facts.world.block_size_m());
+  s.streaming = Streaming{BlockGrid(static_cast<std::uint32_t>(blocks) + 1),
+                          BlockModels(facts.models_per_block),
+                          {},
+                          false};
+  s.renderer = renderer;
+  if (renderer == nullptr) {
+    s.heap = std::make_unique<core::HeapGeometryMemory>(settings.budget_bytes);
+  }
+  s.memory = renderer != nullptr ? &renderer->geometry() : s.heap.get();
+  Synthesis& synthesis = s.synthesis;
+  synthesis.cache =
+      std::make_unique<synthesis::GeometryCache>(*s.memory, facts.registry, settings.budget_bytes);
+  synthesis.cost = std::make_unique<synthesis::CostModel>(facts.registry);
+  scene->calibration_ = synthesis.cost->calibrate(cost_samples(facts), {}, [&](double fraction) {
+    if (progress) progress("calibrating", fraction);
+  });
+  synthesis.planner = std::make_unique<synthesis::Planner>();
+  synthesis::SynthesisOptions options;
+  options.modelers = settings.modelers;
+  synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
+  s.settings.modelers = synthesis.manager->modeler_count();
+  s.trace = tracing_of(trace, s.settings.modelers, facts.registry);
+  return scene;
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,57 @@
+// A scene: one world, its entities, its modelers and its cache, ready to tick. Owns the State; the
+// tick itself is in tick.cpp. Works without a renderer (a null device): then nothing is drawn.
+// Main thread only; the modelers are threads of its own.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "engine/scene/state.hpp"
+#include "engine/scene/tick.hpp"
+
+namespace psygen::scene {
+
+// Told how far something long has come: a label and a fraction in [0, 1].
+using Progress = std::function<void(std::string_view, double)>;
+
+class Scene {
+ public:
+  // `renderer` (may be null) and `trace` (may be null) outlive the scene. Starts the modelers and
+  // calibrates the cost model (below 0.5 s). Fails with kInvalidArgument for settings that make no
+  // sense and with kOverBudget for a budget below kMinBudgetBytes.
+  static core::Result<std::unique_ptr<Scene>> create(world::World world, models::Registry registry,
+                                                     const Settings& settings,
+                                                     render::Renderer* renderer,
+                                                     telemetry::TraceLog* trace = nullptr,
+                                                     const Progress& progress = {});
+  ~Scene();
+
+  State& state() { return state_; }
+  const State& state() const { return state_; }
+  const synthesis::CalibrationReport& calibration() const { return calibration_; }
+
+  // Fills the cache for a pose before the first frame (paper, section 4: the initial cache): ticks
+  // without drawing and waits for the modelers, until nothing is missing or the budget is full.
+  // Also what makes a picture independent of timing. Returns how many meshes were synthesised.
+  std::uint64_t settle(const core::CameraPose& pose, const Progress& progress = {});
+
+  // Data amplification (section 3.3.1): synthesises all models around the pose at every level that
+  // a flight can want, once and for all. Fails with kOverBudget, saying how much it would need.
+  core::Result<std::uint64_t> amplify(const core::CameraPose& pose, const Progress& progress = {});
+
+  static constexpr std::uint64_t kMinBudgetBytes = 4ull << 20;
+
+ private:
+  Scene() = default;
+  void tick_without_drawing(const core::CameraPose& pose);
+
+  State state_;
+  synthesis::CalibrationReport calibration_;
+};
+
+// Hash over every mesh of the 3 × 3 blocks around `block` at every level: equal for the same world
+// file on every machine (with the same version), whatever the number of modelers.
+std::uint64_t sample_world_hash(const world::World& world, const models::Registry& registry,
+                                core::BlockCoord block);
+
+}  // namespace psygen::scene

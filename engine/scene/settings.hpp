@@ -1,0 +1,36 @@
+// What a user chooses about a scene, with defaults. Values only.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "engine/core/error.hpp"
+#include "engine/synthesis/policy.hpp"
+
+namespace psygen::scene {
+
+// The three ways of the paper (sections 3.3 and 4) to get geometry from parameters.
+enum class Paradigm : std::uint8_t {
+  kParallelLazyAmplification,  // on demand, in parallel, cached, prefetched
+  kDataAmplification,          // a region is synthesised before the first frame, nothing after it
+  kLazyEvaluation,             // whatever is visible, in every frame anew; nothing is kept
+};
+std::string_view to_string(Paradigm paradigm);  // "pla", "amplify", "lazy"
+core::Result<Paradigm> paradigm_from(std::string_view name);
+
+struct Settings {
+  Paradigm paradigm = Paradigm::kParallelLazyAmplification;
+  synthesis::Policy policy = synthesis::Policy::kDeadline;
+  std::uint32_t modelers = 0;                 // 0: cores − 1, at least 1
+  std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
+  double view_distance_m = 640;               // blocks farther away do not exist
+  double max_error_pixels = 3.0;              // of the level of detail that is chosen
+  double min_size_pixels = 1.2;               // models smaller on screen are not drawn
+  bool levels_of_detail = true;               // false: full detail everywhere, as in the paper
+  double plan_seconds_ahead = 0.05;           // synthesis time per modeler in one plan
+  std::uint32_t plan_max_requests = 4096;
+  double streaming_budget_ms = 2.0;                 // per tick, for creating blocks
+  std::uint64_t upload_budget_bytes = 16ull << 20;  // per tick
+};
+
+}  // namespace psygen::scene

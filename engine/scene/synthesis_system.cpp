@@ -1,0 +1,34 @@
+#include <fmt/format.h>
+
+#include "engine/scene/systems.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// Modelers that replace hung ones get tracks of their own.
+void trace_job(const synthesis::Completion& job, Tracing& trace) {
+  while (trace.modelers.size() <= job.modeler) {
+    trace.modelers.push_back(
+        trace.log->add_track(fmt::format("modeler {}", trace.modelers.size())));
+  }
+  trace.log->add_span(trace.modelers[job.modeler], trace.models[job.key.model], job.started_s,
+                      job.finished_s);
+}
+
+}  // namespace
+
+void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& counters,
+                      Tracing& trace) {
+  if (settings.paradigm == Paradigm::kLazyEvaluation) synthesis.manager->wait_all();
+  const std::size_t before = synthesis.finished.size();
+  synthesis.manager->collect(synthesis.finished);
+  for (std::size_t i = before; i < synthesis.finished.size(); ++i) {
+    const synthesis::Completion& job = synthesis.finished[i];
+    ++(job.ok ? counters.completed : counters.failed);
+    counters.synthesis_seconds += job.seconds;
+    if (job.ok) counters.costs.push_back({job.predicted_seconds, job.seconds});
+    if (trace.log != nullptr && !job.late) trace_job(job, trace);
+  }
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,48 @@
+// The systems of the tick, one .cpp each. Free functions; const parameters are read, the others
+// written. Main thread only; none of them waits for a modeler, a file or the GPU beyond the frames
+// in flight (lazy evaluation waits for its modelers: that is what it is). Order and data: tick.cpp.
+#pragma once
+
+#include "engine/scene/state.hpp"
+
+namespace psygen::scene {
+
+// Takes over the wanted pose (an invalid one is refused, the last valid one stays) and predicts
+// poses.
+void input_system(const Input& input, const Clock& clock, const WorldFacts& facts, Camera& camera);
+
+// Creates and destroys block entities with their models around the camera, in batches.
+void streaming_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                      Streaming& streaming, ecs::World& entities, synthesis::GeometryCache& cache,
+                      Counters& counters);
+
+// Runs Prioritized-Layered Projection over the window, for now and for the predicted poses.
+void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                       const Streaming& streaming, ecs::World& entities, View& view,
+                       Counters& counters);
+
+// Chooses levels of detail, finds what the cache has, ranks what it keeps, plans what is missing.
+void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
+                  const WorldFacts& facts, const Streaming& streaming, const View& view,
+                  ecs::World& entities, Synthesis& synthesis, Counters& counters, Totals& totals);
+
+// Collects what the modelers have finished since the last tick.
+void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& counters,
+                      Tracing& trace);
+
+// Makes finished meshes resident and lands them in their entities, within the upload budget.
+void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
+                   ecs::World& entities, Synthesis& synthesis, SharedIndices& shared,
+                   render::Renderer* renderer, Counters& counters, Totals& totals);
+
+// Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
+void render_system(const Input& input, const Clock& clock, const Camera& camera,
+                   const WorldFacts& facts, const Streaming& streaming, const View& view,
+                   ecs::World& entities, DrawLists& draws, render::Renderer* renderer,
+                   Counters& counters, std::optional<core::Error>& error);
+
+// Writes down what the tick did.
+void telemetry_system(const Clock& clock, const Counters& counters, const Synthesis& synthesis,
+                      Totals& totals, telemetry::FrameRecord& record);
+
+}  // namespace psygen::scene

@@ -1,0 +1,112 @@
+// Makes finished meshes resident and lands them in their entities. Where memory is shared with the
+// device the modeler has already written the final bytes, and this is only book-keeping.
+#include <fmt/format.h>
+
+#include "engine/core/log.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/synthesis/landing.hpp"
+
+namespace psygen::scene {
+namespace {
+
+std::uint32_t shared_indices_of(const synthesis::MeshRecord& record, const WorldFacts& facts,
+                                SharedIndices& shared, render::Renderer* renderer) {
+  if (record.size.shared_indices == 0) return render::kNoSharedIndices;
+  const std::uint64_t key = (std::uint64_t{record.key.model} << 32) | record.size.shared_indices;
+  const auto known = shared.find(key);
+  if (known != shared.end()) return known->second;
+  std::uint32_t name = static_cast<std::uint32_t>(shared.size()) + 1;
+  if (renderer != nullptr) {
+    std::vector<std::uint16_t> list(record.size.index_count);
+    facts.registry[record.key.model].write_shared_indices(record.size.shared_indices, list);
+    const auto uploaded = renderer->upload_shared_indices(list);
+    if (!uploaded) {
+      core::log_error(fmt::format("index list not uploaded: {}", uploaded.error().message));
+      return render::kNoSharedIndices;
+    }
+    name = *uploaded;
+  }
+  shared.emplace(key, name);
+  return name;
+}
+
+// Whether an entity has a use for a mesh of this level now; if so, notes that it has it.
+bool accept(Demand& demand, std::uint8_t level, double now_s, Counters& counters) {
+  const bool asked_for = level == demand.requested_level;
+  if (!asked_for && demand.drawn_level != kNoLevel) return false;
+  demand.drawn_level = level;
+  if (asked_for) demand.requested_level = kNoLevel;
+  if (demand.seen_s >= 0) {
+    counters.time_to_visible_ms.push_back((static_cast<float>(now_s) - demand.seen_s) * 1000.0F);
+    demand.seen_s = -1;
+  }
+  return true;
+}
+
+void give_up(const synthesis::Completion& job, ecs::World& entities, Totals& totals) {
+  if (job.late) return;  // it was given up before
+  if (totals.failed++ == 0) {
+    core::log_warning(fmt::format("a model could not be synthesised: {}", job.error));
+  }
+  if (Demand* demand = entities.get<Demand>(entity_of(job.owner))) {
+    demand->failed_level = static_cast<std::uint8_t>(job.key.level);
+    demand->requested_level = kNoLevel;
+  }
+}
+
+// How many of the finished meshes, oldest first, the upload budget of this tick covers.
+std::size_t count_within_budget(const Synthesis& synthesis, std::uint64_t budget_bytes) {
+  std::uint64_t bytes = 0;
+  std::size_t count = 0;
+  while (count < synthesis.finished.size() && bytes < budget_bytes) {
+    const synthesis::MeshRecord* record = synthesis.cache->get(synthesis.finished[count++].handle);
+    if (record != nullptr) bytes += record->range.bytes;
+  }
+  return count;
+}
+
+// Notes that `handle` is what the entity draws from now on, if it has a use for it.
+void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::MeshRecord& record,
+           std::uint32_t shared_indices, double now_s, ecs::World& entities, Synthesis& synthesis,
+           Counters& counters, std::vector<ecs::Landing<Mesh>>& landings) {
+  Demand* demand = entities.get<Demand>(owner);
+  if (demand == nullptr) return;  // destroyed meanwhile; the mesh stays in the cache
+  const bool replaces = demand->drawn_level != kNoLevel;
+  if (!accept(*demand, static_cast<std::uint8_t>(record.key.level), now_s, counters)) return;
+  if (replaces) {
+    synthesis.cache->set_rank(entities.get<Mesh>(owner)->handle, synthesis::Rank::unwanted());
+  }
+  landings.push_back({owner, {record.range, handle, shared_indices}});
+}
+
+}  // namespace
+
+void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
+                   ecs::World& entities, Synthesis& synthesis, SharedIndices& shared,
+                   render::Renderer* renderer, Counters& counters, Totals& totals) {
+  std::vector<ecs::Landing<Mesh>> landings;
+  for (const Synthesis::Ready& ready : synthesis.ready) {
+    const synthesis::MeshRecord* record = synthesis.cache->get(ready.handle);
+    if (record == nullptr || record->state != synthesis::MeshState::kReady) continue;
+    offer(ready.entity, ready.handle, *record, shared_indices_of(*record, facts, shared, renderer),
+          clock.real_s, entities, synthesis, counters, landings);
+  }
+  const std::size_t count = count_within_budget(synthesis, settings.upload_budget_bytes);
+  const std::span<const synthesis::Completion> batch(synthesis.finished.data(), count);
+  counters.bytes_synthesised = synthesis::land(batch, *synthesis.cache, synthesis.cost.get()).bytes;
+  for (const synthesis::Completion& job : batch) {
+    if (!job.ok) give_up(job, entities, totals);
+    const synthesis::MeshRecord* record = synthesis.cache->get(job.handle);
+    if (record == nullptr || record->state != synthesis::MeshState::kReady) continue;
+    ++counters.models_synthesised;
+    counters.triangles_synthesised += record->size.triangle_count();
+    offer(entity_of(job.owner), job.handle, *record,
+          shared_indices_of(*record, facts, shared, renderer), clock.real_s, entities, synthesis,
+          counters, landings);
+  }
+  synthesis.finished.erase(synthesis.finished.begin(),
+                           synthesis.finished.begin() + static_cast<std::ptrdiff_t>(count));
+  entities.land<Mesh>(std::span<const ecs::Landing<Mesh>>(landings));
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,139 @@
+// psygen fly: a flight through a world, in a window or headless, and what it measured.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+
+#include "engine/app/app.hpp"
+#include "engine/core/log.hpp"
+#include "game/commands.hpp"
+#include "game/text_values.hpp"
+
+namespace psygen::game {
+namespace {
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+// A check that CLI11 runs on an option's text; the sentence becomes the usage error.
+template <class Parse>
+CLI::Validator valid_if(Parse parse, const std::string& description) {
+  return CLI::Validator(
+      [parse](std::string& text) {
+        const auto value = parse(text);
+        return value ? std::string() : value.error().message;
+      },
+      description);
+}
+
+CLI::Validator number_between(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        const bool ok =
+            !text.empty() && *end == 0 && std::isfinite(value) && value >= low && value <= high;
+        return ok ? std::string() : fmt::format("'{}' is not between {} and {}", text, low, high);
+      },
+      fmt::format("{} to {}", low, high));
+}
+
+}  // namespace
+
+FlyCommand::FlyCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("fly", "Fly through a world, in a window or headless")) {
+  CLI::App& c = *command_;
+  scene::Settings& scene = options_.scene;
+  c.add_option("--world", world_, "World file (TOML)")->capture_default_str();
+  c.add_option("--path", options_.path_file,
+               "Camera path (TOML); without one the camera turns, or you fly");
+  c.add_option("--out", options_.out_folder,
+               "Folder for frames.csv, summary.json, trace.json, report.html and pictures");
+  c.add_option_function<std::string>(
+       "--size", [this](const std::string& text) { options_.size = *parse_size(text); },
+       "Picture in pixels, WIDTHxHEIGHT")
+      ->check(valid_if(parse_size, "WxH"))
+      ->default_str("1280x720");
+  c.add_flag("--headless", options_.headless, "No window; needs no display");
+  c.add_option("--seconds", options_.seconds, "Length of the flight; 0: that of the path")
+      ->check(number_between(0, 86400));
+  c.add_option("--frames", options_.frames, "End after so many frames; 0: no limit")
+      ->check(number_between(0, 1e9));
+  c.add_option("--fixed-step", options_.fixed_step_hz,
+               "Every frame advances the flight by 1/HZ seconds, however long it took")
+      ->check(number_between(1, 1000));
+  c.add_option("--warmup", options_.warmup_seconds, "Seconds that are left out of the figures")
+      ->capture_default_str()
+      ->check(number_between(0, 3600));
+  c.add_option("--images", options_.images_every, "Write every so manieth frame as a PNG")
+      ->check(number_between(0, 1e9));
+  c.add_option("--modelers", scene.modelers, "Synthesis threads; 0: one less than cores")
+      ->check(number_between(0, 256));
+  c.add_option_function<std::string>(
+       "--budget",
+       [this](const std::string& text) { options_.scene.budget_bytes = *parse_bytes(text); },
+       "Bytes for all geometry, e.g. 512M")
+      ->check(valid_if(parse_bytes, "BYTES"))
+      ->default_str("512M");
+  c.add_option_function<std::string>(
+       "--paradigm",
+       [this](const std::string& text) { options_.scene.paradigm = *scene::paradigm_from(text); },
+       "pla: on demand, in parallel; amplify: everything before; lazy: anew in each frame")
+      ->check(valid_if(scene::paradigm_from, "pla|amplify|lazy"))
+      ->default_str("pla");
+  c.add_option_function<std::string>(
+       "--policy",
+       [this](const std::string& text) { options_.scene.policy = *synthesis::policy_from(text); },
+       "Order of synthesis: fifo, plp, shortest, longest, deadline")
+      ->check(CLI::IsMember({"fifo", "plp", "shortest", "longest", "deadline"}))
+      ->default_str("deadline");
+  c.add_option_function<std::string>(
+       "--lod", [this](const std::string& text) { options_.scene.levels_of_detail = text == "on"; },
+       "Levels of detail: on, or off for full detail everywhere")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->default_str("on");
+  c.add_option("--view-distance", scene.view_distance_m, "Metres; blocks beyond do not exist")
+      ->capture_default_str()
+      ->check(number_between(32, 8192));
+  c.add_option("--error", scene.max_error_pixels, "Allowed error of a level of detail in pixels")
+      ->capture_default_str()
+      ->check(number_between(0.1, 1000));
+  c.add_option("--device", options_.device_name, "Part of the name of the Vulkan device");
+  c.add_flag("--validation", options_.validation,
+             "Vulkan validation; any message makes the run fail");
+  c.add_flag("!--no-vsync", options_.vsync, "Do not wait for the display");
+  c.add_flag("!--no-prefill", options_.prefill, "Start with an empty cache");
+  c.add_flag("--json", json_, "Print the summary as JSON instead of a table");
+}
+
+int FlyCommand::run() {
+  options_.world_file = world_;
+  options_.stop = &interrupted;
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+
+  auto app = app::App::create(options_);
+  if (!app) {
+    core::log_error(app.error().message);
+    return exit_code_of(app.error());
+  }
+  const auto report = (*app)->run();
+  if (!report) {
+    core::log_error(report.error().message);
+    return exit_code_of(report.error());
+  }
+  const std::string text =
+      json_ ? telemetry::to_json(report->summary) : telemetry::to_text(report->summary);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    core::log_error("the summary could not be written to standard output");
+    return kFailed;
+  }
+  for (const auto& file : report->files)
+    core::log_info(fmt::format("wrote {}", file.string()));
+  for (const std::string& message : report->validation_messages)
+    core::log_error(message);
+  return report->validation_messages.empty() ? kOk : kFailed;
+}
+
+}  // namespace psygen::game

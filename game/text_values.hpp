@@ -1,0 +1,19 @@
+// Values as people write them on a command line. Pure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/core/error.hpp"
+#include "engine/core/surface_provider.hpp"
+
+namespace psygen::game {
+
+// A number of bytes: digits with an optional suffix K, M, G or T (powers of 1024), "MiB" and the
+// like.
+core::Result<std::uint64_t> parse_bytes(const std::string& text);
+
+// Pixels as WIDTHxHEIGHT, each 1 … 16384.
+core::Result<core::Extent> parse_size(const std::string& text);
+
+}  // namespace psygen::game

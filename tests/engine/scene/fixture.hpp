@@ -1,0 +1,59 @@
+// A small scene on the null device: the paper's world with a short view.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "engine/core/clock.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::scene {
+
+inline Settings small_settings() {
+  Settings settings;
+  settings.view_distance_m = 130;
+  settings.budget_bytes = 64ull << 20;
+  settings.modelers = 1;
+  settings.streaming_budget_ms = 1e9;  // tests do not depend on the machine's speed
+  return settings;
+}
+
+inline world::World paper_world(const models::Registry& registry) {
+  auto world = world::load_world(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml", registry);
+  EXPECT_TRUE(world) << world.error().message;
+  return *world;
+}
+
+inline std::unique_ptr<Scene> make_scene(
+    const Settings& settings, models::Registry registry = models::make_standard_registry()) {
+  const world::World world = paper_world(registry);
+  auto scene = Scene::create(world, std::move(registry), settings, nullptr);
+  EXPECT_TRUE(scene) << scene.error().message;
+  return std::move(*scene);
+}
+
+inline core::CameraPose pose_at(std::int32_t block_x, std::int32_t block_z, double yaw = 0) {
+  core::CameraPose pose;
+  pose.position = {{block_x, block_z}, {31.5, 60.0, 31.5}};
+  pose.pitch = -0.2;
+  pose.yaw = yaw;
+  return pose;
+}
+
+// One tick whose requests are all finished before the results are collected in the next one.
+inline void tick_at(Scene& scene, const core::CameraPose& pose) {
+  State& state = scene.state();
+  state.input.pose = pose;
+  state.clock.real_s = core::monotonic_seconds();
+  tick(state);
+  state.clock.now_s += 1.0 / 60.0;
+}
+
+inline void expect_within_budget(const Scene& scene) {
+  const synthesis::CacheStats stats = scene.state().synthesis.cache->stats();
+  EXPECT_LE(stats.peak_bytes, stats.budget_bytes);
+  EXPECT_LE(scene.state().memory->used_bytes(), stats.budget_bytes);
+}
+
+}  // namespace psygen::scene

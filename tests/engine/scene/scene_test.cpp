@@ -1,0 +1,178 @@
+#include "engine/scene/scene.hpp"
+
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// What the draw lists say, without where it lies in memory.
+using DrawKey = std::tuple<std::uint32_t, std::uint32_t, float, float, float>;
+std::multiset<DrawKey> draw_keys(const Scene& scene) {
+  std::multiset<DrawKey> keys;
+  for (const auto& d : scene.state().draws.models) {
+    keys.insert({d.range.vertex_count, d.range.index_count, d.origin.x, d.origin.y, d.origin.z});
+  }
+  for (const auto& d : scene.state().draws.terrain) {
+    keys.insert({d.range.vertex_count, 0u, d.origin.x, d.origin.y, d.origin.z});
+  }
+  return keys;
+}
+
+TEST(Scene, SettlingLeavesNoHoleAndNothingCoarse) {
+  const auto scene = make_scene(small_settings());
+  EXPECT_GT(scene->settle(pose_at(256, 256)), 100u);
+  tick_at(*scene, pose_at(256, 256));
+  const Counters& counters = scene->state().counters;
+  EXPECT_GT(counters.nodes_in_view, 50u);
+  EXPECT_EQ(counters.holes, 0u);
+  EXPECT_EQ(counters.coarse, 0u);
+  EXPECT_EQ(counters.requests, 0u);
+  expect_within_budget(*scene);
+}
+
+TEST(Scene, TheDrawListsAreTheSameForAnyNumberOfModelers) {
+  std::multiset<DrawKey> first;
+  for (const std::uint32_t modelers : {1u, 2u, 4u}) {
+    Settings settings = small_settings();
+    settings.modelers = modelers;
+    const auto scene = make_scene(settings);
+    scene->settle(pose_at(100, 400, 0.7));
+    tick_at(*scene, pose_at(100, 400, 0.7));
+    if (modelers == 1) {
+      first = draw_keys(*scene);
+      EXPECT_GT(first.size(), 50u);
+    } else {
+      EXPECT_EQ(draw_keys(*scene), first) << modelers << " modelers";
+    }
+  }
+}
+
+TEST(Scene, FlyingKeepsBlocksAroundTheCameraAndNothingElse) {
+  const auto scene = make_scene(small_settings());
+  for (int step = 0; step < 40; ++step) {
+    core::CameraPose pose = pose_at(200, 200);
+    pose.position.local.x += 20.0 * step;
+    tick_at(*scene, pose);
+    expect_within_budget(*scene);
+  }
+  const std::uint32_t side = scene->state().streaming.grid.side();
+  const std::size_t blocks = std::as_const(scene->state().entities).count<Block>();
+  EXPECT_EQ(blocks, side * side);
+  EXPECT_EQ(scene->state().entities.size(), blocks * (1 + scene->state().facts.models_per_block));
+}
+
+TEST(Scene, AtTheEdgeOfTheWorldThereIsNothingBeyond) {
+  const auto scene = make_scene(small_settings());
+  scene->settle(pose_at(0, 0));
+  tick_at(*scene, pose_at(0, 0));
+  EXPECT_EQ(scene->state().counters.holes, 0u);
+  std::size_t outside = 0;
+  std::as_const(scene->state().entities)
+      .each<const Block>([&](std::span<const ecs::Entity>, std::span<const Block> blocks) {
+        for (const Block& block : blocks)
+          outside += block.coord.x < 0 || block.coord.z < 0;
+      });
+  EXPECT_EQ(outside, 0u);
+}
+
+TEST(Scene, ACameraThatIsNotANumberKeepsTheLastValidPose) {
+  const auto scene = make_scene(small_settings());
+  tick_at(*scene, pose_at(256, 256));
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), 1e30, -std::numeric_limits<double>::infinity()}) {
+    core::CameraPose pose = pose_at(300, 300);
+    pose.position.local.z = bad;
+    tick_at(*scene, pose);
+    EXPECT_EQ(scene->state().camera.pose.position.block, (core::BlockCoord{256, 256}));
+  }
+  EXPECT_EQ(scene->state().camera.rejected_poses, 3u);
+}
+
+TEST(Scene, TeleportsAndSpinsKeepTheQueueBoundedAndRecover) {
+  const auto scene = make_scene(small_settings());
+  const std::size_t entities_of_window = [&] {
+    tick_at(*scene, pose_at(256, 256));
+    return scene->state().entities.size();
+  }();
+  for (int i = 0; i < 12; ++i) {
+    tick_at(*scene, pose_at(40 + 37 * i, 500 - 31 * i, 2.0 * i));
+    EXPECT_LE(scene->state().synthesis.manager->outstanding(),
+              scene->state().settings.plan_max_requests + 64u);
+    EXPECT_EQ(scene->state().entities.size(), entities_of_window);
+    expect_within_budget(*scene);
+  }
+  scene->settle(pose_at(60, 60, 1.0));
+  tick_at(*scene, pose_at(60, 60, 1.0));
+  EXPECT_EQ(scene->state().counters.holes, 0u);
+}
+
+TEST(Scene, ABudgetThatIsTooSmallGivesCoarserLevelsWithoutThrashing) {
+  Settings settings = small_settings();
+  settings.budget_bytes = 5ull << 20;
+  settings.max_error_pixels = 0.5;  // wants far more than fits
+  const auto scene = make_scene(settings);
+  for (int i = 0; i < 300; ++i) {
+    tick_at(*scene, pose_at(256, 256));
+    scene->state().synthesis.manager->wait_all();
+    expect_within_budget(*scene);
+  }
+  EXPECT_GT(scene->state().synthesis.coarsening, 1.0F);
+  EXPECT_TRUE(scene->state().totals.warned_budget);
+  EXPECT_EQ(scene->state().counters.holes, 0u);
+  const std::uint64_t evictions = scene->state().synthesis.cache->stats().evictions;
+  for (int i = 0; i < 50; ++i) {
+    tick_at(*scene, pose_at(256, 256));
+    scene->state().synthesis.manager->wait_all();
+  }
+  EXPECT_LT(scene->state().synthesis.cache->stats().evictions - evictions, 500u);
+}
+
+TEST(Scene, HalvingTheBudgetWhileFlyingIsMet) {
+  Settings settings = small_settings();
+  const auto scene = make_scene(settings);
+  scene->settle(pose_at(256, 256));
+  const std::uint64_t half = scene->state().memory->used_bytes() / 2;
+  scene->state().synthesis.cache->set_budget(half);
+  for (int i = 0; i < 60; ++i) {
+    tick_at(*scene, pose_at(256, 256));
+    scene->state().synthesis.manager->wait_all();
+  }
+  EXPECT_LE(scene->state().memory->used_bytes(), half);
+}
+
+TEST(Scene, SettingsThatMakeNoSenseAreRefused) {
+  const auto refused = [](const Settings& settings) {
+    models::Registry registry = models::make_standard_registry();
+    const world::World world = paper_world(registry);
+    return !Scene::create(world, std::move(registry), settings, nullptr).has_value();
+  };
+  Settings settings = small_settings();
+  settings.budget_bytes = 1000;
+  EXPECT_TRUE(refused(settings));
+  settings = small_settings();
+  settings.view_distance_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(refused(settings));
+  settings = small_settings();
+  settings.max_error_pixels = 0;
+  EXPECT_TRUE(refused(settings));
+  settings = small_settings();
+  settings.modelers = 100000;
+  EXPECT_TRUE(refused(settings));
+}
+
+TEST(Scene, TheSampleHashNamesTheWorld) {
+  const models::Registry registry = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  const std::uint64_t hash = sample_world_hash(world, registry, {256, 256});
+  EXPECT_EQ(sample_world_hash(world, registry, {256, 256}), hash);
+  EXPECT_NE(sample_world_hash(world, registry, {257, 256}), hash);
+  world.seed += 1;
+  EXPECT_NE(sample_world_hash(world, registry, {256, 256}), hash);
+}
+
+}  // namespace
+}  // namespace psygen::scene

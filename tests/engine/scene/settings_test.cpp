@@ -1,0 +1,27 @@
+#include "engine/scene/settings.hpp"
+
+#include <gtest/gtest.h>
+
+namespace psygen::scene {
+namespace {
+
+TEST(Settings, ParadigmsHaveNamesThatReadBack) {
+  for (const Paradigm paradigm : {Paradigm::kParallelLazyAmplification,
+                                  Paradigm::kDataAmplification, Paradigm::kLazyEvaluation}) {
+    const auto read = paradigm_from(to_string(paradigm));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(*read, paradigm);
+  }
+}
+
+TEST(Settings, AnUnknownParadigmIsRefusedAndTheKnownOnesAreNamed) {
+  const auto read = paradigm_from("eager");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, core::ErrorCode::kInvalidArgument);
+  for (const char* word : {"eager", "pla", "amplify", "lazy"}) {
+    EXPECT_NE(read.error().message.find(word), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace psygen::scene

@@ -1,0 +1,120 @@
+// psygen as a process: exit codes, and what stands on which stream.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// Runs psygen in the source folder; `environment` is put before the command.
+Outcome psygen(const std::string& arguments, const std::string& environment = "") {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const auto folder = std::filesystem::path(testing::TempDir());
+  const auto out = folder / (std::string(test->name()) + ".out");
+  const auto err = folder / (std::string(test->name()) + ".err");
+  const std::string command = "cd " PSYGEN_SOURCE_DIR " && " + environment +
+                              " " PSYGEN_EXECUTABLE " " + arguments + " >" + out.string() + " 2>" +
+                              err.string() + " </dev/null";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+}
+
+bool mentions(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+TEST(CommandLine, HelpAndVersionGoToStdoutAndAreNoFailure) {
+  const Outcome help = psygen("--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_TRUE(mentions(help.out, "fly"));
+  EXPECT_TRUE(mentions(help.out, "models"));
+  const Outcome version = psygen("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_TRUE(mentions(version.out, "psygen "));
+  EXPECT_EQ(psygen("fly --help").code, 0);
+}
+
+TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
+  for (const char* arguments :
+       {"", "walk", "fly --no-such-option", "fly --world", "fly --size 12", "fly --size 0x0",
+        "fly --budget lots", "fly --paradigm eager", "fly --policy random", "fly --lod maybe",
+        "fly --seconds -1", "fly --seconds nan", "fly --modelers 100000", "fly --fixed-step 0",
+        "fly --frames -3", "fly --warmup x", "models --frobnicate"}) {
+    const Outcome outcome = psygen(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
+    EXPECT_FALSE(outcome.err.empty()) << arguments;
+    EXPECT_TRUE(outcome.out.empty()) << arguments;
+  }
+}
+
+TEST(CommandLine, ModelsListsEveryModelWithUnitsAndRanges) {
+  const Outcome outcome = psygen("models");
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* words :
+       {"terrain", "rock", "tree", "octaves", "subdivisions", "iterations", "radius_m"}) {
+    EXPECT_TRUE(mentions(outcome.out, words)) << words;
+  }
+  EXPECT_TRUE(mentions(psygen("models --json").out, "\"unit\""));
+}
+
+TEST(CommandLine, FailuresOfFilesAreOneAndNameTheFile) {
+  const Outcome world = psygen("fly --headless --frames 1 --world missing.toml");
+  EXPECT_EQ(world.code, 1) << world.err;
+  EXPECT_TRUE(mentions(world.err, "missing.toml")) << world.err;
+  const Outcome folder = psygen("fly --headless --frames 1 --out /proc/nowhere");
+  EXPECT_EQ(folder.code, 1) << folder.err;
+  EXPECT_TRUE(mentions(folder.err, "/proc/nowhere")) << folder.err;
+  const Outcome budget = psygen("fly --headless --frames 1 --budget 1K");
+  EXPECT_EQ(budget.code, 1) << budget.err;
+  EXPECT_TRUE(mentions(budget.err, "budget")) << budget.err;
+}
+
+TEST(CommandLine, ADiskThatIsFullIsAFailure) {
+  const Outcome outcome =
+      psygen("fly --headless --frames 2 --size 64x36 --view-distance 64 >/dev/full; exit $?; true");
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+}
+
+TEST(CommandLine, WithoutADeviceOrADisplayTheExitCodeIsFour) {
+  const Outcome device = psygen("fly --headless --frames 1", "VK_ICD_FILENAMES=/nonexistent.json");
+  EXPECT_EQ(device.code, 4) << device.err;
+  const Outcome name = psygen("fly --headless --frames 1 --device 'Voodoo 2'");
+  EXPECT_EQ(name.code, 4) << name.err;
+  EXPECT_TRUE(mentions(name.err, "Voodoo 2")) << name.err;
+  const Outcome display = psygen("fly --frames 1", "env -u DISPLAY -u WAYLAND_DISPLAY");
+  EXPECT_EQ(display.code, 4) << display.err;
+  EXPECT_TRUE(mentions(display.err, "--headless")) << display.err;
+}
+
+TEST(CommandLine, AFlightPrintsItsSummaryAndNoProgressBarIntoAPipe) {
+  const Outcome outcome =
+      psygen("fly --headless --frames 3 --size 64x36 --view-distance 64 --json");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.front(), '{');
+  EXPECT_TRUE(mentions(outcome.out, "\"frame_ms\""));
+  EXPECT_FALSE(mentions(outcome.err, "\r"));
+}
+
+TEST(CommandLine, AmplifyingWhatDoesNotFitSaysSo) {
+  const Outcome outcome =
+      psygen("fly --headless --frames 3 --size 64x36 --paradigm amplify --budget 16M");
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(mentions(outcome.err, "more than the budget")) << outcome.err;
+}
+
+}  // namespace

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""A flight in a window under Xvfb: resize, minimise, restore, press keys, close.
+
+usage: window_test.py PSYGEN SOURCE_DIR
+
+Fails on a wrong exit code, a validation message, or a picture that was not written.
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+PATIENCE_S = 120  # for a slow machine; nothing below depends on how fast it is
+
+
+def wait_for(what, condition):
+    """Polls until condition() is true; the value is returned."""
+    end = time.monotonic() + PATIENCE_S
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"no {what} after {PATIENCE_S} s")
+
+
+class Display:
+    """An X server of our own with a window manager."""
+
+    def __enter__(self):
+        read_end, write_end = os.pipe()
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write_end), "-screen", "0", "1024x768x24", "-nolisten", "tcp"],
+            pass_fds=[write_end], stderr=subprocess.DEVNULL)
+        os.close(write_end)
+        with os.fdopen(read_end) as pipe:
+            number = pipe.readline().strip()
+        self.environment = dict(os.environ, DISPLAY=f":{number}")
+        self.environment.pop("WAYLAND_DISPLAY", None)
+        self.manager = subprocess.Popen(["openbox"], env=self.environment,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return self
+
+    def __exit__(self, *_):
+        for process in (self.manager, self.server):
+            process.terminate()
+            process.wait()
+
+    def tool(self, *arguments):
+        """xdotool; its output, or None if it failed."""
+        result = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment,
+                                capture_output=True, text=True, check=False)
+        return result.stdout.strip() if result.returncode == 0 else None
+
+
+def fly(display, psygen, source, out):
+    return subprocess.Popen(
+        [psygen, "fly", "--world", source / "game/worlds/paper.toml", "--path",
+         source / "game/paths/walk27.toml", "--size", "320x180", "--view-distance", "130",
+         "--seconds", "3600", "--no-vsync", "--validation", "--out", out],
+        env=display.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def finish(process):
+    out, err = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 0, f"exit code {process.returncode}\n{err}"
+    assert "frame" in out, "no summary on stdout"
+    return err
+
+
+def main():
+    psygen, source = sys.argv[1], pathlib.Path(sys.argv[2])
+    with Display() as display, tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder)
+        process = fly(display, psygen, source, out)
+        window = wait_for("window", lambda: display.tool("search", "--onlyvisible", "--name", "psygen")
+                          ).split()[0]
+        display.tool("windowfocus", "--sync", window)
+        for width in range(200, 520, 16):
+            display.tool("windowsize", window, width, 460 - width // 2)
+        display.tool("windowminimize", "--sync", window)
+        time.sleep(0.5)
+        assert process.poll() is None, "ended while minimised"
+        display.tool("windowmap", "--sync", window)
+        display.tool("windowactivate", "--sync", window)
+        display.tool("windowsize", "--sync", window, 400, 225)
+
+        def screenshot():
+            display.tool("key", "--window", window, "F12")
+            display.tool("key", "F12")
+            return list(out.glob("screenshot_*.png"))
+
+        wait_for("screenshot", screenshot)
+        display.tool("keydown", "w")
+        time.sleep(0.3)
+        display.tool("keyup", "w")
+        display.tool("key", "Escape")
+        wait_for("end after Escape", lambda: process.poll() is not None)
+        finish(process)
+        assert (out / "summary.json").exists(), "no summary was written"
+
+        process = fly(display, psygen, source, out)
+        window = wait_for("second window",
+                          lambda: display.tool("search", "--onlyvisible", "--name", "psygen")).split()[0]
+        display.tool("windowclose" if display.tool("windowquit", window) is None else "version",
+                     *([window] if display.tool("windowquit", window) is None else []))
+        wait_for("end after closing the window", lambda: process.poll() is not None)
+        finish(process)
+    print("window: resized, minimised, flown, photographed and closed")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,17 @@
+// Prints the ground height in the middle of a world.
+#include <cstdio>
+
+#include "engine/models/registry.hpp"
+#include "engine/models/terrain.hpp"
+#include "engine/world/world.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const auto registry = psygen::models::make_standard_registry();
+  const auto world = psygen::world::load_world(argv[1], registry);
+  if (!world) {
+    std::fprintf(stderr, "%s\n", world.error().message.c_str());
+    return 1;
+  }
+  std::printf("%.6f\n", psygen::models::ground_height_m(world->terrain, {256, 256}, 31.5, 31.5));
+}
