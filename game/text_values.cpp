@@ -43,16 +43,15 @@ core::Result<std::uint64_t> parse_bytes(const std::string& text) {
 core::Result<core::Extent> parse_size(const std::string& text) {
   constexpr std::uint64_t kMaxPixels = 16384;
   std::string_view rest = text;
-  const auto width = leading_number(rest);
+  const std::uint64_t width = leading_number(rest).value_or(0);
   const bool separated = !rest.empty() && (rest.front() == 'x' || rest.front() == 'X');
   if (separated) rest.remove_prefix(1);
-  const auto height = separated ? leading_number(rest) : std::nullopt;
-  if (!width || !height || !rest.empty() || *width < 1 || *height < 1 || *width > kMaxPixels ||
-      *height > kMaxPixels) {
+  const std::uint64_t height = separated ? leading_number(rest).value_or(0) : 0;
+  if (!rest.empty() || width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels) {
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("'{}' is not a size such as 1280x720 (1 to 16384 each)", text));
   }
-  return core::Extent{static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
+  return core::Extent{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
 }  // namespace psygen::game
