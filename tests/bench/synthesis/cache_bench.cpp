@@ -53,7 +53,8 @@ void reserve_complete_release(benchmark::State& state) {
   const models::Parameters p = vertices_of(100);
   std::uint32_t i = 0;
   for (auto _ : state) {
-    const MeshHandle handle = *cache.reserve(key_of(++i), p, i, Rank::unwanted());
+    ++i;
+    const MeshHandle handle = *cache.reserve(key_of(i), p, i, Rank::unwanted());
     cache.complete(handle, {});
     cache.release(handle);
   }
