@@ -10,6 +10,7 @@ namespace psygen::platform {
 
 // Keys by their place on a US keyboard, so that WASD is the same block of keys everywhere. Left and
 // right shift, control and alt are one key each.
+// clang-format off
 enum class Key : std::uint8_t {
   kA, kB, kC, kD, kE, kF, kG, kH, kI, kJ, kK, kL, kM, kN, kO, kP, kQ, kR, kS, kT, kU, kV, kW, kX,
   kY, kZ,
@@ -19,11 +20,12 @@ enum class Key : std::uint8_t {
   kShift, kControl, kAlt, kSpace, kTab, kEnter, kEscape, kBackspace,
   kCount
 };
+// clang-format on
 using KeySet = std::bitset<static_cast<std::size_t>(Key::kCount)>;
 
 struct InputState {
-  KeySet held;         // down at the end of the frame
-  KeySet went_down;    // pressed during the frame, even if released again; not repeated while held
+  KeySet held;       // down at the end of the frame
+  KeySet went_down;  // pressed during the frame, even if released again; not repeated while held
   glm::dvec2 look_px{0.0};  // mouse movement while looking: right, down; pixels
   double wheel = 0;         // steps; positive is away from the person
   bool looking = false;     // the right button is down or the pointer is captured

@@ -70,7 +70,7 @@ std::optional<Key> key_of(int glfw_key) {
 
 struct Window::Implementation {
   GLFWwindow* window = nullptr;
-  InputState input;  // collected since the last poll
+  InputState input;         // collected since the last poll
   glm::dvec2 pointer{0.0};  // where it was last told to be; beyond the window while looking
   bool right_button = false;
   bool captured = false;
