@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -14,11 +15,10 @@
 
 namespace psygen::models {
 
-// Nearest integer to `v`, halves upwards. Requires |v| < 2^23.
+// Nearest integer to `v`, halves to even. Requires |v| < 2^22. In the sum with 1.5 · 2^23 the last
+// bit counts ones.
 inline std::int32_t round_to_int(float v) {
-  const float shifted = v + 0.5F;
-  const auto truncated = static_cast<std::int32_t>(shifted);
-  return truncated - (static_cast<float>(truncated) > shifted ? 1 : 0);
+  return std::bit_cast<std::int32_t>(v + 12582912.0F) - std::bit_cast<std::int32_t>(12582912.0F);
 }
 
 // v in [-1, 1] to snorm8 (±127) and snorm16 (±32767); v in [0, 1] to unorm8. Outside: clamped.
@@ -42,9 +42,10 @@ inline std::uint8_t pack_albedo(float albedo) {
 inline glm::vec2 encode_octahedral(const glm::vec3& n) {
   const float scale = 1.0F / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
   const float x = n.x * scale, z = n.z * scale;
-  if (n.y >= 0.0F) return {x, z};
-  return {(1.0F - std::abs(z)) * (x >= 0.0F ? 1.0F : -1.0F),
-          (1.0F - std::abs(x)) * (z >= 0.0F ? 1.0F : -1.0F)};
+  const float folded_x = (1.0F - std::abs(z)) * (x >= 0.0F ? 1.0F : -1.0F);
+  const float folded_z = (1.0F - std::abs(x)) * (z >= 0.0F ? 1.0F : -1.0F);
+  const bool above = n.y >= 0.0F;
+  return {above ? x : folded_x, above ? z : folded_z};
 }
 // The unit vector of an encoded direction (what the shaders do).
 inline glm::vec3 decode_octahedral(glm::vec2 e) {

@@ -133,7 +133,8 @@ TEST(Packing, RoundsToNearestAndClamps) {
   EXPECT_EQ(pack_unorm8(0.5F), 128);
   EXPECT_EQ(pack_unorm8(-0.1F), 0);
   EXPECT_EQ(pack_albedo(0.25F), 128);
-  EXPECT_EQ(round_to_int(-1.5F), -1);
+  EXPECT_EQ(round_to_int(-1.5F), -2);
+  EXPECT_EQ(round_to_int(2.5F), 2);
   EXPECT_EQ(round_to_int(-1.6F), -2);
 }
 
