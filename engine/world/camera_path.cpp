@@ -14,7 +14,7 @@ namespace psygen::world {
 namespace {
 
 // Ground samples within smoothing_s.
-constexpr int kSteps = 12;
+constexpr int kSteps = 8;
 
 Spline spline_of(const std::vector<PathPoint>& points, const auto& value_of) {
   std::vector<double> times, values;

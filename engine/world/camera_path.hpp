@@ -50,7 +50,7 @@ class CameraPath {
   double duration_seconds() const { return points_.back().time_s; }
 
   // Where the camera is at time `t` in seconds; the ends are held before the first and after the
-  // last point (and the beginning for NaN). Normalised and valid. About 60 µs.
+  // last point (and the beginning for NaN). Normalised and valid. About 50 µs.
   core::CameraPose pose_at(double t, const World& world) const;
 
  private:

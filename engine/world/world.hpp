@@ -113,7 +113,7 @@ std::string write_world(const World& world, const models::Registry& registry);
 // endless world has 0 blocks, models, triangles and bytes.
 struct WorldSize {
   std::uint64_t blocks = 0;
-  std::uint64_t models = 0;
+  std::uint64_t models = 0;  // at most 2^64 − 1
   double triangles = 0;
   double bytes = 0;        // vertices and indices as this engine packs them, shared lists apart
   double bytes_paper = 0;  // 256 bytes a triangle, as the paper counts

@@ -81,7 +81,8 @@ WorldSize world_size(const World& world, const models::Registry& registry) {
     first += scatter.count;
   }
   const auto blocks = static_cast<double>(size.blocks);
-  size.models = static_cast<std::uint64_t>(blocks * size.block_models + 0.5);
+  const double all_models = blocks * size.block_models + 0.5;
+  size.models = all_models < 0x1.0p64 ? static_cast<std::uint64_t>(all_models) : UINT64_MAX;
   size.triangles = blocks * size.block_triangles;
   size.bytes = blocks * size.block_bytes;
   size.bytes_paper = size.triangles * 256;

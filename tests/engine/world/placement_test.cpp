@@ -1,0 +1,194 @@
+#include "engine/world/placement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "engine/models/rock.hpp"
+#include "engine/models/terrain.hpp"
+#include "engine/models/tree.hpp"
+#include "tests/engine/world/files.hpp"
+
+namespace psygen::world {
+namespace {
+
+using testing::kSmallWorld;
+using testing::parsed;
+using testing::registry;
+using testing::replaced;
+
+constexpr core::BlockCoord kBlocks[] = {
+    {0, 0}, {7, 3}, {-5, 12}, {INT32_MAX, INT32_MIN}, {1 << 30, -(1 << 30)}};
+
+std::vector<Placement> placed(const World& world, core::BlockCoord block) {
+  std::vector<Placement> out;
+  place_models(world, registry(), block, out);
+  return out;
+}
+
+std::string filtered(std::string_view filters) {
+  return std::string(kSmallWorld) + std::string(filters);
+}
+
+TEST(Placement, EveryBlockHasExactlyItsModels) {
+  const World world = parsed(kSmallWorld);
+  EXPECT_EQ(models_per_block(world), 8U);
+  for (const core::BlockCoord block : kBlocks) {
+    const std::vector<Placement> models = placed(world, block);
+    ASSERT_EQ(models.size(), 8U);
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      EXPECT_EQ(models[i].index, i);
+      EXPECT_EQ(models[i].model, world.scatter[i < 3 ? 0 : 1].model);
+    }
+  }
+}
+
+TEST(Placement, ModelsStandOnTheGroundOfTheirBlock) {
+  const World world = parsed(kSmallWorld);
+  for (const core::BlockCoord block : kBlocks) {
+    for (const Placement& p : placed(world, block)) {
+      EXPECT_GE(p.position.x, 0);
+      EXPECT_LT(p.position.x, world.block_size_m());
+      EXPECT_GE(p.position.z, 0);
+      EXPECT_LT(p.position.z, world.block_size_m());
+      EXPECT_FLOAT_EQ(p.position.y, static_cast<float>(models::ground_height_m(
+                                        world.terrain, block, static_cast<double>(p.position.x),
+                                        static_cast<double>(p.position.z))));
+    }
+  }
+}
+
+TEST(Placement, IsThePureFunctionOfWorldAndBlock) {
+  const World world = parsed(kSmallWorld);
+  std::vector<Placement> reused(100);
+  for (const core::BlockCoord block : kBlocks) {
+    const std::vector<Placement> first = placed(world, block);
+    place_models(world, registry(), block, reused);
+    ASSERT_EQ(first.size(), reused.size());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      EXPECT_EQ(first[i].position, reused[i].position);
+      EXPECT_EQ(first[i].parameters, reused[i].parameters);
+    }
+  }
+}
+
+TEST(Placement, BlocksInstancesAndSeedsDiffer) {
+  std::set<std::uint64_t> hashes;
+  std::set<float> places;
+  std::size_t count = 0;
+  for (const char* seed : {"seed = 5", "seed = 6"}) {
+    const World world = parsed(replaced(kSmallWorld, "seed = 5", seed));
+    for (const core::BlockCoord block : kBlocks) {
+      for (const Placement& p : placed(world, block)) {
+        hashes.insert(p.parameters.hash());
+        places.insert(p.position.x);
+        ++count;
+      }
+    }
+  }
+  EXPECT_EQ(hashes.size(), count);
+  EXPECT_EQ(places.size(), count);
+}
+
+TEST(Placement, ParametersLieInTheirRangesAndFillThem) {
+  const World world = parsed(replaced(kSmallWorld, "count = 3", "count = 500"));
+  std::map<std::int64_t, int> iterations;
+  double lowest = 1e9, highest = 0;
+  for (const Placement& p : placed(world, {2, 2})) {
+    EXPECT_TRUE(models::validate(registry()[p.model], p.parameters).has_value());
+    if (p.model != world.scatter[0].model) {
+      EXPECT_EQ(p.parameters.integer(models::kRockSubdivisions), 1);
+      continue;
+    }
+    ++iterations[p.parameters.integer(models::kTreeIterations)];
+    lowest = std::min(lowest, p.parameters.real(models::kTreeSizeM));
+    highest = std::max(highest, p.parameters.real(models::kTreeSizeM));
+  }
+  ASSERT_EQ(iterations.size(), 2U);
+  EXPECT_NEAR(iterations[2], 250, 60);
+  EXPECT_NEAR(iterations[3], 250, 60);
+  EXPECT_GE(lowest, 1.5);
+  EXPECT_LT(lowest, 1.52);
+  EXPECT_LE(highest, 2.5);
+  EXPECT_GT(highest, 2.48);
+}
+
+TEST(Placement, AChangedRangeLeavesTheOtherParametersAndPlacesAsTheyAre) {
+  const World before = parsed(kSmallWorld);
+  const World after = parsed(replaced(kSmallWorld, "iterations = [2, 3]", "iterations = 4"));
+  const std::vector<Placement> a = placed(before, {3, 1}), b = placed(after, {3, 1});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].position, b[i].position);
+    EXPECT_EQ(a[i].parameters.real(models::kTreeSizeM), b[i].parameters.real(models::kTreeSizeM));
+    EXPECT_EQ(a[i].parameters.integer(0), b[i].parameters.integer(0));
+  }
+}
+
+TEST(Placement, PlacesAreSpreadEvenlyOverTheBlock) {
+  const World world = parsed(replaced(kSmallWorld, "count = 5", "count = 4000"));
+  int quadrants[4] = {};
+  for (const Placement& p : placed(world, {1, 1}))
+    ++quadrants[(p.position.x < 32 ? 0 : 1) + (p.position.z < 32 ? 0 : 2)];
+  for (const int count : quadrants)
+    EXPECT_NEAR(count, 1000, 120);
+}
+
+TEST(Placement, FiltersAreObeyedAndModelsMoveToAllowedPlaces) {
+  const World world = parsed(replaced(filtered("min_height_m = 8\nmax_height_m = 40\n"
+                                               "max_slope_deg = 30\n"),
+                                      "count = 5", "count = 50"));
+  std::size_t found = 0;
+  for (std::int32_t x = 0; x < 10; ++x) {
+    for (const Placement& p : placed(world, {x, 0})) {
+      if (p.index < 3) continue;
+      ++found;
+      EXPECT_GE(p.position.y, 8 - 1e-4);
+      EXPECT_LE(p.position.y, 40 + 1e-4);
+      const glm::vec3 normal =
+          models::ground_normal(world.terrain, {x, 0}, static_cast<double>(p.position.x),
+                                static_cast<double>(p.position.z));
+      EXPECT_GE(normal.y, std::cos(30 * 3.14159265 / 180) - 1e-5);
+    }
+  }
+  EXPECT_GT(found, 400U);
+}
+
+TEST(Placement, WithoutAnAllowedPlaceAnInstanceIsLeftOutAndTheOthersKeepTheirIndices) {
+  const World all = parsed(kSmallWorld);
+  const World some = parsed(replaced(kSmallWorld, "count = 3", "count = 3\nmin_height_m = 9999"));
+  const std::vector<Placement> a = placed(all, {4, 2}), b = placed(some, {4, 2});
+  ASSERT_EQ(b.size(), 5U);
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    EXPECT_EQ(b[i].index, a[i + 3].index);
+    EXPECT_EQ(b[i].position, a[i + 3].position);
+    EXPECT_EQ(b[i].parameters, a[i + 3].parameters);
+  }
+}
+
+TEST(Placement, AWorldWithoutModelsHasEmptyBlocks) {
+  const World world = parsed("format = 1\n[world]\nname = \"w\"\nseed = 1\nblocks = [1, 1]\n");
+  EXPECT_EQ(models_per_block(world), 0U);
+  EXPECT_TRUE(placed(world, {0, 0}).empty());
+}
+
+TEST(Placement, TerrainParametersCarrySeedAndBlock) {
+  const World world = parsed(kSmallWorld);
+  const models::Parameters p = terrain_parameters(world, {-3, INT32_MAX});
+  EXPECT_EQ(p.integer(models::kTerrainSeed), 5);
+  EXPECT_EQ(p.integer(models::kTerrainBlockX), -3);
+  EXPECT_EQ(p.integer(models::kTerrainBlockZ), INT32_MAX);
+  EXPECT_EQ(p.integer(models::kTerrainNodeLevel), 0);
+  EXPECT_TRUE(models::validate(registry()[world.terrain_model], p).has_value());
+}
+
+TEST(Placement, ScatterParametersAreTheLowEnds) {
+  const World world = parsed(kSmallWorld);
+  const models::Parameters p = scatter_parameters(registry(), world.scatter[0]);
+  EXPECT_EQ(p.integer(models::kTreeIterations), 2);
+  EXPECT_EQ(p.real(models::kTreeSizeM), 1.5);
+}
+
+}  // namespace
+}  // namespace psygen::world
