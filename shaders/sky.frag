@@ -19,9 +19,8 @@ void main() {
   float up = max(d.y, 0.0);
   vec2 place = d.xz / (up + 0.12);
   float drift = frame.sun_direction.w * 0.002;
-  vec2 broad = texture(clouds, place * 0.19 + vec2(drift, 0.3 * drift)).rg;
-  float fine = texture(clouds, place * 0.73 + vec2(1.6 * drift, 0.0)).r;
-  float amount = broad.r + 0.32 * (fine - 0.5);
+  vec2 broad = texture(clouds, place * 0.27 + vec2(drift, 0.3 * drift)).rg;
+  float amount = broad.r;
   float edge = 1.0 - frame.haze_colour.w;
   float cover = smoothstep(edge - 0.06, edge + 0.22, amount) * smoothstep(0.015, 0.2, up);
   float thick = smoothstep(edge, edge + 0.45, amount);
@@ -33,6 +32,6 @@ void main() {
   light = mix(light, cloud, 0.88 * cover);
 
   // Half a step of ordered noise hides the bands of 8 bits.
-  float dither = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float dither = fract(dot(gl_FragCoord.xy, vec2(0.7548777, 0.5698403)));
   pixel = vec4(shown(light) + (dither - 0.5) * (1.0 / 255.0), 1.0);
 }

@@ -45,7 +45,7 @@ std::vector<std::byte> make_cloud_texture() {
     for (std::uint32_t x = 0; x < kSize; ++x) {
       float sum = 0, amplitude = 0.5F;
       std::uint32_t cells = 4;
-      for (std::uint32_t octave = 0; octave < 6; ++octave, cells *= 2, amplitude *= 0.53F)
+      for (std::uint32_t octave = 0; octave < 7; ++octave, cells *= 2, amplitude *= 0.53F)
         sum += amplitude * noise(x, y, cells, octave);
       density[y * kSize + x] = sum;
     }

@@ -22,55 +22,65 @@ shaders::DrawData data_of(const MeshDraw& draw) {
   return {.origin = {center, phase - std::floor(phase)}, .scale = {extent, draw.fade}};
 }
 
-template <class Draw>
-std::uint64_t buffers_of(const Draw& draw) {
-  return std::uint64_t{draw.range.pool_block} * 2 +
-         (draw.shared_indices != kNoSharedIndices ? 1u : 0u);
-}
-
 }  // namespace
 
 template <class Draw>
-void DrawList::append(const Draw& draw, std::span<const IndexList> lists) {
-  const core::GeometryRange& range = draw.range;
-  const bool shared = draw.shared_indices != kNoSharedIndices;
-  PSYGEN_ASSERT(!shared || draw.shared_indices <= lists.size(), "unknown shared index list");
-  const IndexList list =
-      shared ? lists[draw.shared_indices - 1] : IndexList{range.first_index, range.index_count};
-  if (runs_.empty() || runs_.back().layout != range.layout || runs_.back().shared != shared ||
-      runs_.back().pool_block != range.pool_block) {
-    runs_.push_back(
-        {range.layout, shared, range.pool_block, static_cast<std::uint32_t>(draws_.size()), 0});
+IndexList DrawList::indices_of(const Draw& draw) const {
+  if (draw.shared_indices == kNoSharedIndices) {
+    return {draw.range.first_index, draw.range.index_count};
   }
-  ++runs_.back().count;
-  draws_.push_back(
-      {list.first_index, list.index_count, static_cast<std::int32_t>(range.first_vertex)});
-  data_.push_back(data_of(draw));
-  triangle_count_ += list.index_count / 3;
+  PSYGEN_ASSERT(draw.shared_indices <= lists_.size(), "unknown shared index list");
+  return lists_[draw.shared_indices - 1];
 }
 
 template <class Draw>
-void DrawList::add(std::span<const Draw> input, std::span<const IndexList> lists) {
+void DrawList::append(const Draw& draw) {
+  const IndexList indices = indices_of(draw);
+  const DrawRun run{draw.range.layout,
+                    draw.shared_indices != kNoSharedIndices,
+                    indices.index_count >= pushed_from_,
+                    draw.range.pool_block,
+                    static_cast<std::uint32_t>(draws_.size()),
+                    0};
+  if (runs_.empty() || !run.continues(runs_.back())) runs_.push_back(run);
+  ++runs_.back().count;
+  draws_.push_back({indices.first_index, indices.index_count,
+                    static_cast<std::int32_t>(draw.range.first_vertex)});
+  data_.push_back(data_of(draw));
+  triangle_count_ += indices.index_count / 3;
+}
+
+template <class Draw>
+void DrawList::add(std::span<const Draw> input) {
+  // What must differ between two runs, as a number to sort by.
+  const auto key = [&](const Draw& draw) {
+    const std::uint64_t pushed = indices_of(draw).index_count >= pushed_from_ ? 0 : 2;
+    return pushed << 31 | std::uint64_t{draw.range.pool_block} * 2 |
+           (draw.shared_indices != kNoSharedIndices ? 1u : 0u);
+  };
   for (std::size_t first = 0; first < input.size(); first += kWindow) {
     const std::span<const Draw> window =
         input.subspan(first, std::min(kWindow, input.size() - first));
     order_.clear();
     for (std::size_t i = 0; i < window.size(); ++i)
-      order_.push_back(buffers_of(window[i]) << 32 | i);
+      order_.push_back({key(window[i]), i});
     if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
-    for (const std::uint64_t entry : order_)
-      append(window[entry & UINT32_MAX], lists);
+    for (const auto& [buffers, position] : order_)
+      append(window[position]);
   }
 }
 
 void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-                     std::span<const IndexList> lists) {
+                     std::span<const IndexList> lists, std::uint32_t pushed_from) {
   runs_.clear();
   draws_.clear();
   data_.clear();
   triangle_count_ = 0;
-  add(terrain, lists);
-  add(models, lists);
+  lists_ = lists;
+  pushed_from_ = pushed_from;
+  add(terrain);
+  add(models);
+  lists_ = {};
 }
 
 }  // namespace psygen::render

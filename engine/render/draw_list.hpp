@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/core/vertex_layout.hpp"
@@ -30,9 +31,15 @@ struct IndexedDraw {
 struct DrawRun {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
+  bool pushed = false;  // one call per draw with its data pushed, else one call for all
   std::uint32_t pool_block = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
+
+  bool continues(const DrawRun& r) const {
+    return layout == r.layout && shared == r.shared && pushed == r.pushed &&
+           pool_block == r.pool_block;
+  }
 };
 
 class DrawList {
@@ -40,8 +47,9 @@ class DrawList {
   static constexpr std::size_t kWindow = 512;  // draws whose order may be changed
 
   // Replaces the list: terrain first, then models. `lists` is indexed by shared_indices − 1.
+  // Meshes of at least `pushed_from` indices are pushed.
   void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-             std::span<const IndexList> lists);
+             std::span<const IndexList> lists, std::uint32_t pushed_from = UINT32_MAX);
 
   std::span<const DrawRun> runs() const { return runs_; }
   std::span<const IndexedDraw> draws() const { return draws_; }
@@ -50,15 +58,19 @@ class DrawList {
 
  private:
   template <class Draw>
-  void add(std::span<const Draw> input, std::span<const IndexList> lists);
+  void add(std::span<const Draw> input);
   template <class Draw>
-  void append(const Draw& draw, std::span<const IndexList> lists);
+  IndexList indices_of(const Draw& draw) const;
+  template <class Draw>
+  void append(const Draw& draw);
 
   std::vector<DrawRun> runs_;
   std::vector<IndexedDraw> draws_;
   std::vector<shaders::DrawData> data_;
-  std::vector<std::uint64_t> order_;  // (buffers, position) of a window
+  std::vector<std::pair<std::uint64_t, std::size_t>> order_;  // (buffers, position) of a window
   std::uint64_t triangle_count_ = 0;
+  std::span<const IndexList> lists_;  // while build() runs
+  std::uint32_t pushed_from_ = UINT32_MAX;
 };
 
 }  // namespace psygen::render

@@ -189,11 +189,11 @@ Result<Image> make_texture(const Device& device, core::Extent size, VkFormat for
 
 }  // namespace
 
-Result<void> Pipelines::create(const Device& device, VkFormat colour_format, bool pushed,
-                               const Overlay& overlay, std::uint32_t sets) {
+Result<void> Pipelines::create(const Device& device, VkFormat colour_format, const Overlay& overlay,
+                               std::uint32_t sets) {
   return create_textures(device, overlay)
       .and_then([&] { return create_layouts(device, sets); })
-      .and_then([&] { return create_pipelines(device, colour_format, pushed); });
+      .and_then([&] { return create_pipelines(device, colour_format); });
 }
 
 Result<void> Pipelines::create_textures(const Device& device, const Overlay& overlay) {
@@ -264,8 +264,7 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
   return {};
 }
 
-Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_format,
-                                         bool pushed) {
+Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_format) {
   using Code = std::span<const std::uint32_t>;
   const auto make = [&](UniquePipeline& place, Kind kind, Code vert, Code frag) -> Result<void> {
     Result<UniquePipeline> made =
@@ -274,10 +273,15 @@ Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_f
     place = std::move(*made);
     return {};
   };
-  const Code terrain = pushed ? Code(kTerrainPushedVert) : Code(kTerrainVert);
-  const Code model = pushed ? Code(kModelPushedVert) : Code(kModelVert);
-  return make(terrain_, Kind::kTerrain, terrain, kSurfaceFrag)
-      .and_then([&] { return make(model_, Kind::kModel, model, kSurfaceFrag); })
+  const auto both = [&](UniquePipeline& buffered, UniquePipeline& pushed, Kind kind, Code vert,
+                        Code pushed_vert) {
+    return make(buffered, kind, vert, kSurfaceFrag).and_then([&] {
+      return make(pushed, kind, pushed_vert, kSurfaceFrag);
+    });
+  };
+  return both(terrain_, terrain_pushed_, Kind::kTerrain, kTerrainVert, kTerrainPushedVert)
+      .and_then(
+          [&] { return both(model_, model_pushed_, Kind::kModel, kModelVert, kModelPushedVert); })
       .and_then([&] { return make(sky_, Kind::kSky, kSkyVert, kSkyFrag); })
       .and_then([&] { return make(overlay_, Kind::kOverlay, kOverlayVert, kOverlayFrag); });
 }

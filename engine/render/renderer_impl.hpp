@@ -70,7 +70,7 @@ class RendererImpl {
   UniqueSurface surface_;
   std::unique_ptr<Device> device_;
   VkFormat colour_format_ = VK_FORMAT_R8G8B8A8_UNORM;
-  bool pushed_ = false;
+  std::uint32_t pushed_from_ = 0;  // meshes of at least so many indices are pushed
   std::vector<Buffer> pool_blocks_;
   std::unique_ptr<GeometryPool> pool_;
   SharedIndexLists shared_;

@@ -110,8 +110,7 @@ void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuff
   VkPipeline bound = VK_NULL_HANDLE;
   VkBuffer bound_vertices = VK_NULL_HANDLE, bound_indices = VK_NULL_HANDLE;
   for (const DrawRun& run : pass.list.runs()) {
-    const VkPipeline pipeline =
-        run.layout == core::VertexLayout::kTerrain ? pipelines.terrain() : pipelines.model();
+    const VkPipeline pipeline = pipelines.mesh(run.layout, run.pushed);
     const VkBuffer vertices = pass.buffers.pool_blocks[run.pool_block].buffer.get();
     const VkBuffer indices = run.shared ? pass.buffers.shared_indices : vertices;
     if (pipeline != bound) bind_pipeline(device, commands, pipeline);
@@ -125,7 +124,7 @@ void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuff
     bound = pipeline;
     bound_vertices = vertices;
     bound_indices = indices;
-    if (pass.pushed) {
+    if (run.pushed) {
       draw_pushed(device, commands, pipelines.layout(), pass.list, run);
     } else {
       draw_many(device, commands, pass.list, run);
@@ -187,23 +186,20 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
 }
 
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
-                    Targets& targets, VkBuffer blank, bool pushed) {
+                    Targets& targets, VkBuffer blank) {
   const VkCommandBuffer commands = slot.commands();
   begin_pass(device, commands, targets);
   bind_set(device, pipelines, slot);
   const VkDeviceSize zero = 0;
   device.vk.vkCmdBindVertexBuffers(commands, 0, 1, &blank, &zero);
   device.vk.vkCmdBindIndexBuffer(commands, blank, 0, VK_INDEX_TYPE_UINT16);
-  for (const VkPipeline pipeline : {pipelines.terrain(), pipelines.model()}) {
-    bind_pipeline(device, commands, pipeline);
-    if (pushed) {
-      const shaders::DrawData data{};
-      device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT, 0,
-                                   sizeof(data), &data);
+  const shaders::DrawData data{};
+  device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT, 0,
+                               sizeof(data), &data);
+  for (const auto layout : {core::VertexLayout::kTerrain, core::VertexLayout::kModel}) {
+    for (const bool pushed : {false, true}) {
+      bind_pipeline(device, commands, pipelines.mesh(layout, pushed));
       device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
-    } else {
-      const VkMultiDrawIndexedInfoEXT draw{0, 3, 0};
-      device.vk.vkCmdDrawMultiIndexedEXT(commands, 1, &draw, 1, 0, sizeof(draw), nullptr);
     }
   }
   draw_sky_and_text(device, pipelines, commands, 3);

@@ -28,7 +28,6 @@ struct ScenePass {
   const DrawList& list;
   SceneBuffers buffers;
   std::uint32_t glyph_vertex_count = 0;
-  bool pushed = false;  // one draw per call with its data pushed, else multi-draw
 };
 
 // Between slot.begin() and slot.end(). Leaves the colour target as an attachment.
@@ -37,7 +36,7 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
 
 // Every pipeline once with triangles that cover nothing, so that the driver has compiled them.
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
-                    Targets& targets, VkBuffer blank, bool pushed);
+                    Targets& targets, VkBuffer blank);
 
 // Copies the colour target to a swapchain image and leaves that ready to be shown.
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,

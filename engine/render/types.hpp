@@ -15,8 +15,9 @@
 
 namespace psygen::render {
 
-// How meshes reach the device: many per call with their data in a buffer, or one per call with its
-// data pushed (less work per vertex on software devices). kAuto picks by device.
+// How meshes reach the device: many per call with their data in a buffer (kMultiDraw), or one per
+// call with its data pushed (kPushed: a dearer draw, cheaper vertices on software devices). kAuto:
+// multi-draw on hardware; on software devices by the size of each mesh.
 enum class Submission : std::uint8_t { kAuto, kMultiDraw, kPushed };
 
 struct RendererOptions {

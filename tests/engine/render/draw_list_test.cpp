@@ -48,6 +48,18 @@ TEST(DrawList, changes_the_order_only_within_a_window) {
   EXPECT_LE(list.runs().size(), 4u);
 }
 
+TEST(DrawList, pushes_the_data_of_large_meshes_only) {
+  const std::vector<MeshDraw> models{model(0, 1, 0), model(0, 2, 1), model(0, 3, 0)};
+  const std::vector<IndexList> lists{{0, 600}};
+  DrawList list;
+  list.build({}, models, lists, 100);
+  ASSERT_EQ(list.runs().size(), 2u);
+  EXPECT_TRUE(list.runs()[0].pushed);
+  EXPECT_EQ(list.runs()[0].count, 1u);
+  EXPECT_FALSE(list.runs()[1].pushed);
+  EXPECT_EQ(list.runs()[1].count, 2u);
+}
+
 TEST(DrawList, puts_terrain_first_and_folds_its_least_height_into_the_origin) {
   TerrainDraw ground;
   ground.range.layout = core::VertexLayout::kTerrain;

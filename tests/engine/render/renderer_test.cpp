@@ -280,9 +280,17 @@ TEST_P(RendererTest, reports_device_time_once_a_frame_has_finished) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Submissions, RendererTest,
-                         testing::Values(Submission::kPushed, Submission::kMultiDraw),
+                         testing::Values(Submission::kAuto, Submission::kPushed,
+                                         Submission::kMultiDraw),
                          [](const testing::TestParamInfo<Submission>& suite) {
-                           return suite.param == Submission::kPushed ? "pushed" : "multi_draw";
+                           switch (suite.param) {
+                             case Submission::kPushed:
+                               return "pushed";
+                             case Submission::kMultiDraw:
+                               return "multi_draw";
+                             default:
+                               return "automatic";
+                           }
                          });
 
 }  // namespace

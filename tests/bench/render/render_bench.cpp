@@ -1,0 +1,183 @@
+// What a frame costs on the device of this machine: triangles, draws, sky pixels. Frames are the
+// renderer's own replays (the same lists again, two in flight). frame_ms is wall time; the ns_per
+// figures are CPU time of the whole process, which on a software device is the device's work and
+// holds on a busy machine too.
+//   psygen_bench_render --benchmark_counters_tabular=true
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <utility>
+
+#include "engine/render/software_tuning.hpp"
+#include "tests/engine/render/synthetic_scene.hpp"
+
+namespace {
+
+using namespace psygen;
+using namespace psygen::render;
+
+constexpr core::Extent kSize{1280, 720};
+
+std::unique_ptr<Renderer> make_renderer(Submission submission) {
+  RendererOptions options;
+  options.size = kSize;
+  options.submission = submission;
+  auto made = Renderer::create(options);
+  if (made) return std::move(*made);
+  std::fprintf(stderr, "%s\n", made.error().message.c_str());
+  std::exit(4);
+}
+
+Submission submission_of(const benchmark::State& state) {
+  return static_cast<Submission>(state.range(0));
+}
+
+// Wall and CPU milliseconds of one frame with these lists.
+std::pair<double, double> frame_cost(Renderer& renderer, const FrameInput& input) {
+  constexpr int kRepeats = 12;
+  if (!renderer.render(input)) return {};
+  renderer.wait_idle();
+  const std::clock_t start = std::clock();
+  const double wall_ms = renderer.replay_floor_ms(kRepeats).value_or(0.0);
+  const double cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  return {wall_ms, cpu_s * 1e3 / (kRepeats + 2)};  // the replay draws two more to fill the pipeline
+}
+
+// Reports the cost of `input` less that of a frame without meshes, per `count` of something.
+void measure(benchmark::State& state, Renderer& renderer, const FrameInput& input,
+             const char* counter, double count, double base_cpu_ms) {
+  std::pair<double, double> best{1e9, 1e9};
+  for (auto _ : state) {
+    const auto cost = frame_cost(renderer, input);
+    state.SetIterationTime(cost.first * 1e-3);
+    best = {std::min(best.first, cost.first), std::min(best.second, cost.second)};
+  }
+  state.counters["frame_ms"] = best.first;
+  state.counters["cpu_ms"] = best.second;
+  state.counters[counter] = (best.second - base_cpu_ms) * 1e6 / count;
+  constexpr std::array kNames{"auto", "multi-draw", "pushed"};
+  state.SetLabel(kNames[static_cast<std::size_t>(state.range(0))]);
+}
+
+// CPU ms of the frame without any mesh: sky over all pixels.
+double sky_ms(Renderer& renderer) {
+  const FrameInput input = synthetic::look(10, 0, kSize);
+  return std::min(frame_cost(renderer, input).second, frame_cost(renderer, input).second);
+}
+
+void BM_sky(benchmark::State& state) {
+  const auto renderer = make_renderer(submission_of(state));
+  measure(state, *renderer, synthetic::look(10, 0.3, kSize), "ns_per_pixel",
+          static_cast<double>(kSize.width) * kSize.height, 0);
+}
+
+// Draws of `side`² vertices side by side that fill the picture; range(1): side, range(2): draws
+// per row.
+void BM_sheets(benchmark::State& state) {
+  const auto renderer = make_renderer(submission_of(state));
+  const double base_ms = sky_ms(*renderer);
+  const int side = static_cast<int>(state.range(1)), row = static_cast<int>(state.range(2));
+  const auto mesh = synthetic::make_sheet(renderer->geometry(), side);
+  if (!mesh) return state.SkipWithError("no memory for the mesh");
+  std::vector<MeshDraw> models;
+  const float width = 96.0F / static_cast<float>(row), height = 54.0F / static_cast<float>(row);
+  for (int y = 0; y < row; ++y) {
+    for (int x = 0; x < row; ++x) {
+      MeshDraw draw;
+      draw.range = *mesh;
+      draw.origin = {(static_cast<float>(x) + 0.5F) * width - 48.0F,
+                     (static_cast<float>(y) + 0.5F) * height - 27.0F, -60.0F};
+      draw.box_half_extent = {width / 2, height / 2, 1.0F};
+      models.push_back(draw);
+    }
+  }
+  FrameInput input = synthetic::look(10, 0, kSize);
+  input.models = models;
+  const double triangles = 2.0 * (side - 1) * (side - 1) * row * row;
+  measure(state, *renderer, input, "ns_per_triangle", triangles, base_ms);
+  state.counters["triangles"] = triangles;
+  state.counters["px_per_triangle"] = static_cast<double>(kSize.width) * kSize.height / triangles;
+}
+
+// range(1) draws of one small mesh behind the camera: what a draw costs before a pixel is touched.
+void BM_draws(benchmark::State& state) {
+  const auto renderer = make_renderer(submission_of(state));
+  const double base_ms = sky_ms(*renderer);
+  const auto mesh = synthetic::make_sheet(renderer->geometry(), 2);
+  if (!mesh) return state.SkipWithError("no memory for the mesh");
+  std::vector<MeshDraw> models(static_cast<std::size_t>(state.range(1)));
+  for (MeshDraw& draw : models) {
+    draw.range = *mesh;
+    draw.origin = {0, 0, 50};
+  }
+  FrameInput input = synthetic::look(10, 0, kSize);
+  input.models = models;
+  measure(state, *renderer, input, "ns_per_draw", static_cast<double>(models.size()), base_ms);
+}
+
+// A landscape of range(1)² terrain blocks of 64² vertices seen from 30 m.
+void BM_terrain(benchmark::State& state) {
+  const auto renderer = make_renderer(submission_of(state));
+  const double base_ms = sky_ms(*renderer);
+  const auto grid = renderer->upload_shared_indices(synthetic::grid_indices(64));
+  const auto mesh = synthetic::make_terrain(renderer->geometry(), 64, [](int x, int z) {
+    return 0.5F +
+           0.25F * std::sin(static_cast<float>(x) * 0.1F) * std::cos(static_cast<float>(z) * 0.1F);
+  });
+  if (!grid || !mesh) return state.SkipWithError("no memory for the mesh");
+  const int blocks = static_cast<int>(state.range(1));
+  std::vector<TerrainDraw> terrain;
+  for (int z = 0; z < blocks; ++z) {
+    for (int x = 0; x < blocks; ++x) {
+      TerrainDraw draw;
+      draw.range = *mesh;
+      draw.shared_indices = *grid;
+      draw.origin = {static_cast<float>(x - blocks / 2) * 60.0F, -40.0F,
+                     -static_cast<float>(z) * 60.0F};
+      draw.cell_m = 60.0F / 63.0F;
+      draw.height_range_m = 20.0F;
+      terrain.push_back(draw);
+    }
+  }
+  FrameInput input = synthetic::look(30, -0.1, kSize);
+  input.terrain = terrain;
+  input.block_size_m = 60;
+  const double triangles = 63.0 * 63 * 2 * blocks * blocks;
+  measure(state, *renderer, input, "ns_per_triangle", triangles, base_ms);
+  state.counters["triangles"] = triangles;
+}
+
+}  // namespace
+
+BENCHMARK(BM_sky)->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3)->Arg(0);
+BENCHMARK(BM_sheets)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(3)
+    ->ArgsProduct({{0, 1, 2}, {65}, {5}})
+    ->ArgsProduct({{0, 1, 2}, {17}, {20}})
+    ->ArgsProduct({{0, 1, 2}, {5}, {60}})
+    ->ArgsProduct({{0, 1, 2}, {3}, {120}});
+BENCHMARK(BM_draws)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(3)
+    ->ArgsProduct({{0, 1, 2}, {1000, 10000}});
+BENCHMARK(BM_terrain)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(3)
+    ->ArgsProduct({{0, 1, 2}, {4, 8}});
+
+int main(int argc, char** argv) {
+  psygen::render::tune_allocator_for_software_rendering();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
