@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace psygen::world {
 namespace {
 
-// What can be written for these limits: "an integer from 1 to 9", "a number, at least 0".
+// What may be written: "an integer from 1 to 9".
 std::string allowed_text(Limits limits, bool integer) {
   const std::string_view kind = integer ? "an integer" : "a number";
   return fmt::format("{} from {:g} to {:g}", kind, limits.low, limits.high);
@@ -51,11 +52,21 @@ std::string shown_key(std::string_view key) {
 
 }  // namespace
 
+void Problems::keep_first(int line, int rank, std::string_view field, std::string_view sentence,
+                          core::ErrorCode code) {
+  if (first_ && rank >= first_rank_) return;
+  first_ = core::Error{code, fmt::format("{}:{}: {}: {}", file_, line, field, sentence)};
+  first_rank_ = rank;
+}
+
 void Problems::add(int line, std::string_view field, std::string_view sentence,
                    core::ErrorCode code) {
-  if (first_ && line >= first_line_) return;
-  first_ = core::Error{code, fmt::format("{}:{}: {}: {}", file_, line, field, sentence)};
-  first_line_ = line;
+  keep_first(line, line, field, sentence, code);
+}
+
+void Problems::add_missing(int line, std::string_view field) {
+  keep_first(line, std::numeric_limits<int>::max(), field, "this field is missing",
+             core::ErrorCode::kParse);
 }
 
 TableReader::TableReader(const Node& table, std::string path, int line, Problems& problems)
@@ -70,7 +81,7 @@ const Member* TableReader::find(std::string_view key, Presence presence) {
   for (const Member& member : table_.members) {
     if (member.key == key) return &member;
   }
-  if (presence == Presence::kRequired) problem(line_, key, "this field is missing");
+  if (presence == Presence::kRequired) problems_.add_missing(line_, field(key));
   return nullptr;
 }
 

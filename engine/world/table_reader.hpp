@@ -1,6 +1,7 @@
 // Reads the fields of a table into variables and finds everything that is wrong with it: types,
 // ranges, missing and unknown keys. Errors name file, line and field and say what is allowed. The
-// first problem of the file (by line) is what the user is told.
+// first problem of the file (by line) is what the user is told; missing fields come last, for they
+// may have been misspelt.
 #pragma once
 
 #include <cstdint>
@@ -21,14 +22,18 @@ class Problems {
   explicit Problems(std::string_view file) : file_(file) {}
   void add(int line, std::string_view field, std::string_view sentence,
            core::ErrorCode code = core::ErrorCode::kParse);
+  void add_missing(int line, std::string_view field);
   bool any() const { return first_.has_value(); }
-  // The problem of the smallest line. Requires any().
+  // Requires any().
   core::Error first() const { return *first_; }
 
  private:
+  void keep_first(int line, int rank, std::string_view field, std::string_view sentence,
+                  core::ErrorCode code);
+
   std::string file_;
   std::optional<core::Error> first_;
-  int first_line_ = 0;
+  int first_rank_ = 0;
 };
 
 // What a number may be; both ends are allowed.

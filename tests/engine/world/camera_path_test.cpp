@@ -97,7 +97,9 @@ TEST(Walk27, TurnsGentlyAndChangesItsVelocitySmoothly) {
     EXPECT_LT(std::abs(b.yaw - a.yaw) / dt, glm::radians(35.0)) << i;
     EXPECT_LT(std::abs(b.pitch - a.pitch) / dt, glm::radians(15.0)) << i;
     const glm::dvec3 velocity = move(a, b, world) / dt;
-    if (i > 0) EXPECT_LT(glm::length(velocity - last), 2.5) << i;
+    if (i > 0) {
+      EXPECT_LT(glm::length(velocity - last), 2.5) << i;
+    }
     last = velocity;
   }
 }

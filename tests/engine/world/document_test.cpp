@@ -55,6 +55,12 @@ TEST(Document, ErrorsNameFileAndLine) {
   EXPECT_THAT(error_of("a = 1\n\na = 2\n"), StartsWith("f.toml:3:"));
 }
 
+TEST(Document, ABracketWithoutAKeyIsAnError) {
+  for (const char* text :
+       {"[", "[[", "[\n", "[[\n", "[#", "[.", "[a.", "[a.]", "[]", "[[a", "[[a]\n"})
+    EXPECT_THAT(error_of(text), StartsWith("f.toml:1:")) << text;
+}
+
 TEST(Document, HundredThousandNestedArraysAreRefused) {
   EXPECT_THAT(error_of("a = " + repeated("[", 100'000)), StartsWith("f.toml:1:"));
   EXPECT_THAT(error_of("a = " + repeated("[", 100'000) + repeated("]", 100'000)),

@@ -110,10 +110,10 @@ TEST(WorldFile, EveryWorldOfTheGameLoads) {
 
 TEST(WorldFile, HugeAndNonsensicalParametersAreRefusedWithFieldAndPredictedCost) {
   EXPECT_THAT(error_with("subdivisions = 1", "subdivisions = 40"),
-              AllOf(StartsWith("w.toml:22: scatter[1].subdivisions: "),
+              AllOf(StartsWith("w.toml:23: scatter[1].subdivisions: "),
                     HasSubstr("predicted cost: 2^82.0 triangles")));
   EXPECT_THAT(error_with("iterations = [2, 3]", "iterations = 1000"),
-              AllOf(StartsWith("w.toml:16: scatter[0].iterations: "), HasSubstr("predicted cost")));
+              AllOf(StartsWith("w.toml:17: scatter[0].iterations: "), HasSubstr("predicted cost")));
   EXPECT_THAT(error_with("iterations = [2, 3]", "iterations = [2, 1000]"),
               HasSubstr("iterations = 1000 is not allowed"));
   EXPECT_THAT(error_with("iterations = [2, 3]", "branches = 1000000000"),
@@ -188,14 +188,14 @@ TEST(WorldFile, UnknownKeysAreRefusedAndTheNearestIsSuggested) {
 
 TEST(WorldFile, UnknownModelsAreRefusedAndTheKnownOnesListed) {
   EXPECT_THAT(error_with("\"rock\"", "\"rocket\""),
-              AllOf(StartsWith("w.toml:20: scatter[1].model"), HasSubstr("rock, tree")));
+              AllOf(StartsWith("w.toml:21: scatter[1].model"), HasSubstr("rock, tree")));
   EXPECT_THAT(error_with("\"rock\"", "\"terrain\""), HasSubstr("no such model to scatter"));
 }
 
 TEST(WorldFile, DuplicateKeysAndTablesAreRefused) {
   EXPECT_THAT(error_with("octaves = 4", "octaves = 4\noctaves = 5"), StartsWith("w.toml:12:"));
   EXPECT_THAT(error_of(std::string(kSmallWorld) + "[terrain]\ngain = 1\n").message,
-              StartsWith("w.toml:23:"));
+              StartsWith("w.toml:24:"));
 }
 
 TEST(WorldFile, ANewerFormatIsTheFirstThingToBeRefused) {
