@@ -253,7 +253,7 @@ void enter(Batch& s, std::size_t lane, const TreeSkeleton& skeleton, std::uint32
 }  // namespace
 
 std::uint32_t spray_count(int level, std::uint32_t tips) {
-  if (level == 0) return std::clamp(10U * tips / 3U, 512U, 7168U);
+  if (level == 0) return std::clamp(16U * tips / 5U, 512U, 7168U);
   if (level == 1) return std::clamp(tips, 128U, 1536U);
   return level == 2 ? 64 : kCrownPaths;
 }

@@ -250,7 +250,7 @@ class TreeOracle {
     for (const Branch& b : all)
       if (b.depth == depth_) ends.push_back(b);
     const std::size_t m = ends.size();
-    const std::size_t n = level == 0   ? std::clamp<std::size_t>(10 * m / 3, 512, 7168)
+    const std::size_t n = level == 0   ? std::clamp<std::size_t>(16 * m / 5, 512, 7168)
                           : level == 1 ? std::clamp<std::size_t>(m, 128, 1536)
                           : level == 2 ? 64
                                        : 18;
