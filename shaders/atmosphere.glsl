@@ -13,7 +13,7 @@ vec3 sky_light(vec3 d) {
   float t2 = toward * toward;
   float t4 = t2 * t2;
   float t8 = t4 * t4;
-  return c + frame.sun_colour.rgb * (0.035 * t4 + 0.06 * t8 * t8 * t4);
+  return c + frame.sun_colour.rgb * (0.03 * t4 + 0.10 * t8 * t8 * t8);
 }
 
 // `light` from a surface at `p` (relative to the camera), after the air in between. The density

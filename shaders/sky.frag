@@ -13,7 +13,7 @@ void main() {
   vec3 light = sky_light(d);
 
   float toward = dot(d, frame.sun_direction.xyz);
-  float disc = smoothstep(0.99975, 0.99992, toward);
+  float disc = smoothstep(0.99988, 0.99996, toward);
 
   // Clouds on a plane above, gone towards the horizon so that the haze of the land meets the sky.
   float up = max(d.y, 0.0);

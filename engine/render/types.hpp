@@ -43,11 +43,11 @@ struct DeviceInfo {
 // Sun, sky and air. Colours are linear radiance before `exposure`.
 struct Light {
   glm::vec3 sun_direction{0.45F, 0.55F, 0.35F};  // towards the sun; need not be unit
-  glm::vec3 sun_colour{3.1F, 2.75F, 2.25F};
-  glm::vec3 zenith_colour{0.13F, 0.28F, 0.62F};
-  glm::vec3 horizon_colour{0.50F, 0.62F, 0.78F};
-  glm::vec3 ground_colour{0.16F, 0.15F, 0.11F};  // light from below
-  glm::vec3 haze_colour{0.66F, 0.72F, 0.80F};    // the sky just above (and below) the horizon
+  glm::vec3 sun_colour{2.35F, 2.00F, 1.55F};
+  glm::vec3 zenith_colour{0.085F, 0.20F, 0.50F};
+  glm::vec3 horizon_colour{0.34F, 0.47F, 0.66F};
+  glm::vec3 ground_colour{0.11F, 0.10F, 0.07F};  // light from below
+  glm::vec3 haze_colour{0.50F, 0.58F, 0.69F};    // the sky just above (and below) the horizon
   float haze_density = 0.0012F;        // at height 0, 1/m; 1/density is where 37 % is left
   float haze_height_falloff = 0.004F;  // 1/m; 0: the same at every height
   float exposure = 1.0F;
@@ -61,8 +61,8 @@ struct TerrainPalette {
   glm::vec3 grass{0.085F, 0.125F, 0.030F};
   glm::vec3 forest{0.045F, 0.070F, 0.022F};
   glm::vec3 dry{0.200F, 0.165F, 0.075F};
-  glm::vec3 rock{0.175F, 0.160F, 0.145F};
-  glm::vec3 snow{0.80F, 0.83F, 0.88F};
+  glm::vec3 rock{0.150F, 0.138F, 0.125F};
+  glm::vec3 snow{0.74F, 0.78F, 0.84F};
   glm::vec3 sand{0.36F, 0.30F, 0.19F};
   float sand_end_m = -1e6F, sand_blend_m = 2.0F;    // sand below
   float dry_start_m = 60.0F, dry_blend_m = 40.0F;   // dry meadow above
