@@ -33,7 +33,7 @@ enum TreeParameter : std::size_t {
 };
 
 // Levels 0 … 5: on average over the paper's ranges about 5,000, 1,200, 300, 80, 23 and 11
-// triangles. Needs at most 256 KiB of stack; nothing on the heap.
+// triangles. Needs about 300 KiB of stack; nothing on the heap.
 std::unique_ptr<ModelType> make_tree_type();
 
 }  // namespace psygen::models

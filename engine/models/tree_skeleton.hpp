@@ -55,7 +55,7 @@ TreeCount count_tree(const TreeShape& shape);
 int tip_depth(const TreeShape& shape);
 
 // Branch i runs from base along base + length · (t · direction + t² · bend), t in [0, 1].
-// Branches of one depth are contiguous, in order of their parents. About 220 KiB, meant for the
+// Branches of one depth are contiguous, in order of their parents. About 200 KiB, meant for the
 // stack; only the first `count` entries are written.
 struct TreeSkeleton {
   std::uint32_t count = 0;
