@@ -145,7 +145,6 @@ core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
   scene::State& state = scene_->state();
   state.input.pose = pose;
   state.input.size = renderer_->size();
-  state.clock.real_s = core::monotonic_seconds();
   scene::tick(state);
   state.clock.now_s += dt_s;
   if (state.error) return tl::unexpected(*state.error);

@@ -20,6 +20,8 @@ using synthesis::RankGroup;
 // Blocks out of view are looked at once in so many ticks, and kept this much coarser.
 constexpr std::size_t kAroundTurns = 8;
 constexpr float kAroundErrorFactor = 2.0F;
+// A terrain's error is the sum of what all octaves could lose at worst; seen is about half of it.
+constexpr float kTerrainErrorFactor = 2.0F;
 
 // Where a block stands in the order of importance, in this tick.
 struct BlockView {
@@ -38,13 +40,17 @@ class Chooser {
         clock_(clock),
         camera_(camera),
         frustum_(frustum),
-        entities_(entities),
+        placed_(entities.accessor<const Placed>()),
+        detail_(entities.accessor<const Detail>()),
+        source_(entities.accessor<const Source>()),
+        mesh_(entities.accessor<const Mesh>()),
+        demand_(entities.accessor<Demand>()),
         synthesis_(synthesis),
         counters_(counters) {}
 
   void consider(ecs::Entity entity, const BlockView& block, bool is_terrain) {
-    const Placed& placed = *entities_.get<Placed>(entity);
-    Demand& demand = *entities_.get<Demand>(entity);
+    const Placed& placed = *placed_.get(entity);
+    Demand& demand = *demand_.get(entity);
     const glm::vec3 center = block.corner + placed.position + placed.box_center;
     const float distance_m =
         is_terrain ? block.visibility->distance_m
@@ -53,7 +59,7 @@ class Chooser {
         block.in_view &&
         (is_terrain || visibility::intersects(frustum_, {center - placed.box_half_extent,
                                                          center + placed.box_half_extent}));
-    demand.wanted_level = wanted_level(placed, *entities_.get<Detail>(entity), demand, distance_m,
+    demand.wanted_level = wanted_level(placed, *detail_.get(entity), demand, distance_m,
                                        block.error_pixels, is_terrain);
     if (in_view) note_in_view(demand);
     if (demand.wanted_level == kNoLevel) return;
@@ -68,6 +74,7 @@ class Chooser {
     if (!is_terrain && size_pixels < static_cast<float>(settings_.min_size_pixels)) return kNoLevel;
     if (!settings_.levels_of_detail) return 0;
     const std::span<const float> errors(detail.error_m.data(), detail.level_count);
+    if (is_terrain) error_pixels *= kTerrainErrorFactor;
     const int current = demand.drawn_level == kNoLevel ? -1 : demand.drawn_level;
     return static_cast<std::uint8_t>(visibility::choose_level(
         errors, distance_m, camera_.pixels_per_radian, error_pixels, current));
@@ -97,8 +104,7 @@ class Chooser {
                float distance_m) {
     if (demand.drawn_level != kNoLevel) {
       const RankGroup kept = in_view ? RankGroup::kDrawn : RankGroup::kPrefetch;
-      synthesis_.cache->set_rank(entities_.get<Mesh>(entity)->handle,
-                                 rank_of(kept, visibility, distance_m));
+      synthesis_.cache->set_rank(mesh_.get(entity)->handle, rank_of(kept, visibility, distance_m));
     }
     if (demand.drawn_level == demand.wanted_level) {
       demand.requested_level = kNoLevel;
@@ -115,7 +121,7 @@ class Chooser {
 
   // The wanted level; for a hole in view the coarsest one first; another one where it has failed.
   std::uint8_t level_to_request(ecs::Entity entity, const Demand& demand, bool hole) const {
-    const auto coarsest = static_cast<std::uint8_t>(entities_.get<Detail>(entity)->level_count - 1);
+    const auto coarsest = static_cast<std::uint8_t>(detail_.get(entity)->level_count - 1);
     const bool coarse_first = hole && settings_.levels_of_detail &&
                               settings_.paradigm == Paradigm::kParallelLazyAmplification;
     const std::uint8_t level = coarse_first ? coarsest : demand.wanted_level;
@@ -126,9 +132,9 @@ class Chooser {
 
   void request(ecs::Entity entity, Demand& demand, std::uint8_t level, Rank rank,
                float deadline_s) {
-    const Source& source = *entities_.get<Source>(entity);
-    const synthesis::MeshKey key{entities_.get<Placed>(entity)->block, source.index, source.model,
-                                 level, source.parameters_hash};
+    const Source& source = *source_.get(entity);
+    const synthesis::MeshKey key{placed_.get(entity)->block, source.index, source.model, level,
+                                 source.parameters_hash};
     const bool first_time = demand.requested_level != level;
     demand.requested_level = level;
     const synthesis::MeshHandle handle =
@@ -136,7 +142,8 @@ class Chooser {
     const synthesis::MeshRecord* record = synthesis_.cache->get(handle);
     if (record != nullptr && record->state == synthesis::MeshState::kReady) {
       synthesis_.ready.push_back({entity, handle});
-      synthesis_.cache->set_rank(handle, rank);
+      // The entity that asked for it may have been destroyed; evictions are reported to the owner.
+      synthesis_.cache->adopt(handle, owner_of(entity), rank);
       return;
     }
     if (settings_.paradigm == Paradigm::kDataAmplification) return;
@@ -147,7 +154,11 @@ class Chooser {
   const Clock& clock_;
   const Camera& camera_;
   const visibility::Frustum& frustum_;
-  ecs::World& entities_;
+  ecs::Accessor<const Placed> placed_;
+  ecs::Accessor<const Detail> detail_;
+  ecs::Accessor<const Source> source_;
+  ecs::Accessor<const Mesh> mesh_;
+  ecs::Accessor<Demand> demand_;
   Synthesis& synthesis_;
   Counters& counters_;
 };

@@ -85,7 +85,7 @@ void create_all_blocks(State& s) {
 void Scene::tick_without_drawing(const core::CameraPose& pose) {
   State& s = state_;
   s.input.pose = pose;
-  s.clock.real_s = core::monotonic_seconds();
+  s.clock.real_s = core::monotonic_seconds() - s.clock.origin_s;
   s.counters = {};
   input_system(s.input, s.clock, s.facts, s.camera);
   streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, *s.synthesis.cache,

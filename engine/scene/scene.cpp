@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/scene/lighting.hpp"
 #include "engine/scene/systems.hpp"
@@ -105,6 +106,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   std::unique_ptr<Scene> scene(new Scene);
   State& s = scene->state_;
   s.settings = settings;
+  s.clock.origin_s = core::monotonic_seconds();
   WorldFacts& facts = s.facts;
   facts.world = std::move(world);
   facts.registry = std::move(registry);
@@ -134,6 +136,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   synthesis.planner = std::make_unique<synthesis::Planner>();
   synthesis::SynthesisOptions options;
   options.modelers = settings.modelers;
+  options.watchdog_seconds = settings.watchdog_seconds;
   synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
   s.settings.modelers = synthesis.manager->modeler_count();
   s.trace = tracing_of(trace, s.settings.modelers, facts.registry);

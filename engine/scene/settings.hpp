@@ -24,9 +24,10 @@ struct Settings {
   std::uint32_t modelers = 0;                 // 0: cores − 1, at least 1
   std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
   double view_distance_m = 640;               // blocks farther away do not exist
-  double max_error_pixels = 3.0;              // of the level of detail that is chosen
-  double min_size_pixels = 1.2;               // models smaller on screen are not drawn
+  double max_error_pixels = 4.0;              // of the level of detail that is chosen
+  double min_size_pixels = 1.5;               // models smaller on screen are not drawn
   bool levels_of_detail = true;               // false: full detail everywhere, as in the paper
+  double watchdog_seconds = 1;                // a model that takes longer is given up
   double plan_seconds_ahead = 0.05;           // synthesis time per modeler in one plan
   std::uint32_t plan_max_requests = 4096;
   double streaming_budget_ms = 2.0;                 // per tick, for creating blocks

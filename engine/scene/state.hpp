@@ -36,8 +36,9 @@ struct Input {
 };
 
 struct Clock {
-  double now_s = 0;   // of the flight: real, or frame / rate with a fixed step
-  double real_s = 0;  // monotonic, for latencies
+  double now_s = 0;     // of the flight: real, or frame / rate with a fixed step
+  double origin_s = 0;  // core::monotonic_seconds() when the scene was made
+  double real_s = 0;    // real seconds since then, for latencies; set by the tick
   std::uint32_t tick = 1;
 };
 

@@ -45,7 +45,6 @@ inline core::CameraPose pose_at(std::int32_t block_x, std::int32_t block_z, doub
 inline void tick_at(Scene& scene, const core::CameraPose& pose) {
   State& state = scene.state();
   state.input.pose = pose;
-  state.clock.real_s = core::monotonic_seconds();
   tick(state);
   state.clock.now_s += 1.0 / 60.0;
 }
@@ -54,6 +53,25 @@ inline void expect_within_budget(const Scene& scene) {
   const synthesis::CacheStats stats = scene.state().synthesis.cache->stats();
   EXPECT_LE(stats.peak_bytes, stats.budget_bytes);
   EXPECT_LE(scene.state().memory->used_bytes(), stats.budget_bytes);
+}
+
+// Whatever an entity draws is alive in the cache, and is what the entity thinks it is.
+inline void expect_consistent(Scene& scene) {
+  const synthesis::GeometryCache& cache = *scene.state().synthesis.cache;
+  std::size_t wrong = 0;
+  std::as_const(scene.state().entities)
+      .each<const Demand, const Mesh>([&](std::span<const ecs::Entity>,
+                                          std::span<const Demand> demands,
+                                          std::span<const Mesh> meshes) {
+        for (std::size_t i = 0; i < demands.size(); ++i) {
+          if (demands[i].drawn_level == kNoLevel) continue;
+          const synthesis::MeshRecord* record = cache.get(meshes[i].handle);
+          wrong += record == nullptr || record->state != synthesis::MeshState::kReady ||
+                   record->range != meshes[i].range || record->key.level != demands[i].drawn_level;
+        }
+      });
+  EXPECT_EQ(wrong, 0u);
+  expect_within_budget(scene);
 }
 
 }  // namespace psygen::scene

@@ -131,6 +131,23 @@ TEST(Scene, ABudgetThatIsTooSmallGivesCoarserLevelsWithoutThrashing) {
   EXPECT_LT(scene->state().synthesis.cache->stats().evictions - evictions, 500u);
 }
 
+TEST(Scene, ComingBackUnderPressureNeverDrawsWhatWasEvicted) {
+  Settings settings = small_settings();
+  settings.budget_bytes = 6ull << 20;
+  const auto scene = make_scene(settings);
+  for (int round = 0; round < 4; ++round) {
+    for (int step = -8; step <= 8; ++step) {
+      core::CameraPose pose = pose_at(200, 200, 0.4 * step);
+      pose.position.local.x += 45.0 * (round % 2 == 0 ? step : -step);
+      tick_at(*scene, pose);
+      scene->state().synthesis.manager->wait_all();
+      expect_consistent(*scene);
+    }
+  }
+  EXPECT_GT(scene->state().synthesis.cache->stats().evictions, 100u);
+  EXPECT_GT(scene->state().synthesis.cache->stats().hits, 100u);
+}
+
 TEST(Scene, HalvingTheBudgetWhileFlyingIsMet) {
   Settings settings = small_settings();
   const auto scene = make_scene(settings);
