@@ -2,9 +2,10 @@
 // in section 4.2; mode "layers", Corrêa's heuristic): which blocks are seen, in order of
 // importance, and which surround them. Neighbours are the eight cells around a cell, so the layer
 // is the breadth-first distance from the camera's cell. Knows no entities and nothing of what
-// stands in a cell. Linear in the number of visited cells; allocates only while results grow.
+// stands in a cell. Linear in the number of cells; allocates only while results grow.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,18 +34,18 @@ struct PlpInput {
 // view, and the search would end there. The paper's priority of a cell is −(layer + 1).
 struct PlpResult {
   std::vector<std::uint16_t> layer;     // per cell; kUnvisited where the search did not come
-  std::vector<std::uint8_t> in_view;    // per cell: 1 if visited or in the front, and in view
+  std::vector<std::uint8_t> in_view;    // per cell: 1 or 0, visited or not
   std::vector<std::uint32_t> visible;   // visited cells in view, most important first
   std::vector<std::uint32_t> prefetch;  // visited cells out of view, most important first
   std::vector<std::uint32_t> front;     // not visited when the budget ended, most important first
 
-  // Working memory.
-  struct Entry {
-    std::uint32_t distance_bits;  // of a float >= 0, which sorts like the float
-    std::uint32_t cell;
-  };
-  std::vector<Entry> near, far, scratch;   // of the layer being visited: in view, out of view
-  std::vector<Entry> next_near, next_far;  // of the layer after it
+  // Working memory. A key is the square of the distance as the bits of a float >= 0, which sort
+  // like the float, above the cell: smaller keys leave the front first.
+  using Keys = std::vector<std::uint64_t>;
+  using Lists = std::array<Keys, 2>;         // out of view, in view
+  std::vector<std::uint32_t> distance_bits;  // per cell
+  Lists current, next;                       // of the layer being visited, of the next
+  Keys scratch;
 };
 
 void run_plp(const PlpInput& input, PlpResult& result);

@@ -105,9 +105,18 @@ TEST(Plp, EqualsItsDefinitionOnRandomScenesAndBudgets) {
   }
 }
 
-TEST(Plp, EqualsItsDefinitionOnLargeLayersThatAreSortedByRadix) {
+TEST(Plp, EqualsItsDefinitionOnLargeLayersThatAreSortedByBuckets) {
   const GridScene scene(90, 90, {{{45, 44}, {10, 200, 50}}, 2.1, -0.5});
   expect_equal(run(scene), Oracle(scene, 44 * 90 + 45, UINT32_MAX));
+}
+
+TEST(Plp, EqualsItsDefinitionWhereMostCellsAreEquallyFar) {
+  // Boxes of all cells reach up to the camera, but for a few far ones that stretch the range.
+  GridScene scene(60, 60, {{{30, 30}, {10, 20, 50}}, 0.4, 0});
+  for (std::size_t i = 0; i < scene.bounds.size(); ++i) {
+    if (i % 97 != 0) scene.bounds[i] = {glm::vec3(-1), glm::vec3(1)};
+  }
+  expect_equal(run(scene), Oracle(scene, 30 * 60 + 30, UINT32_MAX));
 }
 
 TEST(Plp, LayersAreBreadthFirst) {
