@@ -246,9 +246,11 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
     }
   }
   const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
-  const synthesis::PlanLimits limits{
-      wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead,
-      wait ? UINT32_MAX : settings.plan_max_requests};
+  synthesis::PlanLimits limits;
+  limits.seconds_ahead =
+      wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead;
+  limits.max_requests = wait ? UINT32_MAX : settings.plan_max_requests;
+  limits.seconds_here = wait ? 0.0 : settings.hole_budget_ms / 1000.0;
   const synthesis::PlanReport report =
       synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,
                               *synthesis.manager, limits, settings.policy);

@@ -27,8 +27,9 @@ struct Settings {
   double max_error_pixels = 4.0;              // of the level of detail that is chosen
   double min_size_pixels = 1.5;               // models smaller on screen are not drawn
   bool levels_of_detail = true;               // false: full detail everywhere, as in the paper
-  double watchdog_seconds = 1;                // a model that takes longer is given up
-  double plan_seconds_ahead = 0.05;           // synthesis time per modeler in one plan
+  double watchdog_seconds = 10;               // a model that takes longer is given up
+  double hole_budget_ms = 2.0;       // per tick, of the main thread, for what is missing in view
+  double plan_seconds_ahead = 0.05;  // synthesis time per modeler in one plan
   std::uint32_t plan_max_requests = 4096;
   double streaming_budget_ms = 2.0;                 // per tick, for creating blocks
   std::uint64_t upload_budget_bytes = 16ull << 20;  // per tick

@@ -5,8 +5,10 @@
 namespace psygen::scene {
 namespace {
 
-// Modelers that replace hung ones get tracks of their own.
+// Modelers that replace hung ones get tracks of their own; what the main thread did itself is seen
+// in its cache system.
 void trace_job(const synthesis::Completion& job, Tracing& trace) {
+  if (job.modeler == synthesis::kMainThreadModeler) return;
   while (trace.modelers.size() <= job.modeler) {
     trace.modelers.push_back(
         trace.log->add_track(fmt::format("modeler {}", trace.modelers.size())));

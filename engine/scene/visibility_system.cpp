@@ -80,20 +80,23 @@ void list_blocks(const WorldFacts& facts, const BlockGrid& grid, float view_dist
   const auto coord_of = [&grid](std::uint32_t cell) {
     return grid.coord_at(cell % grid.side(), cell / grid.side());
   };
+  const auto keep_out_of_view = [&](std::uint32_t cell, ecs::Entity entity) {
+    (std::isfinite(view.deadlines[cell]) ? view.expected : view.around).push_back(entity);
+  };
   for (const std::uint32_t cell : view.plp.visible) {
-    if (distance_to(view.bounds[cell]) > view_distance_m) continue;
     const core::BlockCoord coord = coord_of(cell);
     const ecs::Entity entity = grid.entity_of(coord);
+    const bool near = distance_to(view.bounds[cell]) <= view_distance_m;
     if (entities.alive(entity)) {
-      view.visible.push_back(entity);
-    } else if (facts.world.contains(coord)) {
+      // Straight ahead, but beyond the view distance: the next to come.
+      near ? view.visible.push_back(entity) : keep_out_of_view(cell, entity);
+    } else if (near && facts.world.contains(coord)) {
       ++counters.holes;
     }
   }
   for (const std::uint32_t cell : view.plp.prefetch) {
     const ecs::Entity entity = grid.entity_of(coord_of(cell));
-    if (!entities.alive(entity)) continue;
-    (std::isfinite(view.deadlines[cell]) ? view.expected : view.around).push_back(entity);
+    if (entities.alive(entity)) keep_out_of_view(cell, entity);
   }
   std::ranges::stable_sort(view.expected, {}, [&entities](ecs::Entity e) {
     return entities.get<Visibility>(e)->deadline_s;

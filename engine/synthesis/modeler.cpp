@@ -46,6 +46,12 @@ void Modeler::run(Workshop& workshop) {
   exited_.store(true, std::memory_order_release);
 }
 
+void Modeler::perform(Workshop& workshop, const Request& request) {
+  current_ = request;
+  double cpu_mark = core::thread_cpu_seconds();
+  execute(workshop, cpu_mark);
+}
+
 bool Modeler::execute(Workshop& workshop, double& cpu_mark) {
   Completion c = completion_of(current_, number_);
   c.started_s = workshop.clock();

@@ -16,6 +16,9 @@
 
 namespace psygen::synthesis {
 
+// The number of the modeler that the main thread itself is (SynthesisManager::execute_here).
+inline constexpr std::uint32_t kMainThreadModeler = UINT32_MAX;
+
 // What all modelers share. Held by each of them, so that one that hangs outlives the manager
 // safely.
 struct Workshop {
@@ -44,6 +47,9 @@ class Modeler {
 
   // The thread's function: works until workshop.stop or until it was given up.
   void run(Workshop& workshop);
+
+  // Executes one request in the calling thread; for a modeler that has no thread of its own.
+  void perform(Workshop& workshop, const Request& request);
 
   // Main thread. If the present request runs since before `limit_s` (workshop clock): gives it up
   // and fills `out` with its failed completion.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/clock.hpp"
 
 namespace psygen::synthesis {
 
@@ -91,7 +92,7 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     request.owner = want.owner;
     request.predicted_seconds = item.order.predicted_seconds;
     cache.adopt(request.handle, want.owner, want.rank);
-    plan_.push_back(request);
+    list_for(want).push_back(request);
     ++report.carried;
     report.predicted_seconds += item.order.predicted_seconds;
     return;
@@ -108,10 +109,25 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     return;
   }
   const MeshRecord& record = *cache.get(*handle);
-  plan_.push_back({*handle, want.key, *want.parameters, record.destination, record.size,
-                   item.complexity, item.order.predicted_seconds, want.owner});
+  list_for(want).push_back({*handle, want.key, *want.parameters, record.destination, record.size,
+                            item.complexity, item.order.predicted_seconds, want.owner});
   ++report.reserved;
   report.predicted_seconds += item.order.predicted_seconds;
+}
+
+// Executes holes until the time is over; the others go to the front of the plan. A model that is
+// predicted to take longer than the time that is left is never started here.
+void Planner::execute_holes(SynthesisManager& manager, double seconds, PlanReport& report) {
+  std::size_t done = 0;
+  double left_s = seconds;
+  while (done < holes_.size() && holes_[done].predicted_seconds < left_s) {
+    const double start_s = core::monotonic_seconds();
+    manager.execute_here(holes_[done++]);
+    left_s -= core::monotonic_seconds() - start_s;
+  }
+  report.executed = static_cast<std::uint32_t>(done);
+  plan_.insert(plan_.begin(), holes_.begin() + static_cast<std::ptrdiff_t>(done), holes_.end());
+  holes_.clear();
 }
 
 PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
@@ -123,10 +139,11 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   give_back_unwanted(cache, report);
 
   plan_.clear();
+  separate_holes_ = limits.seconds_here > 0;
   const double enough = limits.seconds_ahead * std::max(manager.modeler_count(), 1u);
   std::size_t next = 0;
   for (; next < items_.size(); ++next) {
-    if (report.predicted_seconds >= enough || plan_.size() >= limits.max_requests ||
+    if (report.predicted_seconds >= enough || plan_.size() + holes_.size() >= limits.max_requests ||
         report.refused >= limits.max_refusals) {
       break;
     }
@@ -135,6 +152,7 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   report.deferred = static_cast<std::uint32_t>(items_.size() - next);
   while (give_back_last(cache, report)) {
   }
+  execute_holes(manager, limits.seconds_here, report);
   report.published = static_cast<std::uint32_t>(plan_.size());
   manager.publish(std::exchange(plan_, {}));
   return report;

@@ -30,13 +30,15 @@ struct PlanLimits {
   double seconds_ahead = 0.25;  // predicted work per modeler in one plan
   std::uint32_t max_requests = 4096;
   std::uint32_t max_refusals = 16;  // reservations refused by the budget before giving up
+  double seconds_here = 0;          // for visible holes, executed by the caller before it goes on
 };
 
 struct PlanReport {
-  std::uint32_t published = 0;  // requests in the new plan: carried + reserved
+  std::uint32_t published = 0;  // requests in the new plan: carried + reserved − executed
   std::uint32_t carried = 0;    // unclaimed ones of the last plan that are wanted still
   std::uint32_t reserved = 0;
-  std::uint32_t cancelled = 0;                         // reservations given back
+  std::uint32_t executed = 0;   // of carried + reserved, executed at once and not published
+  std::uint32_t cancelled = 0;  // reservations given back
   std::uint32_t ready = 0, in_flight = 0, failed = 0;  // wants that need no request
   std::uint32_t refused = 0;     // no room: the caller should want coarser levels
   std::uint32_t deferred = 0;    // beyond the limits; want them again in the next tick
@@ -66,6 +68,10 @@ class Planner {
   void give_back_unwanted(GeometryCache& cache, PlanReport& report);
   bool give_back_last(GeometryCache& cache, PlanReport& report);
   void add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report);
+  std::vector<Request>& list_for(const Want& want) {
+    return separate_holes_ && want.rank.group() == RankGroup::kVisibleHole ? holes_ : plan_;
+  }
+  void execute_holes(SynthesisManager& manager, double seconds, PlanReport& report);
 
   std::vector<Request> reclaimed_;
   std::vector<std::uint32_t> by_slot_;  // positions in reclaimed_, sorted by slot
@@ -73,6 +79,8 @@ class Planner {
   std::vector<Item> items_;
   std::vector<std::uint32_t> last_first_;  // wanted ones of reclaimed_ in serving order
   std::vector<Request> plan_;
+  bool separate_holes_ = false;
+  std::vector<Request> holes_;  // visible ones, executed here as far as time allows
 };
 
 }  // namespace psygen::synthesis

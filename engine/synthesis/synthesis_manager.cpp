@@ -92,6 +92,10 @@ void SynthesisManager::publish(std::vector<Request>&& plan) {
   workshop_->board.publish(std::move(plan));
 }
 
+void SynthesisManager::execute_here(const Request& request) {
+  here_.perform(*workshop_, request);
+}
+
 void SynthesisManager::close_plan() {
   const std::size_t before = unclaimed_.size();
   workshop_->board.close(unclaimed_);
@@ -108,6 +112,7 @@ std::size_t SynthesisManager::collect(std::vector<Completion>& out) {
   run_watchdog();
   std::move(abandoned_.begin(), abandoned_.end(), std::back_inserter(out));
   abandoned_.clear();
+  here_.queue().drain(out);
   for (Worker& w : active_)
     w.modeler->queue().drain(out);
   drain_retired(out);
@@ -184,6 +189,7 @@ SynthesisStats SynthesisManager::stats() const {
   s.reclaimed = reclaimed_;
   s.given_up = given_up_;
   s.modelers = buried_;
+  if (here_.finished() > 0) s.modelers.push_back(stats_of(here_));
   for (const Worker& w : active_)
     s.modelers.push_back(stats_of(*w.modeler));
   for (const Worker& w : retired_)

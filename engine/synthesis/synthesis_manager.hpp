@@ -31,7 +31,7 @@ struct SynthesisOptions {
 unsigned modeler_count_for(unsigned requested);
 
 struct ModelerStats {
-  std::uint32_t modeler = 0;
+  std::uint32_t modeler = 0;  // kMainThreadModeler: execute_here()
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
   double cpu_seconds = 0;   // of its thread, in requests
   double busy_seconds = 0;  // by the clock, in requests
@@ -67,6 +67,10 @@ class SynthesisManager {
   // Replaces the plan. Modelers take requests from the front. What nobody claimed of the plan
   // before is not lost: the next reclaim() returns it.
   void publish(std::vector<Request>&& plan);
+  // Executes a request that was never published, in the calling thread; its completion is collected
+  // like any other. For the few small meshes whose absence is seen: modelers at the lowest priority
+  // may not get a processor for a while.
+  void execute_here(const Request& request);
   // Closes the plan; returns what nobody claimed, in order. Everything else was or will be
   // collected.
   std::vector<Request> reclaim();
@@ -95,6 +99,7 @@ class SynthesisManager {
   void leave(Worker& worker);
 
   std::shared_ptr<Workshop> workshop_;
+  Modeler here_{kMainThreadModeler, nullptr};
   double watchdog_seconds_;
   unsigned replacements_left_;
   std::uint32_t next_number_ = 0;

@@ -37,7 +37,7 @@ class Display:
         os.close(write_end)
         with os.fdopen(read_end) as pipe:
             number = pipe.readline().strip()
-        self.environment = dict(os.environ, DISPLAY=f":{number}")
+        self.environment = dict(os.environ, DISPLAY=f":{number}", ASAN_OPTIONS="detect_leaks=0")
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.manager = subprocess.Popen(["openbox"], env=self.environment,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -228,5 +228,31 @@ TEST_F(PlannerTest, LandingDropsStaleHandlesAndKeepsHungDestinations) {
   EXPECT_EQ(memory.used_bytes(), kMeshBytes);
 }
 
+TEST_F(PlannerTest, VisibleHolesAreMadeAtOnceWithinTheirTimeAndNothingElseIs) {
+  gate.open();
+  limits.seconds_here = 10;
+  const PlanReport report = plan({want(1, hole(10)), want(2, prefetch(10)), want(3, hole(20))});
+  EXPECT_EQ(report.executed, 2u);
+  EXPECT_EQ(report.published, 1u);
+  manager.wait_all();
+  std::vector<Completion> done;
+  manager.collect(done);
+  ASSERT_EQ(done.size(), 3u);
+  EXPECT_EQ(done[0].owner, 1u);
+  EXPECT_EQ(done[0].modeler, kMainThreadModeler);
+  EXPECT_EQ(done[1].owner, 3u);
+  EXPECT_EQ(done[2].owner, 2u);
+  EXPECT_NE(done[2].modeler, kMainThreadModeler);
+  EXPECT_EQ(land(done, cache, &cost).ready, 3u);
+}
+
+TEST_F(PlannerTest, AHoleThatIsPredictedToTakeTooLongIsLeftToTheModelers) {
+  gate.open();
+  limits.seconds_here = 1e-12;
+  const PlanReport report = plan({want(1, hole(10))});
+  EXPECT_EQ(report.executed, 0u);
+  EXPECT_EQ(report.published, 1u);
+}
+
 }  // namespace
 }  // namespace psygen::synthesis
