@@ -5,8 +5,8 @@
 namespace psygen::scene {
 namespace {
 
-// Extinction over the view distance at which nothing is left to see (contrast e^−3, 5 %).
-constexpr double kOpaque = 3.0;
+// Extinction over the view distance at which nothing is left to see (contrast e^−2, 14 %).
+constexpr double kOpaque = 2.0;
 
 }  // namespace
 
