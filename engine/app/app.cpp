@@ -76,7 +76,10 @@ core::Result<void> App::open() {
   }
   if (!options_.headless) {
     auto window = platform::Window::create({"psygen: " + world->name, options_.size, true});
-    if (!window) return tl::unexpected(window.error());
+    if (!window) {
+      return core::fail(window.error().code,
+                        window.error().message + " (a headless flight needs no display)");
+    }
     window_ = std::move(*window);
   }
   render::RendererOptions render_options;

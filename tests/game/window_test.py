@@ -104,9 +104,13 @@ def main():
         process = fly(display, psygen, source, out)
         window = wait_for("second window",
                           lambda: display.tool("search", "--onlyvisible", "--name", "psygen")).split()[0]
-        display.tool("windowclose" if display.tool("windowquit", window) is None else "version",
-                     *([window] if display.tool("windowquit", window) is None else []))
-        wait_for("end after closing the window", lambda: process.poll() is not None)
+        display.tool("windowactivate", "--sync", window)
+
+        def ended():
+            display.tool("key", "alt+F4")  # the window manager asks the window to close
+            return process.poll() is not None
+
+        wait_for("end after closing the window", ended)
         finish(process)
     print("window: resized, minimised, flown, photographed and closed")
 
