@@ -4,13 +4,16 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "engine/app/options.hpp"
+#include "engine/app/app.hpp"
 
 namespace psygen::game {
 
 enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
 
 int exit_code_of(const core::Error& error);
+
+// Writes data to stdout. kFailed, with a message, when it does not get there.
+int print(const std::string& text);
 
 class FlyCommand {
  public:
@@ -19,6 +22,8 @@ class FlyCommand {
   int run();
 
  private:
+  int fly(app::App& app) const;
+
   CLI::App* command_;
   app::Options options_;
   std::string world_ = "game/worlds/paper.toml";

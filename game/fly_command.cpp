@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <csignal>
-#include <cstdio>
+#include <cstdlib>
 
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
@@ -110,30 +110,37 @@ FlyCommand::FlyCommand(CLI::App& cli)
 int FlyCommand::run() {
   options_.world_file = world_;
   options_.stop = &interrupted;
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  // The first signal ends the flight, a second one the program.
+  const auto interrupt = [](int signal) {
+    interrupted = true;
+    std::signal(signal, SIG_DFL);
+  };
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
 
   auto app = app::App::create(options_);
   if (!app) {
     core::log_error(app.error().message);
     return exit_code_of(app.error());
   }
-  const auto report = (*app)->run();
+  const int code = fly(**app);
+  if ((*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
+  return code;
+}
+
+int FlyCommand::fly(app::App& app) const {
+  const auto report = app.run();
   if (!report) {
     core::log_error(report.error().message);
     return exit_code_of(report.error());
   }
-  const std::string text =
-      json_ ? telemetry::to_json(report->summary) : telemetry::to_text(report->summary);
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-    core::log_error("the summary could not be written to standard output");
-    return kFailed;
-  }
+  const int printed =
+      print(json_ ? telemetry::to_json(report->summary) : telemetry::to_text(report->summary));
   for (const auto& file : report->files)
     core::log_info(fmt::format("wrote {}", file.string()));
   for (const std::string& message : report->validation_messages)
     core::log_error(message);
-  return report->validation_messages.empty() ? kOk : kFailed;
+  return report->validation_messages.empty() ? printed : kFailed;
 }
 
 }  // namespace psygen::game

@@ -2,8 +2,10 @@
 // messages and progress to stderr.
 // Exit codes: 0 ok, 1 failed, 2 usage, 4 no usable device or display.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <iostream>
 
+#include "engine/core/log.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "game/commands.hpp"
 
@@ -11,6 +13,12 @@ namespace psygen::game {
 
 int exit_code_of(const core::Error& error) {
   return error.code == core::ErrorCode::kNoDevice ? kNoDevice : kFailed;
+}
+
+int print(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return kOk;
+  core::log_error("standard output cannot be written");
+  return kFailed;
 }
 
 }  // namespace psygen::game
@@ -28,8 +36,14 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool asked_for = error.get_exit_code() == 0;  // --help, --version
     cli.exit(error, std::cout, std::cerr);
-    return asked_for ? 0 : psygen::game::kUsage;
+    if (asked_for) return std::cout.flush() ? psygen::game::kOk : psygen::game::kFailed;
+    return psygen::game::kUsage;
   }
-  if (fly.chosen()) return fly.run();
-  return models.run();
+  // Nothing of ours throws, but libraries do when memory ends.
+  try {
+    return fly.chosen() ? fly.run() : models.run();
+  } catch (const std::exception& error) {
+    psygen::core::log_error(error.what());
+    return psygen::game::kFailed;
+  }
 }

@@ -1,8 +1,6 @@
 // psygen models: every model type, every parameter, straight from the schemas.
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "engine/models/registry.hpp"
@@ -29,7 +27,7 @@ nlohmann::ordered_json to_json(const models::ParameterSpec& spec) {
           {"doc", spec.doc}};
 }
 
-void print_json(const models::Registry& registry) {
+std::string json_of(const models::Registry& registry) {
   auto list = nlohmann::ordered_json::array();
   for (models::ModelIndex i = 0; i < registry.size(); ++i) {
     const models::ModelType& type = registry[i];
@@ -41,25 +39,28 @@ void print_json(const models::Registry& registry) {
                     {"levels", type.level_count()},
                     {"parameters", parameters}});
   }
-  fmt::print("{}\n", list.dump(2));
+  return list.dump(2) + "\n";
 }
 
-void print_table(const models::Registry& registry) {
+std::string table_of(const models::Registry& registry) {
+  std::string text;
+  const auto out = std::back_inserter(text);
   for (models::ModelIndex i = 0; i < registry.size(); ++i) {
     const models::ModelType& type = registry[i];
-    fmt::print("{}{}: {} ({} levels of detail)\n", i == 0 ? "" : "\n", type.name(), type.doc(),
-               type.level_count());
+    fmt::format_to(out, "{}{}: {} ({} levels of detail)\n", i == 0 ? "" : "\n", type.name(),
+                   type.doc(), type.level_count());
     for (const models::ParameterSpec& spec : type.parameters()) {
       if (spec.source == models::ParameterSource::kPlaced) {
-        fmt::print("  {:<16} set by the world{:<21} {}\n", spec.name, "", spec.doc);
+        fmt::format_to(out, "  {:<16} set by the world{:<21} {}\n", spec.name, "", spec.doc);
         continue;
       }
       const std::string range =
           fmt::format("{} to {}", number(spec, spec.hard_min), number(spec, spec.hard_max));
-      fmt::print("  {:<16} {:>8} {:<9} {:<18} {}\n", spec.name, number(spec, spec.default_value),
-                 spec.unit, range, spec.doc);
+      fmt::format_to(out, "  {:<16} {:>8} {:<9} {:<18} {}\n", spec.name,
+                     number(spec, spec.default_value), spec.unit, range, spec.doc);
     }
   }
+  return text;
 }
 
 }  // namespace
@@ -71,8 +72,7 @@ ModelsCommand::ModelsCommand(CLI::App& cli)
 
 int ModelsCommand::run() const {
   const models::Registry registry = models::make_standard_registry();
-  json_ ? print_json(registry) : print_table(registry);
-  return kOk;
+  return print(json_ ? json_of(registry) : table_of(registry));
 }
 
 }  // namespace psygen::game

@@ -9,8 +9,13 @@ tools/setup.sh
 cmake --preset release -DPSYGEN_TESTS=OFF -DPSYGEN_BENCHMARKS=OFF -B build/demo >/dev/null
 cmake --build build/demo --target psygen
 
-mode=(--headless)
-[ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && mode=()
-out="${PSYGEN_DEMO_OUT:-out/demo}"
-exec build/demo/game/psygen fly --world game/worlds/paper.toml --path game/paths/walk27.toml \
-  --out "$out" --images 300 "${mode[@]}" "$@"
+fly() {
+  build/demo/game/psygen fly --world game/worlds/paper.toml --path game/paths/walk27.toml \
+    --out "${PSYGEN_DEMO_OUT:-out/demo}" --images 300 "$@"
+}
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
+  code=0
+  fly "$@" || code=$?
+  [ "$code" -eq 4 ] || exit "$code"  # 4: the display cannot be used
+fi
+fly --headless "$@"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/image/image_io.hpp"
@@ -16,19 +14,23 @@ namespace {
 
 constexpr double kEyeHeightM = 25.0;
 
-// One progress bar for each label that comes along; nothing where stderr is no terminal.
+// One progress bar for each label that comes along; nothing where stderr is no terminal. False, to
+// end what is going on, once `stop` is set.
 class Bars {
  public:
-  void operator()(std::string_view label, double fraction) {
+  explicit Bars(const std::atomic<bool>* stop) : stop_(stop) {}
+  bool operator()(std::string_view label, double fraction) {
     if (!bar_ || label != label_) {
       label_ = label;
       bar_ = std::make_unique<telemetry::ProgressBar>(telemetry::stderr_terminal(), label_, 1.0);
     }
     bar_->update(fraction);
+    return stop_ == nullptr || !stop_->load();
   }
   void finish() { bar_.reset(); }
 
  private:
+  const std::atomic<bool>* stop_;
   std::string label_;
   std::unique_ptr<telemetry::ProgressBar> bar_;
 };
@@ -95,7 +97,7 @@ core::Result<void> App::open() {
   core::log_info(fmt::format("drawing with {}", renderer_->device().name));
 
   trace_ = std::make_unique<telemetry::TraceLog>();
-  Bars bars;
+  Bars bars(options_.stop);
   auto scene = scene::Scene::create(std::move(*world), std::move(*registry), options_.scene,
                                     renderer_.get(), trace_.get(), std::ref(bars));
   bars.finish();
@@ -124,10 +126,10 @@ core::CameraPose App::home() const {
 }
 
 core::Result<void> App::prepare(const core::CameraPose& first) {
-  Bars bars;
+  Bars bars(options_.stop);
   const double start_s = core::monotonic_seconds();
   std::uint64_t meshes = 0;
-  scene_->state().input.size = renderer_->size();
+  scene_->state().input.size = picture_size();
   if (options_.scene.paradigm == scene::Paradigm::kDataAmplification) {
     auto amplified = scene_->amplify(first, std::ref(bars));
     if (!amplified) return tl::unexpected(amplified.error());
@@ -144,10 +146,19 @@ core::Result<void> App::prepare(const core::CameraPose& first) {
   return {};
 }
 
+// The renderer knows a window's size only from the first frame on.
+core::Extent App::picture_size() const {
+  return window_ ? window_->framebuffer_size() : renderer_->size();
+}
+
+bool App::has_hung_modelers() const {
+  return !scene_->state().synthesis.manager->hung().empty();
+}
+
 core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
   scene::State& state = scene_->state();
   state.input.pose = pose;
-  state.input.size = renderer_->size();
+  state.input.size = picture_size();
   scene::tick(state);
   state.clock.now_s += dt_s;
   if (state.error) return tl::unexpected(*state.error);
@@ -161,9 +172,8 @@ core::Result<void> App::save_picture(const std::filesystem::path& file) {
   auto picture = renderer_->capture();
   if (!picture) return tl::unexpected(picture.error());
   const image::Image image{picture->width, picture->height, std::move(picture->rgba)};
-  images_hash_ = core::combine(images_hash_, image::hash(image));
-  ++images_;
   if (auto ok = image::write_png(file, image); !ok) return ok;
+  last_image_hash_ = image::hash(image);
   files_.push_back(file);
   return {};
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/app/options.hpp"
+#include "engine/app/overlay.hpp"
 #include "engine/platform/fly_camera.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/render/renderer.hpp"
@@ -40,6 +41,10 @@ class App {
   // The last frame as a PNG.
   core::Result<void> save_picture(const std::filesystem::path& file);
 
+  // A model hangs and its modeler still writes: a program in this state should leave through
+  // std::_Exit, because the modeler's memory must not be torn down.
+  bool has_hung_modelers() const;
+
   // Where the camera stands when nobody has moved it: above the ground in the middle of the world.
   core::CameraPose home() const;
   scene::Scene& scene() { return *scene_; }
@@ -51,6 +56,10 @@ class App {
   core::Result<void> open();
   core::Result<void> prepare(const core::CameraPose& first);
   core::Result<void> loop();
+  core::Result<void> fly_frame(std::uint64_t index, double flight_s, double dt_s);
+  void wait_while_minimised();
+  core::Extent picture_size() const;
+  void save_screenshot();
   bool wants_more(double flight_s, std::uint64_t frames) const;
   core::CameraPose next_pose(double flight_s, double dt_s);
   void handle_window();
@@ -72,7 +81,9 @@ class App {
   bool user_flies_ = false;
   bool overlay_ = true;
   bool closed_ = false;
-  std::uint64_t images_hash_ = 0;
+  Overlay overlay_figures_;
+  std::uint64_t last_image_hash_ = 0;
+  std::uint64_t images_hash_ = 0;  // of the numbered pictures, in order
   std::uint64_t images_ = 0;
   std::vector<std::filesystem::path> files_;
 };

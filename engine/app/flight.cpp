@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "engine/app/app.hpp"
-#include "engine/app/overlay.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/models/terrain.hpp"
@@ -67,71 +66,83 @@ void App::handle_window() {
   }
   if (window_->should_close() || input_.was_pressed(platform::Key::kEscape)) closed_ = true;
   if (input_.was_pressed(platform::Key::kF1)) overlay_ = !overlay_;
-  if (input_.was_pressed(platform::Key::kF12)) {
-    const auto folder =
-        options_.out_folder.empty() ? std::filesystem::path(".") : options_.out_folder;
-    const auto file = folder / fmt::format("screenshot_{:04}.png", images_);
-    if (auto ok = save_picture(file); ok) {
-      core::log_info(fmt::format("wrote {}", file.string()));
-    } else {
-      core::log_error(ok.error().message);
-    }
-  }
+  if (input_.was_pressed(platform::Key::kF12)) save_screenshot();
   if (moves_camera(input_)) user_flies_ = true;  // from here on the path is left
 }
 
+// A picture for the user: the first free name, and no part of the run's hash.
+void App::save_screenshot() {
+  std::filesystem::path file;
+  std::error_code ignored;
+  for (int number = 0; file.empty() || std::filesystem::exists(file, ignored); ++number) {
+    file = options_.out_folder / fmt::format("screenshot_{:04}.png", number);
+  }
+  if (auto ok = save_picture(file); !ok) core::log_error(ok.error().message);
+}
+
+void App::wait_while_minimised() {
+  while (picture_size() == core::Extent{} && !closed_) {
+    window_->wait_events(kMinimisedWaitSeconds);
+    handle_window();
+    if (options_.stop != nullptr && options_.stop->load()) return;
+  }
+}
+
+core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double dt_s) {
+  scene::State& state = scene_->state();
+  state.clock.now_s = flight_s;
+  state.input.overlay_lines.clear();
+  if (window_ && overlay_) {
+    state.input.overlay_lines = overlay_figures_.lines(state, renderer_->device());
+  }
+  const double start_s = core::monotonic_seconds();
+  const double cpu_start_s = core::thread_cpu_seconds();
+  if (auto ok = frame(next_pose(flight_s, dt_s), dt_s); !ok) return ok;
+  const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
+  record_frame(index, flight_s, frame_ms, (core::thread_cpu_seconds() - cpu_start_s) * 1000.0);
+  overlay_figures_.add_frame(frame_ms);
+  return {};
+}
+
 core::Result<void> App::loop() {
+  const double expected_s = options_.seconds > 0 ? options_.seconds
+                            : path_              ? path_->duration_seconds()
+                                                 : kDefaultSeconds;
   telemetry::ProgressBar bar(window_ ? telemetry::Terminal{} : telemetry::stderr_terminal(),
-                             "flying",
-                             options_.seconds > 0 ? options_.seconds
-                             : path_              ? path_->duration_seconds()
-                                                  : kDefaultSeconds);
-  Overlay overlay;
-  const bool fixed = options_.fixed_step_hz > 0;
-  double flight_s = 0, dt_s = fixed ? 1.0 / options_.fixed_step_hz : 1.0 / 60.0;
-  double frame_start_s = core::monotonic_seconds();
-  double cpu_start_s = core::thread_cpu_seconds();
-  for (std::uint64_t frames = 0; wants_more(flight_s, frames); ++frames) {
+                             "flying", expected_s);
+  const double hz = options_.fixed_step_hz;
+  double flight_s = 0, dt_s = hz > 0 ? 1.0 / hz : 1.0 / 60.0;
+  for (std::uint64_t frames = 0; wants_more(flight_s, frames);) {
+    // The flight's clock stands still while the window is minimised and while pictures are written.
     if (window_) {
       handle_window();
-      while (window_->minimised() && !closed_) {
-        window_->wait_events(kMinimisedWaitSeconds);
-        handle_window();
-        frame_start_s = core::monotonic_seconds();
-        if (options_.stop != nullptr && options_.stop->load()) break;
-      }
+      wait_while_minimised();
+      if (closed_) break;
     }
-    scene::State& state = scene_->state();
-    state.clock.now_s = flight_s;
-    if (window_ && overlay_) {
-      state.input.overlay_lines = overlay.lines(state, renderer_->device());
-    } else {
-      state.input.overlay_lines.clear();
-    }
-    if (auto ok = frame(next_pose(flight_s, dt_s), dt_s); !ok) return ok;
-
-    const double end_s = core::monotonic_seconds();
-    const double cpu_end_s = core::thread_cpu_seconds();
-    record_frame(frames, flight_s, (end_s - frame_start_s) * 1000.0,
-                 (cpu_end_s - cpu_start_s) * 1000.0);
-    overlay.add_frame((end_s - frame_start_s) * 1000.0);
+    const double start_s = core::monotonic_seconds();
+    if (auto ok = fly_frame(frames, flight_s, dt_s); !ok) return ok;
+    if (hz <= 0) dt_s = core::monotonic_seconds() - start_s;
     bar.update(flight_s);
-    if (!fixed) dt_s = end_s - frame_start_s;
-    flight_s += dt_s;
-    // What follows is not part of the flight: the clock stands still while pictures are written.
     if (options_.images_every > 0 && frames % options_.images_every == 0) {
       if (auto ok = save_numbered_picture(frames); !ok) return ok;
     }
-    frame_start_s = core::monotonic_seconds();
-    cpu_start_s = core::thread_cpu_seconds();
+    ++frames;
+    flight_s = hz > 0 ? static_cast<double>(frames) / hz : flight_s + dt_s;
   }
   return {};
 }
 
+// A window that is being resized may have no picture in this frame; that is no failure.
 core::Result<void> App::save_numbered_picture(std::uint64_t frame) {
-  const auto folder =
-      options_.out_folder.empty() ? std::filesystem::path(".") : options_.out_folder;
-  return save_picture(folder / fmt::format("frame_{:05}.png", frame));
+  auto saved = save_picture(options_.out_folder / fmt::format("frame_{:05}.png", frame));
+  if (saved) {
+    images_hash_ = core::combine(images_hash_, last_image_hash_);
+    ++images_;
+  } else if (window_ && saved.error().code != core::ErrorCode::kIo) {
+    core::log_warning(fmt::format("no picture of frame {}: {}", frame, saved.error().message));
+    return {};
+  }
+  return saved;
 }
 
 void App::record_frame(std::uint64_t index, double flight_s, double frame_ms, double cpu_ms) {
@@ -156,11 +167,12 @@ core::Result<FlightReport> App::run() {
   for (const Plugin& plugin : options_.plugins) {
     if (plugin.on_start) plugin.on_start(*this);
   }
-  if (auto ok = loop(); !ok) return tl::unexpected(ok.error());
-
+  // What was measured is written also when the flight ended early.
+  const auto flown = loop();
   FlightReport report;
   report.summary = telemetry::summarise(*log_, run_facts(), options_.warmup_seconds);
   if (auto ok = write_outputs(report.summary); !ok) return tl::unexpected(ok.error());
+  if (!flown) return tl::unexpected(flown.error());
   report.files = files_;
   report.validation_messages = renderer_->validation_messages();
   return report;

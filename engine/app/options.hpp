@@ -30,7 +30,7 @@ struct Plugin {
 struct Options {
   std::filesystem::path world_file;
   std::filesystem::path path_file;   // empty: the camera stands and turns, or the user flies
-  std::filesystem::path out_folder;  // empty: nothing is written
+  std::filesystem::path out_folder;  // empty: only pictures, here
   core::Extent size{1280, 720};
   bool headless = false;
   bool validation = false;

@@ -12,6 +12,11 @@ constexpr int kFloorRepeats = 15;
 constexpr std::size_t kFloorFrames =
     31;  // of the end of the flight, that the floor is compared with
 
+telemetry::Count count_of(double value) {
+  if (value < 0x1.0p64) return static_cast<std::uint64_t>(value);
+  return telemetry::Count::missing("more than 2^64");
+}
+
 telemetry::WorldFacts world_facts(const world::World& world, const models::Registry& registry) {
   telemetry::WorldFacts facts;
   facts.name = world.name;
@@ -23,9 +28,9 @@ telemetry::WorldFacts world_facts(const world::World& world, const models::Regis
     const auto endless = telemetry::Count::missing("the world is endless");
     facts.triangles = facts.bytes_paper = facts.bytes = endless;
   } else {
-    facts.triangles = static_cast<std::uint64_t>(size.triangles);
-    facts.bytes_paper = static_cast<std::uint64_t>(size.bytes_paper);
-    facts.bytes = static_cast<std::uint64_t>(size.bytes);
+    facts.triangles = count_of(size.triangles);
+    facts.bytes_paper = count_of(size.bytes_paper);
+    facts.bytes = count_of(size.bytes);
   }
   return facts;
 }
@@ -70,6 +75,7 @@ telemetry::RunFacts App::run_facts() {
       cache.prefetched > 0 ? telemetry::Figure(100.0 * static_cast<double>(cache.prefetch_hits) /
                                                static_cast<double>(cache.prefetched))
                            : telemetry::Figure::missing("nothing was synthesised ahead of time");
+  state.synthesis.manager->wait_all();  // nothing else runs while the floor is measured
   facts.floor_ratio = floor_ratio(*log_, *renderer_);
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
   facts.world_hash = options_.hash_world

@@ -101,6 +101,10 @@ class ModelType {
   // the vertices written (inside bounds(p)). Deterministic: same bits for the same (p, level) on
   // any thread and any CPU. No allocation that outlives the call, no I/O, no globals.
   virtual core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const = 0;
+  // True only for types whose coarse levels are certain to end within microseconds, whatever their
+  // parameters: the main thread may synthesise them itself when their absence is seen. A type that
+  // could hang must leave this to the modelers, which are watched.
+  virtual bool may_run_on_main_thread() const { return false; }
   // Writes the shared index list `id` (as named by mesh_size), `index_count` entries.
   virtual void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const = 0;
 };

@@ -61,8 +61,14 @@ class Chooser {
                                                          center + placed.box_half_extent}));
     demand.wanted_level = wanted_level(placed, *detail_.get(entity), demand, distance_m,
                                        block.error_pixels, is_terrain);
-    if (in_view) note_in_view(demand);
-    if (demand.wanted_level == kNoLevel) return;
+    in_view ? note_in_view(demand) : note_out_of_view(demand);
+    if (demand.wanted_level == kNoLevel) {
+      // Too small to be drawn: the first to go when room is needed.
+      if (demand.drawn_level != kNoLevel) {
+        synthesis_.cache->set_rank(mesh_.get(entity)->handle, Rank::unwanted());
+      }
+      return;
+    }
     provide(entity, demand, in_view, *block.visibility, distance_m);
   }
 
@@ -83,13 +89,15 @@ class Chooser {
   void note_in_view(Demand& demand) {
     const bool entered = demand.in_view_tick + 1 != clock_.tick;
     demand.in_view_tick = clock_.tick;
-    if (!entered || demand.wanted_level == kNoLevel) return;
+    if (demand.wanted_level == kNoLevel) return;
     if (demand.drawn_level == kNoLevel) {
-      demand.seen_s = static_cast<float>(clock_.real_s);
-    } else {
+      if (demand.seen_s < 0) demand.seen_s = static_cast<float>(clock_.real_s);
+    } else if (entered) {
       counters_.time_to_visible_ms.push_back(0.0F);
     }
   }
+
+  static void note_out_of_view(Demand& demand) { demand.seen_s = -1; }
 
   Rank rank_of(RankGroup group, const Visibility& visibility, float distance_m) const {
     if (synthesis::is_visible(group)) return Rank::by_layer(group, visibility.layer, distance_m);
@@ -119,15 +127,20 @@ class Chooser {
     request(entity, demand, level, rank_of(group, visibility, distance_m), visibility.deadline_s);
   }
 
-  // The wanted level; for a hole in view the coarsest one first; another one where it has failed.
+  // The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
+  // cannot be synthesised. kNoLevel if nothing is better than what is drawn.
   std::uint8_t level_to_request(ecs::Entity entity, const Demand& demand, bool hole) const {
-    const auto coarsest = static_cast<std::uint8_t>(detail_.get(entity)->level_count - 1);
+    const auto levels = static_cast<int>(detail_.get(entity)->level_count);
     const bool coarse_first = hole && settings_.levels_of_detail &&
                               settings_.paradigm == Paradigm::kParallelLazyAmplification;
-    const std::uint8_t level = coarse_first ? coarsest : demand.wanted_level;
-    if (level != demand.failed_level) return level;
-    if (demand.drawn_level != kNoLevel) return kNoLevel;
-    return level > 0 ? static_cast<std::uint8_t>(level - 1) : kNoLevel;
+    const int first = coarse_first ? levels - 1 : demand.wanted_level;
+    for (int distance = 0; distance < levels; ++distance) {
+      for (const int level : {first + distance, first - distance}) {
+        if (level < 0 || level >= levels || (demand.failed_levels >> level & 1) != 0) continue;
+        return level == demand.drawn_level ? kNoLevel : static_cast<std::uint8_t>(level);
+      }
+    }
+    return kNoLevel;
   }
 
   void request(ecs::Entity entity, Demand& demand, std::uint8_t level, Rank rank,
@@ -144,6 +157,10 @@ class Chooser {
       synthesis_.ready.push_back({entity, handle});
       // The entity that asked for it may have been destroyed; evictions are reported to the owner.
       synthesis_.cache->adopt(handle, owner_of(entity), rank);
+      return;
+    }
+    if (record != nullptr && record->state == synthesis::MeshState::kFailed) {
+      demand.failed_levels |= static_cast<std::uint8_t>(1u << level);
       return;
     }
     if (settings_.paradigm == Paradigm::kDataAmplification) return;

@@ -70,12 +70,13 @@ static_assert(sizeof(Mesh) == 44);
 
 // What is wanted for an entity and what has been done about it. Changes every tick.
 struct Demand {
-  float seen_s = -1;                     // since when it is in view without a mesh; −1: it is not
-  std::uint32_t in_view_tick = 0;        // the last tick in which it was in view
-  std::uint8_t drawn_level = kNoLevel;   // level of Mesh; kNoLevel: there is none
-  std::uint8_t wanted_level = kNoLevel;  // kNoLevel: too small on screen to be drawn
+  float seen_s = -1;  // since when it is in view without a mesh; −1: it is not
+  std::uint32_t in_view_tick = UINT32_MAX;  // the last tick in which it was in view
+  std::uint8_t drawn_level = kNoLevel;      // level of Mesh; kNoLevel: there is none
+  std::uint8_t wanted_level = kNoLevel;     // kNoLevel: too small on screen to be drawn
   std::uint8_t requested_level = kNoLevel;
-  std::uint8_t failed_level = kNoLevel;  // its synthesis failed; it is not asked for again
+  std::uint8_t failed_levels =
+      0;  // bit l: level l cannot be synthesised and is not asked for again
 };
 static_assert(sizeof(Demand) == 12);
 

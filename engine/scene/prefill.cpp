@@ -7,16 +7,14 @@
 #include "engine/core/clock.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/synthesis/content_hash.hpp"
-#include "engine/synthesis/synthesize.hpp"
 
 namespace psygen::scene {
 namespace {
 
 // A tick looks at each block around the camera once in 8 turns; so long must nothing be missing.
 constexpr int kQuietTicks = 9;
-// No view needs so many; a bound in case the budget lets nothing settle.
-constexpr int kMaxTicks = 20'000;
+// After so many ticks in which nothing became ready, what is still wanted cannot be had.
+constexpr int kIdleTicks = 40;
 
 struct RegionSize {
   std::uint64_t meshes = 0, bytes = 0;
@@ -103,22 +101,35 @@ void Scene::tick_without_drawing(const core::CameraPose& pose) {
 std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progress) {
   State& s = state_;
   std::uint64_t synthesised = 0;
-  int quiet = 0;
-  for (int i = 0; i < kMaxTicks && quiet < kQuietTicks; ++i) {
+  int quiet = 0, idle = 0;
+  while (quiet < kQuietTicks && idle < kIdleTicks) {
+    const float coarsening = s.synthesis.coarsening;
     tick_without_drawing(pose);
     synthesised += s.counters.models_synthesised;
+    const bool moved = s.counters.models_synthesised > 0 || s.counters.failed > 0 ||
+                       s.counters.blocks_created > 0 || s.synthesis.coarsening != coarsening;
+    idle = moved ? 0 : idle + 1;
     const bool complete = s.streaming.missing.empty() && s.synthesis.finished.empty();
-    // What the budget refuses will not come by waiting; levels get coarser until nothing is
-    // refused.
     quiet = complete && s.counters.requests == 0 ? quiet + 1 : 0;
-    if (progress) {
-      const double missing =
-          s.counters.requests + 64.0 * static_cast<double>(s.streaming.missing.size());
-      progress("filling the cache", static_cast<double>(synthesised) /
-                                        (static_cast<double>(synthesised) + missing + 1.0));
-    }
+    const double missing = s.counters.requests + static_cast<double>(s.streaming.missing.size()) *
+                                                     (1.0 + s.facts.models_per_block);
+    const double made = static_cast<double>(synthesised);
+    if (progress && !progress("filling the cache", made / (made + missing + 1.0))) break;
   }
   return synthesised;
+}
+
+core::Result<void> Scene::check_region() const {
+  const RegionSize size = region_size(state_);
+  if (size.bytes <= state_.settings.budget_bytes) return {};
+  constexpr double kMiB = 1 << 20;
+  return core::fail(
+      core::ErrorCode::kOverBudget,
+      fmt::format("amplifying the {0} × {0} blocks around the camera takes {1:.0f} MiB for {2} "
+                  "meshes, more than the budget of {3:.0f} MiB; lower the view distance or raise "
+                  "the budget",
+                  state_.streaming.grid.side(), static_cast<double>(size.bytes) / kMiB, size.meshes,
+                  static_cast<double>(state_.settings.budget_bytes) / kMiB));
 }
 
 core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const Progress& progress) {
@@ -126,20 +137,11 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
   s.input.pose = pose;
   input_system(s.input, s.clock, s.facts, s.camera);
   create_all_blocks(s);
-  const RegionSize size = region_size(s);
-  if (size.bytes > s.settings.budget_bytes) {
-    return core::fail(
-        core::ErrorCode::kOverBudget,
-        fmt::format("amplifying the {0} × {0} blocks around the camera takes {1:.0f} MiB for {2} "
-                    "meshes, more than the budget of {3:.0f} MiB; lower --view-distance or raise "
-                    "--budget",
-                    s.streaming.grid.side(), static_cast<double>(size.bytes) / (1 << 20),
-                    size.meshes, static_cast<double>(s.settings.budget_bytes) / (1 << 20)));
-  }
+  if (auto fits = check_region(); !fits) return tl::unexpected(fits.error());
   want_everything(s);
-  std::vector<synthesis::Want> all = std::move(s.synthesis.wants);
+  const std::vector<synthesis::Want> all = std::move(s.synthesis.wants);
   constexpr std::size_t kBatch = 2048;
-  std::uint64_t done = 0;
+  std::uint64_t done = 0, failed = 0;
   for (std::size_t first = 0; first < all.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, all.size() - first);
     s.synthesis.planner->plan(std::span(all).subspan(first, count), *s.synthesis.cache,
@@ -150,41 +152,17 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
     s.counters = {};
     land_everything(s);
     done += s.counters.models_synthesised;
-    if (progress) {
-      progress("amplifying", static_cast<double>(first + count) / static_cast<double>(all.size()));
-    }
+    failed += s.counters.failed;
+    const double fraction = static_cast<double>(first + count) / static_cast<double>(all.size());
+    if (progress && !progress("amplifying", fraction)) return done;
+  }
+  if (done + failed < all.size()) {
+    return core::fail(core::ErrorCode::kOverBudget,
+                      fmt::format("only {} of {} meshes found room in the geometry memory; lower "
+                                  "the view distance or raise the budget",
+                                  done, all.size()));
   }
   return done;
-}
-
-std::uint64_t sample_world_hash(const world::World& world, const models::Registry& registry,
-                                core::BlockCoord block) {
-  synthesis::WorldHash hash;
-  std::vector<world::Placement> placements;
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const core::BlockCoord coord{block.x + dx, block.z + dz};
-      placements.clear();
-      if (!world.contains(coord)) continue;
-      world::place_models(world, registry, coord, placements);
-      placements.push_back({world.terrain_model, kTerrainIndex, glm::vec3(0.0F),
-                            world::terrain_parameters(world, coord)});
-      for (const world::Placement& placement : placements) {
-        const models::ModelType& type = registry[placement.model];
-        for (int level = 0; level < type.level_count(); ++level) {
-          const auto mesh = synthesis::HeapDestination::make(type, placement.parameters, level);
-          if (!mesh) continue;
-          const models::MeshView view = mesh->view();
-          if (!synthesis::synthesize_guarded(type, placement.parameters, level, view).ok) continue;
-          hash.add(synthesis::content_hash(
-              {coord, placement.index, placement.model, static_cast<std::uint16_t>(level),
-               placement.parameters.hash()},
-              view));
-        }
-      }
-    }
-  }
-  return hash.value();
 }
 
 }  // namespace psygen::scene

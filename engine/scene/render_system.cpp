@@ -1,9 +1,8 @@
 // Turns what is in view and resident into draw lists, nearest blocks first, counts what is missing,
 // and hands the lists to the renderer.
 #include <algorithm>
-#include <numbers>
 
-#include "engine/scene/lighting.hpp"
+#include "engine/scene/missing.hpp"
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
@@ -18,14 +17,6 @@ struct Columns {
   ecs::Accessor<const Mesh> mesh;
   ecs::Accessor<const Detail> detail;
 };
-
-// Share of the picture that a ball covers, in percent.
-double covered_percent(const Camera& camera, glm::vec3 center, float radius_m) {
-  const double distance_m = std::max(glm::length(center), radius_m);
-  const double radius_px = camera.pixels_per_radian * radius_m / distance_m;
-  const double picture = static_cast<double>(camera.size.width) * camera.size.height;
-  return std::min(100.0, 100.0 * std::numbers::pi * radius_px * radius_px / picture);
-}
 
 // Counts a node in view; true if it can be drawn.
 bool count_node(const Camera& camera, const Demand& demand, glm::vec3 center, float radius_m,

@@ -13,6 +13,9 @@
 namespace psygen::scene {
 namespace {
 
+// Of the parameters with a range, so many are tried at both ends together.
+constexpr std::size_t kMaxVaried = 12;
+
 core::Result<void> check(const Settings& settings) {
   const auto refuse = [](std::string sentence) {
     return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
@@ -32,9 +35,24 @@ core::Result<void> check(const Settings& settings) {
   return {};
 }
 
-// How far models may rise above their foot: the largest box over the corners of their ranges.
-float models_height(const world::World& world, const models::Registry& registry) {
-  float height_m = 0;
+// Blocks and models that exist at once, before anything is allocated for them.
+core::Result<void> check_size(const world::World& world, const Settings& settings) {
+  const double side = 2 * std::ceil(settings.view_distance_m / world.block_size_m()) + 3;
+  const double entities = side * side * (1.0 + static_cast<double>(world::models_per_block(world)));
+  if (entities <= Scene::kMaxEntities) return {};
+  return core::fail(
+      core::ErrorCode::kOverBudget,
+      fmt::format(
+          "a view of {:.0f} m over blocks of {:g} m (block_vertices, cell_m) with {} models "
+          "each (count) needs {:.3g} entities; at most {:.0f} are allowed",
+          settings.view_distance_m, world.block_size_m(), world::models_per_block(world), entities,
+          Scene::kMaxEntities));
+}
+
+// How far models may reach from their foot, sideways and up: the largest boxes over the corners of
+// their ranges.
+glm::vec2 models_reach(const world::World& world, const models::Registry& registry) {
+  glm::vec2 reach_m(0.0F);
   for (const world::Scatter& scatter : world.scatter) {
     const models::ModelType& type = registry[scatter.model];
     const auto specs = type.parameters();
@@ -42,17 +60,19 @@ float models_height(const world::World& world, const models::Registry& registry)
     for (std::size_t i = 0; i < specs.size(); ++i) {
       if (scatter.ranges[i].low != scatter.ranges[i].high) ranged.push_back(i);
     }
-    for (std::uint32_t corner = 0; corner < (1u << std::min<std::size_t>(ranged.size(), 10));
-         ++corner) {
+    const std::size_t varied = std::min(ranged.size(), kMaxVaried);
+    for (std::uint32_t corner = 0; corner < (1u << varied); ++corner) {
       models::Parameters p = world::scatter_parameters(registry, scatter);
-      for (std::size_t k = 0; k < std::min<std::size_t>(ranged.size(), 10); ++k) {
+      for (std::size_t k = 0; k < varied; ++k) {
         const world::ParameterRange& range = scatter.ranges[ranged[k]];
         world::set_parameter(type, p, ranged[k], (corner >> k & 1) != 0 ? range.high : range.low);
       }
-      height_m = std::max(height_m, type.bounds(p).max.y);
+      const core::Bounds box = type.bounds(p);
+      reach_m.x = std::max({reach_m.x, -box.min.x, -box.min.z, box.max.x, box.max.z});
+      reach_m.y = std::max(reach_m.y, box.max.y);
     }
   }
-  return height_m;
+  return reach_m;
 }
 
 std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
@@ -103,6 +123,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
                                                    telemetry::TraceLog* trace,
                                                    const Progress& progress) {
   if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_size(world, settings); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<Scene> scene(new Scene);
   State& s = scene->state_;
   s.settings = settings;
@@ -114,7 +135,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.palette = palette_of(facts.world);
   facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(facts.world));
   facts.cell_m = static_cast<float>(facts.world.cell_m());
-  facts.models_height_m = models_height(facts.world, facts.registry);
+  facts.models_reach_m = models_reach(facts.world, facts.registry);
 
   const double blocks = std::ceil(settings.view_distance_m / facts.world.block_size_m());
   s.streaming = Streaming{BlockGrid(static_cast<std::uint32_t>(blocks) + 1),
@@ -131,7 +152,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
       std::make_unique<synthesis::GeometryCache>(*s.memory, facts.registry, settings.budget_bytes);
   synthesis.cost = std::make_unique<synthesis::CostModel>(facts.registry);
   scene->calibration_ = synthesis.cost->calibrate(cost_samples(facts), {}, [&](double fraction) {
-    if (progress) progress("calibrating", fraction);
+    if (progress) (void)progress("calibrating", fraction);
   });
   synthesis.planner = std::make_unique<synthesis::Planner>();
   synthesis::SynthesisOptions options;

@@ -11,14 +11,15 @@
 
 namespace psygen::scene {
 
-// Told how far something long has come: a label and a fraction in [0, 1].
-using Progress = std::function<void(std::string_view, double)>;
+// Told how far something long has come: a label and a fraction in [0, 1]. False ends it early.
+using Progress = std::function<bool(std::string_view, double)>;
 
 class Scene {
  public:
   // `renderer` (may be null) and `trace` (may be null) outlive the scene. Starts the modelers and
   // calibrates the cost model (below 0.5 s). Fails with kInvalidArgument for settings that make no
-  // sense and with kOverBudget for a budget below kMinBudgetBytes.
+  // sense, with kOverBudget for a budget below kMinBudgetBytes and for a view with more than
+  // kMaxEntities blocks and models.
   static core::Result<std::unique_ptr<Scene>> create(world::World world, models::Registry registry,
                                                      const Settings& settings,
                                                      render::Renderer* renderer,
@@ -31,8 +32,9 @@ class Scene {
   const synthesis::CalibrationReport& calibration() const { return calibration_; }
 
   // Fills the cache for a pose before the first frame (paper, section 4: the initial cache): ticks
-  // without drawing and waits for the modelers, until nothing is missing or the budget is full.
-  // Also what makes a picture independent of timing. Returns how many meshes were synthesised.
+  // without drawing and waits for the modelers, until nothing is missing, or nothing more can be
+  // had (a small budget, models that fail). Also what makes a picture independent of timing.
+  // Returns how many meshes were synthesised.
   std::uint64_t settle(const core::CameraPose& pose, const Progress& progress = {});
 
   // Data amplification (section 3.3.1): synthesises all models around the pose at every level that
@@ -40,9 +42,11 @@ class Scene {
   core::Result<std::uint64_t> amplify(const core::CameraPose& pose, const Progress& progress = {});
 
   static constexpr std::uint64_t kMinBudgetBytes = 4ull << 20;
+  static constexpr double kMaxEntities = 2e6;
 
  private:
   Scene() = default;
+  core::Result<void> check_region() const;
   void tick_without_drawing(const core::CameraPose& pose);
 
   State state_;

@@ -2,6 +2,7 @@
 // systems get only the parts they name (tick.cpp). Main thread only.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -64,7 +65,7 @@ struct WorldFacts {
   render::TerrainPalette palette;
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
-  float models_height_m = 0;  // how far models may rise above the ground
+  glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
 };
 
 struct Streaming {

@@ -124,6 +124,7 @@ void streaming_system(const Settings& settings, const Camera& camera, const Worl
     create_block(facts, streaming.missing.back(), scratch, streaming, entities);
     streaming.missing.pop_back();
     ++counters.blocks_created;
+    if (settings.paradigm == Paradigm::kLazyEvaluation) continue;  // all of it, in every frame
     if ((core::monotonic_seconds() - start_s) * 1000.0 > settings.streaming_budget_ms) break;
   }
 }

@@ -54,6 +54,7 @@ std::span<const System> tick_systems() {
 
 void tick(State& state) {
   state.counters = {};
+  state.error.reset();
   state.clock.real_s = core::monotonic_seconds() - state.clock.origin_s;
   state.record = {};
   for (std::size_t i = 0; i < kTick.size(); ++i) {

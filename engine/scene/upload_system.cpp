@@ -49,7 +49,7 @@ void give_up(const synthesis::Completion& job, ecs::World& entities, Totals& tot
     core::log_warning(fmt::format("a model could not be synthesised: {}", job.error));
   }
   if (Demand* demand = entities.get<Demand>(entity_of(job.owner))) {
-    demand->failed_level = static_cast<std::uint8_t>(job.key.level);
+    demand->failed_levels |= static_cast<std::uint8_t>(1u << job.key.level);
     demand->requested_level = kNoLevel;
   }
 }
@@ -70,9 +70,15 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
            std::uint32_t shared_indices, double now_s, ecs::World& entities, Synthesis& synthesis,
            Counters& counters, std::vector<ecs::Landing<Mesh>>& landings) {
   Demand* demand = entities.get<Demand>(owner);
-  if (demand == nullptr) return;  // destroyed meanwhile; the mesh stays in the cache
+  if (demand == nullptr) {
+    synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());  // destroyed meanwhile
+    return;
+  }
   const bool replaces = demand->drawn_level != kNoLevel;
-  if (!accept(*demand, static_cast<std::uint8_t>(record.key.level), now_s, counters)) return;
+  if (!accept(*demand, static_cast<std::uint8_t>(record.key.level), now_s, counters)) {
+    synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());
+    return;
+  }
   if (replaces) {
     synthesis.cache->set_rank(entities.get<Mesh>(owner)->handle, synthesis::Rank::unwanted());
   }
@@ -91,7 +97,10 @@ void upload_system(const Settings& settings, const Clock& clock, const WorldFact
     offer(ready.entity, ready.handle, *record, shared_indices_of(*record, facts, shared, renderer),
           clock.real_s, entities, synthesis, counters, landings);
   }
-  const std::size_t count = count_within_budget(synthesis, settings.upload_budget_bytes);
+  // Lazy evaluation draws in this frame what it made for this frame.
+  const std::uint64_t budget_bytes =
+      settings.paradigm == Paradigm::kLazyEvaluation ? UINT64_MAX : settings.upload_budget_bytes;
+  const std::size_t count = count_within_budget(synthesis, budget_bytes);
   const std::span<const synthesis::Completion> batch(synthesis.finished.data(), count);
   counters.bytes_synthesised = synthesis::land(batch, *synthesis.cache, synthesis.cost.get()).bytes;
   for (const synthesis::Completion& job : batch) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "engine/scene/missing.hpp"
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
@@ -15,9 +16,9 @@ core::Bounds block_bounds(const WorldFacts& facts, const core::Bounds& terrain,
                           const core::WorldPosition& camera, core::BlockCoord coord) {
   const glm::vec3 corner(core::offset_m(coord, camera, facts.world.block_size_m()));
   core::Bounds box{corner + terrain.min, corner + terrain.max};
-  box.max.y += facts.models_height_m;
+  box.max.y += facts.models_reach_m.y;
   // Crowns reach over the block's edge.
-  const glm::vec3 overhang(facts.models_height_m * 0.5F, 0.0F, facts.models_height_m * 0.5F);
+  const glm::vec3 overhang(facts.models_reach_m.x, 0.0F, facts.models_reach_m.x);
   return {box.min - overhang, box.max + overhang};
 }
 
@@ -71,9 +72,18 @@ void write_visibility(const View& view, const BlockGrid& grid, float view_distan
   }
 }
 
+// A block in view that has no entity yet is a hole like any other.
+void count_missing_block(const Camera& camera, const core::Bounds& box, Counters& counters) {
+  ++counters.nodes_in_view;
+  ++counters.holes;
+  counters.missing_pixels_percent +=
+      covered_percent(camera, box.center(), glm::length(box.half_extent()));
+}
+
 // Sorts the window's blocks into the three lists of the view, each in order of importance.
-void list_blocks(const WorldFacts& facts, const BlockGrid& grid, float view_distance_m,
-                 const ecs::World& entities, View& view, Counters& counters) {
+void list_blocks(const Camera& camera, const WorldFacts& facts, const BlockGrid& grid,
+                 float view_distance_m, const ecs::World& entities, View& view,
+                 Counters& counters) {
   view.visible.clear();
   view.expected.clear();
   view.around.clear();
@@ -91,7 +101,7 @@ void list_blocks(const WorldFacts& facts, const BlockGrid& grid, float view_dist
       // Straight ahead, but beyond the view distance: the next to come.
       near ? view.visible.push_back(entity) : keep_out_of_view(cell, entity);
     } else if (near && facts.world.contains(coord)) {
-      ++counters.holes;
+      count_missing_block(camera, view.bounds[cell], counters);
     }
   }
   for (const std::uint32_t cell : view.plp.prefetch) {
@@ -127,7 +137,7 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
   }
   const auto view_distance_m = static_cast<float>(settings.view_distance_m);
   write_visibility(view, grid, view_distance_m, entities);
-  list_blocks(facts, grid, view_distance_m, entities, view, counters);
+  list_blocks(camera, facts, grid, view_distance_m, entities, view, counters);
 }
 
 }  // namespace psygen::scene

@@ -92,7 +92,7 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     request.owner = want.owner;
     request.predicted_seconds = item.order.predicted_seconds;
     cache.adopt(request.handle, want.owner, want.rank);
-    list_for(want).push_back(request);
+    list_for(want, cache).push_back(request);
     ++report.carried;
     report.predicted_seconds += item.order.predicted_seconds;
     return;
@@ -109,8 +109,9 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     return;
   }
   const MeshRecord& record = *cache.get(*handle);
-  list_for(want).push_back({*handle, want.key, *want.parameters, record.destination, record.size,
-                            item.complexity, item.order.predicted_seconds, want.owner});
+  list_for(want, cache)
+      .push_back({*handle, want.key, *want.parameters, record.destination, record.size,
+                  item.complexity, item.order.predicted_seconds, want.owner});
   ++report.reserved;
   report.predicted_seconds += item.order.predicted_seconds;
 }

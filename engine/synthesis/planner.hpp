@@ -30,7 +30,9 @@ struct PlanLimits {
   double seconds_ahead = 0.25;  // predicted work per modeler in one plan
   std::uint32_t max_requests = 4096;
   std::uint32_t max_refusals = 16;  // reservations refused by the budget before giving up
-  double seconds_here = 0;          // for visible holes, executed by the caller before it goes on
+  // For visible holes whose type may run on the main thread; they are executed before plan()
+  // returns.
+  double seconds_here = 0;
 };
 
 struct PlanReport {
@@ -68,8 +70,10 @@ class Planner {
   void give_back_unwanted(GeometryCache& cache, PlanReport& report);
   bool give_back_last(GeometryCache& cache, PlanReport& report);
   void add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report);
-  std::vector<Request>& list_for(const Want& want) {
-    return separate_holes_ && want.rank.group() == RankGroup::kVisibleHole ? holes_ : plan_;
+  std::vector<Request>& list_for(const Want& want, const GeometryCache& cache) {
+    const bool here = separate_holes_ && want.rank.group() == RankGroup::kVisibleHole &&
+                      cache.registry()[want.key.model].may_run_on_main_thread();
+    return here ? holes_ : plan_;
   }
   void execute_holes(SynthesisManager& manager, double seconds, PlanReport& report);
 

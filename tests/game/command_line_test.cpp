@@ -86,6 +86,10 @@ TEST(CommandLine, FailuresOfFilesAreOneAndNameTheFile) {
 }
 
 TEST(CommandLine, ADiskThatIsFullIsAFailure) {
+  for (const char* arguments : {"models", "models --json", "--help"}) {
+    const std::string full = std::string(arguments) + " >/dev/full; exit $?; true";
+    EXPECT_EQ(psygen(full).code, 1) << arguments;
+  }
   const Outcome outcome =
       psygen("fly --headless --frames 2 --size 64x36 --view-distance 64 >/dev/full; exit $?; true");
   EXPECT_EQ(outcome.code, 1) << outcome.err;

@@ -70,19 +70,37 @@ def finish(process):
     return err
 
 
+def cpu_seconds(process):
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def main():
+    processes = []
+    try:
+        run(processes)
+    finally:
+        for process in processes:
+            process.kill()
+
+
+def run(processes):
     psygen, source = sys.argv[1], pathlib.Path(sys.argv[2])
     with Display() as display, tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
         process = fly(display, psygen, source, out)
+        processes.append(process)
         window = wait_for("window", lambda: display.tool("search", "--onlyvisible", "--name", "psygen")
                           ).split()[0]
         display.tool("windowfocus", "--sync", window)
         for width in range(200, 520, 16):
             display.tool("windowsize", window, width, 460 - width // 2)
         display.tool("windowminimize", "--sync", window)
-        time.sleep(0.5)
+        # Minimised, a second of real time may cost only a little processor time: no busy loop.
+        busy, start = cpu_seconds(process), time.monotonic()
+        wait_for("second while minimised", lambda: time.monotonic() - start > 1.0)
         assert process.poll() is None, "ended while minimised"
+        assert cpu_seconds(process) - busy < 0.5, "a busy loop while minimised"
         display.tool("windowmap", "--sync", window)
         display.tool("windowactivate", "--sync", window)
         display.tool("windowsize", "--sync", window, 400, 225)
@@ -93,15 +111,14 @@ def main():
             return list(out.glob("screenshot_*.png"))
 
         wait_for("screenshot", screenshot)
-        display.tool("keydown", "w")
-        time.sleep(0.3)
-        display.tool("keyup", "w")
+        display.tool("key", "--repeat", "10", "w")
         display.tool("key", "Escape")
         wait_for("end after Escape", lambda: process.poll() is not None)
         finish(process)
         assert (out / "summary.json").exists(), "no summary was written"
 
         process = fly(display, psygen, source, out)
+        processes.append(process)
         window = wait_for("second window",
                           lambda: display.tool("search", "--onlyvisible", "--name", "psygen")).split()[0]
         display.tool("windowactivate", "--sync", window)

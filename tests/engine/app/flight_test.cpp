@@ -48,21 +48,60 @@ TEST(Flight, TheSummaryCarriesEveryFieldOrSaysWhyNot) {
     std::ranges::replace(dotted, '/', '.');
     return summary.at("reasons").contains(dotted);
   };
-  for (const char* path :
-       {"/schema", "/world/name", "/world/seed", "/world/blocks", "/world/triangles",
-        "/world/bytes_paper", "/world/bytes", "/device/name", "/device/driver", "/device/api",
-        "/run/paradigm", "/run/policy", "/run/modelers", "/run/width", "/run/height",
-        "/run/frames", "/run/seconds", "/run/lod", "/run/fixed_step", "/frame_ms/mean",
-        "/frame_ms/p50", "/frame_ms/p95", "/frame_ms/p99", "/frame_ms/p999", "/frame_ms/max",
-        "/low1_fps", "/hitches", "/stutter_percent", "/missing/frames", "/missing/nodes_p99",
-        "/missing/pixels_max_percent", "/missing/time_to_visible_ms/p50",
-        "/missing/time_to_visible_ms/p99", "/missing/time_to_visible_ms/max",
-        "/cache/budget_bytes", "/cache/peak_bytes", "/cache/hits", "/cache/misses",
-        "/cache/evictions", "/cache/regenerations", "/cache/prefetch_hit_percent",
-        "/synthesis/models", "/synthesis/triangles", "/synthesis/bytes", "/synthesis/seconds",
-        "/synthesis/triangles_per_second", "/synthesis/cost_error_percent/p50",
-        "/synthesis/cost_error_percent/p95", "/draw/triangles_p50", "/draw/draws_p50",
-        "/draw/floor_ratio", "/memory/peak_rss_bytes", "/hash/world", "/hash/images"}) {
+  for (const char* path : {"/schema",
+                           "/world/name",
+                           "/world/seed",
+                           "/world/blocks",
+                           "/world/triangles",
+                           "/world/bytes_paper",
+                           "/world/bytes",
+                           "/device/name",
+                           "/device/driver",
+                           "/device/api",
+                           "/run/paradigm",
+                           "/run/policy",
+                           "/run/modelers",
+                           "/run/width",
+                           "/run/height",
+                           "/run/frames",
+                           "/run/seconds",
+                           "/run/lod",
+                           "/run/fixed_step",
+                           "/frame_ms/mean",
+                           "/frame_ms/p50",
+                           "/frame_ms/p95",
+                           "/frame_ms/p99",
+                           "/frame_ms/p999",
+                           "/frame_ms/max",
+                           "/low1_fps",
+                           "/hitches",
+                           "/stutter_percent",
+                           "/missing/frames",
+                           "/missing/nodes_p99",
+                           "/missing/pixels_max_percent",
+                           "/missing/time_to_visible_ms/p50",
+                           "/missing/time_to_visible_ms/p99",
+                           "/missing/time_to_visible_ms/max",
+                           "/cache/budget_bytes",
+                           "/cache/peak_bytes",
+                           "/cache/hits",
+                           "/cache/misses",
+                           "/cache/evictions",
+                           "/cache/regenerations",
+                           "/cache/prefetch_hit_percent",
+                           "/synthesis/models",
+                           "/synthesis/triangles",
+                           "/synthesis/bytes",
+                           "/synthesis/seconds",
+                           "/synthesis/triangles_per_second",
+                           "/synthesis/cost_error_percent/p50",
+                           "/synthesis/cost_error_percent/p95",
+                           "/draw/triangles_p50",
+                           "/draw/draws_p50",
+                           "/draw/floor_ratio",
+                           "/memory/peak_rss_bytes",
+                           "/hash/world",
+                           "/hash/images"}) {
     EXPECT_TRUE(has(path)) << path;
   }
   for (const scene::System& system : scene::tick_systems()) {
@@ -73,25 +112,19 @@ TEST(Flight, TheSummaryCarriesEveryFieldOrSaysWhyNot) {
   EXPECT_LE(summary["cache"]["peak_bytes"].get<std::uint64_t>(), 128ull << 20);
 }
 
-TEST(Flight, ModelersAndTimingDoNotChangeTheWorldHash) {
-  Options options = short_flight();
-  options.frames = 3;
-  options.scene.modelers = 1;
-  const auto one = fly(options).summary.hash.world;
-  options.scene.modelers = 3;
-  EXPECT_EQ(fly(options).summary.hash.world, one);
-}
-
 TEST(Flight, EachParadigmFlies) {
-  for (const auto paradigm : {scene::Paradigm::kDataAmplification,
-                              scene::Paradigm::kLazyEvaluation}) {
+  for (const auto paradigm :
+       {scene::Paradigm::kDataAmplification, scene::Paradigm::kLazyEvaluation}) {
     Options options = short_flight();
     options.frames = 4;
+    options.warmup_seconds = 0;
     options.scene.paradigm = paradigm;
     options.scene.view_distance_m = 64;
     options.scene.budget_bytes = 512ull << 20;
     const FlightReport report = fly(options);
     EXPECT_EQ(report.summary.run.frames, 4u);
+    EXPECT_EQ(report.summary.missing.frames.value.value_or(99), 0u);
+    EXPECT_GT(report.summary.draw.draws_p50.value.value_or(0), 50.0);
   }
 }
 

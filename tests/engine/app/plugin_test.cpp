@@ -27,8 +27,8 @@ TEST(Plugin, ThatCannotRegisterItsModelsIsNamed) {
   Options options = short_flight();
   options.plugins.push_back({"broken",
                              [](models::Registry&) {
-                               return core::Result<void>(
-                                   core::fail(core::ErrorCode::kInvalidArgument, "no models today"));
+                               return core::Result<void>(core::fail(
+                                   core::ErrorCode::kInvalidArgument, "no models today"));
                              },
                              {},
                              {}});

@@ -41,7 +41,7 @@ inline core::CameraPose pose_at(std::int32_t block_x, std::int32_t block_z, doub
   return pose;
 }
 
-// One tick whose requests are all finished before the results are collected in the next one.
+// One tick; what it asks for may arrive in a later one.
 inline void tick_at(Scene& scene, const core::CameraPose& pose) {
   State& state = scene.state();
   state.input.pose = pose;

@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "engine/synthesis/content_hash.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
@@ -34,8 +35,22 @@ TEST(Scene, SettlingLeavesNoHoleAndNothingCoarse) {
   expect_within_budget(*scene);
 }
 
-TEST(Scene, TheDrawListsAreTheSameForAnyNumberOfModelers) {
+// Over everything that is in the cache.
+synthesis::WorldHash cache_hash(const Scene& scene) {
+  synthesis::WorldHash hash;
+  const State& s = scene.state();
+  for (const synthesis::MeshRecord& record : s.synthesis.cache->records()) {
+    if (record.state != synthesis::MeshState::kReady) continue;
+    const auto vertices = core::hash_bytes(s.memory->vertex_bytes(record.range));
+    const auto indices = core::hash_bytes(std::as_bytes(s.memory->indices(record.range)));
+    hash.add(core::combine(core::combine(synthesis::hash_of(record.key), vertices), indices));
+  }
+  return hash;
+}
+
+TEST(Scene, DrawListsAndEveryByteOfGeometryAreTheSameForAnyNumberOfModelers) {
   std::multiset<DrawKey> first;
+  synthesis::WorldHash first_hash;
   for (const std::uint32_t modelers : {1u, 2u, 4u}) {
     Settings settings = small_settings();
     settings.modelers = modelers;
@@ -44,9 +59,13 @@ TEST(Scene, TheDrawListsAreTheSameForAnyNumberOfModelers) {
     tick_at(*scene, pose_at(100, 400, 0.7));
     if (modelers == 1) {
       first = draw_keys(*scene);
+      first_hash = cache_hash(*scene);
       EXPECT_GT(first.size(), 50u);
+      EXPECT_GT(first_hash.count(), 1000u);
     } else {
       EXPECT_EQ(draw_keys(*scene), first) << modelers << " modelers";
+      EXPECT_EQ(cache_hash(*scene).count(), first_hash.count());
+      EXPECT_EQ(cache_hash(*scene).value(), first_hash.value()) << modelers << " modelers";
     }
   }
 }
@@ -148,6 +167,17 @@ TEST(Scene, ComingBackUnderPressureNeverDrawsWhatWasEvicted) {
   EXPECT_GT(scene->state().synthesis.cache->stats().hits, 100u);
 }
 
+TEST(Scene, SettlingEndsAlsoWhenTheBudgetCannotHoldTheView) {
+  Settings settings = small_settings();
+  settings.levels_of_detail = false;
+  settings.budget_bytes = 5ull << 20;
+  const auto scene = make_scene(settings);
+  scene->settle(pose_at(256, 256));
+  tick_at(*scene, pose_at(256, 256));
+  EXPECT_GT(scene->state().counters.holes, 0u);
+  expect_consistent(*scene);
+}
+
 TEST(Scene, HalvingTheBudgetWhileFlyingIsMet) {
   Settings settings = small_settings();
   const auto scene = make_scene(settings);
@@ -178,6 +208,9 @@ TEST(Scene, SettingsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused(settings));
   settings = small_settings();
   settings.modelers = 100000;
+  EXPECT_TRUE(refused(settings));
+  settings = small_settings();
+  settings.view_distance_m = 8192;  // four million trees and rocks
   EXPECT_TRUE(refused(settings));
 }
 

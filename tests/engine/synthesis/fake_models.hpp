@@ -70,6 +70,7 @@ class ScriptedModel : public FakeModel {
   using Script = std::function<void(const models::Parameters&, int level)>;
   ScriptedModel(std::string name, Script script)
       : FakeModel(std::move(name)), script_(std::move(script)) {}
+  bool may_run_on_main_thread() const override { return name() != "wild"; }
   core::Bounds synthesize(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     script_(p, level);
