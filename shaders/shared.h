@@ -21,24 +21,24 @@ using glm::vec4;
 
 // Everything that is the same for a whole frame.
 struct FrameData {
-  mat4 clip_from_camera;    // camera-relative world to clip space, reversed infinite depth
-  vec4 ray_right;           // direction of a pixel = ray_forward + ndc.x · ray_right + ndc.y · ray_down
+  mat4 clip_from_camera;  // camera-relative world to clip space, reversed infinite depth
+  vec4 ray_right;  // direction of a pixel = ray_forward + ndc.x · ray_right + ndc.y · ray_down
   vec4 ray_down;
   vec4 ray_forward;
-  vec4 sun_direction;       // unit, towards the sun; w: seconds for wind and clouds
-  vec4 sun_colour;          // w: haze density at the camera's height, 1/m
-  vec4 zenith_colour;       // w: fall-off of the haze with height, 1/m
-  vec4 horizon_colour;      // w: height of the camera, m
-  vec4 ground_colour;       // light from below; w: strength of the ground pattern, 0 or 1
-  vec4 haze_colour;         // w: cloud cover, 0 to 1
-  vec4 ground_anchor;       // x, z: camera in the ground pattern, m; z, w: size of the picture
-  vec4 grass;               // palette, linear; w: height where sand ends, m
-  vec4 forest;              // w: height where dry meadow starts, m
-  vec4 dry;                 // w: blend of the dry meadow, m
-  vec4 rock;                // w: slope (1 − normal.y) where rock starts
-  vec4 snow;                // w: slope where everything is rock
-  vec4 sand;                // w: blend of the sand, m
-  vec4 snow_line;           // x: height where snow starts, m; y: blend, m; z: slope that sheds snow
+  vec4 sun_direction;   // unit, towards the sun; w: seconds for wind and clouds
+  vec4 sun_colour;      // w: haze density at the camera's height, 1/m
+  vec4 zenith_colour;   // w: fall-off of the haze with height, 1/m
+  vec4 horizon_colour;  // w: height of the camera, m
+  vec4 ground_colour;   // light from below; w: strength of the ground pattern, 0 or 1
+  vec4 haze_colour;     // w: cloud cover, 0 to 1
+  vec4 ground_anchor;   // x, z: camera in the ground pattern, m; z, w: size of the picture
+  vec4 grass;           // palette, linear; w: height where sand ends, m
+  vec4 forest;          // w: height where dry meadow starts, m
+  vec4 dry;             // w: blend of the dry meadow, m
+  vec4 rock;            // w: slope (1 − normal.y) where rock starts
+  vec4 snow;            // w: slope where everything is rock
+  vec4 sand;            // w: blend of the sand, m
+  vec4 snow_line;       // x: height where snow starts, m; y: blend, m; z: slope that sheds snow
 };
 
 // One terrain draw: x, z = origin + cell · grid; y = origin.y + range · height.

@@ -8,9 +8,9 @@ namespace psygen::core {
 
 enum class VertexLayout : std::uint8_t { kTerrain = 0, kModel = 1 };
 
-// Octahedral normals here fold about y (up). With s = |x| + |y| + |z| of the unit normal, the stored
-// pair is (x, z) / s where y >= 0, else ((1 - |z|/s) · sign x, (1 - |x|/s) · sign z), sign(0) = 1.
-// Decoding a pair (a, b): y = 1 - |a| - |b|, (x, z) = (a, b), or, where y < 0,
+// Octahedral normals here fold about y (up). With s = |x| + |y| + |z| of the unit normal, the
+// stored pair is (x, z) / s where y >= 0, else ((1 - |z|/s) · sign x, (1 - |x|/s) · sign z),
+// sign(0) = 1. Decoding a pair (a, b): y = 1 - |a| - |b|, (x, z) = (a, b), or, where y < 0,
 // ((1 - |b|) · sign a, (1 - |a|) · sign b); then normalise.
 
 // A terrain vertex. Position in the block: x = grid_x · cell_m, z = grid_z · cell_m,
