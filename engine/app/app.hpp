@@ -57,6 +57,7 @@ class App {
   core::Result<void> prepare(const core::CameraPose& first);
   core::Result<void> loop();
   core::Result<void> fly_frame(std::uint64_t index, double flight_s, double dt_s);
+  bool saves_picture(std::uint64_t frame) const;
   void wait_while_minimised();
   core::Extent picture_size() const;
   void save_screenshot();

@@ -88,6 +88,10 @@ void App::wait_while_minimised() {
   }
 }
 
+bool App::saves_picture(std::uint64_t frame) const {
+  return options_.images_every > 0 && frame % options_.images_every == 0;
+}
+
 core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double dt_s) {
   scene::State& state = scene_->state();
   state.clock.now_s = flight_s;
@@ -98,6 +102,8 @@ core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double d
   const double start_s = core::monotonic_seconds();
   const double cpu_start_s = core::thread_cpu_seconds();
   if (auto ok = frame(next_pose(flight_s, dt_s), dt_s); !ok) return ok;
+  // A picture waits for the device; unmeasured, that wait would make the next frames look fast.
+  if (saves_picture(index)) renderer_->wait_idle();
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
   record_frame(index, flight_s, frame_ms, (core::thread_cpu_seconds() - cpu_start_s) * 1000.0);
   overlay_figures_.add_frame(frame_ms);
@@ -123,7 +129,7 @@ core::Result<void> App::loop() {
     if (auto ok = fly_frame(frames, flight_s, dt_s); !ok) return ok;
     if (hz <= 0) dt_s = core::monotonic_seconds() - start_s;
     bar.update(flight_s);
-    if (options_.images_every > 0 && frames % options_.images_every == 0) {
+    if (saves_picture(frames)) {
       if (auto ok = save_numbered_picture(frames); !ok) return ok;
     }
     ++frames;

@@ -5,7 +5,7 @@
 namespace psygen::scene {
 namespace {
 
-// Extinction over the view distance at which nothing is left to see (contrast e^−2, 14 %).
+// Extinction over the view distance that hides where the world ends (contrast e^−2, 14 %).
 constexpr double kOpaque = 2.0;
 
 }  // namespace

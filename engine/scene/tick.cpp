@@ -19,24 +19,24 @@ constexpr std::array kTick{
              streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities,
                               *s.synthesis.cache, s.counters);
            }},
-    System{"visibility", "Camera, Placed, Block", "Visibility",
+    System{"visibility", "Camera, World, Block", "View, Visibility",
            [](State& s) {
              visibility_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.view,
                                s.counters);
            }},
-    System{"cache", "Visibility, Placed, Detail, Source", "Mesh, plan",
+    System{"cache", "View, Visibility, Placed, Detail, Source", "Demand, plan",
            [](State& s) {
              cache_system(s.settings, s.clock, s.camera, s.facts, s.streaming, s.view, s.entities,
                           s.synthesis, s.counters, s.totals);
            }},
-    System{"synthesis", "plan", "landed results",
+    System{"synthesis", "plan", "finished meshes",
            [](State& s) { synthesis_system(s.settings, s.synthesis, s.counters, s.trace); }},
-    System{"upload", "landed results", "Mesh",
+    System{"upload", "finished meshes", "Mesh, Demand",
            [](State& s) {
              upload_system(s.settings, s.clock, s.facts, s.entities, s.synthesis, s.shared_indices,
                            s.renderer, s.counters, s.totals);
            }},
-    System{"render", "Camera, Visibility, Placed, Mesh", "draw lists, frame",
+    System{"render", "Camera, View, Placed, Demand, Mesh", "draw lists, frame",
            [](State& s) {
              render_system(s.input, s.clock, s.camera, s.facts, s.streaming, s.view, s.entities,
                            s.draws, s.renderer, s.counters, s.error);

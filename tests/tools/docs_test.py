@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""Holds README.md and docs/ together with the tree: links lead somewhere, nothing is left to be filled
+in, options of the command line are described, and the README's program is the tutorial test.
+
+usage: docs_test.py SOURCE_DIR
+"""
+import pathlib
+import re
+import sys
+
+
+def pages(root):
+    return [root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md", *sorted((root / "docs").glob("*.md"))]
+
+
+def dead_links(root):
+    for page in pages(root):
+        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+            if "://" not in target and not (page.parent / target).exists():
+                yield f"{page.name}: the link to {target} is dead"
+
+
+def gaps(root):
+    for page in pages(root):
+        for gap in re.findall(r"@[A-Z_]+@|TODO|TBD", page.read_text(encoding="utf-8")):
+            yield f"{page.name}: {gap} is left to be filled in"
+
+
+def program_differences(root):
+    readme = (root / "README.md").read_text(encoding="utf-8")
+    test = (root / "tests/engine/app/tutorial_test.cpp").read_text(encoding="utf-8")
+    test = test.replace('PSYGEN_SOURCE_DIR "/', '"')
+    program = re.search(r"```cpp\n(.*?)```", readme, re.S).group(1)
+    lines = [re.sub(r"\s*//.*", "", line).strip().rstrip(";") for line in program.splitlines()]
+    assert len(lines) > 8, "the README shows no program"
+    for line in lines:
+        if line not in test:
+            yield f"README.md: '{line}' is not in tutorial_test.cpp"
+
+
+def undescribed_options(root):
+    source = (root / "game/fly_command.cpp").read_text(encoding="utf-8")
+    described = (root / "docs/cli.md").read_text(encoding="utf-8")
+    options = re.findall(r'"!?(--[a-z-]+)"', source)
+    assert len(options) > 15, "the scan found too few options to mean anything"
+    for option in options:
+        if f"`{option}" not in described:
+            yield f"docs/cli.md does not describe {option}"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    found = [*dead_links(root), *gaps(root), *program_differences(root), *undescribed_options(root)]
+    print("\n".join(found) or "docs: nothing missing")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
