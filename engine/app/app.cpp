@@ -103,6 +103,9 @@ core::Result<void> App::open() {
   bars.finish();
   if (!scene) return tl::unexpected(scene.error());
   scene_ = std::move(*scene);
+  const synthesis::CalibrationReport& costs = scene_->calibration();
+  core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
+                             costs.seconds, costs.fit_error_percent_p50));
   pose_ = home();
 
   std::vector<std::string> systems;

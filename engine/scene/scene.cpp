@@ -97,6 +97,8 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
   if (log == nullptr) return tracing;
   tracing.log = log;
   tracing.main = log->add_track("main thread");
+  tracing.cache_bytes = log->add_counter("cache bytes");
+  tracing.requests = log->add_counter("requests");
   for (const System& system : tick_systems())
     tracing.systems.push_back(log->intern(system.name));
   for (std::uint32_t i = 0; i < modelers; ++i) {

@@ -140,7 +140,7 @@ using SharedIndices = std::unordered_map<std::uint64_t, std::uint32_t>;
 // The trace of a run with its names looked up once; `log` may be null.
 struct Tracing {
   telemetry::TraceLog* log = nullptr;
-  telemetry::TraceLog::Track main = 0;
+  telemetry::TraceLog::Track main = 0, cache_bytes = 0, requests = 0;
   std::vector<telemetry::TraceLog::Name> systems;    // in the order of the tick
   std::vector<telemetry::TraceLog::Track> modelers;  // by number
   std::vector<telemetry::TraceLog::Name> models;     // by index in the registry

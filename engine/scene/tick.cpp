@@ -67,6 +67,12 @@ void tick(State& state) {
                                 state.clock.tick);
     }
   }
+  if (state.trace.log != nullptr) {
+    const double now_s = core::monotonic_seconds();
+    state.trace.log->add_value(state.trace.cache_bytes, now_s,
+                               static_cast<double>(state.record.cache_bytes));
+    state.trace.log->add_value(state.trace.requests, now_s, state.record.requests_queued);
+  }
   ++state.clock.tick;
 }
 
