@@ -35,9 +35,14 @@ core::Result<void> check(const Settings& settings) {
   return {};
 }
 
+// Blocks to each side of the camera's: the view, and two more to get ready before they are seen.
+double window_radius(const world::World& world, const Settings& settings) {
+  return std::ceil(settings.view_distance_m / world.block_size_m()) + 2;
+}
+
 // Blocks and models that exist at once, before anything is allocated for them.
 core::Result<void> check_size(const world::World& world, const Settings& settings) {
-  const double side = 2 * std::ceil(settings.view_distance_m / world.block_size_m()) + 3;
+  const double side = 2 * window_radius(world, settings) + 1;
   const double entities = side * side * (1.0 + static_cast<double>(world::models_per_block(world)));
   if (entities <= Scene::kMaxEntities) return {};
   return core::fail(
@@ -139,11 +144,11 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.cell_m = static_cast<float>(facts.world.cell_m());
   facts.models_reach_m = models_reach(facts.world, facts.registry);
 
-  const double blocks = std::ceil(settings.view_distance_m / facts.world.block_size_m());
-  s.streaming = Streaming{BlockGrid(static_cast<std::uint32_t>(blocks) + 1),
-                          BlockModels(facts.models_per_block),
-                          {},
-                          false};
+  s.streaming =
+      Streaming{BlockGrid(static_cast<std::uint32_t>(window_radius(facts.world, settings))),
+                BlockModels(facts.models_per_block),
+                {},
+                false};
   s.renderer = renderer;
   if (renderer == nullptr) {
     s.heap = std::make_unique<core::HeapGeometryMemory>(settings.budget_bytes);
