@@ -20,6 +20,8 @@ using synthesis::RankGroup;
 // Blocks out of view are looked at once in so many ticks, and kept this much coarser.
 constexpr std::size_t kAroundTurns = 8;
 constexpr float kAroundErrorFactor = 2.0F;
+// So long a hole waits for the request that would fill it.
+constexpr double kHolePatienceSeconds = 0.02;
 // A terrain's error is the sum of what all octaves could lose at worst; seen is about half of it.
 constexpr float kTerrainErrorFactor = 2.0F;
 
@@ -133,7 +135,11 @@ class Chooser {
     const auto levels = static_cast<int>(detail_.get(entity)->level_count);
     const bool coarse_first = hole && settings_.levels_of_detail &&
                               settings_.paradigm == Paradigm::kParallelLazyAmplification;
-    const int first = coarse_first ? levels - 1 : demand.wanted_level;
+    // A modeler that holds the coarsest one may not get a processor for a while: then the next one.
+    const bool stuck =
+        demand.seen_s >= 0 && clock_.real_s - double{demand.seen_s} > kHolePatienceSeconds;
+    const int coarsest = stuck && levels > 1 ? levels - 2 : levels - 1;
+    const int first = coarse_first ? coarsest : demand.wanted_level;
     for (int distance = 0; distance < levels; ++distance) {
       for (const int level : {first + distance, first - distance}) {
         if (level < 0 || level >= levels || (demand.failed_levels >> level & 1) != 0) continue;
