@@ -16,7 +16,7 @@ void streaming_system(const Settings& settings, const Camera& camera, const Worl
                       Streaming& streaming, ecs::World& entities, synthesis::GeometryCache& cache,
                       Counters& counters);
 
-// Runs Prioritized-Layered Projection over the window, for now and for the predicted poses.
+// Runs Prioritized-Layered Projection over the window; what predicted cameras see gets a deadline.
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                        const Streaming& streaming, ecs::World& entities, View& view,
                        Counters& counters);
