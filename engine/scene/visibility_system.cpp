@@ -1,6 +1,6 @@
-// Prioritized-Layered Projection over the blocks of the window (paper, section 4) from where the camera
-// is. Blocks that the camera would see from where it is predicted to be get the time until then as their
-// deadline. Models inherit their block's key.
+// Prioritized-Layered Projection over the blocks of the window (paper, section 4) from where the
+// camera is. Blocks that the camera would see from where it is predicted to be get the time until
+// then as their deadline. Models inherit their block's key.
 #include <algorithm>
 #include <cmath>
 #include <limits>
