@@ -11,16 +11,28 @@ namespace psygen::ecs {
 
 template <class C>
 class Accessor {
+  using Value = std::remove_const_t<C>;
+
  public:
   // The entity's component, null when the entity is dead or has none. The pointer is valid until
   // the next structural change.
   C* get(Entity entity) const {
-    const detail::Slot* slot = slots_->find(entity);
-    return slot == nullptr ? nullptr : row_at(slot->location);
+    if constexpr (is_sparse<Value>()) {
+      return find(entity).value;
+    } else {
+      const detail::Slot* slot = slots_->find(entity);
+      return slot == nullptr ? nullptr : row_at(slot->location);
+    }
   }
 
   // A hint that get(entity) follows soon: loads where the entity is, not the component itself.
-  void prefetch(Entity entity) const { slots_->prefetch(entity); }
+  void prefetch(Entity entity) const {
+    if constexpr (is_sparse<Value>()) {
+      if (record_->sparse != nullptr) record_->sparse->prefetch(entity);
+    } else {
+      slots_->prefetch(entity);
+    }
+  }
 
  private:
   friend class World;
@@ -29,14 +41,21 @@ class Accessor {
     detail::RowPlace at;
   };
   Found find(Entity entity) const {
-    const detail::Slot* slot = slots_->find(entity);
-    if (slot == nullptr) return {nullptr, {}};
-    return {row_at(slot->location), directory_->place_of(slot->location)};
+    if constexpr (is_sparse<Value>()) {
+      const detail::SparseSet* set = record_->sparse.get();
+      const std::uint32_t row = set == nullptr ? detail::SparseSet::kNoRow : set->row_of(entity);
+      if (row == detail::SparseSet::kNoRow) return {nullptr, {}};
+      return {detail::rows_of<Value>(set->column()) + row, {0, row}};
+    } else {
+      const detail::Slot* slot = slots_->find(entity);
+      if (slot == nullptr) return {nullptr, {}};
+      return {row_at(slot->location), directory_->place_of(slot->location)};
+    }
   }
   C* row_at(std::uint32_t location) const {
     std::byte* rows = record_->rows_of_chunk[location / detail::kChunkRows];
     if (rows == nullptr) return nullptr;
-    return detail::rows_of<std::remove_const_t<C>>(rows) + location % detail::kChunkRows;
+    return detail::rows_of<Value>(rows) + location % detail::kChunkRows;
   }
 
   Accessor(const detail::Storage& storage, const detail::ComponentRecord& record)

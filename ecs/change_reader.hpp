@@ -40,15 +40,22 @@ class ChangeReader {
   std::size_t drain(F&& f) {
     const detail::IterationGuard guard(storage_->iteration(), detail::kQuery<const C>);
     std::size_t visited = 0;
-    for (const auto& table : storage_->tables()) {
-      if (table == nullptr || !table->signature().contains(state_->component)) continue;
-      const Entity* entities = table->entities();
-      const C* rows = detail::rows_of<C>(table->column_data(state_->component));
-      state_->bits_of_table[table->id()].drain([&](std::uint32_t first, std::uint32_t count) {
+    const auto drain_rows = [&](const detail::Table& table) {
+      const Entity* entities = table.entities();
+      const C* rows = detail::rows_of<C>(table.column_data(state_->component));
+      state_->bits_of_table[table.id()].drain([&](std::uint32_t first, std::uint32_t count) {
         visited += count;
         f(std::span<const Entity>(entities + first, count),
           std::span<const C>(rows + first, count));
       });
+    };
+    if constexpr (is_sparse<C>()) {
+      drain_rows(storage_->record(state_->component).sparse->rows());
+      return visited;
+    }
+    for (const auto& table : storage_->tables()) {
+      if (table == nullptr || !table->signature().contains(state_->component)) continue;
+      drain_rows(*table);
     }
     return visited;
   }

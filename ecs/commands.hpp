@@ -32,6 +32,7 @@ class Commands {
     auto& all = list<DestroyList>().entities;
     all.insert(all.end(), entities.begin(), entities.end());
   }
+  void destroy_with_children(Entity parent) { list<FamilyList>().parents.push_back(parent); }
   // Gives the entity a C with this value, or sets the one that it has.
   template <Component C>
   void add(Entity entity, C value = {}) {
@@ -50,6 +51,10 @@ class Commands {
   struct DestroyList {
     std::vector<Entity> entities;
     void apply(World& world) { world.destroy(entities); }
+  };
+  struct FamilyList {
+    std::vector<Entity> parents;
+    void apply(World& world) { world.destroy_with_children(parents); }
   };
   template <class... Cs>
   struct CreateList {

@@ -1,6 +1,7 @@
-// What the library knows about a component type: its name, whether changes are tracked, and how
-// batches of rows are built, moved and destroyed. One constant table per type; its address is the
-// type's identity. Users specialise ComponentTraits; the rest is internal.
+// What the library knows about a component type: its name, where it is kept, whether changes are
+// tracked, and how batches of rows are built, moved and destroyed. One constant table per type; its
+// address is the type's identity. Users specialise ComponentTraits (fields.hpp); the rest is
+// internal.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +14,9 @@
 #include <type_traits>
 #include <utility>
 
-namespace psygen::ecs {
+#include "ecs/fields.hpp"
 
-// Describes a component type once. Specialise it to say more than the defaults; each member may be
-// left out:
-//   static constexpr std::string_view name = "mesh";   default: the type's name
-//   static constexpr bool tracked = true;              default: false, no change bits
-template <class C>
-struct ComponentTraits {};
+namespace psygen::ecs {
 
 // Any movable value type. Moving and destroying must not throw; constructing may.
 template <class C>
@@ -32,6 +28,12 @@ concept Component =
 template <class C>
 constexpr bool is_tracked() {
   if constexpr (requires { ComponentTraits<C>::tracked; }) return ComponentTraits<C>::tracked;
+  return false;
+}
+
+template <class C>
+constexpr bool is_sparse() {
+  if constexpr (requires { ComponentTraits<C>::sparse; }) return ComponentTraits<C>::sparse;
   return false;
 }
 
@@ -67,6 +69,8 @@ struct ComponentInfo {
   std::size_t size_bytes;
   std::size_t alignment;
   bool tracked;
+  bool sparse;
+  const TypeDescription* (*describe)();  // gives null where fields are not listed
   // Value-initialises rows [first, first + count); `fresh` says that their memory reads as zero.
   // When a constructor throws, none of these rows holds an object.
   void (*construct)(std::byte* column, std::size_t first, std::size_t count, bool fresh);
@@ -156,6 +160,8 @@ inline constexpr ComponentInfo kComponentInfo{
     sizeof(C),
     alignof(C),
     is_tracked<C>(),
+    is_sparse<C>(),
+    describe_component<C>,
     construct_rows<C>,
     std::is_trivially_destructible_v<C> ? nullptr : destroy_range_of<C>,
     std::is_trivially_destructible_v<C> ? nullptr : destroy_rows_of<C>,

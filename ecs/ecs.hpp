@@ -4,8 +4,13 @@
 
 #include "ecs/accessor.hpp"
 #include "ecs/change_reader.hpp"
+#include "ecs/children.hpp"
 #include "ecs/commands.hpp"
 #include "ecs/component.hpp"
 #include "ecs/entity.hpp"
+#include "ecs/fields.hpp"
 #include "ecs/query.hpp"
+#include "ecs/schedule.hpp"
+#include "ecs/snapshot.hpp"
+#include "ecs/system_query.hpp"
 #include "ecs/world.hpp"

@@ -36,4 +36,16 @@ void EntitySlots::issue(std::span<Entity> out, std::uint32_t first_location) {
   }
 }
 
+void EntitySlots::restore(std::span<const std::uint32_t> generations,
+                          std::span<const std::uint32_t> free) {
+  count_ = static_cast<std::uint32_t>(generations.size());
+  memory_.commit(generations.size() * sizeof(Slot));
+  retired_ = 0;
+  for (std::size_t i = 0; i < generations.size(); ++i) {
+    slots()[i] = {generations[i], kNowhere};
+    retired_ += generations[i] == 0 ? 1 : 0;
+  }
+  free_.assign(free.begin(), free.end());
+}
+
 }  // namespace psygen::ecs::detail

@@ -49,6 +49,13 @@ class EntitySlots {
     }
   }
 
+  // As another world had them; nobody lives yet. Generation 0 is a slot that has retired.
+  void restore(std::span<const std::uint32_t> generations, std::span<const std::uint32_t> free);
+  // Free slots; the last one is issued next.
+  std::span<const std::uint32_t> free() const { return free_; }
+
+  // Slots that were ever used: indices of entities are below.
+  std::uint32_t used() const { return count_; }
   std::size_t living() const { return count_ - free_.size() - retired_; }
   std::size_t retired() const { return retired_; }
   std::size_t committed_bytes() const { return memory_.committed_bytes(); }

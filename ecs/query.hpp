@@ -1,4 +1,5 @@
-// Iteration: which tables have the wanted components, and the spans of each. One call per table.
+// Iteration: which rows a query wants, and the spans of each run of them. One call per table;
+// filters by a sparse component cut tables into runs of matching rows.
 #pragma once
 
 #include <array>
@@ -11,7 +12,12 @@
 
 namespace psygen::ecs {
 
-// Says which components a table must not have: world.each<A>(f, Without<B>{}).
+// Filters: which components the entities must have as well, or must not have:
+//   world.each<A>(f, With<Selected>{}, Without<Hidden>{})
+// With a sparse component the walk costs what its smallest set costs; without one, where there are
+// any, a look-up per row.
+template <Component... Cs>
+struct With {};
 template <Component... Cs>
 struct Without {};
 
@@ -31,7 +37,7 @@ inline constexpr bool kDistinct =
 
 }  // namespace detail
 
-// The table that is being iterated, for marking rows as changed: an optional first parameter of the
+// The rows that are being iterated, for marking rows as changed: an optional first parameter of the
 // function given to World::each.
 template <class... Cs>
 class TableRows {
@@ -41,21 +47,116 @@ class TableRows {
   void mark_changed(std::size_t first, std::size_t count) const {
     static_assert(detail::kCount<C, Cs...> == 1, "only a component that the query writes changes");
     static_assert(is_tracked<C>(), "only a tracked component is marked");
-    PSYGEN_ECS_ASSERT(first <= table_->rows() && count <= table_->rows() - first,
-                      "rows are within the spans");
+    PSYGEN_ECS_ASSERT(first <= count_ && count <= count_ - first, "rows are within the spans");
     const detail::ComponentId id = storage_->find_id(detail::kComponentInfo<C>);
     detail::Storage::mark_range(storage_->record(id), table_->id(),
-                                static_cast<std::uint32_t>(first),
+                                static_cast<std::uint32_t>(first_ + first),
                                 static_cast<std::uint32_t>(count));
   }
 
  private:
   friend class World;
-  TableRows(detail::Storage& storage, const detail::Table& table)
-      : storage_(&storage), table_(&table) {}
+  TableRows(detail::Storage& storage, const detail::Table& table, std::size_t first,
+            std::size_t count)
+      : storage_(&storage), table_(&table), first_(first), count_(count) {}
 
   detail::Storage* storage_;
   const detail::Table* table_;
+  std::size_t first_;
+  std::size_t count_;
 };
+
+namespace detail {
+
+// Which rows a query visits. Made from its columns and filters, then walked once.
+class RowFilter {
+ public:
+  void want(const Storage& storage, const ComponentInfo& info);
+  void refuse(const Storage& storage, const ComponentInfo& info);
+
+  template <class... Cs>
+  void add(const Storage& storage, With<Cs...>) {
+    (want(storage, kComponentInfo<Cs>), ...);
+  }
+  template <class... Cs>
+  void add(const Storage& storage, Without<Cs...>) {
+    (refuse(storage, kComponentInfo<Cs>), ...);
+  }
+
+  // Calls visit(table, first row, count) for every run of matching rows; runs are not empty.
+  template <class F>
+  void each_run(const Storage& storage, F&& visit) const;
+
+ private:
+  static constexpr std::size_t kMaxSets = 8;
+  bool fits(const Table& table) const {
+    return table.signature().includes(wanted_) && !table.signature().intersects(unwanted_);
+  }
+  bool fits(Entity entity) const;
+  template <class F>
+  void each_run_of_members(const Storage& storage, F& visit) const;
+  template <class F>
+  void each_run_of_rows(const Table& table, F& visit) const;
+
+  Signature wanted_;
+  Signature unwanted_;
+  std::array<const SparseSet*, kMaxSets> with_{};
+  std::array<const SparseSet*, kMaxSets> without_{};
+  std::size_t with_count_ = 0;
+  std::size_t without_count_ = 0;
+  bool impossible_ = false;
+};
+
+template <class F>
+void RowFilter::each_run(const Storage& storage, F&& visit) const {
+  if (impossible_) return;
+  if (with_count_ > 0) return each_run_of_members(storage, visit);
+  for (const auto& table : storage.tables()) {
+    if (table == nullptr || table->rows() == 0 || !fits(*table)) continue;
+    if (without_count_ == 0) {
+      visit(*table, 0U, table->rows());
+    } else {
+      each_run_of_rows(*table, visit);
+    }
+  }
+}
+
+// Follows the members of the smallest set to their tables; neighbours there are one run.
+template <class F>
+void RowFilter::each_run_of_members(const Storage& storage, F& visit) const {
+  const SparseSet* smallest = with_[0];
+  for (std::size_t i = 1; i < with_count_; ++i) {
+    if (with_[i]->rows().rows() < smallest->rows().rows()) smallest = with_[i];
+  }
+  const std::span<const Entity> members(smallest->rows().entities(), smallest->rows().rows());
+  RowPlace begin{0, 0};
+  std::uint32_t count = 0;
+  for (const Entity member : members) {
+    const RowPlace at = storage.directory().place_of(storage.slots()[member.index].location);
+    if (!fits(*storage.tables()[at.table]) || !fits(member)) continue;
+    if (count > 0 && at.table == begin.table && at.row == begin.row + count) {
+      ++count;
+      continue;
+    }
+    if (count > 0) visit(*storage.tables()[begin.table], begin.row, count);
+    begin = at;
+    count = 1;
+  }
+  if (count > 0) visit(*storage.tables()[begin.table], begin.row, count);
+}
+
+template <class F>
+void RowFilter::each_run_of_rows(const Table& table, F& visit) const {
+  const Entity* entities = table.entities();
+  for (std::uint32_t row = 0; row < table.rows();) {
+    const std::uint32_t first = row;
+    while (row < table.rows() && fits(entities[row]))
+      ++row;
+    if (row > first) visit(table, first, row - first);
+    ++row;
+  }
+}
+
+}  // namespace detail
 
 }  // namespace psygen::ecs

@@ -46,6 +46,12 @@ ComponentId Storage::id_of(const ComponentInfo& info) {
   while (id_index_[i] != kNoComponent)
     i = (i + 1) % id_index_.size();
   id_index_[i] = id;
+  if (&info == &kComponentInfo<Children>) children_id_ = id;
+  if (info.sparse) {
+    record.sparse =
+        std::make_unique<SparseSet>(id, info, limits_.max_entities, limits_.max_rows_per_table);
+    sparse_sets_.push_back(record.sparse.get());
+  }
   return id;
 }
 
@@ -88,7 +94,9 @@ Table& Storage::make_table(const Signature& kind) {
 // Room for `count` more rows, and every component knows where its rows of the new chunks are.
 void Storage::make_room(Table& table, std::size_t count) {
   const std::size_t known = directory_.chunk_count();
-  table.reserve_more(count, directory_);
+  table.reserve_more(count);
+  table.name_rows(count, directory_);
+  absent_.rows_of_chunk.resize(directory_.chunk_count());
   for (std::size_t chunk = known; chunk < directory_.chunk_count(); ++chunk) {
     const RowPlace first = directory_.place_of(static_cast<std::uint32_t>(chunk) * kChunkRows);
     for (std::size_t c = 0; c < records_.size(); ++c) {
@@ -134,12 +142,47 @@ Storage::Batch Storage::create(const Signature& kind, std::size_t count) {
   return {&table, first};
 }
 
+Storage::Batch Storage::restore_rows(const Signature& kind, std::span<const Entity> entities) {
+  Table& table = table_for(kind);
+  make_room(table, entities.size());
+  table.construct_new_rows(entities.size(), Signature{});
+  const std::uint32_t first = table.add_rows(entities.size());
+  std::ranges::copy(entities, table.entities() + first);
+  for (std::uint32_t row = first; row < table.rows(); ++row)
+    slots_[table.entities()[row].index].location = table.location(row);
+  mark_new_rows(table, first, entities.size(), kind);
+  return {&table, first};
+}
+
 void Storage::report_removed(const Table& table, const Signature& which) {
   for_each_reader(table, [&](ReaderState& reader) {
     if (!reader.reports_removed || !which.contains(reader.component)) return;
     for (const std::uint32_t row : table.leaving)
       reader.removed.push_back(table.entities()[row]);
   });
+}
+
+// Ends the objects in the leaving rows, in the columns of `which`, and what they own in the world.
+void Storage::end_leaving_rows(Table& table, const Signature& which) {
+  if (children_id_ != kNoComponent && which.contains(children_id_)) {
+    if (std::byte* column = table.column_data(children_id_)) {
+      for (const std::uint32_t row : table.leaving)
+        child_lists_.release(rows_of<Children>(column)[row]);
+    }
+  }
+  table.destroy_rows(table.leaving, which);
+}
+
+// Rows have moved as `moves_` tells and the table has got shorter: the bits follow.
+void Storage::move_leaving_bits(Table& table, std::uint32_t old_rows) {
+  for_each_reader(table, [&](ReaderState& reader) {
+    RowBits& bits = reader.bits_of_table[table.id()];
+    if (!bits.any()) return;
+    for (const RowMove& move : moves_)
+      bits.copy_bit(move.to, bits, move.from);
+    bits.clear_range(table.rows(), old_rows - table.rows());
+  });
+  table.leaving.clear();
 }
 
 // The objects of the leaving rows are gone; fills the holes and lets handles and bits follow.
@@ -153,14 +196,53 @@ void Storage::remove_leaving_rows(Table& table) {
     }
     slots_[entities[moves_[i].to].index].location = table.location(moves_[i].to);
   }
-  for_each_reader(table, [&](ReaderState& reader) {
-    RowBits& bits = reader.bits_of_table[table.id()];
-    if (!bits.any()) return;
-    for (const RowMove& move : moves_)
-      bits.copy_bit(move.to, bits, move.from);
-    bits.clear_range(table.rows(), old_rows - table.rows());
-  });
-  table.leaving.clear();
+  move_leaving_bits(table, old_rows);
+}
+
+void Storage::remove_leaving_members(SparseSet& set) {
+  Table& rows = set.rows();
+  if (rows.leaving.empty()) return;
+  report_removed(rows, rows.signature());
+  rows.destroy_rows(rows.leaving, rows.signature());
+  const std::uint32_t old_rows = rows.rows();
+  rows.close_holes(rows.leaving, moves_);
+  for (const RowMove& move : moves_)
+    set.note_moved(move.to);
+  move_leaving_bits(rows, old_rows);
+}
+
+std::size_t Storage::add_sparse(ComponentId id, std::span<const Entity> entities) {
+  expect_no_iteration("add");
+  SparseSet& set = *records_[id]->sparse;
+  const std::uint32_t first = set.rows().rows();
+  const std::size_t added = set.add(entities, slots_);
+  mark_new_rows(set.rows(), first, added, set.rows().signature());
+  ever_sparse_.resize(slots_.used() / 64 + 1);
+  const Entity* members = set.rows().entities();
+  for (std::size_t row = first; row < first + added; ++row)
+    ever_sparse_[members[row].index / 64] |= std::uint64_t{1} << (members[row].index % 64);
+  return added;
+}
+
+std::size_t Storage::remove_sparse(ComponentId id, std::span<const Entity> entities) {
+  expect_no_iteration("remove");
+  SparseSet& set = *records_[id]->sparse;
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (i + kPrefetchAhead < entities.size()) set.prefetch(entities[i + kPrefetchAhead]);
+    set.leave(entities[i]);
+  }
+  const std::size_t left = set.rows().leaving.size();
+  remove_leaving_members(set);
+  return left;
+}
+
+void Storage::leave_sparse_sets(Entity entity) {
+  const std::size_t word = entity.index / 64;
+  const std::uint64_t bit = std::uint64_t{1} << (entity.index % 64);
+  if (word >= ever_sparse_.size() || (ever_sparse_[word] & bit) == 0) return;
+  ever_sparse_[word] &= ~bit;
+  for (SparseSet* set : sparse_sets_)
+    set->leave(entity);
 }
 
 std::size_t Storage::destroy(std::span<const Entity> entities) {
@@ -175,11 +257,14 @@ std::size_t Storage::destroy(std::span<const Entity> entities) {
     if (table.leaving.empty()) touched_.push_back(&table);
     table.leaving.push_back(at.row);
     slots_.release(*slot);
+    leave_sparse_sets(entities[i]);
     ++died;
   }
+  for (SparseSet* set : sparse_sets_)
+    remove_leaving_members(*set);
   for (Table* table : touched_) {
     report_removed(*table, table->signature());
-    table->destroy_rows(table->leaving, table->signature());
+    end_leaving_rows(*table, table->signature());
     remove_leaving_rows(*table);
   }
   touched_.clear();
@@ -254,8 +339,15 @@ void Storage::transfer(Table& source, Table& target) {
     target.entities()[row] = entity;
     slots_[entity.index].location = target.location(row);
   }
-  source.destroy_rows(source.leaving, source.signature().changed({}, target.signature()));
+  end_leaving_rows(source, source.signature().changed({}, target.signature()));
   remove_leaving_rows(source);
+}
+
+Children* Storage::children_of(Entity entity) const {
+  const Slot* slot = living(entity);
+  if (slot == nullptr || children_id_ == kNoComponent) return nullptr;
+  std::byte* rows = records_[children_id_]->rows_of_chunk[slot->location / kChunkRows];
+  return rows == nullptr ? nullptr : rows_of<Children>(rows) + slot->location % kChunkRows;
 }
 
 ReaderState& Storage::add_reader(ComponentId id, bool reports_removed) {
@@ -263,6 +355,10 @@ ReaderState& Storage::add_reader(ComponentId id, bool reports_removed) {
   reader.component = id;
   reader.reports_removed = reports_removed;
   reader.bits_of_table.resize(tables_.size());
+  if (const SparseSet* set = records_[id]->sparse.get()) {
+    reader.bits_of_table[0].reserve_rows(set->rows().rows());
+    reader.bits_of_table[0].mark_range(0, set->rows().rows());
+  }
   for (const auto& table : tables_) {
     if (table == nullptr || !table->signature().contains(id)) continue;
     reader.bits_of_table[table->id()].reserve_rows(table->rows());
@@ -289,7 +385,9 @@ void Storage::structural_change_inside(std::string_view verb) const {
 }
 
 std::size_t Storage::committed_bytes() const {
-  std::size_t bytes = slots_.committed_bytes();
+  std::size_t bytes = slots_.committed_bytes() + child_lists_.committed_bytes();
+  for (const SparseSet* set : sparse_sets_)
+    bytes += set->committed_bytes();
   for (const auto& table : tables_) {
     if (table != nullptr) bytes += table->committed_bytes();
   }

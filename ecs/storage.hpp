@@ -1,6 +1,6 @@
-// The untyped core of a world: component types, tables, handles, change bits, and the batch verbs
-// that change structure. `World` puts types on top; nobody else uses it. One thread changes it;
-// const functions may run on several threads while nothing changes.
+// The untyped core of a world: component types, tables, sparse sets, handles, change bits, and the
+// batch verbs that change structure. `World` puts types on top; nobody else uses it. One thread
+// changes it; const functions may run on several threads while nothing changes.
 #pragma once
 
 #include <array>
@@ -13,12 +13,14 @@
 #include <vector>
 
 #include "ecs/check.hpp"
+#include "ecs/children.hpp"
 #include "ecs/component.hpp"
 #include "ecs/entity.hpp"
 #include "ecs/entity_slots.hpp"
 #include "ecs/row_bits.hpp"
 #include "ecs/row_directory.hpp"
 #include "ecs/signature.hpp"
+#include "ecs/sparse_set.hpp"
 #include "ecs/table.hpp"
 
 namespace psygen::ecs {
@@ -37,13 +39,14 @@ namespace detail {
 struct ReaderState {
   ComponentId component = kNoComponent;
   bool reports_removed = false;
-  std::vector<RowBits> bits_of_table;  // by table id
+  std::vector<RowBits> bits_of_table;  // by table id; [0] of a sparse component
   std::vector<Entity> removed;
 };
 
 struct ComponentRecord {
   const ComponentInfo* info = nullptr;
   std::vector<std::byte*> rows_of_chunk;  // by chunk; null where its table lacks the component
+  std::unique_ptr<SparseSet> sparse;      // null for a component that is kept in tables
   std::vector<std::unique_ptr<ReaderState>> readers;
 };
 
@@ -92,6 +95,9 @@ class Storage {
   ComponentId find_id(const ComponentInfo& info) const;  // kNoComponent when it is new
   ComponentRecord& record(ComponentId id) { return *records_[id]; }
   const ComponentRecord& record(ComponentId id) const { return *records_[id]; }
+  // Stands for a component that this world has never seen: nobody has it.
+  const ComponentRecord& absent() const { return absent_; }
+  std::span<const std::unique_ptr<ComponentRecord>> records() const { return records_; }
   std::span<const std::unique_ptr<Table>> tables() const { return tables_; }  // [0] is null
   const EntitySlots& slots() const { return slots_; }
   const RowDirectory& directory() const { return directory_; }
@@ -106,6 +112,9 @@ class Storage {
   std::size_t destroy(std::span<const Entity> entities);
   std::size_t change_kind(std::span<const Entity> entities, const Signature& added,
                           const Signature& removed);
+  // The same for one sparse component.
+  std::size_t add_sparse(ComponentId id, std::span<const Entity> entities);
+  std::size_t remove_sparse(ComponentId id, std::span<const Entity> entities);
   void reserve(const Signature& kind, std::size_t count) { make_room(table_for(kind), count); }
 
   ReaderState& add_reader(ComponentId id, bool reports_removed);
@@ -140,6 +149,26 @@ class Storage {
   }
   std::size_t committed_bytes() const;
 
+  const ChildLists& child_lists() const {
+    return child_lists_;
+  }
+  // Null where the entity has no Children.
+  Children* children_of(Entity entity) const;
+  void set_children(Children& list, std::span<const Entity> children) {
+    child_lists_.assign(list, children);
+  }
+
+  // For loading into a world that never had an entity: first the slots, then rows for handles that
+  // these slots know.
+  const WorldLimits& limits() const {
+    return limits_;
+  }
+  void restore_slots(std::span<const std::uint32_t> generations,
+                     std::span<const std::uint32_t> free) {
+    slots_.restore(generations, free);
+  }
+  Batch restore_rows(const Signature& kind, std::span<const Entity> entities);
+
  private:
   [[noreturn]] void structural_change_inside(std::string_view verb) const;
   Table& table_for(const Signature& kind);
@@ -148,7 +177,11 @@ class Storage {
   void mark_new_rows(const Table& table, std::uint32_t first, std::size_t count,
                      const Signature& which);
   void report_removed(const Table& table, const Signature& which);
+  void leave_sparse_sets(Entity entity);
+  void end_leaving_rows(Table& table, const Signature& which);
+  void move_leaving_bits(Table& table, std::uint32_t old_rows);
   void remove_leaving_rows(Table& table);
+  void remove_leaving_members(SparseSet& set);
   void transfer(Table& source, Table& target);
   template <class F>
   void for_each_reader(const Table& table, F&& f);
@@ -157,6 +190,11 @@ class Storage {
   EntitySlots slots_;
   RowDirectory directory_;
   std::vector<std::unique_ptr<ComponentRecord>> records_;
+  ComponentRecord absent_;
+  std::vector<SparseSet*> sparse_sets_;
+  std::vector<std::uint64_t> ever_sparse_;  // by index: this entity may be in a sparse set
+  ChildLists child_lists_;
+  ComponentId children_id_ = kNoComponent;
   std::vector<std::unique_ptr<Table>> tables_;
   std::vector<std::uint32_t> table_index_;  // open addressing by signature; 0 is empty
   std::array<ComponentId, 2 * kMaxComponents> id_index_;  // open addressing by ComponentInfo*

@@ -67,13 +67,16 @@ Table::~Table() {
   }
 }
 
-void Table::reserve_more(std::size_t count, RowDirectory& directory) {
-  const std::size_t need = rows_ + count;
-  if (need > max_rows_) give_up("more rows of one kind than WorldLimits::max_rows_per_table");
-  while (chunks_.size() * kChunkRows < need) {
+void Table::name_rows(std::size_t count, RowDirectory& directory) {
+  while (chunks_.size() * kChunkRows < rows_ + count) {
     const auto first_row = static_cast<std::uint32_t>(chunks_.size() * kChunkRows);
     chunks_.push_back(directory.add_chunk(id_, first_row));
   }
+}
+
+void Table::reserve_more(std::size_t count) {
+  const std::size_t need = rows_ + count;
+  if (need > max_rows_) give_up("more rows of one kind than WorldLimits::max_rows_per_table");
   if (need <= capacity_) return;
   capacity_ = std::min(std::max({need, capacity_ * 2, kFirstRows}), max_rows_);
   const auto commit = [&](ReservedMemory& memory, std::size_t row_bytes) {

@@ -43,13 +43,15 @@ class Table {
     return at == kNoColumn ? nullptr : columns_[at].memory.data();
   }
 
-  // The name of a row, filled or to be filled within the last reserve_more.
+  // The name of a row, filled or to be filled within the last name_rows.
   std::uint32_t location(std::uint32_t row) const {
     return chunks_[row / kChunkRows] + row % kChunkRows;
   }
 
-  // Makes room for `count` more rows, without objects in them, and names them.
-  void reserve_more(std::size_t count, RowDirectory& directory);
+  // Makes room for `count` more rows, without objects in them.
+  void reserve_more(std::size_t count);
+  // Names rows up to rows() + count.
+  void name_rows(std::size_t count, RowDirectory& directory);
   // Builds rows [rows(), rows() + count) of the columns that are not in `except`. When a
   // constructor throws, everything built here is destroyed again.
   void construct_new_rows(std::size_t count, const Signature& except);

@@ -46,6 +46,10 @@ struct LandReport {
   friend bool operator==(const LandReport&, const LandReport&) = default;
 };
 
+namespace detail {
+class SnapshotAccess;
+}
+
 class World {
  public:
   explicit World(const WorldLimits& limits = {}) : storage_(limits) {}
@@ -61,16 +65,27 @@ class World {
   // O(handles); touches only the columns of the kinds concerned.
   std::size_t destroy(std::span<const Entity> entities) { return storage_.destroy(entities); }
 
+  // The same, with their children, the children of these, and so on.
+  std::size_t destroy_with_children(std::span<const Entity> parents);
+
   // Gives these entities value-initialised components, or takes components away; everything else
   // keeps its value. Who already has them all (has none of them), or is dead, is skipped. Returns
-  // how many changed.
+  // how many changed. A sparse component is added and removed by itself; other components move.
   template <Component... Cs>
   std::size_t add(std::span<const Entity> entities) {
-    return storage_.change_kind(entities, signature<Cs...>(), {});
+    if constexpr (one_sparse<Cs...>()) {
+      return storage_.add_sparse(id_of<Cs...>(), entities);
+    } else {
+      return storage_.change_kind(entities, signature<Cs...>(), {});
+    }
   }
   template <Component... Cs>
   std::size_t remove(std::span<const Entity> entities) {
-    return storage_.change_kind(entities, {}, signature<Cs...>());
+    if constexpr (one_sparse<Cs...>()) {
+      return storage_.remove_sparse(id_of<Cs...>(), entities);
+    } else {
+      return storage_.change_kind(entities, {}, signature<Cs...>());
+    }
   }
 
   // Prepares the kind with exactly these components for `count` further entities.
@@ -114,20 +129,25 @@ class World {
   requires std::is_const_v<C> Accessor<C> accessor() {
     return {storage_, record<std::remove_const_t<C>>()};
   }
+  // From a const world: a component that it has never seen stays absent to this accessor.
+  template <class C>
+  requires std::is_const_v<C> Accessor<C> accessor()
+  const { return {storage_, known_record<std::remove_const_t<C>>()}; }
 
   // ---- iteration -------------------------------------------------------------------------------
 
   // Calls f(std::span<const Entity>, std::span<Cs>...) once per non-empty table that has all of Cs
-  // and none of Ws. Write `const C` for what is only read. With a first parameter
-  // `TableRows<Cs...>`, f can mark the rows that it changed.
-  template <class... Cs, class F, class... Ws>
-  void each(F&& f, Without<Ws...> without = {}) {
-    each_in<Cs...>(storage_, f, without);
+  // and passes the filters (With<...>, Without<...>). Write `const C` for what is only read. With a
+  // first parameter `TableRows<Cs...>`, f can mark the rows that it changed. A sparse component is
+  // either the only one of Cs (its members are one run) or a filter.
+  template <class... Cs, class F, class... Filters>
+  void each(F&& f, Filters... filters) {
+    each_in<Cs...>(storage_, f, filters...);
   }
-  template <class... Cs, class F, class... Ws>
-  void each(F&& f, Without<Ws...> without = {}) const {
+  template <class... Cs, class F, class... Filters>
+  void each(F&& f, Filters... filters) const {
     static_assert((std::is_const_v<Cs> && ...), "a const World is only read: ask for const C");
-    each_in<Cs...>(storage_, f, without);
+    each_in<Cs...>(storage_, f, filters...);
   }
 
   // How many entities have all of these components.
@@ -137,6 +157,21 @@ class World {
     each<const Cs...>(
         [&](std::span<const Entity> rows, std::span<const Cs>...) { total += rows.size(); });
     return total;
+  }
+
+  // ---- parents and children --------------------------------------------------------------------
+
+  // Replaces the children of an entity that has the component Children; false when it has not.
+  // O(children). Children may be dead or die: their handles are stale then.
+  bool set_children(Entity parent, std::span<const Entity> children);
+  // The children in the order in which they were set; valid until the next set_children or
+  // structural change. Empty for who has none.
+  std::span<const Entity> children(Entity parent) const {
+    const Children* list = storage_.children_of(parent);
+    return list == nullptr ? std::span<const Entity>{} : children(*list);
+  }
+  std::span<const Entity> children(const Children& list) const {
+    return storage_.child_lists().of(list);
   }
 
   // ---- changes ---------------------------------------------------------------------------------
@@ -157,6 +192,12 @@ class World {
                                           removed == Removed::kReport)};
   }
 
+  // Makes component types known before they are used: what a snapshot names must be.
+  template <Component... Cs>
+  void declare() {
+    (storage_.id_of(detail::kComponentInfo<Cs>), ...);
+  }
+
   // ---- figures ---------------------------------------------------------------------------------
 
   std::size_t table_count() const { return storage_.tables().size() - 1; }
@@ -166,13 +207,31 @@ class World {
   std::size_t committed_bytes() const { return storage_.committed_bytes(); }
 
  private:
+  friend class detail::SnapshotAccess;
+
+  template <class C>
+  detail::ComponentId id_of() {
+    return storage_.id_of(detail::kComponentInfo<C>);
+  }
   template <class C>
   detail::ComponentRecord& record() {
-    return storage_.record(storage_.id_of(detail::kComponentInfo<C>));
+    return storage_.record(id_of<C>());
+  }
+  template <class C>
+  const detail::ComponentRecord& known_record() const {
+    const detail::ComponentId id = storage_.find_id(detail::kComponentInfo<C>);
+    return id == detail::kNoComponent ? storage_.absent() : storage_.record(id);
+  }
+  template <class... Cs>
+  static constexpr bool one_sparse() {
+    constexpr bool any = (is_sparse<Cs>() || ...);
+    static_assert(!any || sizeof...(Cs) == 1, "a sparse component is added and removed by itself");
+    return any;
   }
   template <class... Cs>
   detail::Signature signature() {
     static_assert(detail::kDistinct<Cs...>, "a component type occurs once in a kind");
+    static_assert((!is_sparse<Cs>() && ...), "a sparse component is added after create");
     detail::Signature result;
     (result.insert(storage_.id_of(detail::kComponentInfo<Cs>)), ...);
     return result;
@@ -181,8 +240,8 @@ class World {
   C* find(Entity entity) const;
   template <class C, class L>
   LandReport land_from(std::span<L> results);
-  template <class... Cs, class S, class F, class... Ws>
-  static void each_in(S& storage, F& f, Without<Ws...>);
+  template <class... Cs, class S, class F, class... Filters>
+  static void each_in(S& storage, F& f, Filters... filters);
 
   detail::Storage storage_;
 };
@@ -199,9 +258,7 @@ Created<Cs...> World::create(std::size_t count) {
 
 template <class C>
 C* World::find(Entity entity) const {
-  const detail::ComponentId id = storage_.find_id(detail::kComponentInfo<C>);
-  if (id == detail::kNoComponent) return nullptr;
-  return Accessor<C>(storage_, storage_.record(id)).get(entity);
+  return Accessor<C>(storage_, known_record<C>()).get(entity);
 }
 
 template <class C, class L>
@@ -231,40 +288,42 @@ LandReport World::land_from(std::span<L> results) {
   return report;
 }
 
-template <class... Cs, class S, class F, class... Ws>
-void World::each_in(S& storage, F& f, Without<Ws...>) {
+template <class... Cs, class S, class F, class... Filters>
+void World::each_in(S& storage, F& f, Filters... filters) {
   static_assert(detail::kDistinct<Cs...>, "a component type occurs once in a query");
+  constexpr bool sparse = (is_sparse<std::remove_const_t<Cs>>() || ...);
+  static_assert(!sparse || (sizeof...(Cs) == 1 && sizeof...(Filters) == 0),
+                "a sparse component is iterated by itself; in other queries it is a filter");
   constexpr std::size_t kColumns = sizeof...(Cs);
   const std::array<detail::ComponentId, kColumns> ids{
       storage.find_id(detail::kComponentInfo<std::remove_const_t<Cs>>)...};
-  detail::Signature wanted;
-  for (const detail::ComponentId id : ids) {
-    if (id == detail::kNoComponent) return;
-    wanted.insert(id);
-  }
-  detail::Signature unwanted;
-  for (const detail::ComponentId id : std::array<detail::ComponentId, sizeof...(Ws)>{
-           storage.find_id(detail::kComponentInfo<Ws>)...}) {
-    if (id != detail::kNoComponent) unwanted.insert(id);
-  }
 
   const detail::IterationGuard guard(storage.iteration(), detail::kQuery<Cs...>);
-  const auto visit = [&]<std::size_t... I>(const detail::Table& table, std::index_sequence<I...>) {
-    const std::size_t rows = table.rows();
-    const std::span<const Entity> entities(table.entities(), rows);
+  const auto spans = [&]<std::size_t... I>(const detail::Table& table, std::uint32_t first,
+                                           std::uint32_t count, std::index_sequence<I...>) {
+    const std::span<const Entity> entities(table.entities() + first, count);
     if constexpr (std::is_invocable_v<F&, std::span<const Entity>, std::span<Cs>...>) {
-      f(entities, std::span<Cs>(detail::rows_of<std::remove_const_t<Cs>>(table.column_data(ids[I])),
-                                rows)...);
+      f(entities,
+        std::span<Cs>(detail::rows_of<std::remove_const_t<Cs>>(table.column_data(ids[I])) + first,
+                      count)...);
     } else {
-      f(TableRows<Cs...>(storage, table), entities,
-        std::span<Cs>(detail::rows_of<std::remove_const_t<Cs>>(table.column_data(ids[I])),
-                      rows)...);
+      f(TableRows<Cs...>(storage, table, first, count), entities,
+        std::span<Cs>(detail::rows_of<std::remove_const_t<Cs>>(table.column_data(ids[I])) + first,
+                      count)...);
     }
   };
-  for (const auto& table : storage.tables()) {
-    if (table == nullptr || table->rows() == 0) continue;
-    if (!table->signature().includes(wanted) || table->signature().intersects(unwanted)) continue;
-    visit(*table, std::make_index_sequence<kColumns>{});
+  const auto visit = [&](const detail::Table& table, std::uint32_t first, std::uint32_t count) {
+    spans(table, first, count, std::make_index_sequence<kColumns>{});
+  };
+  if constexpr (sparse) {
+    if (ids[0] == detail::kNoComponent) return;
+    const detail::Table& members = storage.record(ids[0]).sparse->rows();
+    if (members.rows() > 0) visit(members, 0, members.rows());
+  } else {
+    detail::RowFilter filter;
+    (filter.want(storage, detail::kComponentInfo<std::remove_const_t<Cs>>), ...);
+    (filter.add(storage, filters), ...);
+    filter.each_run(storage, visit);
   }
 }
 

@@ -29,6 +29,11 @@ struct Owner {  // move-only
   std::unique_ptr<int> value;
 };
 
+struct Selected {};  // sparse, without a value
+struct Edited {      // sparse, tracked, with one
+  std::uint32_t version = 1;
+};
+
 // Counts how many are alive and throws from the `fuse`-th constructor on.
 struct Throwing {
   Throwing() {
@@ -43,6 +48,8 @@ struct Throwing {
   static inline int fuse = -1;  // -1 never throws
 };
 
+struct Fused : Throwing {};  // sparse
+
 }  // namespace psygen::ecs::test
 
 template <>
@@ -53,4 +60,18 @@ struct psygen::ecs::ComponentTraits<psygen::ecs::test::Mesh> {
 template <>
 struct psygen::ecs::ComponentTraits<psygen::ecs::test::Health> {
   static constexpr bool tracked = true;
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Selected> {
+  static constexpr bool sparse = true;
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Edited> {
+  static constexpr bool sparse = true;
+  static constexpr bool tracked = true;
+  static constexpr auto fields = std::tuple{field("version", &psygen::ecs::test::Edited::version)};
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Fused> {
+  static constexpr bool sparse = true;
 };

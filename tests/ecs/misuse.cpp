@@ -9,6 +9,14 @@ struct Immovable {
   Immovable(Immovable&&) = delete;
 };
 
+struct Opaque {
+  int* pointer = nullptr;
+};
+template <>
+struct psygen::ecs::ComponentTraits<Opaque> {
+  static constexpr auto fields = std::tuple{field("pointer", &Opaque::pointer)};
+};
+
 void misuse(World& world, const World& read_only, Entity entity) {
   world.each<const Mesh, Position>([](std::span<const Entity>, auto meshes, auto positions) {
     positions[0].x = static_cast<float>(meshes[0].id);
@@ -33,6 +41,26 @@ void misuse(World& world, const World& read_only, Entity entity) {
   world.accessor<const Mesh>().get(entity)->id = 1;
 #elif CASE == 9
   world.create<Position>(1).column<Mesh>();
+#elif CASE == 10
+  world.create<Position, Selected>(1);
+#elif CASE == 11
+  world.add<Velocity, Selected>(std::span(&entity, 1));
+#elif CASE == 12
+  world.each<Position, Selected>([](auto, auto, auto) {});
+#elif CASE == 13
+  Schedule(world).add("s", [](Query<const Position> query) {
+    query.each([](auto, auto positions) { positions[0].x = 1; });
+  });
+#elif CASE == 14
+  Query<const Mesh>(world).land<Mesh>({});
+#elif CASE == 15
+  Query<const Mesh>(world).accessor<const Position>();
+#elif CASE == 16
+  Schedule(world).add("s", [](Position) {});
+#elif CASE == 17
+  describe<Opaque>();
+#elif CASE == 18
+  world.reader<Position>();
 #endif
   (void)entity;
 }

@@ -20,7 +20,8 @@ class Numbers {
     std::vector<Column> columns;
     columns.push_back({&kComponentInfo<int>, 3, ReservedMemory(kMaxRows * sizeof(int))});
     table_ = std::make_unique<Table>(1, signature, std::move(columns), kMaxRows);
-    table_->reserve_more(rows, directory_);
+    table_->reserve_more(rows);
+    table_->name_rows(rows, directory_);
     table_->construct_new_rows(rows, {});
     table_->add_rows(rows);
     std::iota(values().begin(), values().end(), 0);

@@ -1,0 +1,188 @@
+// What a type consists of, said once: names, units and ranges of its fields, for snapshots, editors
+// and messages. Values are reached by offset, so that nothing here needs templates but `field` and
+// `describe`. Not a serialiser (snapshot.hpp is) and not reflection: what is not listed is unknown.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "ecs/entity.hpp"
+
+namespace psygen::ecs {
+
+// Describes a type once. Specialise it to say more than the defaults; each member may be left out:
+//   static constexpr std::string_view name = "mesh";   default: the type's name
+//   static constexpr bool tracked = true;              default: false, no change bits
+//   static constexpr bool sparse = true;               default: false, a column of tables
+//   static constexpr auto fields = std::tuple{ecs::field("id", &Mesh::id), ...};
+// A component without `fields` is transient: snapshots keep that an entity has it, not its value.
+template <class C>
+struct ComponentTraits {};
+
+enum class FieldKind : std::uint8_t {
+  kBool,
+  kSigned,    // 1, 2, 4 or 8 bytes, also enumerations
+  kUnsigned,  // the same
+  kReal,      // float or double
+  kEntity,
+  kString,  // std::string
+  kStruct,  // fields one after the other
+  kArray,   // std::array: `count` elements
+  kList,    // std::vector: any number of elements
+};
+
+struct TypeDescription;
+
+// What an editor wants to know beyond the type. Ranges bound sliders; they are not enforced.
+struct FieldNotes {
+  std::string_view unit = {};  // "m", "rad"; empty: none
+  std::string_view doc = {};
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+};
+
+struct FieldDescription {
+  std::string_view name;
+  std::size_t offset_bytes = 0;  // from the start of the struct
+  const TypeDescription* type = nullptr;
+  FieldNotes notes;
+};
+
+struct TypeDescription {
+  FieldKind kind = FieldKind::kStruct;
+  std::size_t size_bytes = 0;
+  std::size_t count = 0;                    // kArray
+  const TypeDescription* element = nullptr;  // kArray, kList
+  std::vector<FieldDescription> fields = {};  // kStruct
+  // kString, kList: how many elements, where they are, and how to have `count` of them.
+  std::size_t (*length)(const std::byte* value) = nullptr;
+  const std::byte* (*elements)(const std::byte* value) = nullptr;
+  std::byte* (*resize)(std::byte* value, std::size_t count) = nullptr;
+};
+
+// A field and its name, in the order in which they are listed in ComponentTraits<C>::fields.
+template <class C, class T>
+struct Field {
+  std::string_view name;
+  T C::*member;
+  FieldNotes notes;
+};
+template <class C, class T>
+constexpr Field<C, T> field(std::string_view name, T C::*member, FieldNotes notes = {}) {
+  return {name, member, notes};
+}
+
+namespace detail {
+
+template <class T>
+concept HasFields = requires { ComponentTraits<T>::fields; };
+
+template <class T>
+const TypeDescription& description_of();
+
+template <class T>
+inline constexpr bool kIsArray = false;
+template <class T, std::size_t N>
+inline constexpr bool kIsArray<std::array<T, N>> = true;
+template <class T>
+inline constexpr bool kIsList = false;
+template <class T>
+inline constexpr bool kIsList<std::vector<T>> = !std::is_same_v<T, bool>;
+
+template <class T>
+concept Describable = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, Entity> ||
+                      std::is_same_v<T, std::string> || kIsArray<T> || kIsList<T> ||
+                      HasFields<T> || std::is_empty_v<T>;
+
+template <class T>
+TypeDescription describe_list(FieldKind kind) {
+  TypeDescription result;
+  result.kind = kind;
+  result.size_bytes = sizeof(T);
+  result.element = &description_of<typename T::value_type>();
+  result.length = [](const std::byte* value) { return reinterpret_cast<const T*>(value)->size(); };
+  result.elements = [](const std::byte* value) {
+    return reinterpret_cast<const std::byte*>(reinterpret_cast<const T*>(value)->data());
+  };
+  result.resize = [](std::byte* value, std::size_t count) {
+    T& list = *reinterpret_cast<T*>(value);
+    list.resize(count);
+    return reinterpret_cast<std::byte*>(list.data());
+  };
+  return result;
+}
+
+template <class T>
+TypeDescription describe_struct() {
+  TypeDescription result;
+  result.size_bytes = sizeof(T);
+  if constexpr (HasFields<T>) {
+    const T model{};
+    const auto add = [&]<class M>(const Field<T, M>& f) {
+      const auto* base = reinterpret_cast<const std::byte*>(&model);
+      const auto* at = reinterpret_cast<const std::byte*>(std::addressof(model.*f.member));
+      result.fields.push_back(
+          {f.name, static_cast<std::size_t>(at - base), &description_of<M>(), f.notes});
+    };
+    std::apply([&](const auto&... each) { (add(each), ...); }, ComponentTraits<T>::fields);
+  }
+  return result;
+}
+
+template <class T>
+TypeDescription make_description() {
+  static_assert(Describable<T>,
+                "a field is a number, bool, enumeration, Entity, std::string, std::array or "
+                "std::vector of these, or a type whose ComponentTraits list its fields");
+  if constexpr (std::is_same_v<T, std::string>) return describe_list<T>(FieldKind::kString);
+  if constexpr (kIsList<T>) return describe_list<T>(FieldKind::kList);
+  if constexpr (kIsArray<T>) {
+    TypeDescription result;
+    result.kind = FieldKind::kArray;
+    result.size_bytes = sizeof(T);
+    result.count = std::tuple_size_v<T>;
+    result.element = &description_of<typename T::value_type>();
+    return result;
+  }
+  if constexpr (std::is_same_v<T, bool>) return {FieldKind::kBool, sizeof(T)};
+  if constexpr (std::is_floating_point_v<T>) return {FieldKind::kReal, sizeof(T)};
+  if constexpr (std::is_enum_v<T>) return make_description<std::underlying_type_t<T>>();
+  if constexpr (std::is_integral_v<T>) {
+    return {std::is_signed_v<T> ? FieldKind::kSigned : FieldKind::kUnsigned, sizeof(T)};
+  }
+  if constexpr (std::is_same_v<T, Entity>) return {FieldKind::kEntity, sizeof(T)};
+  return describe_struct<T>();
+}
+
+template <class T>
+const TypeDescription& description_of() {
+  static const TypeDescription description = make_description<T>();
+  return description;
+}
+
+// Null for a type that says nothing about its fields.
+template <class C>
+const TypeDescription* describe_component() {
+  if constexpr (HasFields<C> || std::is_empty_v<C>) return &description_of<C>();
+  return nullptr;
+}
+
+}  // namespace detail
+
+// The fields of a component; null when its ComponentTraits list none. A component without members
+// has no fields, which is described. Lives for ever. Safe from any thread.
+template <class C>
+const TypeDescription* describe() {
+  return detail::describe_component<C>();
+}
+
+}  // namespace psygen::ecs

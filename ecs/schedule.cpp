@@ -1,0 +1,212 @@
+#include "ecs/schedule.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "ecs/check.hpp"
+
+namespace psygen::ecs {
+namespace {
+
+bool touches_world(const SystemInfo& s) {
+  return s.world != WorldAccess::kNone || std::ranges::any_of(s.accesses, &Access::is_component);
+}
+bool writes_world(const SystemInfo& s) {
+  const auto writes = [](const Access& a) { return a.is_component && a.writes; };
+  return s.world == WorldAccess::kWrites || std::ranges::any_of(s.accesses, writes);
+}
+
+double seconds_of(const std::function<void()>& f) {
+  const auto begin = std::chrono::steady_clock::now();
+  f();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+std::string detail::without_namespace(std::string_view name) {
+  const std::size_t arguments = name.find('<');
+  const std::size_t colon = name.substr(0, arguments).rfind("::");
+  return std::string(colon == std::string_view::npos ? name : name.substr(colon + 2));
+}
+
+bool conflict(const SystemInfo& a, const SystemInfo& b) {
+  if (a.world == WorldAccess::kWrites && touches_world(b)) return true;
+  if (b.world == WorldAccess::kWrites && touches_world(a)) return true;
+  if (a.world == WorldAccess::kReads && writes_world(b)) return true;
+  if (b.world == WorldAccess::kReads && writes_world(a)) return true;
+  for (const Access& x : a.accesses) {
+    for (const Access& y : b.accesses) {
+      if (x.type == y.type && (x.writes || y.writes)) return true;
+    }
+  }
+  return false;
+}
+
+// The order as a graph, and the threads that walk it. Every system is a step; one that records
+// commands is followed by a step that applies them and has the world to itself.
+struct Schedule::Parts {
+  struct Resource {
+    const void* type;
+    void* object;
+  };
+  struct Step {
+    std::size_t system;
+    bool applies_commands;
+    std::vector<std::size_t> followers;  // steps that must wait for this one
+    std::size_t leader_count = 0;
+    std::size_t leaders_left = 0;
+  };
+
+  World& world;
+  std::vector<Resource> resources;
+  std::vector<System> systems;
+  std::vector<SystemInfo> infos;
+  std::vector<Step> steps;
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<std::size_t> ready;  // steps that may run now
+  std::size_t unfinished = 0;
+  bool stopping = false;
+  std::vector<std::thread> workers;
+
+  explicit Parts(World& w) : world(w) {}
+
+  void add_step(std::size_t system, bool applies_commands) {
+    const std::size_t index = steps.size();
+    steps.push_back({system, applies_commands, {}, 0, 0});
+    for (std::size_t before = 0; before < index; ++before) {
+      if (!must_wait(steps[before], steps[index])) continue;
+      steps[before].followers.push_back(index);
+      ++steps[index].leader_count;
+    }
+  }
+  bool must_wait(const Step& first, const Step& then) const {
+    if (first.system == then.system) return true;
+    return conflict(access_of(first), access_of(then));
+  }
+  SystemInfo access_of(const Step& step) const {
+    if (!step.applies_commands) return infos[step.system];
+    SystemInfo all;
+    all.world = WorldAccess::kWrites;
+    return all;
+  }
+
+  void run_step(std::size_t index) {
+    System& system = systems[steps[index].system];
+    double& seconds = infos[steps[index].system].last_seconds;
+    if (steps[index].applies_commands) {
+      seconds += seconds_of([&] { system.commands->apply(world); });
+    } else {
+      seconds = seconds_of(system.run);
+    }
+  }
+
+  // The first ready step that this thread may run; steps.size() when there is none.
+  std::size_t take(bool calling_thread) {
+    std::size_t best = steps.size();
+    for (const std::size_t step : ready) {
+      const bool allowed =
+          calling_thread || infos[steps[step].system].runs_on == RunsOn::kAnyThread;
+      if (allowed) best = std::min(best, step);
+    }
+    std::erase(ready, best);
+    return best;
+  }
+
+  // Runs steps until `done`; the lock is held before and after.
+  template <class Done>
+  void work(std::unique_lock<std::mutex>& lock, bool calling_thread, Done done) {
+    while (!done()) {
+      const std::size_t step = take(calling_thread);
+      if (step == steps.size()) {
+        changed.wait(lock);
+        continue;
+      }
+      lock.unlock();
+      run_step(step);
+      lock.lock();
+      --unfinished;
+      for (const std::size_t follower : steps[step].followers) {
+        if (--steps[follower].leaders_left == 0) ready.push_back(follower);
+      }
+      changed.notify_all();
+    }
+  }
+};
+
+Schedule::Schedule(World& world, std::size_t threads)
+    : world_(world), parts_(std::make_unique<Parts>(world)) {
+  for (std::size_t i = 1; i < threads; ++i) {
+    parts_->workers.emplace_back([parts = parts_.get()] {
+      std::unique_lock lock(parts->mutex);
+      parts->work(lock, false, [parts] { return parts->stopping; });
+    });
+  }
+}
+
+Schedule::~Schedule() {
+  {
+    const std::lock_guard lock(parts_->mutex);
+    parts_->stopping = true;
+  }
+  parts_->changed.notify_all();
+  for (std::thread& worker : parts_->workers)
+    worker.join();
+}
+
+std::span<const SystemInfo> Schedule::systems() const {
+  return parts_->infos;
+}
+
+std::size_t Schedule::threads() const {
+  return parts_->workers.size() + 1;
+}
+
+void Schedule::provide_one(const void* type, std::string label, void* resource) {
+  for (const Parts::Resource& known : parts_->resources) {
+    if (known.type == type) detail::give_up("schedule: a second " + label + " is provided");
+  }
+  parts_->resources.push_back({type, resource});
+}
+
+void* Schedule::resource(const System& asker, const void* type, const std::string& label) const {
+  for (const Parts::Resource& known : parts_->resources) {
+    if (known.type == type) return known.object;
+  }
+  detail::give_up("schedule: the system '" + asker.info.name + "' wants a " + label +
+                  ", which was not provided before it");
+}
+
+void Schedule::append(System system) {
+  const std::lock_guard lock(parts_->mutex);
+  const std::size_t index = parts_->systems.size();
+  const bool records = system.info.records_commands;
+  parts_->infos.push_back(system.info);
+  parts_->systems.push_back(std::move(system));
+  parts_->add_step(index, false);
+  if (records) parts_->add_step(index, true);
+}
+
+void Schedule::run() {
+  if (parts_->workers.empty()) {
+    for (std::size_t step = 0; step < parts_->steps.size(); ++step)
+      parts_->run_step(step);
+    return;
+  }
+  std::unique_lock lock(parts_->mutex);
+  parts_->unfinished = parts_->steps.size();
+  for (std::size_t i = 0; i < parts_->steps.size(); ++i) {
+    Parts::Step& step = parts_->steps[i];
+    step.leaders_left = step.leader_count;
+    if (step.leader_count == 0) parts_->ready.push_back(i);
+  }
+  parts_->changed.notify_all();
+  parts_->work(lock, true, [this] { return parts_->unfinished == 0; });
+}
+
+}  // namespace psygen::ecs

@@ -1,0 +1,225 @@
+// Systems in one readable order. A system is a function; what it reads and writes is taken from its
+// parameters:
+//   Query<A, const B>     writes the component A, reads B
+//   const R& / R&         reads / writes a resource: any object given to provide()
+//   ChangeReader<C>&      drains a reader that was provided; reads C
+//   Commands&             structural changes, applied right after the system
+//   World& / const World& everything: alone / beside others that only read
+// Systems run in the order of add(); on several threads those that do not conflict run at the same
+// time, and the result is that of one thread. Not a job system: a system that wants to split its own
+// work does so itself. Systems must not throw. One thread owns the schedule.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "ecs/change_reader.hpp"
+#include "ecs/commands.hpp"
+#include "ecs/system_query.hpp"
+
+namespace psygen::ecs {
+
+enum class RunsOn : std::uint8_t {
+  kAnyThread,
+  kCallingThread,  // the one that calls run(): windows, graphics interfaces
+};
+
+// How much of a world a system touches beyond the components that it lists.
+enum class WorldAccess : std::uint8_t { kNone, kReads, kWrites };
+
+struct Access {
+  std::string name;  // of the component, or the type of the resource without its namespace
+  const void* type;  // its identity
+  bool writes;
+  bool is_component;
+};
+
+struct SystemInfo {
+  std::string name;
+  std::vector<Access> accesses;
+  WorldAccess world = WorldAccess::kNone;
+  bool records_commands = false;
+  RunsOn runs_on = RunsOn::kAnyThread;
+  double last_seconds = 0;  // wall time of the last run, with its commands
+};
+
+// Whether the order of two systems matters. Symmetric.
+bool conflict(const SystemInfo& a, const SystemInfo& b);
+
+class Schedule {
+ public:
+  // `threads` counts the calling one: 1 runs everything there, in order.
+  explicit Schedule(World& world, std::size_t threads = 1);
+  ~Schedule();
+  Schedule(const Schedule&) = delete;
+  Schedule& operator=(const Schedule&) = delete;
+
+  // Makes an object known to systems by its type, one of each. It must outlive the schedule.
+  template <class... Rs>
+  void provide(Rs&... resources) {
+    (provide_one(&kIdentity<Rs>, type_label<Rs>(), &resources), ...);
+  }
+
+  // Appends a system. What it wants must have been provided before; ends the program with a message
+  // that names what is missing.
+  template <class F>
+  void add(std::string_view name, F system, RunsOn runs_on = RunsOn::kAnyThread);
+
+  // Runs every system once.
+  void run();
+
+  std::span<const SystemInfo> systems() const;
+  std::size_t threads() const;
+
+ private:
+  template <class T>
+  static constexpr char kIdentity = 0;
+  template <class T>
+  static std::string type_label();
+
+  struct System {
+    SystemInfo info;
+    std::function<void()> run;
+    std::unique_ptr<Commands> commands;
+  };
+  struct Parts;
+
+  // What one parameter stands for: its accesses, and how to get it when the system runs.
+  template <class P>
+  struct Parameter;
+  template <class F, class... Ps>
+  void add_with(System system, F f, std::type_identity<std::tuple<Ps...>>);
+
+  void provide_one(const void* type, std::string label, void* resource);
+  void* resource(const System& asker, const void* type, const std::string& label) const;
+  void append(System system);
+
+  World& world_;
+  std::unique_ptr<Parts> parts_;
+};
+
+namespace detail {
+
+template <class F>
+struct ParametersOf : ParametersOf<decltype(&F::operator())> {};
+template <class R, class... Ps>
+struct ParametersOf<R (*)(Ps...)> : std::type_identity<std::tuple<Ps...>> {};
+template <class R, class F, class... Ps>
+struct ParametersOf<R (F::*)(Ps...)> : std::type_identity<std::tuple<Ps...>> {};
+template <class R, class F, class... Ps>
+struct ParametersOf<R (F::*)(Ps...) const> : std::type_identity<std::tuple<Ps...>> {};
+
+template <class P>
+inline constexpr bool kNever = false;
+
+// The last part of a qualified name.
+std::string without_namespace(std::string_view name);
+
+}  // namespace detail
+
+template <class T>
+std::string Schedule::type_label() {
+  return detail::without_namespace(detail::type_name<T>());
+}
+
+template <class P>
+struct Schedule::Parameter {
+  static_assert(std::is_lvalue_reference_v<P>,
+                "a system takes Query<...> by value, everything else by reference");
+  using R = std::remove_cvref_t<P>;
+  R* resource;
+  Parameter(Schedule& schedule, System& system)
+      : resource(static_cast<R*>(
+            schedule.resource(system, &kIdentity<R>, type_label<R>()))) {
+    system.info.accesses.push_back(
+        {type_label<R>(), &kIdentity<R>, !std::is_const_v<std::remove_reference_t<P>>, false});
+  }
+  P get() const { return *resource; }
+};
+
+template <class... Cs>
+struct Schedule::Parameter<Query<Cs...>> {
+  World& world;
+  Parameter(Schedule& schedule, System& system) : world(schedule.world_) {
+    world.declare<std::remove_const_t<Cs>...>();
+    (system.info.accesses.push_back(
+         {detail::without_namespace(component_name<std::remove_const_t<Cs>>()),
+          &kIdentity<std::remove_const_t<Cs>>, !std::is_const_v<Cs>, true}),
+     ...);
+  }
+  Query<Cs...> get() const { return Query<Cs...>(world); }
+};
+
+template <class C>
+struct Schedule::Parameter<ChangeReader<C>&> {
+  ChangeReader<C>* reader;
+  Parameter(Schedule& schedule, System& system)
+      : reader(static_cast<ChangeReader<C>*>(
+            schedule.resource(system, &kIdentity<ChangeReader<C>>,
+                              type_label<ChangeReader<C>>()))) {
+    system.info.accesses.push_back(
+        {type_label<ChangeReader<C>>(), &kIdentity<ChangeReader<C>>, true, false});
+    system.info.accesses.push_back(
+        {detail::without_namespace(component_name<C>()), &kIdentity<C>, false, true});
+  }
+  ChangeReader<C>& get() const { return *reader; }
+};
+
+template <>
+struct Schedule::Parameter<Commands&> {
+  Commands* commands;
+  Parameter(Schedule&, System& system) {
+    system.info.records_commands = true;
+    system.commands = std::make_unique<Commands>();
+    commands = system.commands.get();
+  }
+  Commands& get() const { return *commands; }
+};
+
+template <>
+struct Schedule::Parameter<World&> {
+  World& world;
+  Parameter(Schedule& schedule, System& system) : world(schedule.world_) {
+    system.info.world = WorldAccess::kWrites;
+  }
+  World& get() const { return world; }
+};
+
+template <>
+struct Schedule::Parameter<const World&> {
+  const World& world;
+  Parameter(Schedule& schedule, System& system) : world(schedule.world_) {
+    system.info.world = WorldAccess::kReads;
+  }
+  const World& get() const { return world; }
+};
+
+template <class F>
+void Schedule::add(std::string_view name, F system, RunsOn runs_on) {
+  System entry;
+  entry.info.name = name;
+  entry.info.runs_on = runs_on;
+  add_with(std::move(entry), std::move(system),
+           std::type_identity<typename detail::ParametersOf<F>::type>{});
+}
+
+template <class F, class... Ps>
+void Schedule::add_with(System system, F f, std::type_identity<std::tuple<Ps...>>) {
+  // Braces: from left to right, so that accesses are listed in the order of the parameters.
+  std::tuple<Parameter<Ps>...> parameters{Parameter<Ps>(*this, system)...};
+  system.run = [f = std::move(f), parameters]() mutable {
+    std::apply([&](auto&... each) { f(each.get()...); }, parameters);
+  };
+  append(std::move(system));
+}
+
+}  // namespace psygen::ecs

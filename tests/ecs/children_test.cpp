@@ -1,0 +1,108 @@
+// Parents find their children in one contiguous list; kinds do not multiply.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/ecs/components.hpp"
+
+namespace psygen::ecs::test {
+namespace {
+
+std::vector<Entity> copy(std::span<const Entity> entities) {
+  return {entities.begin(), entities.end()};
+}
+
+TEST(Children, a_thousand_parents_make_two_tables) {
+  World world;
+  const std::vector<Entity> parents = copy(world.create<Children, Position>(1000).entities);
+  for (const Entity parent : parents)
+    EXPECT_TRUE(world.set_children(parent, world.create<Mesh>(5).entities));
+  EXPECT_EQ(world.table_count(), 2U);
+  for (const Entity parent : parents) {
+    ASSERT_EQ(world.children(parent).size(), 5U);
+    for (const Entity child : world.children(parent))
+      EXPECT_NE(world.get<Mesh>(child), nullptr);
+  }
+}
+
+TEST(Children, the_list_is_in_the_order_in_which_it_was_set_and_can_be_replaced) {
+  World world;
+  const Entity parent = world.create<Children>(1).entities[0];
+  const std::vector<Entity> c = copy(world.create<Mesh>(9).entities);
+  world.set_children(parent, std::vector{c[3], c[1], c[2]});
+  EXPECT_EQ(copy(world.children(parent)), (std::vector<Entity>{c[3], c[1], c[2]}));
+  world.set_children(parent, c);
+  EXPECT_EQ(copy(world.children(parent)), c);
+  world.set_children(parent, world.children(parent).first(2));  // from the list itself
+  EXPECT_EQ(copy(world.children(parent)), (std::vector<Entity>{c[0], c[1]}));
+  world.set_children(parent, {});
+  EXPECT_TRUE(world.children(parent).empty());
+}
+
+TEST(Children, who_is_no_parent_has_none_and_gets_none) {
+  World world;
+  const Entity plain = world.create<Position>(1).entities[0];
+  EXPECT_FALSE(world.set_children(plain, {}));
+  EXPECT_FALSE(world.set_children(Entity{}, {}));
+  EXPECT_TRUE(world.children(plain).empty());
+  EXPECT_TRUE(world.children(Entity{}).empty());
+}
+
+TEST(Children, families_end_together) {
+  World world;
+  const Entity root = world.create<Children>(1).entities[0];
+  const std::vector<Entity> middle = copy(world.create<Children>(3).entities);
+  world.set_children(root, middle);
+  for (const Entity m : middle)
+    world.set_children(m, world.create<Mesh>(4).entities);
+  const Entity other = world.create<Mesh>(1).entities[0];
+  EXPECT_EQ(world.destroy_with_children(std::vector{root}), 1U + 3U + 12U);
+  EXPECT_EQ(world.size(), 1U);
+  EXPECT_TRUE(world.alive(other));
+}
+
+TEST(Children, a_circle_of_parents_ends_once) {
+  World world;
+  const std::vector<Entity> two = copy(world.create<Children>(2).entities);
+  world.set_children(two[0], std::vector{two[1]});
+  world.set_children(two[1], std::vector{two[0], two[1]});
+  EXPECT_EQ(world.destroy_with_children(two), 2U);
+}
+
+TEST(Children, lists_of_the_dead_are_used_again) {
+  World world;
+  const std::vector<Entity> children = copy(world.create<Mesh>(60).entities);
+  std::size_t bytes = 0;
+  for (int round = 0; round < 100; ++round) {
+    const std::vector<Entity> parents = copy(world.create<Children>(50).entities);
+    for (const Entity parent : parents)
+      world.set_children(parent, children);
+    if (round % 2 == 0) world.remove<Children>(parents);
+    world.destroy(parents);
+    if (round == 1) bytes = world.committed_bytes();
+  }
+  EXPECT_EQ(world.committed_bytes(), bytes);
+}
+
+TEST(Children, a_parent_that_moves_keeps_its_list) {
+  World world;
+  const std::vector<Entity> parents = copy(world.create<Children>(3).entities);
+  const std::vector<Entity> children = copy(world.create<Mesh>(2).entities);
+  world.set_children(parents[2], children);
+  world.add<Velocity>(parents);
+  world.destroy(std::span(parents).first(1));
+  EXPECT_EQ(copy(world.children(parents[2])), children);
+}
+
+TEST(Children, commands_end_families_too) {
+  World world;
+  const Entity root = world.create<Children>(1).entities[0];
+  world.set_children(root, world.create<Mesh>(4).entities);
+  Commands commands;
+  world.each<const Mesh>([&](auto, auto) { commands.destroy_with_children(root); });
+  commands.apply(world);
+  EXPECT_EQ(world.size(), 0U);
+}
+
+}  // namespace
+}  // namespace psygen::ecs::test

@@ -1,0 +1,60 @@
+// Component types whose fields are described, for the tests of fields and snapshots.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tests/ecs/components.hpp"
+
+namespace psygen::ecs::test {
+
+enum class Mood : std::uint8_t { kCalm, kCross };
+
+struct Vec {
+  float x = 0, y = 0, z = 0;
+  friend bool operator==(const Vec&, const Vec&) = default;
+};
+
+// One field of every kind.
+struct Creature {
+  std::string name;
+  Vec place;
+  std::array<std::int16_t, 3> sizes{1, 2, 3};
+  std::vector<Vec> path;
+  std::vector<std::string> titles;
+  Entity friend_of;
+  double age_s = 0.5;
+  Mood mood = Mood::kCalm;
+  bool awake = true;
+  std::int64_t debt = -1;
+  int secret = 5;  // not described
+  friend bool operator==(const Creature&, const Creature&) = default;
+};
+
+}  // namespace psygen::ecs::test
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Vec> {
+  using Vec = psygen::ecs::test::Vec;
+  static constexpr auto fields =
+      std::tuple{field("x", &Vec::x), field("y", &Vec::y), field("z", &Vec::z)};
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Creature> {
+  using Creature = psygen::ecs::test::Creature;
+  static constexpr std::string_view name = "creature";
+  static constexpr bool tracked = true;
+  static constexpr auto fields = std::tuple{
+      field("name", &Creature::name),
+      field("place", &Creature::place, {.unit = "m", .doc = "where it stands"}),
+      field("sizes", &Creature::sizes),
+      field("path", &Creature::path),
+      field("titles", &Creature::titles),
+      field("friend_of", &Creature::friend_of),
+      field("age", &Creature::age_s, {.unit = "s", .min = 0, .max = 100}),
+      field("mood", &Creature::mood),
+      field("awake", &Creature::awake),
+      field("debt", &Creature::debt),
+  };
+};

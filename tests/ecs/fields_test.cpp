@@ -1,0 +1,63 @@
+// Fields are described once and reached by offset.
+#include "ecs/fields.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/ecs/described.hpp"
+
+namespace psygen::ecs::test {
+namespace {
+
+const FieldDescription* find(const TypeDescription& type, std::string_view name) {
+  for (const FieldDescription& field : type.fields) {
+    if (field.name == name) return &field;
+  }
+  return nullptr;
+}
+
+TEST(Fields, each_has_name_kind_and_notes_in_the_listed_order) {
+  const TypeDescription* type = describe<Creature>();
+  ASSERT_NE(type, nullptr);
+  ASSERT_EQ(type->fields.size(), 10U);
+  using enum FieldKind;
+  const FieldKind kinds[] = {kString, kStruct, kArray,    kList, kList,
+                             kEntity, kReal,   kUnsigned, kBool, kSigned};
+  for (std::size_t i = 0; i < type->fields.size(); ++i)
+    EXPECT_EQ(type->fields[i].type->kind, kinds[i]) << type->fields[i].name;
+  EXPECT_EQ(find(*type, "place")->notes.unit, "m");
+  EXPECT_EQ(find(*type, "place")->notes.doc, "where it stands");
+  EXPECT_EQ(find(*type, "age")->notes.max, 100);
+  EXPECT_EQ(find(*type, "sizes")->type->count, 3U);
+  EXPECT_EQ(find(*type, "path")->type->element->fields.size(), 3U);
+}
+
+TEST(Fields, values_are_reached_by_offset) {
+  Creature creature;
+  auto* bytes = reinterpret_cast<std::byte*>(&creature);
+  const TypeDescription& type = *describe<Creature>();
+  const double age_s = 12;
+  std::memcpy(bytes + find(type, "age")->offset_bytes, &age_s, sizeof(age_s));
+  EXPECT_EQ(creature.age_s, 12);
+  const FieldDescription& place = *find(type, "place");
+  const float z = 3;
+  std::memcpy(bytes + place.offset_bytes + find(*place.type, "z")->offset_bytes, &z, sizeof(z));
+  EXPECT_EQ(creature.place.z, 3);
+  const FieldDescription& name = *find(type, "name");
+  std::memcpy(name.type->resize(bytes + name.offset_bytes, 3), "fox", 3);
+  EXPECT_EQ(creature.name, "fox");
+  const FieldDescription& path = *find(type, "path");
+  path.type->resize(bytes + path.offset_bytes, 2);
+  EXPECT_EQ(creature.path.size(), 2U);
+  EXPECT_EQ(path.type->length(bytes + path.offset_bytes), 2U);
+}
+
+TEST(Fields, a_type_that_says_nothing_is_not_described_and_an_empty_one_has_no_fields) {
+  EXPECT_EQ(describe<Position>(), nullptr);
+  ASSERT_NE(describe<Hidden>(), nullptr);
+  EXPECT_TRUE(describe<Hidden>()->fields.empty());
+}
+
+}  // namespace
+}  // namespace psygen::ecs::test

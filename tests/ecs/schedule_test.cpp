@@ -1,0 +1,255 @@
+// Systems, what they declare, and that any number of threads gives the result of one.
+#include "ecs/schedule.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "ecs/snapshot.hpp"
+#include "tests/ecs/described.hpp"
+
+namespace psygen::ecs::test {
+namespace {
+
+struct Wind {
+  float strength = 2;
+};
+struct Tally {
+  std::size_t seen = 0;
+};
+
+const SystemInfo& info(const Schedule& schedule, std::string_view name) {
+  for (const SystemInfo& system : schedule.systems()) {
+    if (system.name == name) return system;
+  }
+  ADD_FAILURE() << "no system " << name;
+  return schedule.systems()[0];
+}
+
+bool declares(const SystemInfo& system, std::string_view name, bool writes) {
+  return std::ranges::any_of(
+      system.accesses, [&](const Access& a) { return a.name == name && a.writes == writes; });
+}
+
+TEST(Schedule, what_a_system_reads_and_writes_is_taken_from_its_parameters) {
+  World world;
+  Wind wind;
+  Tally tally;
+  auto reader = world.reader<Mesh>();
+  Schedule schedule(world);
+  schedule.provide(wind, tally, reader);
+  schedule.add("blow", [](const Wind&, Query<Velocity, const Position>) {});
+  schedule.add("count", [](Tally&, ChangeReader<Mesh>&) {});
+  schedule.add("spawn", [](Commands&) {});
+  schedule.add("look", [](const World&) {});
+  schedule.add("change", [](World&) {}, RunsOn::kCallingThread);
+  const SystemInfo& blow = info(schedule, "blow");
+  EXPECT_EQ(blow.accesses.size(), 3U);
+  EXPECT_TRUE(declares(blow, "Wind", false));
+  EXPECT_TRUE(declares(blow, "Velocity", true));
+  EXPECT_TRUE(declares(blow, "Position", false));
+  EXPECT_TRUE(declares(info(schedule, "count"), "Tally", true));
+  EXPECT_TRUE(declares(info(schedule, "count"), "mesh", false));
+  EXPECT_TRUE(info(schedule, "spawn").records_commands);
+  EXPECT_EQ(info(schedule, "look").world, WorldAccess::kReads);
+  EXPECT_EQ(info(schedule, "change").world, WorldAccess::kWrites);
+  EXPECT_EQ(info(schedule, "change").runs_on, RunsOn::kCallingThread);
+}
+
+TEST(Schedule, two_systems_conflict_when_one_writes_what_the_other_touches) {
+  World world;
+  Wind wind;
+  Tally tally;
+  Schedule s(world);
+  s.provide(wind, tally);
+  s.add("reads", [](Query<const Position>) {});
+  s.add("reads too", [](Query<const Position, const Mesh>, const Wind&) {});
+  s.add("writes", [](Query<Position>) {});
+  s.add("elsewhere", [](Query<Velocity>) {});
+  s.add("resource", [](Wind&) {});
+  s.add("all", [](const World&) {});
+  s.add("alone", [](World&) {});
+  const auto conflicts = [&](std::string_view a, std::string_view b) {
+    EXPECT_EQ(conflict(info(s, a), info(s, b)), conflict(info(s, b), info(s, a)));
+    return conflict(info(s, a), info(s, b));
+  };
+  EXPECT_FALSE(conflicts("reads", "reads too"));
+  EXPECT_TRUE(conflicts("reads", "writes"));
+  EXPECT_FALSE(conflicts("writes", "elsewhere"));
+  EXPECT_TRUE(conflicts("resource", "reads too"));
+  EXPECT_FALSE(conflicts("resource", "all"));
+  EXPECT_TRUE(conflicts("writes", "all"));
+  EXPECT_FALSE(conflicts("reads", "all"));
+  EXPECT_TRUE(conflicts("reads", "alone"));
+  EXPECT_TRUE(conflicts("all", "alone"));
+  EXPECT_FALSE(conflicts("resource", "alone"));
+}
+
+TEST(Schedule, systems_run_in_order_and_have_times) {
+  World world;
+  std::vector<int> order;
+  Schedule schedule(world);
+  schedule.provide(order);
+  schedule.add("first", [](std::vector<int>& o) { o.push_back(1); });
+  schedule.add("second", [](std::vector<int>& o) { o.push_back(2); });
+  schedule.run();
+  schedule.run();
+  EXPECT_EQ(order, (std::vector<int>{1, 2, 1, 2}));
+  for (const SystemInfo& system : schedule.systems())
+    EXPECT_GT(system.last_seconds, 0.0);
+}
+
+TEST(Schedule, commands_have_happened_before_the_next_system) {
+  for (const std::size_t threads : {1U, 4U}) {
+    World world;
+    Tally tally;
+    Schedule schedule(world, threads);
+    schedule.provide(tally);
+    schedule.add("spawn", [](Commands& commands) {
+      commands.create(Position{1, 2, 3});
+      commands.create(Position{});
+    });
+    schedule.add("count", [](Tally& t, Query<const Position> positions) {
+      positions.each([&](auto entities, auto) { t.seen += entities.size(); });
+    });
+    schedule.run();
+    schedule.run();
+    EXPECT_EQ(tally.seen, 2U + 4U);
+  }
+}
+
+TEST(Schedule, systems_without_conflict_run_at_the_same_time) {
+  World world;
+  world.create<Position, Velocity>(1);
+  std::atomic<int> inside = 0;
+  Schedule schedule(world, 2);
+  // Each waits for the other: only together they end.
+  const auto meet = [&inside] {
+    ++inside;
+    while (inside.load() < 2)
+      std::this_thread::yield();
+  };
+  schedule.add("a", [=](Query<Position>) { meet(); });
+  schedule.add("b", [=](Query<Velocity>) { meet(); });
+  schedule.run();
+  EXPECT_EQ(inside.load(), 2);
+}
+
+TEST(Schedule, what_must_run_on_the_calling_thread_does) {
+  World world;
+  std::set<std::thread::id> ids;
+  Schedule schedule(world, 3);
+  schedule.provide(ids);
+  for (int i = 0; i < 20; ++i) {
+    schedule.add("elsewhere", [](Query<Velocity>) {});
+    schedule.add("window", [](std::set<std::thread::id>& s) { s.insert(std::this_thread::get_id()); },
+                 RunsOn::kCallingThread);
+  }
+  for (int i = 0; i < 20; ++i)
+    schedule.run();
+  EXPECT_EQ(ids, std::set{std::this_thread::get_id()});
+}
+
+// A small simulation in which every kind of access occurs and every order matters.
+void simulate(World& world, std::size_t threads) {
+  auto meshes = world.reader<Mesh>(Removed::kReport);
+  Wind wind;
+  Tally tally;
+  Schedule schedule(world, threads);
+  schedule.provide(meshes, wind, tally);
+  schedule.add("blow", [](const Wind& w, Query<Creature, const Mesh> query) {
+    query.each([&](auto, std::span<Creature> creatures, std::span<const Mesh> m) {
+      for (std::size_t i = 0; i < creatures.size(); ++i)
+        creatures[i].age_s = creatures[i].age_s * 0.5 + static_cast<double>(m[i].id) * w.strength;
+    });
+  });
+  schedule.add("spin", [](Query<Edited> query) {
+    query.each([](auto, std::span<Edited> edited) {
+      for (Edited& e : edited)
+        e.version = e.version * 1664525 + 1013904223;
+    });
+  });
+  schedule.add("age", [](Query<Mesh> query) {
+    query.each([](TableRows<Mesh> rows, auto, std::span<Mesh> m) {
+      for (std::size_t i = 0; i < m.size(); ++i)
+        m[i].id = m[i].id * 3 + i;
+      rows.mark_changed<Mesh>(0, m.size());
+    });
+  });
+  schedule.add("gust", [](Wind& w) { w.strength = w.strength * 1.01F + 0.5F; });
+  schedule.add("cull", [](Query<const Creature> query, Commands& commands) {
+    query.each([&](std::span<const Entity> entities, std::span<const Creature> creatures) {
+      for (std::size_t i = 0; i < entities.size(); ++i) {
+        if (creatures[i].age_s > 1e6) commands.destroy(entities[i]);
+      }
+    });
+  });
+  schedule.add("spawn", [](const Tally& t, Commands& commands) {
+    for (std::size_t i = 0; i < 3 + t.seen % 5; ++i) {
+      Creature creature;
+      creature.name = std::to_string(t.seen);
+      creature.age_s = static_cast<double>(i);
+      commands.create(std::move(creature), Mesh{i + 1});
+    }
+  });
+  schedule.add("drain", [](ChangeReader<Mesh>& reader, Tally& t) {
+    t.seen += reader.drain([](auto, auto) {});
+    t.seen += reader.drain_removed([](auto) {});
+  });
+  schedule.add("edit", [](World& w) {
+    std::vector<Entity> all;
+    w.each<const Creature>([&](std::span<const Entity> entities, auto) {
+      all.insert(all.end(), entities.begin(), entities.end());
+    });
+    w.remove<Edited>(std::span(all).first(all.size() / 3));
+    w.add<Edited>(std::span(all).last(all.size() / 2));
+  });
+  for (int tick = 0; tick < 60; ++tick)
+    schedule.run();
+  EXPECT_GT(tally.seen, 100U);
+}
+
+TEST(Schedule, any_number_of_threads_gives_the_state_of_one) {
+  World serial;
+  simulate(serial, 1);
+  EXPECT_GT(serial.size(), 10U);
+  for (const std::size_t threads : {2U, 3U, 8U}) {
+    World parallel;
+    simulate(parallel, threads);
+    EXPECT_EQ(state_hash(parallel), state_hash(serial)) << threads;
+  }
+}
+
+TEST(ScheduleDeathTest, a_missing_resource_is_named) {
+  World world;
+  Schedule schedule(world);
+  EXPECT_DEATH(schedule.add("blow", [](const Wind&) {}),
+               "the system 'blow' wants a Wind, which was not provided");
+}
+
+TEST(ScheduleDeathTest, a_second_resource_of_a_type_is_refused) {
+  World world;
+  Wind wind;
+  Schedule schedule(world);
+  schedule.provide(wind);
+  EXPECT_DEATH(schedule.provide(wind), "a second Wind");
+}
+
+TEST(Query, follows_handles_and_lands_only_where_it_may) {
+  World world;
+  const std::vector<Landing<Mesh>> results{{world.create<Mesh, Position>(1).entities[0], {8}}};
+  const Query<Mesh, const Position> query(world);
+  EXPECT_EQ(query.land<Mesh>(results).landed, 1U);
+  EXPECT_EQ(query.get<Mesh>(results[0].entity)->id, 8U);
+  EXPECT_EQ(query.accessor<const Mesh>().get(results[0].entity)->id, 8U);
+  static_assert(std::is_same_v<decltype(query.get<Position>({})), const Position*>);
+  std::size_t rows = 0;
+  query.each<const Position>([&](auto entities, auto) { rows += entities.size(); });
+  EXPECT_EQ(rows, 1U);
+}
+
+}  // namespace
+}  // namespace psygen::ecs::test

@@ -1,0 +1,314 @@
+// Worlds as bytes and back, and what happens to bytes that are no world.
+#include "ecs/snapshot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "ecs/snapshot_format.hpp"
+#include "tests/ecs/described.hpp"
+
+namespace psygen::ecs::test {
+namespace {
+
+std::vector<Entity> copy(std::span<const Entity> entities) {
+  return {entities.begin(), entities.end()};
+}
+
+void declare_all(World& world) {
+  world.declare<Creature, Position, Mesh, Hidden, Selected, Edited, Children>();
+}
+
+// Every feature at once: several kinds, the dead, children, sparse components, transient values.
+void fill(World& world, std::size_t count = 20) {
+  const std::vector<Entity> creatures = copy(world.create<Creature, Position>(count).entities);
+  const std::vector<Entity> hidden = copy(world.create<Creature, Hidden>(3).entities);
+  for (std::size_t i = 0; i < creatures.size(); ++i) {
+    Creature& c = *world.get<Creature>(creatures[i]);
+    c.name = "creature " + std::to_string(i);
+    c.place = {static_cast<float>(i), 2, 3};
+    c.path.resize(i % 3, Vec{1, 2, 3});
+    c.titles = {"sir", std::string(i % 5, 'x')};
+    c.friend_of = hidden[i % 3];
+    c.mood = i % 2 == 0 ? Mood::kCross : Mood::kCalm;
+    world.get<Position>(creatures[i])->x = 9;
+  }
+  const Entity parent = world.create<Children>(1).entities[0];
+  world.set_children(parent, creatures);
+  world.destroy(std::span(creatures).subspan(2, 5));
+  world.add<Selected>(std::span(creatures).first(10));
+  world.add<Edited>(hidden);
+  world.get<Edited>(hidden[1])->version = 42;
+}
+
+SnapshotStatus status_of(std::span<const std::byte> bytes) {
+  World world;
+  declare_all(world);
+  const SnapshotResult result = load_snapshot(bytes, world);
+  EXPECT_EQ(result.sentence.empty(), bool(result));
+  if (!result) {
+    EXPECT_EQ(world.size(), 0U);
+  }
+  return result.status;
+}
+
+void repair(std::vector<std::byte>& bytes) {
+  const std::uint64_t sum = detail::checksum(std::span(bytes).first(bytes.size() - sizeof(sum)));
+  std::memcpy(bytes.data() + bytes.size() - sizeof(sum), &sum, sizeof(sum));
+}
+
+TEST(Snapshot, a_world_comes_back_as_it_was) {
+  World before;
+  fill(before);
+  const std::vector<std::byte> bytes = save_snapshot(before);
+  World after;
+  declare_all(after);
+  const SnapshotResult result = load_snapshot(bytes, after);
+  ASSERT_TRUE(result) << result.sentence;
+
+  EXPECT_EQ(after.size(), before.size());
+  std::size_t compared = 0;
+  before.each<const Creature>([&](std::span<const Entity> entities, auto creatures) {
+    for (std::size_t i = 0; i < entities.size(); ++i) {
+      const Creature* other = after.get<Creature>(entities[i]);
+      ASSERT_NE(other, nullptr);
+      EXPECT_EQ(*other, creatures[i]);
+      EXPECT_EQ(after.get<Selected>(entities[i]) != nullptr,
+                before.get<Selected>(entities[i]) != nullptr);
+      ++compared;
+    }
+  });
+  EXPECT_EQ(compared, 18U);
+  before.each<const Children>([&](std::span<const Entity> entities, auto) {
+    EXPECT_EQ(copy(after.children(entities[0])), copy(before.children(entities[0])));
+    EXPECT_EQ(after.children(entities[0]).size(), 20U);
+  });
+  before.each<const Edited>([&](std::span<const Entity> entities, auto edited) {
+    EXPECT_EQ(after.get<Edited>(entities[1])->version, edited[1].version);
+  });
+  EXPECT_EQ(save_snapshot(after), bytes);
+  EXPECT_EQ(state_hash(after), state_hash(before));
+}
+
+TEST(Snapshot, both_worlds_go_on_alike) {
+  World before;
+  fill(before);
+  World after;
+  declare_all(after);
+  ASSERT_TRUE(load_snapshot(save_snapshot(before), after));
+  for (World* world : {&before, &after})
+    world->destroy(copy(world->create<Creature>(7).entities));
+  EXPECT_EQ(copy(before.create<Mesh>(9).entities), copy(after.create<Mesh>(9).entities));
+  EXPECT_EQ(state_hash(after), state_hash(before));
+}
+
+TEST(Snapshot, stale_handles_stay_stale_and_retired_slots_retired) {
+  World before(WorldLimits{.first_generation = UINT32_MAX});
+  const std::vector<Entity> dead = copy(before.create<Mesh>(3).entities);
+  before.destroy(dead);
+  before.create<Mesh>(1);
+  World after;
+  declare_all(after);
+  ASSERT_TRUE(load_snapshot(save_snapshot(before), after));
+  EXPECT_EQ(after.retired_slots(), 3U);
+  EXPECT_FALSE(after.alive(dead[0]));
+  EXPECT_EQ(after.size(), 1U);
+}
+
+TEST(Snapshot, transient_components_stay_without_their_value) {
+  World before;
+  const Entity e = before.create<Position>(1).entities[0];
+  before.get<Position>(e)->x = 5;
+  World after;
+  declare_all(after);
+  ASSERT_TRUE(load_snapshot(save_snapshot(before), after));
+  ASSERT_NE(after.get<Position>(e), nullptr);
+  EXPECT_EQ(after.get<Position>(e)->x, 0);
+}
+
+TEST(Snapshot, an_empty_world_is_one) {
+  EXPECT_EQ(status_of(save_snapshot(World())), SnapshotStatus::kLoaded);
+}
+
+TEST(Snapshot, the_order_in_which_types_were_met_does_not_matter) {
+  World a;
+  World b;
+  a.declare<Mesh, Creature, Hidden>();
+  b.declare<Hidden, Position, Creature>();
+  for (World* world : {&a, &b})
+    world->create<Creature, Hidden, Mesh>(5);
+  EXPECT_EQ(save_snapshot(a), save_snapshot(b));
+}
+
+TEST(Snapshot, loaded_rows_are_new_to_a_reader) {
+  World before;
+  fill(before);
+  World after;
+  declare_all(after);
+  auto reader = after.reader<Creature>();
+  ASSERT_TRUE(load_snapshot(save_snapshot(before), after));
+  EXPECT_EQ(reader.drain([](auto, auto) {}), 18U);
+}
+
+TEST(Snapshot, a_world_with_a_past_and_an_unknown_component_are_refused_by_name) {
+  World before;
+  fill(before);
+  const std::vector<std::byte> bytes = save_snapshot(before);
+  EXPECT_EQ(load_snapshot(bytes, before).status, SnapshotStatus::kWorldInUse);
+  World stranger;
+  stranger.declare<Position>();
+  const SnapshotResult result = load_snapshot(bytes, stranger);
+  EXPECT_EQ(result.status, SnapshotStatus::kUnknownComponent);
+  EXPECT_NE(result.sentence.find("'"), std::string::npos) << result.sentence;
+}
+
+TEST(Snapshot, more_than_the_limits_of_the_world_is_refused) {
+  World before;
+  fill(before, 5000);
+  const std::vector<std::byte> bytes = save_snapshot(before);
+  World few_entities(WorldLimits{.max_entities = 100});
+  declare_all(few_entities);
+  EXPECT_EQ(load_snapshot(bytes, few_entities).status, SnapshotStatus::kTooLarge);
+  World few_rows(WorldLimits{.max_rows_per_table = 4096});
+  declare_all(few_rows);
+  EXPECT_EQ(load_snapshot(bytes, few_rows).status, SnapshotStatus::kTooLarge);
+}
+
+TEST(Snapshot, truncated_at_every_length_it_is_refused) {
+  World before;
+  fill(before);
+  const std::vector<std::byte> bytes = save_snapshot(before);
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    const SnapshotStatus status = status_of(std::span(bytes).first(length));
+    ASSERT_TRUE(status == SnapshotStatus::kTruncated || status == SnapshotStatus::kNotASnapshot)
+        << length;
+  }
+}
+
+TEST(Snapshot, with_any_byte_flipped_it_is_refused) {
+  World before;
+  fill(before, 8);
+  std::vector<std::byte> bytes = save_snapshot(before);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    for (const auto flip : {std::byte{0x01}, std::byte{0x80}, std::byte{0xFF}}) {
+      bytes[i] ^= flip;
+      ASSERT_NE(status_of(bytes), SnapshotStatus::kLoaded) << i;
+      bytes[i] ^= flip;
+    }
+  }
+  EXPECT_EQ(status_of(bytes), SnapshotStatus::kLoaded);
+}
+
+TEST(Snapshot, bytes_after_the_end_are_refused) {
+  World before;
+  fill(before);
+  std::vector<std::byte> bytes = save_snapshot(before);
+  bytes.push_back({});
+  EXPECT_EQ(status_of(bytes), SnapshotStatus::kCorrupt);
+}
+
+// Whoever forges a snapshot can forge its checksum: what is loaded then is at least a sound world.
+TEST(Snapshot, with_any_byte_forged_it_is_refused_or_a_sound_world) {
+  World before;
+  fill(before, 8);
+  const std::vector<std::byte> good = save_snapshot(before);
+  std::mt19937 random(1);
+  std::size_t loaded = 0;
+  for (std::size_t i = 0; i < good.size() * 3; ++i) {
+    std::vector<std::byte> bytes = good;
+    const std::size_t at = i % (good.size() - detail::kSnapshotChecksumBytes);
+    bytes[at] = static_cast<std::byte>(i < good.size() ? 0xFF : random());
+    if (i >= 2 * good.size()) bytes[random() % (bytes.size() - 8)] = std::byte(random());
+    repair(bytes);
+    World world;
+    declare_all(world);
+    if (!load_snapshot(bytes, world)) continue;
+    ++loaded;
+    std::vector<std::byte> again = save_snapshot(world);
+    World twin;
+    declare_all(twin);
+    ASSERT_TRUE(load_snapshot(again, twin)) << i;
+    ASSERT_EQ(save_snapshot(twin), again) << i;
+    world.destroy(copy(world.create<Creature, Hidden>(100).entities));
+  }
+  EXPECT_GT(loaded, good.size() / 10);  // most bytes are values
+  EXPECT_LT(loaded, good.size() * 3);
+}
+
+// ---- types that change between versions of a program -----------------------------------------
+
+struct OldCar {
+  int wheels = 4;
+  float speed = 1;
+  std::vector<Vec> tracks;
+};
+struct NewCar {
+  std::string plate = "none";
+  int wheels = 6;
+};
+struct OtherCar {
+  double wheels = 4;
+};
+
+}  // namespace
+}  // namespace psygen::ecs::test
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::OldCar> {
+  using C = psygen::ecs::test::OldCar;
+  static constexpr std::string_view name = "car";
+  static constexpr auto fields = std::tuple{field("wheels", &C::wheels), field("speed", &C::speed),
+                                            field("tracks", &C::tracks)};
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::NewCar> {
+  using C = psygen::ecs::test::NewCar;
+  static constexpr std::string_view name = "car";
+  static constexpr auto fields =
+      std::tuple{field("plate", &C::plate), field("wheels", &C::wheels)};
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::OtherCar> {
+  using C = psygen::ecs::test::OtherCar;
+  static constexpr std::string_view name = "car";
+  static constexpr auto fields = std::tuple{field("wheels", &C::wheels)};
+};
+
+namespace psygen::ecs::test {
+namespace {
+
+TEST(SnapshotOfAnOlderProgram, lost_fields_are_skipped_and_new_ones_keep_their_default) {
+  World before;
+  const auto cars = before.create<OldCar>(3);
+  cars.column<OldCar>()[1] = {3, 99, {Vec{}, Vec{}}};
+  const Entity car = cars.entities[1];
+  World after;
+  after.declare<NewCar>();
+  const SnapshotResult result = load_snapshot(save_snapshot(before), after);
+  ASSERT_TRUE(result) << result.sentence;
+  EXPECT_EQ(after.get<NewCar>(car)->wheels, 3);
+  EXPECT_EQ(after.get<NewCar>(car)->plate, "none");
+}
+
+TEST(SnapshotOfAnOlderProgram, a_field_of_another_type_is_refused_by_name) {
+  World before;
+  before.create<OldCar>(1);
+  World after;
+  after.declare<OtherCar>();
+  const SnapshotResult result = load_snapshot(save_snapshot(before), after);
+  EXPECT_EQ(result.status, SnapshotStatus::kTypeMismatch);
+  EXPECT_NE(result.sentence.find("car.wheels"), std::string::npos) << result.sentence;
+}
+
+TEST(SnapshotOfAnOlderProgram, a_newer_version_is_refused) {
+  std::vector<std::byte> bytes = save_snapshot(World());
+  bytes[8] = std::byte{2};
+  repair(bytes);
+  EXPECT_EQ(status_of(bytes), SnapshotStatus::kNewerVersion);
+}
+
+}  // namespace
+}  // namespace psygen::ecs::test
