@@ -3,6 +3,9 @@
 // across structural changes. `Accessor<const C>` reads only.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <span>
 #include <type_traits>
 
 #include "ecs/storage.hpp"
@@ -21,9 +24,15 @@ class Accessor {
       return find(entity).value;
     } else {
       const detail::Slot* slot = slots_->find(entity);
-      return slot == nullptr ? nullptr : row_at(slot->location);
+      return slot == nullptr ? nullptr : detail::row_at<Value>(*record_, slot->location);
     }
   }
+
+  // Calls f(i, get(entities[i])) for every i in order, with the loads of the next ones under way:
+  // the way to follow many handles. `f` may write through the pointer and makes no structural
+  // change.
+  template <class F>
+  void each(std::span<const Entity> entities, F&& f) const;
 
   // A hint that get(entity) follows soon: loads where the entity is, not the component itself.
   void prefetch(Entity entity) const {
@@ -49,15 +58,10 @@ class Accessor {
     } else {
       const detail::Slot* slot = slots_->find(entity);
       if (slot == nullptr) return {nullptr, {}};
-      return {row_at(slot->location), directory_->place_of(slot->location)};
+      return {detail::row_at<Value>(*record_, slot->location),
+              directory_->place_of(slot->location)};
     }
   }
-  C* row_at(std::uint32_t location) const {
-    std::byte* rows = record_->rows_of_chunk[location / detail::kChunkRows];
-    if (rows == nullptr) return nullptr;
-    return detail::rows_of<Value>(rows) + location % detail::kChunkRows;
-  }
-
   Accessor(const detail::Storage& storage, const detail::ComponentRecord& record)
       : slots_(&storage.slots()), directory_(&storage.directory()), record_(&record) {}
 
@@ -65,5 +69,20 @@ class Accessor {
   const detail::RowDirectory* directory_;
   const detail::ComponentRecord* record_;
 };
+
+template <class C>
+template <class F>
+void Accessor<C>::each(std::span<const Entity> entities, F&& f) const {
+  constexpr std::size_t kAhead = detail::kPrefetchAhead;
+  std::array<C*, kAhead> found;  // of entities [i, i + kAhead), as a ring
+  const std::size_t count = entities.size();
+  for (std::size_t i = 0; i < count + kAhead; ++i) {
+    if (i >= kAhead) f(i - kAhead, found[i % kAhead]);
+    if (i + kAhead < count) prefetch(entities[i + kAhead]);
+    if (i >= count) continue;
+    found[i % kAhead] = get(entities[i]);
+    __builtin_prefetch(found[i % kAhead]);
+  }
+}
 
 }  // namespace psygen::ecs

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "ecs/storage.hpp"
 
@@ -35,6 +36,11 @@ template <class... Cs>
 inline constexpr bool kDistinct =
     ((kCount<std::remove_const_t<Cs>, std::remove_const_t<Cs>...> == 1) && ...);
 
+template <class... Cs, class S, class F>
+void call_with_spans(S& storage, F& f, const Table& table,
+                     const std::array<ComponentId, sizeof...(Cs)>& ids, std::uint32_t first,
+                     std::uint32_t count);
+
 }  // namespace detail
 
 // The rows that are being iterated, for marking rows as changed: an optional first parameter of the
@@ -55,7 +61,10 @@ class TableRows {
   }
 
  private:
-  friend class World;
+  template <class... Ds, class S, class F>
+  friend void detail::call_with_spans(S& storage, F& f, const detail::Table& table,
+                                      const std::array<detail::ComponentId, sizeof...(Ds)>& ids,
+                                      std::uint32_t first, std::uint32_t count);
   TableRows(detail::Storage& storage, const detail::Table& table, std::size_t first,
             std::size_t count)
       : storage_(&storage), table_(&table), first_(first), count_(count) {}
@@ -157,6 +166,47 @@ void RowFilter::each_run_of_rows(const Table& table, F& visit) const {
   }
 }
 
-}  // namespace detail
+// Calls visit(table, first row, count) for every maximal run of living `entities` that are
+// neighbours in a table.
+template <class F>
+void each_run_of(const Storage& storage, std::span<const Entity> entities, F&& visit) {
+  RowPlace begin{0, 0};
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (i + kPrefetchAhead < entities.size())
+      storage.slots().prefetch(entities[i + kPrefetchAhead]);
+    const Slot* slot = storage.living(entities[i]);
+    if (slot == nullptr) continue;
+    const RowPlace at = storage.directory().place_of(slot->location);
+    if (count > 0 && at.table == begin.table && at.row == begin.row + count) {
+      ++count;
+      continue;
+    }
+    if (count > 0) visit(*storage.tables()[begin.table], begin.row, count);
+    begin = at;
+    count = 1;
+  }
+  if (count > 0) visit(*storage.tables()[begin.table], begin.row, count);
+}
 
+// f(entities, spans of Cs...), or f(TableRows<Cs...>, entities, spans of Cs...), for one run.
+template <class... Cs, class S, class F>
+void call_with_spans(S& storage, F& f, const Table& table,
+                     const std::array<ComponentId, sizeof...(Cs)>& ids, std::uint32_t first,
+                     std::uint32_t count) {
+  const std::span<const Entity> entities(table.entities() + first, count);
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    const auto column = [&]<class C>(std::type_identity<C>, ComponentId id) {
+      return std::span<C>(rows_of<std::remove_const_t<C>>(table.column_data(id)) + first, count);
+    };
+    if constexpr (std::is_invocable_v<F&, std::span<const Entity>, std::span<Cs>...>) {
+      f(entities, column(std::type_identity<Cs>{}, ids[I])...);
+    } else {
+      f(TableRows<Cs...>(storage, table, first, count), entities,
+        column(std::type_identity<Cs>{}, ids[I])...);
+    }
+  }(std::make_index_sequence<sizeof...(Cs)>{});
+}
+
+}  // namespace detail
 }  // namespace psygen::ecs

@@ -19,10 +19,8 @@ bool writes_world(const SystemInfo& s) {
   return s.world == WorldAccess::kWrites || std::ranges::any_of(s.accesses, writes);
 }
 
-double seconds_of(const std::function<void()>& f) {
-  const auto begin = std::chrono::steady_clock::now();
-  f();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -98,11 +96,15 @@ struct Schedule::Parts {
 
   void run_step(std::size_t index) {
     System& system = systems[steps[index].system];
-    double& seconds = infos[steps[index].system].last_seconds;
+    SystemInfo& info = infos[steps[index].system];
+    const double start_s = now_s();
     if (steps[index].applies_commands) {
-      seconds += seconds_of([&] { system.commands->apply(world); });
+      system.commands->apply(world);
+      info.last_seconds += now_s() - start_s;
     } else {
-      seconds = seconds_of(system.run);
+      system.run();
+      info.last_start_s = start_s;
+      info.last_seconds = now_s() - start_s;
     }
   }
 

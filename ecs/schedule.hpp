@@ -49,6 +49,7 @@ struct SystemInfo {
   WorldAccess world = WorldAccess::kNone;
   bool records_commands = false;
   RunsOn runs_on = RunsOn::kAnyThread;
+  double last_start_s = 0;  // when its last run began, on std::chrono::steady_clock
   double last_seconds = 0;  // wall time of the last run, with its commands
 };
 

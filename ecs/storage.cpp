@@ -41,7 +41,7 @@ ComponentId Storage::id_of(const ComponentInfo& info) {
   const auto id = static_cast<ComponentId>(records_.size());
   auto& record = *records_.emplace_back(std::make_unique<ComponentRecord>());
   record.info = &info;
-  record.rows_of_chunk.assign(directory_.chunk_count(), nullptr);
+  record.origin_of_chunk.assign(directory_.chunk_count(), 0);
   std::size_t i = place_of(info, id_index_.size());
   while (id_index_[i] != kNoComponent)
     i = (i + 1) % id_index_.size();
@@ -96,13 +96,16 @@ void Storage::make_room(Table& table, std::size_t count) {
   const std::size_t known = directory_.chunk_count();
   table.reserve_more(count);
   table.name_rows(count, directory_);
-  absent_.rows_of_chunk.resize(directory_.chunk_count());
+  absent_.origin_of_chunk.resize(directory_.chunk_count());
   for (std::size_t chunk = known; chunk < directory_.chunk_count(); ++chunk) {
-    const RowPlace first = directory_.place_of(static_cast<std::uint32_t>(chunk) * kChunkRows);
+    const std::uintptr_t location = chunk * kChunkRows;
+    const RowPlace first = directory_.place_of(static_cast<std::uint32_t>(location));
     for (std::size_t c = 0; c < records_.size(); ++c) {
-      std::byte* column = table.column_data(static_cast<ComponentId>(c));
-      records_[c]->rows_of_chunk.push_back(
-          column == nullptr ? nullptr : column + first.row * records_[c]->info->size_bytes);
+      const auto column =
+          reinterpret_cast<std::uintptr_t>(table.column_data(static_cast<ComponentId>(c)));
+      const std::uintptr_t size_bytes = records_[c]->info->size_bytes;
+      records_[c]->origin_of_chunk.push_back(
+          column == 0 ? 0 : column + (first.row - location) * size_bytes);
     }
   }
 }
@@ -346,8 +349,7 @@ void Storage::transfer(Table& source, Table& target) {
 Children* Storage::children_of(Entity entity) const {
   const Slot* slot = living(entity);
   if (slot == nullptr || children_id_ == kNoComponent) return nullptr;
-  std::byte* rows = records_[children_id_]->rows_of_chunk[slot->location / kChunkRows];
-  return rows == nullptr ? nullptr : rows_of<Children>(rows) + slot->location % kChunkRows;
+  return row_at<Children>(*records_[children_id_], slot->location);
 }
 
 ReaderState& Storage::add_reader(ComponentId id, bool reports_removed) {

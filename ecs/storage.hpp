@@ -45,10 +45,23 @@ struct ReaderState {
 
 struct ComponentRecord {
   const ComponentInfo* info = nullptr;
-  std::vector<std::byte*> rows_of_chunk;  // by chunk; null where its table lacks the component
+  // By chunk: where the row at location 0 would be if the rows of this chunk went on down to it, so
+  // that a row is one multiplication away; 0 where the chunk's table lacks the component.
+  std::vector<std::uintptr_t> origin_of_chunk;
   std::unique_ptr<SparseSet> sparse;      // null for a component that is kept in tables
   std::vector<std::unique_ptr<ReaderState>> readers;
 };
+
+// The row of a component at a location; null where its table lacks the component.
+template <class C>
+C* row_at(const ComponentRecord& record, std::uint32_t location) {
+  const std::uintptr_t origin = record.origin_of_chunk[location / kChunkRows];
+  if (origin == 0) return nullptr;
+  C* const row =
+      std::launder(reinterpret_cast<C*>(origin + std::uintptr_t{location} * sizeof(C)));
+  if (row == nullptr) __builtin_unreachable();  // spares the caller's check a second test
+  return row;
+}
 
 struct QueryTerm {
   std::string_view name;

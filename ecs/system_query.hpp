@@ -34,6 +34,17 @@ class Query {
     }
   }
 
+  // World::each_of, alike.
+  template <class... Some, class F>
+  std::size_t each_of(std::span<const Entity> entities, F&& f) const {
+    if constexpr (sizeof...(Some) == 0) {
+      return world_->each_of<Cs...>(entities, f);
+    } else {
+      static_assert((may_use<Some>() && ...), "the query does not name this component like this");
+      return world_->each_of<Some...>(entities, f);
+    }
+  }
+
   // World::accessor for C or const C, as the query says.
   template <class C>
   Accessor<C> accessor() const {
@@ -51,6 +62,10 @@ class Query {
   std::span<const Entity> children(Entity parent) const {
     static_assert(kReads<Children>, "the query does not name Children");
     return world_->children(parent);
+  }
+  std::span<const Entity> children(const Children& list) const {
+    static_assert(kReads<Children>, "the query does not name Children");
+    return world_->children(list);
   }
 
   template <Component C>

@@ -150,6 +150,19 @@ class World {
     each_in<Cs...>(storage_, f, filters...);
   }
 
+  // The same for these entities, in their order: calls f once per run of handles whose rows are
+  // neighbours. Entities that were created together mostly still are. The dead and those without
+  // all of Cs are skipped. No sparse components. Returns how many were visited.
+  template <class... Cs, class F>
+  std::size_t each_of(std::span<const Entity> entities, F&& f) {
+    return each_of_in<Cs...>(storage_, entities, f);
+  }
+  template <class... Cs, class F>
+  std::size_t each_of(std::span<const Entity> entities, F&& f) const {
+    static_assert((std::is_const_v<Cs> && ...), "a const World is only read: ask for const C");
+    return each_of_in<Cs...>(storage_, entities, f);
+  }
+
   // How many entities have all of these components.
   template <Component... Cs>
   std::size_t count() const {
@@ -242,6 +255,8 @@ class World {
   LandReport land_from(std::span<L> results);
   template <class... Cs, class S, class F, class... Filters>
   static void each_in(S& storage, F& f, Filters... filters);
+  template <class... Cs, class S, class F>
+  static std::size_t each_of_in(S& storage, std::span<const Entity> entities, F& f);
 
   detail::Storage storage_;
 };
@@ -299,21 +314,8 @@ void World::each_in(S& storage, F& f, Filters... filters) {
       storage.find_id(detail::kComponentInfo<std::remove_const_t<Cs>>)...};
 
   const detail::IterationGuard guard(storage.iteration(), detail::kQuery<Cs...>);
-  const auto spans = [&]<std::size_t... I>(const detail::Table& table, std::uint32_t first,
-                                           std::uint32_t count, std::index_sequence<I...>) {
-    const std::span<const Entity> entities(table.entities() + first, count);
-    if constexpr (std::is_invocable_v<F&, std::span<const Entity>, std::span<Cs>...>) {
-      f(entities,
-        std::span<Cs>(detail::rows_of<std::remove_const_t<Cs>>(table.column_data(ids[I])) + first,
-                      count)...);
-    } else {
-      f(TableRows<Cs...>(storage, table, first, count), entities,
-        std::span<Cs>(detail::rows_of<std::remove_const_t<Cs>>(table.column_data(ids[I])) + first,
-                      count)...);
-    }
-  };
   const auto visit = [&](const detail::Table& table, std::uint32_t first, std::uint32_t count) {
-    spans(table, first, count, std::make_index_sequence<kColumns>{});
+    detail::call_with_spans<Cs...>(storage, f, table, ids, first, count);
   };
   if constexpr (sparse) {
     if (ids[0] == detail::kNoComponent) return;
@@ -325,6 +327,29 @@ void World::each_in(S& storage, F& f, Filters... filters) {
     (filter.add(storage, filters), ...);
     filter.each_run(storage, visit);
   }
+}
+
+template <class... Cs, class S, class F>
+std::size_t World::each_of_in(S& storage, std::span<const Entity> entities, F& f) {
+  static_assert(detail::kDistinct<Cs...>, "a component type occurs once in a query");
+  static_assert((!is_sparse<std::remove_const_t<Cs>>() && ...),
+                "a sparse component has no rows among others: use an accessor");
+  const std::array<detail::ComponentId, sizeof...(Cs)> ids{
+      storage.find_id(detail::kComponentInfo<std::remove_const_t<Cs>>)...};
+  detail::Signature wanted;
+  for (const detail::ComponentId id : ids) {
+    if (id == detail::kNoComponent) return 0;
+    wanted.insert(id);
+  }
+  const detail::IterationGuard guard(storage.iteration(), detail::kQuery<Cs...>);
+  std::size_t visited = 0;
+  detail::each_run_of(storage, entities,
+                      [&](const detail::Table& table, std::uint32_t first, std::uint32_t count) {
+                        if (!table.signature().includes(wanted)) return;
+                        visited += count;
+                        detail::call_with_spans<Cs...>(storage, f, table, ids, first, count);
+                      });
+  return visited;
 }
 
 template <Component C>

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/ecs/components.hpp"
 
 namespace psygen::ecs {
@@ -30,6 +33,38 @@ TEST(Accessor, gives_null_for_entities_without_the_component) {
   const Accessor<const Position> positions = world.accessor<const Position>();
   EXPECT_EQ(positions.get(entity), nullptr);
   EXPECT_EQ(positions.get(kNullEntity), nullptr);
+}
+
+TEST(Accessor, each_visits_every_handle_in_order_and_gives_null_for_the_dead) {
+  World world;
+  const auto created = world.create<Mesh>(100).entities;
+  std::vector<Entity> entities(created.begin(), created.end());
+  for (std::size_t i = 0; i < entities.size(); ++i)
+    world.get<Mesh>(entities[i])->id = i;
+  std::ranges::reverse(entities);
+  world.destroy(std::span(entities).subspan(30, 5));
+  for (const std::size_t count : {0U, 1U, 15U, 16U, 17U, 100U}) {
+    std::size_t next = 0;
+    world.accessor<const Mesh>().each(
+        std::span(entities).first(count), [&](std::size_t i, const Mesh* mesh) {
+          EXPECT_EQ(i, next++);
+          EXPECT_EQ(mesh == nullptr, i >= 30 && i < 35);
+          if (mesh != nullptr) {
+            EXPECT_EQ(mesh->id, 99 - i);
+          }
+        });
+    EXPECT_EQ(next, count);
+  }
+}
+
+TEST(Accessor, a_const_world_gives_reading_accessors_also_for_what_it_never_saw) {
+  World world;
+  const Entity entity = world.create<Position>(1).entities[0];
+  const World& read_only = world;
+  EXPECT_NE(read_only.accessor<const Position>().get(entity), nullptr);
+  EXPECT_EQ(read_only.accessor<const Mesh>().get(entity), nullptr);
+  EXPECT_EQ(read_only.accessor<const Selected>().get(entity), nullptr);
+  EXPECT_EQ(read_only.get<Edited>(entity), nullptr);
 }
 
 }  // namespace

@@ -90,5 +90,52 @@ TEST(Query, rows_are_marked_while_they_are_iterated) {
   EXPECT_EQ(ids, (std::vector<std::uint64_t>{10, 11, 12, 13, 14, 15, 16, 17, 18, 19}));
 }
 
+TEST(Query, each_of_groups_neighbours_and_keeps_the_order) {
+  World world;
+  std::vector<Entity> all;
+  const auto keep = [&](std::span<const Entity> entities) {
+    all.insert(all.end(), entities.begin(), entities.end());
+  };
+  keep(world.create<Mesh, Position>(5000).entities);  // more than one chunk
+  keep(world.create<Mesh>(10).entities);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    world.get<Mesh>(all[i])->id = i;
+  const auto visit = [&](std::span<const Entity> asked) {
+    std::vector<std::size_t> runs;
+    std::vector<std::uint64_t> ids;
+    const std::size_t visited = world.each_of<const Mesh>(
+        asked, [&](std::span<const Entity> entities, std::span<const Mesh> meshes) {
+          runs.push_back(meshes.size());
+          for (std::size_t i = 0; i < meshes.size(); ++i) {
+            EXPECT_EQ(entities[i], all[meshes[i].id]);
+            ids.push_back(meshes[i].id);
+          }
+        });
+    EXPECT_EQ(visited, ids.size());
+    return std::pair(runs, ids);
+  };
+  EXPECT_EQ(visit(all).first, (std::vector<std::size_t>{5000, 10}));
+  EXPECT_EQ(visit(std::vector{all[7], all[8], all[3], all[5001], all[4]}),
+            (std::pair(std::vector<std::size_t>{2, 1, 1, 1},
+                       std::vector<std::uint64_t>{7, 8, 3, 5001, 4})));
+  EXPECT_EQ(visit({}).first.size(), 0U);
+  const std::vector<Entity> some{all[1], Entity{}, all[2]};
+  EXPECT_EQ(visit(some).first, std::vector<std::size_t>{2});  // the stale one is no gap
+  EXPECT_EQ((world.each_of<const Mesh, const Position>(all, [](auto, auto, auto) {})), 5000U);
+  EXPECT_EQ(world.each_of<const Velocity>(all, [](auto, auto) { FAIL(); }), 0U);
+}
+
+TEST(Query, each_of_marks_the_rows_it_visits) {
+  World world;
+  const auto created = world.create<Mesh>(10).entities;
+  const std::vector<Entity> all(created.begin(), created.end());
+  auto reader = world.reader<Mesh>();
+  reader.drain([](auto, auto) {});
+  world.each_of<Mesh>(std::span(all).subspan(4, 3), [](TableRows<Mesh> rows, auto, auto) {
+    rows.mark_changed<Mesh>(2, 1);
+  });
+  reader.drain([&](std::span<const Entity> entities, auto) { EXPECT_EQ(entities[0], all[6]); });
+}
+
 }  // namespace
 }  // namespace psygen::ecs

@@ -18,15 +18,19 @@ struct Row {
   std::optional<std::uint64_t> mesh;
   std::optional<int> owner;  // 0 is a null pointer
   bool hidden = false;
+  std::optional<std::uint32_t> edited;  // sparse
+  std::optional<std::vector<Entity>> children;
 };
 
 class Machine {
  public:
   explicit Machine(std::uint32_t seed)
-      : random_(seed), reader_(world_.reader<Mesh>(Removed::kReport)) {}
+      : random_(seed),
+        reader_(world_.reader<Mesh>(Removed::kReport)),
+        edited_reader_(world_.reader<Edited>(Removed::kReport)) {}
 
   void step() {
-    switch (pick(10)) {
+    switch (pick(15)) {
       case 0:
         create();
         break;
@@ -53,6 +57,21 @@ class Machine {
         break;
       case 8:
         write_all();
+        break;
+      case 9:
+        add_edited();
+        break;
+      case 10:
+        remove_edited();
+        break;
+      case 11:
+        land_edited();
+        break;
+      case 12:
+        create_parent();
+        break;
+      case 13:
+        destroy_family();
         break;
       default:
         drain();
@@ -81,7 +100,16 @@ class Machine {
         ASSERT_EQ(owner->value ? *owner->value : 0, *row.owner);
       }
       ASSERT_EQ(world_.get<Hidden>(entity) != nullptr, row.hidden);
+      const Edited* edited = world_.get<Edited>(entity);
+      ASSERT_EQ(edited != nullptr, row.edited.has_value());
+      if (edited != nullptr) {
+        ASSERT_EQ(edited->version, *row.edited);
+      }
+      ASSERT_TRUE(std::ranges::equal(world_.children(entity),
+                                     row.children.value_or(std::vector<Entity>{})));
     }
+    check_filters();
+    check_snapshot();
     for (const Entity entity : dead_)
       ASSERT_FALSE(world_.alive(entity));
     std::size_t visited = 0;
@@ -90,6 +118,30 @@ class Machine {
         visited += model_.count(pack(entity));
     });
     ASSERT_EQ(visited, model_.size());
+  }
+
+  void check_filters() {
+    std::size_t edited = 0;
+    std::size_t rest = 0;
+    world_.each<const Mesh>([&](auto entities, auto) { edited += entities.size(); },
+                            With<Edited>{});
+    world_.each<const Mesh>([&](auto entities, auto) { rest += entities.size(); },
+                            Without<Edited>{});
+    std::size_t expected_edited = 0;
+    std::size_t expected_rest = 0;
+    for (const auto& [key, row] : model_) {
+      if (row.mesh) ++(row.edited ? expected_edited : expected_rest);
+    }
+    ASSERT_EQ(edited, expected_edited);
+    ASSERT_EQ(rest, expected_rest);
+  }
+
+  void check_snapshot() {
+    World twin;
+    twin.declare<Position, Mesh, Owner, Hidden, Edited, Children>();
+    const SnapshotResult result = load_snapshot(save_snapshot(world_), twin);
+    ASSERT_TRUE(result) << result.sentence;
+    ASSERT_EQ(state_hash(twin), state_hash(world_));
   }
 
  private:
@@ -134,13 +186,84 @@ class Machine {
     for (const Entity entity : entities) {
       const auto found = model_.find(pack(entity));
       if (found == model_.end()) continue;
-      if (found->second.mesh) removed_.insert(pack(entity));
-      model_.erase(found);
-      changed_.erase(pack(entity));
-      dead_.push_back(entity);
+      forget(entity);
       ++expected;
     }
     ASSERT_EQ(world_.destroy(entities), expected);
+  }
+  void forget(Entity entity) {
+    const auto found = model_.find(pack(entity));
+    if (found->second.mesh) removed_.insert(pack(entity));
+    if (found->second.edited) edited_removed_.insert(pack(entity));
+    model_.erase(found);
+    changed_.erase(pack(entity));
+    edited_changed_.erase(pack(entity));
+    dead_.push_back(entity);
+  }
+  void create_parent() {
+    const Entity parent = world_.create<Children>(1).entities[0];
+    std::vector<Entity> children = some();
+    if (pick(3) == 0) children.push_back(parent);  // a circle
+    ASSERT_TRUE(world_.set_children(parent, children));
+    model_[pack(parent)].children = children;
+  }
+  void destroy_family() {
+    std::vector<Entity> parents;
+    for (const auto& [key, row] : model_) {
+      if (row.children && pick(2) == 0) parents.push_back(unpack(key));
+    }
+    std::size_t expected = 0;
+    std::vector<Entity> todo = parents;
+    while (!todo.empty()) {
+      const Entity entity = todo.back();
+      todo.pop_back();
+      const auto found = model_.find(pack(entity));
+      if (found == model_.end()) continue;
+      const auto children = found->second.children.value_or(std::vector<Entity>{});
+      todo.insert(todo.end(), children.begin(), children.end());
+      forget(entity);
+      ++expected;
+    }
+    ASSERT_EQ(world_.destroy_with_children(parents), expected);
+  }
+  void add_edited() {
+    const auto entities = some();
+    std::size_t expected = 0;
+    for (const Entity entity : entities) {
+      const auto found = model_.find(pack(entity));
+      if (found == model_.end() || found->second.edited) continue;
+      found->second.edited = 1;
+      edited_changed_.insert(pack(entity));
+      ++expected;
+    }
+    ASSERT_EQ(world_.add<Edited>(entities), expected);
+  }
+  void remove_edited() {
+    const auto entities = some();
+    std::size_t expected = 0;
+    for (const Entity entity : entities) {
+      const auto found = model_.find(pack(entity));
+      if (found == model_.end() || !found->second.edited) continue;
+      found->second.edited.reset();
+      edited_changed_.erase(pack(entity));
+      edited_removed_.insert(pack(entity));
+      ++expected;
+    }
+    ASSERT_EQ(world_.remove<Edited>(entities), expected);
+  }
+  void land_edited() {
+    std::vector<Landing<Edited>> results;
+    LandReport expected;
+    for (const Entity entity : some()) {
+      results.push_back({entity, {pick(1000)}});
+      const auto found = model_.find(pack(entity));
+      const bool lands = found != model_.end() && found->second.edited;
+      ++(lands ? expected.landed : expected.stale);
+      if (!lands) continue;
+      found->second.edited = results.back().value.version;
+      edited_changed_.insert(pack(entity));
+    }
+    ASSERT_EQ(world_.land<Edited>(results), expected);
   }
   void land() {
     std::vector<Landing<Mesh>> results;
@@ -230,14 +353,34 @@ class Machine {
     });
     ASSERT_EQ(removed, removed_);
     removed_.clear();
+    drain_edited();
+  }
+  void drain_edited() {
+    std::set<std::uint64_t> changed;
+    edited_reader_.drain([&](std::span<const Entity> entities, std::span<const Edited>) {
+      for (const Entity entity : entities)
+        changed.insert(pack(entity));
+    });
+    ASSERT_EQ(changed, edited_changed_);
+    edited_changed_.clear();
+    std::set<std::uint64_t> removed;
+    edited_reader_.drain_removed([&](std::span<const Entity> gone) {
+      for (const Entity entity : gone)
+        removed.insert(pack(entity));
+    });
+    ASSERT_EQ(removed, edited_removed_);
+    edited_removed_.clear();
   }
 
   std::mt19937 random_;
   World world_;
   ChangeReader<Mesh> reader_;
+  ChangeReader<Edited> edited_reader_;
   std::map<std::uint64_t, Row> model_;
   std::set<std::uint64_t> changed_;
   std::set<std::uint64_t> removed_;
+  std::set<std::uint64_t> edited_changed_;
+  std::set<std::uint64_t> edited_removed_;
   std::vector<Entity> dead_;
 };
 

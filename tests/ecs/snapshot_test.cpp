@@ -22,7 +22,7 @@ void declare_all(World& world) {
   world.declare<Creature, Position, Mesh, Hidden, Selected, Edited, Children>();
 }
 
-// Every feature at once: several kinds, the dead, children, sparse components, transient values.
+// Every feature at once, with at least 8 creatures: several kinds, the dead, children, sparse components, transient values.
 void fill(World& world, std::size_t count = 20) {
   const std::vector<Entity> creatures = copy(world.create<Creature, Position>(count).entities);
   const std::vector<Entity> hidden = copy(world.create<Creature, Hidden>(3).entities);
@@ -39,7 +39,7 @@ void fill(World& world, std::size_t count = 20) {
   const Entity parent = world.create<Children>(1).entities[0];
   world.set_children(parent, creatures);
   world.destroy(std::span(creatures).subspan(2, 5));
-  world.add<Selected>(std::span(creatures).first(10));
+  world.add<Selected>(std::span(creatures).first(count / 2));
   world.add<Edited>(hidden);
   world.get<Edited>(hidden[1])->version = 42;
 }

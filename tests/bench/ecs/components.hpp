@@ -29,6 +29,18 @@ struct Mesh {
   std::uint32_t state;
 };
 
+struct Selected {  // sparse
+  std::uint32_t since;
+};
+struct Moved {  // the same, in tables
+  std::uint32_t since;
+};
+struct Described {  // what snapshots keep
+  float health;
+  std::uint32_t kind;
+  double age_s;
+};
+
 inline std::vector<std::uint32_t> shuffled(std::size_t count, std::uint32_t seed) {
   std::vector<std::uint32_t> order(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -52,4 +64,15 @@ template <>
 struct psygen::ecs::ComponentTraits<psygen::ecs::bench::Mesh> {
   static constexpr std::string_view name = "mesh";
   static constexpr bool tracked = true;
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::bench::Selected> {
+  static constexpr bool sparse = true;
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::bench::Described> {
+  using C = psygen::ecs::bench::Described;
+  static constexpr std::string_view name = "described";
+  static constexpr auto fields = std::tuple{field("health", &C::health), field("kind", &C::kind),
+                                            field("age", &C::age_s, {.unit = "s"})};
 };

@@ -117,22 +117,80 @@ void churn(benchmark::State& state) {
 BENCHMARK(churn<World>)->Name("destroy_create_1000_in_1M/ecs")->UseManualTime();
 BENCHMARK(churn<FloorTable>)->Name("destroy_create_1000_in_1M/floor")->UseManualTime();
 
-// A component that comes and goes. Both directions, for a tenth of the world in random order.
+// A component that comes and goes, for a tenth of the world in random order. Its column is sparse or
+// one of the table's; the floor keeps one bit per entity and checks handles.
+enum Toggle { kAdd, kRemove };
+template <class C, Toggle which>
 void toggle(benchmark::State& state) {
   World world;
   create_filled(world, kEntities);
   const auto order = permuted(std::span<const Entity>(all_entities(world)), 3);
-  const auto some = std::span(order).first(kEntities / 10);
-  struct Selected {};
+  std::size_t next = 0;
+  constexpr std::size_t kToggled = kEntities / 10;
   for (auto _ : state) {
-    timed(state, [&] {
-      world.add<Selected>(some);
-      world.remove<Selected>(some);
-    });
+    const auto some = std::span(order).subspan(next, kToggled);
+    next = (next + kToggled) % kEntities;
+    const auto adding = [&] { world.add<C>(some); };
+    const auto removing = [&] { world.remove<C>(some); };
+    if constexpr (which == kAdd) {
+      timed(state, adding);
+      removing();
+    } else {
+      adding();
+      timed(state, removing);
+    }
   }
-  per_entity(state, 2 * some.size());
+  per_entity(state, kToggled);
 }
-BENCHMARK(toggle)->Name("add_or_remove_by_moving_rows/ecs")->UseManualTime();
+BENCHMARK(toggle<Selected, kAdd>)->Name("add_sparse_random/ecs")->UseManualTime();
+BENCHMARK(toggle<Selected, kRemove>)->Name("remove_sparse_random/ecs")->UseManualTime();
+BENCHMARK(toggle<Moved, kAdd>)->Name("add_by_moving_rows/ecs")->UseManualTime();
+BENCHMARK(toggle<Moved, kRemove>)->Name("remove_by_moving_rows/ecs")->UseManualTime();
+
+template <Toggle which>
+void toggle_floor(benchmark::State& state) {
+  FloorTable table;
+  create_filled(table, kEntities);
+  const auto order = permuted(std::span<const Entity>(all_entities(table)), 3);
+  std::vector<std::uint32_t> place(kEntities, UINT32_MAX);
+  std::vector<Entity> members(kEntities);
+  std::vector<Selected> values(kEntities);
+  std::size_t count = 0;
+  const auto add = [&](std::span<const Entity> some) {
+    for (const Entity e : some) {
+      if (!table.alive(e) || place[e.index] != UINT32_MAX) continue;
+      place[e.index] = static_cast<std::uint32_t>(count);
+      members[count] = e;
+      values[count++] = {};
+    }
+  };
+  const auto remove = [&](std::span<const Entity> some) {
+    for (const Entity e : some) {
+      const std::uint32_t at = place[e.index];
+      if (at == UINT32_MAX || members[at] != e) continue;
+      members[at] = members[--count];
+      values[at] = values[count];
+      place[members[at].index] = at;
+      place[e.index] = UINT32_MAX;
+    }
+  };
+  std::size_t next = 0;
+  constexpr std::size_t kToggled = kEntities / 10;
+  for (auto _ : state) {
+    const auto some = std::span(order).subspan(next, kToggled);
+    next = (next + kToggled) % kEntities;
+    if constexpr (which == kAdd) {
+      timed(state, [&] { add(some); });
+      remove(some);
+    } else {
+      add(some);
+      timed(state, [&] { remove(some); });
+    }
+  }
+  per_entity(state, kToggled);
+}
+BENCHMARK(toggle_floor<kAdd>)->Name("add_sparse_random/floor")->UseManualTime();
+BENCHMARK(toggle_floor<kRemove>)->Name("remove_sparse_random/floor")->UseManualTime();
 
 std::size_t resident_bytes() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
@@ -167,6 +225,31 @@ void memory(benchmark::State& state) {
   }
 }
 BENCHMARK(memory)->Name("memory_64_byte_payload/ecs")->Iterations(1);
+
+// A million entities with two described components, to bytes and back.
+void save(benchmark::State& state) {
+  World world;
+  world.create<Described, Position>(kEntities);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(save_snapshot(world));
+  per_entity(state, kEntities);
+}
+BENCHMARK(save)->Name("save_snapshot/ecs");
+
+void load(benchmark::State& state) {
+  World saved;
+  saved.create<Described, Position>(kEntities);
+  const std::vector<std::byte> bytes = save_snapshot(saved);
+  for (auto _ : state) {
+    World world;
+    world.declare<Described, Position>();
+    bool loaded = false;
+    timed(state, [&] { loaded = bool(load_snapshot(bytes, world)); });
+    if (!loaded) state.SkipWithError("the snapshot was refused");
+  }
+  per_entity(state, kEntities);
+}
+BENCHMARK(load)->Name("load_snapshot/ecs")->UseManualTime();
 
 }  // namespace
 }  // namespace psygen::ecs::bench
