@@ -34,7 +34,7 @@ static_assert(sizeof(Children) == 8);
 
 template <>
 struct ComponentTraits<Children> {
-  static constexpr std::string_view name = "children";
+  static constexpr std::string_view name = "Children";
 };
 
 namespace detail {

@@ -60,8 +60,8 @@ struct FieldDescription {
 struct TypeDescription {
   FieldKind kind = FieldKind::kStruct;
   std::size_t size_bytes = 0;
-  std::size_t count = 0;                    // kArray
-  const TypeDescription* element = nullptr;  // kArray, kList
+  std::size_t count = 0;                      // kArray
+  const TypeDescription* element = nullptr;   // kArray, kList
   std::vector<FieldDescription> fields = {};  // kStruct
   // kString, kList: how many elements, where they are, and how to have `count` of them.
   std::size_t (*length)(const std::byte* value) = nullptr;
@@ -84,7 +84,9 @@ constexpr Field<C, T> field(std::string_view name, T C::*member, FieldNotes note
 namespace detail {
 
 template <class T>
-concept HasFields = requires { ComponentTraits<T>::fields; };
+concept HasFields = requires {
+  ComponentTraits<T>::fields;
+};
 
 template <class T>
 const TypeDescription& description_of();
@@ -100,8 +102,8 @@ inline constexpr bool kIsList<std::vector<T>> = !std::is_same_v<T, bool>;
 
 template <class T>
 concept Describable = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, Entity> ||
-                      std::is_same_v<T, std::string> || kIsArray<T> || kIsList<T> ||
-                      HasFields<T> || std::is_empty_v<T>;
+    std::is_same_v<T, std::string> || kIsArray<T> || kIsList<T> || HasFields<T> ||
+    std::is_empty_v<T>;
 
 template <class T>
 TypeDescription describe_list(FieldKind kind) {

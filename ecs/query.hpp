@@ -205,7 +205,8 @@ void call_with_spans(S& storage, F& f, const Table& table,
       f(TableRows<Cs...>(storage, table, first, count), entities,
         column(std::type_identity<Cs>{}, ids[I])...);
     }
-  }(std::make_index_sequence<sizeof...(Cs)>{});
+  }
+  (std::make_index_sequence<sizeof...(Cs)>{});
 }
 
 }  // namespace detail

@@ -6,8 +6,8 @@
 //   Commands&             structural changes, applied right after the system
 //   World& / const World& everything: alone / beside others that only read
 // Systems run in the order of add(); on several threads those that do not conflict run at the same
-// time, and the result is that of one thread. Not a job system: a system that wants to split its own
-// work does so itself. Systems must not throw. One thread owns the schedule.
+// time, and the result is that of one thread. Not a job system: a system that wants to split its
+// own work does so itself. Systems must not throw. One thread owns the schedule.
 #pragma once
 
 #include <cstddef>
@@ -139,8 +139,7 @@ struct Schedule::Parameter {
   using R = std::remove_cvref_t<P>;
   R* resource;
   Parameter(Schedule& schedule, System& system)
-      : resource(static_cast<R*>(
-            schedule.resource(system, &kIdentity<R>, type_label<R>()))) {
+      : resource(static_cast<R*>(schedule.resource(system, &kIdentity<R>, type_label<R>()))) {
     system.info.accesses.push_back(
         {type_label<R>(), &kIdentity<R>, !std::is_const_v<std::remove_reference_t<P>>, false});
   }
@@ -164,9 +163,8 @@ template <class C>
 struct Schedule::Parameter<ChangeReader<C>&> {
   ChangeReader<C>* reader;
   Parameter(Schedule& schedule, System& system)
-      : reader(static_cast<ChangeReader<C>*>(
-            schedule.resource(system, &kIdentity<ChangeReader<C>>,
-                              type_label<ChangeReader<C>>()))) {
+      : reader(static_cast<ChangeReader<C>*>(schedule.resource(system, &kIdentity<ChangeReader<C>>,
+                                                               type_label<ChangeReader<C>>()))) {
     system.info.accesses.push_back(
         {type_label<ChangeReader<C>>(), &kIdentity<ChangeReader<C>>, true, false});
     system.info.accesses.push_back(

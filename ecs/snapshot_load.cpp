@@ -16,9 +16,9 @@ using Status = SnapshotStatus;
 // A type as the snapshot tells it. Fields name what the world's own type has at their place.
 struct SavedType {
   FieldKind kind = FieldKind::kStruct;
-  std::size_t size_bytes = 0;  // scalars
-  std::size_t count = 0;       // arrays
-  std::vector<SavedType> parts;  // fields, or the one element
+  std::size_t size_bytes = 0;            // scalars
+  std::size_t count = 0;                 // arrays
+  std::vector<SavedType> parts;          // fields, or the one element
   const TypeDescription* own = nullptr;  // null: what is read is skipped
   std::size_t offset_bytes = 0;
 
@@ -80,7 +80,8 @@ class Loader {
   std::string string() {
     const std::uint32_t length = count(1);
     const std::byte* from = take(length);
-    return from == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(from), length);
+    return from == nullptr ? std::string()
+                           : std::string(reinterpret_cast<const char*>(from), length);
   }
 
   bool header() {
@@ -256,7 +257,7 @@ class Loader {
       }
       const std::uint32_t length = count(sizeof(Entity));
       const std::byte* handles = take(length * sizeof(Entity));
-      if (to == nullptr || handles == nullptr) continue;
+      if (to == nullptr || handles == nullptr || length == 0) continue;
       std::vector<Entity> list(length);
       std::memcpy(static_cast<void*>(list.data()), handles, length * sizeof(Entity));
       storage_.set_children(reinterpret_cast<Children*>(to)[row], list);
@@ -267,7 +268,9 @@ class Loader {
     const std::uint32_t rows = count(sizeof(Entity));
     const std::byte* from = take(rows * sizeof(Entity));
     handles_.resize(rows);
-    if (from != nullptr) std::memcpy(static_cast<void*>(handles_.data()), from, rows * sizeof(Entity));
+    if (from != nullptr && rows > 0) {
+      std::memcpy(static_cast<void*>(handles_.data()), from, rows * sizeof(Entity));
+    }
     return handles_;
   }
 
@@ -321,7 +324,8 @@ class Loader {
                       "snapshot: a table has more rows than WorldLimits::max_rows_per_table");
       }
       for (const Entity e : rows) {
-        if (!lives(e) || owner_[e.index] != Owner::kNobody) return corrupt("an entity is there twice");
+        if (!lives(e) || owner_[e.index] != Owner::kNobody)
+          return corrupt("an entity is there twice");
         owner_[e.index] = Owner::kTable;
       }
       for (const std::uint32_t id : ids)
@@ -335,7 +339,8 @@ class Loader {
     std::vector<bool> seen(components_.size());
     for (std::uint32_t s = 0; s < sets && result_; ++s) {
       const auto id = number<std::uint32_t>();
-      if (id >= components_.size() || seen[id] || !is_sparse(id)) return corrupt("a sparse component is none");
+      if (id >= components_.size() || seen[id] || !is_sparse(id))
+        return corrupt("a sparse component is none");
       seen[id] = true;
       std::vector<bool> member(owner_.size());
       const std::span<const Entity> rows = handles();

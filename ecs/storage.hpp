@@ -48,7 +48,7 @@ struct ComponentRecord {
   // By chunk: where the row at location 0 would be if the rows of this chunk went on down to it, so
   // that a row is one multiplication away; 0 where the chunk's table lacks the component.
   std::vector<std::uintptr_t> origin_of_chunk;
-  std::unique_ptr<SparseSet> sparse;      // null for a component that is kept in tables
+  std::unique_ptr<SparseSet> sparse;  // null for a component that is kept in tables
   std::vector<std::unique_ptr<ReaderState>> readers;
 };
 
@@ -57,8 +57,7 @@ template <class C>
 C* row_at(const ComponentRecord& record, std::uint32_t location) {
   const std::uintptr_t origin = record.origin_of_chunk[location / kChunkRows];
   if (origin == 0) return nullptr;
-  C* const row =
-      std::launder(reinterpret_cast<C*>(origin + std::uintptr_t{location} * sizeof(C)));
+  C* const row = std::launder(reinterpret_cast<C*>(origin + std::uintptr_t{location} * sizeof(C)));
   if (row == nullptr) __builtin_unreachable();  // spares the caller's check a second test
   return row;
 }

@@ -109,8 +109,8 @@ core::Result<void> App::open() {
   pose_ = home();
 
   std::vector<std::string> systems;
-  for (const scene::System& system : scene::tick_systems())
-    systems.emplace_back(system.name);
+  for (const ecs::SystemInfo& system : scene_->state().tick.systems())
+    systems.push_back(system.name);
   log_ = std::make_unique<telemetry::FrameLog>(std::move(systems));
   return {};
 }
@@ -164,7 +164,7 @@ core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
   state.input.size = picture_size();
   scene::tick(state);
   state.clock.now_s += dt_s;
-  if (state.error) return tl::unexpected(*state.error);
+  if (state.output.error) return tl::unexpected(*state.output.error);
   for (const Plugin& plugin : options_.plugins) {
     if (plugin.on_frame) plugin.on_frame(*this, dt_s);
   }

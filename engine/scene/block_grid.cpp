@@ -11,17 +11,6 @@ std::int32_t wrapped_sum(std::int32_t a, std::int64_t b) {
 
 }  // namespace
 
-std::uint32_t BlockModels::acquire() {
-  if (free_.empty()) {
-    const std::size_t slab = stride_ == 0 ? 0 : entities_.size() / stride_;
-    entities_.resize(entities_.size() + stride_);
-    return static_cast<std::uint32_t>(slab);
-  }
-  const std::uint32_t slab = free_.back();
-  free_.pop_back();
-  return slab;
-}
-
 BlockGrid::BlockGrid(std::uint32_t radius)
     : radius_(radius),
       mask_(std::bit_ceil(2 * radius + 1) - 1),
@@ -37,6 +26,13 @@ bool BlockGrid::contains(core::BlockCoord coord) const {
 core::BlockCoord BlockGrid::coord_at(std::uint32_t column, std::uint32_t row) const {
   return {wrapped_sum(centre_.x, std::int64_t{column} - radius_),
           wrapped_sum(centre_.z, std::int64_t{row} - radius_)};
+}
+
+std::size_t BlockGrid::window_index(core::BlockCoord coord) const {
+  const auto place = [this](std::int32_t a, std::int32_t centre) {
+    return static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(centre) + radius_;
+  };
+  return std::size_t{place(coord.z, centre_.z)} * side() + place(coord.x, centre_.x);
 }
 
 std::size_t BlockGrid::cell_of(core::BlockCoord coord) const {

@@ -12,25 +12,6 @@
 
 namespace psygen::scene {
 
-// Handles of the models of each block, `stride` per slab, contiguous.
-class BlockModels {
- public:
-  explicit BlockModels(std::uint32_t stride = 0) : stride_(stride) {}
-  std::uint32_t acquire();
-  void release(std::uint32_t slab) { free_.push_back(slab); }
-  std::span<ecs::Entity> of(std::uint32_t slab) {
-    return {entities_.data() + std::size_t{slab} * stride_, stride_};
-  }
-  std::span<const ecs::Entity> of(std::uint32_t slab) const {
-    return {entities_.data() + std::size_t{slab} * stride_, stride_};
-  }
-
- private:
-  std::uint32_t stride_;
-  std::vector<ecs::Entity> entities_;
-  std::vector<std::uint32_t> free_;
-};
-
 class BlockGrid {
  public:
   // A window of 2·radius + 1 cells a side.
@@ -43,6 +24,8 @@ class BlockGrid {
 
   // The block at window position (column, row), 0 … side − 1 each.
   core::BlockCoord coord_at(std::uint32_t column, std::uint32_t row) const;
+  // row · side + column of a block of the window.
+  std::size_t window_index(core::BlockCoord coord) const;
   // True if the block lies in the window.
   bool contains(core::BlockCoord coord) const;
   // The entity kept for a block of the window; null if there is none.

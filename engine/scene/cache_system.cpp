@@ -33,26 +33,30 @@ struct BlockView {
   float error_pixels = 0;
 };
 
+// A row of the columns of a mesh entity.
+struct MeshEntity {
+  ecs::Entity entity;
+  const Placed& placed;
+  const Detail& detail;
+  const Source& source;
+  const Mesh& mesh;
+  Demand& demand;
+};
+
 class Chooser {
  public:
   Chooser(const Settings& settings, const Clock& clock, const Camera& camera,
-          const visibility::Frustum& frustum, ecs::World& entities, Synthesis& synthesis,
-          Counters& counters)
+          const visibility::Frustum& frustum, Synthesis& synthesis, Counters& counters)
       : settings_(settings),
         clock_(clock),
         camera_(camera),
         frustum_(frustum),
-        placed_(entities.accessor<const Placed>()),
-        detail_(entities.accessor<const Detail>()),
-        source_(entities.accessor<const Source>()),
-        mesh_(entities.accessor<const Mesh>()),
-        demand_(entities.accessor<Demand>()),
         synthesis_(synthesis),
         counters_(counters) {}
 
-  void consider(ecs::Entity entity, const BlockView& block, bool is_terrain) {
-    const Placed& placed = *placed_.get(entity);
-    Demand& demand = *demand_.get(entity);
+  void consider(const MeshEntity& row, const BlockView& block, bool is_terrain) {
+    const Placed& placed = row.placed;
+    Demand& demand = row.demand;
     const glm::vec3 center = block.corner + placed.position + placed.box_center;
     const float distance_m =
         is_terrain ? block.visibility->distance_m
@@ -61,17 +65,17 @@ class Chooser {
         block.in_view &&
         (is_terrain || visibility::intersects(frustum_, {center - placed.box_half_extent,
                                                          center + placed.box_half_extent}));
-    demand.wanted_level = wanted_level(placed, *detail_.get(entity), demand, distance_m,
-                                       block.error_pixels, is_terrain);
+    demand.wanted_level =
+        wanted_level(placed, row.detail, demand, distance_m, block.error_pixels, is_terrain);
     in_view ? note_in_view(demand) : note_out_of_view(demand);
     if (demand.wanted_level == kNoLevel) {
       // Too small to be drawn: the first to go when room is needed.
       if (demand.drawn_level != kNoLevel) {
-        synthesis_.cache->set_rank(mesh_.get(entity)->handle, Rank::unwanted());
+        synthesis_.cache->set_rank(row.mesh.handle, Rank::unwanted());
       }
       return;
     }
-    provide(entity, demand, in_view, *block.visibility, distance_m);
+    provide(row, in_view, *block.visibility, distance_m);
   }
 
  private:
@@ -110,29 +114,31 @@ class Chooser {
   }
 
   // Keeps what is drawn, and sees to it that the wanted level comes.
-  void provide(ecs::Entity entity, Demand& demand, bool in_view, const Visibility& visibility,
+  void provide(const MeshEntity& row, bool in_view, const Visibility& visibility,
                float distance_m) {
+    Demand& demand = row.demand;
     if (demand.drawn_level != kNoLevel) {
       const RankGroup kept = in_view ? RankGroup::kDrawn : RankGroup::kPrefetch;
-      synthesis_.cache->set_rank(mesh_.get(entity)->handle, rank_of(kept, visibility, distance_m));
+      synthesis_.cache->set_rank(row.mesh.handle, rank_of(kept, visibility, distance_m));
     }
     if (demand.drawn_level == demand.wanted_level) {
       demand.requested_level = kNoLevel;
       return;
     }
     const bool hole = demand.drawn_level == kNoLevel;
-    const std::uint8_t level = level_to_request(entity, demand, hole && in_view);
+    const std::uint8_t level = level_to_request(row, hole && in_view);
     if (level == kNoLevel) return;
     const RankGroup group = !in_view ? RankGroup::kPrefetch
                             : hole   ? RankGroup::kVisibleHole
                                      : RankGroup::kVisibleCoarse;
-    request(entity, demand, level, rank_of(group, visibility, distance_m), visibility.deadline_s);
+    request(row, level, rank_of(group, visibility, distance_m), visibility.deadline_s);
   }
 
   // The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
   // cannot be synthesised. kNoLevel if nothing is better than what is drawn.
-  std::uint8_t level_to_request(ecs::Entity entity, const Demand& demand, bool hole) const {
-    const auto levels = static_cast<int>(detail_.get(entity)->level_count);
+  std::uint8_t level_to_request(const MeshEntity& row, bool hole) const {
+    const Demand& demand = row.demand;
+    const auto levels = static_cast<int>(row.detail.level_count);
     const bool coarse_first = hole && settings_.levels_of_detail &&
                               settings_.paradigm == Paradigm::kParallelLazyAmplification;
     // A modeler that holds the coarsest one may not get a processor for a while: then the next one.
@@ -149,10 +155,10 @@ class Chooser {
     return kNoLevel;
   }
 
-  void request(ecs::Entity entity, Demand& demand, std::uint8_t level, Rank rank,
-               float deadline_s) {
-    const Source& source = *source_.get(entity);
-    const synthesis::MeshKey key{placed_.get(entity)->block, source.index, source.model, level,
+  void request(const MeshEntity& row, std::uint8_t level, Rank rank, float deadline_s) {
+    const Source& source = row.source;
+    Demand& demand = row.demand;
+    const synthesis::MeshKey key{row.placed.block, source.index, source.model, level,
                                  source.parameters_hash};
     const bool first_time = demand.requested_level != level;
     demand.requested_level = level;
@@ -160,9 +166,9 @@ class Chooser {
         first_time ? synthesis_.cache->look_up(key) : synthesis_.cache->find(key);
     const synthesis::MeshRecord* record = synthesis_.cache->get(handle);
     if (record != nullptr && record->state == synthesis::MeshState::kReady) {
-      synthesis_.ready.push_back({entity, handle});
+      synthesis_.ready.push_back({row.entity, handle});
       // The entity that asked for it may have been destroyed; evictions are reported to the owner.
-      synthesis_.cache->adopt(handle, owner_of(entity), rank);
+      synthesis_.cache->adopt(handle, owner_of(row.entity), rank);
       return;
     }
     if (record != nullptr && record->state == synthesis::MeshState::kFailed) {
@@ -170,38 +176,62 @@ class Chooser {
       return;
     }
     if (settings_.paradigm == Paradigm::kDataAmplification) return;
-    synthesis_.wants.push_back({key, &source.parameters, owner_of(entity), rank, deadline_s});
+    synthesis_.wants.push_back({key, &source.parameters, owner_of(row.entity), rank, deadline_s});
   }
 
   const Settings& settings_;
   const Clock& clock_;
   const Camera& camera_;
   const visibility::Frustum& frustum_;
-  ecs::Accessor<const Placed> placed_;
-  ecs::Accessor<const Detail> detail_;
-  ecs::Accessor<const Source> source_;
-  ecs::Accessor<const Mesh> mesh_;
-  ecs::Accessor<Demand> demand_;
   Synthesis& synthesis_;
   Counters& counters_;
 };
 
-void consider_block(Chooser& chooser, ecs::Entity entity, const Camera& camera, double block_size_m,
-                    const Streaming& streaming, const ecs::World& entities, bool in_view,
-                    float error_pixels) {
-  const Block& block = *entities.get<Block>(entity);
-  const BlockView view{glm::vec3(core::offset_m(block.coord, camera.pose.position, block_size_m)),
-                       entities.get<Visibility>(entity), in_view, error_pixels};
-  chooser.consider(entity, view, true);
-  for (const ecs::Entity model : streaming.models.of(block.slab).first(block.model_count)) {
-    chooser.consider(model, view, false);
+// Looks at these blocks and their models, in this order.
+class BlockWalk {
+ public:
+  BlockWalk(Chooser& chooser, const Camera& camera, double block_size_m, const CacheQuery& entities)
+      : chooser_(chooser), camera_(camera), block_size_m_(block_size_m), entities_(entities) {}
+
+  void consider(std::span<const ecs::Entity> blocks, bool in_view, float error_pixels) {
+    entities_.each_of<const Block, const ecs::Children, const Visibility>(
+        blocks, [&](std::span<const ecs::Entity> rows, std::span<const Block> block,
+                    std::span<const ecs::Children> models, std::span<const Visibility> visibility) {
+          for (std::size_t i = 0; i < rows.size(); ++i) {
+            const glm::vec3 corner(
+                core::offset_m(block[i].coord, camera_.pose.position, block_size_m_));
+            const BlockView view{corner, &visibility[i], in_view, error_pixels};
+            consider_rows(rows.subspan(i, 1), view, true);
+            consider_rows(entities_.children(models[i]), view, false);
+          }
+        });
   }
-}
+
+ private:
+  void consider_rows(std::span<const ecs::Entity> entities, const BlockView& view,
+                     bool is_terrain) {
+    entities_.each_of<const Placed, const Detail, const Source, const Mesh, Demand>(
+        entities, [&](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
+                      std::span<const Detail> detail, std::span<const Source> source,
+                      std::span<const Mesh> mesh, std::span<Demand> demand) {
+          for (std::size_t i = 0; i < rows.size(); ++i) {
+            chooser_.consider({rows[i], placed[i], detail[i], source[i], mesh[i], demand[i]}, view,
+                              is_terrain);
+          }
+        });
+  }
+
+  Chooser& chooser_;
+  const Camera& camera_;
+  double block_size_m_;
+  CacheQuery entities_;
+};
 
 // Lazy evaluation keeps nothing: what the last frame drew is given back.
-void forget_last_frame(ecs::World& entities, Synthesis& synthesis) {
-  entities.each<Demand, Mesh>([&synthesis](std::span<const ecs::Entity>, std::span<Demand> demands,
-                                           std::span<Mesh> meshes) {
+void forget_last_frame(const CacheQuery& entities, Synthesis& synthesis) {
+  entities.each<Demand, const Mesh>([&synthesis](std::span<const ecs::Entity>,
+                                                 std::span<Demand> demands,
+                                                 std::span<const Mesh> meshes) {
     for (std::size_t i = 0; i < demands.size(); ++i) {
       if (demands[i].drawn_level == kNoLevel) continue;
       synthesis.cache->release(meshes[i].handle);
@@ -211,7 +241,7 @@ void forget_last_frame(ecs::World& entities, Synthesis& synthesis) {
 }
 
 // Entities whose mesh was taken to make room draw nothing until they get another one.
-void drop_evicted(ecs::World& entities, Synthesis& synthesis) {
+void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
   for (const synthesis::Eviction& eviction : synthesis.cache->take_evictions()) {
     const ecs::Entity owner = entity_of(eviction.owner);
     const Mesh* mesh = entities.get<Mesh>(owner);
@@ -246,27 +276,22 @@ void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& repo
 }  // namespace
 
 void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
-                  const WorldFacts& facts, const Streaming& streaming, const View& view,
-                  ecs::World& entities, Synthesis& synthesis, Counters& counters, Totals& totals) {
+                  const WorldFacts& facts, const View& view, CacheQuery entities,
+                  Synthesis& synthesis, Counters& counters, Totals& totals) {
   if (settings.paradigm == Paradigm::kLazyEvaluation) forget_last_frame(entities, synthesis);
   synthesis.wants.clear();
   synthesis.ready.clear();
 
-  Chooser chooser(settings, clock, camera, view.frustum, entities, synthesis, counters);
-  const double block_size_m = facts.world.block_size_m();
+  Chooser chooser(settings, clock, camera, view.frustum, synthesis, counters);
+  BlockWalk walk(chooser, camera, facts.world.block_size_m(), entities);
   const float error_pixels = static_cast<float>(settings.max_error_pixels) * synthesis.coarsening;
-  for (const ecs::Entity block : view.visible) {
-    consider_block(chooser, block, camera, block_size_m, streaming, entities, true, error_pixels);
-  }
+  walk.consider(view.visible, true, error_pixels);
   if (settings.paradigm == Paradigm::kParallelLazyAmplification) {
-    for (const ecs::Entity block : view.expected) {
-      consider_block(chooser, block, camera, block_size_m, streaming, entities, false,
-                     error_pixels);
-    }
-    for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns) {
-      consider_block(chooser, view.around[i], camera, block_size_m, streaming, entities, false,
-                     error_pixels * kAroundErrorFactor);
-    }
+    walk.consider(view.expected, false, error_pixels);
+    std::vector<ecs::Entity> around;  // those whose turn it is
+    for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns)
+      around.push_back(view.around[i]);
+    walk.consider(around, false, error_pixels * kAroundErrorFactor);
   }
   const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
   synthesis::PlanLimits limits;

@@ -18,13 +18,11 @@ namespace psygen::scene {
 inline constexpr std::uint8_t kNoLevel = 0xFF;
 inline constexpr std::size_t kMaxLevels = 8;
 
-// A block of the grid. Its models are `count` entities at BlockModels::of(slab).
+// A block of the grid. Its models are its children (ecs::Children).
 struct Block {
   core::BlockCoord coord;
-  std::uint32_t slab = 0;
-  std::uint32_t model_count = 0;
 };
-static_assert(sizeof(Block) == 16);
+static_assert(sizeof(Block) == 8);
 
 // What the visibility system found out about a block in this tick.
 struct Visibility {
@@ -91,6 +89,6 @@ inline ecs::Entity entity_of(std::uint64_t owner) {
 
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::Mesh> {
-  static constexpr std::string_view name = "mesh";
+  static constexpr std::string_view name = "Mesh";
   static constexpr bool tracked = true;
 };

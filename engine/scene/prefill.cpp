@@ -67,13 +67,13 @@ void land_everything(State& s) {
   unlimited.upload_budget_bytes = UINT64_MAX;
   synthesis_system(s.settings, s.synthesis, s.counters, s.trace);
   s.synthesis.ready.clear();
-  upload_system(unlimited, s.clock, s.facts, s.entities, s.synthesis, s.shared_indices, s.renderer,
+  upload_system(unlimited, s.clock, s.facts, UploadQuery(s.entities), s.synthesis, s.output,
                 s.counters, s.totals);
 }
 
 void create_all_blocks(State& s) {
   do {
-    streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, *s.synthesis.cache,
+    streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.synthesis,
                      s.counters);
   } while (!s.streaming.missing.empty());
 }
@@ -86,14 +86,14 @@ void Scene::tick_without_drawing(const core::CameraPose& pose) {
   s.clock.real_s = core::monotonic_seconds() - s.clock.origin_s;
   s.counters = {};
   input_system(s.input, s.clock, s.facts, s.camera);
-  streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, *s.synthesis.cache,
-                   s.counters);
-  visibility_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.view, s.counters);
-  cache_system(s.settings, s.clock, s.camera, s.facts, s.streaming, s.view, s.entities, s.synthesis,
+  streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.synthesis, s.counters);
+  visibility_system(s.settings, s.camera, s.facts, s.streaming, VisibilityQuery(s.entities), s.view,
+                    s.counters);
+  cache_system(s.settings, s.clock, s.camera, s.facts, s.view, CacheQuery(s.entities), s.synthesis,
                s.counters, s.totals);
   s.synthesis.manager->wait_all();
   synthesis_system(s.settings, s.synthesis, s.counters, s.trace);
-  upload_system(s.settings, s.clock, s.facts, s.entities, s.synthesis, s.shared_indices, s.renderer,
+  upload_system(s.settings, s.clock, s.facts, UploadQuery(s.entities), s.synthesis, s.output,
                 s.counters, s.totals);
   ++s.clock.tick;
 }

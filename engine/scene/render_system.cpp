@@ -11,13 +11,6 @@ namespace {
 // How far a block's border hangs down, in metres per metre of its coarsest error, at least one.
 constexpr float kSkirtPerError = 2.0F;
 
-struct Columns {
-  ecs::Accessor<const Placed> placed;
-  ecs::Accessor<const Demand> demand;
-  ecs::Accessor<const Mesh> mesh;
-  ecs::Accessor<const Detail> detail;
-};
-
 // Counts a node in view; true if it can be drawn.
 bool count_node(const Camera& camera, const Demand& demand, glm::vec3 center, float radius_m,
                 Counters& counters) {
@@ -45,45 +38,50 @@ void add_terrain(const WorldFacts& facts, const Mesh& mesh, const Placed& placed
   draws.terrain.push_back(draw);
 }
 
-void add_block(const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-               const Columns& columns, const Block& block, ecs::Entity entity, std::uint32_t tick,
-               DrawLists& draws, Counters& counters) {
-  const glm::vec3 corner(
-      core::offset_m(block.coord, camera.pose.position, facts.world.block_size_m()));
-  const Placed& ground = *columns.placed.get(entity);
-  if (count_node(camera, *columns.demand.get(entity), corner + ground.box_center, ground.radius_m,
-                 counters)) {
-    add_terrain(facts, *columns.mesh.get(entity), ground, *columns.detail.get(entity), corner,
-                draws);
-  }
-  for (const ecs::Entity model : streaming.models.of(block.slab).first(block.model_count)) {
-    const Demand& demand = *columns.demand.get(model);
-    if (demand.wanted_level == kNoLevel || demand.in_view_tick != tick) continue;
-    const Placed& placed = *columns.placed.get(model);
-    const glm::vec3 foot = corner + placed.position;
-    if (!count_node(camera, demand, foot + placed.box_center, placed.radius_m, counters)) continue;
-    const Mesh& mesh = *columns.mesh.get(model);
-    draws.models.push_back(
-        {mesh.range, mesh.shared_indices, foot, placed.box_center, placed.box_half_extent, 1.0F});
-  }
+void add_models(const Camera& camera, const RenderQuery& entities, const ecs::Children& models,
+                glm::vec3 corner, std::uint32_t tick, DrawLists& draws, Counters& counters) {
+  entities.each_of<const Placed, const Demand, const Mesh>(
+      entities.children(models),
+      [&](std::span<const ecs::Entity>, std::span<const Placed> placed,
+          std::span<const Demand> demands, std::span<const Mesh> meshes) {
+        for (std::size_t i = 0; i < placed.size(); ++i) {
+          const Demand& demand = demands[i];
+          if (demand.wanted_level == kNoLevel || demand.in_view_tick != tick) continue;
+          const glm::vec3 foot = corner + placed[i].position;
+          if (!count_node(camera, demand, foot + placed[i].box_center, placed[i].radius_m,
+                          counters)) {
+            continue;
+          }
+          draws.models.push_back({meshes[i].range, meshes[i].shared_indices, foot,
+                                  placed[i].box_center, placed[i].box_half_extent, 1.0F});
+        }
+      });
 }
 
 }  // namespace
 
 void render_system(const Input& input, const Clock& clock, const Camera& camera,
-                   const WorldFacts& facts, const Streaming& streaming, const View& view,
-                   ecs::World& entities, DrawLists& draws, render::Renderer* renderer,
-                   Counters& counters, std::optional<core::Error>& error) {
+                   const WorldFacts& facts, const View& view, RenderQuery entities,
+                   DrawLists& draws, Output& output, Counters& counters) {
   draws.terrain.clear();
   draws.models.clear();
-  const Columns columns{entities.accessor<const Placed>(), entities.accessor<const Demand>(),
-                        entities.accessor<const Mesh>(), entities.accessor<const Detail>()};
-  for (const ecs::Entity entity : view.visible) {
-    add_block(camera, facts, streaming, columns, *entities.get<Block>(entity), entity, clock.tick,
-              draws, counters);
-  }
+  entities.each_of(
+      view.visible, [&](std::span<const ecs::Entity>, std::span<const Block> blocks,
+                        std::span<const ecs::Children> models, std::span<const Placed> placed,
+                        std::span<const Detail> details, std::span<const Demand> demands,
+                        std::span<const Mesh> meshes) {
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+          const glm::vec3 corner(
+              core::offset_m(blocks[i].coord, camera.pose.position, facts.world.block_size_m()));
+          if (count_node(camera, demands[i], corner + placed[i].box_center, placed[i].radius_m,
+                         counters)) {
+            add_terrain(facts, meshes[i], placed[i], details[i], corner, draws);
+          }
+          add_models(camera, entities, models[i], corner, clock.tick, draws, counters);
+        }
+      });
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
-  if (renderer == nullptr) return;
+  if (output.renderer == nullptr) return;
 
   render::FrameInput frame;
   frame.pose = camera.pose;
@@ -95,11 +93,11 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
   frame.terrain = draws.terrain;
   frame.models = draws.models;
   frame.overlay_lines = input.overlay_lines;
-  const auto result = renderer->render(frame);
+  const auto result = output.renderer->render(frame);
   if (result) {
     counters.frame = *result;
   } else {
-    error = result.error();
+    output.error = result.error();
   }
 }
 

@@ -97,14 +97,14 @@ std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
 }
 
 Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
-                   const models::Registry& registry) {
+                   const models::Registry& registry, const ecs::Schedule& tick) {
   Tracing tracing;
   if (log == nullptr) return tracing;
   tracing.log = log;
   tracing.main = log->add_track("main thread");
   tracing.cache_bytes = log->add_counter("cache bytes");
   tracing.requests = log->add_counter("requests");
-  for (const System& system : tick_systems())
+  for (const ecs::SystemInfo& system : tick.systems())
     tracing.systems.push_back(log->intern(system.name));
   for (std::uint32_t i = 0; i < modelers; ++i) {
     tracing.modelers.push_back(log->add_track(fmt::format("modeler {}", i)));
@@ -144,12 +144,9 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.cell_m = static_cast<float>(facts.world.cell_m());
   facts.models_reach_m = models_reach(facts.world, facts.registry);
 
-  s.streaming =
-      Streaming{BlockGrid(static_cast<std::uint32_t>(window_radius(facts.world, settings))),
-                BlockModels(facts.models_per_block),
-                {},
-                false};
-  s.renderer = renderer;
+  s.streaming = Streaming{
+      BlockGrid(static_cast<std::uint32_t>(window_radius(facts.world, settings))), {}, false};
+  s.output.renderer = renderer;
   if (renderer == nullptr) {
     s.heap = std::make_unique<core::HeapGeometryMemory>(settings.budget_bytes);
   }
@@ -167,7 +164,8 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   options.watchdog_seconds = settings.watchdog_seconds;
   synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
   s.settings.modelers = synthesis.manager->modeler_count();
-  s.trace = tracing_of(trace, s.settings.modelers, facts.registry);
+  build_tick(s);
+  s.trace = tracing_of(trace, s.settings.modelers, facts.registry, s.tick);
   return scene;
 }
 

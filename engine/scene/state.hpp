@@ -70,7 +70,6 @@ struct WorldFacts {
 
 struct Streaming {
   BlockGrid grid;
-  BlockModels models;
   std::vector<core::BlockCoord> missing;  // nearest last
   bool centred = false;
 };
@@ -137,6 +136,13 @@ struct Totals {
 // (model type, list) → the renderer's name of a shared index list.
 using SharedIndices = std::unordered_map<std::uint64_t, std::uint32_t>;
 
+// Where a frame goes, and what ended the flight early, if anything.
+struct Output {
+  render::Renderer* renderer = nullptr;  // null: everything but drawing
+  SharedIndices shared_indices;
+  std::optional<core::Error> error;
+};
+
 // The trace of a run with its names looked up once; `log` may be null.
 struct Tracing {
   telemetry::TraceLog* log = nullptr;
@@ -150,6 +156,7 @@ struct State {
   Settings settings;
   WorldFacts facts;
   ecs::World entities;
+  ecs::Schedule tick{entities};  // filled by build_tick
   Input input;
   Clock clock;
   Camera camera;
@@ -157,15 +164,13 @@ struct State {
   View view;
   std::unique_ptr<core::GeometryMemory> heap;  // the null device's memory; unused with a renderer
   core::GeometryMemory* memory = nullptr;
-  render::Renderer* renderer = nullptr;  // null: everything but drawing
-  SharedIndices shared_indices;
+  Output output;
   Synthesis synthesis;
   DrawLists draws;
   Counters counters;
   Totals totals;
   Tracing trace;
-  telemetry::FrameRecord record;     // of the last tick; the main loop adds frame_ms
-  std::optional<core::Error> error;  // what ended the last tick early, if anything
+  telemetry::FrameRecord record;  // of the last tick; the main loop adds frame_ms
 };
 
 }  // namespace psygen::scene

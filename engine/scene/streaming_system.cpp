@@ -47,18 +47,19 @@ void create_block(const WorldFacts& facts, core::BlockCoord coord,
                   ecs::World& entities) {
   scratch.clear();
   world::place_models(facts.world, facts.registry, coord, scratch);
-  const std::uint32_t slab = streaming.models.acquire();
   const auto models = entities.create<Placed, Detail, Source, Demand, Mesh>(scratch.size());
   for (std::size_t i = 0; i < scratch.size(); ++i) {
     fill(models, i, facts.registry, coord, scratch[i]);
   }
-  std::ranges::copy(models.entities, streaming.models.of(slab).begin());
+  const std::span<const ecs::Entity> children = models.entities;
 
-  const auto block = entities.create<Block, Visibility, Placed, Detail, Source, Demand, Mesh>(1);
-  block.template column<Block>()[0] = {coord, slab, static_cast<std::uint32_t>(scratch.size())};
+  const auto block =
+      entities.create<Block, ecs::Children, Visibility, Placed, Detail, Source, Demand, Mesh>(1);
+  block.template column<Block>()[0] = {coord};
   fill(block, 0, facts.registry, coord,
        {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F),
         world::terrain_parameters(facts.world, coord)});
+  entities.set_children(block.entities[0], children);
   streaming.grid.entity_of(coord) = block.entities[0];
 }
 
@@ -66,22 +67,24 @@ void create_block(const WorldFacts& facts, core::BlockCoord coord,
 void destroy_leaving_blocks(Streaming& streaming, ecs::World& entities,
                             synthesis::GeometryCache& cache, Counters& counters) {
   std::vector<ecs::Entity> leaving;
-  for (ecs::Entity& cell : streaming.grid.entities()) {
-    const Block* block = entities.get<Block>(cell);
-    if (block == nullptr || streaming.grid.contains(block->coord)) continue;
-    const auto models = streaming.models.of(block->slab).first(block->model_count);
-    leaving.insert(leaving.end(), models.begin(), models.end());
-    streaming.models.release(block->slab);
-    leaving.push_back(cell);
-    cell = {};
-    ++counters.blocks_destroyed;
-  }
-  for (const ecs::Entity entity : leaving) {
-    if (entities.get<Demand>(entity)->drawn_level != kNoLevel) {
-      cache.set_rank(entities.get<Mesh>(entity)->handle, synthesis::Rank::unwanted());
+  const BlockGrid& grid = streaming.grid;
+  entities.each<const Block>([&](std::span<const ecs::Entity> rows, std::span<const Block> blocks) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!grid.contains(blocks[i].coord)) leaving.push_back(rows[i]);
     }
-  }
-  entities.destroy(leaving);
+  });
+  counters.blocks_destroyed += static_cast<std::uint32_t>(leaving.size());
+  const auto give_back = [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
+                             std::span<const Mesh> meshes) {
+    for (std::size_t i = 0; i < demands.size(); ++i) {
+      if (demands[i].drawn_level == kNoLevel) continue;
+      cache.set_rank(meshes[i].handle, synthesis::Rank::unwanted());
+    }
+  };
+  entities.each_of<const Demand, const Mesh>(leaving, give_back);
+  for (const ecs::Entity block : leaving)
+    entities.each_of<const Demand, const Mesh>(entities.children(block), give_back);
+  entities.destroy_with_children(leaving);
 }
 
 void list_missing_blocks(const WorldFacts& facts, const ecs::World& entities,
@@ -109,13 +112,13 @@ void list_missing_blocks(const WorldFacts& facts, const ecs::World& entities,
 }  // namespace
 
 void streaming_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                      Streaming& streaming, ecs::World& entities, synthesis::GeometryCache& cache,
+                      Streaming& streaming, ecs::World& entities, Synthesis& synthesis,
                       Counters& counters) {
   const core::BlockCoord centre = camera.pose.position.block;
   if (!streaming.centred || centre != streaming.grid.centre()) {
     streaming.grid.set_centre(centre);
     streaming.centred = true;
-    destroy_leaving_blocks(streaming, entities, cache, counters);
+    destroy_leaving_blocks(streaming, entities, *synthesis.cache, counters);
     list_missing_blocks(facts, entities, streaming);
   }
   const double start_s = core::monotonic_seconds();

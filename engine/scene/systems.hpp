@@ -1,6 +1,7 @@
-// The systems of the tick, one .cpp each. Free functions; const parameters are read, the others
-// written. Main thread only; none of them waits for a modeler, a file or the GPU beyond the frames
-// in flight (lazy evaluation waits for its modelers: that is what it is). Order and data: tick.cpp.
+// The systems of the tick, one .cpp each. Free functions; const parameters and components are read,
+// the others written: the schedule takes what a system touches from here. Main thread only; none of
+// them waits for a modeler, a file or the GPU beyond the frames in flight (lazy evaluation waits
+// for its modelers: that is what it is). Order and data: tick.cpp.
 #pragma once
 
 #include "engine/scene/state.hpp"
@@ -13,33 +14,38 @@ void input_system(const Input& input, const Clock& clock, const WorldFacts& fact
 
 // Creates and destroys block entities with their models around the camera, in batches.
 void streaming_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                      Streaming& streaming, ecs::World& entities, synthesis::GeometryCache& cache,
+                      Streaming& streaming, ecs::World& entities, Synthesis& synthesis,
                       Counters& counters);
 
 // Runs Prioritized-Layered Projection over the window; what predicted cameras see gets a deadline.
+using VisibilityQuery = ecs::Query<const Block, Visibility>;
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                       const Streaming& streaming, ecs::World& entities, View& view,
+                       const Streaming& streaming, VisibilityQuery blocks, View& view,
                        Counters& counters);
 
 // Chooses levels of detail, finds what the cache has, ranks what it keeps, plans what is missing.
+using CacheQuery = ecs::Query<const Block, const ecs::Children, const Visibility, const Placed,
+                              const Detail, const Source, const Mesh, Demand>;
 void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
-                  const WorldFacts& facts, const Streaming& streaming, const View& view,
-                  ecs::World& entities, Synthesis& synthesis, Counters& counters, Totals& totals);
+                  const WorldFacts& facts, const View& view, CacheQuery entities,
+                  Synthesis& synthesis, Counters& counters, Totals& totals);
 
 // Collects what the modelers have finished since the last tick.
 void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& counters,
                       Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
+using UploadQuery = ecs::Query<Mesh, Demand>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
-                   ecs::World& entities, Synthesis& synthesis, SharedIndices& shared,
-                   render::Renderer* renderer, Counters& counters, Totals& totals);
+                   UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
+                   Totals& totals);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
+using RenderQuery = ecs::Query<const Block, const ecs::Children, const Placed, const Detail,
+                               const Demand, const Mesh>;
 void render_system(const Input& input, const Clock& clock, const Camera& camera,
-                   const WorldFacts& facts, const Streaming& streaming, const View& view,
-                   ecs::World& entities, DrawLists& draws, render::Renderer* renderer,
-                   Counters& counters, std::optional<core::Error>& error);
+                   const WorldFacts& facts, const View& view, RenderQuery entities,
+                   DrawLists& draws, Output& output, Counters& counters);
 
 // Writes down what the tick did.
 void telemetry_system(const Clock& clock, const Counters& counters, const Synthesis& synthesis,

@@ -1,78 +1,53 @@
-// The whole frame, in order. Each system is a free function over the parts that it names; what is
-// const in its parameters it only reads. docs/architecture.md shows this list, and a test holds the
+// The whole frame, in order. Each system is a free function; what it reads and writes is what its
+// parameters in systems.hpp say. docs/architecture.md shows this list with it, and a test holds the
 // two together.
 #include "engine/scene/tick.hpp"
-
-#include <array>
 
 #include "engine/core/clock.hpp"
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
+
+void build_tick(State& s) {
+  s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.streaming, s.view, s.output,
+                 s.synthesis, s.draws, s.counters, s.totals, s.trace, s.record);
+  s.tick.add("input", input_system);
+  s.tick.add("streaming", streaming_system);
+  s.tick.add("visibility", visibility_system);
+  s.tick.add("cache", cache_system);
+  s.tick.add("synthesis", synthesis_system);
+  s.tick.add("upload", upload_system);
+  s.tick.add("render", render_system, ecs::RunsOn::kCallingThread);
+  s.tick.add("telemetry", telemetry_system);
+}
+
 namespace {
 
-constexpr std::array kTick{
-    System{"input", "Input, Clock", "Camera",
-           [](State& s) { input_system(s.input, s.clock, s.facts, s.camera); }},
-    System{"streaming", "Camera, World", "Block, Placed, Detail, Source",
-           [](State& s) {
-             streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities,
-                              *s.synthesis.cache, s.counters);
-           }},
-    System{"visibility", "Camera, World, Block", "View, Visibility",
-           [](State& s) {
-             visibility_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.view,
-                               s.counters);
-           }},
-    System{"cache", "View, Visibility, Placed, Detail, Source", "Demand, plan",
-           [](State& s) {
-             cache_system(s.settings, s.clock, s.camera, s.facts, s.streaming, s.view, s.entities,
-                          s.synthesis, s.counters, s.totals);
-           }},
-    System{"synthesis", "plan", "finished meshes",
-           [](State& s) { synthesis_system(s.settings, s.synthesis, s.counters, s.trace); }},
-    System{"upload", "finished meshes", "Mesh, Demand",
-           [](State& s) {
-             upload_system(s.settings, s.clock, s.facts, s.entities, s.synthesis, s.shared_indices,
-                           s.renderer, s.counters, s.totals);
-           }},
-    System{"render", "Camera, View, Placed, Demand, Mesh", "draw lists, frame",
-           [](State& s) {
-             render_system(s.input, s.clock, s.camera, s.facts, s.streaming, s.view, s.entities,
-                           s.draws, s.renderer, s.counters, s.error);
-           }},
-    System{
-        "telemetry", "all counters", "frame log",
-        [](State& s) { telemetry_system(s.clock, s.counters, s.synthesis, s.totals, s.record); }},
-};
+void trace_tick(const State& state) {
+  telemetry::TraceLog& log = *state.trace.log;
+  const auto systems = state.tick.systems();
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    const double start_s = systems[i].last_start_s;
+    log.add_span(state.trace.main, state.trace.systems[i], start_s,
+                 start_s + systems[i].last_seconds, state.clock.tick);
+  }
+  const double now_s = core::monotonic_seconds();
+  log.add_value(state.trace.cache_bytes, now_s, static_cast<double>(state.record.cache_bytes));
+  log.add_value(state.trace.requests, now_s, state.record.requests_queued);
+}
 
 }  // namespace
 
-std::span<const System> tick_systems() {
-  return kTick;
-}
-
 void tick(State& state) {
   state.counters = {};
-  state.error.reset();
+  state.output.error.reset();
   state.clock.real_s = core::monotonic_seconds() - state.clock.origin_s;
   state.record = {};
-  for (std::size_t i = 0; i < kTick.size(); ++i) {
-    const double start_s = core::monotonic_seconds();
-    kTick[i].run(state);
-    const double end_s = core::monotonic_seconds();
-    state.record.system_ms[i] = static_cast<float>((end_s - start_s) * 1000.0);
-    if (state.trace.log != nullptr) {
-      state.trace.log->add_span(state.trace.main, state.trace.systems[i], start_s, end_s,
-                                state.clock.tick);
-    }
-  }
-  if (state.trace.log != nullptr) {
-    const double now_s = core::monotonic_seconds();
-    state.trace.log->add_value(state.trace.cache_bytes, now_s,
-                               static_cast<double>(state.record.cache_bytes));
-    state.trace.log->add_value(state.trace.requests, now_s, state.record.requests_queued);
-  }
+  state.tick.run();
+  const auto systems = state.tick.systems();
+  for (std::size_t i = 0; i < systems.size(); ++i)
+    state.record.system_ms[i] = static_cast<float>(systems[i].last_seconds * 1000.0);
+  if (state.trace.log != nullptr) trace_tick(state);
   ++state.clock.tick;
 }
 

@@ -10,16 +10,17 @@ namespace psygen::scene {
 namespace {
 
 std::uint32_t shared_indices_of(const synthesis::MeshRecord& record, const WorldFacts& facts,
-                                SharedIndices& shared, render::Renderer* renderer) {
+                                Output& output) {
   if (record.size.shared_indices == 0) return render::kNoSharedIndices;
   const std::uint64_t key = (std::uint64_t{record.key.model} << 32) | record.size.shared_indices;
+  SharedIndices& shared = output.shared_indices;
   const auto known = shared.find(key);
   if (known != shared.end()) return known->second;
   std::uint32_t name = static_cast<std::uint32_t>(shared.size()) + 1;
-  if (renderer != nullptr) {
+  if (output.renderer != nullptr) {
     std::vector<std::uint16_t> list(record.size.index_count);
     facts.registry[record.key.model].write_shared_indices(record.size.shared_indices, list);
-    const auto uploaded = renderer->upload_shared_indices(list);
+    const auto uploaded = output.renderer->upload_shared_indices(list);
     if (!uploaded) {
       core::log_error(fmt::format("index list not uploaded: {}", uploaded.error().message));
       return render::kNoSharedIndices;
@@ -43,7 +44,7 @@ bool accept(Demand& demand, std::uint8_t level, double now_s, Counters& counters
   return true;
 }
 
-void give_up(const synthesis::Completion& job, ecs::World& entities, Totals& totals) {
+void give_up(const synthesis::Completion& job, const UploadQuery& entities, Totals& totals) {
   if (job.late) return;  // it was given up before
   if (totals.failed++ == 0) {
     core::log_warning(fmt::format("a model could not be synthesised: {}", job.error));
@@ -67,8 +68,8 @@ std::size_t count_within_budget(const Synthesis& synthesis, std::uint64_t budget
 
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.
 void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::MeshRecord& record,
-           std::uint32_t shared_indices, double now_s, ecs::World& entities, Synthesis& synthesis,
-           Counters& counters, std::vector<ecs::Landing<Mesh>>& landings) {
+           std::uint32_t shared_indices, double now_s, const UploadQuery& entities,
+           Synthesis& synthesis, Counters& counters, std::vector<ecs::Landing<Mesh>>& landings) {
   Demand* demand = entities.get<Demand>(owner);
   if (demand == nullptr) {
     synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());  // destroyed meanwhile
@@ -88,13 +89,13 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
 }  // namespace
 
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
-                   ecs::World& entities, Synthesis& synthesis, SharedIndices& shared,
-                   render::Renderer* renderer, Counters& counters, Totals& totals) {
+                   UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
+                   Totals& totals) {
   std::vector<ecs::Landing<Mesh>> landings;
   for (const Synthesis::Ready& ready : synthesis.ready) {
     const synthesis::MeshRecord* record = synthesis.cache->get(ready.handle);
     if (record == nullptr || record->state != synthesis::MeshState::kReady) continue;
-    offer(ready.entity, ready.handle, *record, shared_indices_of(*record, facts, shared, renderer),
+    offer(ready.entity, ready.handle, *record, shared_indices_of(*record, facts, output),
           clock.real_s, entities, synthesis, counters, landings);
   }
   // Lazy evaluation draws in this frame what it made for this frame.
@@ -109,9 +110,8 @@ void upload_system(const Settings& settings, const Clock& clock, const WorldFact
     if (record == nullptr || record->state != synthesis::MeshState::kReady) continue;
     ++counters.models_synthesised;
     counters.triangles_synthesised += record->size.triangle_count();
-    offer(entity_of(job.owner), job.handle, *record,
-          shared_indices_of(*record, facts, shared, renderer), clock.real_s, entities, synthesis,
-          counters, landings);
+    offer(entity_of(job.owner), job.handle, *record, shared_indices_of(*record, facts, output),
+          clock.real_s, entities, synthesis, counters, landings);
   }
   synthesis.finished.erase(synthesis.finished.begin(),
                            synthesis.finished.begin() + static_cast<std::ptrdiff_t>(count));

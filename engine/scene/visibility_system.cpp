@@ -57,19 +57,19 @@ void expect(const Camera& camera, const Camera::Prediction& prediction, double b
 }
 
 void write_visibility(const View& view, const BlockGrid& grid, float view_distance_m,
-                      ecs::World& entities) {
-  for (std::uint32_t row = 0; row < grid.side(); ++row) {
-    for (std::uint32_t column = 0; column < grid.side(); ++column) {
-      const std::size_t cell = std::size_t{row} * grid.side() + column;
-      Visibility* visibility = entities.get<Visibility>(grid.entity_of(grid.coord_at(column, row)));
-      if (visibility == nullptr) continue;
-      visibility->distance_m = distance_to(view.bounds[cell]);
-      visibility->layer = view.plp.layer[cell];
-      visibility->in_view =
-          view.plp.in_view[cell] != 0 && visibility->distance_m <= view_distance_m ? 1 : 0;
-      visibility->deadline_s = visibility->in_view != 0 ? 0.0F : view.deadlines[cell];
+                      const VisibilityQuery& query) {
+  query.each([&](std::span<const ecs::Entity>, std::span<const Block> blocks,
+                 std::span<Visibility> visibilities) {
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const std::size_t cell = grid.window_index(blocks[i].coord);
+      Visibility& visibility = visibilities[i];
+      visibility.distance_m = distance_to(view.bounds[cell]);
+      visibility.layer = view.plp.layer[cell];
+      visibility.in_view =
+          view.plp.in_view[cell] != 0 && visibility.distance_m <= view_distance_m ? 1 : 0;
+      visibility.deadline_s = visibility.in_view != 0 ? 0.0F : view.deadlines[cell];
     }
-  }
+  });
 }
 
 // A block in view that has no entity yet is a hole like any other.
@@ -82,7 +82,7 @@ void count_missing_block(const Camera& camera, const core::Bounds& box, Counters
 
 // Sorts the window's blocks into the three lists of the view, each in order of importance.
 void list_blocks(const Camera& camera, const WorldFacts& facts, const BlockGrid& grid,
-                 float view_distance_m, const ecs::World& entities, View& view,
+                 float view_distance_m, const VisibilityQuery& query, View& view,
                  Counters& counters) {
   view.visible.clear();
   view.expected.clear();
@@ -90,14 +90,23 @@ void list_blocks(const Camera& camera, const WorldFacts& facts, const BlockGrid&
   const auto coord_of = [&grid](std::uint32_t cell) {
     return grid.coord_at(cell % grid.side(), cell / grid.side());
   };
+  struct Expected {
+    float deadline_s;
+    ecs::Entity block;
+  };
+  std::vector<Expected> expected;
   const auto keep_out_of_view = [&](std::uint32_t cell, ecs::Entity entity) {
-    (std::isfinite(view.deadlines[cell]) ? view.expected : view.around).push_back(entity);
+    if (std::isfinite(view.deadlines[cell])) {
+      expected.push_back({view.deadlines[cell], entity});
+    } else {
+      view.around.push_back(entity);
+    }
   };
   for (const std::uint32_t cell : view.plp.visible) {
     const core::BlockCoord coord = coord_of(cell);
     const ecs::Entity entity = grid.entity_of(coord);
     const bool near = distance_to(view.bounds[cell]) <= view_distance_m;
-    if (entities.alive(entity)) {
+    if (query.alive(entity)) {
       // Straight ahead, but beyond the view distance: the next to come.
       near ? view.visible.push_back(entity) : keep_out_of_view(cell, entity);
     } else if (near && facts.world.contains(coord)) {
@@ -106,17 +115,17 @@ void list_blocks(const Camera& camera, const WorldFacts& facts, const BlockGrid&
   }
   for (const std::uint32_t cell : view.plp.prefetch) {
     const ecs::Entity entity = grid.entity_of(coord_of(cell));
-    if (entities.alive(entity)) keep_out_of_view(cell, entity);
+    if (query.alive(entity)) keep_out_of_view(cell, entity);
   }
-  std::ranges::stable_sort(view.expected, {}, [&entities](ecs::Entity e) {
-    return entities.get<Visibility>(e)->deadline_s;
-  });
+  std::ranges::stable_sort(expected, {}, &Expected::deadline_s);
+  for (const Expected& soon : expected)
+    view.expected.push_back(soon.block);
 }
 
 }  // namespace
 
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                       const Streaming& streaming, ecs::World& entities, View& view,
+                       const Streaming& streaming, VisibilityQuery blocks, View& view,
                        Counters& counters) {
   const BlockGrid& grid = streaming.grid;
   const core::Bounds terrain =
@@ -136,8 +145,8 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
     expect(camera, prediction, facts.world.block_size_m(), view.bounds, view.deadlines);
   }
   const auto view_distance_m = static_cast<float>(settings.view_distance_m);
-  write_visibility(view, grid, view_distance_m, entities);
-  list_blocks(camera, facts, grid, view_distance_m, entities, view, counters);
+  write_visibility(view, grid, view_distance_m, blocks);
+  list_blocks(camera, facts, grid, view_distance_m, blocks, view, counters);
 }
 
 }  // namespace psygen::scene

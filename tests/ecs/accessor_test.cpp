@@ -45,14 +45,14 @@ TEST(Accessor, each_visits_every_handle_in_order_and_gives_null_for_the_dead) {
   world.destroy(std::span(entities).subspan(30, 5));
   for (const std::size_t count : {0U, 1U, 15U, 16U, 17U, 100U}) {
     std::size_t next = 0;
-    world.accessor<const Mesh>().each(
-        std::span(entities).first(count), [&](std::size_t i, const Mesh* mesh) {
-          EXPECT_EQ(i, next++);
-          EXPECT_EQ(mesh == nullptr, i >= 30 && i < 35);
-          if (mesh != nullptr) {
-            EXPECT_EQ(mesh->id, 99 - i);
-          }
-        });
+    world.accessor<const Mesh>().each(std::span(entities).first(count),
+                                      [&](std::size_t i, const Mesh* mesh) {
+                                        EXPECT_EQ(i, next++);
+                                        EXPECT_EQ(mesh == nullptr, i >= 30 && i < 35);
+                                        if (mesh != nullptr) {
+                                          EXPECT_EQ(mesh->id, 99 - i);
+                                        }
+                                      });
     EXPECT_EQ(next, count);
   }
 }

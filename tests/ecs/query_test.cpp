@@ -131,9 +131,8 @@ TEST(Query, each_of_marks_the_rows_it_visits) {
   const std::vector<Entity> all(created.begin(), created.end());
   auto reader = world.reader<Mesh>();
   reader.drain([](auto, auto) {});
-  world.each_of<Mesh>(std::span(all).subspan(4, 3), [](TableRows<Mesh> rows, auto, auto) {
-    rows.mark_changed<Mesh>(2, 1);
-  });
+  world.each_of<Mesh>(std::span(all).subspan(4, 3),
+                      [](TableRows<Mesh> rows, auto, auto) { rows.mark_changed<Mesh>(2, 1); });
   reader.drain([&](std::span<const Entity> entities, auto) { EXPECT_EQ(entities[0], all[6]); });
 }
 

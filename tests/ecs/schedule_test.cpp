@@ -30,8 +30,8 @@ const SystemInfo& info(const Schedule& schedule, std::string_view name) {
 }
 
 bool declares(const SystemInfo& system, std::string_view name, bool writes) {
-  return std::ranges::any_of(
-      system.accesses, [&](const Access& a) { return a.name == name && a.writes == writes; });
+  return std::ranges::any_of(system.accesses,
+                             [&](const Access& a) { return a.name == name && a.writes == writes; });
 }
 
 TEST(Schedule, what_a_system_reads_and_writes_is_taken_from_its_parameters) {
@@ -45,7 +45,8 @@ TEST(Schedule, what_a_system_reads_and_writes_is_taken_from_its_parameters) {
   schedule.add("count", [](Tally&, ChangeReader<Mesh>&) {});
   schedule.add("spawn", [](Commands&) {});
   schedule.add("look", [](const World&) {});
-  schedule.add("change", [](World&) {}, RunsOn::kCallingThread);
+  schedule.add(
+      "change", [](World&) {}, RunsOn::kCallingThread);
   const SystemInfo& blow = info(schedule, "blow");
   EXPECT_EQ(blow.accesses.size(), 3U);
   EXPECT_TRUE(declares(blow, "Wind", false));
@@ -145,8 +146,9 @@ TEST(Schedule, what_must_run_on_the_calling_thread_does) {
   schedule.provide(ids);
   for (int i = 0; i < 20; ++i) {
     schedule.add("elsewhere", [](Query<Velocity>) {});
-    schedule.add("window", [](std::set<std::thread::id>& s) { s.insert(std::this_thread::get_id()); },
-                 RunsOn::kCallingThread);
+    schedule.add(
+        "window", [](std::set<std::thread::id>& s) { s.insert(std::this_thread::get_id()); },
+        RunsOn::kCallingThread);
   }
   for (int i = 0; i < 20; ++i)
     schedule.run();

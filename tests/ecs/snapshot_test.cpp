@@ -22,7 +22,8 @@ void declare_all(World& world) {
   world.declare<Creature, Position, Mesh, Hidden, Selected, Edited, Children>();
 }
 
-// Every feature at once, with at least 8 creatures: several kinds, the dead, children, sparse components, transient values.
+// Every feature at once, with at least 8 creatures: several kinds, the dead, children, sparse
+// components, transient values.
 void fill(World& world, std::size_t count = 20) {
   const std::vector<Entity> creatures = copy(world.create<Creature, Position>(count).entities);
   const std::vector<Entity> hidden = copy(world.create<Creature, Hidden>(3).entities);
@@ -267,8 +268,7 @@ template <>
 struct psygen::ecs::ComponentTraits<psygen::ecs::test::NewCar> {
   using C = psygen::ecs::test::NewCar;
   static constexpr std::string_view name = "car";
-  static constexpr auto fields =
-      std::tuple{field("plate", &C::plate), field("wheels", &C::wheels)};
+  static constexpr auto fields = std::tuple{field("plate", &C::plate), field("wheels", &C::wheels)};
 };
 template <>
 struct psygen::ecs::ComponentTraits<psygen::ecs::test::OtherCar> {

@@ -149,11 +149,9 @@ TEST_F(Filters, runs_mark_their_own_rows) {
   auto reader = world.reader<Mesh>();
   reader.drain([](auto, auto) {});
   world.add<Selected>(std::vector{meshes[40], meshes[41]});
-  world.each<Mesh>(
-      [](TableRows<Mesh> rows, std::span<const Entity>, std::span<Mesh>) {
-        rows.mark_changed<Mesh>(1, 1);
-      },
-      With<Selected>{});
+  world.each<Mesh>([](TableRows<Mesh> rows, std::span<const Entity>,
+                      std::span<Mesh>) { rows.mark_changed<Mesh>(1, 1); },
+                   With<Selected>{});
   std::vector<Entity> seen;
   reader.drain([&](std::span<const Entity> entities, std::span<const Mesh>) {
     seen.insert(seen.end(), entities.begin(), entities.end());

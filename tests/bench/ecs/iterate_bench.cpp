@@ -7,7 +7,8 @@ namespace psygen::ecs::bench {
 namespace {
 
 // One copy for library and floor: what differs is how their arrays are found and laid out.
-[[gnu::noinline]] void integrate(Position* positions, const Velocity* velocities, std::size_t count) {
+[[gnu::noinline]] void integrate(Position* positions, const Velocity* velocities,
+                                 std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     positions[i].x += velocities[i].x * 0.016F;
     positions[i].y += velocities[i].y * 0.016F;
@@ -15,8 +16,8 @@ namespace {
   }
 }
 
-[[gnu::noinline]] void integrate_light(Position* positions, const Velocity* velocities, const Mass* masses,
-                     std::size_t count) {
+[[gnu::noinline]] void integrate_light(Position* positions, const Velocity* velocities,
+                                       const Mass* masses, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const float step = 0.016F * masses[i].kilograms;
     positions[i].x += velocities[i].x * step;

@@ -117,8 +117,8 @@ void churn(benchmark::State& state) {
 BENCHMARK(churn<World>)->Name("destroy_create_1000_in_1M/ecs")->UseManualTime();
 BENCHMARK(churn<FloorTable>)->Name("destroy_create_1000_in_1M/floor")->UseManualTime();
 
-// A component that comes and goes, for a tenth of the world in random order. Its column is sparse or
-// one of the table's; the floor keeps one bit per entity and checks handles.
+// A component that comes and goes, for a tenth of the world in random order. Its column is sparse
+// or one of the table's; the floor keeps one bit per entity and checks handles.
 enum Toggle { kAdd, kRemove };
 template <class C, Toggle which>
 void toggle(benchmark::State& state) {

@@ -28,20 +28,12 @@ TEST(BlockGrid, EveryBlockOfTheWindowHasAPlaceOfItsOwnAlsoAcrossTheWrapOfIndices
       for (std::uint32_t column = 0; column < grid.side(); ++column) {
         const core::BlockCoord coord = grid.coord_at(column, row);
         EXPECT_TRUE(grid.contains(coord));
+        EXPECT_EQ(grid.window_index(coord), row * grid.side() + column);
         places.insert(&grid.entity_of(coord));
       }
     }
     EXPECT_EQ(places.size(), 49u);
   }
-}
-
-TEST(BlockModels, SlabsAreContiguousAndReused) {
-  BlockModels models(4);
-  const std::uint32_t first = models.acquire();
-  const std::uint32_t second = models.acquire();
-  EXPECT_EQ(models.of(second).data(), models.of(first).data() + 4);
-  models.release(first);
-  EXPECT_EQ(models.acquire(), first);
 }
 
 }  // namespace
