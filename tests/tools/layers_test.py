@@ -42,6 +42,7 @@ ONLY_IN = {
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
 NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/visibility"}
+BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -72,7 +73,7 @@ def violations(path, lines):
         for pattern, folders in ONLY_IN.items():
             if re.search(pattern, name) and layer not in folders:
                 found.append(f"{where}: only {', '.join(sorted(folders))} may include {name}")
-        if THREADS.match(name) and layer in NO_THREADS:
+        if THREADS.match(name) and layer in NO_THREADS and path not in BUT_HERE:
             found.append(f"{where}: {layer} knows no threads ({name})")
     return found
 
@@ -83,6 +84,7 @@ def self_test():
         "ecs/a.hpp": '#include "engine/core/error.hpp"',
         "engine/scene/a.cpp": "#include <vulkan/vulkan.h>",
         "engine/world/a.cpp": "#include <thread>",
+        "ecs/a.cpp": "#include <mutex>",
         "engine/app/a.cpp": '#include "game/main.hpp"',
         "engine/core/a.cpp": '#include "tests/engine/core/fake.hpp"',
     }
