@@ -1,5 +1,5 @@
-// Time of a terrain block per level, of its heights alone, and of ground queries; the plain
-// double-precision reference in the same run is the scale.
+// Time of a terrain block per level, of its heights alone, and of ground queries, on every
+// instruction set of this CPU; the plain double-precision reference in the same run is the scale.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -8,6 +8,7 @@
 
 #include "engine/models/ridged_noise.hpp"
 #include "engine/models/terrain.hpp"
+#include "tests/bench/models/per_target.hpp"
 #include "tests/engine/models/oracle_terrain.hpp"
 
 namespace psygen::models {
@@ -20,6 +21,7 @@ void report_samples(benchmark::State& state, double samples) {
 }
 
 void terrain_noise_65x65(benchmark::State& state) {
+  const bench::PinnedTarget target(state);
   const RidgedNoise noise({.seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600});
   std::array<std::int64_t, 65> columns, rows;
   std::vector<float> values(65 * 65);
@@ -32,7 +34,7 @@ void terrain_noise_65x65(benchmark::State& state) {
   }
   report_samples(state, 65 * 65);
 }
-BENCHMARK(terrain_noise_65x65);
+BENCHMARK(terrain_noise_65x65)->Apply(bench::each_target);
 
 void terrain_noise_65x65_reference(benchmark::State& state) {
   const test::TerrainOracle oracle{
@@ -52,8 +54,9 @@ void terrain_noise_65x65_reference(benchmark::State& state) {
 BENCHMARK(terrain_noise_65x65_reference);
 
 void terrain_block(benchmark::State& state) {
+  const bench::PinnedTarget target(state);
   const auto type = make_terrain_type();
-  const int level = static_cast<int>(state.range(0));
+  const int level = static_cast<int>(state.range(1));
   Parameters p = default_parameters(*type);
   const MeshSize size = type->mesh_size(p, level);
   std::vector<std::byte> vertices(size.vertex_count * sizeof(core::TerrainVertex));
@@ -63,7 +66,7 @@ void terrain_block(benchmark::State& state) {
     benchmark::DoNotOptimize(type->synthesize(p, level, {vertices, {}}));
   }
 }
-BENCHMARK(terrain_block)->DenseRange(0, 3)->ArgName("level");
+BENCHMARK(terrain_block)->Apply([](auto* b) { bench::each_target_with(b, "level", 0, 3, 1); });
 
 void terrain_ground_63_points(benchmark::State& state) {
   const Parameters p = default_parameters(*make_terrain_type());
