@@ -97,7 +97,8 @@ void locate(const std::uint64_t* HWY_RESTRICT position, std::size_t count,
 // One octave on the columns of a call, each array `stride` elements.
 struct ColumnOctave {
   std::size_t stride;
-  // Along x, of each column: how much the gradients' x to the left and right and z to the right count.
+  // Along x, of each column: how much the gradients' x to the left and right and z to the right
+  // count.
   float *left_x, *right_x, *fade;
   // Lattice columns: keys before mixing; those to the left of column i start at first[block of i],
   // and slot[i] counts from there, less than the lanes of a vector. Those to the right are
@@ -113,9 +114,9 @@ struct ColumnOctave {
   float* rise;                // c and d in such pairs
   std::uint32_t lattice_row;  // the lower of the two
 
-  // From the cells of the columns; `contiguous` where each is that of the column before or the next.
-  void place_lattice(const std::uint32_t* HWY_RESTRICT cell, bool contiguous,
-                     std::uint32_t key_x) {
+  // From the cells of the columns; `contiguous` where each is that of the column before or the
+  // next.
+  void place_lattice(const std::uint32_t* HWY_RESTRICT cell, bool contiguous, std::uint32_t key_x) {
     const UintTag du;
     const IntTag di;
     const std::size_t lanes = hn::Lanes(du);
@@ -128,8 +129,8 @@ struct ColumnOctave {
       const auto cells = hn::Load(du, cell + i);
       const std::uint32_t start = narrow ? cell[0] : cell[i];
       first[i] = contiguous ? start - cell[0] : static_cast<std::uint32_t>(i);
-      const auto slots = contiguous ? hn::BitCast(di, hn::Sub(cells, hn::Set(du, start)))
-                                    : hn::Iota(di, 0);
+      const auto slots =
+          contiguous ? hn::BitCast(di, hn::Sub(cells, hn::Set(du, start))) : hn::Iota(di, 0);
       hn::Store(slots, di, slot + i);
       if (contiguous) continue;
       hn::Store(hn::Add(cells, hn::Set(du, key_x)), du, key + i);
@@ -302,8 +303,7 @@ struct RowKernel {
     }
     for (; i + n <= count; i += n)
       hn::StoreU(one(d, i), d, out + i);
-    if (count - i > n / 2)
-      return hn::BlendedStore(one(d, i), hn::FirstN(d, count - i), d, out + i);
+    if (count - i > n / 2) return hn::BlendedStore(one(d, i), hn::FirstN(d, count - i), d, out + i);
     for (; i < count; i += few)
       hn::BlendedStore(one(small, i), hn::FirstN(small, std::min(few, count - i)), small, out + i);
   }
@@ -345,8 +345,9 @@ struct Workspace {
       hn::Store(hn::Mul(hn::Sub(t, one), fade), d, c.right_x + i);
     }
     constexpr std::uint64_t kCell = std::uint64_t{1} << 32;
-    c.place_lattice(cells, axis.even && axis.distance * octave.step <= kCell &&
-                               axis.distance <= kCell && octave.step <= kCell,
+    c.place_lattice(cells,
+                    axis.even && axis.distance * octave.step <= kCell && axis.distance <= kCell &&
+                        octave.step <= kCell,
                     octave.key_x);
     std::fill(c.upper, c.upper + 2 * width, 0.0F);
   }
@@ -415,7 +416,8 @@ void evaluate(const RidgedKernel& kernel, std::span<const std::int64_t> columns,
     memory.prepare(o, kernel.octaves[o], column_axis);
   const RowOctaves along_z(kernel, Axis(rows));
   RowKernel row_kernel{memory.columns,     nullptr,      nullptr,
-                       along_z.next_limit, octave_count, kernel.offset, kernel.result_scale};
+                       along_z.next_limit, octave_count, kernel.offset,
+                       kernel.result_scale};
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::uint32_t changed = along_z.changed[r]; changed != 0; changed &= changed - 1) {
       const auto o = static_cast<std::size_t>(std::countr_zero(changed));
