@@ -147,8 +147,7 @@ struct SampleRow {
 
 // The component of an octahedral normal as snorm8 + 128: 1 … 255.
 HWY_INLINE hn::Vec<IntTag> component(Float slope, Float to_snorm8) {
-  return hn::ConvertTo(IntTag(),
-                       hn::Add(hn::Mul(slope, to_snorm8), hn::Set(FloatTag(), 128.5F)));
+  return hn::ConvertTo(IntTag(), hn::Add(hn::Mul(slope, to_snorm8), hn::Set(FloatTag(), 128.5F)));
 }
 
 // Both components in the upper half of 32 bits, as int8.
@@ -195,8 +194,7 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
       highest = hn::Max(highest, hn::IfThenElse(inside, height, highest));
       const auto low = hn::Or(hn::Or(hn::Load(du, grid_x + x), grid_z),
                               hn::BitCast(du, hn::ShiftLeft<16>(height)));
-      const auto high =
-          hn::Or(hn::BitCast(du, coarse.at(x)), normals(samples, x, slope_scale));
+      const auto high = hn::Or(hn::BitCast(du, coarse.at(x)), normals(samples, x, slope_scale));
       hn::StoreInterleaved2(low, high, du, reinterpret_cast<std::uint32_t*>(row + x));
     }
     std::memcpy(out + z * s.n * sizeof(PackedVertex), row, s.n * sizeof(PackedVertex));

@@ -14,11 +14,11 @@ struct TerrainSurface {
   const float* first;
   std::size_t row_stride;
   std::size_t step;
-  std::size_t n;        // vertices per side
-  std::size_t stride;   // grid distance of neighbouring vertices
-  std::size_t ratio;    // cells of this level in a cell of the next coarser one; divides n − 1
-  float quantum;        // noise → quantised height
-  float slope_scale;    // difference of the samples on two sides → slope
+  std::size_t n;       // vertices per side
+  std::size_t stride;  // grid distance of neighbouring vertices
+  std::size_t ratio;   // cells of this level in a cell of the next coarser one; divides n − 1
+  float quantum;       // noise → quantised height
+  float slope_scale;   // difference of the samples on two sides → slope
 };
 
 struct HeightRange {
