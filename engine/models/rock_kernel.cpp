@@ -81,6 +81,11 @@ HWY_INLINE void write_vertex(const std::uint32_t* words, std::uint32_t normal, s
 }
 #endif
 
+// The place of an item in an array of four words for each.
+HWY_INLINE std::size_t at(std::uint16_t item) {
+  return std::size_t{item} * 4;
+}
+
 struct Vectors {
   Float x, y, z;
 };
@@ -120,17 +125,20 @@ HWY_INLINE hn::Vec<UintTag> pair(hn::Vec<UintTag> low, hn::Vec<UintTag> high) {
 
 // Octahedral normal around +Y, snorm16 twice (packing.hpp).
 HWY_INLINE hn::Vec<UintTag> octahedral(const Vectors& n) {
-  const Float zero = hn::Zero(FloatTag()), one = set(1.0F);
+  const FloatTag d;
+  const Float zero = hn::Zero(d), one = set(1.0F), positive_zero = set(0.0F);
   const Float size_x = hn::Abs(n.x), size_z = hn::Abs(n.z);
   const Float scale = hn::Div(one, hn::Add(hn::Add(size_x, hn::Abs(n.y)), size_z));
-  const Float x = hn::Mul(n.x, scale), z = hn::Mul(n.z, scale);
-  const Float sign_x = hn::IfThenElse(hn::Ge(x, zero), one, set(-1.0F));
-  const Float sign_z = hn::IfThenElse(hn::Ge(z, zero), one, set(-1.0F));
-  const Float folded_x = hn::Mul(hn::Sub(one, hn::Abs(z)), sign_x);
-  const Float folded_z = hn::Mul(hn::Sub(one, hn::Abs(x)), sign_z);
+  const Float x = hn::Mul(hn::Add(n.x, positive_zero), scale);  // −0 becomes 0
+  const Float z = hn::Mul(hn::Add(n.z, positive_zero), scale);
+  const Float folded_x = hn::CopySignToAbs(hn::Sub(one, hn::Abs(z)), x);
+  const Float folded_z = hn::CopySignToAbs(hn::Sub(one, hn::Abs(x)), z);
   const auto above = hn::Ge(n.y, zero);
-  return pair(snorm16(hn::IfThenElse(above, x, folded_x)),
-              snorm16(hn::IfThenElse(above, z, folded_z)));
+  // Within [−1, 1] but for a rounding that cannot reach the next integer.
+  const Float to_snorm = set(32767.0F);
+  const auto low = rounded(hn::Mul(hn::IfThenElse(above, x, folded_x), to_snorm));
+  const auto high = rounded(hn::Mul(hn::IfThenElse(above, z, folded_z), to_snorm));
+  return pair(hn::And(low, hn::Set(UintTag(), 0xFFFFU)), high);
 }
 
 class RockMesher {
@@ -178,7 +186,7 @@ class RockMesher {
     for (std::size_t i = 0; i < hn::Lanes(d); ++i)
       hash[i] = core::mix64(s_.key + 0x9E3779B97F4A7C15ull * (first + i + 3));
     for (std::size_t i = 0; i < count; ++i)
-      store4(scaled(add(load4(place_ + 4 * edges[i].a), load4(place_ + 4 * edges[i].b)), 0.5F),
+      store4(scaled(add(load4(place_ + at(edges[i].a)), load4(place_ + at(edges[i].b))), 0.5F),
              middle + 4 * i);
     std::fill(middle + 4 * count, middle + 4 * hn::Lanes(d), 1.0F);
     hn::Vec<UintTag> low, unused;
@@ -193,9 +201,9 @@ class RockMesher {
                           place_ + 4 * first);
   }
   HWY_INLINE static Float from_16_bits(hn::Vec<UintTag> bits) {
-    return hn::Sub(hn::Mul(hn::ConvertTo(FloatTag(), hn::BitCast(IntTag(), bits)),
-                           set(1.0F / 32768.0F)),
-                   set(1.0F));
+    return hn::Sub(
+        hn::Mul(hn::ConvertTo(FloatTag(), hn::BitCast(IntTag(), bits)), set(1.0F / 32768.0F)),
+        set(1.0F));
   }
 
   // Layers, stretch and lift; places become metres, their fourth number the band of layers.
@@ -229,17 +237,15 @@ class RockMesher {
     return {{lowest(least.x), lowest(least.y), lowest(least.z)},
             {-lowest(hn::Neg(most.x)), -lowest(hn::Neg(most.y)), -lowest(hn::Neg(most.z))}};
   }
-  HWY_INLINE static float lowest(Float v) {
-    return hn::GetLane(hn::MinOfLanes(FloatTag(), v));
-  }
+  HWY_INLINE static float lowest(Float v) { return hn::GetLane(hn::MinOfLanes(FloatTag(), v)); }
 
   // Of every triangle: its normal times twice its area, and what makes that `facet` long.
   void find_areas() {
     const FloatTag d;
     const std::uint16_t* const corner = topology_.indices(subdivisions_).data();
     for (std::size_t t = 0; t < triangle_count_; ++t)
-      store4(area(load4(place_ + 4 * corner[3 * t]), load4(place_ + 4 * corner[3 * t + 1]),
-                  load4(place_ + 4 * corner[3 * t + 2])),
+      store4(area(load4(place_ + at(corner[3 * t])), load4(place_ + at(corner[3 * t + 1])),
+                  load4(place_ + at(corner[3 * t + 2]))),
              area_ + 4 * t);
     std::fill_n(area_ + 4 * triangle_count_, 4, 0.0F);  // the triangle that vertices lack
     for (std::size_t t = 0; t < triangle_count_; t += hn::Lanes(d)) {
@@ -259,9 +265,9 @@ class RockMesher {
       const std::size_t count = std::min(hn::Lanes(d), vertex_count_ - v);
       for (std::size_t i = 0; i < count; ++i) {
         const RockTopology::Fan& fan = fans[v + i];
-        store4(add(add(add(load4(area_ + 4 * fan[0]), load4(area_ + 4 * fan[1])),
-                       add(load4(area_ + 4 * fan[2]), load4(area_ + 4 * fan[3]))),
-                   add(load4(area_ + 4 * fan[4]), load4(area_ + 4 * fan[5]))),
+        store4(add(add(add(load4(area_ + at(fan[0])), load4(area_ + at(fan[1]))),
+                       add(load4(area_ + at(fan[2])), load4(area_ + at(fan[3])))),
+                   add(load4(area_ + at(fan[4])), load4(area_ + at(fan[5])))),
                sums + 4 * i);
       }
       std::fill(sums + 4 * count, sums + 4 * hn::Lanes(d), 1.0F);
@@ -282,15 +288,15 @@ class RockMesher {
   }
 
   // Ambient light, and colour with the material above it.
-  HWY_INLINE void paint(Float height, Float up, Float grain, Float band,
-                        hn::Vec<UintTag>& ambient, hn::Vec<UintTag>& colour) const {
+  HWY_INLINE void paint(Float height, Float up, Float grain, Float band, hn::Vec<UintTag>& ambient,
+                        hn::Vec<UintTag>& colour) const {
     const Float one = set(1.0F);
     const Float relative = hn::Mul(height, set(1.0F / s_.stretch.y));
     const Float rise = clamp(hn::Mul(hn::Add(relative, set(0.2F)), set(0.8F)), 0.0F, 1.0F);
     ambient = unorm8(hn::Mul(hn::Add(set(0.3F), hn::Mul(set(0.7F), rise)),
                              hn::Add(set(0.8F), hn::Mul(set(0.2F), up))));
-    const Float green = hn::Add(hn::Mul(hn::Sub(up, set(0.35F)), set(2.5F)),
-                                hn::Mul(grain, set(0.8F)));
+    const Float green =
+        hn::Add(hn::Mul(hn::Sub(up, set(0.35F)), set(2.5F)), hn::Mul(grain, set(0.8F)));
     const Float cover = hn::Mul(set(s_.moss), clamp(green, 0.0F, 1.0F));
     const Float tone = hn::Mul(hn::Mul(hn::Add(one, hn::Mul(set(0.22F), grain)),
                                        hn::Add(set(0.75F), hn::Mul(set(0.25F), rise))),
@@ -312,20 +318,26 @@ class RockMesher {
     const std::uint16_t* corner = topology_.indices(subdivisions_).data();
     HWY_ALIGN float mixed[4 * 3 * kChunk];
     HWY_ALIGN std::uint32_t packed[3 * kChunk];
-    std::fill_n(mixed, 4 * 3 * kChunk, 1.0F);
     for (std::size_t first = 0; first < triangle_count_; first += kChunk) {
       const std::size_t count = std::min(kChunk, triangle_count_ - first);
+      if (count < kChunk) std::fill_n(mixed, 4 * 3 * kChunk, 1.0F);
       for (std::size_t t = 0; t < count; ++t) {
         const Four face = scaled(load4(area_ + 4 * (first + t)), area_scale_[first + t]);
-        for (std::size_t k = 3 * t; k < 3 * t + 3; ++k)
-          store4(add(load4(normal_ + 4 * corner[k]), face), mixed + 4 * k);
+        const std::uint16_t* const c = corner + 3 * t;
+        float* const to = mixed + 12 * t;
+        store4(add(load4(normal_ + at(c[0])), face), to);
+        store4(add(load4(normal_ + at(c[1])), face), to + 4);
+        store4(add(load4(normal_ + at(c[2])), face), to + 8);
       }
       for (std::size_t i = 0; i < 3 * count; i += hn::Lanes(d)) {
         Float unused;
         hn::Store(octahedral(load(mixed + 4 * i, unused)), UintTag(), packed + i);
       }
-      for (std::size_t k = 0; k < 3 * count; ++k)
-        write_vertex(words_ + 4 * corner[k], packed[k], out + 16 * k);
+      for (std::size_t k = 0; k < 3 * count; k += 3) {
+        write_vertex(words_ + at(corner[k]), packed[k], out + 16 * k);
+        write_vertex(words_ + at(corner[k + 1]), packed[k + 1], out + 16 * k + 16);
+        write_vertex(words_ + at(corner[k + 2]), packed[k + 2], out + 16 * k + 32);
+      }
       corner += 3 * kChunk;
       out += 16 * 3 * kChunk;
     }

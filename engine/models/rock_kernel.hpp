@@ -32,11 +32,11 @@ struct RockShape {
   float lift;         // metres
   glm::vec3 colour;   // albedo
   float moss;
-  float facet;              // share of the triangle's own normal in its vertices' normals
-  float ledge, tint;        // of layers: how far they stand out, how much their albedo differs
-  glm::vec3 layer_axis;     // across the layers, times their number per unit
-  float layer_phase;        // 0 … 1
-  glm::vec3 corners[4];     // of the tetrahedron, unit distance from the centre
+  float facet;           // share of the triangle's own normal in its vertices' normals
+  float ledge, tint;     // of layers: how far they stand out, how much their albedo differs
+  glm::vec3 layer_axis;  // across the layers, times their number per unit
+  float layer_phase;     // 0 … 1
+  glm::vec3 corners[4];  // of the tetrahedron, unit distance from the centre
   float corner_radius[4];
   glm::vec3 box_centre, box_scale;  // to snorm16
 };
