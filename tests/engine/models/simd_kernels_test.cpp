@@ -97,8 +97,7 @@ TEST_F(SimdKernels, OfTerrainNoiseHaveTheSameBitsOnEveryTarget) {
     }
     // Only the samples were written.
     for (std::size_t i = 0; i < results[0].size(); ++i)
-      ASSERT_EQ(results[0][i] == -7.0F,
-                i % stride >= columns.size() || i >= stride * rows.size());
+      ASSERT_EQ(results[0][i] == -7.0F, i % stride >= columns.size() || i >= stride * rows.size());
   }
 }
 
