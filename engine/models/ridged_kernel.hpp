@@ -12,6 +12,8 @@ namespace psygen::models {
 inline constexpr int kMaxOctaves = 16;
 // Longest axis of one call; a multiple of the lanes of every instruction set.
 inline constexpr std::size_t kMaxNoiseAxis = 144;
+// Octaves that a warp moves: those whose ridges the eye follows.
+inline constexpr int kWarpedOctaves = 3;
 
 struct RidgedOctave {
   std::uint64_t step;                // Q32.32 lattice cells per integer
@@ -25,9 +27,12 @@ struct RidgedOctave {
 struct RidgedKernel {
   std::array<RidgedOctave, kMaxOctaves> octaves;
   int octave_count;
-  float offset;           // κ · offset
-  float gradient_length;  // κ · √2
-  float result_scale;     // κ^−2
+  float offset;                            // κ · offset
+  float gradient_length;                   // κ · √2
+  float result_scale;                      // κ^−2
+  float warp;                              // largest displacement, in cells of octave 0; 0: none
+  std::array<RidgedOctave, 2> warp_field;  // its parts along x and z; limits are not used
+  std::array<float, kWarpedOctaves> cells_ratio;  // cells of an octave in one of octave 0
 };
 
 // values[r · stride + c] for all columns and rows, on the best instruction set of this CPU. At most

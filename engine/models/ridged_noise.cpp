@@ -19,6 +19,18 @@ std::uint64_t fixed_point(double frequency) {
   return static_cast<std::uint64_t>(rest * kTwo32 + 0.5);
 }
 
+constexpr std::uint64_t kWarpKey = std::uint64_t{1} << 32;
+
+RidgedOctave octave_of(std::uint64_t key, double frequency) {
+  const std::uint64_t noise_key = core::mix64(key + 2);
+  return {.step = fixed_point(frequency),
+          .origin_x = core::mix64(key),
+          .origin_z = core::mix64(key + 1),
+          .key_x = static_cast<std::uint32_t>(noise_key >> 32),
+          .key_z = static_cast<std::uint32_t>(noise_key),
+          .limit = 0};
+}
+
 }  // namespace
 
 RidgedNoise::RidgedNoise(const RidgedSettings& s) {
@@ -33,18 +45,20 @@ RidgedNoise::RidgedNoise(const RidgedSettings& s) {
   kernel_.offset = static_cast<float>(scale * s.offset);
   kernel_.gradient_length = static_cast<float>(scale * 1.4142135623730951);
   kernel_.result_scale = static_cast<float>(one_octave ? 1 : 1 / square);
+  kernel_.warp = static_cast<float>(s.warp);
+  for (std::size_t i = 0; i < 2; ++i)
+    kernel_.warp_field[i] = octave_of(core::combine(s.seed, kWarpKey + i), 0.5 * s.cells_per_step);
+  double cells = 1;
+  for (float& octave_cells : kernel_.cells_ratio) {
+    octave_cells = static_cast<float>(cells);
+    cells *= s.lacunarity;
+  }
   double frequency = s.cells_per_step;
   double amplitude = 1;
   for (int o = 0; o < s.octaves; ++o) {
-    const std::uint64_t key = core::combine(s.seed, static_cast<std::uint64_t>(o));
-    const std::uint64_t noise_key = core::mix64(key + 2);
-    kernel_.octaves[static_cast<std::size_t>(o)] = {
-        .step = fixed_point(frequency),
-        .origin_x = core::mix64(key),
-        .origin_z = core::mix64(key + 1),
-        .key_x = static_cast<std::uint32_t>(noise_key >> 32),
-        .key_z = static_cast<std::uint32_t>(noise_key),
-        .limit = static_cast<float>(amplitude)};
+    RidgedOctave& octave = kernel_.octaves[static_cast<std::size_t>(o)];
+    octave = octave_of(core::combine(s.seed, static_cast<std::uint64_t>(o)), frequency);
+    octave.limit = static_cast<float>(amplitude);
     max_value_ += highest * amplitude;
     frequency *= s.lacunarity;
     amplitude *= ratio;

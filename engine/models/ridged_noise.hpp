@@ -21,6 +21,7 @@ struct RidgedSettings {
   double offset = 1;          // of the ridge, see the formula in docs/models.md
   double gain = 2;            // how much of an octave reaches the weight of the next, >= 0
   double cells_per_step = 1;  // lattice cells of octave 0 between two integers, > 0
+  double warp = 0;            // displacement of the coarse octaves, in cells of octave 0, 0 … 1
 };
 
 class RidgedNoise {
@@ -31,8 +32,8 @@ class RidgedNoise {
   double max_value() const { return max_value_; }
 
   // values[r · stride + c] = R(columns[c], rows[r]). Ascending coordinates without large gaps are
-  // fastest. Takes about 170 KiB of stack; at most kMaxAxis columns and kMaxAxis rows; stride >=
-  // number of columns.
+  // fastest; a warp takes ten times as long. Takes about 170 KiB of stack; at most kMaxAxis
+  // columns and kMaxAxis rows; stride >= number of columns.
   static constexpr std::size_t kMaxAxis = kMaxNoiseAxis;
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                 std::span<float> values, std::size_t stride) const;

@@ -37,6 +37,8 @@ constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
     {"gain", kReal, "1", 2, 0, 100, 1, 4, "how much an octave weighs on the next"},
     {"feature_m", kReal, "m", 600, 1, 1e5, 50, 2000, "width of the largest features"},
     {"relief_m", kReal, "m", 120, 0.01, 1e5, 10, 500, "highest height that is possible"},
+    {"warp", kReal, "1", 0, 0, 1, 0, 0.5,
+     "bends the coarse ridges: largest displacement, in parts of feature_m; 0 is fastest"},
 };
 
 // Sample positions along one axis: every vertex of the level with its neighbours one cell away.
@@ -171,7 +173,8 @@ RidgedSettings settings_of(const Parameters& p) {
           .octaves = static_cast<int>(p.integer(kTerrainOctaves)),
           .offset = p.real(kTerrainOffset),
           .gain = p.real(kTerrainGain),
-          .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM)};
+          .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM),
+          .warp = p.real(kTerrainWarp)};
 }
 
 }  // namespace

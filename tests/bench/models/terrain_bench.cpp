@@ -20,9 +20,10 @@ void report_samples(benchmark::State& state, double samples) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void terrain_noise_65x65(benchmark::State& state) {
+void noise_65x65(benchmark::State& state, double warp) {
   const bench::PinnedTarget target(state);
-  const RidgedNoise noise({.seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600});
+  const RidgedNoise noise(
+      {.seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600, .warp = warp});
   std::array<std::int64_t, 65> columns, rows;
   std::vector<float> values(65 * 65);
   std::int64_t block = 0;
@@ -34,7 +35,15 @@ void terrain_noise_65x65(benchmark::State& state) {
   }
   report_samples(state, 65 * 65);
 }
+void terrain_noise_65x65(benchmark::State& state) {
+  noise_65x65(state, 0);
+}
 BENCHMARK(terrain_noise_65x65)->Apply(bench::each_target);
+
+void terrain_noise_warped_65x65(benchmark::State& state) {
+  noise_65x65(state, 0.3);
+}
+BENCHMARK(terrain_noise_warped_65x65)->Apply(bench::each_target);
 
 void terrain_noise_65x65_reference(benchmark::State& state) {
   const test::TerrainOracle oracle{

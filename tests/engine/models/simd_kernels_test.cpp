@@ -30,7 +30,8 @@ class SimdKernels : public ::testing::Test {
             .offset = random.next_real(0, 1.5),
             .gain = random.next_real(0, 4),
             .cells_per_step = random.next_real(1e-4, 0.1),
-            .octaves = static_cast<int>(random.next_integer(1, 16))};
+            .octaves = static_cast<int>(random.next_integer(1, 16)),
+            .warp = random.next_integer(0, 2) == 0 ? random.next_unit() : 0};
   }
   // Near or far, evenly spaced, or at random places in no order.
   std::vector<std::int64_t> random_axis(std::int64_t longest) {
@@ -61,7 +62,7 @@ class SimdKernels : public ::testing::Test {
 
 RidgedNoise noise_of(const test::TerrainOracle& o) {
   return RidgedNoise(
-      {o.seed, o.height, o.lacunarity, o.octaves, o.offset, o.gain, o.cells_per_step});
+      {o.seed, o.height, o.lacunarity, o.octaves, o.offset, o.gain, o.cells_per_step, o.warp});
 }
 
 TEST_F(SimdKernels, OfTerrainNoiseEqualTheOracleOnEveryTarget) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "engine/models/packing.hpp"
 #include "engine/models/terrain_grid.hpp"
@@ -86,8 +87,11 @@ TEST_F(Terrain, HeightsEqualTheOracleHereAndAtTheEndOfTheWorld) {
 }
 
 TEST_F(Terrain, NeighboursAgreeBitForBitAlongTheirSeams) {
-  for (const auto& [x, z] :
-       {std::pair{std::int64_t{0}, std::int64_t{0}}, {-3, 7}, {kFar - 1, -kFar}}) {
+  for (const auto& [x, z, warp] : {std::tuple{std::int64_t{0}, std::int64_t{0}, 0.0},
+                                   {-3, 7, 0.0},
+                                   {kFar - 1, -kFar, 0.0},
+                                   {kFar - 1, -kFar, 0.4}}) {
+    paper.set_real(kTerrainWarp, warp);
     const auto here = vertices(at(x, z), 0), east = vertices(at(x + 1, z), 0),
                south = vertices(at(x, z + 1), 0);
     for (std::size_t i = 0; i < 64; ++i) {
@@ -101,6 +105,7 @@ TEST_F(Terrain, LevelsAgreeBitForBitAtSharedVertices) {
   for (const int size : {64, 65, 62, 128, 5}) {
     Parameters p = at(-9, kFar);
     p.set_integer(kTerrainSize, size);
+    p.set_real(kTerrainWarp, size == 65 ? 0.3 : 0);
     const auto fine = vertices(p, 0);
     for (int level = 1; level < type->level_count(); ++level) {
       const TerrainGrid grid(size, level);
