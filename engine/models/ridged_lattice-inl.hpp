@@ -1,6 +1,6 @@
-// The lattices of ridged noise under the samples of a call: positions, gradients, and their blending
-// along one lattice row. Included once per instruction set, by ridged_kernel.cpp only; hence its
-// include guard.
+// The lattices of ridged noise under the samples of a call: positions, gradients, and their
+// blending along one lattice row. Included once per instruction set, by ridged_kernel.cpp only;
+// hence its include guard.
 #if defined(PSYGEN_MODELS_RIDGED_LATTICE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_RIDGED_LATTICE_INL
 #undef PSYGEN_MODELS_RIDGED_LATTICE_INL

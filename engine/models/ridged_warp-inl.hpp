@@ -1,6 +1,6 @@
-// Domain warp: the coarse octaves of ridged noise, sampled where a field of low frequency moves them.
-// Every sample finds gradients of its own, which takes about ten times as long as sharing them.
-// Included once per instruction set, by ridged_kernel.cpp only; hence its include guard.
+// Domain warp: the coarse octaves of ridged noise, sampled where a field of low frequency moves
+// them. Every sample finds gradients of its own, which takes about ten times as long as sharing
+// them. Included once per instruction set, by ridged_kernel.cpp only; hence its include guard.
 #if defined(PSYGEN_MODELS_RIDGED_WARP_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_RIDGED_WARP_INL
 #undef PSYGEN_MODELS_RIDGED_WARP_INL
