@@ -1,18 +1,17 @@
 // Ridged multifractal over a lattice of integers (Musgrave, in Ebert et al., "Texturing and
 // Modeling"; docs/models.md, "Terrain"): 2-D gradient noise of several octaves, each octave
 // weighted by the one before. Coordinates are exact fixed point, so values have the same bits at
-// any distance from the origin and however the samples are grouped into calls. Knows no metres and
-// no meshes.
+// any distance from the origin, however the samples are grouped into calls, and on every
+// instruction set. Knows no metres and no meshes.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-namespace psygen::models {
+#include "engine/models/ridged_kernel.hpp"
 
-inline constexpr int kMaxOctaves = 16;
+namespace psygen::models {
 
 struct RidgedSettings {
   std::uint64_t seed = 0;
@@ -22,6 +21,7 @@ struct RidgedSettings {
   double offset = 1;          // of the ridge, see the formula in docs/models.md
   double gain = 2;            // how much of an octave reaches the weight of the next, >= 0
   double cells_per_step = 1;  // lattice cells of octave 0 between two integers, > 0
+  double warp = 0;            // displacement of the coarse octaves, in cells of octave 0, 0 … 1
 };
 
 class RidgedNoise {
@@ -31,28 +31,15 @@ class RidgedNoise {
   // Values lie in [0, max_value()] but for rounding (1e-5 of it).
   double max_value() const { return max_value_; }
 
-  // values[r · stride + c] = R(columns[c], rows[r]). Sorted coordinates are fastest. Takes about
-  // 80 KiB of stack; at most kMaxAxis columns and kMaxAxis rows; stride >= number of columns.
-  static constexpr std::size_t kMaxAxis = 144;
+  // values[r · stride + c] = R(columns[c], rows[r]). Ascending coordinates without large gaps are
+  // fastest; a warp takes ten times as long. Takes about 170 KiB of stack; at most kMaxAxis
+  // columns and kMaxAxis rows; stride >= number of columns.
+  static constexpr std::size_t kMaxAxis = kMaxNoiseAxis;
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                 std::span<float> values, std::size_t stride) const;
 
  private:
-  struct Octave {
-    std::uint64_t step;                // Q32.32 lattice cells per integer
-    std::uint64_t origin_x, origin_z;  // Q32.32 lattice position of integer 0
-    std::uint32_t key_x, key_z;
-    float amplitude;
-  };
-  struct Column;
-  struct GradientRow;
-  void add_octave(const Octave& octave, std::span<const std::int64_t> columns,
-                  std::span<const std::int64_t> rows, std::span<float> values,
-                  std::span<float> weights, std::size_t stride) const;
-
-  std::array<Octave, kMaxOctaves> octaves_{};
-  int octave_count_;
-  float offset_, gain_;
+  RidgedKernel kernel_;
   double max_value_ = 0;
 };
 

@@ -20,11 +20,15 @@ enum RockParameter : std::size_t {
   kRockAlbedo,
   kRockWarmth,
   kRockMoss,
+  kRockFamily,
   kRockParameterCount
 };
 
+// Values of kRockFamily.
+enum RockFamily : int { kRockRounded = 0, kRockFaceted, kRockLayered, kRockFamilyCount };
+
 // Level l has max(subdivisions − l, 0) subdivisions: 4·4^n triangles exactly, and thrice as many
-// core::ModelVertex. Corners that two levels share have the same places. Needs 640 KiB of stack;
+// core::ModelVertex. Corners that two levels share have the same places. Needs 800 KiB of stack;
 // nothing on the heap.
 std::unique_ptr<ModelType> make_rock_type();
 

@@ -49,6 +49,18 @@ Surface split(const Surface& coarse, std::uint32_t first_midpoint) {
   return fine;
 }
 
+std::vector<RockTopology::Fan> fans_of(std::span<const std::uint16_t> corners,
+                                       std::size_t vertex_count) {
+  const std::size_t triangle_count = corners.size() / 3;
+  RockTopology::Fan none;
+  none.fill(static_cast<std::uint16_t>(triangle_count));
+  std::vector<RockTopology::Fan> fans(vertex_count, none);
+  std::vector<std::uint8_t> sizes(vertex_count);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    fans[corners[i]][sizes[corners[i]]++] = static_cast<std::uint16_t>(i / 3);
+  return fans;
+}
+
 }  // namespace
 
 RockTopology::RockTopology() {
@@ -64,6 +76,7 @@ RockTopology::RockTopology() {
     list.reserve(rock_triangles(n) * 3);
     for (const Triangle& t : surface.triangles)
       list.insert(list.end(), t.corner.begin(), t.corner.end());
+    fans_[static_cast<std::size_t>(n)] = fans_of(list, rock_vertices(n));
     if (n == kMaxSubdivisions) return;
     parents_.insert(parents_.end(), surface.edges.begin(), surface.edges.end());
     surface = split(surface, rock_vertices(n));

@@ -24,6 +24,9 @@ class RockTopology {
   struct Edge {
     std::uint16_t a, b;
   };
+  // The triangles around a vertex, ascending; where there are fewer than six, the others are
+  // rock_triangles(n), one more than the last.
+  using Fan = std::array<std::uint16_t, 6>;
 
   RockTopology();
 
@@ -34,10 +37,15 @@ class RockTopology {
   std::span<const std::uint16_t> indices(int subdivisions) const {
     return indices_[static_cast<std::size_t>(subdivisions)];
   }
+  // One for each vertex of n subdivisions.
+  std::span<const Fan> fans(int subdivisions) const {
+    return fans_[static_cast<std::size_t>(subdivisions)];
+  }
 
  private:
   std::vector<Edge> parents_;
   std::array<std::vector<std::uint16_t>, kMaxSubdivisions + 1> indices_;
+  std::array<std::vector<Fan>, kMaxSubdivisions + 1> fans_;
 };
 
 }  // namespace psygen::models

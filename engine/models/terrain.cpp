@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "engine/core/assert.hpp"
 #include "engine/models/exact_math.hpp"
 #include "engine/models/terrain_grid.hpp"
+#include "engine/models/terrain_kernel.hpp"
 #include "engine/models/terrain_shape.hpp"
 
 namespace psygen::models {
@@ -37,6 +37,8 @@ constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
     {"gain", kReal, "1", 2, 0, 100, 1, 4, "how much an octave weighs on the next"},
     {"feature_m", kReal, "m", 600, 1, 1e5, 50, 2000, "width of the largest features"},
     {"relief_m", kReal, "m", 120, 0.01, 1e5, 10, 500, "highest height that is possible"},
+    {"warp", kReal, "1", 0, 0, 1, 0, 0.5,
+     "bends the coarse ridges: largest displacement, in parts of feature_m; 0 is fastest"},
 };
 
 // Sample positions along one axis: every vertex of the level with its neighbours one cell away.
@@ -63,57 +65,6 @@ struct SampleAxis {
     }
   }
   std::size_t vertex(std::size_t k) const { return 1 + k * step; }
-};
-
-using HeightGrid = std::array<std::uint16_t, kMaxTerrainSize * kMaxTerrainSize>;
-
-// Heights of the next coarser level at the vertices of row z: on its triangles' planes, rounded to
-// nearest. `ratio` is the number of cells of this level in a cell of the next.
-void coarse_row(const HeightGrid& heights, int n, int ratio, int z, std::uint16_t* out) {
-  const int fz = z % ratio;
-  // (2·sum + ratio) / (2·ratio) in whole numbers: the added half keeps it away from the next one.
-  const double inverse = 0.5 / ratio;
-  const auto rounded = [=](int sum) {
-    return static_cast<std::uint16_t>(static_cast<std::int32_t>((2 * sum + ratio + 0.5) * inverse));
-  };
-  const std::uint16_t* const near = heights.data() + (z - fz) * n;
-  const std::uint16_t* const far = fz == 0 ? near : near + ratio * n;
-  for (int x = 0; x + 1 < n; x += ratio) {
-    const int h00 = near[x], h10 = near[x + ratio], h01 = far[x], h11 = far[x + ratio];
-    for (int fx = 0; fx < ratio; ++fx) {
-      const int sum = fx + fz <= ratio
-                          ? h00 * (ratio - fx - fz) + h10 * fx + h01 * fz
-                          : h11 * (fx + fz - ratio) + h10 * (ratio - fz) + h01 * (ratio - fx);
-      out[x + fx] = rounded(sum);
-    }
-  }
-  const int sum = near[n - 1] * (ratio - fz) + far[n - 1] * fz;
-  out[n - 1] = rounded(sum);
-}
-
-// One row of samples as separate arrays: the vertices and their neighbours one cell away.
-struct SampleRow {
-  std::array<float, kMaxTerrainSize> west, east, north, south;
-
-  SampleRow(const float* centre, std::size_t samples_per_row, std::size_t step, std::size_t n) {
-    const float *const up = centre - samples_per_row, *const down = centre + samples_per_row;
-    for (std::size_t x = 0; x < n; ++x) {
-      west[x] = centre[static_cast<std::ptrdiff_t>(x * step) - 1];
-      east[x] = centre[x * step + 1];
-      north[x] = up[x * step];
-      south[x] = down[x * step];
-    }
-  }
-  // Octahedral normals of the row; `scale` turns the difference of two samples into a slope.
-  void normals(float scale, std::size_t n, std::int8_t* out_x, std::int8_t* out_z) const {
-    for (std::size_t x = 0; x < n; ++x) {
-      const float nx = (west[x] - east[x]) * scale;
-      const float nz = (north[x] - south[x]) * scale;
-      const float to_snorm8 = 127.0F / (std::abs(nx) + 1.0F + std::abs(nz));
-      out_x[x] = static_cast<std::int8_t>(static_cast<std::int32_t>(nx * to_snorm8 + 128.5F) - 128);
-      out_z[x] = static_cast<std::int8_t>(static_cast<std::int32_t>(nz * to_snorm8 + 128.5F) - 128);
-    }
-  }
 };
 
 class TerrainType final : public ModelType {
@@ -193,48 +144,25 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
                "the destination has exactly the size of the mesh");
   const SampleAxis columns(grid, shape.block_origin(p.integer(kTerrainBlockX)), shape.node_level);
   const SampleAxis rows(grid, shape.block_origin(p.integer(kTerrainBlockZ)), shape.node_level);
-  constexpr std::size_t kMaxSamples = kMaxTerrainSize + 2;
-  std::array<float, kMaxSamples * kMaxSamples> noise;
-  const std::size_t stride = columns.count;
+  constexpr std::size_t kMaxStride = RidgedNoise::kMaxAxis;
+  alignas(64) std::array<float, kMaxStride*(kMaxTerrainSize + 2) + 16> noise;
+  const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at lines of the cache
   shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
                        noise, stride);
-
-  const auto n = static_cast<std::size_t>(grid.n);
-  HeightGrid heights;
-  for (std::size_t z = 0; z < n; ++z) {
-    const float* const row = &noise[rows.vertex(z) * stride + columns.vertex(0)];
-    for (std::size_t x = 0; x < n; ++x)
-      heights[z * n + x] = shape.quantise(row[x * columns.step]);
-  }
   const int coarser = TerrainGrid(grid.size, std::min(level + 1, kTerrainLevels - 1)).stride;
-  const float slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m);
-  std::array<core::TerrainVertex, kMaxTerrainSize * kMaxTerrainSize> vertices;
-  std::array<std::uint16_t, kMaxTerrainSize> coarse;
-  std::array<std::int8_t, kMaxTerrainSize> normal_x, normal_z;
-  for (std::size_t z = 0; z < n; ++z) {
-    coarse_row(heights, grid.n, coarser / grid.stride, static_cast<int>(z), coarse.data());
-    SampleRow(&noise[rows.vertex(z) * stride + columns.vertex(0)], stride, columns.step, n)
-        .normals(slope_scale, n, normal_x.data(), normal_z.data());
-    for (std::size_t x = 0; x < n; ++x)
-      vertices[z * n + x] = {static_cast<std::uint8_t>(x * static_cast<std::size_t>(grid.stride)),
-                             static_cast<std::uint8_t>(z * static_cast<std::size_t>(grid.stride)),
-                             heights[z * n + x],
-                             coarse[x],
-                             normal_x[x],
-                             normal_z[x]};
-  }
-  std::memcpy(out.vertices.data(), vertices.data(), n * n * sizeof(core::TerrainVertex));
-  std::byte* skirt = out.vertices.data() + n * n * sizeof(core::TerrainVertex);
-  for (std::uint32_t k = 0; k < grid.border_vertices(); ++k) {
-    core::TerrainVertex twin = vertices[grid.border_vertex(k)];
-    twin.grid_x |= core::kTerrainSkirtBit;
-    std::memcpy(skirt, &twin, sizeof twin);
-    skirt += sizeof twin;
-  }
-  const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.begin() + n * n);
+  const HeightRange heights =
+      pack_terrain({.first = &noise[rows.vertex(0) * stride + columns.vertex(0)],
+                    .row_stride = stride,
+                    .step = columns.step,
+                    .n = static_cast<std::size_t>(grid.n),
+                    .stride = static_cast<std::size_t>(grid.stride),
+                    .ratio = static_cast<std::size_t>(coarser / grid.stride),
+                    .quantum = shape.quantum,
+                    .slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m)},
+                   out.vertices.data());
   core::Bounds box = bounds(p);
-  box.min.y = shape.relief_m * (static_cast<float>(*lowest) / 65535.0F);
-  box.max.y = shape.relief_m * (static_cast<float>(*highest) / 65535.0F);
+  box.min.y = shape.relief_m * (static_cast<float>(heights.lowest) / 65535.0F);
+  box.max.y = shape.relief_m * (static_cast<float>(heights.highest) / 65535.0F);
   return box;
 }
 
@@ -245,7 +173,8 @@ RidgedSettings settings_of(const Parameters& p) {
           .octaves = static_cast<int>(p.integer(kTerrainOctaves)),
           .offset = p.real(kTerrainOffset),
           .gain = p.real(kTerrainGain),
-          .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM)};
+          .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM),
+          .warp = p.real(kTerrainWarp)};
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ enum TerrainParameter : std::size_t {
   kTerrainGain,
   kTerrainFeatureM,
   kTerrainReliefM,
+  kTerrainWarp,
   kTerrainParameterCount
 };
 

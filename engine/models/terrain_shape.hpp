@@ -2,9 +2,11 @@
 // ground queries (terrain_ground.cpp).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "engine/models/model_type.hpp"
+#include "engine/models/packing.hpp"
 #include "engine/models/ridged_noise.hpp"
 
 namespace psygen::models {
@@ -26,9 +28,7 @@ struct TerrainShape {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(block * (size - 1)) << node_level);
   }
   std::uint16_t quantise(float noise_value) const {
-    const float scaled = noise_value * quantum + 0.5F;
-    return static_cast<std::uint16_t>(
-        static_cast<std::int32_t>(scaled < 65535.0F ? scaled : 65535.0F));
+    return static_cast<std::uint16_t>(round_to_int(std::min(noise_value * quantum, 65535.0F)));
   }
 };
 

@@ -1,5 +1,5 @@
-// Time of a terrain block per level, of its heights alone, and of ground queries; the plain
-// double-precision reference in the same run is the scale.
+// Time of a terrain block per level, of its heights alone, and of ground queries, on every
+// instruction set of this CPU; the plain double-precision reference in the same run is the scale.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -8,6 +8,7 @@
 
 #include "engine/models/ridged_noise.hpp"
 #include "engine/models/terrain.hpp"
+#include "tests/bench/models/per_target.hpp"
 #include "tests/engine/models/oracle_terrain.hpp"
 
 namespace psygen::models {
@@ -19,8 +20,10 @@ void report_samples(benchmark::State& state, double samples) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void terrain_noise_65x65(benchmark::State& state) {
-  const RidgedNoise noise({.seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600});
+void noise_65x65(benchmark::State& state, double warp) {
+  const bench::PinnedTarget target(state);
+  const RidgedNoise noise(
+      {.seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600, .warp = warp});
   std::array<std::int64_t, 65> columns, rows;
   std::vector<float> values(65 * 65);
   std::int64_t block = 0;
@@ -32,7 +35,15 @@ void terrain_noise_65x65(benchmark::State& state) {
   }
   report_samples(state, 65 * 65);
 }
-BENCHMARK(terrain_noise_65x65);
+void terrain_noise_65x65(benchmark::State& state) {
+  noise_65x65(state, 0);
+}
+BENCHMARK(terrain_noise_65x65)->Apply(bench::each_target);
+
+void terrain_noise_warped_65x65(benchmark::State& state) {
+  noise_65x65(state, 0.3);
+}
+BENCHMARK(terrain_noise_warped_65x65)->Apply(bench::each_target);
 
 void terrain_noise_65x65_reference(benchmark::State& state) {
   const test::TerrainOracle oracle{
@@ -52,8 +63,9 @@ void terrain_noise_65x65_reference(benchmark::State& state) {
 BENCHMARK(terrain_noise_65x65_reference);
 
 void terrain_block(benchmark::State& state) {
+  const bench::PinnedTarget target(state);
   const auto type = make_terrain_type();
-  const int level = static_cast<int>(state.range(0));
+  const int level = static_cast<int>(state.range(1));
   Parameters p = default_parameters(*type);
   const MeshSize size = type->mesh_size(p, level);
   std::vector<std::byte> vertices(size.vertex_count * sizeof(core::TerrainVertex));
@@ -63,7 +75,7 @@ void terrain_block(benchmark::State& state) {
     benchmark::DoNotOptimize(type->synthesize(p, level, {vertices, {}}));
   }
 }
-BENCHMARK(terrain_block)->DenseRange(0, 3)->ArgName("level");
+BENCHMARK(terrain_block)->Apply([](auto* b) { bench::each_target_with(b, "level", 0, 3, 1); });
 
 void terrain_ground_63_points(benchmark::State& state) {
   const Parameters p = default_parameters(*make_terrain_type());

@@ -3,9 +3,13 @@
 
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "engine/models/packing.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/models/rock.hpp"
+#include "engine/models/terrain.hpp"
+#include "engine/models/terrain_grid.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 
 namespace psygen::models {
@@ -55,6 +59,41 @@ TEST(EveryModel, StaysWithinItsBoundsAndItsPromisedSize) {
           << type.name() << " level " << level;
     }
   });
+}
+
+// Vertices and triangles of a rock and of a terrain, counted once more.
+std::pair<std::uint32_t, std::uint32_t> count_again(const ModelType& type, const Parameters& p,
+                                                    int level) {
+  if (type.name() == "rock") {
+    std::uint32_t triangles = 4;
+    for (std::int64_t n = p.integer(kRockSubdivisions) - level; n > 0; --n)
+      triangles *= 4;
+    return {3 * triangles, triangles};
+  }
+  const auto cells = static_cast<std::uint32_t>(p.integer(kTerrainSize) - 1);
+  const auto stride = static_cast<std::uint32_t>(
+      terrain_strides(static_cast<int>(p.integer(kTerrainSize)))[static_cast<std::size_t>(level)]);
+  EXPECT_EQ(cells % stride, 0u);
+  const std::uint32_t side = cells / stride;
+  return {(side + 1) * (side + 1) + 4 * side, 2 * side * side + 8 * side};
+}
+
+TEST(EveryModel, OfTerrainAndRocksHasExactSizesForAMillionParameterSets) {
+  const Registry registry = make_standard_registry();
+  for (const ModelIndex m : {ModelIndex{0}, ModelIndex{1}}) {
+    const ModelType& type = registry[m];
+    core::RandomStream random(m, 2, 0, 0, core::Purpose::kParameters);
+    for (int trial = 0; trial < 500'000; ++trial) {
+      const Parameters p = random_parameters(type, random);
+      const int level = static_cast<int>(random.next_integer(0, type.level_count() - 1));
+      const MeshSize size = type.mesh_size(p, level);
+      const auto [vertices, triangles] = count_again(type, p, level);
+      ASSERT_EQ(size.vertex_count, vertices);
+      ASSERT_EQ(size.triangle_count(), triangles);
+      ASSERT_EQ(size.index_count, 3 * triangles);
+      if (trial % 100 == 0) synthesize(type, p, level);  // between canaries, of exactly this size
+    }
+  }
 }
 
 TEST(EveryModel, CostsAndErrorsAreOrderedByLevel) {

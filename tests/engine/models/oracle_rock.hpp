@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/core/hash.hpp"
+#include "engine/models/rock.hpp"
 
 namespace psygen::models::test {
 
@@ -19,6 +20,7 @@ struct RockOracle {
   std::uint64_t seed = 0;
   int subdivisions = 2;
   double radius = 1, amplitude = 0.2, decay = 0.5;
+  int family = 1;  // 0 rounded, 1 faceted, 2 layered
 
   std::vector<glm::dvec3> places = {};  // of the vertices, metres over the foot
   std::vector<std::array<int, 3>> triangles = {};
@@ -30,6 +32,7 @@ struct RockOracle {
   }
 
   void build() {
+    amplitude *= family == 0 ? 0.5 : family == 2 ? 0.7 : 1;
     const double w = std::abs(random(0, 3)) + 0.1;
     const glm::dvec3 axis{random(0, 0), random(0, 1), random(0, 2)};
     const double length = std::sqrt(glm::dot(axis, axis) + w * w);
@@ -81,12 +84,33 @@ struct RockOracle {
     triangles = parts;
   }
 
+  // How far a layer stands out in a direction, in [−1, 1].
+  double band(const glm::dvec3& direction) const {
+    const std::uint64_t item = std::uint64_t{1} << 32;
+    const glm::dvec3 across{0.35 * random(item, 1), 1, 0.35 * random(item, 2)};
+    const double t = glm::dot(direction, across) * (2.2 + 0.6 * random(item, 3)) + random(item, 0);
+    return std::abs(2 * (t - std::floor(t)) - 1) * 2 - 1;
+  }
+
   void stretch() {
-    const glm::dvec3 scale{1 + 0.2 * random(1, 0), 0.75 + 0.15 * random(1, 1),
+    const glm::dvec3 scale{1 + 0.2 * random(1, 0),
+                           (0.75 + 0.15 * random(1, 1)) * (family == 2 ? 0.75 : 1),
                            1 + 0.2 * random(1, 2)};
     for (glm::dvec3& p : places)
-      p = p * scale * radius + glm::dvec3(0, 0.45 * scale.y * radius, 0);
+      p = p * (family == 2 ? 1 + 0.13 * band(glm::normalize(p)) : 1.0) * scale * radius +
+          glm::dvec3(0, 0.45 * scale.y * radius, 0);
   }
 };
+
+inline RockOracle rock_oracle(const Parameters& p) {
+  RockOracle oracle{.seed = static_cast<std::uint64_t>(p.integer(kRockSeed)),
+                    .subdivisions = static_cast<int>(p.integer(kRockSubdivisions)),
+                    .radius = p.real(kRockRadiusM),
+                    .amplitude = p.real(kRockAmplitude),
+                    .decay = p.real(kRockDecay),
+                    .family = static_cast<int>(p.integer(kRockFamily))};
+  oracle.build();
+  return oracle;
+}
 
 }  // namespace psygen::models::test

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -149,6 +150,71 @@ TEST(RidgedNoise, LooksTheSameAlongBothAxes) {
     }
   }
   EXPECT_NEAR(along_x / along_z, 1, 0.1);
+}
+
+TEST(RidgedNoise, LooksTheSameInEveryDirection) {
+  // Mean squared difference of points five steps apart, in six directions.
+  constexpr std::array<std::array<int, 2>, 6> kWays{
+      {{5, 0}, {4, 3}, {3, 4}, {0, 5}, {-3, 4}, {-4, 3}}};
+  std::array<double, kWays.size()> energy{};
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    const RidgedNoise noise({.seed = seed, .cells_per_step = 0.02});
+    const auto axis = range(0, 1, 128);
+    const std::vector<float> v = evaluate(noise, axis, axis);
+    for (std::size_t w = 0; w < kWays.size(); ++w) {
+      for (int z = 0; z < 123; ++z) {
+        for (int x = 5; x < 123; ++x) {
+          const auto here = static_cast<std::size_t>(z * 128 + x);
+          const auto there = static_cast<std::size_t>((z + kWays[w][1]) * 128 + x + kWays[w][0]);
+          energy[w] += std::pow(v[there] - v[here], 2);
+        }
+      }
+    }
+  }
+  double mean = 0;
+  for (const double e : energy)
+    mean += e / kWays.size();
+  for (const double e : energy)
+    EXPECT_NEAR(e / mean, 1, 0.12);
+}
+
+TEST(RidgedNoise, VariesAtTheLatticePointsOfTheFirstOctave) {
+  // Octave 0 is the same at all its lattice points; the others must not be, as they would on a
+  // lattice that all share.
+  const TerrainOracle oracle{.seed = 21, .cells_per_step = 1.0 / 256};
+  const RidgedNoise noise(settings_of(oracle));
+  const auto variance = [&](std::int64_t shift) {
+    double sum = 0, squares = 0;
+    constexpr int kSide = 40;
+    std::vector<std::int64_t> columns, rows;
+    for (std::int64_t i = 0; i < kSide; ++i) {
+      columns.push_back(i * 256 + shift -
+                        static_cast<std::int64_t>((oracle.lattice_x(0, 0) & 0xFFFFFFFFU) >> 24));
+      rows.push_back(i * 256 + shift -
+                     static_cast<std::int64_t>((oracle.lattice_z(0, 0) & 0xFFFFFFFFU) >> 24));
+    }
+    for (const float v : evaluate(noise, columns, rows)) {
+      sum += static_cast<double>(v);
+      squares += static_cast<double>(v) * static_cast<double>(v);
+    }
+    const double count = kSide * kSide;
+    return squares / count - std::pow(sum / count, 2);
+  };
+  double elsewhere = 0;
+  for (const std::int64_t shift : {64, 128, 192})
+    elsewhere += variance(shift) / 3;
+  EXPECT_GT(variance(0), 0.05 * elsewhere);
+  EXPECT_LT(variance(0), 2 * elsewhere);
+}
+
+TEST(RidgedNoise, WithoutGainIsItsFirstOctave) {
+  for (const double gain : {0.0, 1e-300, 1e-12, 1e-7, 0.01}) {
+    const TerrainOracle oracle{.seed = 4, .gain = gain, .cells_per_step = 0.03};
+    const auto axis = range(-5, 3, 9);
+    const std::vector<float> values = evaluate(RidgedNoise(settings_of(oracle)), axis, axis);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      ASSERT_NEAR(values[i], oracle.value(axis[i % 9], axis[i / 9]), 1e-5 * oracle.max_value());
+  }
 }
 
 TEST(RidgedNoise, NeighbouringSeedsAndOctavesAreUnrelated) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "engine/models/packing.hpp"
 #include "engine/models/terrain_grid.hpp"
@@ -86,8 +87,11 @@ TEST_F(Terrain, HeightsEqualTheOracleHereAndAtTheEndOfTheWorld) {
 }
 
 TEST_F(Terrain, NeighboursAgreeBitForBitAlongTheirSeams) {
-  for (const auto& [x, z] :
-       {std::pair{std::int64_t{0}, std::int64_t{0}}, {-3, 7}, {kFar - 1, -kFar}}) {
+  for (const auto& [x, z, warp] : {std::tuple{std::int64_t{0}, std::int64_t{0}, 0.0},
+                                   {-3, 7, 0.0},
+                                   {kFar - 1, -kFar, 0.0},
+                                   {kFar - 1, -kFar, 0.4}}) {
+    paper.set_real(kTerrainWarp, warp);
     const auto here = vertices(at(x, z), 0), east = vertices(at(x + 1, z), 0),
                south = vertices(at(x, z + 1), 0);
     for (std::size_t i = 0; i < 64; ++i) {
@@ -101,6 +105,7 @@ TEST_F(Terrain, LevelsAgreeBitForBitAtSharedVertices) {
   for (const int size : {64, 65, 62, 128, 5}) {
     Parameters p = at(-9, kFar);
     p.set_integer(kTerrainSize, size);
+    p.set_real(kTerrainWarp, size == 65 ? 0.3 : 0);
     const auto fine = vertices(p, 0);
     for (int level = 1; level < type->level_count(); ++level) {
       const TerrainGrid grid(size, level);
@@ -127,28 +132,32 @@ TEST_F(Terrain, NodesOfHigherLevelsShareHeightsWithTheBlocksBelow) {
 }
 
 TEST_F(Terrain, CoarseHeightsLieOnTheNextLevelsTriangles) {
-  for (int level = 0; level < 3; ++level) {
-    const TerrainGrid grid(64, level), next(64, level + 1);
-    const auto mesh = vertices(at(4, 4), level), coarse = vertices(at(4, 4), level + 1);
-    const int ratio = next.stride / grid.stride;
-    for (int z = 0; z < grid.n; ++z) {
-      for (int x = 0; x < grid.n; ++x) {
-        const int cx = std::min(x / ratio, next.n - 2), cz = std::min(z / ratio, next.n - 2);
-        const double u = static_cast<double>(x - cx * ratio) / ratio;
-        const double v = static_cast<double>(z - cz * ratio) / ratio;
-        const auto h = [&](int dx, int dz) {
-          return static_cast<double>(
-              coarse[static_cast<std::size_t>((cz + dz) * next.n + cx + dx)].height);
-        };
-        const double plane = u + v <= 1
-                                 ? h(0, 0) * (1 - u - v) + h(1, 0) * u + h(0, 1) * v
-                                 : h(1, 1) * (u + v - 1) + h(1, 0) * (1 - v) + h(0, 1) * (1 - u);
-        ASSERT_NEAR(mesh[static_cast<std::size_t>(z * grid.n + x)].coarse_height, plane, 0.5001);
+  Parameters p = at(4, 4);
+  for (const int size : {64, 65, 62, 128, 5}) {
+    p.set_integer(kTerrainSize, size);
+    for (int level = 0; level < 3; ++level) {
+      const TerrainGrid grid(size, level), next(size, level + 1);
+      const auto mesh = vertices(p, level), coarse = vertices(p, level + 1);
+      const int ratio = next.stride / grid.stride;
+      for (int z = 0; z < grid.n; ++z) {
+        for (int x = 0; x < grid.n; ++x) {
+          const int cx = std::min(x / ratio, next.n - 2), cz = std::min(z / ratio, next.n - 2);
+          const double u = static_cast<double>(x - cx * ratio) / ratio;
+          const double v = static_cast<double>(z - cz * ratio) / ratio;
+          const auto h = [&](int dx, int dz) {
+            return static_cast<double>(
+                coarse[static_cast<std::size_t>((cz + dz) * next.n + cx + dx)].height);
+          };
+          const double plane = u + v <= 1
+                                   ? h(0, 0) * (1 - u - v) + h(1, 0) * u + h(0, 1) * v
+                                   : h(1, 1) * (u + v - 1) + h(1, 0) * (1 - v) + h(0, 1) * (1 - u);
+          ASSERT_NEAR(mesh[static_cast<std::size_t>(z * grid.n + x)].coarse_height, plane, 0.5001);
+        }
       }
     }
+    for (const TerrainVertex& v : vertices(p, 3))
+      EXPECT_EQ(v.coarse_height, v.height);
   }
-  for (const TerrainVertex& v : vertices(at(4, 4), 3))
-    EXPECT_EQ(v.coarse_height, v.height);
 }
 
 TEST_F(Terrain, NormalsFollowTheSlopesAndPointUp) {

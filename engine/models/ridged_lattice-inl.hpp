@@ -1,0 +1,248 @@
+// The lattices of ridged noise under the samples of a call: positions, gradients, and their
+// blending along one lattice row. Included once per instruction set, by ridged_kernel.cpp only;
+// hence its include guard.
+#if defined(PSYGEN_MODELS_RIDGED_LATTICE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSYGEN_MODELS_RIDGED_LATTICE_INL
+#undef PSYGEN_MODELS_RIDGED_LATTICE_INL
+#else
+#define PSYGEN_MODELS_RIDGED_LATTICE_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "engine/models/ridged_kernel.hpp"
+#include "engine/models/simd_hash-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace psygen::models::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The most lanes that are used; octaves of a row are padded to this number.
+constexpr std::size_t kPad = 16;
+using FloatTag = hn::CappedTag<float, kPad>;
+using IntTag = hn::RebindToSigned<FloatTag>;
+using UintTag = hn::RebindToUnsigned<FloatTag>;
+using Float = hn::Vec<FloatTag>;
+
+// Arrays over columns are padded to whole vectors.
+std::size_t padded(std::size_t n) {
+  const std::size_t lanes = hn::Lanes(FloatTag());
+  return (n + lanes - 1) / lanes * lanes;
+}
+
+// The integers of an axis, and whether neighbours all have the same distance.
+struct Axis {
+  std::span<const std::int64_t> at;
+  bool even = true;
+  std::uint64_t distance = 1;
+
+  explicit Axis(std::span<const std::int64_t> integers) : at(integers) {
+    if (at.size() > 1) distance = difference(1);
+    std::uint64_t odd = 0;
+    for (std::size_t i = 1; i < at.size(); ++i)
+      odd |= difference(i) ^ distance;
+    even = odd == 0;
+  }
+  std::uint64_t difference(std::size_t i) const {
+    return static_cast<std::uint64_t>(at[i]) - static_cast<std::uint64_t>(at[i - 1]);
+  }
+
+  // Positions on a lattice of `step` from `origin`, padded.
+  void place(std::uint64_t step, std::uint64_t origin, std::uint64_t* HWY_RESTRICT position) const {
+    const std::size_t count = at.size();
+    if (!even) {
+      for (std::size_t i = 0; i < count; ++i)
+        position[i] = static_cast<std::uint64_t>(at[i]) * step + origin;
+      std::fill(position + count, position + padded(count), position[count - 1]);
+      return;
+    }
+    const hn::CappedTag<std::uint64_t, kPad / 2> d;  // no more lanes than floats
+    const std::size_t lanes = hn::Lanes(d);
+    HWY_ALIGN std::uint64_t first[kPad / 2];
+    for (std::size_t i = 0; i < lanes; ++i)
+      first[i] = static_cast<std::uint64_t>(at[0]) * step + origin + i * distance * step;
+    const auto advance = hn::Set(d, lanes * distance * step);
+    auto now = hn::Load(d, first);
+    for (std::size_t i = 0; i < padded(count); i += lanes) {
+      hn::Store(now, d, position + i);
+      now = hn::Add(now, advance);
+    }
+  }
+};
+
+// Where Q32.32 positions lie on a lattice: cell, fraction in [0, 1) of 24 bits, fade. All arrays
+// are aligned and padded.
+void locate(const std::uint64_t* HWY_RESTRICT position, std::size_t count,
+            std::uint32_t* HWY_RESTRICT cell, float* HWY_RESTRICT fraction,
+            float* HWY_RESTRICT fade) {
+  const FloatTag d;
+  const IntTag di;
+  const UintTag du;
+  const Float unit = hn::Set(d, 0x1.0p-24F), six = hn::Set(d, 6.0F), ten = hn::Set(d, 10.0F),
+              fifteen = hn::Set(d, 15.0F);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    hn::Vec<UintTag> low, high;
+    hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(position + i), low, high);
+    hn::Store(high, du, cell + i);
+    const Float f = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<8>(low))), unit);
+    hn::Store(f, d, fraction + i);
+    const Float cube = hn::Mul(hn::Mul(f, f), f);
+    const Float inner = hn::Add(hn::Mul(f, hn::Sub(hn::Mul(f, six), fifteen)), ten);
+    hn::Store(hn::Mul(cube, inner), d, fade + i);
+  }
+}
+
+// One octave on the columns of a call, each array `stride` elements.
+struct ColumnOctave {
+  std::size_t stride;
+  // Along x, of each column: how much the gradients' x to the left and right and z to the right
+  // count.
+  float *left_x, *right_x, *fade;
+  // Lattice columns: keys before mixing; those to the left of column i start at first[block of i],
+  // and slot[i] counts from there, less than the lanes of a vector. Those to the right are
+  // `to_right` further on. Narrow: all keys fit one vector, all blocks start at 0.
+  std::uint32_t* key;
+  std::size_t key_count, to_right;
+  std::uint32_t* first;
+  std::int32_t* slot;
+  bool narrow;
+  // Gradients blended along x, of the lower and the upper lattice row: pairs of vectors, a vector
+  // of x and one of z. Pairs lie in one line of the cache, in different banks.
+  float *lower, *upper;
+  float* rise;                // c and d in such pairs
+  std::uint32_t lattice_row;  // the lower of the two
+
+  void clear() const {
+    std::fill(lower, lower + 2 * stride, 0.0F);
+    std::fill(rise, rise + 2 * stride, 0.0F);
+  }
+
+  // From the cells of the columns; `contiguous` where each is that of the column before or the
+  // next.
+  void place_lattice(const std::uint32_t* HWY_RESTRICT cell, bool contiguous, std::uint32_t key_x) {
+    const UintTag du;
+    const IntTag di;
+    const std::size_t lanes = hn::Lanes(du);
+    key_count = contiguous ? cell[stride - 1] - cell[0] + 2 : 2 * stride;
+    to_right = contiguous ? 1 : stride;
+    narrow = contiguous && key_count <= lanes;
+    for (std::size_t i = 0; contiguous && i < key_count; i += lanes)
+      hn::Store(hn::Iota(du, cell[0] + key_x + static_cast<std::uint32_t>(i)), du, key + i);
+    for (std::size_t i = 0; i < stride; i += lanes) {
+      const auto cells = hn::Load(du, cell + i);
+      const std::uint32_t start = narrow ? cell[0] : cell[i];
+      first[i] = contiguous ? start - cell[0] : static_cast<std::uint32_t>(i);
+      const auto slots =
+          contiguous ? hn::BitCast(di, hn::Sub(cells, hn::Set(du, start))) : hn::Iota(di, 0);
+      hn::Store(slots, di, slot + i);
+      if (contiguous) continue;
+      hn::Store(hn::Add(cells, hn::Set(du, key_x)), du, key + i);
+      hn::Store(hn::Add(cells, hn::Set(du, key_x + 1)), du, key + stride + i);
+    }
+  }
+};
+
+struct Gradient {
+  Float x, z;
+};
+// Direction a quarter turn times t from the x axis, t uniform in [−1, 1), turned round by a further
+// bit. Sine and cosine of quarter turns by polynomials, errors below 5e-8.
+HWY_INLINE Gradient gradient(hn::Vec<UintTag> key, hn::Vec<UintTag> row_hash, Float length) {
+  const FloatTag d;
+  const auto h = mix32(UintTag(), hn::Xor(key, row_hash));
+  const Float t = hn::Sub(hn::Mul(hn::ConvertTo(d, hn::BitCast(IntTag(), hn::ShiftRight<8>(h))),
+                                  hn::Set(d, 0x1.0p-23F)),
+                          hn::Set(d, 1.0F));
+  const Float y = hn::Mul(t, t);
+  Float sine = hn::Set(d, 0.000151671704F), cosine = hn::Set(d, 0.000858134467F);
+  for (const float c : {-0.00467414384F, 0.0796899183F, -0.64596376F, 1.57079632F})
+    sine = hn::Add(hn::Mul(sine, y), hn::Set(d, c));
+  for (const float c : {-0.0208105152F, 0.253650674F, -1.2336982F, 0.999999953F})
+    cosine = hn::Add(hn::Mul(cosine, y), hn::Set(d, c));
+  const Float turned = hn::Xor(length, hn::BitCast(d, hn::ShiftLeft<31>(h)));
+  return {hn::Mul(cosine, turned), hn::Mul(hn::Mul(sine, t), turned)};
+}
+
+// Gradients along one lattice row.
+struct GradientRow {
+  HWY_ALIGN float x[2 * kMaxNoiseAxis + 3 * kPad];
+  HWY_ALIGN float z[2 * kMaxNoiseAxis + 3 * kPad];
+
+  void fill(const ColumnOctave& column, std::uint32_t row_key, float gradient_length) {
+    const FloatTag d;
+    const UintTag du;
+    const auto row_hash = hn::Set(du, mix32(row_key));
+    const Float length = hn::Set(d, gradient_length);
+    for (std::size_t i = 0; i < column.key_count; i += hn::Lanes(d)) {
+      const Gradient g = gradient(hn::Load(du, column.key + i), row_hash, length);
+      hn::Store(g.x, d, x + i);
+      hn::Store(g.z, d, z + i);
+    }
+  }
+};
+
+// Gradients left and right of the columns of one block.
+struct Neighbours {
+  Float left_x, left_z, right_x, right_z;
+};
+HWY_INLINE Neighbours neighbours(const ColumnOctave& o, const GradientRow& gradients,
+                                 hn::Vec<IntTag> slots, std::size_t left) {
+  const FloatTag d;
+  const auto indices = hn::IndicesFromVec(d, slots);
+  const std::size_t right = left + o.to_right;
+  return {hn::TableLookupLanes(hn::LoadU(d, gradients.x + left), indices),
+          hn::TableLookupLanes(hn::LoadU(d, gradients.z + left), indices),
+          hn::TableLookupLanes(hn::LoadU(d, gradients.x + right), indices),
+          hn::TableLookupLanes(hn::LoadU(d, gradients.z + right), indices)};
+}
+HWY_INLINE Neighbours narrow_neighbours(Float x, Float z, hn::Vec<IntTag> slots) {
+  const FloatTag d;
+  const auto left = hn::IndicesFromVec(d, slots);
+  const auto right = hn::IndicesFromVec(d, hn::Add(slots, hn::Set(IntTag(), 1)));
+  return {hn::TableLookupLanes(x, left), hn::TableLookupLanes(z, left),
+          hn::TableLookupLanes(x, right), hn::TableLookupLanes(z, right)};
+}
+
+// Makes the gradients the octave's upper lattice row; what was the upper one becomes the lower.
+template <bool kNarrow>
+void raise(ColumnOctave& octave, const GradientRow& gradients) {
+  const ColumnOctave o = octave;
+  float *const HWY_RESTRICT below = o.upper, *const HWY_RESTRICT above = o.lower;
+  float* const HWY_RESTRICT rise = o.rise;
+  const FloatTag d;
+  const IntTag di;
+  const Float all_x = hn::Load(d, gradients.x), all_z = hn::Load(d, gradients.z);
+  for (std::size_t i = 0; i < o.stride; i += hn::Lanes(d)) {
+    const auto slots = hn::Load(di, o.slot + i);
+    const Neighbours g = kNarrow ? narrow_neighbours(all_x, all_z, slots)
+                                 : neighbours(o, gradients, slots, o.first[i]);
+    const Float x = hn::Add(hn::Mul(g.left_x, hn::Load(d, o.left_x + i)),
+                            hn::Mul(g.right_x, hn::Load(d, o.right_x + i)));
+    const Float z =
+        hn::Add(g.left_z, hn::Mul(hn::Load(d, o.fade + i), hn::Sub(g.right_z, g.left_z)));
+    const std::size_t pair = 2 * i, second = pair + hn::Lanes(d);
+    const Float below_x = hn::Load(d, below + pair), below_z = hn::Load(d, below + second);
+    hn::Store(hn::Sub(hn::Sub(x, z), below_x), d, rise + pair);
+    hn::Store(hn::Sub(z, below_z), d, rise + second);
+    hn::Store(x, d, above + pair);
+    hn::Store(z, d, above + second);
+  }
+  octave.lower = below;
+  octave.upper = above;
+}
+
+void raise_to(ColumnOctave& octave, GradientRow& gradients, std::uint32_t row_key, float length) {
+  gradients.fill(octave, row_key, length);
+  octave.narrow ? raise<true>(octave, gradients) : raise<false>(octave, gradients);
+}
+
+}  // namespace psygen::models::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,148 @@
+// All instruction sets of this CPU give the same bits, and those close to the double-precision
+// oracles.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "engine/models/packing.hpp"
+#include "engine/models/ridged_noise.hpp"
+#include "engine/models/rock.hpp"
+#include "engine/models/simd_targets.hpp"
+#include "engine/models/terrain.hpp"
+#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/models/oracle_rock.hpp"
+#include "tests/engine/models/oracle_terrain.hpp"
+
+namespace psygen::models {
+namespace {
+
+class SimdKernels : public ::testing::Test {
+ protected:
+  ~SimdKernels() override { unpin_simd_target(); }
+
+  core::RandomStream random{5, 0, 0, 0, core::Purpose::kParameters};
+
+  test::TerrainOracle random_terrain() {
+    return {.seed = random.next_u64(),
+            .height = random.next_real(0.3, 2),
+            .lacunarity = random.next_real(1.2, 3.5),
+            .offset = random.next_real(0, 1.5),
+            .gain = random.next_real(0, 4),
+            .cells_per_step = random.next_real(1e-4, 0.1),
+            .octaves = static_cast<int>(random.next_integer(1, 16)),
+            .warp = random.next_integer(0, 2) == 0 ? random.next_unit() : 0};
+  }
+  // Near or far, evenly spaced, or at random places in no order.
+  std::vector<std::int64_t> random_axis(std::int64_t longest) {
+    const std::int64_t count = random.next_integer(1, longest);
+    const std::int64_t first = random.next_integer(-(1LL << 40), 1LL << 40);
+    const std::int64_t step = random.next_integer(1, random.next_integer(0, 1) == 0 ? 1 : 300);
+    const bool uneven = random.next_integer(0, 3) == 0;
+    std::vector<std::int64_t> axis;
+    for (std::int64_t i = 0; i < count; ++i)
+      axis.push_back(first + (uneven ? random.next_integer(-900, 900) : i * step));
+    return axis;
+  }
+  // Bytes of all levels on every instruction set: the same as on the first.
+  void expect_same_bytes(const ModelType& type, const Parameters& p) {
+    for (int level = 0; level < type.level_count(); ++level) {
+      pin_simd_target(simd_targets().front());
+      const test::Mesh best = test::synthesize(type, p, level);
+      for (const std::string_view target : simd_targets()) {
+        pin_simd_target(target);
+        const test::Mesh mesh = test::synthesize(type, p, level);
+        ASSERT_EQ(mesh.vertex_bytes, best.vertex_bytes) << target << " level " << level;
+        ASSERT_EQ(mesh.box.min, best.box.min) << target << " level " << level;
+        ASSERT_EQ(mesh.box.max, best.box.max) << target << " level " << level;
+      }
+    }
+  }
+};
+
+RidgedNoise noise_of(const test::TerrainOracle& o) {
+  return RidgedNoise(
+      {o.seed, o.height, o.lacunarity, o.octaves, o.offset, o.gain, o.cells_per_step, o.warp});
+}
+
+TEST_F(SimdKernels, OfTerrainNoiseEqualTheOracleOnEveryTarget) {
+  for (const std::string_view target : simd_targets()) {
+    pin_simd_target(target);
+    for (int trial = 0; trial < 20; ++trial) {
+      const test::TerrainOracle oracle = random_terrain();
+      const auto columns = random_axis(40), rows = random_axis(6);
+      std::vector<float> values(columns.size() * rows.size());
+      noise_of(oracle).evaluate(columns, rows, values, columns.size());
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        for (std::size_t c = 0; c < columns.size(); ++c)
+          ASSERT_NEAR(values[r * columns.size() + c], oracle.value(columns[c], rows[r]),
+                      1e-5 * oracle.max_value())
+              << target;
+      }
+    }
+  }
+}
+
+TEST_F(SimdKernels, OfTerrainNoiseHaveTheSameBitsOnEveryTarget) {
+  constexpr std::size_t kGuard = 32;
+  for (int trial = 0; trial < 60; ++trial) {
+    const RidgedNoise noise = noise_of(random_terrain());
+    const auto columns = random_axis(RidgedNoise::kMaxAxis), rows = random_axis(12);
+    const std::size_t stride = columns.size() + static_cast<std::size_t>(trial % 3);
+    std::vector<std::vector<float>> results;
+    for (const std::string_view target : simd_targets()) {
+      pin_simd_target(target);
+      results.emplace_back(stride * rows.size() + kGuard, -7.0F);
+      noise.evaluate(columns, rows, std::span(results.back()).first(stride * rows.size()), stride);
+      ASSERT_EQ(results.back(), results.front()) << target;
+    }
+    // Only the samples were written.
+    for (std::size_t i = 0; i < results[0].size(); ++i)
+      ASSERT_EQ(results[0][i] == -7.0F, i % stride >= columns.size() || i >= stride * rows.size());
+  }
+}
+
+TEST_F(SimdKernels, OfTerrainMeshesHaveTheSameBytesOnEveryTarget) {
+  const auto type = make_terrain_type();
+  for (int trial = 0; trial < 24; ++trial) {
+    Parameters p = test::random_parameters(*type, random);
+    p.set_integer(kTerrainSize, trial == 0 ? 64 : random.next_integer(4, 128));
+    expect_same_bytes(*type, p);
+  }
+}
+
+TEST_F(SimdKernels, OfRocksHaveTheSameBytesOnEveryTarget) {
+  const auto type = make_rock_type();
+  for (int trial = 0; trial < 36; ++trial) {
+    Parameters p = test::random_parameters(*type, random);
+    p.set_integer(kRockFamily, trial % kRockFamilyCount);
+    p.set_integer(kRockSubdivisions, trial % 5);
+    expect_same_bytes(*type, p);
+  }
+}
+
+TEST_F(SimdKernels, OfRocksPlaceVerticesAsTheOracleOnEveryTarget) {
+  const auto type = make_rock_type();
+  for (const std::string_view target : simd_targets()) {
+    pin_simd_target(target);
+    for (int trial = 0; trial < 15; ++trial) {
+      Parameters p = test::random_parameters(*type, random);
+      p.set_integer(kRockFamily, trial % kRockFamilyCount);
+      const test::RockOracle oracle = test::rock_oracle(p);
+      const core::Bounds box = type->bounds(p);
+      const auto vertices = test::synthesize(*type, p, 0).vertices<core::ModelVertex>();
+      const glm::vec3 tolerance =
+          box.half_extent() / 60000.0F + static_cast<float>(1e-5 * oracle.radius);
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const glm::vec3 expected =
+            oracle.places[static_cast<std::size_t>(oracle.triangles[i / 3][i % 3])];
+        ASSERT_TRUE(glm::all(
+            glm::lessThan(glm::abs(unpack_position(vertices[i], box) - expected), tolerance)))
+            << target;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace psygen::models
