@@ -2,8 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <glm/vec2.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "engine/amplify/amplify.hpp"
 #include "engine/app/app.hpp"
 
 namespace psygen::game {
@@ -38,6 +42,26 @@ class ModelsCommand {
 
  private:
   CLI::App* command_;
+  bool json_ = false;
+};
+
+class AmplifyCommand {
+ public:
+  explicit AmplifyCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run();
+
+ private:
+  int print_heights(const world::World& world) const;
+  core::Result<amplify::Report> amplify(const world::World& world,
+                                        const models::Registry& registry) const;
+  int print_report(const amplify::Report& report) const;
+
+  CLI::App* command_;
+  std::string world_ = "game/worlds/paper.toml";
+  std::optional<amplify::Region> region_;
+  unsigned threads_ = 0;
+  std::vector<glm::dvec2> samples_;  // x and z in metres
   bool json_ = false;
 };
 

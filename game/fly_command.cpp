@@ -1,46 +1,16 @@
 // psygen fly: a flight through a world, in a window or headless, and what it measured.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <csignal>
 #include <cstdlib>
 
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
 #include "game/commands.hpp"
+#include "game/interrupt.hpp"
+#include "game/option_checks.hpp"
 #include "game/text_values.hpp"
 
 namespace psygen::game {
-namespace {
-
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-// A check that CLI11 runs on an option's text; the sentence becomes the usage error.
-template <class Parse>
-CLI::Validator valid_if(Parse parse, const std::string& description) {
-  return CLI::Validator(
-      [parse](std::string& text) {
-        const auto value = parse(text);
-        return value ? std::string() : value.error().message;
-      },
-      description);
-}
-
-CLI::Validator number_between(double low, double high) {
-  return CLI::Validator(
-      [low, high](std::string& text) {
-        char* end = nullptr;
-        const double value = std::strtod(text.c_str(), &end);
-        const bool ok =
-            !text.empty() && *end == 0 && std::isfinite(value) && value >= low && value <= high;
-        return ok ? std::string() : fmt::format("'{}' is not between {} and {}", text, low, high);
-      },
-      fmt::format("{} to {}", low, high));
-}
-
-}  // namespace
-
 FlyCommand::FlyCommand(CLI::App& cli)
     : command_(cli.add_subcommand("fly", "Fly through a world, in a window or headless")) {
   CLI::App& c = *command_;
@@ -109,15 +79,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
 
 int FlyCommand::run() {
   options_.world_file = world_;
-  options_.stop = &interrupted;
-  // The first signal ends the flight, a second one the program.
-  const auto interrupt = [](int signal) {
-    interrupted = true;
-    std::signal(signal, SIG_DFL);
-  };
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
-
+  options_.stop = &stop_at_interrupt();
   auto app = app::App::create(options_);
   if (!app) {
     core::log_error(app.error().message);

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   cli.require_subcommand(1);
   psygen::game::FlyCommand fly(cli);
   psygen::game::ModelsCommand models(cli);
+  psygen::game::AmplifyCommand amplify(cli);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -41,7 +42,9 @@ int main(int argc, char** argv) {
   }
   // Nothing of ours throws, but libraries do when memory ends.
   try {
-    return fly.chosen() ? fly.run() : models.run();
+    if (fly.chosen()) return fly.run();
+    if (amplify.chosen()) return amplify.run();
+    return models.run();
   } catch (const std::exception& error) {
     psygen::core::log_error(error.what());
     return psygen::game::kFailed;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <string>
 
 #include "engine/core/error.hpp"
@@ -15,5 +16,8 @@ core::Result<std::uint64_t> parse_bytes(const std::string& text);
 
 // Pixels as WIDTHxHEIGHT, each 1 … 16384.
 core::Result<core::Extent> parse_size(const std::string& text);
+
+// A place as X,Z: two finite numbers.
+core::Result<glm::dvec2> parse_place(const std::string& text);
 
 }  // namespace psygen::game

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -51,11 +52,31 @@ TEST(CommandLine, HelpAndVersionGoToStdoutAndAreNoFailure) {
 }
 
 TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
-  for (const char* arguments :
-       {"", "walk", "fly --no-such-option", "fly --world", "fly --size 12", "fly --size 0x0",
-        "fly --budget lots", "fly --paradigm eager", "fly --policy random", "fly --lod maybe",
-        "fly --seconds -1", "fly --seconds nan", "fly --modelers 100000", "fly --fixed-step 0",
-        "fly --frames -3", "fly --warmup x", "models --frobnicate"}) {
+  for (const char* arguments : {"",
+                                "walk",
+                                "fly --no-such-option",
+                                "fly --world",
+                                "fly --size 12",
+                                "fly --size 0x0",
+                                "fly --budget lots",
+                                "fly --paradigm eager",
+                                "fly --policy random",
+                                "fly --lod maybe",
+                                "fly --seconds -1",
+                                "fly --seconds nan",
+                                "fly --modelers 100000",
+                                "fly --fixed-step 0",
+                                "fly --frames -3",
+                                "fly --warmup x",
+                                "models --frobnicate",
+                                "amplify --region 1,2,3",
+                                "amplify --region 0,0,0,1",
+                                "amplify --threads 0",
+                                "amplify --threads 257",
+                                "amplify --threads x",
+                                "amplify --sample 1",
+                                "amplify --sample nan,0",
+                                "amplify --sample 1,1 --region 0,0,1,1"}) {
     const Outcome outcome = psygen(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
     EXPECT_FALSE(outcome.err.empty()) << arguments;
@@ -120,6 +141,57 @@ TEST(CommandLine, AmplifyingWhatDoesNotFitSaysSo) {
       psygen("fly --headless --frames 3 --size 64x36 --paradigm amplify --budget 16M");
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_TRUE(mentions(outcome.err, "more than the budget")) << outcome.err;
+}
+
+TEST(CommandLine, AmplifyPrintsItsFiguresAndTheSameHashForAnyNumberOfThreads) {
+  const Outcome text = psygen("amplify --region 3,4,5,6 --threads 1");
+  EXPECT_EQ(text.code, 0) << text.err;
+  for (const char* name : {"blocks", "models", "triangles", "bytes", "seconds",
+                           "triangles_per_second_per_core", "hash"}) {
+    EXPECT_TRUE(mentions(text.out, name)) << name;
+  }
+  const Outcome json = psygen("amplify --region 3,4,5,6 --threads 3 --json");
+  EXPECT_EQ(json.code, 0) << json.err;
+  EXPECT_TRUE(mentions(json.out, "\"blocks\": 4,")) << json.out;
+  const std::string name = "\"hash\": \"";
+  const std::size_t at = json.out.find(name);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_TRUE(mentions(text.out, json.out.substr(at + name.size(), 16)));
+}
+
+TEST(CommandLine, AmplifyRefusesWhatIsOutsideOfTheWorld) {
+  const Outcome region = psygen("amplify --region 511,0,513,1");
+  EXPECT_EQ(region.code, 1);
+  EXPECT_TRUE(mentions(region.err, "0 to 511")) << region.err;
+  const Outcome endless = psygen("amplify --world game/worlds/silver_combe.toml");
+  EXPECT_EQ(endless.code, 1);
+  EXPECT_TRUE(mentions(endless.err, "endless")) << endless.err;
+  for (const char* place : {"-1,5", "1e300,0", "40000,1"}) {
+    const Outcome sample = psygen(std::string("amplify --sample=") + place);
+    EXPECT_EQ(sample.code, 1) << place;
+    EXPECT_TRUE(mentions(sample.err, "outside")) << sample.err;
+  }
+}
+
+TEST(CommandLine, AmplifySamplesHeightsWithEveryDigit) {
+  const Outcome text = psygen("amplify --sample 100,200 --sample 3.5,7");
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_EQ(std::count(text.out.begin(), text.out.end(), '\n'), 2);
+  const Outcome json = psygen("amplify --sample 100,200 --sample 3.5,7 --json");
+  EXPECT_TRUE(mentions(json.out, "\"height_m\": " + text.out.substr(0, text.out.find('\n'))))
+      << text.out << json.out;
+}
+
+TEST(CommandLine, AmplifyThatIsInterruptedPrintsWhatWasDoneAndNoHash) {
+  // Interrupts it as soon as one of its threads works.
+  const std::string interrupted =
+      "run() { \"$@\" & p=$!; until grep -qs ^amplify /proc/$p/task/*/comm; do kill -0 $p || "
+      "break; "
+      "done; kill -INT $p; wait $p; }; run";
+  const Outcome outcome = psygen("amplify --threads 2 --json", interrupted);
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(mentions(outcome.out, "\"hash\": null")) << outcome.out;
+  EXPECT_TRUE(mentions(outcome.err, "interrupted after")) << outcome.err;
 }
 
 }  // namespace

@@ -39,13 +39,17 @@ def program_differences(root):
 
 
 def undescribed_options(root):
-    source = (root / "game/fly_command.cpp").read_text(encoding="utf-8")
     described = (root / "docs/cli.md").read_text(encoding="utf-8")
-    options = re.findall(r'"!?(--[a-z-]+)"', source)
-    assert len(options) > 15, "the scan found too few options to mean anything"
-    for option in options:
-        if f"`{option}" not in described:
-            yield f"docs/cli.md does not describe {option}"
+    sections = dict(re.findall(r"^## psygen (\w+)\n(.*?)(?=^## |\Z)", described, re.S | re.M))
+    sources = sorted((root / "game").glob("*_command.cpp"))
+    assert len(sources) > 2, "the scan found too few commands to mean anything"
+    for source in sources:
+        command = source.name.removesuffix("_command.cpp")
+        options = re.findall(r'"!?(--[a-z-]+)"', source.read_text(encoding="utf-8"))
+        assert options, f"the scan found no option of {command}"
+        for option in options:
+            if f"`{option}" not in sections.get(command, ""):
+                yield f"docs/cli.md does not describe {option} of psygen {command}"
 
 
 def main():

@@ -15,6 +15,7 @@ MAY_KNOW = {
     "engine/models": {"engine/core"},
     "engine/world": {"engine/core", "engine/models"},
     "engine/synthesis": {"engine/core", "engine/models"},
+    "engine/amplify": {"engine/core", "engine/models", "engine/world", "engine/synthesis"},
     "engine/visibility": {"engine/core"},
     "engine/image": {"engine/core"},
     "engine/render": {"engine/core", "engine/image", "shaders"},
@@ -25,7 +26,7 @@ MAY_KNOW = {
                      "engine/telemetry"},
     "shaders": set(),
 }
-MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene"}
+MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify"}
 MAY_KNOW["game"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["editor"] = MAY_KNOW["game"]
 
