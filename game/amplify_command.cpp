@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "engine/amplify/block_files.hpp"
 #include "engine/core/log.hpp"
 #include "engine/models/terrain.hpp"
 #include "engine/telemetry/progress_bar.hpp"
@@ -26,15 +27,19 @@ core::Result<core::WorldPosition> position_of(const world::World& world, glm::dv
   core::WorldPosition at;
   if (some) at.block = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
   if (!some || !world.contains(at.block)) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the place {},{} is outside of the world {}", place.x, place.y,
-                                  world.name));
+    return core::fail(
+        core::ErrorCode::kInvalidArgument,
+        fmt::format("the place {},{} is outside of the world {}", place.x, place.y, world.name));
   }
   at.local = {place.x - x * size_m, 0.0, place.y - z * size_m};
   return at;
 }
 
-std::string text_of(const amplify::Report& report) {
+struct Files {
+  std::uint64_t written, skipped;
+};
+
+std::string text_of(const amplify::Report& report, const Files* files) {
   const amplify::Totals& t = report.totals;
   std::string text;
   const auto row = [&text](std::string_view name, const std::string& value) {
@@ -44,7 +49,8 @@ std::string text_of(const amplify::Report& report) {
   row("models", fmt::format("{}", t.models));
   row("triangles", fmt::format("{}  ({})", t.triangles,
                                telemetry::count_text(static_cast<double>(t.triangles))));
-  row("bytes", fmt::format("{}  ({})", t.bytes, telemetry::size_text(static_cast<double>(t.bytes))));
+  row("bytes",
+      fmt::format("{}  ({})", t.bytes, telemetry::size_text(static_cast<double>(t.bytes))));
   row("seconds", fmt::format("{:.3f}", report.seconds));
   row("cpu_seconds", fmt::format("{:.3f}  (threads: {})", report.cpu_seconds, report.threads));
   row("triangles_per_second_per_core",
@@ -52,10 +58,12 @@ std::string text_of(const amplify::Report& report) {
                   telemetry::count_text(report.triangles_per_second_per_core())));
   row("hash", report.complete ? fmt::format("{:016x}", t.hash.value())
                               : std::string("– (not all of the region was made)"));
+  if (files != nullptr)
+    row("files", fmt::format("{} written, {} there already", files->written, files->skipped));
   return text;
 }
 
-std::string json_of(const amplify::Report& report) {
+std::string json_of(const amplify::Report& report, const Files* files) {
   const amplify::Totals& t = report.totals;
   nlohmann::ordered_json json;
   json["blocks"] = t.blocks;
@@ -70,6 +78,10 @@ std::string json_of(const amplify::Report& report) {
   json["failed"] = t.failed;
   json["hash"] = nullptr;
   if (report.complete) json["hash"] = fmt::format("{:016x}", t.hash.value());
+  if (files != nullptr) {
+    json["files_written"] = files->written;
+    json["files_skipped"] = files->skipped;
+  }
   return json.dump(2) + "\n";
 }
 
@@ -80,9 +92,8 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
   CLI::App& c = *command_;
   c.add_option("--world", world_, "World file (TOML)")->capture_default_str();
   auto* region = c.add_option_function<std::string>(
-       "--region",
-       [this](const std::string& text) { region_ = *amplify::parse_region(text); },
-       "Blocks X0,Z0,X1,Z1 without X1 and Z1; default: the whole world");
+      "--region", [this](const std::string& text) { region_ = *amplify::parse_region(text); },
+      "Blocks X0,Z0,X1,Z1 without X1 and Z1; default: the whole world");
   region->check(valid_if(amplify::parse_region, "REGION"));
   c.add_option("--threads", threads_, "Threads; default: one per processor")
       ->check(number_between(1, amplify::kMaxThreads));
@@ -96,6 +107,12 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
        "several times")
       ->check(valid_if(parse_place, "X,Z"))
       ->excludes(region);
+  c.add_option("--out", out_, "Folder that gets one file per block; can be gone on with")
+      ->excludes("--sample");
+  c.add_option("--format", format_, "Of these files: glb or obj")
+      ->check(CLI::IsMember({"glb", "obj"}))
+      ->capture_default_str()
+      ->needs("--out");
   c.add_flag("--json", json_, "Print the figures as JSON");
 }
 
@@ -133,24 +150,40 @@ int AmplifyCommand::print_heights(const world::World& world) const {
 }
 
 core::Result<amplify::Report> AmplifyCommand::amplify(const world::World& world,
-                                                      const models::Registry& registry) const {
+                                                      const models::Registry& registry) {
   const auto region = region_ ? core::Result<amplify::Region>(*region_) : amplify::whole(world);
   if (!region) return tl::unexpected(region.error());
+  if (auto ok = amplify::check_region(world, *region); !ok) return tl::unexpected(ok.error());
+  std::unique_ptr<amplify::BlockFolder> folder;
   amplify::Options options;
+  if (!out_.empty()) {
+    auto opened =
+        amplify::BlockFolder::open(out_, world, registry, *exchange::format_from(format_));
+    if (!opened) return tl::unexpected(opened.error());
+    folder = std::move(*opened);
+    options.make_sink = [&folder] { return folder->make_sink(); };
+  }
   options.threads = threads_ > 0 ? threads_ : std::max(std::thread::hardware_concurrency(), 1u);
   options.stop = &stop_at_interrupt();
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "amplifying " + world.name,
                              static_cast<double>(region->block_count()));
   options.progress = [&bar](std::uint64_t blocks) { bar.update(static_cast<double>(blocks)); };
-  return amplify::amplify(world, registry, *region, options);
+  auto report = amplify::amplify(world, registry, *region, options);
+  if (folder) {
+    written_ = folder->written();
+    skipped_ = folder->skipped();
+  }
+  return report;
 }
 
 int AmplifyCommand::print_report(const amplify::Report& report) const {
-  const int printed = print(json_ ? json_of(report) : text_of(report));
+  const Files files{written_, skipped_};
+  const Files* shown = out_.empty() ? nullptr : &files;
+  const int printed = print(json_ ? json_of(report, shown) : text_of(report, shown));
   const amplify::Totals& totals = report.totals;
   if (totals.failed > 0) {
-    core::log_error(fmt::format("{} meshes failed; the first: {}", totals.failed,
-                                totals.first_failure));
+    core::log_error(
+        fmt::format("{} meshes failed; the first: {}", totals.failed, totals.first_failure));
   }
   if (!report.complete) {
     core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));

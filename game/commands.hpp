@@ -9,6 +9,7 @@
 
 #include "engine/amplify/amplify.hpp"
 #include "engine/app/app.hpp"
+#include "engine/exchange/write_document.hpp"
 
 namespace psygen::game {
 
@@ -54,7 +55,7 @@ class AmplifyCommand {
  private:
   int print_heights(const world::World& world) const;
   core::Result<amplify::Report> amplify(const world::World& world,
-                                        const models::Registry& registry) const;
+                                        const models::Registry& registry);
   int print_report(const amplify::Report& report) const;
 
   CLI::App* command_;
@@ -62,7 +63,27 @@ class AmplifyCommand {
   std::optional<amplify::Region> region_;
   unsigned threads_ = 0;
   std::vector<glm::dvec2> samples_;  // x and z in metres
+  std::string out_;                  // empty: nothing is written
+  std::string format_ = "glb";
+  std::uint64_t written_ = 0, skipped_ = 0;  // files
   bool json_ = false;
+};
+
+class ExportCommand {
+ public:
+  explicit ExportCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run() const;
+
+ private:
+  core::Result<exchange::Document> model_document(const models::Registry& registry) const;
+  core::Result<exchange::Document> world_document(const models::Registry& registry) const;
+
+  CLI::App* command_;
+  std::string model_, world_ = "game/worlds/paper.toml", out_;
+  std::vector<std::string> settings_;  // name=value
+  std::optional<core::BlockCoord> block_;
+  int level_ = 0;
 };
 
 }  // namespace psygen::game

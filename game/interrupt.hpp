@@ -1,4 +1,5 @@
-// Ctrl+C and SIGTERM as a flag: the first one asks for an orderly end, a second one ends the program.
+// Ctrl+C and SIGTERM as a flag: the first one asks for an orderly end, a second one ends the
+// program.
 #pragma once
 
 #include <atomic>

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   psygen::game::FlyCommand fly(cli);
   psygen::game::ModelsCommand models(cli);
   psygen::game::AmplifyCommand amplify(cli);
+  psygen::game::ExportCommand exporter(cli);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
   try {
     if (fly.chosen()) return fly.run();
     if (amplify.chosen()) return amplify.run();
+    if (exporter.chosen()) return exporter.run();
     return models.run();
   } catch (const std::exception& error) {
     psygen::core::log_error(error.what());

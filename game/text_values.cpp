@@ -69,4 +69,17 @@ core::Result<glm::dvec2> parse_place(const std::string& text) {
   return place;
 }
 
+core::Result<core::BlockCoord> parse_block(const std::string& text) {
+  const char* const end = text.data() + text.size();
+  core::BlockCoord block;
+  const auto x = std::from_chars(text.data(), end, block.x);
+  const bool separated = x.ec == std::errc() && x.ptr != end && *x.ptr == ',';
+  const auto z = separated ? std::from_chars(x.ptr + 1, end, block.z) : x;
+  if (!separated || z.ec != std::errc() || z.ptr != end) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("'{}' is not a block X,Z", text));
+  }
+  return block;
+}
+
 }  // namespace psygen::game

@@ -39,10 +39,10 @@ struct Options {
 
 struct Report {
   Totals totals;
-  unsigned threads = 0;        // that could be started
-  double seconds = 0;          // wall-clock time
-  double cpu_seconds = 0;      // of all threads together
-  bool complete = false;       // every block of the region was made
+  unsigned threads = 0;    // that could be started
+  double seconds = 0;      // wall-clock time
+  double cpu_seconds = 0;  // of all threads together
+  bool complete = false;   // every block of the region was made
   double triangles_per_second_per_core() const {
     return cpu_seconds > 0 ? static_cast<double>(totals.triangles) / cpu_seconds : 0;
   }

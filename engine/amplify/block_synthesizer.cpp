@@ -34,8 +34,8 @@ void Totals::add(const Totals& part) {
 }
 
 BlockSynthesizer::BlockSynthesizer(const world::World& world, const models::Registry& registry,
-                                   Levels levels)
-    : world_(world), registry_(registry), levels_(levels) {}
+                                   int level)
+    : world_(world), registry_(registry), level_(level) {}
 
 models::MeshView BlockSynthesizer::room_for(const models::MeshSize& size) {
   const std::size_t vertex_bytes =
@@ -57,8 +57,10 @@ void BlockSynthesizer::synthesise(core::BlockCoord block, Totals& totals,
                                  world::terrain_parameters(world_, block)};
   world::place_models(world_, registry_, block, placements_);
   const auto make_levels = [&](const world::Placement& placement) {
-    const int levels = levels_ == Levels::kAll ? registry_[placement.model].level_count() : 1;
-    for (int level = 0; level < levels; ++level)
+    const int coarsest = registry_[placement.model].level_count() - 1;
+    const int first = level_ == kAllLevels ? 0 : std::min(level_, coarsest);
+    const int last = level_ == kAllLevels ? coarsest : first;
+    for (int level = first; level <= last; ++level)
       make(placement, block, level, totals, visit);
   };
   make_levels(terrain);
@@ -94,7 +96,7 @@ void BlockSynthesizer::make(const world::Placement& placement, core::BlockCoord 
 
 std::uint64_t sample_world_hash(const world::World& world, const models::Registry& registry,
                                 core::BlockCoord block) {
-  BlockSynthesizer synthesizer(world, registry, Levels::kAll);
+  BlockSynthesizer synthesizer(world, registry, kAllLevels);
   Totals totals;
   for (std::int64_t z = std::int64_t{block.z} - 1; z <= std::int64_t{block.z} + 1; ++z) {
     for (std::int64_t x = std::int64_t{block.x} - 1; x <= std::int64_t{block.x} + 1; ++x) {

@@ -36,13 +36,14 @@ struct Totals {
   void add(const Totals& part);
 };
 
-enum class Levels : std::uint8_t { kFull, kAll };
+// Instead of one level of detail.
+inline constexpr int kAllLevels = -1;
 
 class BlockSynthesizer {
  public:
-  // World and registry outlive it.
-  BlockSynthesizer(const world::World& world, const models::Registry& registry,
-                   Levels levels = Levels::kFull);
+  // World and registry outlive it. `level` is one for all types (the coarsest of those that have
+  // fewer) or kAllLevels.
+  BlockSynthesizer(const world::World& world, const models::Registry& registry, int level = 0);
 
   // Adds what stands on `block` to `totals`. `visit`, if given, sees each mesh, terrain first.
   void synthesise(core::BlockCoord block, Totals& totals,
@@ -55,7 +56,7 @@ class BlockSynthesizer {
 
   const world::World& world_;
   const models::Registry& registry_;
-  Levels levels_;
+  int level_;
   std::vector<world::Placement> placements_;
   std::unique_ptr<std::byte[]> memory_;
   std::size_t capacity_ = 0;

@@ -14,7 +14,8 @@ constexpr std::int64_t kEndBlock = std::int64_t{INT32_MAX} + 1;
 }  // namespace
 
 std::uint64_t Region::block_count() const {
-  const auto width = static_cast<std::uint64_t>(x1 - x0), depth = static_cast<std::uint64_t>(z1 - z0);
+  const auto width = static_cast<std::uint64_t>(x1 - x0),
+             depth = static_cast<std::uint64_t>(z1 - z0);
   constexpr std::uint64_t kAll = std::uint64_t{1} << 32;
   return width == kAll && depth == kAll ? UINT64_MAX : width * depth;
 }

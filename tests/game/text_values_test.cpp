@@ -34,5 +34,11 @@ TEST(TextValues, PlacesAreTwoFiniteNumbers) {
     EXPECT_FALSE(parse_place(text)) << text;
 }
 
+TEST(TextValues, BlocksAreTwoIntegersOf32Bits) {
+  EXPECT_EQ(*parse_block("-1,2147483647"), (core::BlockCoord{-1, INT32_MAX}));
+  for (const char* text : {"", "1", "1,", ",1", "1,2,3", "1.5,2", "2147483648,0", "1, 2"})
+    EXPECT_FALSE(parse_block(text)) << text;
+}
+
 }  // namespace
 }  // namespace psygen::game

@@ -12,9 +12,9 @@ using world::testing::kSmallWorld;
 using world::testing::parsed;
 using world::testing::registry;
 
-Totals totals_of(const world::World& world, core::BlockCoord block, Levels levels = Levels::kFull) {
+Totals totals_of(const world::World& world, core::BlockCoord block, int level = 0) {
   Totals totals;
-  BlockSynthesizer(world, registry(), levels).synthesise(block, totals);
+  BlockSynthesizer(world, registry(), level).synthesise(block, totals);
   return totals;
 }
 
@@ -44,9 +44,19 @@ TEST(BlockSynthesizer, TheHashDependsOnWorldBlockAndLevelsOnly) {
   const std::uint64_t hash = totals_of(world, {2, 1}).hash.value();
   EXPECT_EQ(totals_of(world, {2, 1}).hash.value(), hash);
   EXPECT_NE(totals_of(world, {1, 2}).hash.value(), hash);
-  EXPECT_NE(totals_of(world, {2, 1}, Levels::kAll).hash.value(), hash);
+  EXPECT_NE(totals_of(world, {2, 1}, kAllLevels).hash.value(), hash);
   world.seed += 1;
   EXPECT_NE(totals_of(world, {2, 1}).hash.value(), hash);
+}
+
+TEST(BlockSynthesizer, ALevelIsTheCoarsestOfTypesThatHaveFewer) {
+  const world::World world = parsed(kSmallWorld);
+  Totals totals;
+  BlockSynthesizer(world, registry(), 99).synthesise({2, 1}, totals, [](const BlockMesh& mesh) {
+    EXPECT_EQ(mesh.level, registry()[mesh.placement.model].level_count() - 1);
+  });
+  EXPECT_EQ(totals.hash.count(), 9u);
+  EXPECT_LT(totals.triangles, totals_of(world, {2, 1}).triangles / 50);
 }
 
 TEST(BlockSynthesizer, TheHashNoticesAModelThatStandsElsewhere) {

@@ -19,9 +19,9 @@ TEST(Region, IsReadFromFourIntegers) {
 }
 
 TEST(Region, RefusesWhatIsNoRegionInOneSentence) {
-  for (const char* text : {"", "1", "1,2,3", "1,2,3,", "1,2,3,4,5", "a,b,c,d", "1 ,2,3,4", "1,2,3,4 ",
-                           "1.5,2,3,4", "0,0,0,1", "0,0,1,0", "3,0,2,1", "0,0,2147483649,1",
-                           "-2147483649,0,1,1", "0,0,99999999999999999999,1"}) {
+  for (const char* text : {"", "1", "1,2,3", "1,2,3,", "1,2,3,4,5", "a,b,c,d", "1 ,2,3,4",
+                           "1,2,3,4 ", "1.5,2,3,4", "0,0,0,1", "0,0,1,0", "3,0,2,1",
+                           "0,0,2147483649,1", "-2147483649,0,1,1", "0,0,99999999999999999999,1"}) {
     const auto region = parse_region(text);
     ASSERT_FALSE(region) << text;
     EXPECT_NE(region.error().message.find("X0,Z0,X1,Z1"), std::string::npos);
