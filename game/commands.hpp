@@ -86,4 +86,18 @@ class ExportCommand {
   int level_ = 0;
 };
 
+class CalibrateCommand {
+ public:
+  explicit CalibrateCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run() const;
+
+ private:
+  CLI::App* command_;
+  std::string out_, world_ = "game/worlds/paper.toml";
+  bool ranges_ = false;
+  std::size_t samples_ = 64;
+  bool json_ = false;
+};
+
 }  // namespace psygen::game

@@ -107,8 +107,7 @@ int ExportCommand::run() const {
   const auto document = block_ ? world_document(registry) : model_document(registry);
   if (!document) {
     core::log_error(document.error().message);
-    const bool usage =
-        !block_ && document.error().code == core::ErrorCode::kInvalidArgument;
+    const bool usage = !block_ && document.error().code == core::ErrorCode::kInvalidArgument;
     return usage ? kUsage : exit_code_of(document.error());
   }
   if (auto ok = exchange::write_document(out_, *format_of(out_), *document); !ok) {
@@ -125,8 +124,8 @@ core::Result<exchange::Document> ExportCommand::model_document(
     const models::Registry& registry) const {
   const int found = registry.find(model_);
   if (found < 0) {
-    return refuse(fmt::format("there is no model '{}'; there are {}", model_,
-                              model_names(registry)));
+    return refuse(
+        fmt::format("there is no model '{}'; there are {}", model_, model_names(registry)));
   }
   const models::ModelType& type = registry[static_cast<models::ModelIndex>(found)];
   models::Parameters p = models::default_parameters(type);

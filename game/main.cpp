@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   psygen::game::ModelsCommand models(cli);
   psygen::game::AmplifyCommand amplify(cli);
   psygen::game::ExportCommand exporter(cli);
+  psygen::game::CalibrateCommand calibrate(cli);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
     if (fly.chosen()) return fly.run();
     if (amplify.chosen()) return amplify.run();
     if (exporter.chosen()) return exporter.run();
+    if (calibrate.chosen()) return calibrate.run();
     return models.run();
   } catch (const std::exception& error) {
     psygen::core::log_error(error.what());

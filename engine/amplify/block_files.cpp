@@ -103,8 +103,8 @@ core::Result<void> BlockFolder::claim() const {
   const std::string mine = world::write_world(world_, registry_);
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
-    return core::replace_file(
-        file, {reinterpret_cast<const std::uint8_t*>(mine.data()), mine.size()});
+    return core::replace_file(file,
+                              {reinterpret_cast<const std::uint8_t*>(mine.data()), mine.size()});
   }
   const auto theirs = world::read_text_file(file);
   if (!theirs) return tl::unexpected(theirs.error());

@@ -83,9 +83,8 @@ class GlbWriter {
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     primitive.material = material_of(part.material);
-    const int positions =
-        accessor<glm::vec3>(kPositions, part.positions, TINYGLTF_TYPE_VEC3,
-                            TINYGLTF_COMPONENT_TYPE_FLOAT, count);
+    const int positions = accessor<glm::vec3>(kPositions, part.positions, TINYGLTF_TYPE_VEC3,
+                                              TINYGLTF_COMPONENT_TYPE_FLOAT, count);
     glm::vec3 low = part.positions.front(), high = low;
     for (const glm::vec3& p : part.positions) {
       low = glm::min(low, p);
@@ -96,8 +95,8 @@ class GlbWriter {
     described.minValues = {least.x, least.y, least.z};
     described.maxValues = {most.x, most.y, most.z};
     primitive.attributes["POSITION"] = positions;
-    primitive.attributes["NORMAL"] = accessor<glm::vec3>(
-        kNormals, part.normals, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, count);
+    primitive.attributes["NORMAL"] = accessor<glm::vec3>(kNormals, part.normals, TINYGLTF_TYPE_VEC3,
+                                                         TINYGLTF_COMPONENT_TYPE_FLOAT, count);
     std::vector<std::array<std::uint16_t, 4>> colours;
     colours.reserve(count);
     for (const glm::vec3& colour : part.colours) {
@@ -105,9 +104,8 @@ class GlbWriter {
       colours.push_back({static_cast<std::uint16_t>(c.x), static_cast<std::uint16_t>(c.y),
                          static_cast<std::uint16_t>(c.z), 65535});
     }
-    const int colour =
-        accessor<std::array<std::uint16_t, 4>>(kColours, colours, TINYGLTF_TYPE_VEC4,
-                                               TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, count);
+    const int colour = accessor<std::array<std::uint16_t, 4>>(
+        kColours, colours, TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, count);
     model_.accessors[static_cast<std::size_t>(colour)].normalized = true;
     primitive.attributes["COLOR_0"] = colour;
     primitive.indices = indices_of(part);

@@ -63,8 +63,7 @@ glm::vec3 ground_albedo(const world::Palette& palette, float height_m, const glm
   const float rock_full =
       std::max(static_cast<float>(palette.rock_slope_full), rock_start + kLeast);
   c = glm::mix(c, palette.rock, glm::smoothstep(rock_start, rock_full, slope + 0.06F * uneven));
-  const float snow =
-      smooth(blend(palette.snow_start_m, palette.snow_blend_m, height_m) + uneven);
+  const float snow = smooth(blend(palette.snow_start_m, palette.snow_blend_m, height_m) + uneven);
   const float steep = std::max(static_cast<float>(palette.snow_slope_max), kLeast);
   c = glm::mix(c, palette.snow, snow * (1.0F - glm::smoothstep(0.7F * steep, steep, slope)));
 

@@ -11,8 +11,7 @@ namespace {
 
 // IEC 61966-2-1.
 float srgb(float linear) {
-  return linear <= 0.0031308F ? 12.92F * linear
-                              : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+  return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
 }
 
 glm::vec3 srgb(const glm::vec3& linear) {

@@ -17,12 +17,12 @@ enum class Format : std::uint8_t { kGlb, kObj };
 std::optional<Format> format_from(std::string_view name);  // "glb", "obj"
 std::string_view name_of(Format format);
 
-// The bytes of a .glb: one node with one mesh per object, one primitive per part. Colours are linear
-// albedo (COLOR_0, 16 bits each). Fails with kOverBudget beyond the 4 GiB of the format.
+// The bytes of a .glb: one node with one mesh per object, one primitive per part. Colours are
+// linear albedo (COLOR_0, 16 bits each). Fails with kOverBudget beyond the 4 GiB of the format.
 core::Result<std::vector<std::uint8_t>> glb_bytes(const Document& document);
 
-// Colours stand behind the coordinates of each vertex, as sRGB, which is what programs expect there;
-// a material's Kd is the mean of its vertices.
+// Colours stand behind the coordinates of each vertex, as sRGB, which is what programs expect
+// there; a material's Kd is the mean of its vertices.
 struct ObjText {
   std::string obj, mtl;
 };

@@ -96,6 +96,8 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
                                 "export --model rock --level 9 --out a.glb",
                                 "export --model rock --block 1,1 --out a.glb",
                                 "export --block 1 --out a.glb",
+                                "calibrate --samples 1",
+                                "calibrate --ranges --world game/worlds/paper.toml",
                                 "export --model rock --world x.toml --out a.glb"}) {
     const Outcome outcome = run_psygen(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
@@ -253,6 +255,17 @@ TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
   EXPECT_EQ(block.code, 1);
   EXPECT_TRUE(mentions(block.err, "0 to 511")) << block.err;
   EXPECT_EQ(run_psygen("export --model rock --out /nonexistent/a.glb").code, 1);
+}
+
+TEST(CommandLine, CalibrateWritesFitsAndPlots) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_psygen("calibrate --samples 4 --out " + folder.path().string());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* words : {"c·m·n²", "c·n·4^(n−1)", "c·mⁿ", "R²", "p95"})
+    EXPECT_TRUE(mentions(outcome.out, words)) << words << "\n" << outcome.out;
+  EXPECT_TRUE(mentions(read(folder / "calibration.html"), "<svg"));
+  EXPECT_TRUE(mentions(read(folder / "calibration.json"), "\"r_squared\""));
+  EXPECT_EQ(run_psygen("calibrate --samples 4 --out /proc/nowhere").code, 1);
 }
 
 }  // namespace

@@ -28,8 +28,9 @@ TEST(GroundColour, FollowsHeightAndSlope) {
 TEST(GroundColour, IsContinuousAcrossBlocksAndWhereThePatternRepeats) {
   const world::Palette palette;
   const double size_m = 63;
-  for (const core::BlockCoord block : {core::BlockCoord{0, 0}, core::BlockCoord{-1, 500},
-                                       core::BlockCoord{32, 32}, core::BlockCoord{INT32_MAX - 1, 3}}) {
+  for (const core::BlockCoord block :
+       {core::BlockCoord{0, 0}, core::BlockCoord{-1, 500}, core::BlockCoord{32, 32},
+        core::BlockCoord{INT32_MAX - 1, 3}}) {
     const glm::vec2 here = pattern_place(block, size_m, {63, 10});
     const glm::vec2 there = pattern_place({block.x + 1, block.z}, size_m, {0, 10});
     EXPECT_LT(distance(ground_albedo(palette, 20, kFlat, here, 9),
@@ -46,7 +47,8 @@ TEST(GroundColour, NeverLeavesTheRangeOfColours) {
   for (int i = 0; i < 2000; ++i) {
     const auto t = static_cast<float>(i);
     const glm::vec3 n = glm::normalize(glm::vec3(0.01F * t - 10, 1, 0.5F));
-    const glm::vec3 c = ground_albedo(palette, t - 500, n, {t, 2 * t}, static_cast<std::uint16_t>(i));
+    const glm::vec3 c =
+        ground_albedo(palette, t - 500, n, {t, 2 * t}, static_cast<std::uint16_t>(i));
     for (int k = 0; k < 3; ++k) {
       EXPECT_GE(c[k], 0.0F);
       EXPECT_LE(c[k], 1.0F);

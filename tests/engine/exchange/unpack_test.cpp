@@ -41,8 +41,8 @@ TEST(Unpack, TerrainVerticesLieOnTheGround) {
   const models::Parameters p = models::default_parameters(type);
   const Object ground = synthesised("terrain", 0);
   for (const glm::vec3& v : ground.parts[0].positions) {
-    const double height_m = models::ground_height_m(p, {0, 0}, static_cast<double>(v.x),
-                                                    static_cast<double>(v.z));
+    const double height_m =
+        models::ground_height_m(p, {0, 0}, static_cast<double>(v.x), static_cast<double>(v.z));
     EXPECT_NEAR(static_cast<double>(v.y), height_m, 1e-3);
   }
 }
@@ -54,7 +54,8 @@ TEST(Unpack, PartsAreSoundAndFaceOutwards) {
       ASSERT_EQ(part.positions.size(), part.colours.size());
       std::size_t agreeing = 0;
       for (std::size_t i = 0; i < part.indices.size(); i += 3) {
-        const glm::vec3 &a = part.positions[part.indices[i]], &b = part.positions[part.indices[i + 1]],
+        const glm::vec3 &a = part.positions[part.indices[i]],
+                        &b = part.positions[part.indices[i + 1]],
                         &c = part.positions[part.indices[i + 2]];
         agreeing += glm::dot(glm::cross(b - a, c - a), part.normals[part.indices[i]]) > 0 ? 1 : 0;
       }

@@ -14,8 +14,9 @@ namespace psygen::exchange {
 namespace {
 
 Document grove() {
-  Document document{"grove", {synthesised("terrain", 0), synthesised("tree", 0),
-                              synthesised("rock", 0), synthesised("tree", 3)}};
+  Document document{"grove",
+                    {synthesised("terrain", 0), synthesised("tree", 0), synthesised("rock", 0),
+                     synthesised("tree", 3)}};
   document.objects[1].position = {10, 20.5F, 30};
   document.objects[2].position = {-5, 1, 2};
   return document;
@@ -125,7 +126,8 @@ TEST(WriteDocument, AnObjHasOneLineForEveryVertexAndTriangle) {
   const ObjText text = obj_text(document, "a.mtl");
   const auto lines = [&text](const std::string& start) {
     std::uint64_t count = 0;
-    for (std::size_t at = 0; (at = text.obj.find("\n" + start + " ", at)) != std::string::npos; ++at)
+    for (std::size_t at = 0; (at = text.obj.find("\n" + start + " ", at)) != std::string::npos;
+         ++at)
       ++count;
     return count;
   };
