@@ -16,8 +16,8 @@ namespace {
 constexpr std::uint64_t kFittedSets = 1, kHeldOutSets = 2;
 constexpr int kSeedsPerPoint = 12;
 
-// Up to `count` parameter sets of each type that stands in the world, from a row of blocks that begins
-// at `first`.
+// Up to `count` parameter sets of each type that stands in the world, from a row of blocks that
+// begins at `first`.
 std::vector<synthesis::CostSample> world_samples(const world::World& world,
                                                  const models::Registry& registry,
                                                  std::int32_t first, std::size_t count) {
@@ -29,7 +29,8 @@ std::vector<synthesis::CostSample> world_samples(const world::World& world,
     samples.push_back({world.terrain_model, world::terrain_parameters(world, block)});
     world::place_models(world, registry, block, placements);
     for (const world::Placement& placement : placements) {
-      if (taken[placement.model]++ < count) samples.push_back({placement.model, placement.parameters});
+      if (taken[placement.model]++ < count)
+        samples.push_back({placement.model, placement.parameters});
     }
   }
   return samples;
@@ -41,8 +42,9 @@ CalibrateCommand::CalibrateCommand(CLI::App& cli)
     : command_(cli.add_subcommand("calibrate", "Measure what synthesis costs on this machine")) {
   CLI::App& c = *command_;
   c.add_option("--out", out_, "Folder for calibration.html and calibration.json");
-  auto* world = c.add_option("--world", world_, "World file (TOML) whose models are fitted and predicted")
-                    ->capture_default_str();
+  auto* world =
+      c.add_option("--world", world_, "World file (TOML) whose models are fitted and predicted")
+          ->capture_default_str();
   c.add_flag("--ranges", ranges_,
              "Instead of a world's models those of parameters drawn from all usual ranges")
       ->excludes(world);
@@ -68,7 +70,8 @@ int CalibrateCommand::run() const {
     world = std::move(*loaded);
   }
   const auto sets = [&](std::uint64_t which) {
-    return world ? world_samples(*world, registry, static_cast<std::int32_t>(which * 20'000), samples_)
+    return world ? world_samples(*world, registry, static_cast<std::int32_t>(which * 20'000),
+                                 samples_)
                  : synthesis::random_samples(registry, samples_, which);
   };
   const double start_s = core::monotonic_seconds();
@@ -79,14 +82,13 @@ int CalibrateCommand::run() const {
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "calibrating", 3.0);
   Calibration found;
   synthesis::CostModel cost(registry);
-  found.fits = cost.calibrate(sets(kFittedSets), options,
-                              [&bar](double fraction) { bar.update(fraction); });
+  found.fits =
+      cost.calibrate(sets(kFittedSets), options, [&bar](double fraction) { bar.update(fraction); });
   found.curves = synthesis::cost_curves(registry, cost, options, kSeedsPerPoint,
                                         [&bar](double fraction) { bar.update(1 + fraction); });
   found.held_out_sets = samples_;
-  found.held_out = synthesis::accuracy_of(
-      registry, cost, sets(kHeldOutSets), options,
-      [&bar](double fraction) { bar.update(2 + fraction); });
+  found.held_out = synthesis::accuracy_of(registry, cost, sets(kHeldOutSets), options,
+                                          [&bar](double fraction) { bar.update(2 + fraction); });
   found.seconds = core::monotonic_seconds() - start_s;
   bar.finish();
   if (!out_.empty()) {

@@ -139,11 +139,15 @@ std::string calibration_json(const Calibration& found, const models::Registry& r
 std::string calibration_page(const Calibration& found, const models::Registry& registry) {
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
-  html += fmt::format("<title>psygen: what synthesis costs</title><style>{}", telemetry::report_style());
-  html += ".plots { display:grid; grid-template-columns:repeat(auto-fit,minmax(420px,1fr)); gap:0 14px }";
+  html += fmt::format("<title>psygen: what synthesis costs</title><style>{}",
+                      telemetry::report_style());
+  html +=
+      ".plots { display:grid; grid-template-columns:repeat(auto-fit,minmax(420px,1fr)); gap:0 14px "
+      "}";
   html += "</style></head><body><main>\n<h1>What synthesis costs</h1>\n";
   html += fmt::format(
-      "<p class=\"lead\">Time of one core at full detail over each parameter of the paper's formulas. "
+      "<p class=\"lead\">Time of one core at full detail over each parameter of the paper's "
+      "formulas. "
       "Predictions for {} other parameter sets of each type, all levels: error {:.1f} % in the "
       "median, {:.1f} % at p95.</p>\n<div class=\"plots\">\n",
       found.held_out_sets, found.held_out.all.p50_percent, found.held_out.all.p95_percent);

@@ -1,6 +1,7 @@
-// How well the paper's formulas and the cost model describe the machine: the time over each parameter
-// that a formula names (the paper's Figure 9), and the error of predictions for models that the cost
-// model was not calibrated with. Runs models; one thread; for tools, not for the tick.
+// How well the paper's formulas and the cost model describe the machine: the time over each
+// parameter that a formula names (the paper's Figure 9), and the error of predictions for models
+// that the cost model was not calibrated with. Runs models; one thread; for tools, not for the
+// tick.
 #pragma once
 
 #include <string>

@@ -34,8 +34,8 @@ double residual(const Row& row, const Coefficients& c) {
   return sum;
 }
 
-// Gaussian elimination with pivoting over the terms of `subset` (a bit each). Nothing if they cannot
-// be told apart.
+// Gaussian elimination with pivoting over the terms of `subset` (a bit each). Nothing if they
+// cannot be told apart.
 std::optional<Coefficients> solve(std::span<const Row> rows, std::span<const double> weights,
                                   unsigned subset) {
   std::array<std::array<double, kTerms + 1>, kTerms> a{};
@@ -125,9 +125,9 @@ void add_correction(CostFit& fit, std::span<const Measurement> measurements) {
     if (m.seconds > 0) ratios.push_back({log2_size(m.work), m.seconds / fit.line_seconds(m.work)});
   }
   if (ratios.size() < kMinForKnots) return;
-  std::stable_sort(ratios.begin(), ratios.end(), [](const CostFit::Knot& a, const CostFit::Knot& b) {
-    return a.log2_size < b.log2_size;
-  });
+  std::stable_sort(
+      ratios.begin(), ratios.end(),
+      [](const CostFit::Knot& a, const CostFit::Knot& b) { return a.log2_size < b.log2_size; });
   for (std::size_t k = 0; k < CostFit::kMaxKnots; ++k) {
     std::vector<double> sizes, factors;
     for (std::size_t i = k * ratios.size() / CostFit::kMaxKnots;
@@ -182,7 +182,8 @@ CostFit fit_cost(std::span<const Measurement> measurements) {
   fit.per_full_triangle_s = best.coefficients[3];
   CostFit bent = fit;
   add_correction(bent, measurements);
-  const bool better = mean_error(bent, measurements) < kWorthBending * mean_error(fit, measurements);
+  const bool better =
+      mean_error(bent, measurements) < kWorthBending * mean_error(fit, measurements);
   return better ? bent : fit;
 }
 

@@ -1,9 +1,9 @@
 // What a synthesis has to do, and the curve through what doing it took: a line, seconds = fixed +
-// per_operation · operations + per_triangle · triangles + per_full_triangle · full_triangles with no
-// coefficient below zero, times a correction over full_triangles that bends it where work does not
-// grow in proportion. Operations are the type's asymptotic formula (paper, section 5.2); sizes of
-// meshes are exact, and know what the random numbers of a seed make of the parameters: that of the
-// level, and that of full detail, because coarse levels come from the same skeleton. Pure.
+// per_operation · operations + per_triangle · triangles + per_full_triangle · full_triangles with
+// no coefficient below zero, times a correction over full_triangles that bends it where work does
+// not grow in proportion. Operations are the type's asymptotic formula (paper, section 5.2); sizes
+// of meshes are exact, and know what the random numbers of a seed make of the parameters: that of
+// the level, and that of full detail, because coarse levels come from the same skeleton. Pure.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct CostFit {
   double per_operation_s = 0;
   double per_triangle_s = 0;
   double per_full_triangle_s = 0;
-  std::size_t knot_count = 0;  // 0: the line as it is
+  std::size_t knot_count = 0;           // 0: the line as it is
   std::array<Knot, kMaxKnots> knots{};  // ascending; linear between them and on
 
   double line_seconds(const Work& work) const {
@@ -47,13 +47,13 @@ struct Measurement {
 
 // The best line by squares of the relative error |fit − measured| / measured, with the measurements
 // that are far off it (something else ran meanwhile) counting less. Prefers fewer terms where they
-// do as well, and no correction where it explains little. Only the formula where there are fewer than kMinForTerms measurements, a correction from
-// kMinForKnots on. Zero for none.
+// do as well, and no correction where it explains little. Only the formula where there are fewer
+// than kMinForTerms measurements, a correction from kMinForKnots on. Zero for none.
 inline constexpr std::size_t kMinForTerms = 5, kMinForKnots = 16;
 CostFit fit_cost(std::span<const Measurement> measurements);
 
-// seconds = c · operations by least squares of the seconds, as in the paper's Figure 9, and how much
-// of the variance it explains.
+// seconds = c · operations by least squares of the seconds, as in the paper's Figure 9, and how
+// much of the variance it explains.
 struct FormulaFit {
   double seconds_per_operation = 0;  // c
   double r_squared = 0;              // 1 for fewer than two different times

@@ -61,7 +61,9 @@ class Drawing {
                      "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:.6g}</text>",
                      kLeft, kRight, y_of(value), kLeft - 6, y_of(value) + 4, value);
     }
-    const double x_step = std::max(step_of(high_x_ - low_x_), 1e-9);
+    const bool integers =
+        std::all_of(plot_.x.begin(), plot_.x.end(), [](double x) { return x == std::floor(x); });
+    const double x_step = std::max(step_of(high_x_ - low_x_), integers ? 1.0 : 1e-9);
     for (double x = std::ceil(low_x_ / x_step) * x_step; x <= high_x_ + 1e-9; x += x_step) {
       fmt::format_to(out(), "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.6g}</text>",
                      x_of(x), kBottom + 18, x);
@@ -102,8 +104,8 @@ class Drawing {
 std::string curve_plot_html(const CurvePlot& plot) {
   std::string legend;
   for (const Curve& curve : plot.curves) {
-    legend += fmt::format("<span><i class=\"swatch{}\"></i>{}</span>", curve.colour,
-                          escaped(curve.name));
+    legend +=
+        fmt::format("<span><i class=\"swatch{}\"></i>{}</span>", curve.colour, escaped(curve.name));
   }
   const std::string note =
       plot.note.empty() ? "" : fmt::format("<p class=\"note\">{}</p>", escaped(plot.note));

@@ -1,5 +1,5 @@
-// A plot of values over a parameter as an SVG picture: measured values as points, curves through them
-// as lines, with axes and a legend. In the looks of report_style.cpp. Pure.
+// A plot of values over a parameter as an SVG picture: measured values as points, curves through
+// them as lines, with axes and a legend. In the looks of report_style.cpp. Pure.
 #pragma once
 
 #include <string>
@@ -18,9 +18,9 @@ struct Curve {
 
 struct CurvePlot {
   std::string title;
-  std::string x_name;  // stands below the axis
-  std::string unit;    // of the values
-  std::string note;    // a sentence below the plot; may be empty
+  std::string x_name;     // stands below the axis
+  std::string unit;       // of the values
+  std::string note;       // a sentence below the plot; may be empty
   std::vector<double> x;  // ascending
   std::vector<Curve> curves;
 };

@@ -35,8 +35,8 @@ TEST(CostCurves, StandardTypesHaveTheCurvesOfThePaper) {
     }
     EXPECT_GT(curve.formula.seconds_per_operation, 0);
   }
-  for (const char* expected : {"terrain size", "terrain octaves", "rock subdivisions",
-                               "tree iterations", "tree branches"})
+  for (const char* expected :
+       {"terrain size", "terrain octaves", "rock subdivisions", "tree iterations", "tree branches"})
     EXPECT_TRUE(curves.contains(expected)) << expected;
 }
 

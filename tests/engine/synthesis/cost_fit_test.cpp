@@ -41,9 +41,10 @@ void expect_near(const CostFit& fit, const CostFit& truth, double relative) {
 }
 
 TEST(CostFit, FindsEveryLineThatThereCanBe) {
-  for (const CostFit& truth : {line(2e-6, 3e-8, 4e-9, 0), line(0, 3e-8, 4e-9, 0),
-                               line(2e-6, 0, 4e-9, 0), line(2e-6, 3e-8, 0, 0), line(2e-6, 0, 0, 0), line(1e-6, 0, 0, 3e-9), line(1e-6, 2e-8, 3e-9, 4e-9),
-                               line(0, 3e-8, 0, 0), line(0, 0, 4e-9, 0)}) {
+  for (const CostFit& truth :
+       {line(2e-6, 3e-8, 4e-9, 0), line(0, 3e-8, 4e-9, 0), line(2e-6, 0, 4e-9, 0),
+        line(2e-6, 3e-8, 0, 0), line(2e-6, 0, 0, 0), line(1e-6, 0, 0, 3e-9),
+        line(1e-6, 2e-8, 3e-9, 4e-9), line(0, 3e-8, 0, 0), line(0, 0, 4e-9, 0)}) {
     expect_near(fit_cost(measured(truth, 20)), truth, 1e-6);
   }
 }

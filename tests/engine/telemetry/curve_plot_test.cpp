@@ -15,7 +15,11 @@ std::size_t count(const std::string& text, const std::string& words) {
 }
 
 CurvePlot plot_of(std::vector<double> x, std::vector<double> values) {
-  return {"rock", "subdivisions", "µs", "", std::move(x),
+  return {"rock",
+          "subdivisions",
+          "µs",
+          "",
+          std::move(x),
           {{"measured", 1, CurveKind::kPoints, values}, {"c·n", 2, CurveKind::kLine, values}}};
 }
 
