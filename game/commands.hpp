@@ -10,6 +10,7 @@
 #include "engine/amplify/amplify.hpp"
 #include "engine/app/app.hpp"
 #include "engine/exchange/write_document.hpp"
+#include "game/request_recorder.hpp"
 
 namespace psygen::game {
 
@@ -28,10 +29,13 @@ class FlyCommand {
 
  private:
   int fly(app::App& app) const;
+  core::Result<void> write_requests() const;
 
   CLI::App* command_;
   app::Options options_;
   std::string world_ = "game/worlds/paper.toml";
+  std::string requests_;  // file; empty: they are not recorded
+  RequestRecorder recorder_;
   bool json_ = false;
 };
 
@@ -97,6 +101,20 @@ class CalibrateCommand {
   std::string out_, world_ = "game/worlds/paper.toml";
   bool ranges_ = false;
   std::size_t samples_ = 64;
+  bool json_ = false;
+};
+
+class ScheduleCommand {
+ public:
+  explicit ScheduleCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run() const;
+
+ private:
+  CLI::App* command_;
+  std::string file_;
+  unsigned modelers_ = 2;
+  double slower_ = 1;
   bool json_ = false;
 };
 

@@ -5,6 +5,7 @@
 
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/replace_file.hpp"
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
 #include "game/option_checks.hpp"
@@ -74,12 +75,20 @@ FlyCommand::FlyCommand(CLI::App& cli)
              "Vulkan validation; any message makes the run fail");
   c.add_flag("!--no-vsync", options_.vsync, "Do not wait for the display");
   c.add_flag("!--no-prefill", options_.prefill, "Start with an empty cache");
+  c.add_option("--record-requests", requests_,
+               "File that gets every request of the flight; starts with an empty cache");
   c.add_flag("--json", json_, "Print the summary as JSON instead of a table");
 }
 
 int FlyCommand::run() {
   options_.world_file = world_;
   options_.stop = &stop_at_interrupt();
+  if (!requests_.empty()) {
+    options_.prefill = false;  // the initial fill is part of the flight
+    options_.plugins.push_back({"requests", {}, {}, [this](app::App& flown, double) {
+                                  recorder_.observe(flown.scene().state());
+                                }});
+  }
   auto app = app::App::create(options_);
   if (!app) {
     core::log_error(app.error().message);
@@ -96,6 +105,13 @@ int FlyCommand::fly(app::App& app) const {
     core::log_error(report.error().message);
     return exit_code_of(report.error());
   }
+  if (!requests_.empty()) {
+    if (auto ok = write_requests(); !ok) {
+      core::log_error(ok.error().message);
+      return exit_code_of(ok.error());
+    }
+    core::log_info(fmt::format("wrote {}", requests_));
+  }
   const int printed =
       print(json_ ? telemetry::to_json(report->summary) : telemetry::to_text(report->summary));
   for (const auto& file : report->files)
@@ -103,6 +119,12 @@ int FlyCommand::fly(app::App& app) const {
   for (const std::string& message : report->validation_messages)
     core::log_error(message);
   return report->validation_messages.empty() ? printed : kFailed;
+}
+
+core::Result<void> FlyCommand::write_requests() const {
+  const std::string text = synthesis::stream_text(recorder_.jobs());
+  return core::replace_file(requests_,
+                            {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 }  // namespace psygen::game

@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   psygen::game::AmplifyCommand amplify(cli);
   psygen::game::ExportCommand exporter(cli);
   psygen::game::CalibrateCommand calibrate(cli);
+  psygen::game::ScheduleCommand schedule(cli);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -48,6 +49,7 @@ int main(int argc, char** argv) {
     if (amplify.chosen()) return amplify.run();
     if (exporter.chosen()) return exporter.run();
     if (calibrate.chosen()) return calibrate.run();
+    if (schedule.chosen()) return schedule.run();
     return models.run();
   } catch (const std::exception& error) {
     psygen::core::log_error(error.what());

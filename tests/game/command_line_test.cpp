@@ -97,6 +97,9 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
                                 "export --model rock --block 1,1 --out a.glb",
                                 "export --block 1 --out a.glb",
                                 "calibrate --samples 1",
+                                "schedule",
+                                "schedule --requests a --modelers 0",
+                                "schedule --requests a --slower 0",
                                 "calibrate --ranges --world game/worlds/paper.toml",
                                 "export --model rock --world x.toml --out a.glb"}) {
     const Outcome outcome = run_psygen(arguments);
@@ -266,6 +269,22 @@ TEST(CommandLine, CalibrateWritesFitsAndPlots) {
   EXPECT_TRUE(mentions(read(folder / "calibration.html"), "<svg"));
   EXPECT_TRUE(mentions(read(folder / "calibration.json"), "\"r_squared\""));
   EXPECT_EQ(run_psygen("calibrate --samples 4 --out /proc/nowhere").code, 1);
+}
+
+TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "requests").string();
+  const Outcome flight = run_psygen(
+      "fly --headless --frames 3 --size 64x36 --view-distance 64 --record-requests " + file);
+  EXPECT_EQ(flight.code, 0) << flight.err;
+  const Outcome table = run_psygen("schedule --modelers 3 --requests " + file);
+  EXPECT_EQ(table.code, 0) << table.err;
+  for (const char* policy : {"fifo", "plp", "shortest", "longest", "deadline"})
+    EXPECT_TRUE(mentions(table.out, policy)) << table.out;
+  EXPECT_TRUE(mentions(run_psygen("schedule --json --requests " + file).out, "\"late_percent\""));
+  const Outcome missing = run_psygen("schedule --requests nowhere.requests");
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_TRUE(mentions(missing.err, "nowhere.requests")) << missing.err;
 }
 
 }  // namespace

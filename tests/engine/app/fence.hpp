@@ -16,8 +16,8 @@ using namespace psygen;
 enum FenceParameter : std::size_t { kSeed, kPosts, kSpacingM, kHeightM };
 
 constexpr models::ParameterSpec kFenceSchema[] = {
-    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000, "which of all fences",
-     models::ParameterSource::kPlaced},
+    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000,
+     "which of all fences", models::ParameterSource::kPlaced},
     {"posts", models::ParameterType::kInteger, "1", 8, 2, 64, 2, 24, "number of posts"},
     {"spacing_m", models::ParameterType::kReal, "m", 1.5, 0.2, 10, 0.5, 3, "from post to post"},
     {"height_m", models::ParameterType::kReal, "m", 1.2, 0.2, 5, 0.6, 2, "of the posts"},
