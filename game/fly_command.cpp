@@ -1,46 +1,17 @@
 // psygen fly: a flight through a world, in a window or headless, and what it measured.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <csignal>
 #include <cstdlib>
 
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/replace_file.hpp"
 #include "game/commands.hpp"
+#include "game/interrupt.hpp"
+#include "game/option_checks.hpp"
 #include "game/text_values.hpp"
 
 namespace psygen::game {
-namespace {
-
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-// A check that CLI11 runs on an option's text; the sentence becomes the usage error.
-template <class Parse>
-CLI::Validator valid_if(Parse parse, const std::string& description) {
-  return CLI::Validator(
-      [parse](std::string& text) {
-        const auto value = parse(text);
-        return value ? std::string() : value.error().message;
-      },
-      description);
-}
-
-CLI::Validator number_between(double low, double high) {
-  return CLI::Validator(
-      [low, high](std::string& text) {
-        char* end = nullptr;
-        const double value = std::strtod(text.c_str(), &end);
-        const bool ok =
-            !text.empty() && *end == 0 && std::isfinite(value) && value >= low && value <= high;
-        return ok ? std::string() : fmt::format("'{}' is not between {} and {}", text, low, high);
-      },
-      fmt::format("{} to {}", low, high));
-}
-
-}  // namespace
-
 FlyCommand::FlyCommand(CLI::App& cli)
     : command_(cli.add_subcommand("fly", "Fly through a world, in a window or headless")) {
   CLI::App& c = *command_;
@@ -104,20 +75,20 @@ FlyCommand::FlyCommand(CLI::App& cli)
              "Vulkan validation; any message makes the run fail");
   c.add_flag("!--no-vsync", options_.vsync, "Do not wait for the display");
   c.add_flag("!--no-prefill", options_.prefill, "Start with an empty cache");
+  c.add_option("--record-requests", requests_,
+               "File that gets every request of the flight; starts with an empty cache");
   c.add_flag("--json", json_, "Print the summary as JSON instead of a table");
 }
 
 int FlyCommand::run() {
   options_.world_file = world_;
-  options_.stop = &interrupted;
-  // The first signal ends the flight, a second one the program.
-  const auto interrupt = [](int signal) {
-    interrupted = true;
-    std::signal(signal, SIG_DFL);
-  };
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
-
+  options_.stop = &stop_at_interrupt();
+  if (!requests_.empty()) {
+    options_.prefill = false;  // the initial fill is part of the flight
+    options_.plugins.push_back({"requests", {}, {}, [this](app::App& flown, double) {
+                                  recorder_.observe(flown.scene().state());
+                                }});
+  }
   auto app = app::App::create(options_);
   if (!app) {
     core::log_error(app.error().message);
@@ -134,6 +105,13 @@ int FlyCommand::fly(app::App& app) const {
     core::log_error(report.error().message);
     return exit_code_of(report.error());
   }
+  if (!requests_.empty()) {
+    if (auto ok = write_requests(); !ok) {
+      core::log_error(ok.error().message);
+      return exit_code_of(ok.error());
+    }
+    core::log_info(fmt::format("wrote {}", requests_));
+  }
   const int printed =
       print(json_ ? telemetry::to_json(report->summary) : telemetry::to_text(report->summary));
   for (const auto& file : report->files)
@@ -141,6 +119,12 @@ int FlyCommand::fly(app::App& app) const {
   for (const std::string& message : report->validation_messages)
     core::log_error(message);
   return report->validation_messages.empty() ? printed : kFailed;
+}
+
+core::Result<void> FlyCommand::write_requests() const {
+  const std::string text = synthesis::stream_text(recorder_.jobs());
+  return core::replace_file(requests_,
+                            {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 }  // namespace psygen::game

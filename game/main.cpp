@@ -31,6 +31,10 @@ int main(int argc, char** argv) {
   cli.require_subcommand(1);
   psygen::game::FlyCommand fly(cli);
   psygen::game::ModelsCommand models(cli);
+  psygen::game::AmplifyCommand amplify(cli);
+  psygen::game::ExportCommand exporter(cli);
+  psygen::game::CalibrateCommand calibrate(cli);
+  psygen::game::ScheduleCommand schedule(cli);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -41,7 +45,12 @@ int main(int argc, char** argv) {
   }
   // Nothing of ours throws, but libraries do when memory ends.
   try {
-    return fly.chosen() ? fly.run() : models.run();
+    if (fly.chosen()) return fly.run();
+    if (amplify.chosen()) return amplify.run();
+    if (exporter.chosen()) return exporter.run();
+    if (calibrate.chosen()) return calibrate.run();
+    if (schedule.chosen()) return schedule.run();
+    return models.run();
   } catch (const std::exception& error) {
     psygen::core::log_error(error.what());
     return psygen::game::kFailed;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -52,6 +53,33 @@ core::Result<core::Extent> parse_size(const std::string& text) {
                       fmt::format("'{}' is not a size such as 1280x720 (1 to 16384 each)", text));
   }
   return core::Extent{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+}
+
+core::Result<glm::dvec2> parse_place(const std::string& text) {
+  const char* const end = text.data() + text.size();
+  glm::dvec2 place{0.0};
+  const auto x = std::from_chars(text.data(), end, place.x);
+  const bool separated = x.ec == std::errc() && x.ptr != end && *x.ptr == ',';
+  const auto z = separated ? std::from_chars(x.ptr + 1, end, place.y) : x;
+  if (!separated || z.ec != std::errc() || z.ptr != end || !std::isfinite(place.x) ||
+      !std::isfinite(place.y)) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("'{}' is not a place X,Z in metres", text));
+  }
+  return place;
+}
+
+core::Result<core::BlockCoord> parse_block(const std::string& text) {
+  const char* const end = text.data() + text.size();
+  core::BlockCoord block;
+  const auto x = std::from_chars(text.data(), end, block.x);
+  const bool separated = x.ec == std::errc() && x.ptr != end && *x.ptr == ',';
+  const auto z = separated ? std::from_chars(x.ptr + 1, end, block.z) : x;
+  if (!separated || z.ec != std::errc() || z.ptr != end) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("'{}' is not a block X,Z", text));
+  }
+  return block;
 }
 
 }  // namespace psygen::game

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <string>
 
+#include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/surface_provider.hpp"
 
@@ -15,5 +17,11 @@ core::Result<std::uint64_t> parse_bytes(const std::string& text);
 
 // Pixels as WIDTHxHEIGHT, each 1 … 16384.
 core::Result<core::Extent> parse_size(const std::string& text);
+
+// A place as X,Z: two finite numbers.
+core::Result<glm::dvec2> parse_place(const std::string& text);
+
+// A block as X,Z: two integers of 32 bits.
+core::Result<core::BlockCoord> parse_block(const std::string& text);
 
 }  // namespace psygen::game

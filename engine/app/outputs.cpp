@@ -1,6 +1,7 @@
 // What a run leaves behind: the facts of the summary and the files of the output folder.
 #include <fmt/format.h>
 
+#include "engine/amplify/block_synthesizer.hpp"
 #include "engine/app/app.hpp"
 #include "engine/telemetry/process_memory.hpp"
 #include "engine/telemetry/report.hpp"
@@ -79,7 +80,7 @@ telemetry::RunFacts App::run_facts() {
   facts.floor_ratio = floor_ratio(*log_, *renderer_);
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
   facts.world_hash = options_.hash_world
-                         ? telemetry::Count(scene::sample_world_hash(
+                         ? telemetry::Count(amplify::sample_world_hash(
                                state.facts.world, state.facts.registry, home().position.block))
                          : telemetry::Count::missing("switched off");
   facts.images_hash = images_ > 0 ? telemetry::Count(images_hash_)

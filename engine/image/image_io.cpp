@@ -10,8 +10,8 @@
 #include <new>
 #include <string>
 
+#include "engine/core/replace_file.hpp"
 #include "engine/image/picture_header.hpp"
-#include "engine/image/replace_file.hpp"
 
 namespace psygen::image {
 namespace {
@@ -156,7 +156,7 @@ core::Result<void> write_png(const std::filesystem::path& path, const Image& ima
   }
   return without_exceptions(path, [&]() -> core::Result<void> {
     return encode_png(path, image).and_then([&](const Bytes& bytes) {
-      return replace_file(path, bytes);
+      return core::replace_file(path, bytes);
     });
   });
 }

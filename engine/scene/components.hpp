@@ -12,6 +12,7 @@
 #include "engine/core/geometry_memory.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/synthesis/geometry_cache.hpp"
+#include "engine/world/placement.hpp"
 
 namespace psygen::scene {
 
@@ -56,7 +57,7 @@ struct Source {
   std::uint32_t index = 0;  // within the block; models count from 0, terrain is kTerrainIndex
   models::ModelIndex model = 0;
 };
-inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
+using world::kTerrainIndex;
 
 // The mesh that is resident and drawn. Results of synthesis land here in batches.
 struct Mesh {

@@ -86,7 +86,7 @@ std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
   world::place_models(facts.world, facts.registry, block, placements);
   std::vector<synthesis::CostSample> samples{
       {facts.world.terrain_model, world::terrain_parameters(facts.world, block)}};
-  constexpr std::size_t kPerType = 6;
+  constexpr std::size_t kPerType = 24;
   std::vector<std::size_t> taken(facts.registry.size(), 0);
   for (const world::Placement& placement : placements) {
     if (taken[placement.model]++ < kPerType) {

@@ -53,9 +53,4 @@ class Scene {
   synthesis::CalibrationReport calibration_;
 };
 
-// Hash over every mesh of the 3 × 3 blocks around `block` at every level: equal for the same world
-// file on every machine (with the same version), whatever the number of modelers.
-std::uint64_t sample_world_hash(const world::World& world, const models::Registry& registry,
-                                core::BlockCoord block);
-
 }  // namespace psygen::scene

@@ -13,8 +13,8 @@
 
 namespace psygen::synthesis {
 namespace {
-constexpr double kDefaultSecondsPerOperation = 5e-9;
-constexpr double kLearningRate = 0.05;    // of one observation, in the logarithm of c
+constexpr CostFit kUnknown{.per_operation_s = 5e-9};
+constexpr double kLearningRate = 0.05;    // of one observation, in the logarithm of the factor
 constexpr double kLargestSurprise = 4.0;  // one observation counts as at most this factor
 constexpr std::size_t kErrorWindow = 4096;
 }  // namespace
@@ -29,57 +29,58 @@ double quantile(std::span<double> values, double p) {
 }
 
 CostModel::CostModel(const models::Registry& registry) : registry_(registry) {
-  constants_.resize(registry.size());
+  fits_.resize(registry.size());
   for (std::size_t m = 0; m < registry.size(); ++m) {
     const int levels = registry[static_cast<models::ModelIndex>(m)].level_count();
-    constants_[m].assign(static_cast<std::size_t>(std::max(levels, 1)),
-                         kDefaultSecondsPerOperation);
+    fits_[m].assign(static_cast<std::size_t>(std::max(levels, 1)), kUnknown);
   }
 }
 
-double& CostModel::constant(models::ModelIndex model, int level) {
-  return constants_[model][static_cast<std::size_t>(level)];
-}
-
-double CostModel::seconds_per_operation(models::ModelIndex model, int level) const {
-  if (model >= constants_.size()) return kDefaultSecondsPerOperation;
-  const auto& levels = constants_[model];
+const CostFit& CostModel::fit(models::ModelIndex model, int level) const {
+  if (model >= fits_.size()) return kUnknown;
+  const auto& levels = fits_[model];
   return levels[static_cast<std::size_t>(
       std::clamp(level, 0, static_cast<int>(levels.size()) - 1))];
 }
 
-double CostModel::complexity(models::ModelIndex model, const models::Parameters& parameters,
-                             int level) const {
-  if (model >= registry_.size()) return 1;
+Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters,
+                     int level) const {
+  Work work;
+  if (model >= registry_.size()) return work;
   try {  // types of users may throw; nothing of ours does
     const double x = registry_[model].complexity(parameters, level);
-    return std::isfinite(x) && x > 0 ? x : 1;
+    if (std::isfinite(x) && x > 0) work.operations = x;
+    work.triangles = registry_[model].mesh_size(parameters, level).triangle_count();
+    work.full_triangles =
+        level == 0 ? work.triangles : registry_[model].mesh_size(parameters, 0).triangle_count();
   } catch (...) {
-    return 1;
   }
+  return work;
 }
 
-double CostModel::predict_from(models::ModelIndex model, int level, double complexity) const {
-  const double seconds = seconds_per_operation(model, level) * complexity;
-  return std::clamp(seconds, 1e-9, 1e6);
+double CostModel::predict_from(models::ModelIndex model, int level, const Work& work) const {
+  return std::clamp(fit(model, level).seconds(work), 1e-9, 1e6);
 }
 
 double CostModel::predict(models::ModelIndex model, const models::Parameters& parameters,
                           int level) const {
-  return predict_from(model, level, complexity(model, parameters, level));
+  return predict_from(model, level, work(model, parameters, level));
 }
 
-void CostModel::observe(models::ModelIndex model, int level, double complexity,
+void CostModel::observe(models::ModelIndex model, int level, const Work& work,
                         double predicted_seconds, double seconds) {
-  if (model >= constants_.size() || level < 0 ||
-      static_cast<std::size_t>(level) >= constants_[model].size() || !(seconds > 0) ||
-      !(complexity > 0)) {
+  if (model >= fits_.size() || level < 0 ||
+      static_cast<std::size_t>(level) >= fits_[model].size() || !(seconds > 0) ||
+      !(work.operations > 0)) {
     return;
   }
-  double& c = constant(model, level);
-  const double surprise =
-      std::clamp(seconds / (complexity * c), 1 / kLargestSurprise, kLargestSurprise);
-  c *= std::pow(surprise, kLearningRate);
+  CostFit& line = fits_[model][static_cast<std::size_t>(level)];
+  const double surprise = std::clamp(seconds / predict_from(model, level, work),
+                                     1 / kLargestSurprise, kLargestSurprise);
+  const double factor = std::pow(surprise, kLearningRate);
+  for (double* term :
+       {&line.fixed_s, &line.per_operation_s, &line.per_triangle_s, &line.per_full_triangle_s})
+    *term *= factor;
   const auto error = static_cast<float>(std::abs(predicted_seconds - seconds) / seconds * 100);
   if (recent_errors_.size() < kErrorWindow) {
     recent_errors_.push_back(error);
@@ -97,11 +98,9 @@ CostError CostModel::error() const {
   return e;
 }
 
-// The least time of a few measurements, or nothing if the type failed or the time is up.
-std::optional<CostModel::Measurement> CostModel::measure(const CostSample& sample, int level,
-                                                         const CalibrationOptions& options,
-                                                         double deadline_s,
-                                                         CalibrationReport& report) const {
+std::optional<Measurement> CostModel::measure(const CostSample& sample, int level,
+                                              const CalibrationOptions& options, double deadline_s,
+                                              CalibrationReport& report) const {
   const models::ModelType& type = registry_[sample.model];
   const auto destination = HeapDestination::make(type, sample.parameters, level);
   if (!destination) {
@@ -130,7 +129,7 @@ std::optional<CostModel::Measurement> CostModel::measure(const CostSample& sampl
     }
   }
   if (!std::isfinite(least) || least <= 0) return std::nullopt;
-  return Measurement{least, complexity(sample.model, sample.parameters, level)};
+  return Measurement{work(sample.model, sample.parameters, level), least};
 }
 
 LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
@@ -138,30 +137,39 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
                                             const CalibrationOptions& options, double deadline_s,
                                             CalibrationReport& report,
                                             std::vector<double>& errors) {
-  std::vector<std::pair<double, const CostSample*>> cheapest_first;
+  struct Candidate {
+    Work work;
+    const CostSample* sample;
+  };
+  std::vector<Candidate> cheapest_first;
   for (const CostSample& s : samples) {
-    if (s.model == model) cheapest_first.emplace_back(complexity(model, s.parameters, level), &s);
+    if (s.model == model) cheapest_first.push_back({work(model, s.parameters, level), &s});
   }
-  std::sort(cheapest_first.begin(), cheapest_first.end());
+  std::stable_sort(
+      cheapest_first.begin(), cheapest_first.end(),
+      [](const Candidate& a, const Candidate& b) { return a.work.operations < b.work.operations; });
   std::vector<Measurement> measured;
   std::vector<double> ratios;
-  for (const auto& [operations, sample] : cheapest_first) {
-    const double expected = predict_from(model, level, operations) * (options.rounds + 1);
+  const auto set = [&](const CostFit& line) {  // also the best guess for what is not measured yet
+    for (int finer = level; finer >= 0; --finer)
+      fits_[model][static_cast<std::size_t>(finer)] = line;
+  };
+  for (const auto& [planned, sample] : cheapest_first) {
+    const double expected = predict_from(model, level, planned) * (options.rounds + 1);
     if (options.wall_clock() + expected >= deadline_s) break;
     const auto m = measure(*sample, level, options, deadline_s, report);
     if (!m) continue;
     measured.push_back(*m);
-    ratios.push_back(m->seconds / m->complexity);
-    const double c = quantile(ratios, 0.5);
-    for (int finer = level; finer >= 0; --finer)  // the best guess for what is not measured yet
-      constant(model, finer) = c;
+    ratios.push_back(m->seconds / m->work.operations);
+    set({.per_operation_s = quantile(ratios, 0.5)});
   }
-  const double c = constant(model, level);
-  LevelCalibration result{model, level, c, 0, static_cast<std::uint32_t>(measured.size())};
+  if (measured.size() >= kMinForTerms) set(fit_cost(measured));
+  LevelCalibration result{model, level, fit(model, level), 0,
+                          static_cast<std::uint32_t>(measured.size())};
   if (measured.empty()) return result;
   std::vector<double> level_errors;
   for (const Measurement& m : measured)
-    level_errors.push_back(std::abs(m.seconds - c * m.complexity) / m.seconds * 100);
+    level_errors.push_back(std::abs(m.seconds - result.fit.seconds(m.work)) / m.seconds * 100);
   errors.insert(errors.end(), level_errors.begin(), level_errors.end());
   result.fit_error_percent = quantile(level_errors, 0.5);
   return result;
@@ -183,16 +191,16 @@ CalibrationReport CostModel::calibrate(std::span<const CostSample> samples,
   }
   const double start = options.wall_clock();
   std::size_t total = 0, done = 0;
-  for (const auto& levels : constants_)
+  for (const auto& levels : fits_)
     total += levels.size();
   CalibrationReport report;
   std::vector<double> errors;
-  for (std::size_t m = 0; m < constants_.size(); ++m) {
+  for (std::size_t m = 0; m < fits_.size(); ++m) {
     // Each type may use its share of what is left, so that a slow one does not starve the rest.
     const double now = options.wall_clock();
     const double left = start + options.seconds_limit - now;
-    const double share = left / static_cast<double>(constants_.size() - m);
-    for (int level = static_cast<int>(constants_[m].size()) - 1; level >= 0; --level) {
+    const double share = left / static_cast<double>(fits_.size() - m);
+    for (int level = static_cast<int>(fits_[m].size()) - 1; level >= 0; --level) {
       report.levels.push_back(calibrate_level(static_cast<models::ModelIndex>(m), level, samples,
                                               options, now + share, report, errors));
       if (progress) progress(static_cast<double>(++done) / static_cast<double>(total));

@@ -1,8 +1,9 @@
-// How long a synthesis takes: predicted time = c · complexity(parameters, level), with one measured
-// c per model type and level (paper, sections 5.2 and 6: the constants are computed at start-up).
+// How long a synthesis takes: one measured line over operations and triangles (cost_fit.hpp) per
+// model type and level (paper, sections 5.2 and 6: the constants are computed at start-up).
 // Calibrated in well under a second, then refined by every finished request; the error of its own
 // predictions is kept, so that a schedule never rests on a figure that nobody checked.
-// One thread. Not a profiler. predict() and observe() are O(1) beside the type's complexity().
+// One thread. Not a profiler. predict() and observe() are O(1) beside the type's complexity() and
+// mesh_size().
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "engine/models/registry.hpp"
+#include "engine/synthesis/cost_fit.hpp"
 
 namespace psygen::synthesis {
 
@@ -36,9 +38,9 @@ struct CalibrationOptions {
 struct LevelCalibration {
   models::ModelIndex model = 0;
   int level = 0;
-  double seconds_per_operation = 0;  // c
-  double fit_error_percent = 0;  // median over the samples of |measured − c·complexity|/measured
-  std::uint32_t samples = 0;     // 0: skipped, c was carried over from a coarser level
+  CostFit fit;
+  double fit_error_percent = 0;  // median over the samples of |measured − fit| / measured
+  std::uint32_t samples = 0;     // 0: skipped, the fit was carried over from a coarser level
 };
 
 struct CalibrationReport {
@@ -58,7 +60,7 @@ struct CostError {
 
 class CostModel {
  public:
-  // Before calibration c is 5 ns for every type.
+  // Before calibration an operation takes 5 ns for every type.
   explicit CostModel(const models::Registry& registry);
 
   // Measures the samples (or, without any, each type's defaults) at every level, coarsest first.
@@ -67,36 +69,34 @@ class CostModel {
                               const CalibrationOptions& options = {},
                               const std::function<void(double)>& progress = {});
 
-  // Operations by the type's formula; 1 where the formula fails (throws, NaN, not positive).
-  double complexity(models::ModelIndex model, const models::Parameters& parameters,
-                    int level) const;
+  // What synthesising it has to do. Where the formula fails (throws, NaN, not positive) one
+  // operation, where the size is unknown no triangle.
+  Work work(models::ModelIndex model, const models::Parameters& parameters, int level) const;
   // Seconds of one core. Finite and positive for any model and level.
   double predict(models::ModelIndex model, const models::Parameters& parameters, int level) const;
-  double predict_from(models::ModelIndex model, int level, double complexity) const;
+  double predict_from(models::ModelIndex model, int level, const Work& work) const;
 
-  // A finished synthesis: what had been predicted, what it took (seconds of one core).
-  void observe(models::ModelIndex model, int level, double complexity, double predicted_seconds,
+  // A finished synthesis: what had been predicted, what it took (seconds of one core). Moves the
+  // level's whole line by a factor.
+  void observe(models::ModelIndex model, int level, const Work& work, double predicted_seconds,
                double seconds);
-  CostError error() const;
-  double seconds_per_operation(models::ModelIndex model, int level) const;
 
- private:
-  struct Measurement {
-    double seconds;
-    double complexity;
-  };
+  // The least CPU time of a few repetitions; nothing if the type failed or the time is up.
   std::optional<Measurement> measure(const CostSample& sample, int level,
                                      const CalibrationOptions& options, double deadline_s,
                                      CalibrationReport& report) const;
+  CostError error() const;
+  const CostFit& fit(models::ModelIndex model, int level) const;
+
+ private:
   LevelCalibration calibrate_level(models::ModelIndex model, int level,
                                    std::span<const CostSample> samples,
                                    const CalibrationOptions& options, double deadline_s,
                                    CalibrationReport& report, std::vector<double>& errors);
-  double& constant(models::ModelIndex model, int level);
 
   const models::Registry& registry_;
-  std::vector<std::vector<double>> constants_;  // [model][level]
-  std::vector<float> recent_errors_;            // ring, in percent
+  std::vector<std::vector<CostFit>> fits_;  // [model][level]
+  std::vector<float> recent_errors_;        // ring, in percent
   std::size_t next_error_ = 0;
 };
 

@@ -13,7 +13,7 @@ LandingReport land(std::span<const Completion> completions, GeometryCache& cache
       ++report.failed;
     } else {
       if (cost != nullptr) {
-        cost->observe(c.key.model, c.key.level, c.complexity, c.predicted_seconds, c.seconds);
+        cost->observe(c.key.model, c.key.level, c.work, c.predicted_seconds, c.seconds);
       }
       cache.complete(c.handle, c.tight);
       const MeshRecord* record = cache.get(c.handle);  // may be evicted or released already

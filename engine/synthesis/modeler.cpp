@@ -23,7 +23,7 @@ Completion completion_of(const Request& request, std::uint32_t modeler) {
   c.key = request.key;
   c.owner = request.owner;
   c.modeler = modeler;
-  c.complexity = request.complexity;
+  c.work = request.work;
   c.predicted_seconds = request.predicted_seconds;
   return c;
 }

@@ -46,13 +46,13 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
       }
       kept_[reclaimed] = true;
     }
-    const double complexity =
-        reclaimed == kNone ? cost.complexity(want.key.model, *want.parameters, want.key.level)
-                           : reclaimed_[reclaimed].complexity;
-    const double predicted = cost.predict_from(want.key.model, want.key.level, complexity);
+    const Work work = reclaimed == kNone
+                          ? cost.work(want.key.model, *want.parameters, want.key.level)
+                          : reclaimed_[reclaimed].work;
+    const double predicted = cost.predict_from(want.key.model, want.key.level, work);
     // First come, first served: what was requested before comes before what is new.
     const std::uint64_t arrival = reclaimed == kNone ? reclaimed_.size() + i : reclaimed;
-    items_.push_back({{want.rank, want.deadline_s, predicted, arrival}, i, complexity, reclaimed});
+    items_.push_back({{want.rank, want.deadline_s, predicted, arrival}, i, work, reclaimed});
   }
   std::sort(items_.begin(), items_.end(), [policy](const Item& a, const Item& b) {
     return served_before(policy, a.order, b.order);
@@ -110,8 +110,8 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
   }
   const MeshRecord& record = *cache.get(*handle);
   list_for(want, cache)
-      .push_back({*handle, want.key, *want.parameters, record.destination, record.size,
-                  item.complexity, item.order.predicted_seconds, want.owner});
+      .push_back({*handle, want.key, *want.parameters, record.destination, record.size, item.work,
+                  item.order.predicted_seconds, want.owner});
   ++report.reserved;
   report.predicted_seconds += item.order.predicted_seconds;
 }

@@ -59,7 +59,7 @@ class Planner {
   struct Item {
     ScheduleKey order;
     std::uint32_t want;
-    double complexity;
+    Work work;
     std::uint32_t reclaimed;  // position in reclaimed_, or kNone
   };
   static constexpr std::uint32_t kNone = UINT32_MAX;

@@ -49,6 +49,12 @@ class Rank {
             static_cast<std::uint32_t>(std::clamp(ms, 0.0, double{kMaxMajor})), distance_m};
   }
   static constexpr Rank unwanted() { return Rank(); }
+  // The rank of bits() that were written down.
+  static constexpr Rank from_bits(std::uint64_t bits) {
+    Rank rank;
+    rank.bits_ = bits;
+    return rank;
+  }
 
   constexpr RankGroup group() const { return static_cast<RankGroup>(bits_ >> 56); }
   constexpr std::uint64_t bits() const { return bits_; }

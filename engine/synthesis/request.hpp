@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/models/registry.hpp"
+#include "engine/synthesis/cost_fit.hpp"
 #include "engine/synthesis/mesh_key.hpp"
 
 namespace psygen::synthesis {
@@ -16,7 +17,7 @@ struct Request {
   models::Parameters parameters;
   models::MeshView destination;  // reserved for this request; written by whoever claims it
   models::MeshSize size;
-  double complexity = 0;         // operations by the type's formula
+  Work work;                     // for the cost model
   double predicted_seconds = 0;  // of one core
   std::uint64_t owner = 0;
 };
@@ -34,7 +35,7 @@ struct Completion {
   std::string error;   // if not ok: one sentence that names the model and the level
   double seconds = 0;  // CPU time of the modeler's thread, claiming included
   double started_s = 0, finished_s = 0;  // by the manager's clock, for traces
-  double complexity = 0;                 // as requested, for CostModel::observe()
+  Work work;                             // as requested, for CostModel::observe()
   double predicted_seconds = 0;
   core::Bounds tight;
   std::uint64_t content_hash = 0;  // if the manager hashes content, else 0

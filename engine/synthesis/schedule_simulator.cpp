@@ -26,16 +26,18 @@ SimulationResult simulate(std::span<const SimulatedJob> jobs, unsigned modelers,
   std::vector<double> free_at(modelers, 0.0);
   SimulationResult result;
   result.runs.resize(jobs.size());
-  double busy_seconds = 0;
+  double busy_seconds = 0, now = 0;
   for (std::size_t next = 0; next < arriving.size() || !waiting.empty();) {
     const auto modeler = std::min_element(free_at.begin(), free_at.end());
-    if (waiting.empty()) *modeler = std::max(*modeler, jobs[arriving[next]].arrival_s);
-    while (next < arriving.size() && jobs[arriving[next]].arrival_s <= *modeler)
+    // A modeler that has been idle begins now, not when it became free.
+    now = std::max(now, *modeler);
+    if (waiting.empty()) now = std::max(now, jobs[arriving[next]].arrival_s);
+    while (next < arriving.size() && jobs[arriving[next]].arrival_s <= now)
       waiting.push(arriving[next++]);
     const std::size_t i = waiting.top();
     waiting.pop();
-    const double finish = *modeler + jobs[i].seconds;
-    result.runs[i] = {*modeler, finish, static_cast<std::uint32_t>(modeler - free_at.begin())};
+    const double finish = now + jobs[i].seconds;
+    result.runs[i] = {now, finish, static_cast<std::uint32_t>(modeler - free_at.begin())};
     *modeler = finish;
     busy_seconds += jobs[i].seconds;
     result.makespan_s = std::max(result.makespan_s, finish);

@@ -33,19 +33,28 @@ SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models:
   }
 }
 
-core::Result<HeapDestination> HeapDestination::make(const models::ModelType& type,
-                                                    const models::Parameters& p, int level) {
-  HeapDestination d;
+core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
+                                                 const models::Parameters& p, int level) {
+  models::MeshSize size;
   try {
-    d.size_ = type.mesh_size(p, level);
+    size = type.mesh_size(p, level);
   } catch (...) {
     return core::fail(core::ErrorCode::kSynthesisFailed,
                       named(type, level, "threw while telling its size"));
   }
-  if (d.size_.vertex_count > 65536 || d.size_.index_count > (1u << 26)) {
+  if (size.vertex_count > 65536 || size.index_count > (1u << 26)) {
     return core::fail(core::ErrorCode::kOverBudget,
                       named(type, level, "is larger than a mesh with 16-bit indices can be"));
   }
+  return size;
+}
+
+core::Result<HeapDestination> HeapDestination::make(const models::ModelType& type,
+                                                    const models::Parameters& p, int level) {
+  const auto size = mesh_size_guarded(type, p, level);
+  if (!size) return tl::unexpected(size.error());
+  HeapDestination d;
+  d.size_ = *size;
   d.vertex_bytes_ = std::size_t{d.size_.vertex_count} * core::vertex_stride_bytes(d.size_.layout);
   d.own_indices_ = d.size_.shared_indices == 0 ? d.size_.index_count : 0;
   d.memory_.reset(new (std::nothrow) std::byte[d.vertex_bytes_ + d.own_indices_ * 2]);

@@ -21,10 +21,14 @@ struct SynthesisOutcome {
 SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models::Parameters& p,
                                     int level, const models::MeshView& out);
 
+// type.mesh_size(). Fails with kSynthesisFailed if the type throws, kOverBudget beyond 16-bit
+// meshes.
+core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
+                                                 const models::Parameters& p, int level);
+
 class HeapDestination {
  public:
-  // Fails with kSynthesisFailed if the type cannot tell its size, kOverBudget beyond 16-bit meshes,
-  // kOutOfMemory if the heap is exhausted.
+  // Fails as mesh_size_guarded(), and with kOutOfMemory if the heap is exhausted.
   static core::Result<HeapDestination> make(const models::ModelType& type,
                                             const models::Parameters& p, int level);
   const models::MeshSize& size() const { return size_; }

@@ -11,6 +11,9 @@
 
 namespace psygen::world {
 
+// The index of a block's terrain among its meshes; models count from 0.
+inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
+
 struct Placement {
   models::ModelIndex model = 0;
   std::uint32_t index = 0;   // within the block; names the instance

@@ -2,12 +2,17 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "tests/temporary_folder.hpp"
+
 namespace {
+
+using psygen::TemporaryFolder;
 
 struct Outcome {
   int code = -1;
@@ -23,7 +28,7 @@ std::string read(const std::filesystem::path& file) {
 
 // Runs psygen in the source folder; `environment` is put before the command. Leaks are looked for
 // in the tests of the libraries, which keep drivers loaded so that reports have names.
-Outcome psygen(const std::string& arguments, const std::string& environment = "") {
+Outcome run_psygen(const std::string& arguments, const std::string& environment = "") {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const auto folder = std::filesystem::path(testing::TempDir());
   const auto out = folder / (std::string(test->name()) + ".out");
@@ -40,23 +45,64 @@ bool mentions(const std::string& text, const std::string& words) {
 }
 
 TEST(CommandLine, HelpAndVersionGoToStdoutAndAreNoFailure) {
-  const Outcome help = psygen("--help");
+  const Outcome help = run_psygen("--help");
   EXPECT_EQ(help.code, 0);
   EXPECT_TRUE(mentions(help.out, "fly"));
   EXPECT_TRUE(mentions(help.out, "models"));
-  const Outcome version = psygen("--version");
+  const Outcome version = run_psygen("--version");
   EXPECT_EQ(version.code, 0);
   EXPECT_TRUE(mentions(version.out, "psygen "));
-  EXPECT_EQ(psygen("fly --help").code, 0);
+  EXPECT_EQ(run_psygen("fly --help").code, 0);
 }
 
 TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
-  for (const char* arguments :
-       {"", "walk", "fly --no-such-option", "fly --world", "fly --size 12", "fly --size 0x0",
-        "fly --budget lots", "fly --paradigm eager", "fly --policy random", "fly --lod maybe",
-        "fly --seconds -1", "fly --seconds nan", "fly --modelers 100000", "fly --fixed-step 0",
-        "fly --frames -3", "fly --warmup x", "models --frobnicate"}) {
-    const Outcome outcome = psygen(arguments);
+  for (const char* arguments : {"",
+                                "walk",
+                                "fly --no-such-option",
+                                "fly --world",
+                                "fly --size 12",
+                                "fly --size 0x0",
+                                "fly --budget lots",
+                                "fly --paradigm eager",
+                                "fly --policy random",
+                                "fly --lod maybe",
+                                "fly --seconds -1",
+                                "fly --seconds nan",
+                                "fly --modelers 100000",
+                                "fly --fixed-step 0",
+                                "fly --frames -3",
+                                "fly --warmup x",
+                                "models --frobnicate",
+                                "amplify --region 1,2,3",
+                                "amplify --region 0,0,0,1",
+                                "amplify --threads 0",
+                                "amplify --threads 257",
+                                "amplify --threads x",
+                                "amplify --sample 1",
+                                "amplify --sample nan,0",
+                                "amplify --sample 1,1 --region 0,0,1,1",
+                                "amplify --format stl --out /tmp",
+                                "amplify --format obj",
+                                "export",
+                                "export --model rock",
+                                "export --out a.glb",
+                                "export --model rock --out a.stl",
+                                "export --model rock --out noend",
+                                "export --model pyramid --out a.glb",
+                                "export --model rock --set size=3 --out a.glb",
+                                "export --model rock --set subdivisions=x --out a.glb",
+                                "export --model rock --set subdivisions=40 --out a.glb",
+                                "export --model rock --set subdivisions --out a.glb",
+                                "export --model rock --level 9 --out a.glb",
+                                "export --model rock --block 1,1 --out a.glb",
+                                "export --block 1 --out a.glb",
+                                "calibrate --samples 1",
+                                "schedule",
+                                "schedule --requests a --modelers 0",
+                                "schedule --requests a --slower 0",
+                                "calibrate --ranges --world game/worlds/paper.toml",
+                                "export --model rock --world x.toml --out a.glb"}) {
+    const Outcome outcome = run_psygen(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
     EXPECT_FALSE(outcome.err.empty()) << arguments;
     EXPECT_TRUE(outcome.out.empty()) << arguments;
@@ -64,23 +110,23 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
 }
 
 TEST(CommandLine, ModelsListsEveryModelWithUnitsAndRanges) {
-  const Outcome outcome = psygen("models");
+  const Outcome outcome = run_psygen("models");
   EXPECT_EQ(outcome.code, 0);
   for (const char* words :
        {"terrain", "rock", "tree", "octaves", "subdivisions", "iterations", "radius_m"}) {
     EXPECT_TRUE(mentions(outcome.out, words)) << words;
   }
-  EXPECT_TRUE(mentions(psygen("models --json").out, "\"unit\""));
+  EXPECT_TRUE(mentions(run_psygen("models --json").out, "\"unit\""));
 }
 
 TEST(CommandLine, FailuresOfFilesAreOneAndNameTheFile) {
-  const Outcome world = psygen("fly --headless --frames 1 --world missing.toml");
+  const Outcome world = run_psygen("fly --headless --frames 1 --world missing.toml");
   EXPECT_EQ(world.code, 1) << world.err;
   EXPECT_TRUE(mentions(world.err, "missing.toml")) << world.err;
-  const Outcome folder = psygen("fly --headless --frames 1 --out /proc/nowhere");
+  const Outcome folder = run_psygen("fly --headless --frames 1 --out /proc/nowhere");
   EXPECT_EQ(folder.code, 1) << folder.err;
   EXPECT_TRUE(mentions(folder.err, "/proc/nowhere")) << folder.err;
-  const Outcome budget = psygen("fly --headless --frames 1 --budget 1K");
+  const Outcome budget = run_psygen("fly --headless --frames 1 --budget 1K");
   EXPECT_EQ(budget.code, 1) << budget.err;
   EXPECT_TRUE(mentions(budget.err, "budget")) << budget.err;
 }
@@ -88,27 +134,28 @@ TEST(CommandLine, FailuresOfFilesAreOneAndNameTheFile) {
 TEST(CommandLine, ADiskThatIsFullIsAFailure) {
   for (const char* arguments : {"models", "models --json", "--help"}) {
     const std::string full = std::string(arguments) + " >/dev/full; exit $?; true";
-    EXPECT_EQ(psygen(full).code, 1) << arguments;
+    EXPECT_EQ(run_psygen(full).code, 1) << arguments;
   }
-  const Outcome outcome =
-      psygen("fly --headless --frames 2 --size 64x36 --view-distance 64 >/dev/full; exit $?; true");
+  const Outcome outcome = run_psygen(
+      "fly --headless --frames 2 --size 64x36 --view-distance 64 >/dev/full; exit $?; true");
   EXPECT_EQ(outcome.code, 1) << outcome.err;
 }
 
 TEST(CommandLine, WithoutADeviceOrADisplayTheExitCodeIsFour) {
-  const Outcome device = psygen("fly --headless --frames 1", "VK_ICD_FILENAMES=/nonexistent.json");
+  const Outcome device =
+      run_psygen("fly --headless --frames 1", "VK_ICD_FILENAMES=/nonexistent.json");
   EXPECT_EQ(device.code, 4) << device.err;
-  const Outcome name = psygen("fly --headless --frames 1 --device 'Voodoo 2'");
+  const Outcome name = run_psygen("fly --headless --frames 1 --device 'Voodoo 2'");
   EXPECT_EQ(name.code, 4) << name.err;
   EXPECT_TRUE(mentions(name.err, "Voodoo 2")) << name.err;
-  const Outcome display = psygen("fly --frames 1", "env -u DISPLAY -u WAYLAND_DISPLAY");
+  const Outcome display = run_psygen("fly --frames 1", "env -u DISPLAY -u WAYLAND_DISPLAY");
   EXPECT_EQ(display.code, 4) << display.err;
   EXPECT_TRUE(mentions(display.err, "headless")) << display.err;
 }
 
 TEST(CommandLine, AFlightPrintsItsSummaryAndNoProgressBarIntoAPipe) {
   const Outcome outcome =
-      psygen("fly --headless --frames 3 --size 64x36 --view-distance 64 --json");
+      run_psygen("fly --headless --frames 3 --size 64x36 --view-distance 64 --json");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out.front(), '{');
   EXPECT_TRUE(mentions(outcome.out, "\"frame_ms\""));
@@ -117,9 +164,127 @@ TEST(CommandLine, AFlightPrintsItsSummaryAndNoProgressBarIntoAPipe) {
 
 TEST(CommandLine, AmplifyingWhatDoesNotFitSaysSo) {
   const Outcome outcome =
-      psygen("fly --headless --frames 3 --size 64x36 --paradigm amplify --budget 16M");
+      run_psygen("fly --headless --frames 3 --size 64x36 --paradigm amplify --budget 16M");
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_TRUE(mentions(outcome.err, "more than the budget")) << outcome.err;
+}
+
+TEST(CommandLine, AmplifyPrintsItsFiguresAndTheSameHashForAnyNumberOfThreads) {
+  const Outcome text = run_psygen("amplify --region 3,4,5,6 --threads 1");
+  EXPECT_EQ(text.code, 0) << text.err;
+  for (const char* name : {"blocks", "models", "triangles", "bytes", "seconds",
+                           "triangles_per_second_per_core", "hash"}) {
+    EXPECT_TRUE(mentions(text.out, name)) << name;
+  }
+  const Outcome json = run_psygen("amplify --region 3,4,5,6 --threads 3 --json");
+  EXPECT_EQ(json.code, 0) << json.err;
+  EXPECT_TRUE(mentions(json.out, "\"blocks\": 4,")) << json.out;
+  const std::string name = "\"hash\": \"";
+  const std::size_t at = json.out.find(name);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_TRUE(mentions(text.out, json.out.substr(at + name.size(), 16)));
+}
+
+TEST(CommandLine, AmplifyRefusesWhatIsOutsideOfTheWorld) {
+  const Outcome region = run_psygen("amplify --region 511,0,513,1");
+  EXPECT_EQ(region.code, 1);
+  EXPECT_TRUE(mentions(region.err, "0 to 511")) << region.err;
+  const Outcome endless = run_psygen("amplify --world game/worlds/silver_combe.toml");
+  EXPECT_EQ(endless.code, 1);
+  EXPECT_TRUE(mentions(endless.err, "endless")) << endless.err;
+  for (const char* place : {"-1,5", "1e300,0", "40000,1"}) {
+    const Outcome sample = run_psygen(std::string("amplify --sample=") + place);
+    EXPECT_EQ(sample.code, 1) << place;
+    EXPECT_TRUE(mentions(sample.err, "outside")) << sample.err;
+  }
+}
+
+TEST(CommandLine, AmplifySamplesHeightsWithEveryDigit) {
+  const Outcome text = run_psygen("amplify --sample 100,200 --sample 3.5,7");
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_EQ(std::count(text.out.begin(), text.out.end(), '\n'), 2);
+  const Outcome json = run_psygen("amplify --sample 100,200 --sample 3.5,7 --json");
+  EXPECT_TRUE(mentions(json.out, "\"height_m\": " + text.out.substr(0, text.out.find('\n'))))
+      << text.out << json.out;
+}
+
+TEST(CommandLine, AmplifyThatIsInterruptedPrintsWhatWasDoneAndNoHash) {
+  // Interrupts it as soon as one of its threads works.
+  const std::string interrupted =
+      "run() { \"$@\" & p=$!; until grep -qs ^amplify /proc/$p/task/*/comm; do kill -0 $p || "
+      "break; "
+      "done; kill -INT $p; wait $p; }; run";
+  const Outcome outcome = run_psygen("amplify --threads 2 --json", interrupted);
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(mentions(outcome.out, "\"hash\": null")) << outcome.out;
+  EXPECT_TRUE(mentions(outcome.err, "interrupted after")) << outcome.err;
+}
+
+TEST(CommandLine, AmplifyWritesOneFileForEachBlock) {
+  const TemporaryFolder folder;
+  const std::string command =
+      "amplify --region 3,4,5,5 --format obj --json --out " + (folder / "blocks").string();
+  const Outcome first = run_psygen(command);
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_TRUE(mentions(first.out, "\"files_written\": 2")) << first.out;
+  EXPECT_TRUE(std::filesystem::exists(folder / "blocks/block_4_4.obj"));
+  EXPECT_TRUE(mentions(run_psygen(command).out, "\"files_skipped\": 2"));
+  const Outcome unwritable = run_psygen("amplify --region 3,4,4,5 --out /proc/nowhere");
+  EXPECT_EQ(unwritable.code, 1);
+  EXPECT_TRUE(mentions(unwritable.err, "/proc/nowhere")) << unwritable.err;
+}
+
+TEST(CommandLine, ExportWritesModelsAndBlocks) {
+  const TemporaryFolder folder;
+  for (const std::string arguments : {"--model tree --set seed=7 --set iterations=4 --level 1",
+                                      "--model terrain", "--block 5,6 --level 2"}) {
+    for (const char* ending : {"glb", "obj"}) {
+      const auto file = folder / (std::string("a.") + ending);
+      std::filesystem::remove(file);
+      const Outcome outcome = run_psygen("export " + arguments + " --out " + file.string());
+      EXPECT_EQ(outcome.code, 0) << arguments << "\n" << outcome.err;
+      EXPECT_TRUE(std::filesystem::exists(file)) << arguments;
+      EXPECT_TRUE(mentions(outcome.err, "triangles")) << outcome.err;
+    }
+  }
+}
+
+TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
+  const Outcome model = run_psygen("export --model pyramid --out a.glb");
+  EXPECT_TRUE(mentions(model.err, "terrain, rock, tree")) << model.err;
+  const Outcome parameter = run_psygen("export --model rock --set size=3 --out a.glb");
+  EXPECT_TRUE(mentions(parameter.err, "subdivisions, radius_m")) << parameter.err;
+  const Outcome block = run_psygen("export --block 600,1 --out a.glb");
+  EXPECT_EQ(block.code, 1);
+  EXPECT_TRUE(mentions(block.err, "0 to 511")) << block.err;
+  EXPECT_EQ(run_psygen("export --model rock --out /nonexistent/a.glb").code, 1);
+}
+
+TEST(CommandLine, CalibrateWritesFitsAndPlots) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_psygen("calibrate --samples 4 --out " + folder.path().string());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* words : {"c·m·n²", "c·n·4^(n−1)", "c·mⁿ", "R²", "p95"})
+    EXPECT_TRUE(mentions(outcome.out, words)) << words << "\n" << outcome.out;
+  EXPECT_TRUE(mentions(read(folder / "calibration.html"), "<svg"));
+  EXPECT_TRUE(mentions(read(folder / "calibration.json"), "\"r_squared\""));
+  EXPECT_EQ(run_psygen("calibrate --samples 4 --out /proc/nowhere").code, 1);
+}
+
+TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "requests").string();
+  const Outcome flight = run_psygen(
+      "fly --headless --frames 3 --size 64x36 --view-distance 64 --record-requests " + file);
+  EXPECT_EQ(flight.code, 0) << flight.err;
+  const Outcome table = run_psygen("schedule --modelers 3 --requests " + file);
+  EXPECT_EQ(table.code, 0) << table.err;
+  for (const char* policy : {"fifo", "plp", "shortest", "longest", "deadline"})
+    EXPECT_TRUE(mentions(table.out, policy)) << table.out;
+  EXPECT_TRUE(mentions(run_psygen("schedule --json --requests " + file).out, "\"late_percent\""));
+  const Outcome missing = run_psygen("schedule --requests nowhere.requests");
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_TRUE(mentions(missing.err, "nowhere.requests")) << missing.err;
 }
 
 }  // namespace

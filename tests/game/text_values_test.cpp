@@ -27,5 +27,18 @@ TEST(TextValues, SizesAreWidthTimesHeight) {
   }
 }
 
+TEST(TextValues, PlacesAreTwoFiniteNumbers) {
+  EXPECT_EQ(*parse_place("1.5,-2"), glm::dvec2(1.5, -2));
+  EXPECT_EQ(*parse_place("1e3,0"), glm::dvec2(1000, 0));
+  for (const char* text : {"", "1", "1,", ",1", "1,2,3", "1, 2", "a,b", "nan,1", "1,inf", "1;2"})
+    EXPECT_FALSE(parse_place(text)) << text;
+}
+
+TEST(TextValues, BlocksAreTwoIntegersOf32Bits) {
+  EXPECT_EQ(*parse_block("-1,2147483647"), (core::BlockCoord{-1, INT32_MAX}));
+  for (const char* text : {"", "1", "1,", ",1", "1,2,3", "1.5,2", "2147483648,0", "1, 2"})
+    EXPECT_FALSE(parse_block(text)) << text;
+}
+
 }  // namespace
 }  // namespace psygen::game

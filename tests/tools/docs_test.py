@@ -15,7 +15,8 @@ def pages(root):
 
 def dead_links(root):
     for page in pages(root):
-        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+        prose = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", prose):
             if "://" not in target and not (page.parent / target).exists():
                 yield f"{page.name}: the link to {target} is dead"
 
@@ -26,26 +27,38 @@ def gaps(root):
             yield f"{page.name}: {gap} is left to be filled in"
 
 
+# page -> the files of which its C++ is made
+PROGRAMS = {
+    "README.md": ["tests/engine/app/tutorial_test.cpp"],
+    "docs/add-a-model.md": ["tests/engine/app/fence.hpp", "tests/engine/app/add_a_model_test.cpp"],
+}
+
+
 def program_differences(root):
-    readme = (root / "README.md").read_text(encoding="utf-8")
-    test = (root / "tests/engine/app/tutorial_test.cpp").read_text(encoding="utf-8")
-    test = test.replace('PSYGEN_SOURCE_DIR "/', '"')
-    program = re.search(r"```cpp\n(.*?)```", readme, re.S).group(1)
-    lines = [re.sub(r"\s*//.*", "", line).strip().rstrip(";") for line in program.splitlines()]
-    assert len(lines) > 8, "the README shows no program"
-    for line in lines:
-        if line not in test:
-            yield f"README.md: '{line}' is not in tutorial_test.cpp"
+    for page, sources in PROGRAMS.items():
+        test = "".join((root / source).read_text(encoding="utf-8") for source in sources)
+        test = test.replace('PSYGEN_SOURCE_DIR "/', '"')
+        programs = re.findall(r"```cpp\n(.*?)```", (root / page).read_text(encoding="utf-8"), re.S)
+        lines = [re.sub(r"\s*//.*", "", line).strip().rstrip(";")
+                 for program in programs for line in program.splitlines()]
+        assert len(lines) > 8, f"{page} shows no program"
+        for line in lines:
+            if line not in test:
+                yield f"{page}: '{line}' is not in {' or '.join(sources)}"
 
 
 def undescribed_options(root):
-    source = (root / "game/fly_command.cpp").read_text(encoding="utf-8")
     described = (root / "docs/cli.md").read_text(encoding="utf-8")
-    options = re.findall(r'"!?(--[a-z-]+)"', source)
-    assert len(options) > 15, "the scan found too few options to mean anything"
-    for option in options:
-        if f"`{option}" not in described:
-            yield f"docs/cli.md does not describe {option}"
+    sections = dict(re.findall(r"^## psygen (\w+)\n(.*?)(?=^## |\Z)", described, re.S | re.M))
+    sources = sorted((root / "game").glob("*_command.cpp"))
+    assert len(sources) > 2, "the scan found too few commands to mean anything"
+    for source in sources:
+        command = source.name.removesuffix("_command.cpp")
+        options = re.findall(r'"!?(--[a-z-]+)"', source.read_text(encoding="utf-8"))
+        assert options, f"the scan found no option of {command}"
+        for option in options:
+            if f"`{option}" not in sections.get(command, ""):
+                yield f"docs/cli.md does not describe {option} of psygen {command}"
 
 
 def main():

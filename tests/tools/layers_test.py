@@ -15,6 +15,9 @@ MAY_KNOW = {
     "engine/models": {"engine/core"},
     "engine/world": {"engine/core", "engine/models"},
     "engine/synthesis": {"engine/core", "engine/models"},
+    "engine/exchange": {"engine/core", "engine/models", "engine/world"},
+    "engine/amplify": {"engine/core", "engine/models", "engine/world", "engine/synthesis",
+                       "engine/exchange", "engine/telemetry"},
     "engine/visibility": {"engine/core"},
     "engine/image": {"engine/core"},
     "engine/render": {"engine/core", "engine/image", "shaders"},
@@ -25,7 +28,7 @@ MAY_KNOW = {
                      "engine/telemetry"},
     "shaders": set(),
 }
-MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene"}
+MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange"}
 MAY_KNOW["game"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["editor"] = MAY_KNOW["game"]
 
@@ -37,11 +40,12 @@ ONLY_IN = {
     r"^toml\+\+/": {"engine/world"},
     r"^nlohmann/": {"engine/telemetry", "game"},
     r"^CLI/": {"game"},
+    r"^tiny_gltf": {"engine/exchange"},
     r"^spdlog/": {"engine/core"},
     r"^Q[A-Z]|^Qt": {"editor"},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
-NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/visibility"}
+NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/visibility", "engine/exchange"}
 BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

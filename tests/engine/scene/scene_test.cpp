@@ -214,15 +214,5 @@ TEST(Scene, SettingsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused(settings));
 }
 
-TEST(Scene, TheSampleHashNamesTheWorld) {
-  const models::Registry registry = models::make_standard_registry();
-  world::World world = paper_world(registry);
-  const std::uint64_t hash = sample_world_hash(world, registry, {256, 256});
-  EXPECT_EQ(sample_world_hash(world, registry, {256, 256}), hash);
-  EXPECT_NE(sample_world_hash(world, registry, {257, 256}), hash);
-  world.seed += 1;
-  EXPECT_NE(sample_world_hash(world, registry, {256, 256}), hash);
-}
-
 }  // namespace
 }  // namespace psygen::scene

@@ -87,7 +87,7 @@ TEST(RealModels, CalibrationMeasuresEveryTypeAndLevel) {
   EXPECT_TRUE(report.failures.empty());
   for (const LevelCalibration& level : report.levels) {
     EXPECT_EQ(level.samples, 1u) << registry[level.model].name() << " " << level.level;
-    EXPECT_GT(level.seconds_per_operation, 0);
+    EXPECT_GT(level.fit.per_operation_s, 0);
   }
 }
 

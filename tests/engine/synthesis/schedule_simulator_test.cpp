@@ -56,6 +56,16 @@ TEST(ScheduleSimulator, JobsAreNotServedBeforeTheyArrive) {
   EXPECT_EQ(simulate({}, 3, Policy::kFifo).makespan_s, 0.0);
 }
 
+TEST(ScheduleSimulator, AModelerThatWasIdleDoesNotBeginBeforeTheJobArrives) {
+  auto jobs = jobs_of({0.1, 0.1, 0.1});
+  for (SimulatedJob& job : jobs)
+    job.arrival_s = 5;
+  const SimulationResult result = simulate(jobs, 3, Policy::kFifo);
+  for (const SimulatedRun& run : result.runs)
+    EXPECT_DOUBLE_EQ(run.start_s, 5);
+  EXPECT_DOUBLE_EQ(result.makespan_s, 5.1);
+}
+
 TEST(ScheduleSimulator, AllPoliciesDoAllTheWorkAndNoModelerDoesTwoThingsAtOnce) {
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
   std::vector<SimulatedJob> jobs;

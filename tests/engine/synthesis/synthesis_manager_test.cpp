@@ -96,7 +96,7 @@ TEST(SynthesisManager, ACompletionSaysWhatWasAskedAndWhatItTook) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   Jobs jobs(registry);
   Request request = jobs.make(42);
-  request.complexity = 7;
+  request.work = {7, 8, 9};
   request.predicted_seconds = 0.5;
   const auto done = run(registry, 1, {request});
   ASSERT_EQ(done.size(), 1u);
@@ -105,7 +105,7 @@ TEST(SynthesisManager, ACompletionSaysWhatWasAskedAndWhatItTook) {
   EXPECT_EQ(c.handle, request.handle);
   EXPECT_EQ(c.key, request.key);
   EXPECT_EQ(c.owner, 42u);
-  EXPECT_EQ(c.complexity, 7);
+  EXPECT_EQ(c.work, (Work{7, 8, 9}));
   EXPECT_EQ(c.predicted_seconds, 0.5);
   EXPECT_GE(c.seconds, 0);
   EXPECT_LE(c.started_s, c.finished_s);

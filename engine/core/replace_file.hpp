@@ -8,11 +8,14 @@
 
 #include "engine/core/error.hpp"
 
-namespace psygen::image {
+namespace psygen::core {
 
 // Writes a temporary file in the same folder, fsync, rename, fsync of the folder. The temporary
 // file is removed when anything fails. Refuses a path that exists and is not a regular file.
-core::Result<void> replace_file(const std::filesystem::path& path,
-                                std::span<const std::uint8_t> bytes);
+Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
-}  // namespace psygen::image
+// Removes the temporary files that replace_file() of processes which no longer run (killed, no
+// power) left in the folder. Not that of its sub-folders.
+void remove_stale_partials(const std::filesystem::path& folder);
+
+}  // namespace psygen::core

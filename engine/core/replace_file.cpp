@@ -1,22 +1,21 @@
-#include "engine/image/replace_file.hpp"
+#include "engine/core/replace_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <string>
 
-namespace psygen::image {
+namespace psygen::core {
 namespace {
 
-using core::ErrorCode;
-
-tl::unexpected<core::Error> io_error(const std::filesystem::path& path, const char* action,
-                                     int error) {
-  return core::fail(ErrorCode::kIo,
-                    fmt::format("{}: {}: {}", path.string(), action, std::strerror(error)));
+tl::unexpected<Error> io_error(const std::filesystem::path& path, const char* action, int error) {
+  return fail(ErrorCode::kIo,
+              fmt::format("{}: {}: {}", path.string(), action, std::strerror(error)));
 }
 
 // Opens a new file beside `path` and stores its name; -1 with errno when that is not possible.
@@ -51,15 +50,36 @@ void flush_folder(const std::filesystem::path& path) {
   close(handle);
 }
 
+// The process that a temporary file of open_temporary() belongs to; 0 for any other file.
+pid_t owner_of_partial(const std::string& name) {
+  constexpr std::string_view kEnding = ".partial";
+  if (!name.starts_with('.') || !name.ends_with(kEnding)) return 0;
+  const std::string_view stem = std::string_view(name).substr(0, name.size() - kEnding.size());
+  const std::size_t dot = stem.rfind('.');
+  const std::size_t dash = stem.rfind('-');
+  if (dot == std::string_view::npos || dash == std::string_view::npos || dash < dot) return 0;
+  pid_t owner = 0;
+  const auto parsed = std::from_chars(stem.data() + dot + 1, stem.data() + dash, owner);
+  return parsed.ec == std::errc() && parsed.ptr == stem.data() + dash ? owner : 0;
+}
+
 }  // namespace
 
-core::Result<void> replace_file(const std::filesystem::path& path,
-                                std::span<const std::uint8_t> bytes) {
+void remove_stale_partials(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    const pid_t owner = owner_of_partial(it->path().filename().string());
+    if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) unlink(it->path().c_str());
+  }
+}
+
+Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return core::fail(ErrorCode::kIo,
-                      fmt::format("{}: is not a regular file; it is left alone", path.string()));
+    return fail(ErrorCode::kIo,
+                fmt::format("{}: is not a regular file; it is left alone", path.string()));
   }
   std::filesystem::path temporary;
   const int file = open_temporary(path, temporary);
@@ -75,4 +95,4 @@ core::Result<void> replace_file(const std::filesystem::path& path,
   return {};
 }
 
-}  // namespace psygen::image
+}  // namespace psygen::core

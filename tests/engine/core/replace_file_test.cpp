@@ -1,19 +1,31 @@
-#include "engine/image/replace_file.hpp"
+#include "engine/core/replace_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "tests/engine/image/test_files.hpp"
+#include "tests/temporary_folder.hpp"
 
-namespace psygen::image {
+namespace psygen::core {
 namespace {
 
-using core::ErrorCode;
+std::vector<std::uint8_t> bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void write_bytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
 
 std::vector<std::uint8_t> text(std::string_view characters) {
   return {characters.begin(), characters.end()};
@@ -68,5 +80,19 @@ TEST(ReplaceFile, KeepsTheOldContentWhenTheDiskHasNoRoomForTheNewOne) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
+TEST(ReplaceFile, WhatAKilledProcessLeftBehindIsCleanedUpAndNothingElse) {
+  const TemporaryFolder folder;
+  const std::string mine = ".a.bin." + std::to_string(getpid()) + "-0.partial";
+  // No process has a number beyond the kernel's limit of 2^22.
+  for (const std::string& name :
+       {std::string(".a.bin.99999999-0.partial"), mine, std::string("b.99999999-0.partial"),
+        std::string(".x.partial"), std::string("a.bin")}) {
+    std::ofstream(folder / name) << "half";
+  }
+  remove_stale_partials(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder / ".a.bin.99999999-0.partial"));
+  EXPECT_EQ(folder.file_count(), 4u);
+}
+
 }  // namespace
-}  // namespace psygen::image
+}  // namespace psygen::core

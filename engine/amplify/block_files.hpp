@@ -1,0 +1,48 @@
+// A folder with one file per block: glTF or OBJ with everything on it at one level of detail. Can
+// be gone on with: what is there already is not written again, what a killed process left half-done
+// is removed. The folder also holds the world's own file, so that blocks of two worlds never mix.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+
+#include "engine/amplify/amplify.hpp"
+#include "engine/exchange/write_document.hpp"
+
+namespace psygen::amplify {
+
+// All meshes of a block as a document, in metres from the block's corner. Fails where a model did.
+core::Result<exchange::Document> block_document(const world::World& world,
+                                                const models::Registry& registry,
+                                                core::BlockCoord block, int level);
+
+class BlockFolder {
+ public:
+  // World and registry outlive it. Creates the folder. Fails with kIo where it cannot be written,
+  // with kInvalidArgument where it holds the blocks of another world.
+  static core::Result<std::unique_ptr<BlockFolder>> open(std::filesystem::path folder,
+                                                         const world::World& world,
+                                                         const models::Registry& registry,
+                                                         exchange::Format format);
+
+  // A sink for one thread; the folder outlives it.
+  std::unique_ptr<BlockSink> make_sink();
+  // "block_X_Z.glb" in the folder.
+  std::filesystem::path file_of(core::BlockCoord block) const;
+  std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
+  std::uint64_t skipped() const { return skipped_.load(std::memory_order_relaxed); }
+
+ private:
+  class Sink;
+  BlockFolder(std::filesystem::path folder, const world::World& world,
+              const models::Registry& registry, exchange::Format format);
+  core::Result<void> claim() const;
+
+  std::filesystem::path folder_;
+  const world::World& world_;
+  const models::Registry& registry_;
+  exchange::Format format_;
+  std::atomic<std::uint64_t> written_{0}, skipped_{0};
+};
+
+}  // namespace psygen::amplify

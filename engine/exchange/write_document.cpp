@@ -1,0 +1,73 @@
+#include "engine/exchange/write_document.hpp"
+
+#include <fmt/format.h>
+
+#include <span>
+
+#include "engine/core/replace_file.hpp"
+
+namespace psygen::exchange {
+namespace {
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace
+
+std::string material_name(std::uint8_t material) {
+  switch (material) {
+    case kSolid:
+      return "solid";
+    case kLeaf:
+      return "leaf";
+    case kGround:
+      return "ground";
+    default:
+      return fmt::format("material_{}", material);
+  }
+}
+
+std::uint64_t Document::vertex_count() const {
+  std::uint64_t count = 0;
+  for (const Object& object : objects) {
+    for (const Part& part : object.parts)
+      count += part.positions.size();
+  }
+  return count;
+}
+
+std::uint64_t Document::triangle_count() const {
+  std::uint64_t count = 0;
+  for (const Object& object : objects) {
+    for (const Part& part : object.parts)
+      count += part.indices.size() / 3;
+  }
+  return count;
+}
+
+std::optional<Format> format_from(std::string_view name) {
+  if (name == "glb") return Format::kGlb;
+  if (name == "obj") return Format::kObj;
+  return std::nullopt;
+}
+
+std::string_view name_of(Format format) {
+  return format == Format::kGlb ? "glb" : "obj";
+}
+
+core::Result<void> write_document(const std::filesystem::path& path, Format format,
+                                  const Document& document) {
+  if (format == Format::kGlb) {
+    const auto bytes = glb_bytes(document);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return core::replace_file(path, *bytes);
+  }
+  std::filesystem::path mtl = path;
+  mtl.replace_extension(".mtl");
+  const ObjText text = obj_text(document, mtl.filename().string());
+  if (auto ok = core::replace_file(mtl, bytes_of(text.mtl)); !ok) return ok;
+  return core::replace_file(path, bytes_of(text.obj));
+}
+
+}  // namespace psygen::exchange

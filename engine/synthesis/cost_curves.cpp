@@ -1,0 +1,168 @@
+#include "engine/synthesis/cost_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/clock.hpp"
+
+namespace psygen::synthesis {
+namespace {
+
+constexpr std::size_t kMostPoints = 13;
+constexpr double kNoDeadline = std::numeric_limits<double>::infinity();
+
+CalibrationOptions with_clocks(CalibrationOptions options) {
+  if (!options.wall_clock) options.wall_clock = core::monotonic_seconds;
+  if (!options.cpu_clock) options.cpu_clock = core::thread_cpu_seconds;
+  return options;
+}
+
+// Whether the formula of level 0 depends on this integer.
+bool is_cost_parameter(const models::ModelType& type, std::size_t i) {
+  const models::ParameterSpec& spec = type.parameters()[i];
+  if (spec.type != models::ParameterType::kInteger ||
+      spec.source != models::ParameterSource::kUser) {
+    return false;
+  }
+  models::Parameters low = models::default_parameters(type), high = low;
+  low.set_integer(i, static_cast<std::int64_t>(spec.soft_min));
+  high.set_integer(i, static_cast<std::int64_t>(spec.soft_max));
+  return type.complexity(low, 0) != type.complexity(high, 0);
+}
+
+// Up to kMostPoints integers from the least to the largest.
+std::vector<std::int64_t> values_of(const models::ParameterSpec& spec) {
+  const auto low = static_cast<std::int64_t>(spec.soft_min);
+  const auto high = static_cast<std::int64_t>(spec.soft_max);
+  const auto count = std::min<std::int64_t>(high - low + 1, kMostPoints);
+  std::vector<std::int64_t> values;
+  for (std::int64_t k = 0; k < count; ++k)
+    values.push_back(count == 1 ? low : low + (high - low) * k / (count - 1));
+  return values;
+}
+
+// The mean over the seeds of one set of parameters; no seconds if it cannot be synthesised.
+CurvePoint point_at(const CostModel& cost, CostSample sample, const models::ModelType& type,
+                    int seeds, const CalibrationOptions& options) {
+  const int seed = models::parameter_index(type, "seed");
+  const int runs = seed < 0 ? 1 : seeds;
+  CurvePoint point;
+  CalibrationReport ignored;
+  for (int s = 0; s < runs; ++s) {
+    if (seed >= 0) sample.parameters.set_integer(static_cast<std::size_t>(seed), s);
+    const auto m = cost.measure(sample, 0, options, kNoDeadline, ignored);
+    if (!m) return {};
+    point.seconds += m->seconds / runs;
+    point.operations += m->work.operations / runs;
+    point.predicted_s += cost.predict_from(sample.model, 0, m->work) / runs;
+  }
+  return point;
+}
+
+CostError error_of(std::vector<double>& percents) {
+  return {percents.size(), quantile(percents, 0.50), quantile(percents, 0.95)};
+}
+
+double draw(const models::ParameterSpec& spec, core::RandomStream& random) {
+  return spec.type == models::ParameterType::kInteger
+             ? static_cast<double>(random.next_integer(static_cast<std::int64_t>(spec.soft_min),
+                                                       static_cast<std::int64_t>(spec.soft_max)))
+             : random.next_real(spec.soft_min, spec.soft_max);
+}
+
+models::Parameters random_parameters(const models::ModelType& type, core::RandomStream& random) {
+  models::Parameters p = models::default_parameters(type);
+  const auto specs = type.parameters();
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (specs[i].name == "seed") {
+      const auto any = static_cast<std::int64_t>(random.next_u64() >> 1);
+      p.set_integer(i, specs[i].hard_max >= 0x1.0p62 ? any : any % 1'000'000);
+    } else if (specs[i].source == models::ParameterSource::kUser) {
+      const double value = draw(specs[i], random);
+      specs[i].type == models::ParameterType::kInteger
+          ? p.set_integer(i, static_cast<std::int64_t>(value))
+          : p.set_real(i, value);
+    }
+  }
+  return p;
+}
+
+}  // namespace
+
+std::vector<CostCurve> cost_curves(const models::Registry& registry, const CostModel& cost,
+                                   const CalibrationOptions& given, int seeds,
+                                   const std::function<void(double)>& progress) {
+  const CalibrationOptions options = with_clocks(given);
+  std::vector<CostCurve> curves;
+  for (std::size_t m = 0; m < registry.size(); ++m) {
+    const auto model = static_cast<models::ModelIndex>(m);
+    const models::ModelType& type = registry[model];
+    for (std::size_t i = 0; i < type.parameters().size(); ++i) {
+      if (!is_cost_parameter(type, i)) continue;
+      CostCurve curve{model, std::string(type.parameters()[i].name), {}, {}};
+      std::vector<Measurement> measured;
+      for (const std::int64_t value : values_of(type.parameters()[i])) {
+        CostSample sample{model, models::default_parameters(type)};
+        sample.parameters.set_integer(i, value);
+        if (!models::validate(type, sample.parameters)) continue;
+        CurvePoint point = point_at(cost, sample, type, seeds, options);
+        if (!(point.seconds > 0)) continue;
+        point.value = static_cast<double>(value);
+        curve.points.push_back(point);
+        measured.push_back({{point.operations, 0, 0}, point.seconds});
+      }
+      curve.formula = fit_formula(measured);
+      curves.push_back(std::move(curve));
+    }
+    if (progress) progress(static_cast<double>(m + 1) / static_cast<double>(registry.size()));
+  }
+  return curves;
+}
+
+std::vector<CostSample> random_samples(const models::Registry& registry, std::size_t count,
+                                       std::uint64_t seed) {
+  std::vector<CostSample> samples;
+  for (std::size_t m = 0; m < registry.size(); ++m) {
+    const auto model = static_cast<models::ModelIndex>(m);
+    core::RandomStream random(seed, 0, 0, model, core::Purpose::kParameters);
+    // Ranges may allow more together than a mesh can hold: then draw again, but not for ever.
+    std::size_t found = 0;
+    for (std::size_t tries = 0; found < count && tries < 100 * count; ++tries) {
+      const models::Parameters p = random_parameters(registry[model], random);
+      if (!models::validate(registry[model], p)) continue;
+      samples.push_back({model, p});
+      ++found;
+    }
+  }
+  return samples;
+}
+
+Accuracy accuracy_of(const models::Registry& registry, const CostModel& cost,
+                     std::span<const CostSample> samples, const CalibrationOptions& given,
+                     const std::function<void(double)>& progress) {
+  const CalibrationOptions options = with_clocks(given);
+  Accuracy accuracy;
+  std::vector<double> all;
+  for (std::size_t m = 0; m < registry.size(); ++m) {
+    const auto model = static_cast<models::ModelIndex>(m);
+    for (int level = 0; level < registry[model].level_count(); ++level) {
+      std::vector<double> percents;
+      CalibrationReport ignored;
+      for (const CostSample& sample : samples) {
+        if (sample.model != model) continue;
+        const auto measured = cost.measure(sample, level, options, kNoDeadline, ignored);
+        if (!measured) continue;
+        const double predicted = cost.predict_from(model, level, measured->work);
+        percents.push_back(std::abs(predicted - measured->seconds) / measured->seconds * 100);
+      }
+      all.insert(all.end(), percents.begin(), percents.end());
+      accuracy.levels.push_back({model, level, error_of(percents)});
+    }
+    if (progress) progress(static_cast<double>(m + 1) / static_cast<double>(registry.size()));
+  }
+  accuracy.all = error_of(all);
+  return accuracy;
+}
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,63 @@
+// What a synthesis has to do, and the curve through what doing it took: a line, seconds = fixed +
+// per_operation · operations + per_triangle · triangles + per_full_triangle · full_triangles with
+// no coefficient below zero, times a correction over full_triangles that bends it where work does
+// not grow in proportion. Operations are the type's asymptotic formula (paper, section 5.2); sizes
+// of meshes are exact, and know what the random numbers of a seed make of the parameters: that of
+// the level, and that of full detail, because coarse levels come from the same skeleton. Pure.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace psygen::synthesis {
+
+struct Work {
+  double operations = 1;
+  double triangles = 0;       // of the level
+  double full_triangles = 0;  // of level 0
+  friend bool operator==(const Work&, const Work&) = default;
+};
+
+struct CostFit {
+  static constexpr std::size_t kMaxKnots = 8;
+  struct Knot {
+    double log2_size = 0;  // of 1 + full_triangles
+    double factor = 1;
+  };
+  double fixed_s = 0;
+  double per_operation_s = 0;
+  double per_triangle_s = 0;
+  double per_full_triangle_s = 0;
+  std::size_t knot_count = 0;           // 0: the line as it is
+  std::array<Knot, kMaxKnots> knots{};  // ascending; linear between them and on
+
+  double line_seconds(const Work& work) const {
+    return fixed_s + per_operation_s * work.operations + per_triangle_s * work.triangles +
+           per_full_triangle_s * work.full_triangles;
+  }
+  double correction(const Work& work) const;
+  double seconds(const Work& work) const { return line_seconds(work) * correction(work); }
+};
+
+struct Measurement {
+  Work work;
+  double seconds = 0;  // above 0
+};
+
+// The best line by squares of the relative error |fit − measured| / measured, with the measurements
+// that are far off it (something else ran meanwhile) counting less. Prefers fewer terms where they
+// do as well, and no correction where it explains little. Only the formula where there are fewer
+// than kMinForTerms measurements, a correction from kMinForKnots on. Zero for none.
+inline constexpr std::size_t kMinForTerms = 5, kMinForKnots = 16;
+CostFit fit_cost(std::span<const Measurement> measurements);
+
+// seconds = c · operations by least squares of the seconds, as in the paper's Figure 9, and how
+// much of the variance it explains.
+struct FormulaFit {
+  double seconds_per_operation = 0;  // c
+  double r_squared = 0;              // 1 for fewer than two different times
+};
+FormulaFit fit_formula(std::span<const Measurement> measurements);
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,133 @@
+#include "engine/synthesis/request_stream.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "engine/synthesis/cost_model.hpp"
+
+namespace psygen::synthesis {
+namespace {
+
+constexpr std::string_view kHeader = "psygen requests 1";
+
+// The next word of a line, which it leaves.
+std::string_view take_word(std::string_view& line) {
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  const std::size_t end = std::min(line.find(' '), line.size());
+  const std::string_view word = line.substr(0, end);
+  line.remove_prefix(end);
+  return word;
+}
+
+std::optional<double> time_of(std::string_view word) {
+  double value = 0;
+  const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool ok = parsed.ec == std::errc() && parsed.ptr == word.data() + word.size() &&
+                  value >= 0 && value <= kNoDeadline;  // false for NaN
+  return ok ? std::optional(value) : std::nullopt;
+}
+
+std::optional<SimulatedJob> job_of(std::string_view line) {
+  const auto arrival = time_of(take_word(line)), seconds = time_of(take_word(line));
+  const std::string_view due = take_word(line), rank = take_word(line);
+  const auto deadline = due == "-" ? std::optional(kNoDeadline) : time_of(due);
+  std::uint64_t bits = 0;
+  const auto parsed = std::from_chars(rank.data(), rank.data() + rank.size(), bits, 16);
+  if (!arrival || !seconds || !deadline || parsed.ec != std::errc() ||
+      parsed.ptr != rank.data() + rank.size() || !take_word(line).empty()) {
+    return std::nullopt;
+  }
+  return SimulatedJob{*arrival, *seconds, *deadline, Rank::from_bits(bits)};
+}
+
+std::vector<SimulatedJob> initial_fill(std::span<const SimulatedJob> jobs) {
+  std::vector<SimulatedJob> fill;
+  double first = kNoDeadline;
+  for (const SimulatedJob& job : jobs)
+    first = std::min(first, job.arrival_s);
+  for (const SimulatedJob& job : jobs) {
+    if (job.arrival_s == first) fill.push_back({0, job.seconds, job.deadline_s - first, job.rank});
+  }
+  return fill;
+}
+
+PolicyFigures figures_of(std::span<const SimulatedJob> jobs, unsigned modelers, Policy policy) {
+  PolicyFigures figures;
+  figures.policy = policy;
+  const SimulationResult fill = simulate(initial_fill(jobs), modelers, policy);
+  figures.fill_s = fill.makespan_s;
+  if (fill.makespan_s > 0)
+    figures.fill_idle_percent = 100 * fill.idle_seconds / (fill.makespan_s * modelers);
+  const SimulationResult all = simulate(jobs, modelers, policy);
+  std::vector<double> waits, lateness;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (is_visible(jobs[i].rank.group())) {
+      waits.push_back(all.runs[i].finish_s - jobs[i].arrival_s);
+    } else if (jobs[i].deadline_s < kNoDeadline) {
+      lateness.push_back(std::max(0.0, all.runs[i].finish_s - jobs[i].deadline_s));
+    }
+  }
+  figures.visible_p50_s = quantile(waits, 0.5);
+  figures.visible_p99_s = quantile(waits, 0.99);
+  figures.visible_max_s = quantile(waits, 1.0);
+  for (const double late : lateness) {
+    figures.late_percent += late > 0 ? 100.0 / static_cast<double>(lateness.size()) : 0.0;
+    figures.lateness_mean_s += late / static_cast<double>(lateness.size());
+    figures.lateness_max_s = std::max(figures.lateness_max_s, late);
+  }
+  return figures;
+}
+
+}  // namespace
+
+std::string stream_text(std::vector<SimulatedJob> jobs) {
+  std::stable_sort(jobs.begin(), jobs.end(), [](const SimulatedJob& a, const SimulatedJob& b) {
+    return a.arrival_s < b.arrival_s;
+  });
+  std::string text = std::string(kHeader) + "\n";
+  for (const SimulatedJob& job : jobs) {
+    const std::string due =
+        job.deadline_s < kNoDeadline ? fmt::format("{:.3f}", job.deadline_s) : std::string("-");
+    fmt::format_to(std::back_inserter(text), "{:.4f} {:.8f} {} {:x}\n", job.arrival_s, job.seconds,
+                   due, job.rank.bits());
+  }
+  return text;
+}
+
+core::Result<std::vector<SimulatedJob>> parse_stream(std::string_view text, std::string_view file) {
+  const auto refuse = [file](std::size_t line, std::string_view why) {
+    return core::fail(core::ErrorCode::kParse, fmt::format("{}:{}: {}", file, line, why));
+  };
+  std::vector<SimulatedJob> jobs;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (number == 1) {
+      if (line != kHeader) return refuse(number, fmt::format("the first line is '{}'", kHeader));
+      continue;
+    }
+    const auto job = job_of(line);
+    if (!job) return refuse(number, "a request is: arrival, seconds, deadline or -, rank");
+    if (jobs.size() == kMaxStreamRequests) {
+      return refuse(number, fmt::format("more than {} requests", kMaxStreamRequests));
+    }
+    jobs.push_back(*job);
+  }
+  if (jobs.empty()) return refuse(1, "there is no request");
+  return jobs;
+}
+
+std::vector<PolicyFigures> compare_policies(std::span<const SimulatedJob> jobs, unsigned modelers) {
+  std::vector<PolicyFigures> rows;
+  for (const Policy policy : kAllPolicies)
+    rows.push_back(figures_of(jobs, modelers, policy));
+  return rows;
+}
+
+}  // namespace psygen::synthesis

@@ -1,0 +1,31 @@
+// A plot of values over a parameter as an SVG picture: measured values as points, curves through
+// them as lines, with axes and a legend. In the looks of report_style.cpp. Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace psygen::telemetry {
+
+enum class CurveKind { kPoints, kLine };
+
+struct Curve {
+  std::string name;
+  int colour = 1;  // of the palette, 1 … 8; 0 is grey
+  CurveKind kind = CurveKind::kLine;
+  std::vector<double> values;  // one per entry of CurvePlot::x; what is not finite is left out
+};
+
+struct CurvePlot {
+  std::string title;
+  std::string x_name;     // stands below the axis
+  std::string unit;       // of the values
+  std::string note;       // a sentence below the plot; may be empty
+  std::vector<double> x;  // ascending
+  std::vector<Curve> curves;
+};
+
+// A <figure> element. All text is escaped.
+std::string curve_plot_html(const CurvePlot& plot);
+
+}  // namespace psygen::telemetry

@@ -1,0 +1,106 @@
+// psygen calibrate: the paper's Figure 9 on this machine, and how good predictions are.
+#include <fmt/format.h>
+
+#include "engine/core/clock.hpp"
+#include "engine/core/log.hpp"
+#include "engine/telemetry/output_file.hpp"
+#include "engine/telemetry/progress_bar.hpp"
+#include "game/calibration_page.hpp"
+#include "game/commands.hpp"
+#include "game/option_checks.hpp"
+
+namespace psygen::game {
+namespace {
+
+// Seeds of two sets of parameters that have nothing in common.
+constexpr std::uint64_t kFittedSets = 1, kHeldOutSets = 2;
+constexpr int kSeedsPerPoint = 12;
+
+// Up to `count` parameter sets of each type that stands in the world, from a row of blocks that
+// begins at `first`.
+std::vector<synthesis::CostSample> world_samples(const world::World& world,
+                                                 const models::Registry& registry,
+                                                 std::int32_t first, std::size_t count) {
+  std::vector<synthesis::CostSample> samples;
+  std::vector<std::size_t> taken(registry.size(), 0);
+  std::vector<world::Placement> placements;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(count); ++i) {
+    const core::BlockCoord block{first + i, first};
+    samples.push_back({world.terrain_model, world::terrain_parameters(world, block)});
+    world::place_models(world, registry, block, placements);
+    for (const world::Placement& placement : placements) {
+      if (taken[placement.model]++ < count)
+        samples.push_back({placement.model, placement.parameters});
+    }
+  }
+  return samples;
+}
+
+}  // namespace
+
+CalibrateCommand::CalibrateCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("calibrate", "Measure what synthesis costs on this machine")) {
+  CLI::App& c = *command_;
+  c.add_option("--out", out_, "Folder for calibration.html and calibration.json");
+  auto* world =
+      c.add_option("--world", world_, "World file (TOML) whose models are fitted and predicted")
+          ->capture_default_str();
+  c.add_flag("--ranges", ranges_,
+             "Instead of a world's models those of parameters drawn from all usual ranges")
+      ->excludes(world);
+  c.add_option("--samples", samples_, "Parameter sets of each type to fit, and others to predict")
+      ->capture_default_str()
+      ->check(number_between(4, 10000));
+  c.add_flag("--json", json_, "Print the figures as JSON");
+}
+
+int CalibrateCommand::run() const {
+  const auto fail = [](const core::Error& error) {
+    core::log_error(error.message);
+    return exit_code_of(error);
+  };
+  if (!out_.empty()) {
+    if (auto ok = telemetry::create_output_folder(out_); !ok) return fail(ok.error());
+  }
+  const models::Registry registry = models::make_standard_registry();
+  std::optional<world::World> world;
+  if (!ranges_) {
+    auto loaded = world::load_world(world_, registry);
+    if (!loaded) return fail(loaded.error());
+    world = std::move(*loaded);
+  }
+  const auto sets = [&](std::uint64_t which) {
+    return world ? world_samples(*world, registry, static_cast<std::int32_t>(which * 20'000),
+                                 samples_)
+                 : synthesis::random_samples(registry, samples_, which);
+  };
+  const double start_s = core::monotonic_seconds();
+  synthesis::CalibrationOptions options;
+  options.seconds_limit = 600;
+  options.seconds_per_measurement = 50e-6;
+  options.rounds = 7;
+  telemetry::ProgressBar bar(telemetry::stderr_terminal(), "calibrating", 3.0);
+  Calibration found;
+  synthesis::CostModel cost(registry);
+  found.fits =
+      cost.calibrate(sets(kFittedSets), options, [&bar](double fraction) { bar.update(fraction); });
+  found.curves = synthesis::cost_curves(registry, cost, options, kSeedsPerPoint,
+                                        [&bar](double fraction) { bar.update(1 + fraction); });
+  found.held_out_sets = samples_;
+  found.held_out = synthesis::accuracy_of(registry, cost, sets(kHeldOutSets), options,
+                                          [&bar](double fraction) { bar.update(2 + fraction); });
+  found.seconds = core::monotonic_seconds() - start_s;
+  bar.finish();
+  if (!out_.empty()) {
+    const std::filesystem::path folder = out_;
+    for (const auto& [name, text] :
+         {std::pair("calibration.json", calibration_json(found, registry)),
+          std::pair("calibration.html", calibration_page(found, registry))}) {
+      if (auto ok = telemetry::write_text_file(folder / name, text); !ok) return fail(ok.error());
+      core::log_info(fmt::format("wrote {}", (folder / name).string()));
+    }
+  }
+  return print(json_ ? calibration_json(found, registry) : calibration_text(found, registry));
+}
+
+}  // namespace psygen::game

@@ -1,0 +1,171 @@
+#include "game/calibration_page.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "engine/telemetry/curve_plot.hpp"
+#include "engine/telemetry/report_plot.hpp"
+#include "engine/telemetry/report_style.hpp"
+
+namespace psygen::game {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The paper's formulas (equations 1, 3 and 4), as what complexity() computes.
+std::string formula_of(std::string_view model) {
+  if (model == "rock") return "c·n·4^(n−1)";
+  if (model == "terrain") return "c·m·n²";
+  if (model == "tree") return "c·mⁿ";
+  return "c·complexity";
+}
+
+std::string seconds_text(double seconds) {
+  if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
+  if (seconds < 1e-3) return fmt::format("{:.3g} µs", seconds * 1e6);
+  return fmt::format("{:.3g} ms", seconds * 1e3);
+}
+
+std::string fit_text(const synthesis::CostFit& fit) {
+  return fmt::format("{} + {}·operations + {}·triangles + {}·full triangles",
+                     seconds_text(fit.fixed_s), seconds_text(fit.per_operation_s),
+                     seconds_text(fit.per_triangle_s), seconds_text(fit.per_full_triangle_s));
+}
+
+Json error_json(const synthesis::CostError& error) {
+  return {{"measured", error.count}, {"p50", error.p50_percent}, {"p95", error.p95_percent}};
+}
+
+// [log2 of 1 + full triangles, factor] of each knot.
+Json correction_json(const synthesis::CostFit& fit) {
+  auto knots = Json::array();
+  for (std::size_t k = 0; k < fit.knot_count; ++k)
+    knots.push_back({fit.knots[k].log2_size, fit.knots[k].factor});
+  return knots;
+}
+
+Json curve_json(const synthesis::CostCurve& curve, const models::Registry& registry) {
+  auto points = Json::array();
+  for (const synthesis::CurvePoint& point : curve.points) {
+    points.push_back({{"value", point.value},
+                      {"operations", point.operations},
+                      {"seconds", point.seconds},
+                      {"predicted_seconds", point.predicted_s}});
+  }
+  const std::string_view model = registry[curve.model].name();
+  return {{"model", model},
+          {"parameter", curve.parameter},
+          {"formula", formula_of(model)},
+          {"c_seconds", curve.formula.seconds_per_operation},
+          {"r_squared", curve.formula.r_squared},
+          {"points", points}};
+}
+
+std::string plot_of(const synthesis::CostCurve& curve, const models::Registry& registry) {
+  const std::string_view model = registry[curve.model].name();
+  telemetry::CurvePlot plot;
+  plot.title = fmt::format("{}: time over {}", model, curve.parameter);
+  plot.x_name = curve.parameter;
+  plot.unit = "µs";
+  plot.note = fmt::format("c = {}, R² = {:.4f}", seconds_text(curve.formula.seconds_per_operation),
+                          curve.formula.r_squared);
+  plot.curves = {{formula_of(model), 2, telemetry::CurveKind::kLine, {}},
+                 {"cost model", 3, telemetry::CurveKind::kLine, {}},
+                 {"measured", 1, telemetry::CurveKind::kPoints, {}}};
+  for (const synthesis::CurvePoint& point : curve.points) {
+    plot.x.push_back(point.value);
+    plot.curves[0].values.push_back(curve.formula.seconds_per_operation * point.operations * 1e6);
+    plot.curves[1].values.push_back(point.predicted_s * 1e6);
+    plot.curves[2].values.push_back(point.seconds * 1e6);
+  }
+  return telemetry::curve_plot_html(plot);
+}
+
+}  // namespace
+
+std::string calibration_text(const Calibration& found, const models::Registry& registry) {
+  std::string text = "time over a parameter, level 0\n";
+  const auto out = std::back_inserter(text);
+  for (const synthesis::CostCurve& curve : found.curves) {
+    const std::string_view model = registry[curve.model].name();
+    fmt::format_to(out, "  {:<8} {:<13} {:<13} c = {:<9} R² = {:.4f}\n", model, curve.parameter,
+                   formula_of(model), seconds_text(curve.formula.seconds_per_operation),
+                   curve.formula.r_squared);
+  }
+  fmt::format_to(out, "error of predictions for {} other parameter sets of each type, in %\n",
+                 found.held_out_sets);
+  for (const synthesis::LevelAccuracy& level : found.held_out.levels) {
+    fmt::format_to(out, "  {:<8} level {}  p50 {:>5.1f}  p95 {:>5.1f}\n",
+                   registry[level.model].name(), level.level, level.error.p50_percent,
+                   level.error.p95_percent);
+  }
+  fmt::format_to(out, "  all               p50 {:>5.1f}  p95 {:>5.1f}\n",
+                 found.held_out.all.p50_percent, found.held_out.all.p95_percent);
+  return text;
+}
+
+std::string calibration_json(const Calibration& found, const models::Registry& registry) {
+  Json json;
+  json["curves"] = Json::array();
+  for (const synthesis::CostCurve& curve : found.curves)
+    json["curves"].push_back(curve_json(curve, registry));
+  json["fits"] = Json::array();
+  for (const synthesis::LevelCalibration& level : found.fits.levels) {
+    json["fits"].push_back({{"model", registry[level.model].name()},
+                            {"level", level.level},
+                            {"fixed_seconds", level.fit.fixed_s},
+                            {"seconds_per_operation", level.fit.per_operation_s},
+                            {"seconds_per_triangle", level.fit.per_triangle_s},
+                            {"seconds_per_full_triangle", level.fit.per_full_triangle_s},
+                            {"correction", correction_json(level.fit)},
+                            {"samples", level.samples},
+                            {"error_percent_p50", level.fit_error_percent}});
+  }
+  Json& held_out = json["held_out"];
+  held_out["sets_of_each_model"] = found.held_out_sets;
+  held_out["error_percent"] = error_json(found.held_out.all);
+  held_out["levels"] = Json::array();
+  for (const synthesis::LevelAccuracy& level : found.held_out.levels) {
+    held_out["levels"].push_back({{"model", registry[level.model].name()},
+                                  {"level", level.level},
+                                  {"error_percent", error_json(level.error)}});
+  }
+  json["seconds"] = found.seconds;
+  return json.dump(2) + "\n";
+}
+
+std::string calibration_page(const Calibration& found, const models::Registry& registry) {
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
+  html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
+  html += fmt::format("<title>psygen: what synthesis costs</title><style>{}",
+                      telemetry::report_style());
+  html +=
+      ".plots { display:grid; grid-template-columns:repeat(auto-fit,minmax(420px,1fr)); gap:0 14px "
+      "}";
+  html += "</style></head><body><main>\n<h1>What synthesis costs</h1>\n";
+  html += fmt::format(
+      "<p class=\"lead\">Time of one core at full detail over each parameter of the paper's "
+      "formulas. "
+      "Predictions for {} other parameter sets of each type, all levels: error {:.1f} % in the "
+      "median, {:.1f} % at p95.</p>\n<div class=\"plots\">\n",
+      found.held_out_sets, found.held_out.all.p50_percent, found.held_out.all.p95_percent);
+  for (const synthesis::CostCurve& curve : found.curves)
+    html += plot_of(curve, registry);
+  html += "</div>\n<div class=\"facts\"><section><h2>Cost model and error, p50 / p95</h2><table>";
+  for (std::size_t i = 0; i < found.held_out.levels.size(); ++i) {
+    const synthesis::LevelAccuracy& level = found.held_out.levels[i];
+    std::string fit;
+    for (const synthesis::LevelCalibration& line : found.fits.levels) {
+      if (line.model == level.model && line.level == level.level) fit = fit_text(line.fit);
+    }
+    fmt::format_to(std::back_inserter(html),
+                   "<tr><th>{} level {}</th><td>{}</td><td>{:.1f} / {:.1f} %</td></tr>",
+                   telemetry::escaped(registry[level.model].name()), level.level, fit,
+                   level.error.p50_percent, level.error.p95_percent);
+  }
+  return html + "</table></section></div>\n</main></body></html>\n";
+}
+
+}  // namespace psygen::game

@@ -1,0 +1,81 @@
+// psygen schedule: what each policy makes of a recorded stream of requests, under the virtual clock.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "engine/core/log.hpp"
+#include "engine/synthesis/request_stream.hpp"
+#include "game/commands.hpp"
+#include "game/option_checks.hpp"
+
+namespace psygen::game {
+namespace {
+
+core::Result<std::vector<synthesis::SimulatedJob>> read_stream(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream text;
+  text << stream.rdbuf();
+  if (!stream || !text)
+    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be read", file));
+  return synthesis::parse_stream(text.str(), file);
+}
+
+std::string table_of(std::span<const synthesis::PolicyFigures> rows) {
+  std::string text =
+      "           fill    idle   visible p50       p99       max    late  lateness       max\n"
+      "             ms       %            ms        ms        ms       %        ms        ms\n";
+  for (const synthesis::PolicyFigures& row : rows) {
+    fmt::format_to(std::back_inserter(text),
+                   "{:<8} {:>6.1f} {:>7.2f} {:>13.3f} {:>9.3f} {:>9.3f} {:>7.2f} {:>9.3f} {:>9.3f}\n",
+                   synthesis::name_of(row.policy), row.fill_s * 1e3, row.fill_idle_percent,
+                   row.visible_p50_s * 1e3, row.visible_p99_s * 1e3, row.visible_max_s * 1e3,
+                   row.late_percent, row.lateness_mean_s * 1e3, row.lateness_max_s * 1e3);
+  }
+  return text;
+}
+
+std::string json_of(std::span<const synthesis::PolicyFigures> rows) {
+  auto list = nlohmann::ordered_json::array();
+  for (const synthesis::PolicyFigures& row : rows) {
+    list.push_back({{"policy", synthesis::name_of(row.policy)},
+                    {"fill_seconds", row.fill_s},
+                    {"visible_seconds",
+                     {{"p50", row.visible_p50_s}, {"p99", row.visible_p99_s}, {"max", row.visible_max_s}}},
+                    {"late_percent", row.late_percent},
+                    {"lateness_seconds", {{"mean", row.lateness_mean_s}, {"max", row.lateness_max_s}}},
+                    {"fill_idle_percent", row.fill_idle_percent}});
+  }
+  return list.dump(2) + "\n";
+}
+
+}  // namespace
+
+ScheduleCommand::ScheduleCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("schedule", "Compare the policies on recorded requests")) {
+  CLI::App& c = *command_;
+  c.add_option("--requests", file_, "What `psygen fly --record-requests` wrote")->required();
+  c.add_option("--modelers", modelers_, "Simulated modelers")
+      ->capture_default_str()
+      ->check(number_between(1, 256));
+  c.add_option("--slower", slower_, "Every synthesis takes so many times as long")
+      ->capture_default_str()
+      ->check(number_between(0.001, 1e6));
+  c.add_flag("--json", json_, "Print the figures as JSON");
+}
+
+int ScheduleCommand::run() const {
+  auto jobs = read_stream(file_);
+  if (!jobs) {
+    core::log_error(jobs.error().message);
+    return exit_code_of(jobs.error());
+  }
+  for (synthesis::SimulatedJob& job : *jobs)
+    job.seconds *= slower_;
+  const auto rows = synthesis::compare_policies(*jobs, modelers_);
+  return print(json_ ? json_of(rows) : table_of(rows));
+}
+
+}  // namespace psygen::game

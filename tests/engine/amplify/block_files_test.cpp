@@ -1,0 +1,123 @@
+#include "engine/amplify/block_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/engine/world/files.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace psygen::amplify {
+namespace {
+
+using exchange::Format;
+using world::testing::kSmallWorld;
+using world::testing::parsed;
+using world::testing::registry;
+
+constexpr Region kRegion{1, 1, 4, 3};
+
+struct Made {
+  Report report;
+  std::uint64_t written, skipped;
+};
+
+core::Result<Made> make_files(const world::World& world, const std::filesystem::path& folder,
+                              Format format, const std::atomic<bool>* stop = nullptr) {
+  auto files = BlockFolder::open(folder, world, registry(), format);
+  if (!files) return tl::unexpected(files.error());
+  Options options;
+  options.threads = 2;
+  options.stop = stop;
+  options.make_sink = [&] { return (*files)->make_sink(); };
+  auto report = amplify(world, registry(), kRegion, options);
+  if (!report) return tl::unexpected(report.error());
+  return Made{*report, (*files)->written(), (*files)->skipped()};
+}
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(BlockFiles, OneFileABlockAndTheWorldBesideThem) {
+  const TemporaryFolder folder;
+  const auto made = make_files(parsed(kSmallWorld), folder.path(), Format::kGlb);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->written, 6u);
+  EXPECT_EQ(folder.file_count(), 7u);
+  for (int x = 1; x < 4; ++x) {
+    for (int z = 1; z < 3; ++z) {
+      const std::string name = "block_" + std::to_string(x) + "_" + std::to_string(z) + ".glb";
+      EXPECT_EQ(content(folder / name).substr(0, 4), "glTF") << name;
+    }
+  }
+}
+
+TEST(BlockFiles, WhatIsThereIsNotWrittenAgainAndTheHashIsStillThatOfEverything) {
+  const TemporaryFolder folder;
+  const world::World world = parsed(kSmallWorld);
+  const auto first = make_files(world, folder.path(), Format::kGlb);
+  ASSERT_TRUE(first);
+  const std::string complete = content(folder / "block_2_2.glb");
+  std::filesystem::remove(folder / "block_2_2.glb");
+  std::ofstream(folder / "block_1_1.glb") << "mine";
+  const auto second = make_files(world, folder.path(), Format::kGlb);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->written, 1u);
+  EXPECT_EQ(second->skipped, 5u);
+  EXPECT_EQ(content(folder / "block_2_2.glb"), complete);
+  EXPECT_EQ(content(folder / "block_1_1.glb"), "mine");
+  EXPECT_EQ(second->report.totals.hash.value(), first->report.totals.hash.value());
+}
+
+TEST(BlockFiles, WhatAKilledRunLeftHalfDoneIsRemoved) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / ".block_1_1.glb.99999999-0.partial") << "half";
+  ASSERT_TRUE(make_files(parsed(kSmallWorld), folder.path(), Format::kGlb));
+  EXPECT_EQ(folder.file_count(), 7u);
+}
+
+TEST(BlockFiles, AnInterruptedRunLeavesWholeFilesOnly) {
+  const TemporaryFolder folder;
+  const std::atomic<bool> stop{true};
+  const auto made = make_files(parsed(kSmallWorld), folder.path(), Format::kObj, &stop);
+  ASSERT_TRUE(made);
+  EXPECT_FALSE(made->report.complete);
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(BlockFiles, TheBlocksOfAnotherWorldAreNotMixedIn) {
+  const TemporaryFolder folder;
+  world::World world = parsed(kSmallWorld);
+  ASSERT_TRUE(make_files(world, folder.path(), Format::kObj));
+  EXPECT_EQ(folder.file_count(), 13u);  // an .mtl beside each .obj
+  world.seed += 1;
+  const auto other = make_files(world, folder.path(), Format::kObj);
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message.find("another world"), std::string::npos);
+}
+
+TEST(BlockFiles, AFolderThatCannotBeWrittenIsNamed) {
+  const auto made = make_files(parsed(kSmallWorld), "/proc/nowhere", Format::kGlb);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message.find("/proc/nowhere"), std::string::npos);
+}
+
+TEST(BlockFiles, ADocumentHoldsEverythingOnTheBlockWhereItStands) {
+  const world::World world = parsed(kSmallWorld);
+  const auto document = block_document(world, registry(), {2, 1}, 0);
+  ASSERT_TRUE(document);
+  Totals totals;
+  BlockSynthesizer(world, registry()).synthesise({2, 1}, totals);
+  EXPECT_EQ(document->triangle_count(), totals.triangles);
+  ASSERT_EQ(document->objects.size(), 9u);
+  std::vector<world::Placement> placements;
+  world::place_models(world, registry(), {2, 1}, placements);
+  for (std::size_t i = 0; i < placements.size(); ++i)
+    EXPECT_EQ(document->objects[i + 1].position, placements[i].position);
+  EXPECT_LT(block_document(world, registry(), {2, 1}, 3)->triangle_count(), totals.triangles / 10);
+}
+
+}  // namespace
+}  // namespace psygen::amplify

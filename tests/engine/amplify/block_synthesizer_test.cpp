@@ -1,0 +1,131 @@
+#include "engine/amplify/block_synthesizer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/models/terrain.hpp"
+#include "tests/engine/world/files.hpp"
+
+namespace psygen::amplify {
+namespace {
+
+using world::testing::kSmallWorld;
+using world::testing::parsed;
+using world::testing::registry;
+
+Totals totals_of(const world::World& world, core::BlockCoord block, int level = 0) {
+  Totals totals;
+  BlockSynthesizer(world, registry(), level).synthesise(block, totals);
+  return totals;
+}
+
+TEST(BlockSynthesizer, MakesTheTerrainAndEverythingOnIt) {
+  const world::World world = parsed(kSmallWorld);
+  Totals totals;
+  std::uint64_t triangles = 0, bytes = 0;
+  std::vector<std::uint32_t> indices;
+  BlockSynthesizer synthesizer(world, registry());
+  synthesizer.synthesise({2, 1}, totals, [&](const BlockMesh& mesh) {
+    indices.push_back(mesh.placement.index);
+    EXPECT_EQ(mesh.size, registry()[mesh.placement.model].mesh_size(mesh.placement.parameters, 0));
+    triangles += mesh.size.triangle_count();
+    bytes += mesh.view.vertices.size() + mesh.view.indices.size_bytes();
+  });
+  EXPECT_EQ(indices, (std::vector<std::uint32_t>{world::kTerrainIndex, 0, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(totals.blocks, 1u);
+  EXPECT_EQ(totals.models, 8u);
+  EXPECT_EQ(totals.failed, 0u);
+  EXPECT_EQ(totals.bytes, bytes);
+  // Skirts are no ground: two triangles for each of the 4 · 32 border vertices.
+  EXPECT_EQ(totals.triangles + 2 * 4 * 32, triangles);
+}
+
+TEST(BlockSynthesizer, TheHashDependsOnWorldBlockAndLevelsOnly) {
+  world::World world = parsed(kSmallWorld);
+  const std::uint64_t hash = totals_of(world, {2, 1}).hash.value();
+  EXPECT_EQ(totals_of(world, {2, 1}).hash.value(), hash);
+  EXPECT_NE(totals_of(world, {1, 2}).hash.value(), hash);
+  EXPECT_NE(totals_of(world, {2, 1}, kAllLevels).hash.value(), hash);
+  world.seed += 1;
+  EXPECT_NE(totals_of(world, {2, 1}).hash.value(), hash);
+}
+
+TEST(BlockSynthesizer, ALevelIsTheCoarsestOfTypesThatHaveFewer) {
+  const world::World world = parsed(kSmallWorld);
+  Totals totals;
+  BlockSynthesizer(world, registry(), 99).synthesise({2, 1}, totals, [](const BlockMesh& mesh) {
+    EXPECT_EQ(mesh.level, registry()[mesh.placement.model].level_count() - 1);
+  });
+  EXPECT_EQ(totals.hash.count(), 9u);
+  EXPECT_LT(totals.triangles, totals_of(world, {2, 1}).triangles / 50);
+}
+
+TEST(BlockSynthesizer, TheHashNoticesAModelThatStandsElsewhere) {
+  // A filter that lets the same models find other places: the meshes of rocks stay the same.
+  const world::World world = parsed(kSmallWorld);
+  world::World moved = world;
+  for (world::Scatter& scatter : moved.scatter)
+    scatter.max_slope_deg = 9;
+  const Totals a = totals_of(world, {2, 1}), b = totals_of(moved, {2, 1});
+  ASSERT_EQ(a.triangles, b.triangles) << "every model found a place";
+  EXPECT_NE(a.hash.value(), b.hash.value());
+}
+
+TEST(BlockSynthesizer, MemoryThatWasUsedBeforeLeavesNoTrace) {
+  const world::World world = parsed(kSmallWorld);
+  BlockSynthesizer synthesizer(world, registry());
+  Totals first, second;
+  synthesizer.synthesise({0, 0}, first);
+  synthesizer.synthesise({2, 1}, second);
+  EXPECT_EQ(second.hash.value(), totals_of(world, {2, 1}).hash.value());
+}
+
+class ThrowingType final : public models::ModelType {
+ public:
+  std::string_view name() const override { return "faulty"; }
+  std::string_view doc() const override { return "throws"; }
+  std::span<const models::ParameterSpec> parameters() const override { return {}; }
+  int level_count() const override { return 1; }
+  double level_error_m(const models::Parameters&, int) const override { return 0; }
+  core::Bounds bounds(const models::Parameters&) const override { return {}; }
+  models::MeshSize mesh_size(const models::Parameters&, int) const override { return {3, 3}; }
+  double complexity(const models::Parameters&, int) const override { return 1; }
+  double log2_cost(const models::Parameters&) const override { return 0; }
+  core::Bounds synthesize(const models::Parameters&, int, const models::MeshView&) const override {
+    throw std::runtime_error("no geometry today");
+  }
+  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}
+};
+
+TEST(BlockSynthesizer, AModelThatThrowsIsCountedAndTheOthersGoOn) {
+  models::Registry with_faulty = models::make_standard_registry();
+  world::World world = parsed(kSmallWorld);
+  world::Scatter faulty;
+  faulty.model = *with_faulty.add(std::make_unique<ThrowingType>());
+  faulty.count = 2;
+  world.scatter.insert(world.scatter.begin(), faulty);
+  Totals totals;
+  BlockSynthesizer(world, with_faulty).synthesise({0, 0}, totals);
+  EXPECT_EQ(totals.failed, 2u);
+  EXPECT_EQ(totals.models, 10u);
+  EXPECT_NE(totals.first_failure.find("no geometry today"), std::string::npos);
+  EXPECT_EQ(totals.hash.count(), 9u);
+}
+
+TEST(SampleWorldHash, NamesTheWorldAndThePlace) {
+  world::World world = parsed(kSmallWorld);
+  const std::uint64_t hash = sample_world_hash(world, registry(), {2, 2});
+  EXPECT_EQ(sample_world_hash(world, registry(), {2, 2}), hash);
+  EXPECT_NE(sample_world_hash(world, registry(), {3, 2}), hash);
+  world.seed += 1;
+  EXPECT_NE(sample_world_hash(world, registry(), {2, 2}), hash);
+}
+
+TEST(SampleWorldHash, IsDefinedAtTheEndOfAllBlocks) {
+  world::World world = parsed(kSmallWorld);
+  world.blocks_x = world.blocks_z = 0;
+  const std::uint64_t corner = sample_world_hash(world, registry(), {INT32_MAX, INT32_MAX});
+  EXPECT_NE(corner, sample_world_hash(world, registry(), {INT32_MAX, INT32_MAX - 2}));
+}
+
+}  // namespace
+}  // namespace psygen::amplify

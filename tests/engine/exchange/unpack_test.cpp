@@ -1,0 +1,93 @@
+#include "engine/exchange/unpack.hpp"
+
+#include <glm/geometric.hpp>
+
+#include "engine/models/terrain.hpp"
+#include "tests/engine/exchange/synthesised.hpp"
+
+namespace psygen::exchange {
+namespace {
+
+std::size_t triangles_of(const Object& object) {
+  std::size_t count = 0;
+  for (const Part& part : object.parts)
+    count += part.indices.size() / 3;
+  return count;
+}
+
+TEST(Unpack, KeepsEveryTriangleOfEveryLevel) {
+  for (const char* name : {"rock", "tree"}) {
+    const models::ModelType& type = standard_type(name);
+    const models::Parameters p = models::default_parameters(type);
+    for (int level = 0; level < type.level_count(); ++level)
+      EXPECT_EQ(triangles_of(synthesised(name, level)), type.mesh_size(p, level).triangle_count());
+  }
+}
+
+TEST(Unpack, LeavesTheSkirtsOfTerrainOut) {
+  const models::ModelType& type = standard_type("terrain");
+  const models::Parameters p = models::default_parameters(type);
+  for (int level = 0; level < type.level_count(); ++level)
+    EXPECT_EQ(triangles_of(synthesised("terrain", level)),
+              models::terrain_surface_triangles(p, level));
+  const Object ground = synthesised("terrain", 0);
+  ASSERT_EQ(ground.parts.size(), 1u);
+  EXPECT_EQ(ground.parts[0].positions.size(), 64u * 64);
+  EXPECT_EQ(ground.parts[0].material, kGround);
+}
+
+TEST(Unpack, TerrainVerticesLieOnTheGround) {
+  const models::ModelType& type = standard_type("terrain");
+  const models::Parameters p = models::default_parameters(type);
+  const Object ground = synthesised("terrain", 0);
+  for (const glm::vec3& v : ground.parts[0].positions) {
+    const double height_m =
+        models::ground_height_m(p, {0, 0}, static_cast<double>(v.x), static_cast<double>(v.z));
+    EXPECT_NEAR(static_cast<double>(v.y), height_m, 1e-3);
+  }
+}
+
+TEST(Unpack, PartsAreSoundAndFaceOutwards) {
+  for (const char* name : {"terrain", "rock", "tree"}) {
+    for (const Part& part : synthesised(name, 0).parts) {
+      ASSERT_EQ(part.positions.size(), part.normals.size());
+      ASSERT_EQ(part.positions.size(), part.colours.size());
+      std::size_t agreeing = 0;
+      for (std::size_t i = 0; i < part.indices.size(); i += 3) {
+        const glm::vec3 &a = part.positions[part.indices[i]],
+                        &b = part.positions[part.indices[i + 1]],
+                        &c = part.positions[part.indices[i + 2]];
+        agreeing += glm::dot(glm::cross(b - a, c - a), part.normals[part.indices[i]]) > 0 ? 1 : 0;
+      }
+      // Leaves are lit as the crown they belong to, not as they lie.
+      if (part.material != kLeaf) {
+        EXPECT_GT(static_cast<double>(agreeing), 0.9 * static_cast<double>(part.indices.size() / 3))
+            << name;
+      }
+      for (const glm::vec3& n : part.normals)
+        EXPECT_NEAR(glm::length(n), 1.0F, 1e-3F);
+      for (const glm::vec3& c : part.colours)
+        EXPECT_TRUE(c.x >= 0 && c.x <= 1 && c.y >= 0 && c.y <= 1 && c.z >= 0 && c.z <= 1);
+    }
+  }
+}
+
+TEST(Unpack, SeparatesBarkFromLeaves) {
+  const Object tree = synthesised("tree", 0);
+  ASSERT_EQ(tree.parts.size(), 2u);
+  EXPECT_NE(tree.parts[0].material, tree.parts[1].material);
+}
+
+TEST(Unpack, AnIndexThatNamesNoVertexIsRefused) {
+  const models::ModelType& type = standard_type("tree");
+  const models::Parameters p = models::default_parameters(type);
+  const auto mesh = synthesis::HeapDestination::make(type, p, 0);
+  ASSERT_TRUE(synthesis::synthesize_guarded(type, p, 0, mesh->view()).ok);
+  mesh->view().indices[4] = 65535;
+  const auto object = unpack(type, p, 0, mesh->size(), mesh->view(), world::Palette{});
+  ASSERT_FALSE(object);
+  EXPECT_NE(object.error().message.find("65535"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace psygen::exchange

@@ -1,0 +1,173 @@
+#include "engine/exchange/write_document.hpp"
+
+#include <assimp/mesh.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <glm/common.hpp>
+
+#include "tests/engine/exchange/synthesised.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace psygen::exchange {
+namespace {
+
+Document grove() {
+  Document document{"grove",
+                    {synthesised("terrain", 0), synthesised("tree", 0), synthesised("rock", 0),
+                     synthesised("tree", 3)}};
+  document.objects[1].position = {10, 20.5F, 30};
+  document.objects[2].position = {-5, 1, 2};
+  return document;
+}
+
+struct Counts {
+  std::uint64_t vertices = 0, triangles = 0;
+};
+
+Counts counts_of(const aiScene& scene) {
+  Counts counts;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    counts.vertices += scene.mMeshes[i]->mNumVertices;
+    counts.triangles += scene.mMeshes[i]->mNumFaces;
+  }
+  return counts;
+}
+
+// Everything that stands in the file, through another library.
+class ReadBack {
+ public:
+  explicit ReadBack(const std::filesystem::path& file)
+      : scene_(importer_.ReadFile(file.string(), aiProcess_ValidateDataStructure)) {}
+  const aiScene* scene() const { return scene_; }
+  std::string error() const { return importer_.GetErrorString(); }
+
+ private:
+  Assimp::Importer importer_;
+  const aiScene* scene_;
+};
+
+TEST(WriteDocument, AGlbReadByAnotherLibraryHasTheSameCounts) {
+  const TemporaryFolder folder;
+  const Document document = grove();
+  ASSERT_TRUE(write_document(folder / "grove.glb", Format::kGlb, document));
+  EXPECT_EQ(folder.file_count(), 1u);
+  const ReadBack back(folder / "grove.glb");
+  ASSERT_NE(back.scene(), nullptr) << back.error();
+  const Counts counts = counts_of(*back.scene());
+  EXPECT_EQ(counts.vertices, document.vertex_count());
+  EXPECT_EQ(counts.triangles, document.triangle_count());
+  EXPECT_GT(counts.triangles, 10'000u);
+  // Objects are nodes; bark, leaves and ground are materials (a reader may add one of its own).
+  EXPECT_EQ(back.scene()->mRootNode->mNumChildren, 4u);
+  EXPECT_GE(back.scene()->mNumMaterials, 3u);
+}
+
+TEST(WriteDocument, AGlbKeepsPlacesNormalsAndColours) {
+  const TemporaryFolder folder;
+  const Document document{"rock", {synthesised("rock", 0)}};
+  ASSERT_TRUE(write_document(folder / "rock.glb", Format::kGlb, document));
+  const ReadBack back(folder / "rock.glb");
+  ASSERT_NE(back.scene(), nullptr) << back.error();
+  const aiMesh& mesh = *back.scene()->mMeshes[0];
+  const Part& part = document.objects[0].parts[0];
+  ASSERT_EQ(mesh.mNumVertices, part.positions.size());
+  ASSERT_TRUE(mesh.HasNormals());
+  ASSERT_TRUE(mesh.HasVertexColors(0));
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const aiVector3D p = mesh.mVertices[i], n = mesh.mNormals[i];
+    EXPECT_EQ(glm::vec3(p.x, p.y, p.z), part.positions[i]);
+    EXPECT_EQ(glm::vec3(n.x, n.y, n.z), part.normals[i]);
+    const aiColor4D c = mesh.mColors[0][i];
+    EXPECT_NEAR(c.r, part.colours[i].x, 1e-4F);
+    EXPECT_NEAR(c.g, part.colours[i].y, 1e-4F);
+    EXPECT_NEAR(c.b, part.colours[i].z, 1e-4F);
+  }
+}
+
+TEST(WriteDocument, AnObjReadByAnotherLibraryHasTheSameTrianglesPlacesAndMaterials) {
+  const TemporaryFolder folder;
+  const Document document = grove();
+  ASSERT_TRUE(write_document(folder / "grove.obj", Format::kObj, document));
+  EXPECT_EQ(folder.file_count(), 2u);
+  const ReadBack back(folder / "grove.obj");
+  ASSERT_NE(back.scene(), nullptr) << back.error();
+  EXPECT_EQ(counts_of(*back.scene()).triangles, document.triangle_count());
+  glm::vec3 low(1e9F), high(-1e9F), expected_low(1e9F), expected_high(-1e9F);
+  std::set<std::string> names;
+  for (unsigned i = 0; i < back.scene()->mNumMeshes; ++i) {
+    const aiMesh& mesh = *back.scene()->mMeshes[i];
+    EXPECT_TRUE(mesh.HasVertexColors(0));
+    names.insert(back.scene()->mMaterials[mesh.mMaterialIndex]->GetName().C_Str());
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D p = mesh.mVertices[v];
+      low = glm::min(low, glm::vec3(p.x, p.y, p.z));
+      high = glm::max(high, glm::vec3(p.x, p.y, p.z));
+    }
+  }
+  for (const Object& object : document.objects) {
+    for (const Part& part : object.parts) {
+      for (const glm::vec3& p : part.positions) {
+        expected_low = glm::min(expected_low, p + object.position);
+        expected_high = glm::max(expected_high, p + object.position);
+      }
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(low[k], expected_low[k], 1e-4F);
+    EXPECT_NEAR(high[k], expected_high[k], 1e-4F);
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"ground", "leaf", "solid"}));
+}
+
+TEST(WriteDocument, AnObjHasOneLineForEveryVertexAndTriangle) {
+  const Document document = grove();
+  const ObjText text = obj_text(document, "a.mtl");
+  const auto lines = [&text](const std::string& start) {
+    std::uint64_t count = 0;
+    for (std::size_t at = 0; (at = text.obj.find("\n" + start + " ", at)) != std::string::npos;
+         ++at)
+      ++count;
+    return count;
+  };
+  EXPECT_EQ(lines("v"), document.vertex_count());
+  EXPECT_EQ(lines("vn"), document.vertex_count());
+  EXPECT_EQ(lines("f"), document.triangle_count());
+  EXPECT_EQ(lines("o"), 4u);
+  EXPECT_NE(text.mtl.find("newmtl leaf"), std::string::npos);
+}
+
+TEST(WriteDocument, AnEmptyDocumentIsStillAFileThatOthersRead) {
+  const auto bytes = glb_bytes({"nothing", {}});
+  ASSERT_TRUE(bytes);
+  EXPECT_GT(bytes->size(), 20u);
+  EXPECT_EQ(std::string(bytes->begin(), bytes->begin() + 4), "glTF");
+}
+
+TEST(WriteDocument, MeshesBeyond16BitIndicesAreWrittenWhole) {
+  Part part;
+  for (std::uint32_t i = 0; i < 70'000; ++i) {
+    part.positions.emplace_back(static_cast<float>(i), 0.0F, static_cast<float>(i % 7));
+    part.normals.emplace_back(0, 1, 0);
+    part.colours.emplace_back(0.5F);
+  }
+  for (std::uint32_t i = 0; i + 2 < 70'000; ++i)
+    part.indices.insert(part.indices.end(), {i, i + 1, i + 2});
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_document(folder / "a.glb", Format::kGlb, {"long", {{"long", {}, {part}}}}));
+  const ReadBack back(folder / "a.glb");
+  ASSERT_NE(back.scene(), nullptr) << back.error();
+  EXPECT_EQ(counts_of(*back.scene()).triangles, 69'998u);
+  const aiFace& last = back.scene()->mMeshes[0]->mFaces[69'997];
+  EXPECT_EQ(last.mIndices[2], 69'999u);
+}
+
+TEST(WriteDocument, AFolderThatDoesNotExistIsNamed) {
+  const auto written = write_document("/nonexistent/a.glb", Format::kGlb, grove());
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().message.find("/nonexistent/a.glb"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace psygen::exchange

@@ -1,0 +1,79 @@
+#include "engine/synthesis/cost_curves.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/engine/synthesis/fake_models.hpp"
+
+namespace psygen::synthesis {
+namespace {
+
+// Measurements end at once: what is tested does not depend on the machine's speed.
+CalibrationOptions quick() {
+  CalibrationOptions options;
+  options.seconds_limit = 60;
+  options.seconds_per_measurement = 1e-9;
+  options.rounds = 1;
+  return options;
+}
+
+TEST(CostCurves, StandardTypesHaveTheCurvesOfThePaper) {
+  const models::Registry registry = models::make_standard_registry();
+  const CostModel cost(registry);
+  std::set<std::string> curves;
+  for (const CostCurve& curve : cost_curves(registry, cost, quick(), 2)) {
+    curves.insert(std::string(registry[curve.model].name()) + " " + curve.parameter);
+    ASSERT_GE(curve.points.size(), 3u);
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      EXPECT_GT(curve.points[i].seconds, 0);
+      EXPECT_GT(curve.points[i].predicted_s, 0);
+      if (i > 0) {
+        EXPECT_GT(curve.points[i].value, curve.points[i - 1].value);
+        EXPECT_GT(curve.points[i].operations, curve.points[i - 1].operations);
+      }
+    }
+    EXPECT_GT(curve.formula.seconds_per_operation, 0);
+  }
+  for (const char* expected :
+       {"terrain size", "terrain octaves", "rock subdivisions", "tree iterations", "tree branches"})
+    EXPECT_TRUE(curves.contains(expected)) << expected;
+}
+
+TEST(CostCurves, RandomSamplesAreLegalDifferentAndReproducible) {
+  const models::Registry registry = models::make_standard_registry();
+  const auto samples = random_samples(registry, 20, 1);
+  ASSERT_EQ(samples.size(), 20 * registry.size());
+  std::set<std::uint64_t> hashes;
+  for (const CostSample& sample : samples) {
+    EXPECT_TRUE(models::validate(registry[sample.model], sample.parameters));
+    hashes.insert(sample.parameters.hash());
+  }
+  EXPECT_EQ(hashes.size(), samples.size());
+  EXPECT_EQ(random_samples(registry, 20, 1).back().parameters, samples.back().parameters);
+  EXPECT_NE(random_samples(registry, 20, 2).back().parameters, samples.back().parameters);
+}
+
+TEST(CostCurves, PredictionsThatAreExactHaveNoErrorAndOthersHaveTheirs) {
+  double now = 0;
+  const models::Registry registry = testing::registry_of(std::make_unique<testing::ScriptedModel>(
+      "timed", [&now](const models::Parameters& p, int level) {
+        now += 3e-6 + 1e-6 * static_cast<double>(p.integer(1) >> level);
+      }));
+  CalibrationOptions options;
+  options.wall_clock = options.cpu_clock = [&now] { return now; };
+  options.seconds_limit = 1e9;
+  CostModel cost(registry);
+  const auto samples = random_samples(registry, 16, 1);
+  cost.calibrate(samples, options);
+  const Accuracy exact = accuracy_of(registry, cost, random_samples(registry, 30, 2), options);
+  EXPECT_EQ(exact.levels.size(), 3u);
+  EXPECT_EQ(exact.all.count, 90u);
+  EXPECT_LT(exact.all.p95_percent, 1e-3);
+  const CostModel uncalibrated(registry);  // 5 ns an operation instead of 1 µs
+  const Accuracy far = accuracy_of(registry, uncalibrated, samples, options);
+  EXPECT_GT(far.all.p50_percent, 99);
+}
+
+}  // namespace
+}  // namespace psygen::synthesis

@@ -1,0 +1,99 @@
+#include "engine/synthesis/request_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace psygen::synthesis {
+namespace {
+
+SimulatedJob job(double arrival_s, double seconds, double deadline_s, RankGroup group) {
+  return {arrival_s, seconds, deadline_s, Rank::by_layer(group, 3, 20)};
+}
+
+// Half a second of a flight over the paper's world, recorded by
+//   psygen fly --headless --path game/paths/walk27.toml --fixed-step 60 --frames 30 --size 160x90
+//     --view-distance 80 --record-requests walk.requests
+std::vector<SimulatedJob> recorded() {
+  std::ifstream file(PSYGEN_SOURCE_DIR "/tests/engine/synthesis/data/walk.requests");
+  std::stringstream text;
+  text << file.rdbuf();
+  const auto jobs = parse_stream(text.str(), "walk.requests");
+  EXPECT_TRUE(jobs) << jobs.error().message;
+  return *jobs;
+}
+
+const PolicyFigures& row_of(const std::vector<PolicyFigures>& rows, Policy policy) {
+  return rows[static_cast<std::size_t>(policy)];
+}
+
+TEST(RequestStream, IsReadAsItWasWritten) {
+  const std::vector<SimulatedJob> jobs{
+      job(0.25, 1e-5, kNoDeadline, RankGroup::kPrefetch),
+      job(0, 3.25e-6, 0, RankGroup::kVisibleHole),
+      job(0.5, 2e-3, 1.125, RankGroup::kPredicted)};
+  const auto read = parse_stream(stream_text(jobs), "a");
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->size(), 3u);
+  EXPECT_EQ((*read)[0].seconds, 3.25e-6);  // by arrival
+  EXPECT_EQ((*read)[1].deadline_s, kNoDeadline);
+  EXPECT_EQ((*read)[2].deadline_s, 1.125);
+  EXPECT_EQ((*read)[2].rank, jobs[2].rank);
+  EXPECT_EQ(stream_text(*read), stream_text(jobs));
+}
+
+TEST(RequestStream, WhatIsNoStreamIsRefusedWithItsLine) {
+  const std::string head = "psygen requests 1\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "a:1"},
+      {"psygen requests 2\n", "a:1"},
+      {head, "a:1"},
+      {head + "0 1 - 0\n0 1 -\n", "a:3"},
+      {head + "0 1 - 0 0\n", "a:2"},
+      {head + "0 nan - 0\n", "a:2"},
+      {head + "-1 1 - 0\n", "a:2"},
+      {head + "0 1 x 0\n", "a:2"},
+      {head + "0 1 - zz\n", "a:2"},
+      {head + "0 inf - 0\n", "a:2"}};
+  for (const auto& [text, where] : cases) {
+    const auto jobs = parse_stream(text, "a");
+    ASSERT_FALSE(jobs) << text;
+    EXPECT_EQ(jobs.error().message.find(where + ":"), 0u) << jobs.error().message;
+  }
+}
+
+// The figures by hand: one modeler, a long prefetch and a short hole at 0, a predicted one later.
+TEST(RequestStream, FiguresAreThoseOfTheSchedule) {
+  const std::vector<SimulatedJob> jobs{job(0, 0.4, kNoDeadline, RankGroup::kPrefetch),
+                                       job(0, 0.1, 0, RankGroup::kVisibleHole),
+                                       job(0.2, 0.2, 0.3, RankGroup::kPredicted)};
+  const auto rows = compare_policies(jobs, 1);
+  ASSERT_EQ(rows.size(), 5u);
+  const PolicyFigures& fifo = row_of(rows, Policy::kFifo);
+  EXPECT_NEAR(fifo.fill_s, 0.5, 1e-12);
+  EXPECT_NEAR(fifo.visible_max_s, 0.5, 1e-12);
+  EXPECT_NEAR(fifo.lateness_max_s, 0.4, 1e-12);
+  EXPECT_NEAR(fifo.late_percent, 100, 1e-12);
+  const PolicyFigures& deadline = row_of(rows, Policy::kDeadline);
+  EXPECT_NEAR(deadline.visible_max_s, 0.1, 1e-12);
+  EXPECT_NEAR(deadline.fill_idle_percent, 0, 1e-9);
+}
+
+TEST(RequestStream, OnARecordedFlightTheDeadlinePolicyFillsHolesSoonerThanFirstComeFirstServed) {
+  auto jobs = recorded();
+  ASSERT_GT(jobs.size(), 500u);
+  for (SimulatedJob& j : jobs)
+    j.seconds *= 200;  // a machine that has to choose
+  const auto rows = compare_policies(jobs, 2);
+  const PolicyFigures &fifo = row_of(rows, Policy::kFifo), &due = row_of(rows, Policy::kDeadline);
+  EXPECT_LT(due.visible_p99_s, fifo.visible_p99_s);
+  EXPECT_LT(row_of(rows, Policy::kLongest).fill_s, row_of(rows, Policy::kShortest).fill_s);
+  for (const PolicyFigures& row : rows) {
+    EXPECT_GE(row.visible_p50_s, 0);
+    EXPECT_LT(row.fill_idle_percent, 5);
+  }
+}
+
+}  // namespace
+}  // namespace psygen::synthesis

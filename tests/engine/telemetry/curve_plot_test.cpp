@@ -1,0 +1,62 @@
+#include "engine/telemetry/curve_plot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace psygen::telemetry {
+namespace {
+
+std::size_t count(const std::string& text, const std::string& words) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(words, at)) != std::string::npos; ++at)
+    ++found;
+  return found;
+}
+
+CurvePlot plot_of(std::vector<double> x, std::vector<double> values) {
+  return {"rock",
+          "subdivisions",
+          "µs",
+          "",
+          std::move(x),
+          {{"measured", 1, CurveKind::kPoints, values}, {"c·n", 2, CurveKind::kLine, values}}};
+}
+
+TEST(CurvePlot, DrawsAPointForEachValueAndALineThroughThem) {
+  const std::string html = curve_plot_html(plot_of({1, 2, 3}, {5, 10, 20}));
+  EXPECT_EQ(count(html, "<circle"), 3u);
+  EXPECT_EQ(count(html, "<polyline"), 1u);
+  EXPECT_EQ(count(html, "swatch"), 2u);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+TEST(CurvePlot, LeavesOutWhatIsNotFinite) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const std::string html = curve_plot_html(plot_of({1, 2, 3}, {5, nothing, 20}));
+  EXPECT_EQ(count(html, "<circle"), 2u);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+TEST(CurvePlot, OfNothingOrOfOnePointIsStillAPicture) {
+  for (const CurvePlot& plot : {plot_of({}, {}), plot_of({4}, {0})}) {
+    const std::string html = curve_plot_html(plot);
+    EXPECT_EQ(count(html, "<svg"), 1u);
+    EXPECT_EQ(html.find("nan"), std::string::npos);
+    EXPECT_EQ(html.find("inf"), std::string::npos);
+  }
+}
+
+TEST(CurvePlot, EscapesItsTexts) {
+  CurvePlot plot = plot_of({1}, {1});
+  plot.title = "<script>";
+  plot.note = "a & b";
+  plot.x_name = plot.curves[0].name = "\"x\"";
+  const std::string html = curve_plot_html(plot);
+  EXPECT_EQ(html.find("<script>"), std::string::npos);
+  EXPECT_EQ(count(html, "a &amp; b"), 1u);
+  EXPECT_EQ(html.find("\"x\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace psygen::telemetry
