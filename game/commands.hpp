@@ -38,6 +38,7 @@ class ModelsCommand {
 
  private:
   CLI::App* command_;
+  std::string world_;
   bool json_ = false;
 };
 

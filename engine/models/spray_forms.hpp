@@ -9,8 +9,8 @@ namespace psygen::models {
 inline constexpr SprayForm kLeaflets{
     10,
     8,
-    {0.0F, 0.30F, 0.34F, 0.74F, 0.66F, 1.05F, 0.66F, 0.74F, 0.34F, 0.30F},
-    {0.0F, -0.62F, -0.16F, -0.50F, -0.12F, 0.0F, 0.12F, 0.50F, 0.16F, 0.62F},
+    {0.0F, 0.34F, 0.34F, 0.76F, 0.64F, 1.04F, 0.64F, 0.76F, 0.34F, 0.34F},
+    {0.0F, -0.42F, -0.12F, -0.36F, -0.12F, 0.0F, 0.12F, 0.36F, 0.12F, 0.42F},
     {0.0F, 0.14F, 0.0F, 0.18F, 0.02F, 0.22F, 0.02F, 0.18F, 0.0F, 0.14F},
     {0, 1, 2, 0, 2, 8, 0, 8, 9, 2, 3, 4, 2, 4, 6, 2, 6, 8, 8, 6, 7, 4, 5, 6}};
 // A fan of needled twigs, longest in the middle, drooping at its tips.

@@ -80,7 +80,7 @@ MeshSize tree_mesh_size(const TreePlan& plan, int level) {
       triangles += kConeTriangles;
     }
     const std::uint32_t sprays =
-        spray_count(plan, level, level < 2 ? count.bearers : kCrownPaths, vertices);
+        spray_count(plan, level, count.bearers > 0 ? count.bearers : count.tips, vertices);
     if (sprays > 0) {
       vertices += sprays * spray_form(plan, level).vertices;
       triangles += sprays * spray_form(plan, level).triangles;
@@ -96,9 +96,12 @@ void mesh_tree(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
   mesh_bark(plan, level, skeleton, crown, out);
   if (plan.foliage.near == nullptr) return;
   if (level >= 2) mesh_core(plan, skeleton, crown, out);
-  std::uint32_t bearers = level < 2 ? 0 : kCrownPaths;
-  for (std::size_t g = 0; level < 2 && g < skeleton.group_count; ++g)
-    if (bears_leaves(plan, skeleton.groups[g])) bearers += skeleton.groups[g].count;
+  const bool by_leaves = has_bearers(plan, skeleton);
+  std::uint32_t bearers = 0;
+  for (std::size_t g = 0; g < skeleton.group_count; ++g) {
+    const TreeGroup& group = skeleton.groups[g];
+    if (by_leaves ? bears_leaves(plan, group) : group.tip) bearers += group.count;
+  }
   mesh_sprays(plan, level, skeleton, crown, spray_count(plan, level, bearers, out.vertex_count()),
               out);
 }

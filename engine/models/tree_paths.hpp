@@ -15,8 +15,8 @@ inline bool bears_leaves(const TreePlan& plan, const TreeGroup& group) {
   return on == LeavesOn::kAll || (on == LeavesOn::kTips && group.tip);
 }
 
-// Whether leaves grow on these branches as the grammar says; where only a few paths are followed
-// none of them may: then the tips bear them.
+// Whether leaves grow on these branches as the grammar says; it may be that none of them bears any:
+// then the tips do.
 inline bool has_bearers(const TreePlan& plan, const TreeSkeleton& s) {
   for (std::size_t g = 0; plan.foliage.near != nullptr && g < s.group_count; ++g)
     if (bears_leaves(plan, s.groups[g])) return true;

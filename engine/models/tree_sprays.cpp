@@ -205,7 +205,7 @@ HWY_EXPORT(write_sprays);
 HWY_EXPORT(repeat_block);
 
 // Length of a spray such that `count` of them fill a crown of radius 1, times √count.
-constexpr float kFillingLength[4] = {5.6F, 6.0F, 4.4F, 4.4F};
+constexpr float kFillingLength[4] = {5.3F, 6.0F, 4.4F, 4.4F};
 
 // Length of a spray, and how far sprays are drawn towards the crown's centre.
 struct SpraySize {
@@ -298,7 +298,7 @@ const SprayForm& spray_form(const TreePlan& plan, int level) {
 
 std::uint32_t spray_count(const TreePlan& plan, int level, std::uint32_t bearers,
                           std::uint32_t bark_vertices) {
-  if (plan.foliage.near == nullptr || bearers == 0 || level > 3) return 0;
+  if (plan.foliage.near == nullptr || level > 3) return 0;
   if (level == 2) return 4 * kSprayBlock;
   if (level == 3) return kSprayBlock;
   const float share = level == 0 ? plan.foliage.density : 0.3125F * plan.foliage.density;

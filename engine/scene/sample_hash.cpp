@@ -25,7 +25,7 @@ std::uint64_t sample_world_hash(const world::World& world, const models::Registr
           if (!synthesis::synthesize_guarded(type, placement.parameters, level, view).ok) continue;
           hash.add(synthesis::content_hash(
               {coord, placement.index, placement.model, static_cast<std::uint16_t>(level),
-               placement.parameters.hash()},
+               models::parameters_hash(type, placement.parameters)},
               view));
         }
       }

@@ -312,10 +312,6 @@ class TreeOracle {
 
   void sprays(const Branches& all, int level) {
     const Branches on = bearers(all);
-    bool none = true;
-    for (const Branch& b : all)
-      none = none && !bears(b);
-    if (none && level < 2) return;
     const double share = d(p_.foliage.density) * (level == 0 ? 1 : 0.3125);
     std::size_t n = std::clamp<std::size_t>(
         static_cast<std::size_t>(static_cast<float>(static_cast<double>(on.size()) * share)),
@@ -336,7 +332,7 @@ class TreeOracle {
 
   std::vector<Vertex> spray(const Branch& on, std::uint32_t k, int level, const SprayForm& form,
                             double n, double m) const {
-    static constexpr double kFill[4] = {5.6, 6.0, 4.4, 4.4};
+    static constexpr double kFill[4] = {5.3, 6.0, 4.4, 4.4};
     const FoliagePlan& f = p_.foliage;
     const std::uint32_t id = k * 0x9E3779B9U + (p_.key ^ (p_.salt + 0x40000000U));
     std::uint32_t h[4];
