@@ -37,7 +37,7 @@ enum TreeParameter : std::size_t {
 TreePlan plan_of_tree(const Parameters& p);
 
 // Levels 0 … 5: on average over the paper's ranges about 5,000, 1,200, 300, 80, 23 and 11
-// triangles. Needs about 600 KiB of stack; nothing on the heap.
+// triangles. Needs about 900 KiB of stack; nothing on the heap.
 std::unique_ptr<ModelType> make_tree_type();
 
 }  // namespace psygen::models

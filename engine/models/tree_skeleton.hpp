@@ -54,7 +54,7 @@ enum TreeRow : std::size_t {
 
 // Branch i runs from base along base + length · (t · direction + t² · bend), t in [0, 1].
 // Groups are in order of depth, then kind; branches in order of their parents, then their rank
-// among siblings of their kind. About 220 KiB, meant for the stack; what lies between groups is not
+// among siblings of their kind. About 300 KiB, meant for the stack; what lies between groups is not
 // meant to be read.
 struct TreeSkeleton {
   using Row = std::array<float, kMaxTreeSlots>;
@@ -80,7 +80,7 @@ struct TreeSkeleton {
   TreeSkeleton() {}  // leaves the arrays unwritten
 };
 
-// Grows the skeleton to `depth` (tree_depth(), or kWholeTree tells it by itself), following at most
+// Grows the skeleton to `depth` (tree_depth(); with the whole tree also plan.iterations), following at most
 // `max_tips` paths from the root to tips, shared out by the expected number of tips. The trunk and
 // every branch on a path are exactly those of the whole tree.
 void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkeleton& out);
