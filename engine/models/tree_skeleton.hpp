@@ -80,9 +80,9 @@ struct TreeSkeleton {
   TreeSkeleton() {}  // leaves the arrays unwritten
 };
 
-// Grows the skeleton to `depth` (tree_depth(); with the whole tree also plan.iterations), following at most
-// `max_tips` paths from the root to tips, shared out by the expected number of tips. The trunk and
-// every branch on a path are exactly those of the whole tree.
+// Grows the skeleton to `depth` (tree_depth(); with the whole tree also plan.iterations), following
+// at most `max_tips` paths from the root to tips, shared out by the expected number of tips. The
+// trunk and every branch on a path are exactly those of the whole tree.
 void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkeleton& out);
 
 }  // namespace psygen::models

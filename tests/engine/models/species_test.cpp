@@ -62,7 +62,8 @@ std::optional<Species> random_species(core::RandomStream& random) {
     for (std::int64_t r = 0; r < rules; ++r) {
       std::string to;
       for (std::int64_t n = random.next_integer(1, 3); n > 0; --n)
-        to += s.kinds[static_cast<std::size_t>(random.next_integer(0, static_cast<int>(kinds) - 1))].symbol +
+        to += s.kinds[static_cast<std::size_t>(random.next_integer(0, static_cast<int>(kinds) - 1))]
+                  .symbol +
               std::to_string(random.next_integer(1, 4));
       if (random.next_integer(0, 1) == 0) to += s.kinds[kinds - 1].symbol + "*";
       s.rules.push_back({s.kinds[i].symbol, to, 1.0 / static_cast<double>(rules)});
@@ -208,8 +209,8 @@ TEST(Tree, PredictsTheSizeOfAMillionTrees) {
     vertices[bytes] = std::byte{0xC5};
     indices[size.index_count] = 0xC5C5;
     if (bytes > 0) vertices[bytes - 4] = std::byte{0};
-    type->synthesize(p, level,
-                     {std::span(vertices).first(bytes), std::span(indices).first(size.index_count)});
+    type->synthesize(
+        p, level, {std::span(vertices).first(bytes), std::span(indices).first(size.index_count)});
     ASSERT_EQ(vertices[bytes], std::byte{0xC5});
     ASSERT_EQ(indices[size.index_count], 0xC5C5);
     ASSERT_LT(indices[size.index_count - 1], size.vertex_count);

@@ -9,8 +9,8 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using testing::replaced;
+using ::testing::StartsWith;
 
 const std::string kFile = std::string(testing::kSmallWorld) + R"(
 [[species]]
@@ -77,7 +77,8 @@ TEST(SpeciesFile, KeepsOneModelForEqualSpeciesAndRefusesOthersOfTheName) {
   ASSERT_TRUE(parse_world(kFile, "w.toml", registry).has_value());
   EXPECT_TRUE(parse_world(kFile, "w.toml", registry).has_value());
   EXPECT_EQ(registry.size(), 4U);
-  const auto edited = parse_world(replaced(kFile, "length = 0.7", "length = 0.71"), "w.toml", registry);
+  const auto edited =
+      parse_world(replaced(kFile, "length = 0.7", "length = 0.71"), "w.toml", registry);
   ASSERT_FALSE(edited.has_value());
   EXPECT_THAT(edited.error().message, HasSubstr("there is another model called ash"));
   const models::Registry& constant = registry;
@@ -87,8 +88,9 @@ TEST(SpeciesFile, KeepsOneModelForEqualSpeciesAndRefusesOthersOfTheName) {
 }
 
 TEST(SpeciesFile, RefusesWithFileLineAndField) {
-  EXPECT_THAT(error_with("to = \"S2\"", "to = \"Q2\""),
-              AllOf(StartsWith("w.toml:40: species[0].rule[1].to: "), HasSubstr("symbol Q is unknown")));
+  EXPECT_THAT(
+      error_with("to = \"S2\"", "to = \"Q2\""),
+      AllOf(StartsWith("w.toml:40: species[0].rule[1].to: "), HasSubstr("symbol Q is unknown")));
   EXPECT_THAT(error_with("axiom = \"T\"", "axiom = \"X\""),
               AllOf(StartsWith("w.toml:27: species[0].axiom: "), HasSubstr("unknown")));
   EXPECT_THAT(error_with("probability = 0.5", "probability = 0.4"),
