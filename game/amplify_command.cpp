@@ -117,7 +117,7 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
 }
 
 int AmplifyCommand::run() {
-  const models::Registry registry = models::make_standard_registry();
+  models::Registry registry = models::make_standard_registry();
   const auto world = world::load_world(world_, registry);
   if (!world) {
     core::log_error(world.error().message);

@@ -62,7 +62,7 @@ int CalibrateCommand::run() const {
   if (!out_.empty()) {
     if (auto ok = telemetry::create_output_folder(out_); !ok) return fail(ok.error());
   }
-  const models::Registry registry = models::make_standard_registry();
+  models::Registry registry = models::make_standard_registry();
   std::optional<world::World> world;
   if (!ranges_) {
     auto loaded = world::load_world(world_, registry);

@@ -47,6 +47,7 @@ class ModelsCommand {
 
  private:
   CLI::App* command_;
+  std::string world_;
   bool json_ = false;
 };
 
@@ -80,8 +81,8 @@ class ExportCommand {
   int run() const;
 
  private:
-  core::Result<exchange::Document> model_document(const models::Registry& registry) const;
-  core::Result<exchange::Document> world_document(const models::Registry& registry) const;
+  core::Result<exchange::Document> model_document(models::Registry& registry) const;
+  core::Result<exchange::Document> world_document(models::Registry& registry) const;
 
   CLI::App* command_;
   std::string model_, world_ = "game/worlds/paper.toml", out_;

@@ -89,9 +89,8 @@ ExportCommand::ExportCommand(CLI::App& cli)
       "--block", [this](const std::string& text) { block_ = *parse_block(text); },
       "Block X,Z of the world, with everything on it");
   block->check(valid_if(parse_block, "X,Z"))->excludes(model);
-  c.add_option("--world", world_, "World file of the block (TOML)")
-      ->capture_default_str()
-      ->needs(block);
+  c.add_option("--world", world_, "World file (TOML) of the block, or with the model's species")
+      ->capture_default_str();
   c.add_option("--level", level_, "Level of detail; 0 is full")->check(number_between(0, 31));
   c.add_option("--out", out_, "File to write: .glb or .obj")
       ->required()
@@ -103,7 +102,7 @@ ExportCommand::ExportCommand(CLI::App& cli)
 }
 
 int ExportCommand::run() const {
-  const models::Registry registry = models::make_standard_registry();
+  models::Registry registry = models::make_standard_registry();
   const auto document = block_ ? world_document(registry) : model_document(registry);
   if (!document) {
     core::log_error(document.error().message);
@@ -120,8 +119,11 @@ int ExportCommand::run() const {
   return kOk;
 }
 
-core::Result<exchange::Document> ExportCommand::model_document(
-    const models::Registry& registry) const {
+core::Result<exchange::Document> ExportCommand::model_document(models::Registry& registry) const {
+  if (command_->count("--world") > 0) {
+    if (const auto world = world::load_world(world_, registry); !world)
+      return tl::unexpected(world.error());
+  }
   const int found = registry.find(model_);
   if (found < 0) {
     return refuse(
@@ -145,8 +147,7 @@ core::Result<exchange::Document> ExportCommand::model_document(
   return document;
 }
 
-core::Result<exchange::Document> ExportCommand::world_document(
-    const models::Registry& registry) const {
+core::Result<exchange::Document> ExportCommand::world_document(models::Registry& registry) const {
   const auto world = world::load_world(world_, registry);
   if (!world) return tl::unexpected(world.error());
   const std::int64_t x = block_->x, z = block_->z;

@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/log.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/world/world.hpp"
 #include "game/commands.hpp"
 
 namespace psygen::game {
@@ -68,10 +70,17 @@ std::string table_of(const models::Registry& registry) {
 ModelsCommand::ModelsCommand(CLI::App& cli)
     : command_(cli.add_subcommand("models", "List every model type and its parameters")) {
   command_->add_flag("--json", json_, "As JSON");
+  command_->add_option("--world", world_, "With the species of this world file");
 }
 
 int ModelsCommand::run() const {
-  const models::Registry registry = models::make_standard_registry();
+  models::Registry registry = models::make_standard_registry();
+  if (!world_.empty()) {
+    if (const auto world = world::load_world(world_, registry); !world) {
+      core::log_error(world.error().message);
+      return exit_code_of(world.error());
+    }
+  }
   return print(json_ ? json_of(registry) : table_of(registry));
 }
 

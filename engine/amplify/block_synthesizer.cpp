@@ -86,10 +86,10 @@ void BlockSynthesizer::make(const world::Placement& placement, core::BlockCoord 
                           ? models::terrain_surface_triangles(placement.parameters, level)
                           : size->triangle_count();
   totals.bytes += view.vertices.size() + view.indices.size_bytes();
-  const std::uint64_t content =
-      synthesis::content_hash({block, placement.index, placement.model,
-                               static_cast<std::uint16_t>(level), placement.parameters.hash()},
-                              view);
+  const std::uint64_t content = synthesis::content_hash(
+      {block, placement.index, placement.model, static_cast<std::uint16_t>(level),
+       models::parameters_hash(type, placement.parameters)},
+      view);
   totals.hash.add(core::combine(content, frame_hash(placement, *size, outcome.tight)));
   if (visit) visit({placement, level, *size, outcome.tight, view});
 }

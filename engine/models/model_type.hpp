@@ -101,6 +101,9 @@ class ModelType {
   // the vertices written (inside bounds(p)). Deterministic: same bits for the same (p, level) on
   // any thread and any CPU. No allocation that outlives the call, no I/O, no globals.
   virtual core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const = 0;
+  // Tells types of one name apart whose functions differ, such as two editions of a species: it is
+  // part of every mesh's key (parameters_hash). 0 for types that never change.
+  virtual std::uint64_t identity() const { return 0; }
   // True only for types whose coarse levels are certain to end within microseconds, whatever their
   // parameters: the main thread may synthesise them itself when their absence is seen. A type that
   // could hang must leave this to the modelers, which are watched.
@@ -108,6 +111,12 @@ class ModelType {
   // Writes the shared index list `id` (as named by mesh_size), `index_count` entries.
   virtual void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const = 0;
 };
+
+// What names a mesh beside its place and level: the parameters and which function they are for.
+inline std::uint64_t parameters_hash(const ModelType& type, const Parameters& p) {
+  const std::uint64_t identity = type.identity();
+  return identity == 0 ? p.hash() : core::combine(p.hash(), identity);
+}
 
 // All parameters at their defaults.
 Parameters default_parameters(const ModelType& type);

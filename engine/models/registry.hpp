@@ -2,6 +2,7 @@
 // read-only and usable from any thread.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@ class Registry {
   // Adds a type; refuses a second one of the same name and schemas that break their own rules
   // (more than Parameters::kMaxCount parameters, default outside its range, duplicate names).
   core::Result<ModelIndex> add(std::unique_ptr<ModelType> type);
+
+  // Forgets the types added since there were so many; nobody may use them any more.
+  void shrink(std::size_t size) { types_.resize(std::min(size, types_.size())); }
 
   std::size_t size() const { return types_.size(); }
   const ModelType& operator[](ModelIndex index) const { return *types_[index]; }

@@ -3,16 +3,18 @@
 #include <cmath>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/spray_forms.hpp"
 #include "engine/models/tree_mesh.hpp"
 
 namespace psygen::models {
 namespace {
 
 using enum ParameterType;
+constexpr int kTreeMaxIterations = 8;
 constexpr ParameterSpec kSchema[kTreeParameterCount] = {
     {"seed", kInteger, "", 1, -9.3e18, 9.3e18, 0, 1e6, "which tree of its kind this is",
      ParameterSource::kPlaced},
-    {"iterations", kInteger, "1", 4, 1, kMaxTreeIterations, 2, 5,
+    {"iterations", kInteger, "1", 4, 1, kTreeMaxIterations, 2, 5,
      "times that every branch end branches again"},
     {"branches", kInteger, "1", 3, 1, 6, 2, 4,
      "branches of each node on average: each draws from two less to two more, at least 1"},
@@ -35,20 +37,76 @@ constexpr ParameterSpec kSchema[kTreeParameterCount] = {
     {"bark_tone", kReal, "1", 0.55, 0, 1, 0, 1, "from grey (0) to brown (1)"},
 };
 
+// Kinds: the trunk, the leader that goes on, the limbs of the trunk, the side branches of others.
+// Every node becomes a leader and as many others as are drawn.
+enum Kind : std::uint8_t { kTrunk, kLeader, kLimb, kSide };
+constexpr Grammar kGrammar = [] {
+  Grammar g;
+  g.kinds = 4;
+  g.first_rule = {0, 1, 2, 3, 4, 4, 4, 4, 4};
+  for (std::size_t i = 0; i < 4; ++i) {
+    g.rules[i].count[kLeader] = 1;
+    g.rules[i].fixed = 1;
+    g.rules[i].star = i == kTrunk ? kLimb : kSide;
+  }
+  return g;
+}();
+
 // How far branches reach from the trunk's end and from the axis: geometric sums of upper bounds.
-struct Reach {
-  double trunk, branches;
-};
-Reach reach_of(const TreeShape& s) {
-  const double crooked = 1 + 0.45 * s.curvature + 0.35 * std::abs(s.tropism);
-  double length = 1.1 * s.size_m, sum = 0;
-  const double trunk = length;
-  for (int i = 0; i < s.iterations; ++i) {
-    length *= s.length_decay * double{kMaxLengthFactor};
+core::Bounds bounds_of(const Parameters& p, const TreePlan& plan) {
+  const double crooked = 1 + 0.45 * p.real(kTreeCurvature) + 0.35 * std::abs(p.real(kTreeTropism));
+  const double size = p.real(kTreeSizeM), trunk = 1.1 * size;
+  double length = trunk, sum = 0;
+  for (int i = 0; i < plan.iterations; ++i) {
+    length *= p.real(kTreeLengthDecay) * 1.15 * 1.09;
     sum += length * crooked;
   }
-  return {trunk, sum};
+  const double foliage = 0.6 * size + 0.3 * plan.envelope_across * p.real(kTreeLeafScale);
+  const double across = std::min(sum, 1.35 * plan.envelope_across) + foliage;
+  const double foot = p.real(kTreeRadiusM) * (1.2 + 2.0 * p.real(kTreeFlare));
+  const double up = std::min(sum, plan.envelope_y - size + 1.35 * plan.envelope_up);
+  const auto side = static_cast<float>(std::max(0.35 * trunk + across, foot));
+  const auto top = static_cast<float>(trunk + up + foliage);
+  const float bottom = -1.1F * sink_m(plan) - 0.12F * static_cast<float>(foot);
+  return {{-side, bottom, -side}, {side, top, side}};
 }
+
+bool is_always_complete(int iterations, int branches) {
+  std::uint64_t most = 1, total = 1;
+  for (int i = 0; i < iterations && total <= kMaxTreeNodes; ++i) {
+    most *= static_cast<std::uint64_t>(branches) + 2;
+    total += most;
+  }
+  return total <= kMaxTreeNodes;
+}
+
+void set_kinds(const Parameters& p, TreePlan& plan) {
+  const auto real = [&p](TreeParameter i) { return static_cast<float>(p.real(i)); };
+  const float angle = real(kTreeBranchAngle) * 0.159154943F, decay = real(kTreeLengthDecay);
+  const float tropism = real(kTreeTropism), bend_up = 0.35F * tropism;
+  KindPlan side{0.75F * angle, 1.15F * angle,  real(kTreeAngleVariation),
+                0.381966011F,  0.4F,           1.0F,
+                0.85F * decay, 1.25F * decay,  real(kTreeRadiusDecay),
+                tropism,       bend_up,        real(kTreeCurvature),
+                false,         LeavesOn::kTips};
+  plan.kinds[kSide] = side;
+  side.along_low = 0.7F;
+  plan.kinds[kLimb] = side;
+  side.along_low = 1.0F;
+  side.leader = true;
+  side.length_high = side.length_foot = decay;
+  side.lift = 0.5F * tropism;
+  side.radius = 1.0F;
+  plan.kinds[kLeader] = plan.kinds[kTrunk] = side;
+}
+
+constexpr FoliagePlan kBroadleaf{&kLeaflets, &kPatch, 0.7F,  0.7F, 0.0F, -0.25F, 0.9F,
+                                 0.7F,       0.3F,    0.25F, 0.0F, 1.0F, 1.0F,   1.6F};
+constexpr std::array<std::array<float, 3>, 5> kLeafRamp = {{{0.21F, 0.33F, 0.17F},
+                                                            {0.32F, 0.42F, 0.17F},
+                                                            {0.62F, 0.56F, 0.17F},
+                                                            {0.64F, 0.36F, 0.13F},
+                                                            {0.50F, 0.18F, 0.12F}}};
 
 class TreeType final : public ModelType {
  public:
@@ -60,112 +118,78 @@ class TreeType final : public ModelType {
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
   int level_count() const override { return kTreeLevels; }
   bool may_run_on_main_thread() const override { return true; }
-  double level_error_m(const Parameters& p, int level) const override;
-  core::Bounds bounds(const Parameters& p) const override;
-  MeshSize mesh_size(const Parameters& p, int level) const override;
-  double complexity(const Parameters& p, int level) const override;
+  double level_error_m(const Parameters& p, int level) const override {
+    const TreePlan plan = plan_of_tree(p);
+    return kLevelErrors[level] * static_cast<double>(2 * plan.envelope_across + plan.envelope_up) /
+           3;
+  }
+  core::Bounds bounds(const Parameters& p) const override { return plan_of_tree(p).bounds; }
+  MeshSize mesh_size(const Parameters& p, int level) const override {
+    return tree_mesh_size(plan_of_tree(p), level);
+  }
+  double complexity(const Parameters& p, int level) const override {
+    return kLevelShares[level] * std::pow(static_cast<double>(p.integer(kTreeBranches)),
+                                          static_cast<double>(p.integer(kTreeIterations)));
+  }
   double log2_cost(const Parameters& p) const override;
-  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
+  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override {
+    return synthesize_tree(plan_of_tree(p), level, out);
+  }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
     PSYGEN_CHECK(false, "trees share no indices");
   }
 };
 
-double TreeType::level_error_m(const Parameters& p, int level) const {
-  static constexpr double kShare[kTreeLevels] = {0.0, 0.05, 0.085, 0.17, 0.33, 0.6};
-  const TreeShape s(p);
-  return kShare[level] * (2 * s.envelope_across + s.envelope_up) / 3;
-}
-
-core::Bounds TreeType::bounds(const Parameters& p) const {
-  const TreeShape s(p);
-  const Reach reach = reach_of(s);
-  const double foliage = 0.6 * s.size_m + 0.3 * s.envelope_across * s.leaf_scale;
-  const double across = std::min(reach.branches, 1.35 * s.envelope_across) + foliage;
-  const double foot = s.radius_m * (1.2 + 2.0 * s.flare);
-  const double up = std::min(reach.branches, s.envelope_y - s.size_m + 1.35 * s.envelope_up);
-  const auto side = static_cast<float>(std::max(0.35 * reach.trunk + across, foot));
-  const auto top = static_cast<float>(reach.trunk + up + foliage);
-  const float bottom = -1.1F * sink_m(s) - 0.12F * static_cast<float>(foot);
-  return {{-side, bottom, -side}, {side, top, side}};
-}
-
-MeshSize TreeType::mesh_size(const Parameters& p, int level) const {
-  const TreeShape s(p);
-  std::uint32_t vertices = 0, triangles = 0, sprays = 0;
-  if (level >= 4) {
-    vertices = kConeVertices + (level == 4 ? kBallVertices : kOctahedronVertices);
-    triangles = kConeTriangles + (level == 4 ? kBallTriangles : kOctahedronTriangles);
-  } else if (level >= 2) {  // trunk and, at level 2, its branches
-    const TubePlan trunk = tube_plan(level, 0, false);
-    const TubePlan branch = tube_plan(level, 1, s.iterations == 1);
-    const std::uint32_t children = child_count(s.root_key, s.branches);
-    sprays = spray_count(level, 0);
-    vertices = trunk.vertices() + children * branch.vertices() + kConeVertices;
-    triangles = trunk.triangles() + children * branch.triangles() + kConeTriangles;
-  } else {
-    const TreeCount count = count_tree(s);
-    sprays = spray_count(level, count.tips());
-    for (int depth = 0; depth <= count.depth; ++depth) {
-      const TubePlan plan = tube_plan(level, depth, depth == count.depth);
-      const std::uint32_t nodes = count.nodes[static_cast<std::size_t>(depth)];
-      vertices += nodes * plan.vertices();
-      triangles += nodes * plan.triangles();
-    }
-  }
-  vertices += sprays * kSprayVertices;
-  triangles += sprays * kSprayTriangles;
-  return {vertices, triangles * 3, 0, core::VertexLayout::kModel};
-}
-
-double TreeType::complexity(const Parameters& p, int level) const {
-  static constexpr double kShare[kTreeLevels] = {1.0, 0.25, 0.06, 0.02, 0.01, 0.01};
-  return kShare[level] * std::pow(static_cast<double>(p.integer(kTreeBranches)),
-                                  static_cast<double>(p.integer(kTreeIterations)));
-}
-
 double TreeType::log2_cost(const Parameters& p) const {
   const double n = std::max(0.0, static_cast<double>(p.integer(kTreeIterations)));
   const double m = std::max(1.0, static_cast<double>(p.integer(kTreeBranches)));
   const double grown = std::max(n * std::log2(m + 2.0) + 5.0, 12.0);
-  const bool capped = n <= kMaxTreeIterations && m <= kSchema[kTreeBranches].hard_max;
-  return capped ? std::min(grown, 15.6) : grown;
-}
-
-core::Bounds TreeType::synthesize(const Parameters& p, int level, const MeshView& out) const {
-  const TreeShape s(p);
-  MeshWriter writer(bounds(p), out);
-  const int depth = tip_depth(s);
-  TreeSkeleton skeleton;
-  grow_tree(s, depth, kCrownPaths, skeleton);
-  const TreeCrown crown = crown_of(s, skeleton);
-  if (level >= 4) {
-    mesh_far_trunk(s, crown, writer);
-    mesh_hull(s, level, crown, writer);
-  } else {
-    if (level < 3) grow_tree(s, depth, level == 2 ? spray_count(2, 0) : kWholeTree, skeleton);
-    mesh_bark(s, level, skeleton, crown, writer);
-    if (level >= 2) mesh_core(s, skeleton, crown, writer);
-    mesh_sprays(s, level, skeleton, crown, spray_count(level, skeleton.tip_count()), writer);
-  }
-  PSYGEN_ASSERT(writer.index_count() == out.indices.size() &&
-                    writer.vertex_count() * sizeof(core::ModelVertex) == out.vertices.size(),
-                "the spans have the sizes of mesh_size()");
-  return writer.written();
+  const bool capped = n <= kTreeMaxIterations && m <= kSchema[kTreeBranches].hard_max;
+  return capped ? std::min(grown, 15.8) : grown;
 }
 
 }  // namespace
 
-MeshWriter::MeshWriter(const core::Bounds& box, const MeshView& out)
-    : center_(box.center()),
-      scale_(glm::vec3(32767.0F) / box.half_extent()),
-      half_(box.half_extent()),
-      vertices_(out.vertices.data()),
-      indices_(out.indices.data()) {}
-
-core::Bounds MeshWriter::written() const {
-  const glm::vec3 low{low_[0], low_[1], low_[2]}, high{high_[0], high_[1], high_[2]};
-  return {center_ + half_ * low / 32767.0F, center_ + half_ * high / 32767.0F};
+TreePlan plan_of_tree(const Parameters& p) {
+  const auto real = [&p](TreeParameter i) { return static_cast<float>(p.real(i)); };
+  const std::uint64_t root =
+      core::mix64(static_cast<std::uint64_t>(p.integer(kTreeSeed)) ^ 0x5472656553656564ull);
+  TreePlan plan;
+  plan.grammar = &kGrammar;
+  plan.axiom = kTrunk;
+  plan.key = static_cast<std::uint32_t>(root);
+  plan.salt = static_cast<std::uint32_t>(root >> 32);
+  plan.iterations = static_cast<int>(p.integer(kTreeIterations));
+  plan.branches = static_cast<int>(p.integer(kTreeBranches));
+  plan.always_complete = is_always_complete(plan.iterations, plan.branches);
+  plan.weights = nullptr;
+  set_kinds(p, plan);
+  plan.size_m = real(kTreeSizeM);
+  plan.radius_m = real(kTreeRadiusM);
+  plan.taper = 0.72F;
+  plan.flare = real(kTreeFlare);
+  plan.trunk_curvature = real(kTreeCurvature);
+  float length = plan.size_m, sum = 0.0F;
+  for (int i = 0; i < plan.iterations; ++i) {
+    length *= real(kTreeLengthDecay);
+    sum += length;
+  }
+  plan.envelope_across = plan.envelope_up = 0.25F * plan.size_m + 0.40F * sum;
+  plan.envelope_y = plan.size_m + 0.40F * sum;
+  plan.limit_across = plan.limit_up = 1.0F / plan.envelope_across;
+  plan.foliage = kBroadleaf;
+  plan.foliage.fill = real(kTreeLeafScale);
+  plan.ramp = kLeafRamp;
+  plan.cyclic = false;
+  plan.hue = real(kTreeLeafHue);
+  plan.colour_variation = real(kTreeColourVariation);
+  const float tone = real(kTreeBarkTone);
+  plan.bark = {0.98F * (0.48F - 0.12F * tone), 0.98F * (0.46F - 0.18F * tone),
+               0.98F * (0.43F - 0.22F * tone)};
+  plan.bark_contrast = 0.143F;
+  plan.hull_taper = 0.0F;
+  plan.bounds = bounds_of(p, plan);
+  return plan;
 }
 
 std::unique_ptr<ModelType> make_tree_type() {

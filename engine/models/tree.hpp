@@ -1,13 +1,14 @@
 // The broadleaf tree: a stochastic L-system whose nodes draw their own number of branches, meshed
 // at six levels of detail from one skeleton (paper, section 5.2, eq. 4; docs/models.md, "Tree").
-// Leaf triangles are seen from both sides: draw trees without back-face culling. Not a species
-// library: one grammar whose looks are parameters.
+// Leaf triangles are seen from both sides: draw trees without back-face culling. Its
+// looks are parameters; trees whose grammar is data are species (species.hpp).
 #pragma once
 
 #include <cstddef>
 #include <memory>
 
 #include "engine/models/model_type.hpp"
+#include "engine/models/tree_plan.hpp"
 
 namespace psygen::models {
 
@@ -32,8 +33,11 @@ enum TreeParameter : std::size_t {
   kTreeParameterCount
 };
 
+// The numbers of one tree. Requires legal parameters.
+TreePlan plan_of_tree(const Parameters& p);
+
 // Levels 0 … 5: on average over the paper's ranges about 5,000, 1,200, 300, 80, 23 and 11
-// triangles. Needs about 300 KiB of stack; nothing on the heap.
+// triangles. Needs about 900 KiB of stack; nothing on the heap.
 std::unique_ptr<ModelType> make_tree_type();
 
 }  // namespace psygen::models

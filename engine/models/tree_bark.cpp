@@ -1,15 +1,217 @@
-// Trunk and branches: tapering tubes around the skeleton's curves.
+// Trunk and branches: tapering tubes around the skeleton's curves, with the branches of one kind
+// and depth as lanes; where a depth has few branches, with the rings of all of them as lanes.
 #include "engine/models/tree_mesh.hpp"
 
-namespace psygen::models {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/models/tree_bark.cpp"
+#include <hwy/foreach_target.h>
 
-constexpr std::uint32_t kMaxSides = 8;
-constexpr std::uint64_t kBarkSalt = 0xE7037ED1A0B428DBull;
+#include "engine/models/tree_lanes-inl.hpp"
+
+#ifndef PSYGEN_MODELS_TREE_BARK_ONCE
+#define PSYGEN_MODELS_TREE_BARK_ONCE
+namespace psygen::models {
 
 struct Circle {
   float x[kMaxSides], z[kMaxSides];
 };
+
+// Branches, or rings with the rows of their branch, side by side.
+inline constexpr std::size_t kMaxRingLanes = 128;
+struct BarkLanes {
+  alignas(64) float rows[kTreeRows][kMaxTreeNodes + kTreeLanes];
+  alignas(64) std::uint32_t key[kMaxTreeNodes + kTreeLanes];
+  std::size_t count = 0;
+  // Where rings are in their branch; for rings as lanes only.
+  alignas(64) float t[kMaxRingLanes], flare[kMaxRingLanes];
+  alignas(64) std::uint32_t ring[kMaxRingLanes];
+  BarkLanes() {}
+};
+
+// What the branches of one depth have in common.
+struct BarkJob {
+  const TreePlan& plan;
+  const TreeCrown& crown;
+  TubePlan tube;
+  const Circle& circle;
+  const std::uint32_t* colours;  // eight, of which the noise chooses, twice
+  float sway_start, sway_end;
+  bool trunk, tip;
+};
+
+}  // namespace psygen::models
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace psygen::models {
+namespace HWY_NAMESPACE {
+
+struct Branches {
+  Vec3 base, direction, bend, u, v;
+  VF length, radius;
+  VU noise;
+  VU normal[kMaxSides], point_normal;
+};
+
+HWY_INLINE void gather(const BarkJob& job, const BarkLanes& lanes, std::size_t i, Branches& b) {
+  const auto three = [&](std::size_t r) {
+    return load3(&lanes.rows[r][i], &lanes.rows[r + 1][i], &lanes.rows[r + 2][i]);
+  };
+  b.base = three(kBase);
+  b.direction = three(kDirection);
+  b.bend = three(kBend);
+  b.length = hn::LoadU(DF(), &lanes.rows[kLength][i]);
+  b.radius = hn::LoadU(DF(), &lanes.rows[kRadius][i]);
+  b.noise = number(hn::LoadU(DU(), &lanes.key[i]), job.plan.salt, kBarkNumber);
+  frame_around(b.direction, b.u, b.v);
+  for (std::uint32_t c = 0; c < job.tube.sides; ++c)
+    b.normal[c] = octahedral(f1(job.circle.x[c]) * b.u + f1(job.circle.z[c]) * b.v);
+  if (job.tip) b.point_normal = octahedral(b.direction);
+}
+
+// One of eight steps, for vertex k of each branch.
+HWY_INLINE VU noise_step(VU noise, VU k) {
+  return hn::ShiftRight<29>((noise + k * u1(0x9E3779B9U)) * u1(0x846CA68BU));
+}
+HWY_INLINE VU chosen(const std::uint32_t* table, VU step) {
+#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
+  return hn::TableLookupLanes(hn::LoadU(DU(), table), hn::IndicesFromVec(DU(), step));
+#else
+  return hn::GatherIndex(DU(), table, hn::BitCast(DI(), step));
+#endif
+}
+
+// The vertices of one ring of every lane, handed to `store` with the number of their corner.
+// `place`: the number of its first vertex for the noise.
+template <class Store>
+HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWriter& box, VF t,
+                           VU place, VF flare, bool point, const Store& store, Extent& extent) {
+  const TreePlan& plan = job.plan;
+  Vec3 middle = b.base + b.length * (t * b.direction + (t * t) * b.bend);
+  if (job.trunk) {
+    const VF sunk = middle.y - f1(sink_m(plan));
+    middle.y = hn::IfThenElse(t <= f1(0.0F), sunk, middle.y);
+  }
+  const float end = job.tip ? 0.0F : plan.taper;
+  const VF radius = b.radius * (f1(1.0F) - t * f1(1.0F - end));
+
+  const Vec3 c{f1(job.crown.center.x), f1(job.crown.center.y), f1(job.crown.center.z)};
+  const Vec3 inverse{f1(job.crown.inverse_half.x), f1(job.crown.inverse_half.y),
+                     f1(job.crown.inverse_half.z)};
+  const VF contact =
+      hn::Min(f1(0.55F) + f1(1.5F / plan.size_m) * hn::Max(middle.y, f1(0.0F)), f1(1.0F));
+  const VF sway = f1(job.sway_start) + t * f1(job.sway_end - job.sway_start);
+  const VU light = hn::ShiftLeft<16>(unorm8(contact * ambient_at(scaled(middle - c, inverse)))) |
+                   hn::ShiftLeft<24>(rounded_word(sway));
+
+  const Vec3 scale = set3(box.scale);
+  const Vec3 at = scaled(middle - set3(box.center), scale);
+  const Vec3 turn = (f1(2.0F) * t) * b.bend;
+  const Vec3 across = scaled(radius * (b.u - dot(b.u, turn) * b.direction), scale);
+  const Vec3 beyond = scaled(radius * (b.v - dot(b.v, turn) * b.direction), scale);
+  const std::uint32_t corners = point ? 1 : job.tube.sides;
+  for (std::uint32_t k = 0; k < corners; ++k) {
+    Vec3 p = f1(job.circle.x[k]) * across + f1(job.circle.z[k]) * beyond;
+    if (job.trunk) {
+      const VF lobe = f1(0.4F) + f1(0.16F) * as_float(noise_step(b.noise, u1(k + 1000)));
+      p = (f1(1.0F) + flare * lobe) * p;
+    }
+    p = at + p;
+    const VU x = rounded_bits(clamped(p.x, -32767.0F, 32767.0F));
+    const VU y = rounded_bits(clamped(p.y, -32767.0F, 32767.0F));
+    const VU z = rounded_bits(clamped(p.z, -32767.0F, 32767.0F));
+    const VU xy = xy_word(x, y), zl = z_word(z, light);
+    extent.add(xy, zl);
+    const VU colour = chosen(job.colours, noise_step(b.noise, place + u1(k)));
+    const VU normal = point ? b.point_normal : b.normal[k];
+    store(vertices_of(xy, zl, paired(normal, colour)), k);
+  }
+}
+
+// Rings as lanes: vertices follow each other ring by ring.
+void mesh_rings(const BarkJob& job, const BarkLanes& rings, MeshWriter& box, std::byte* to) {
+  const std::size_t n = hn::Lanes(DF()), sides = job.tube.sides;
+  for (std::size_t i = 0; i < rings.count; i += n) {
+    const std::size_t lanes = std::min<std::size_t>(n, rings.count - i);
+    Branches b;
+    gather(job, rings, i, b);
+    Extent extent;
+    extent.clear();
+    const VU place = hn::Load(DU(), rings.ring + i) * u1(kMaxSides);
+    write_ring(
+        job, b, box, hn::Load(DF(), rings.t + i), place, hn::Load(DF(), rings.flare + i), false,
+        [&](const Vertices& v, std::size_t k) {
+          store_apart(v, lanes, sides, to + 16 * (i * sides + k));
+        },
+        extent);
+    extent.widen(box.low, box.high, lanes);
+  }
+}
+
+// Branches as lanes: 16 by 16 in blocks, vertex by vertex; the rest branch by branch.
+void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, std::byte* to) {
+  const std::size_t n = hn::Lanes(DF()), stride = job.tube.vertices();
+  const std::size_t blocked = all.count / kTreeLanes * kTreeLanes;
+  const std::uint32_t segments = job.tube.segments;
+  Extent extent;
+  extent.clear();
+  for (std::size_t i = 0; i < all.count; i += n) {
+    const std::size_t lanes = std::min<std::size_t>(n, all.count - i);
+    if (lanes < n) {
+      if (i > 0) extent.widen(box.low, box.high, n);
+      extent.clear();
+    }
+    Branches b;
+    gather(job, all, i, b);
+    for (std::uint32_t ring = 0; ring <= segments; ++ring) {
+      const bool point = job.tube.pointed && ring == segments;
+      const float t = static_cast<float>(ring) / static_cast<float>(segments);
+      const std::size_t first = std::size_t{ring} * job.tube.sides;
+      const auto in_block = [&](const Vertices& v, std::size_t k) {
+        std::byte* block = to + 16 * (i / kTreeLanes * kTreeLanes * stride);
+        store_in_block(v, i % kTreeLanes,
+                       reinterpret_cast<std::uint32_t*>(block) + 64 * (first + k));
+      };
+      const auto apart = [&](const Vertices& v, std::size_t k) {
+        store_apart(v, lanes, stride, to + 16 * (i * stride + first + k));
+      };
+      const VU place = u1(ring * kMaxSides);
+      if (i < blocked)
+        write_ring(job, b, box, f1(t), place, f1(0.0F), point, in_block, extent);
+      else
+        write_ring(job, b, box, f1(t), place, f1(0.0F), point, apart, extent);
+    }
+    if (i + n >= all.count) extent.widen(box.low, box.high, lanes);
+  }
+}
+
+// indices = pattern + base, over and over: `pattern` holds the indices of sixteen tubes.
+void repeat_pattern(const std::uint16_t* pattern, std::size_t length, std::uint32_t first,
+                    std::uint32_t step, std::size_t total, std::uint16_t* to) {
+  const HWY_CAPPED(std::uint16_t, 8) d;
+  for (std::size_t done = 0; done < total; done += length, first += step) {
+    const auto base = hn::Set(d, static_cast<std::uint16_t>(first));
+    const std::size_t count = std::min(length, total - done);
+    std::size_t i = 0;
+    for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d))
+      hn::StoreU(hn::Load(d, pattern + i) + base, d, to + done + i);
+    for (; i < count; ++i)
+      to[done + i] = static_cast<std::uint16_t>(pattern[i] + first);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace psygen::models
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace psygen::models {
+namespace {
+
+HWY_EXPORT(mesh_branches);
+HWY_EXPORT(mesh_rings);
+HWY_EXPORT(repeat_pattern);
+
 // Unit circle with `sides` corners, for the numbers of sides that the plans use.
 const Circle& circle(std::uint32_t sides) {
   static constexpr float kHalf = 0.5F, kR3 = 0.866025404F, kR2 = 0.707106781F;
@@ -20,196 +222,210 @@ const Circle& circle(std::uint32_t sides) {
   static constexpr Circle kSix{{1, kHalf, -kHalf, -1, -kHalf, kHalf}, {0, kR3, kR3, 0, -kR3, -kR3}};
   static constexpr Circle kEight{{1, kR2, 0, -kR2, -1, -kR2, 0, kR2},
                                  {0, kR2, 1, kR2, 0, -kR2, -1, -kR2}};
-  switch (sides) {
-    case 3:
-      return kThree;
-    case 4:
-      return kFour;
-    case 5:
-      return kFive;
-    case 6:
-      return kSix;
-    default:
-      return kEight;
-  }
+  return sides == 3 ? kThree : sides == 4 ? kFour : sides == 5 ? kFive : sides == 6 ? kSix : kEight;
 }
 
-// Where the trunk's rings are, closer together at the foot.
-float trunk_t(std::uint32_t segments, std::uint32_t ring) {
-  static constexpr float kSixRings[] = {0.0F, 0.06F, 0.16F, 0.34F, 0.55F, 0.78F, 1.0F};
-  static constexpr float kThreeRings[] = {0.0F, 0.14F, 0.5F, 1.0F};
-  static constexpr float kTwoRings[] = {0.0F, 0.2F, 1.0F};
-  if (segments == 6) return kSixRings[ring];
-  if (segments == 3) return kThreeRings[ring];
-  if (segments == 2) return kTwoRings[ring];
-  return static_cast<float>(ring) / static_cast<float>(segments);
-}
-
-// A pseudo-random number in 0 … 7 for vertex k of a branch with this hash.
-std::uint32_t vertex_noise(std::uint64_t hash, std::uint32_t k) {
-  return static_cast<std::uint32_t>(hash >> (3 * k % 61)) & 7U;
-}
-
-std::array<std::uint8_t, 3> bark_colour(const TreeShape& shape, float brightness) {
-  static constexpr float kGrey[3] = {0.48F, 0.46F, 0.43F};
-  static constexpr float kBrown[3] = {0.36F, 0.28F, 0.21F};
-  std::array<std::uint8_t, 3> result;
-  for (std::size_t i = 0; i < 3; ++i)
-    result[i] = pack_unorm8((kGrey[i] + shape.bark_tone * (kBrown[i] - kGrey[i])) * brightness);
-  return result;
-}
-
-// What all branches of a mesh have in common.
-struct Bark {
-  const TreeShape& shape;
-  const TreeSkeleton& skeleton;
-  const TreeCrown& crown;
-  std::array<std::uint8_t, 3> colours[8];
-};
-
-struct Tube {
-  TubePlan plan;
-  std::uint32_t node;
-  std::uint64_t hash;
-  float sway_start, sway_end;
-  glm::vec3 around[kMaxSides];  // from the axis, perpendicular to the branch's start
-  std::array<std::int16_t, 2> normal[kMaxSides], point_normal;
-};
-
-float bark_ambient(const TreeShape& shape, const TreeCrown& crown, const glm::vec3& p) {
-  const float contact = std::min(0.55F + 1.5F * std::max(p.y, 0.0F) / shape.size_m, 1.0F);
-  return contact * crown_ambient(crown, p);
-}
-
-void write_ring(const Bark& bark, const Tube& tube, std::uint32_t ring, MeshWriter& out) {
-  const TreeSkeleton& s = bark.skeleton;
-  const std::uint32_t node = tube.node, segments = tube.plan.segments;
-  const bool trunk = node == 0;
-  const float t =
-      trunk ? trunk_t(segments, ring) : static_cast<float>(ring) / static_cast<float>(segments);
-  glm::vec3 middle = s.point(node, t);
-  if (trunk && ring == 0) middle.y -= sink_m(bark.shape);
-  const float start = s.radius_start[node];
-  const float radius = start + t * (s.radius_end[node] - start);
-  float flare = 0.0F;
-  if (trunk) {
-    const float near_foot = std::max(1.0F - 3.0F * t, 0.0F);
-    const float coarse = segments >= 3 ? 1.0F : 0.3F * static_cast<float>(segments);
-    flare = bark.shape.flare * near_foot * near_foot * coarse;
-  }
-  const glm::vec3 turn = 2.0F * t * s.bend[node];
-  MeshWriter::Look look{pack_unorm8(bark_ambient(bark.shape, bark.crown, middle)),
-                        static_cast<std::uint8_t>(static_cast<int>(
-                            tube.sway_start + t * (tube.sway_end - tube.sway_start))),
-                        {},
-                        {},
-                        0};
-  const bool point = tube.plan.pointed && ring == segments;
-  const std::uint32_t corners = point ? 1 : tube.plan.sides;
-  for (std::uint32_t side = 0; side < corners; ++side) {
-    const glm::vec3& around = tube.around[side];
-    const glm::vec3 sheared = around - dot3(around, turn) * s.direction[node];
-    const float lobe = 0.4F + 0.16F * static_cast<float>(vertex_noise(tube.hash, side));  // roots
-    look.normal = point ? tube.point_normal : tube.normal[side];
-    look.colour = bark.colours[vertex_noise(tube.hash, ring * kMaxSides + side + 5)];
-    out.vertex(middle + (radius * (1.0F + flare * lobe)) * sheared, look);
-  }
-}
-
-void write_tube(const Bark& bark, const Tube& tube, MeshWriter& out) {
-  const std::uint32_t first = out.vertex_count();
-  const std::uint32_t sides = tube.plan.sides;
-  for (std::uint32_t ring = 0; ring <= tube.plan.segments; ++ring)
-    write_ring(bark, tube, ring, out);
-  for (std::uint32_t ring = 0; ring < tube.plan.segments; ++ring) {
-    const std::uint32_t low = first + ring * sides, high = low + sides;
-    const bool apex = tube.plan.pointed && ring + 1 == tube.plan.segments;
-    for (std::uint32_t side = 0; side < sides; ++side) {
-      const std::uint32_t next = side + 1 == sides ? 0 : side + 1;
-      if (apex) {
-        out.triangle(low + side, low + next, high);
-      } else {
-        out.triangle(low + side, low + next, high + side);
-        out.triangle(low + next, high + next, high + side);
-      }
-    }
-  }
-}
-
-void enclose(const Bark& bark, std::uint32_t node, Tube& tube) {
-  tube.node = node;
-  tube.hash = core::mix64(bark.skeleton.key[node] ^ kBarkSalt);
-  const Frame frame = frame_around(bark.skeleton.direction[node]);
-  tube.point_normal = pack_normal(bark.skeleton.direction[node]);
-  const Circle& unit = circle(tube.plan.sides);
-  for (std::uint32_t side = 0; side < tube.plan.sides; ++side) {
-    tube.around[side] = unit.x[side] * frame.u + unit.z[side] * frame.v;
-    tube.normal[side] = pack_normal(tube.around[side]);
-  }
+std::array<std::uint8_t, 3> bark_colour(const TreePlan& plan) {
+  return {pack_unorm8(plan.bark[0]), pack_unorm8(plan.bark[1]), pack_unorm8(plan.bark[2])};
 }
 
 float sway_at(int depth, int tips_depth) {
   return static_cast<float>(std::min(30 + 170 * depth / std::max(tips_depth, 1), 200));
 }
 
+// The indices of one tube whose first vertex is `first`.
+std::uint16_t* write_tube(const TubePlan& tube, std::uint32_t first, std::uint16_t* to) {
+  const auto put = [&to](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    *to++ = static_cast<std::uint16_t>(a);
+    *to++ = static_cast<std::uint16_t>(b);
+    *to++ = static_cast<std::uint16_t>(c);
+  };
+  for (std::uint32_t ring = 0; ring < tube.segments; ++ring) {
+    const std::uint32_t low = first + ring * tube.sides, high = low + tube.sides;
+    const bool apex = tube.pointed && ring + 1 == tube.segments;
+    for (std::uint32_t side = 0; side < tube.sides; ++side) {
+      const std::uint32_t next = side + 1 == tube.sides ? 0 : side + 1;
+      put(low + side, low + next, apex ? high : high + side);
+      if (!apex) put(low + next, high + next, high + side);
+    }
+  }
+  return to;
+}
+
+// The indices of `count` tubes from vertex `first` on, of which the first `blocked` are in blocks.
+void write_indices(const TubePlan& tube, std::uint32_t count, std::uint32_t blocked,
+                   std::uint32_t first, MeshWriter& out) {
+  alignas(64) std::uint16_t pattern[kTreeLanes * 6 * kMaxSides * kMaxSegments];
+  const auto repeat = [&](std::uint32_t tubes, std::uint32_t start, bool in_blocks) {
+    const std::uint32_t size = tube.triangles() * 3;
+    std::uint16_t* end = pattern;
+    for (std::uint32_t i = 0; i < std::min(tubes, kTreeLanes); ++i) {
+      std::uint16_t* const mine = end;
+      end = write_tube(tube, in_blocks ? 0 : i * tube.vertices(), end);
+      for (std::uint16_t* index = mine; in_blocks && index < end; ++index)
+        *index = static_cast<std::uint16_t>(*index * kTreeLanes + i % 4 * 4 + i / 4);
+    }
+    HWY_DYNAMIC_DISPATCH(repeat_pattern)
+    (pattern, static_cast<std::size_t>(end - pattern), start, kTreeLanes * tube.vertices(),
+     std::size_t{tubes} * size, out.append_indices(tubes * size));
+  };
+  if (blocked > 0) repeat(blocked, first, true);
+  if (count > blocked) repeat(count - blocked, first + blocked * tube.vertices(), false);
+}
+
 // Three triangles from a ring about `from` to the crown's centre.
-void write_cone(const TreeShape& shape, const glm::vec3& from, float radius, std::uint8_t ambient,
+void write_cone(const TreePlan& plan, const glm::vec3& from, float radius, std::uint8_t ambient,
                 const TreeCrown& crown, MeshWriter& out) {
   const std::uint32_t first = out.vertex_count();
   const Circle& unit = circle(3);
-  const auto colour = bark_colour(shape, 0.99F);
+  const auto colour = bark_colour(plan);
   for (std::size_t side = 0; side < 3; ++side) {
     const glm::vec3 normal{unit.x[side], 0.0F, unit.z[side]};
-    out.vertex(from + radius * normal, {ambient, 20, pack_normal(normal), colour, 0});
+    out.vertex(from + radius * normal, {ambient, 20, normal, colour, 0});
   }
   const std::uint8_t inside = pack_unorm8(crown_ambient(crown, crown.center));
-  out.vertex(crown.center, {inside, 100, pack_normal({0.0F, 1.0F, 0.0F}), colour, 0});
+  out.vertex(crown.center, {inside, 100, {0.0F, 1.0F, 0.0F}, colour, 0});
   for (std::uint32_t side = 0; side < 3; ++side)
     out.triangle(first + side, first + 3, first + (side + 1) % 3);
 }
 
 }  // namespace
 
-TubePlan tube_plan(int level, int depth, bool tip) {
+TubePlan tube_plan(const TreePlan& plan, int level, int depth, bool tip) {
   static constexpr TubePlan kPlans[4][4] = {
       {{8, 6}, {5, 3}, {4, 2}, {3, 1}},
       {{6, 3}, {4, 2}, {3, 1}, {0, 0}},
       {{4, 2}, {3, 1}, {0, 0}, {0, 0}},
       {{3, 1}, {0, 0}, {0, 0}, {0, 0}},
   };
-  TubePlan plan = kPlans[level][std::min(depth, 3)];
-  plan.pointed = tip && plan.sides > 0;
-  return plan;
+  TubePlan tube{3, 1};
+  if (plan.foliage.near != nullptr) {
+    tube = level < 4 ? kPlans[level][std::min(depth, 3)] : TubePlan{};
+  } else if (level < 2) {
+    const TubePlan& wanted = kPlans[level][std::min(depth, 3)];
+    if (wanted.sides > 0) tube = wanted;
+  }
+  tube.pointed = tip && tube.sides > 0;
+  return tube;
 }
 
-void mesh_bark(const TreeShape& shape, int level, const TreeSkeleton& skeleton,
+namespace {
+
+using Colours = std::array<std::uint32_t, 16>;
+
+// From dark to bright, twice: tables are as long as the widest lanes.
+Colours bark_colours(const TreePlan& plan) {
+  Colours words;
+  for (std::size_t i = 0; i < 16; ++i) {
+    const float brightness =
+        1.0F + plan.bark_contrast * (static_cast<float>(i % 8) * (2.0F / 7.0F) - 1.0F);
+    words[i] = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      words[i] |= static_cast<std::uint32_t>(pack_unorm8(plan.bark[c] * brightness)) << (8 * c);
+  }
+  return words;
+}
+
+// Where rings are: on the trunk closer together at its foot, where it also widens.
+void set_rings(const BarkJob& job, std::size_t at, BarkLanes& out) {
+  static constexpr float kSix[] = {0.0F, 0.06F, 0.16F, 0.34F, 0.55F, 0.78F, 1.0F};
+  static constexpr float kThree[] = {0.0F, 0.14F, 0.5F, 1.0F};
+  static constexpr float kTwo[] = {0.0F, 0.2F, 1.0F};
+  const std::uint32_t segments = job.tube.segments;
+  const float* table = segments == 6 ? kSix : segments == 3 ? kThree : kTwo;
+  const float coarse = segments >= 3 ? 1.0F : 0.3F * static_cast<float>(segments);
+  for (std::uint32_t r = 0; r <= segments; ++r) {
+    const float even = static_cast<float>(r) / static_cast<float>(segments);
+    const float t = job.trunk && segments > 1 ? table[r] : even;
+    const float near_foot = std::max(1.0F - 3.0F * t, 0.0F);
+    out.t[at + r] = t;
+    out.flare[at + r] = job.trunk ? job.plan.flare * near_foot * near_foot * coarse : 0.0F;
+    out.ring[at + r] = r;
+  }
+}
+
+void add_rings(const BarkJob& job, const TreeSkeleton& s, std::uint32_t node, BarkLanes& out) {
+  const std::uint32_t rings = job.tube.segments + 1;
+  for (std::size_t r = 0; r < kTreeRows; ++r)
+    std::fill_n(&out.rows[r][out.count], rings, s.rows[r][node]);
+  std::fill_n(&out.key[out.count], rings, s.key[node]);
+  set_rings(job, out.count, out);
+  out.count += rings;
+}
+
+void add_branches(const TreeSkeleton& s, const TreeGroup& group, BarkLanes& out) {
+  for (std::size_t r = 0; r < kTreeRows; ++r)
+    std::memcpy(&out.rows[r][out.count], &s.rows[r][group.first], sizeof(float) * group.count);
+  std::memcpy(&out.key[out.count], &s.key[group.first], sizeof(std::uint32_t) * group.count);
+  out.count += group.count;
+}
+
+// The tubes of one depth that are not pointed, or all that are.
+void mesh_depth(const BarkJob& job, const TreeSkeleton& s, std::size_t first, std::size_t last,
+                BarkLanes& lanes, MeshWriter& out) {
+  std::uint32_t tubes = 0;
+  for (std::size_t g = first; g < last; ++g)
+    if (s.groups[g].tip == job.tip) tubes += s.groups[g].count;
+  if (tubes == 0) return;
+  const std::uint32_t start = out.vertex_count();
+  std::byte* to = out.append_vertices(tubes * job.tube.vertices());
+  const bool by_rings = !job.tip && tubes < kTreeLanes;
+  lanes.count = 0;
+  for (std::size_t g = first; g < last; ++g) {
+    const TreeGroup& group = s.groups[g];
+    if (group.tip != job.tip) continue;
+    if (by_rings) {
+      for (std::uint32_t i = 0; i < group.count; ++i)
+        add_rings(job, s, group.first + i, lanes);
+    } else {
+      add_branches(s, group, lanes);
+    }
+  }
+  if (by_rings)
+    HWY_DYNAMIC_DISPATCH(mesh_rings)(job, lanes, out, to);
+  else
+    HWY_DYNAMIC_DISPATCH(mesh_branches)(job, lanes, out, to);
+  write_indices(job.tube, tubes, by_rings ? 0 : tubes / kTreeLanes * kTreeLanes, start, out);
+}
+
+}  // namespace
+
+void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                const TreeCrown& crown, MeshWriter& out) {
-  Bark bark{shape, skeleton, crown, {}};
-  for (int i = 0; i < 8; ++i)
-    bark.colours[i] = bark_colour(shape, 0.84F + 0.04F * static_cast<float>(i));
-  for (int depth = 0; depth <= skeleton.depth; ++depth) {
-    Tube tube;
-    tube.plan = tube_plan(level, depth, depth == skeleton.depth);
-    if (tube.plan.sides == 0) continue;
-    tube.sway_start = depth == 0 ? 0.0F : sway_at(depth - 1, skeleton.depth);
-    tube.sway_end = sway_at(depth, skeleton.depth);
-    const auto d = static_cast<std::size_t>(depth);
-    for (std::uint32_t i = skeleton.first[d]; i < skeleton.first[d + 1]; ++i) {
-      enclose(bark, i, tube);
-      write_tube(bark, tube, out);
+  const Colours colours = bark_colours(plan);
+  BarkLanes lanes;
+  for (std::size_t first = 0, last = 0; first < skeleton.group_count; first = last) {
+    const int depth = skeleton.groups[first].depth;
+    while (last < skeleton.group_count && skeleton.groups[last].depth == depth)
+      ++last;
+    for (const bool tip : {false, true}) {
+      const TubePlan tube = tube_plan(plan, level, depth, tip);
+      if (tube.sides == 0) continue;
+      const BarkJob job{plan,
+                        crown,
+                        tube,
+                        circle(tube.sides),
+                        colours.data(),
+                        depth == 0 ? 0.0F : sway_at(depth - 1, skeleton.depth),
+                        sway_at(depth, skeleton.depth),
+                        depth == 0,
+                        tip};
+      mesh_depth(job, skeleton, first, last, lanes, out);
     }
   }
 }
 
-void mesh_core(const TreeShape& shape, const TreeSkeleton& s, const TreeCrown& crown,
+void mesh_core(const TreePlan& plan, const TreeSkeleton& s, const TreeCrown& crown,
                MeshWriter& out) {
   const glm::vec3 from = s.point(0, 1.0F);
-  write_cone(shape, from, s.radius_end[0], pack_unorm8(crown_ambient(crown, from)), crown, out);
+  write_cone(plan, from, s.rows[kRadius][0] * plan.taper, pack_unorm8(crown_ambient(crown, from)),
+             crown, out);
 }
 
-void mesh_far_trunk(const TreeShape& shape, const TreeCrown& crown, MeshWriter& out) {
-  const float radius = shape.radius_m * (1.0F + 0.3F * shape.flare);
-  write_cone(shape, {0.0F, -sink_m(shape), 0.0F}, radius, pack_unorm8(0.6F), crown, out);
+void mesh_far_trunk(const TreePlan& plan, const TreeCrown& crown, MeshWriter& out) {
+  const float radius = plan.radius_m * (1.0F + 0.3F * plan.flare);
+  write_cone(plan, {0.0F, -sink_m(plan), 0.0F}, radius, pack_unorm8(0.6F), crown, out);
 }
 
 }  // namespace psygen::models
+#endif  // HWY_ONCE

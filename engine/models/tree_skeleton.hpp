@@ -7,76 +7,82 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 
-#include "engine/models/model_type.hpp"
+#include "engine/models/tree_plan.hpp"
 
 namespace psygen::models {
 
-inline constexpr int kMaxTreeIterations = 8;
-// A tree stops growing before the iteration that would take it beyond this number of branches.
-inline constexpr std::uint32_t kMaxTreeNodes = 3072;
 inline constexpr std::uint32_t kWholeTree = UINT32_MAX;
+inline constexpr std::uint32_t kTreeLanes = 16;  // groups begin at multiples of this
+inline constexpr std::size_t kMaxTreeGroups = kMaxKinds * kMaxTreeIterations + 1;
+inline constexpr std::uint32_t kMaxTreeSlots =
+    kMaxTreeNodes + kTreeLanes * static_cast<std::uint32_t>(kMaxTreeGroups + 4);
 
-// A child is at most this times its parent's length times the length decay.
-inline constexpr float kMaxLengthFactor = 1.15F * 1.09F;
-
-// The parameters, as the kernels use them. Angles in turns, lengths in metres.
-struct TreeShape {
-  explicit TreeShape(const Parameters& p);
-  std::uint64_t root_key;
-  int iterations;
-  int branches;
-  float size_m, radius_m;
-  float angle_turns, angle_variation;
-  float length_decay, radius_decay;
-  float tropism, curvature, flare;
-  float leaf_scale, leaf_hue, colour_variation, bark_tone;
-  // The ellipsoid that branches are kept in: centre (0, envelope_y, 0), half axes in metres.
-  float envelope_y, envelope_across, envelope_up;
+// Branches of one kind and depth.
+struct TreeGroup {
+  std::uint32_t first = 0, count = 0;
+  std::uint8_t kind = 0, depth = 0;
+  bool tip = false;  // they end in points: nothing grows from them
 };
 
-// Number of branches that the node of this key has: m − 2 … m + 2, at least 1.
-inline std::uint32_t child_count(std::uint64_t key, int branches) {
-  const int drawn = branches - 2 + static_cast<int>(((key >> 48) * 5) >> 16);
-  return drawn < 1 ? 1U : static_cast<std::uint32_t>(drawn);
-}
-inline std::uint64_t child_key(std::uint64_t parent_key, std::uint32_t number) {
-  return core::mix64(parent_key + 0xD1B54A32D192ED03ull * (number + 1));
-}
-
-// How many branches each depth has; depth 0 is the trunk. Found by hashing alone.
+// How many branches each kind has at each depth. Found by hashing alone.
 struct TreeCount {
-  std::array<std::uint32_t, kMaxTreeIterations + 1> nodes{};
-  int depth = 0;  // of the tips; less than `iterations` where the tree stopped growing
-  std::uint32_t tips() const { return nodes[static_cast<std::size_t>(depth)]; }
+  std::array<TreeGroup, kMaxTreeGroups> groups;  // `first` is unused
+  std::size_t group_count = 0;
+  int depth = 0;
+  std::uint32_t bearers = 0;  // branches with leaves
+  std::uint32_t nodes = 0;
+  std::uint32_t tips = 0;
+  TreeCount() {}
 };
-TreeCount count_tree(const TreeShape& shape);
-// The depth of the tips, which is count_tree(shape).depth, without counting where no draw of
-// branches could reach kMaxTreeNodes.
-int tip_depth(const TreeShape& shape);
+// Of the branches on at most `max_tips` paths; `depth` as for grow_tree, `last` the deepest that is
+// wanted.
+TreeCount count_tree(const TreePlan& plan, int depth, std::uint32_t max_tips = kWholeTree,
+                     int last = kMaxTreeIterations);
+// The iteration after which the whole tree stops growing.
+int tree_depth(const TreePlan& plan);
+
+// Rows of numbers that branches have: places and directions take three each; the radius is that at
+// the foot (at the end times the taper, or 0 at tips).
+enum TreeRow : std::size_t {
+  kBase = 0,
+  kDirection = 3,
+  kBend = 6,
+  kLength = 9,
+  kRadius = 10,
+  kTreeRows = 11
+};
 
 // Branch i runs from base along base + length · (t · direction + t² · bend), t in [0, 1].
-// Branches of one depth are contiguous, in order of their parents. About 200 KiB, meant for the
-// stack; only the first `count` entries are written.
+// Groups are in order of depth, then kind; branches in order of their parents, then their rank
+// among siblings of their kind. About 300 KiB, meant for the stack; what lies between groups is not
+// meant to be read.
 struct TreeSkeleton {
-  std::uint32_t count = 0;
-  int depth = 0;
-  std::array<std::uint32_t, kMaxTreeIterations + 2> first{};  // of each depth; [depth + 1] = count
-  std::array<std::uint64_t, kMaxTreeNodes> key;
-  std::array<glm::vec3, kMaxTreeNodes> base, direction, bend;
-  std::array<float, kMaxTreeNodes> length, radius_start, radius_end;
-  std::array<std::uint32_t, kMaxTreeNodes> parent, budget;
+  using Row = std::array<float, kMaxTreeSlots>;
+  using Words = std::array<std::uint32_t, kMaxTreeSlots>;
+  alignas(64) Row rows[kTreeRows];
+  alignas(64) Words key;
+  alignas(64) Words draw;
+  alignas(64) Words rank;    // among siblings of the kind
+  alignas(64) Row share;     // 1 / number of siblings of the kind
+  alignas(64) Words budget;  // paths
+  std::array<TreeGroup, kMaxTreeGroups> groups;
+  std::size_t group_count;
+  int depth;
 
   glm::vec3 point(std::uint32_t i, float t) const {
-    return base[i] + length[i] * (t * direction[i] + (t * t) * bend[i]);
+    const float q = t * t;
+    const auto along = [&](std::size_t c) {
+      return rows[kBase + c][i] +
+             rows[kLength][i] * (t * rows[kDirection + c][i] + q * rows[kBend + c][i]);
+    };
+    return {along(0), along(1), along(2)};
   }
-  std::uint32_t first_tip() const { return first[static_cast<std::size_t>(depth)]; }
-  std::uint32_t tip_count() const { return count - first_tip(); }
   TreeSkeleton() {}  // leaves the arrays unwritten
 };
 
-// Grows the skeleton to `depth` (tip_depth()), following at most `max_tips` paths from the root
-// to tips (evenly shared out among the children on the way); kWholeTree grows all. The trunk and
-// every branch on a path are exactly those of the whole tree.
-void grow_tree(const TreeShape& shape, int depth, std::uint32_t max_tips, TreeSkeleton& out);
+// Grows the skeleton to `depth` (tree_depth(); with the whole tree also plan.iterations), following
+// at most `max_tips` paths from the root to tips, shared out by the expected number of tips. The
+// trunk and every branch on a path are exactly those of the whole tree.
+void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkeleton& out);
 
 }  // namespace psygen::models

@@ -38,7 +38,8 @@ void fill(const Created& created, std::size_t i, const models::Registry& registr
   created.template column<Placed>()[i] =
       placed_at(block, placement.position, type.bounds(placement.parameters));
   created.template column<Detail>()[i] = detail_of(type, placement.parameters);
-  created.template column<Source>()[i] = {placement.parameters, placement.parameters.hash(),
+  created.template column<Source>()[i] = {placement.parameters,
+                                          models::parameters_hash(type, placement.parameters),
                                           placement.index, placement.model};
 }
 

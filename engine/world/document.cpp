@@ -99,8 +99,11 @@ Node convert(const toml::node& from) {
   } else if (const auto* text = from.as_string()) {
     to.kind = Node::Kind::kText;
     to.text = text->get();
+  } else if (const auto* boolean = from.as_boolean()) {
+    to.kind = Node::Kind::kBoolean;
+    to.boolean = boolean->get();
   } else {
-    to.kind = from.is_boolean() ? Node::Kind::kBoolean : Node::Kind::kTime;
+    to.kind = Node::Kind::kTime;
   }
   return to;
 }

@@ -20,6 +20,7 @@ struct Node {
   int line = 1;  // where it begins, from 1
   std::int64_t integer = 0;
   double real = 0;  // of integers too
+  bool boolean = false;
   std::string text;
   std::vector<Node> items;      // of an array
   std::vector<Member> members;  // of a table, sorted by key

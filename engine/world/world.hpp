@@ -14,6 +14,7 @@
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/models/species.hpp"
 
 namespace psygen::world {
 
@@ -85,7 +86,8 @@ struct World {
   std::uint64_t seed = 1;                       // below 2^63, which is what files can hold
   std::int64_t blocks_x = 512, blocks_z = 512;  // 0: endless; else blocks 0 … n − 1 exist
   models::ModelIndex terrain_model = 0;
-  models::Parameters terrain;  // of the block (0, 0)
+  models::Parameters terrain;            // of the block (0, 0)
+  std::vector<models::Species> species;  // that the file defines; models of the registry
   std::vector<Scatter> scatter;
   Sky sky;
   Palette palette;
@@ -100,9 +102,15 @@ struct World {
 // Reads a world file. Errors name file, line and field and say what is allowed: kParse for texts
 // that are no world file, kInvalidArgument and kOverBudget for parameters that a model refuses
 // (with the predicted cost), kOverBudget for files above 1 MiB, kIo for files that cannot be read.
-core::Result<World> load_world(const std::filesystem::path& file, const models::Registry& registry);
+// The species of the file become model types of the registry, unless it has equal ones already; if
+// anything fails, the registry is as it was.
+core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry);
 
 // The same for a text in memory; `file_name` is for messages only.
+core::Result<World> parse_world(std::string_view text, std::string_view file_name,
+                                models::Registry& registry);
+// With a registry that cannot grow: worlds with species that it lacks are refused.
+core::Result<World> load_world(const std::filesystem::path& file, const models::Registry& registry);
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
                                 const models::Registry& registry);
 

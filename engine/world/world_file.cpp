@@ -6,6 +6,7 @@
 #include "engine/world/document.hpp"
 #include "engine/world/fields.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/species_file.hpp"
 #include "engine/world/table_reader.hpp"
 #include "engine/world/text_file.hpp"
 #include "engine/world/world.hpp"
@@ -221,8 +222,34 @@ void read_fields(TableReader& root, std::string_view name, Problems& problems,
 
 }  // namespace
 
-core::Result<World> parse_world(std::string_view text, std::string_view file_name,
-                                const models::Registry& registry) {
+namespace {
+
+// Makes the species of a world models of the registry; `grown` is null where it cannot grow.
+void register_species(TableReader& root, const World& world, const models::Registry& registry,
+                      models::Registry* grown, Problems& problems) {
+  const std::vector<const Node*> nodes = root.tables("species", kMaxSpecies);
+  for (std::size_t i = 0; i < world.species.size(); ++i) {
+    const models::Species& species = world.species[i];
+    const auto refuse = [&](std::string_view sentence) {
+      problems.add(nodes[i]->line, fmt::format("species[{}].name", i), sentence);
+    };
+    auto type = models::make_species_type(species);
+    if (!type) return refuse(type.error().message);
+    const int known = registry.find(species.name);
+    if (known >= 0) {
+      const models::ModelType& there = registry[static_cast<models::ModelIndex>(known)];
+      if (there.identity() != (*type)->identity())
+        return refuse(fmt::format("there is another model called {}", species.name));
+    } else if (grown == nullptr) {
+      return refuse("species cannot be added here");
+    } else if (auto added = grown->add(std::move(*type)); !added) {
+      return refuse(added.error().message);
+    }
+  }
+}
+
+core::Result<World> read_world(std::string_view text, std::string_view file_name,
+                               const models::Registry& registry, models::Registry* grown) {
   const int terrain_model = registry.find("terrain");
   if (terrain_model < 0)
     return core::fail(core::ErrorCode::kInvalidArgument, "no model type is called terrain");
@@ -241,6 +268,11 @@ core::Result<World> parse_world(std::string_view text, std::string_view file_nam
   read_terrain_table(root, terrain, problems);
   check_model(terrain, problems);
   world.terrain = corner_of(terrain, 0);
+  Problems of_species(file_name);
+  world.species = read_species(root, of_species);
+  if (!of_species.any()) register_species(root, world, registry, grown, of_species);
+  if (of_species.any())
+    return tl::unexpected(problems.any() ? problems.first() : of_species.first());
   read_scatters(root, registry, world, problems);
   read_fields(root, "sky", problems, [&](const auto& visit) { visit_sky(world.sky, visit); });
   read_fields(root, "palette", problems,
@@ -249,6 +281,27 @@ core::Result<World> parse_world(std::string_view text, std::string_view file_nam
   if (problems.any()) return tl::unexpected(problems.first());
   world.terrain = terrain_parameters(world, {0, 0});
   return world;
+}
+
+}  // namespace
+
+core::Result<World> parse_world(std::string_view text, std::string_view file_name,
+                                models::Registry& registry) {
+  const std::size_t before = registry.size();
+  auto world = read_world(text, file_name, registry, &registry);
+  if (!world) registry.shrink(before);
+  return world;
+}
+
+core::Result<World> parse_world(std::string_view text, std::string_view file_name,
+                                const models::Registry& registry) {
+  return read_world(text, file_name, registry, nullptr);
+}
+
+core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry) {
+  const core::Result<std::string> text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse_world(*text, file.string(), registry);
 }
 
 core::Result<World> load_world(const std::filesystem::path& file,

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "engine/world/fields.hpp"
+#include "engine/world/species_file.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
@@ -90,6 +91,7 @@ std::string write_world(const World& world, const models::Registry& registry) {
   fmt::format_to(out, "format = {}\n\n[world]\nname = {}\nseed = {}\nblocks = [{}, {}]\n",
                  world.format, toml_string(world.name), world.seed, world.blocks_x, world.blocks_z);
   write_terrain(out, world, registry[world.terrain_model]);
+  write_species(world.species, text);
   for (const Scatter& scatter : world.scatter)
     write_scatter(out, scatter, registry[scatter.model]);
   fmt::format_to(out, "\n[sky]\n");

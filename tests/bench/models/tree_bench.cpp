@@ -1,10 +1,14 @@
-// Time of trees at each level of detail, averaged over the paper's ranges (3 to 5 iterations, 2 to
-// 4 branches), and of the question for their size.
+// Time of trees at each level of detail on every instruction set, averaged over the paper's ranges
+// (3 to 5 iterations, 2 to 4 branches), of the question for their size, and of the plain
+// double-precision reference in the same run, which is the scale.
 #include <benchmark/benchmark.h>
 
+#include <string>
 #include <vector>
 
+#include "engine/models/simd_targets.hpp"
 #include "engine/models/tree.hpp"
+#include "tests/engine/models/oracle_tree.hpp"
 
 namespace psygen::models {
 namespace {
@@ -22,7 +26,17 @@ std::vector<Parameters> trees(const ModelType& type) {
   return result;
 }
 
-void tree_synthesis(benchmark::State& state) {
+void report(benchmark::State& state, double triangles) {
+  const double done = static_cast<double>(state.iterations());
+  state.counters["triangles_per_tree"] = triangles / kTrees;
+  state.counters["triangles_per_second"] =
+      benchmark::Counter(triangles * done, benchmark::Counter::kIsRate);
+  state.counters["seconds_per_tree"] =
+      benchmark::Counter(kTrees * done, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void tree_synthesis(benchmark::State& state, const std::string& target) {
+  pin_simd_target(target);
   const auto type = make_tree_type();
   const int level = static_cast<int>(state.range(0));
   const std::vector<Parameters> parameters = trees(*type);
@@ -33,7 +47,7 @@ void tree_synthesis(benchmark::State& state) {
     triangles += sizes.back().triangle_count();
   }
   std::vector<std::byte> vertices(65536 * sizeof(core::ModelVertex));
-  std::vector<std::uint16_t> indices(3 * 65536);
+  std::vector<std::uint16_t> indices(3 * 131072);
   for (auto _ : state) {
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const std::size_t bytes = sizes[i].vertex_count * sizeof(core::ModelVertex);
@@ -42,14 +56,23 @@ void tree_synthesis(benchmark::State& state) {
           {std::span(vertices).first(bytes), std::span(indices).first(sizes[i].index_count)}));
     }
   }
-  const double done = static_cast<double>(state.iterations());
-  state.counters["triangles_per_tree"] = triangles / kTrees;
-  state.counters["triangles_per_second"] =
-      benchmark::Counter(triangles * done, benchmark::Counter::kIsRate);
-  state.counters["seconds_per_tree"] =
-      benchmark::Counter(kTrees * done, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  unpin_simd_target();
+  report(state, triangles);
 }
-BENCHMARK(tree_synthesis)->DenseRange(0, 5)->ArgName("level")->Unit(benchmark::kMicrosecond);
+
+void tree_reference(benchmark::State& state) {
+  const auto type = make_tree_type();
+  double triangles = 0;
+  for (const Parameters& p : trees(*type))
+    triangles += type->mesh_size(p, 0).triangle_count();
+  for (auto _ : state)
+    for (const Parameters& p : trees(*type)) {
+      const TreePlan plan = plan_of_tree(p);
+      benchmark::DoNotOptimize(test::TreeOracle(plan).mesh(0));
+    }
+  report(state, triangles);
+}
+BENCHMARK(tree_reference)->Unit(benchmark::kMicrosecond);
 
 void tree_size(benchmark::State& state) {
   const auto type = make_tree_type();
@@ -62,6 +85,19 @@ void tree_size(benchmark::State& state) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(tree_size)->DenseRange(0, 5)->ArgName("level");
+
+// Full detail on every set, the other levels on the best one.
+const bool kRegistered = [] {
+  const auto targets = simd_targets();
+  for (const std::string_view target : targets) {
+    const std::string name(target);
+    benchmark::RegisterBenchmark(("tree_synthesis/" + name).c_str(), tree_synthesis, name)
+        ->DenseRange(0, target == targets.front() ? 5 : 0)
+        ->ArgName("level")
+        ->Unit(benchmark::kMicrosecond);
+  }
+  return true;
+}();
 
 }  // namespace
 }  // namespace psygen::models

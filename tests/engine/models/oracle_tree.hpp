@@ -1,6 +1,6 @@
-// The tree once more, as docs/models.md defines it: in double precision, by recursion over
-// branches, with the library's sines and cosines. Gives the places and normals of a level's
-// vertices in the order of the mesh. The tests hold the engine's meshes to it.
+// The tree once more, as docs/models.md defines it: in double precision, branch by branch, with the
+// library's sines and cosines. Gives the places and normals of a level's vertices in the order of
+// the mesh. The tests hold the engine's meshes to it.
 #pragma once
 
 #include <array>
@@ -11,53 +11,57 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/core/hash.hpp"
-#include "engine/models/tree.hpp"
+#include "engine/models/tree_plan.hpp"
 
 namespace psygen::models::test {
 
 class TreeOracle {
  public:
-  explicit TreeOracle(const Parameters& p) : p_(p) {
-    double length = real(kTreeSizeM), sum = 0;
-    for (int i = 0; i < iterations(); ++i) {
-      length *= real(kTreeLengthDecay);
-      sum += length;
-    }
-    envelope_ = {0.25 * size() + 0.4 * sum, 0.25 * size() + 0.4 * sum, size() + 0.4 * sum};
-    count();
-  }
+  explicit TreeOracle(const TreePlan& plan) : p_(plan) { depth_ = deepest(grow(0)); }
 
   struct Vertex {
     glm::dvec3 place, normal;
   };
   struct Branch {
-    std::uint64_t key = 0;
-    int depth = 0, parent = -1;
+    std::uint32_t key = 0;
+    std::size_t kind = 0;
+    int depth = 0;
     glm::dvec3 base{0}, direction{0}, bend{0};
-    double length = 0, start = 0, end = 0;
+    double length = 0, start = 0;
     glm::dvec3 at(double t) const { return base + length * (t * direction + t * t * bend); }
   };
+  using Branches = std::vector<Branch>;
 
   int depth() const { return depth_; }
-  std::size_t tips() const { return nodes_[static_cast<std::size_t>(depth_)]; }
-  std::size_t nodes(int d) const { return nodes_[static_cast<std::size_t>(d)]; }
+  bool is_tip(const Branch& b) const { return b.depth == depth_ || !p_.grammar->grows(b.kind); }
 
-  // Branches of at most `paths` paths (0: all), ordered by depth, parent, number.
-  std::vector<Branch> grow(std::uint64_t paths) const {
-    std::vector<Branch> all{trunk()};
+  // Branches of at most `paths` paths (0: all), ordered by depth, kind, parent, rank.
+  Branches grow(std::uint64_t paths) const {
+    Branches all{trunk()};
     std::vector<std::uint64_t> shares{paths};
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const Branch parent = all[i];
-      if (parent.depth == depth_) break;
-      const std::uint64_t k = children(parent.key);
-      for (std::uint64_t j = 0; j < k; ++j) {
-        const std::uint64_t rank = (j + (parent.key & 0xFFFF)) % k;
-        const std::uint64_t share = shares[i] / k + (rank < shares[i] % k ? 1 : 0);
-        if (paths != 0 && share == 0) continue;
-        all.push_back(child(parent, j, k));
-        all.back().parent = static_cast<int>(i);
-        shares.push_back(share);
+    std::size_t first = 0;
+    for (int d = 1; d <= p_.iterations; ++d) {
+      std::array<Branches, kMaxKinds> next;
+      std::array<std::vector<std::uint64_t>, kMaxKinds> next_shares;
+      std::size_t count = 0;
+      for (std::size_t i = first; i < all.size(); ++i) {
+        if (!p_.grammar->grows(all[i].kind)) continue;
+        const auto counts = children(all[i]);
+        const auto parts = shared(all[i], counts, shares[i], p_.iterations - d);
+        std::size_t child_index = 0;
+        for (std::size_t kind = 0; kind < p_.grammar->kinds; ++kind)
+          for (std::uint32_t rank = 0; rank < counts[kind]; ++rank, ++child_index) {
+            if (paths != 0 && parts[child_index] == 0) continue;
+            next[kind].push_back(child(all[i], kind, rank, counts[kind]));
+            next_shares[kind].push_back(paths == 0 ? 0 : parts[child_index]);
+            ++count;
+          }
+      }
+      if (count == 0 || all.size() + count > kMaxTreeNodes || (depth_ >= 0 && d > depth_)) break;
+      first = all.size();
+      for (std::size_t kind = 0; kind < p_.grammar->kinds; ++kind) {
+        all.insert(all.end(), next[kind].begin(), next[kind].end());
+        shares.insert(shares.end(), next_shares[kind].begin(), next_shares[kind].end());
       }
     }
     return all;
@@ -66,71 +70,86 @@ class TreeOracle {
   std::vector<Vertex> mesh(int level) {
     vertices_.clear();
     find_crown();
-    if (level >= 4) {
-      cone({0, -2 * radius(), 0}, radius() * (1 + 0.3 * real(kTreeFlare)));
+    const bool leafy = p_.foliage.near != nullptr;
+    if (leafy && level >= 4) {
+      cone({0, -2.0 * static_cast<double>(p_.radius_m), 0},
+           static_cast<double>(p_.radius_m) * (1 + 0.3 * static_cast<double>(p_.flare)));
       hull(level);
       return vertices_;
     }
-    const std::vector<Branch> all = grow(level < 2 ? 0 : level == 2 ? 64 : 18);
-    for (const Branch& b : all)
-      bark(b, level);
-    if (level >= 2) cone(all[0].at(1), all[0].end);
-    sprays(all, level);
+    static constexpr std::uint64_t kLeafy[4] = {0, 0, 64, 16}, kBare[6] = {0, 0, 64, 16, 5, 2};
+    const Branches all = grow(leafy ? kLeafy[level] : kBare[level]);
+    bark(all, level);
+    if (leafy && level >= 2) cone(all[0].at(1), all[0].start * static_cast<double>(p_.taper));
+    if (leafy) sprays(all, level);
     return vertices_;
   }
 
  private:
-  double real(TreeParameter i) const { return p_.real(i); }
-  int iterations() const { return static_cast<int>(p_.integer(kTreeIterations)); }
-  double size() const { return real(kTreeSizeM); }
-  double radius() const { return real(kTreeRadiusM); }
+  static double d(float v) { return static_cast<double>(v); }
+  static std::uint32_t mix(std::uint32_t h) {
+    h = (h ^ (h >> 16)) * 0x7FEB352DU;
+    h = (h ^ (h >> 15)) * 0x846CA68BU;
+    return h ^ (h >> 16);
+  }
+  std::uint32_t number(std::uint32_t key, std::uint32_t i) const {
+    return mix(key ^ (p_.salt + i * 0x85EBCA6BU));
+  }
+  static double low(std::uint32_t h) { return (h & 0xFFFF) / 65536.0; }
+  static double high(std::uint32_t h) { return (h >> 16) / 65536.0; }
 
-  static std::array<double, 4> fractions(std::uint64_t h) {
-    std::array<double, 4> f;
-    for (std::size_t i = 0; i < 4; ++i)
-      f[i] = static_cast<double>((h >> (16 * i)) & 0xFFFF) / 65536;
-    return f;
-  }
-  std::uint64_t children(std::uint64_t key) const {
-    const auto drawn =
-        p_.integer(kTreeBranches) - 2 +
-        static_cast<std::int64_t>(std::floor(5.0 * static_cast<double>(key >> 48) / 65536));
-    return static_cast<std::uint64_t>(std::max<std::int64_t>(1, drawn));
-  }
-  static std::uint64_t child_key(std::uint64_t key, std::uint64_t j) {
-    return core::mix64(key + 0xD1B54A32D192ED03ull * (j + 1));
-  }
-  std::uint64_t trunk_key() const {
-    return core::mix64(static_cast<std::uint64_t>(p_.integer(kTreeSeed)) ^ 0x5472656553656564ull);
-  }
-
-  void count() {
-    std::vector<std::uint64_t> keys{trunk_key()};
-    std::size_t total = 1;
-    nodes_ = {1};
-    for (int i = 0; i < iterations(); ++i) {
-      std::vector<std::uint64_t> next;
-      for (const std::uint64_t key : keys)
-        for (std::uint64_t j = 0; j < children(key); ++j)
-          next.push_back(child_key(key, j));
-      if (total + next.size() > 3072) break;
-      total += next.size();
-      nodes_.push_back(next.size());
-      keys = next;
-      depth_ = i + 1;
+  using Counts = std::array<std::uint32_t, kMaxKinds>;
+  Counts children(const Branch& b) const {
+    const std::uint32_t draw = number(b.key, 4);
+    const Grammar& g = *p_.grammar;
+    std::size_t r = g.first_rule[b.kind];
+    while ((draw & 0xFFFF) >= g.rules[r].until)
+      ++r;
+    Counts counts{};
+    int fixed = 0;
+    for (std::size_t k = 0; k < g.kinds; ++k)
+      fixed += static_cast<int>(counts[k] = g.rules[r].count[k]);
+    if (g.rules[r].star != kNoKind) {
+      const int drawn =
+          p_.branches - g.spread + static_cast<int>(std::floor((2 * g.spread + 1) * high(draw)));
+      counts[g.rules[r].star] +=
+          static_cast<std::uint32_t>(std::max(std::max(drawn, 1) - fixed, 0));
     }
+    return counts;
   }
+  std::vector<std::uint64_t> shared(const Branch& b, const Counts& counts, std::uint64_t budget,
+                                    int remaining) const {
+    std::vector<std::uint64_t> weights, parts;
+    std::uint64_t total = 0, sum = 0;
+    for (std::size_t k = 0; k < p_.grammar->kinds; ++k)
+      for (std::uint32_t i = 0; i < counts[k]; ++i)
+        weights.push_back(
+            p_.weights == nullptr ? 1 : (*p_.weights)[k][static_cast<std::size_t>(remaining)]);
+    for (const std::uint64_t w : weights)
+      total += w;
+    const std::uint64_t phase = number(b.key, 4) & 0xFFFF;
+    std::uint64_t before = 0;
+    for (const std::uint64_t w : weights) {
+      sum += w;
+      const std::uint64_t reached = (budget * sum * 65536 + phase * total) / (total * 65536);
+      parts.push_back(reached - before);
+      before = reached;
+    }
+    return parts;
+  }
+  static int deepest(const Branches& all) { return all.back().depth; }
 
   Branch trunk() const {
     Branch b;
-    b.key = trunk_key();
-    const std::uint64_t h = core::mix64(b.key ^ 0xA24BAED4963EE407ull);
-    const auto u = fractions(h), w = fractions(core::mix64(h));
-    b.direction = glm::normalize(glm::dvec3{0.16 * (u[0] - 0.5), 1, 0.16 * (u[1] - 0.5)});
-    b.bend = 0.5 * real(kTreeCurvature) * glm::dvec3{w[0] - 0.5, 0, w[1] - 0.5};
-    b.length = size() * (0.9 + 0.2 * u[2]);
-    b.start = radius() * (0.85 + 0.3 * u[3]);
-    b.end = depth_ == 0 ? 0 : 0.72 * b.start;
+    b.key = p_.key;
+    b.kind = p_.axiom;
+    const std::uint32_t h[4] = {number(b.key, 0), number(b.key, 1), number(b.key, 2),
+                                number(b.key, 3)};
+    b.direction =
+        glm::normalize(glm::dvec3{0.16 * (low(h[0]) - 0.5), 1, 0.16 * (high(h[0]) - 0.5)});
+    b.bend = 0.5 * d(p_.trunk_curvature) * glm::dvec3{low(h[2]) - 0.5, 0, low(h[3]) - 0.5};
+    b.length = d(p_.size_m) * (0.9 + 0.2 * low(h[1]));
+    b.start = d(p_.radius_m) * (0.85 + 0.3 * high(h[1]));
     return b;
   }
 
@@ -143,58 +162,71 @@ class TreeOracle {
     return {{sign * b, -sign * t.z, 1 + sign * t.z * t.z * a}, {sign + t.x * t.x * a, -t.x, b}};
   }
 
-  Branch child(const Branch& p, std::uint64_t j, std::uint64_t k) const {
+  Branch child(const Branch& p, std::size_t kind, std::uint32_t rank, std::uint32_t of) const {
+    const KindPlan& k = p_.kinds[kind];
     Branch b;
-    b.key = child_key(p.key, j);
+    b.kind = kind;
+    b.key = mix(p.key + 0x9E3779B9U * (static_cast<std::uint32_t>(kind) * 64 + rank + 1));
     b.depth = p.depth + 1;
-    const std::uint64_t h = core::mix64(b.key ^ 0xA24BAED4963EE407ull);
-    const auto u = fractions(h), w = fractions(core::mix64(h));
-    const bool leader = j == 0;
-    const double a =
-        leader ? 0 : (static_cast<double>(j) - 1 + 0.7 * u[0]) / (static_cast<double>(k) - 1);
-    const double t = 1 - a * (p.depth == 0 ? 0.3 : 0.6);
-    const double v = real(kTreeAngleVariation), tropism = real(kTreeTropism);
+    const std::uint32_t h[4] = {number(b.key, 0), number(b.key, 1), number(b.key, 2),
+                                number(b.key, 3)};
+    const double a = k.leader ? 0 : (rank + 0.7 * low(h[0])) / of;
+    const double t = d(k.along_high) - a * (d(k.along_high) - d(k.along_low));
+    const double v = d(k.angle_variation);
     const glm::dvec3 tangent = glm::normalize(p.direction + 2 * t * p.bend);
     b.base = p.at(t);
-    b.direction = tangent + glm::dvec3{0, 0.5 * tropism, 0};
-    if (!leader) {
-      const double tilt = real(kTreeBranchAngle) * (1 + v * (2 * u[1] - 1)) * (0.75 + 0.4 * a);
-      const double turns = static_cast<double>((p.key >> 24) & 0xFFFF) / 65536 +
-                           0.381966011 * static_cast<double>(j) + 0.3 * v * (u[2] - 0.5);
-      const double psi = 2 * std::numbers::pi * turns;
+    b.direction = tangent;
+    if (!k.leader) {
+      const double tilt = 2 * std::numbers::pi * (1 + v * (2 * high(h[0]) - 1)) *
+                          (d(k.angle_high) + a * (d(k.angle_low) - d(k.angle_high)));
+      const double psi =
+          2 * std::numbers::pi * (low(p.key) + d(k.whorl) * rank + 0.3 * v * (low(h[1]) - 0.5));
       const Axes f = frame(tangent);
-      b.direction = std::cos(tilt) * tangent +
-                    std::sin(tilt) * (std::cos(psi) * f.u + std::sin(psi) * f.v) +
-                    glm::dvec3{0, tropism, 0};
+      b.direction =
+          std::cos(tilt) * tangent + std::sin(tilt) * (std::cos(psi) * f.u + std::sin(psi) * f.v);
     }
-    b.direction = glm::normalize(b.direction);
-    b.bend = 0.5 * real(kTreeCurvature) * glm::dvec3{w[0] - 0.5, w[1] - 0.5, w[2] - 0.5} +
-             glm::dvec3{0, 0.35 * tropism, 0};
-    const double full = p.length * real(kTreeLengthDecay) * (0.85 + 0.3 * u[3]) *
-                        (leader ? 1 : 0.85 + 0.4 * (1 - t));
-    const glm::dvec3 q = (b.base + full * (b.direction + b.bend) - glm::dvec3{0, envelope_.z, 0}) /
-                         glm::dvec3{envelope_.x, envelope_.y, envelope_.x};
-    b.length = full / std::max(1.0, glm::dot(q, q));
-    b.start = (p.start + t * (p.end - p.start)) * (leader ? 1 : real(kTreeRadiusDecay));
-    b.end = b.depth == depth_ ? 0 : 0.72 * b.start;
+    b.direction = glm::normalize(b.direction + glm::dvec3{0, d(k.lift), 0});
+    b.bend = 0.5 * d(k.curvature) * glm::dvec3{low(h[2]) - 0.5, high(h[2]) - 0.5, low(h[3]) - 0.5} +
+             glm::dvec3{0, d(k.bend_up), 0};
+    b.length = p.length * (0.85 + 0.3 * high(h[1])) *
+               (d(k.length_high) + (1 - t) * (d(k.length_foot) - d(k.length_high)));
+    const glm::dvec3 q =
+        (b.base + b.length * (b.direction + b.bend) - glm::dvec3{0, d(p_.envelope_y), 0}) *
+        glm::dvec3{d(p_.limit_across), d(p_.limit_up), d(p_.limit_across)};
+    if (p_.limit_across > 0) b.length /= std::max(1.0, glm::dot(q, q));
+    b.start = p.start * (1 - t * (1 - d(p_.taper))) * d(k.radius);
     return b;
+  }
+
+  bool bears(const Branch& b) const {
+    const LeavesOn on = p_.kinds[b.kind].leaves;
+    return on == LeavesOn::kAll || (on == LeavesOn::kTips && is_tip(b));
+  }
+  Branches bearers(const Branches& all) const {
+    Branches found;
+    for (const Branch& b : all)
+      if (p_.foliage.near != nullptr && bears(b)) found.push_back(b);
+    for (const Branch& b : all)
+      if (found.empty() || !bears(found[0]))
+        if (is_tip(b)) found.push_back(b);
+    return found;
   }
 
   void find_crown() {
     std::vector<glm::dvec3> ends;
-    for (const Branch& b : grow(18))
-      if (b.depth == depth_) ends.push_back(b.at(1));
+    for (const Branch& b : bearers(grow(16)))
+      ends.push_back(b.at(1));
     const double n = static_cast<double>(ends.size());
     center_ = glm::dvec3(0);
     for (const glm::dvec3& e : ends)
       center_ += e / n;
     double across = 0, up = 0;
     for (const glm::dvec3& e : ends) {
-      const glm::dvec3 d = e - center_;
-      across += (d.x * d.x + d.z * d.z) / (2 * n);
-      up += d.y * d.y / n;
+      const glm::dvec3 v = e - center_;
+      across += (v.x * v.x + v.z * v.z) / (2 * n);
+      up += v.y * v.y / n;
     }
-    half_ = glm::dvec3(0.3 * size()) +
+    half_ = glm::dvec3(0.3 * d(p_.size_m)) +
             1.5 * glm::dvec3{std::sqrt(across), std::sqrt(up), std::sqrt(across)};
     crown_radius_ = (2 * half_.x + half_.y) / 3;
   }
@@ -212,85 +244,128 @@ class TreeOracle {
     vertices_.push_back({center_, {0, 1, 0}});
   }
 
-  void bark(const Branch& b, int level) {
-    static constexpr int kSides[4][4] = {{8, 5, 4, 3}, {6, 4, 3, 0}, {4, 3, 0, 0}, {3, 0, 0, 0}};
-    static constexpr int kSegments[4][4] = {{6, 3, 2, 1}, {3, 2, 1, 0}, {2, 1, 0, 0}, {1, 0, 0, 0}};
-    const int sides = kSides[level][std::min(b.depth, 3)];
-    const int segments = kSegments[level][std::min(b.depth, 3)];
-    if (sides == 0) return;
+  // Place of lane i of 16 in a block.
+  static std::size_t place_in_block(std::size_t i) { return i % 4 * 4 + i / 4; }
+
+  // Tubes one after the other; those in whole blocks of 16 (unless `rings`) vertex by vertex.
+  void put(const std::vector<std::vector<Vertex>>& tubes, bool whole_only) {
+    const std::size_t blocked = whole_only ? tubes.size() / 16 * 16 : 0;
+    for (std::size_t first = 0; first < blocked; first += 16)
+      for (std::size_t v = 0; v < tubes[first].size(); ++v) {
+        std::array<Vertex, 16> row;
+        for (std::size_t i = 0; i < 16; ++i)
+          row[place_in_block(i)] = tubes[first + i][v];
+        vertices_.insert(vertices_.end(), row.begin(), row.end());
+      }
+    for (std::size_t i = blocked; i < tubes.size(); ++i)
+      vertices_.insert(vertices_.end(), tubes[i].begin(), tubes[i].end());
+  }
+
+  void bark(const Branches& all, int level) {
+    static constexpr int kSides[6][4] = {{8, 5, 4, 3}, {6, 4, 3, 0}, {4, 3, 0, 0}, {3, 0, 0, 0}};
+    static constexpr int kSegments[6][4] = {{6, 3, 2, 1}, {3, 2, 1, 0}, {2, 1, 0, 0}, {1, 0, 0, 0}};
+    for (int depth = 0; depth <= depth_; ++depth) {
+      const auto column = static_cast<std::size_t>(std::min(depth, 3));
+      int sides = kSides[level][column], segments = kSegments[level][column];
+      if (p_.foliage.near == nullptr && (level > 1 || sides == 0)) sides = 3, segments = 1;
+      if (sides == 0) continue;
+      for (const bool tip : {false, true}) {
+        std::vector<std::vector<Vertex>> tubes;
+        for (const Branch& b : all)
+          if (b.depth == depth && is_tip(b) == tip) tubes.push_back(tube(b, sides, segments));
+        put(tubes, tip || tubes.size() >= 16);
+      }
+    }
+  }
+
+  std::vector<Vertex> tube(const Branch& b, int sides, int segments) const {
     const std::vector<double> six{0, 0.06, 0.16, 0.34, 0.55, 0.78, 1}, three{0, 0.14, 0.5, 1},
         two{0, 0.2, 1};
+    std::vector<Vertex> result;
     const Axes f = frame(b.direction);
-    const std::uint64_t z = core::mix64(b.key ^ 0xE7037ED1A0B428DBull);
+    const std::uint32_t z = number(b.key, 5);
     for (int ring = 0; ring <= segments; ++ring) {
       const auto r = static_cast<std::size_t>(ring);
       double t = static_cast<double>(ring) / segments, flare = 0;
       if (b.depth == 0) {
         if (segments > 1) t = segments == 6 ? six[r] : segments == 3 ? three[r] : two[r];
-        flare = real(kTreeFlare) * std::pow(std::max(1 - 3 * t, 0.0), 2) *
+        flare = d(p_.flare) * std::pow(std::max(1 - 3 * t, 0.0), 2) *
                 (segments == 1   ? 0.3
                  : segments == 2 ? 0.6
                                  : 1.0);
       }
       glm::dvec3 middle = b.at(t);
-      if (b.depth == 0 && ring == 0) middle.y -= 2 * radius();
-      const int corners = b.depth == depth_ && ring == segments ? 1 : sides;
+      if (b.depth == 0 && ring == 0) middle.y -= 2 * d(p_.radius_m);
+      const double end = is_tip(b) ? 0 : d(p_.taper);
+      const int corners = is_tip(b) && ring == segments ? 1 : sides;
       for (int x = 0; x < corners; ++x) {
         const glm::dvec3 o = corner(x, sides, f.u, f.v);
-        const double lobe = 0.4 + 0.16 * static_cast<double>((z >> (3 * x % 61)) & 7);
-        const double distance = (b.start + t * (b.end - b.start)) * (1 + flare * lobe);
-        vertices_.push_back({middle + distance * (o - glm::dot(o, 2 * t * b.bend) * b.direction),
-                             corners == 1 ? b.direction : o});
+        const std::uint32_t e =
+            ((z + (static_cast<std::uint32_t>(x) + 1000) * 0x9E3779B9U) * 0x846CA68BU) >> 29;
+        const double distance = b.start * (1 - t * (1 - end)) * (1 + flare * (0.4 + 0.16 * e));
+        result.push_back({middle + distance * (o - glm::dot(o, 2 * t * b.bend) * b.direction),
+                          corners == 1 ? b.direction : o});
       }
     }
+    return result;
   }
 
-  void sprays(const std::vector<Branch>& all, int level) {
-    std::vector<Branch> ends;
-    for (const Branch& b : all)
-      if (b.depth == depth_) ends.push_back(b);
-    const std::size_t m = ends.size();
-    const std::size_t n = level == 0   ? std::clamp<std::size_t>(16 * m / 5, 512, 7168)
-                          : level == 1 ? std::clamp<std::size_t>(m, 128, 1536)
-                          : level == 2 ? 64
-                                       : 18;
-    for (std::size_t i = 0; i < m; ++i)
-      for (std::size_t q = n * i / m; q < n * (i + 1) / m; ++q)
-        spray(all, ends[i], q - n * i / m, level, static_cast<double>(n), static_cast<double>(m));
+  void sprays(const Branches& all, int level) {
+    const Branches on = bearers(all);
+    const double share = d(p_.foliage.density) * (level == 0 ? 1 : 0.3125);
+    std::size_t n = std::clamp<std::size_t>(
+        static_cast<std::size_t>(static_cast<float>(static_cast<double>(on.size()) * share)),
+        level == 0 ? 256 : 64, level == 0 ? 4096 : 768);
+    n = std::min<std::size_t>(n, (65536 - vertices_.size()) / 10) / 16 * 16;
+    if (level >= 2) n = level == 2 ? 64 : 16;
+    const SprayForm& form = level < 2 ? *p_.foliage.near : *p_.foliage.far;
+    std::vector<std::vector<Vertex>> made;
+    for (std::size_t k = 0; k < n; ++k)
+      made.push_back(spray(on[k % on.size()], static_cast<std::uint32_t>(k), level, form,
+                           static_cast<double>(n), static_cast<double>(on.size())));
+    put(made, true);
   }
 
-  void spray(const std::vector<Branch>& all, const Branch& tip, std::size_t number, int level,
-             double n, double m) {
-    static constexpr double kLeaf[6][3] = {{0, 0, 0},    {0.52, -0.6, 0.14}, {0.4, -0.2, 0},
-                                           {1, 0, 0.18}, {0.4, 0.2, 0},      {0.52, 0.6, 0.14}};
-    static constexpr double kPatch[6][3] = {{0, 0, 0.12},    {0.22, -0.46, 0.06}, {0.74, -0.4, 0},
-                                            {1, 0.06, 0.16}, {0.66, 0.44, 0},     {0.3, 0.4, 0.06}};
-    static constexpr double kFill[4] = {6.7, 7.1, 4.4, 4.4};
-    const std::uint64_t h = core::mix64(tip.key + 0x8EBC6AF09C88C6E3ull * (number + 1));
-    const auto x = fractions(h), y = fractions(core::mix64(h));
-    const double g = static_cast<double>((h >> 40) & 0xFFFF) / 65536;
-    const Branch& bearer = all[static_cast<std::size_t>(tip.parent)];
-    const glm::dvec3 anchor = g < 0.3 ? bearer.at(0.4 + 2 * g) : tip.at(g);
-    const double mean =
-        std::min(kFill[level] * crown_radius_ * real(kTreeLeafScale) / std::sqrt(n), 2 * size());
-    const double length = mean * (0.75 + 0.5 * y[3]);
-    const double cluster = crown_radius_ * std::min(2.1 / std::sqrt(m), 0.6);
+  static double whole(std::uint32_t half) {  // 16 bits as a signed fraction
+    return static_cast<double>(static_cast<std::int16_t>(half & 0xFFFF)) / 32768;
+  }
+
+  std::vector<Vertex> spray(const Branch& on, std::uint32_t k, int level, const SprayForm& form,
+                            double n, double m) const {
+    static constexpr double kFill[4] = {5.3, 6.0, 4.4, 4.4};
+    const FoliagePlan& f = p_.foliage;
+    const std::uint32_t id = k * 0x9E3779B9U + (p_.key ^ (p_.salt + 0x40000000U));
+    std::uint32_t h[4];
+    for (std::uint32_t i = 0; i < 4; ++i)
+      h[i] = mix(id ^ (i * 0x85EBCA6BU));
+    const double t = d(f.from) + (1 - d(f.from)) * high(h[1]);
+    const glm::dvec3 room = glm::dvec3(p_.bounds.half_extent());
+    const double mean = std::min(
+        std::min(kFill[level] * crown_radius_ * d(f.fill) / std::sqrt(n), 2 * d(p_.size_m)),
+        0.6 * std::min(std::min(room.x, room.y), room.z));
+    const double length = mean * (0.75 + 0.5 * high(h[3]));
     const double pull = level == 0 ? 1 : std::max(1 - 0.28 * mean / crown_radius_, 0.5);
-    const glm::dvec3 o{2 * x[0] - 1, 2 * x[1] - 1, 2 * x[2] - 1};
-    const glm::dvec3 random{2 * y[0] - 1, 2 * y[1] - 1, 2 * y[2] - 1};
-    const glm::dvec3 place =
-        center_ + pull * (anchor + cluster * (1 - 0.2 * glm::dot(o, o)) * o - center_);
-    const glm::dvec3 out = glm::normalize((place - center_) / (half_ * half_));
-    const glm::dvec3 axis = glm::normalize(0.7 * (o + out) - glm::dvec3{0, 0.25, 0});
-    const glm::dvec3 side =
-        glm::normalize(glm::cross(0.7 * out + 0.9 * random + glm::dvec3{0, 0.3, 0}, axis));
+    const double cluster = d(f.cluster) * crown_radius_ * std::min(2.1 / std::sqrt(m), 0.6);
+    const glm::dvec3 o{whole(h[0]), whole(h[0] >> 16), whole(h[1])};
+    const glm::dvec3 random{whole(h[2]), whole(h[2] >> 16), whole(h[3])};
+    glm::dvec3 place = pull * (on.at(t) - center_ + cluster * (1 - 0.2 * glm::dot(o, o)) * o);
+    const glm::dvec3 out = crown_radius_ * place / (half_ * half_);
+    const glm::dvec3 along = glm::normalize(on.direction + 2 * t * on.bend);
+    const glm::dvec3 axis = glm::normalize(d(f.random) * o + d(f.out) * out + d(f.branch) * along +
+                                           glm::dvec3{0, d(f.up), 0});
+    const glm::dvec3 side = glm::normalize(glm::cross(
+        d(f.side_out) * out + d(f.side_random) * random + glm::dvec3{0, d(f.side_up), 0}, axis));
     const glm::dvec3 face = glm::cross(axis, side);
-    const glm::dvec3 normal = glm::normalize(out + 0.3 * axis + glm::dvec3{0, 0.25, 0});
-    for (int c = 0; c < 6; ++c) {
-      const double* f = level <= 1 ? kLeaf[c] : kPatch[c];
-      vertices_.push_back(
-          {place + length * ((f[0] - 0.45) * axis + f[1] * side - f[2] * face), normal});
-    }
+    const glm::dvec3 normal = glm::normalize(out + 0.3 * axis + glm::dvec3{0, d(f.normal_up), 0});
+    const glm::dvec3 limit = room - 1.3 * length;
+    place = glm::clamp(place + center_ - glm::dvec3(p_.bounds.center()), -limit, limit) +
+            glm::dvec3(p_.bounds.center());
+    std::vector<Vertex> result;
+    for (std::uint32_t c = 0; c < form.vertices; ++c)
+      result.push_back({place + length * ((d(form.along[c]) - 0.45) * axis +
+                                          d(form.across[c]) * side - d(form.droop[c]) * face),
+                        normal});
+    return result;
   }
 
   void hull(int level) {
@@ -308,17 +383,16 @@ class TreeOracle {
       }
     }
     for (std::size_t k = 0; k < corners.size(); ++k) {
-      const auto x = fractions(core::mix64(trunk_key() + 0x2F72B4215A3D8CAFull * (k + 1)));
-      const double grown = (level == 4 ? 1.05 : 1.3) * (0.85 + 0.3 * x[0]);
-      vertices_.push_back({center_ + grown * half_ * corners[k],
+      const double x = low(number(p_.key, static_cast<std::uint32_t>(16 + k)));
+      const double grown = (level == 4 ? 1.05 : 1.3) * (0.85 + 0.3 * x);
+      const double narrow = 1 - d(p_.hull_taper) * (0.5 + 0.5 * corners[k].y);
+      vertices_.push_back({center_ + grown * half_ * corners[k] * glm::dvec3{narrow, 1, narrow},
                            glm::normalize(corners[k] + glm::dvec3{0, 0.2, 0})});
     }
   }
 
-  Parameters p_;
-  glm::dvec3 envelope_{0};  // across, up, height of the centre
-  int depth_ = 0;
-  std::vector<std::size_t> nodes_;
+  const TreePlan& p_;
+  int depth_ = -1;
   glm::dvec3 center_{0}, half_{1};
   double crown_radius_ = 1;
   std::vector<Vertex> vertices_;

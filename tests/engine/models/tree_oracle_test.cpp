@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/models/packing.hpp"
+#include "engine/models/simd_targets.hpp"
+#include "engine/models/tree.hpp"
 #include "engine/models/tree_skeleton.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/models/oracle_tree.hpp"
@@ -20,67 +22,118 @@ Parameters tree(const ModelType& type, int i) {
   return p;
 }
 
-TEST(TreeOracle, CountsTheSameBranchesAtEveryDepth) {
+// Every instruction set in turn.
+template <class Visit>
+void for_targets(const Visit& visit) {
+  for (const std::string_view target : simd_targets()) {
+    SCOPED_TRACE(target);
+    pin_simd_target(target);
+    visit();
+  }
+  unpin_simd_target();
+}
+
+TEST(TreeOracle, CountsTheSameBranchesOfEveryKindAtEveryDepth) {
   const auto type = make_tree_type();
   for (int i = 0; i < 300; ++i) {
     Parameters p = tree(*type, i);
     if (i % 5 == 0) p.set_integer(kTreeIterations, 8);
-    const TreeOracle oracle(p);
-    const TreeCount count = count_tree(TreeShape(p));
-    ASSERT_EQ(count.depth, oracle.depth());
-    for (int d = 0; d <= count.depth; ++d)
-      ASSERT_EQ(count.nodes[static_cast<std::size_t>(d)], oracle.nodes(d));
-  }
-}
-
-TEST(TreeOracle, GrowsTheSameSkeleton) {
-  const auto type = make_tree_type();
-  const auto tree_skeleton = std::make_unique<TreeSkeleton>();
-  for (int i = 0; i < 16; ++i) {
-    const Parameters p = tree(*type, i);
-    for (const std::uint32_t paths : {kWholeTree, 64U, 18U}) {
-      grow_tree(TreeShape(p), tip_depth(TreeShape(p)), paths, *tree_skeleton);
-      const auto branches = TreeOracle(p).grow(paths == kWholeTree ? 0 : paths);
-      ASSERT_EQ(branches.size(), tree_skeleton->count);
-      for (std::uint32_t k = 0; k < tree_skeleton->count; ++k) {
-        const auto& b = branches[k];
-        const double size = p.real(kTreeSizeM);
-        ASSERT_EQ(b.key, tree_skeleton->key[k]);
-        EXPECT_LT(glm::distance(b.base, glm::dvec3(tree_skeleton->base[k])), 1e-5 * size);
-        EXPECT_LT(glm::distance(b.direction, glm::dvec3(tree_skeleton->direction[k])), 1e-5);
-        EXPECT_LT(glm::distance(b.at(1), glm::dvec3(tree_skeleton->point(k, 1))), 1e-5 * size);
-        EXPECT_NEAR(b.start, static_cast<double>(tree_skeleton->radius_start[k]), 1e-5 * size);
-        EXPECT_NEAR(b.end, static_cast<double>(tree_skeleton->radius_end[k]), 1e-5 * size);
-      }
+    const TreePlan plan = plan_of_tree(p);
+    const TreeOracle oracle(plan);
+    for (const std::uint32_t paths : {kWholeTree, 64U, 16U}) {
+      const TreeCount count = count_tree(plan, oracle.depth(), paths);
+      ASSERT_EQ(count.depth, oracle.depth());
+      const auto branches = oracle.grow(paths == kWholeTree ? 0 : paths);
+      ASSERT_EQ(count.nodes, branches.size());
+      std::size_t k = 0;
+      for (std::size_t g = 0; g < count.group_count; ++g)
+        for (std::uint32_t n = 0; n < count.groups[g].count; ++n, ++k) {
+          ASSERT_EQ(branches[k].kind, count.groups[g].kind);
+          ASSERT_EQ(branches[k].depth, count.groups[g].depth);
+        }
     }
   }
 }
 
-TEST(TreeOracle, PlacesEveryVertexOfEveryLevelTheSame) {
+TEST(TreeOracle, GrowsTheSameSkeletonOnEveryInstructionSet) {
   const auto type = make_tree_type();
-  for (int i = 0; i < 12; ++i) {
-    const Parameters p = tree(*type, i);
-    const core::Bounds bounds = type->bounds(p);
-    TreeOracle oracle(p);
-    for (int level = 0; level < type->level_count(); ++level) {
-      const auto expected = oracle.mesh(level);
-      const test::Mesh mesh = test::synthesize(*type, p, level);
-      const auto vertices = mesh.vertices<ModelVertex>();
-      ASSERT_EQ(vertices.size(), expected.size()) << "level " << level;
-      // Half a step of snorm16, plus single precision over the size of the tree.
-      const double size = glm::length(glm::dvec3(bounds.half_extent()));
-      for (std::size_t k = 0; k < vertices.size(); ++k) {
-        const glm::dvec3 place =
-            glm::clamp(expected[k].place, glm::dvec3(bounds.min), glm::dvec3(bounds.max));
-        const glm::dvec3 found(unpack_position(vertices[k], bounds));
-        EXPECT_LT(glm::distance(place, found), size * (1.0 / 65534 + 1e-5)) << "vertex " << k;
-        const glm::dvec3 normal(
-            decode_octahedral({static_cast<float>(vertices[k].normal[0]) / 32767.0F,
-                               static_cast<float>(vertices[k].normal[1]) / 32767.0F}));
-        EXPECT_LT(glm::distance(expected[k].normal, normal), 2e-3) << "vertex " << k;
+  const auto s = std::make_unique<TreeSkeleton>();
+  for_targets([&] {
+    for (int i = 0; i < 16; ++i) {
+      const TreePlan plan = plan_of_tree(tree(*type, i));
+      const TreeOracle oracle(plan);
+      for (const std::uint32_t paths : {kWholeTree, 64U, 16U}) {
+        grow_tree(plan, tree_depth(plan), paths, *s);
+        const auto branches = oracle.grow(paths == kWholeTree ? 0 : paths);
+        const double size = static_cast<double>(plan.size_m);
+        std::size_t k = 0;
+        for (std::size_t g = 0; g < s->group_count; ++g) {
+          for (std::uint32_t n = 0; n < s->groups[g].count; ++n, ++k) {
+            const std::uint32_t at = s->groups[g].first + n;
+            ASSERT_LT(k, branches.size());
+            const auto& b = branches[k];
+            ASSERT_EQ(b.key, s->key[at]);
+            EXPECT_LT(glm::distance(b.base, glm::dvec3(s->point(at, 0))), 1e-5 * size);
+            EXPECT_LT(glm::distance(b.at(1), glm::dvec3(s->point(at, 1))), 1e-5 * size);
+            for (std::size_t c = 0; c < 3; ++c)
+              EXPECT_NEAR(b.direction[static_cast<int>(c)],
+                          static_cast<double>(s->rows[kDirection + c][at]), 1e-5);
+            EXPECT_NEAR(b.start, static_cast<double>(s->rows[kRadius][at]), 1e-5 * size);
+            EXPECT_EQ(s->groups[g].tip, oracle.is_tip(b));
+          }
+        }
+        EXPECT_EQ(k, branches.size());
       }
     }
-  }
+  });
+}
+
+TEST(TreeOracle, PlacesEveryVertexOfEveryLevelTheSameOnEveryInstructionSet) {
+  const auto type = make_tree_type();
+  for_targets([&] {
+    for (int i = 0; i < 12; ++i) {
+      const Parameters p = tree(*type, i);
+      const TreePlan plan = plan_of_tree(p);
+      const core::Bounds bounds = type->bounds(p);
+      TreeOracle oracle(plan);
+      for (int level = 0; level < type->level_count(); ++level) {
+        const auto expected = oracle.mesh(level);
+        const test::Mesh mesh = test::synthesize(*type, p, level);
+        const auto vertices = mesh.vertices<ModelVertex>();
+        ASSERT_EQ(vertices.size(), expected.size()) << "level " << level;
+        // Half a step of snorm16, plus single precision over the size of the tree.
+        const double size = glm::length(glm::dvec3(bounds.half_extent()));
+        for (std::size_t k = 0; k < vertices.size(); ++k) {
+          const glm::dvec3 place =
+              glm::clamp(expected[k].place, glm::dvec3(bounds.min), glm::dvec3(bounds.max));
+          const glm::dvec3 found(unpack_position(vertices[k], bounds));
+          ASSERT_LT(glm::distance(place, found), size * (1.0 / 65534 + 1e-5))
+              << "vertex " << k << " level " << level << " tree " << i;
+          const glm::dvec3 normal(
+              decode_octahedral({static_cast<float>(vertices[k].normal[0]) / 32767.0F,
+                                 static_cast<float>(vertices[k].normal[1]) / 32767.0F}));
+          ASSERT_LT(glm::distance(expected[k].normal, normal), 2e-3) << "vertex " << k;
+        }
+      }
+    }
+  });
+}
+
+TEST(TreeTargets, GiveTheSameBytes) {
+  const auto type = make_tree_type();
+  std::vector<std::uint64_t> expected;
+  for_targets([&] {
+    std::vector<std::uint64_t> found;
+    for (int i = 0; i < 60; ++i) {
+      for (int level = 0; level < type->level_count(); ++level) {
+        const test::Mesh mesh = test::synthesize(*type, tree(*type, i), level);
+        found.push_back(core::combine(core::hash_bytes(mesh.vertex_bytes),
+                                      core::hash_bytes(std::as_bytes(std::span(mesh.indices)))));
+      }
+    }
+    if (expected.empty()) expected = found;
+    EXPECT_EQ(found, expected);
+  });
 }
 
 }  // namespace

