@@ -1,4 +1,5 @@
-// psygen schedule: what each policy makes of a recorded stream of requests, under the virtual clock.
+// psygen schedule: what each policy makes of a recorded stream of requests, under the virtual
+// clock.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -28,11 +29,12 @@ std::string table_of(std::span<const synthesis::PolicyFigures> rows) {
       "           fill    idle   visible p50       p99       max    late  lateness       max\n"
       "             ms       %            ms        ms        ms       %        ms        ms\n";
   for (const synthesis::PolicyFigures& row : rows) {
-    fmt::format_to(std::back_inserter(text),
-                   "{:<8} {:>6.1f} {:>7.2f} {:>13.3f} {:>9.3f} {:>9.3f} {:>7.2f} {:>9.3f} {:>9.3f}\n",
-                   synthesis::name_of(row.policy), row.fill_s * 1e3, row.fill_idle_percent,
-                   row.visible_p50_s * 1e3, row.visible_p99_s * 1e3, row.visible_max_s * 1e3,
-                   row.late_percent, row.lateness_mean_s * 1e3, row.lateness_max_s * 1e3);
+    fmt::format_to(
+        std::back_inserter(text),
+        "{:<8} {:>6.1f} {:>7.2f} {:>13.3f} {:>9.3f} {:>9.3f} {:>7.2f} {:>9.3f} {:>9.3f}\n",
+        synthesis::name_of(row.policy), row.fill_s * 1e3, row.fill_idle_percent,
+        row.visible_p50_s * 1e3, row.visible_p99_s * 1e3, row.visible_max_s * 1e3, row.late_percent,
+        row.lateness_mean_s * 1e3, row.lateness_max_s * 1e3);
   }
   return text;
 }
@@ -40,13 +42,14 @@ std::string table_of(std::span<const synthesis::PolicyFigures> rows) {
 std::string json_of(std::span<const synthesis::PolicyFigures> rows) {
   auto list = nlohmann::ordered_json::array();
   for (const synthesis::PolicyFigures& row : rows) {
-    list.push_back({{"policy", synthesis::name_of(row.policy)},
-                    {"fill_seconds", row.fill_s},
-                    {"visible_seconds",
-                     {{"p50", row.visible_p50_s}, {"p99", row.visible_p99_s}, {"max", row.visible_max_s}}},
-                    {"late_percent", row.late_percent},
-                    {"lateness_seconds", {{"mean", row.lateness_mean_s}, {"max", row.lateness_max_s}}},
-                    {"fill_idle_percent", row.fill_idle_percent}});
+    list.push_back(
+        {{"policy", synthesis::name_of(row.policy)},
+         {"fill_seconds", row.fill_s},
+         {"visible_seconds",
+          {{"p50", row.visible_p50_s}, {"p99", row.visible_p99_s}, {"max", row.visible_max_s}}},
+         {"late_percent", row.late_percent},
+         {"lateness_seconds", {{"mean", row.lateness_mean_s}, {"max", row.lateness_max_s}}},
+         {"fill_idle_percent", row.fill_idle_percent}});
   }
   return list.dump(2) + "\n";
 }

@@ -1,5 +1,5 @@
-// A recorded stream of requests: when each mesh was first wanted, what it takes, when it is due, how
-// important it was then. What every policy makes of it under the virtual clock
+// A recorded stream of requests: when each mesh was first wanted, what it takes, when it is due,
+// how important it was then. What every policy makes of it under the virtual clock
 // (schedule_simulator.hpp). For tools and tests, not used by the tick. One thread.
 #pragma once
 
@@ -16,19 +16,20 @@ namespace psygen::synthesis {
 inline constexpr double kNoDeadline = 1e9;
 inline constexpr std::size_t kMaxStreamRequests = 10'000'000;
 
-// Text: a line "psygen requests 1", then one line for each: arrival in seconds, seconds of one core,
-// deadline in seconds or "-", and the rank's bits in hexadecimal. Ordered by arrival.
+// Text: a line "psygen requests 1", then one line for each: arrival in seconds, seconds of one
+// core, deadline in seconds or "-", and the rank's bits in hexadecimal. Ordered by arrival.
 std::string stream_text(std::vector<SimulatedJob> jobs);
 // Fails with kParse, naming `file` and the line. Times must be finite and not negative.
 core::Result<std::vector<SimulatedJob>> parse_stream(std::string_view text, std::string_view file);
 
 struct PolicyFigures {
   Policy policy = Policy::kFifo;
-  // What was wanted first of all, alone (the initial fill): its makespan, and how much of it modelers
-  // had nothing to do.
+  // What was wanted first of all, alone (the initial fill): its makespan, and how much of it
+  // modelers had nothing to do.
   double fill_s = 0, fill_idle_percent = 0;
-  double visible_p50_s = 0, visible_p99_s = 0, visible_max_s = 0;  // from wanted in view to finished
-  double late_percent = 0;         // of what was predicted to come into view
+  double visible_p50_s = 0, visible_p99_s = 0,
+         visible_max_s = 0;                        // from wanted in view to finished
+  double late_percent = 0;                         // of what was predicted to come into view
   double lateness_mean_s = 0, lateness_max_s = 0;  // of the same; 0 for what was in time
 };
 

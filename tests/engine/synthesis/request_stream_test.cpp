@@ -29,10 +29,9 @@ const PolicyFigures& row_of(const std::vector<PolicyFigures>& rows, Policy polic
 }
 
 TEST(RequestStream, IsReadAsItWasWritten) {
-  const std::vector<SimulatedJob> jobs{
-      job(0.25, 1e-5, kNoDeadline, RankGroup::kPrefetch),
-      job(0, 3.25e-6, 0, RankGroup::kVisibleHole),
-      job(0.5, 2e-3, 1.125, RankGroup::kPredicted)};
+  const std::vector<SimulatedJob> jobs{job(0.25, 1e-5, kNoDeadline, RankGroup::kPrefetch),
+                                       job(0, 3.25e-6, 0, RankGroup::kVisibleHole),
+                                       job(0.5, 2e-3, 1.125, RankGroup::kPredicted)};
   const auto read = parse_stream(stream_text(jobs), "a");
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->size(), 3u);
@@ -45,17 +44,16 @@ TEST(RequestStream, IsReadAsItWasWritten) {
 
 TEST(RequestStream, WhatIsNoStreamIsRefusedWithItsLine) {
   const std::string head = "psygen requests 1\n";
-  const std::pair<std::string, std::string> cases[] = {
-      {"", "a:1"},
-      {"psygen requests 2\n", "a:1"},
-      {head, "a:1"},
-      {head + "0 1 - 0\n0 1 -\n", "a:3"},
-      {head + "0 1 - 0 0\n", "a:2"},
-      {head + "0 nan - 0\n", "a:2"},
-      {head + "-1 1 - 0\n", "a:2"},
-      {head + "0 1 x 0\n", "a:2"},
-      {head + "0 1 - zz\n", "a:2"},
-      {head + "0 inf - 0\n", "a:2"}};
+  const std::pair<std::string, std::string> cases[] = {{"", "a:1"},
+                                                       {"psygen requests 2\n", "a:1"},
+                                                       {head, "a:1"},
+                                                       {head + "0 1 - 0\n0 1 -\n", "a:3"},
+                                                       {head + "0 1 - 0 0\n", "a:2"},
+                                                       {head + "0 nan - 0\n", "a:2"},
+                                                       {head + "-1 1 - 0\n", "a:2"},
+                                                       {head + "0 1 x 0\n", "a:2"},
+                                                       {head + "0 1 - zz\n", "a:2"},
+                                                       {head + "0 inf - 0\n", "a:2"}};
   for (const auto& [text, where] : cases) {
     const auto jobs = parse_stream(text, "a");
     ASSERT_FALSE(jobs) << text;
