@@ -35,9 +35,13 @@ void Modeler::run(Workshop& workshop) {
   double cpu_mark = core::thread_cpu_seconds();
   while (!workshop.stop.load(std::memory_order_acquire)) {
     const std::uint32_t epoch = workshop.board.epoch();
-    if (workshop.board.claim(*reader_, current_)) {
+    std::uint64_t retries = 0;
+    const bool claimed = workshop.board.claim(*reader_, current_, retries);
+    if (retries > 0) add(counters_.retries, retries);
+    if (claimed) {
       if (!execute(workshop, cpu_mark)) break;
     } else {
+      wake_waiting(workshop);
       // stop is set before the epoch moves, so that it cannot be missed here.
       if (!workshop.stop.load(std::memory_order_acquire)) workshop.board.wait(epoch);
       cpu_mark = core::thread_cpu_seconds();
@@ -85,11 +89,15 @@ bool Modeler::execute(Workshop& workshop, double& cpu_mark) {
   count(c);
   queue_.push(std::move(c));
   finished_.store(finished_.load(std::memory_order_relaxed) + 1, std::memory_order_seq_cst);
-  if (workshop.waiting.load(std::memory_order_seq_cst)) {
-    const std::lock_guard lock(workshop.mutex);
-    workshop.finished.notify_one();
-  }
   return true;
+}
+
+// The last modeler to finish finds nothing more to claim: that is when all may be done.
+void Modeler::wake_waiting(Workshop& workshop) {
+  if (!workshop.waiting.load(std::memory_order_seq_cst)) return;
+  add(counters_.locks, std::uint64_t{1});
+  const std::lock_guard lock(workshop.mutex);
+  workshop.finished.notify_one();
 }
 
 void Modeler::count(const Completion& c) {

@@ -28,7 +28,8 @@ struct Workshop {
   bool hash_content = false;
   PlanBoard board;
   std::atomic<bool> stop{false};
-  // Only for a main thread that waits for completions: modelers lock only while `waiting`.
+  // Only for a main thread that waits for completions: a modeler locks only while `waiting`, and
+  // only when it has found nothing more to do. Never between two requests.
   std::atomic<bool> waiting{false};
   std::mutex mutex;
   std::condition_variable finished;
@@ -38,6 +39,9 @@ struct Workshop {
 struct ModelerCounters {
   std::atomic<std::uint64_t> models{0}, failed{0}, triangles{0}, bytes{0};
   std::atomic<double> cpu_seconds{0}, busy_seconds{0};
+  // What modelers could hold each other up with: locks taken, and claims that had to look again
+  // because the plan was replaced meanwhile.
+  std::atomic<std::uint64_t> locks{0}, retries{0};
 };
 
 class Modeler {
@@ -74,6 +78,7 @@ class Modeler {
   enum Phase : std::uint64_t { kIdle = 0, kWorking = 1, kGivenUp = 2, kPhaseMask = 3 };
   // False if the request was given up meanwhile.
   bool execute(Workshop& workshop, double& cpu_mark);
+  void wake_waiting(Workshop& workshop);
   void count(const Completion& completion);
 
   const std::uint32_t number_;

@@ -51,13 +51,14 @@ std::size_t PlanBoard::close(std::vector<Request>& unclaimed) {
   return claimed;
 }
 
-bool PlanBoard::claim(Reader& reader, Request& out) {
+bool PlanBoard::claim(Reader& reader, Request& out, std::uint64_t& retries) {
   Plan* plan = current_.load(std::memory_order_seq_cst);
   for (;;) {
     reader.plan.store(plan, std::memory_order_seq_cst);
     Plan* now = current_.load(std::memory_order_seq_cst);
     if (now == plan) break;
     plan = now;
+    ++retries;
   }
   bool claimed = false;
   // Looking first keeps idle modelers from moving the cursor of an exhausted plan.

@@ -35,8 +35,9 @@ class PlanBoard {
   // order, and returns how many requests had been claimed from it.
   std::size_t close(std::vector<Request>& unclaimed);
 
-  // Modelers: the next request of the newest plan, or false when there is none.
-  bool claim(Reader& reader, Request& out);
+  // Modelers: the next request of the newest plan, or false when there is none. Counts how often it
+  // had to look again because the plan was replaced meanwhile; nothing else can delay it.
+  bool claim(Reader& reader, Request& out, std::uint64_t& retries);
   // Modelers: number of the newest plan, and sleeping until there is a newer one than `seen`.
   std::uint32_t epoch() const { return epoch_.load(std::memory_order_acquire); }
   void wait(std::uint32_t seen) const { epoch_.wait(seen, std::memory_order_acquire); }

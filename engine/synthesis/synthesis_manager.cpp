@@ -24,7 +24,9 @@ ModelerStats stats_of(const Modeler& modeler) {
           c.triangles.load(std::memory_order_relaxed),
           c.bytes.load(std::memory_order_relaxed),
           c.cpu_seconds.load(std::memory_order_relaxed),
-          c.busy_seconds.load(std::memory_order_relaxed)};
+          c.busy_seconds.load(std::memory_order_relaxed),
+          c.locks.load(std::memory_order_relaxed),
+          c.retries.load(std::memory_order_relaxed)};
 }
 }  // namespace
 
@@ -172,7 +174,8 @@ bool SynthesisManager::wait_all() {
       break;
     }
     {
-      // A modeler notifies under the lock, so nothing is missed between looking and sleeping.
+      // A modeler that finds no more work notifies under the lock, so nothing is missed between
+      // looking and sleeping.
       std::unique_lock lock(workshop_->mutex);
       if (outstanding() == 0) break;
       workshop_->finished.wait_until(lock, std::chrono::system_clock::now() + kWatchdogPeriod);

@@ -33,8 +33,9 @@ unsigned modeler_count_for(unsigned requested);
 struct ModelerStats {
   std::uint32_t modeler = 0;  // kMainThreadModeler: execute_here()
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
-  double cpu_seconds = 0;   // of its thread, in requests
-  double busy_seconds = 0;  // by the clock, in requests
+  double cpu_seconds = 0;                // of its thread, in requests
+  double busy_seconds = 0;               // by the clock, in requests
+  std::uint64_t locks = 0, retries = 0;  // see ModelerCounters
 };
 
 struct SynthesisStats {

@@ -3,6 +3,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/synthesis/planner.hpp"
+#include "engine/synthesis/synthesize.hpp"
 #include "tests/bench/synthesis/bench_model.hpp"
 
 namespace psygen::synthesis::bench {
@@ -32,7 +33,40 @@ void requests_through_manager(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * kCount);
 }
-BENCHMARK(requests_through_manager)->Arg(1)->Arg(2)->UseRealTime();
+BENCHMARK(requests_through_manager)->RangeMultiplier(2)->Range(1, 16)->UseRealTime();
+
+// Trees at full detail, one destination each: how throughput grows with modelers. CPU seconds of a
+// tree that grow with them would be contention; seconds that do not fall are missing processors.
+void trees_through_manager(benchmark::State& state) {
+  constexpr std::uint32_t kCount = 512;
+  const models::Registry registry = models::make_standard_registry();
+  const auto tree = static_cast<models::ModelIndex>(registry.find("tree"));
+  SynthesisManager manager(
+      registry, {.modelers = static_cast<unsigned>(state.range(0)), .lowest_priority = false});
+  std::vector<HeapDestination> destinations;
+  std::vector<Request> plan(kCount);
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    Request& request = plan[i];
+    request.key = {{}, i, tree, 0, i};
+    request.handle = {i, 1};
+    request.parameters = models::default_parameters(registry[tree]);
+    request.parameters.set_integer(0, i);  // the seed
+    destinations.push_back(*HeapDestination::make(registry[tree], request.parameters, 0));
+    request.size = destinations.back().size();
+    request.destination = destinations.back().view();
+  }
+  std::vector<Completion> done;
+  for (auto _ : state) {
+    manager.publish(std::vector<Request>(plan));
+    manager.wait_all();
+    done.clear();
+    manager.collect(done);
+  }
+  const SynthesisStats stats = manager.stats();
+  state.SetItemsProcessed(state.iterations() * kCount);
+  state.counters["cpu_us_per_tree"] = stats.cpu_seconds * 1e6 / static_cast<double>(stats.models);
+}
+BENCHMARK(trees_through_manager)->RangeMultiplier(2)->Range(1, 16)->UseRealTime();
 
 // A tick's worth of re-planning while a modeler works: close, sort, carry over, publish.
 void plan_with_carried_requests(benchmark::State& state) {
