@@ -59,20 +59,21 @@ class Accessor {
       const detail::Slot* slot = slots_->find(entity);
       if (slot == nullptr) return {nullptr, {}};
       return {detail::row_at<Value>(*record_, slot->location),
-              directory_->place_of(slot->location)};
+              storage_->directory().place_of(slot->location)};
     }
   }
   Accessor(const detail::Storage& storage, const detail::ComponentRecord& record)
-      : slots_(&storage.slots()), directory_(&storage.directory()), record_(&record) {}
+      : storage_(&storage), slots_(&storage.slots()), record_(&record) {}
 
+  const detail::Storage* storage_;
   const detail::EntitySlots* slots_;
-  const detail::RowDirectory* directory_;
   const detail::ComponentRecord* record_;
 };
 
 template <class C>
 template <class F>
 void Accessor<C>::each(std::span<const Entity> entities, F&& f) const {
+  const detail::IterationGuard guard(storage_->iteration(), detail::kQuery<C>);
   constexpr std::size_t kAhead = detail::kPrefetchAhead;
   std::array<C*, kAhead> found;  // of entities [i, i + kAhead), as a ring
   const std::size_t count = entities.size();

@@ -16,7 +16,7 @@ namespace psygen::ecs {
 // Whether a reader also collects the entities that lost the component. Who asks for it must drain.
 enum class Removed : bool { kIgnore, kReport };
 
-template <Component C>
+template <Component C, class Tag = void>
 class ChangeReader {
   static_assert(is_tracked<C>(),
                 "only a tracked component has changes: ComponentTraits<C>::tracked");
@@ -60,13 +60,16 @@ class ChangeReader {
     return visited;
   }
 
-  // Calls f(std::span<const Entity>) with the entities that died or lost C since the last call, in
-  // that order, and forgets them. Entities that came and went in between are among them.
+  // Calls f(std::span<const Entity>) with the entities that died or lost C since the last call and
+  // forgets them: earlier verbs first, those of one verb in no particular order. Entities that came
+  // and went in between are among them.
   template <class F>
   std::size_t drain_removed(F&& f) {
     PSYGEN_ECS_ASSERT(state_->reports_removed, "make the reader with Removed::kReport");
-    const std::vector<Entity> removed = std::exchange(state_->removed, {});
-    if (!removed.empty()) f(std::span<const Entity>(removed));
+    state_->handed_out.clear();
+    std::swap(state_->handed_out, state_->removed);
+    const std::span<const Entity> removed = state_->handed_out;
+    if (!removed.empty()) f(removed);
     return removed.size();
   }
 

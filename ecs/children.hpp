@@ -23,6 +23,10 @@ class ChildLists;
 // The component of a parent. Written by World::set_children only; a new one is empty.
 class Children {
  public:
+  Children() = default;
+  Children(Children&&) = default;  // rows move; a list has one owner
+  Children& operator=(Children&&) = delete;
+
   std::uint32_t count() const { return count_; }
 
  private:
@@ -43,6 +47,7 @@ namespace detail {
 class ChildLists {
  public:
   std::span<const Entity> of(const Children& list) const {
+    if (list.count_ > handles_.size() || list.first_ > handles_.size() - list.count_) return {};
     return {handles_.data() + list.first_, list.count_};
   }
   // Replaces the list. `handles` may not lie in this array. Amortised O(handles).

@@ -4,8 +4,17 @@ namespace psygen::ecs {
 
 void Commands::apply(World& world) {
   std::vector<Batch> batches = std::exchange(batches_, {});
-  for (Batch& batch : batches)
-    batch.apply(world);
+  struct KeepRest {
+    std::vector<Batch>& from;
+    std::vector<Batch>& to;
+    std::size_t done = 0;
+    ~KeepRest() {
+      for (; done < from.size(); ++done)
+        to.push_back(std::move(from[done]));
+    }
+  } rest{batches, batches_};
+  while (rest.done < batches.size())
+    batches[rest.done++].apply(world);
 }
 
 }  // namespace psygen::ecs

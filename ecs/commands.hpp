@@ -23,6 +23,7 @@ class Commands {
   // One entity with these components and values.
   template <Component... Cs>
   void create(Cs... values) {
+    static_assert(sizeof...(Cs) > 0, "an entity without components is created in no batch");
     using List = CreateList<Cs...>;
     std::apply([&](auto&... rows) { (rows.push_back(std::move(values)), ...); },
                list<List>().values);
@@ -31,6 +32,11 @@ class Commands {
   void destroy(std::span<const Entity> entities) {
     auto& all = list<DestroyList>().entities;
     all.insert(all.end(), entities.begin(), entities.end());
+  }
+  // World::set_children with a copy of the list.
+  void set_children(Entity parent, std::span<const Entity> children) {
+    auto& all = list<ChildrenList>().lists;
+    all.push_back({parent, {children.begin(), children.end()}});
   }
   void destroy_with_children(Entity parent) { list<FamilyList>().parents.push_back(parent); }
   // Gives the entity a C with this value, or sets the one that it has.
@@ -44,7 +50,8 @@ class Commands {
   }
 
   bool empty() const { return batches_.empty(); }
-  // Carries everything out and forgets it. Not while a query of this world is iterated.
+  // Carries everything out and forgets it. Not while a query of this world is iterated. When a
+  // component's constructor throws, what comes after that batch is kept.
   void apply(World& world);
 
  private:
@@ -55,6 +62,13 @@ class Commands {
   struct FamilyList {
     std::vector<Entity> parents;
     void apply(World& world) { world.destroy_with_children(parents); }
+  };
+  struct ChildrenList {
+    std::vector<std::pair<Entity, std::vector<Entity>>> lists;
+    void apply(World& world) {
+      for (const auto& [parent, children] : lists)
+        world.set_children(parent, children);
+    }
   };
   template <class... Cs>
   struct CreateList {

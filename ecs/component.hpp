@@ -43,7 +43,8 @@ template <class C>
 constexpr std::string_view type_name() {
   std::string_view text = __PRETTY_FUNCTION__;
   text.remove_prefix(text.find("C = ") + 4);
-  return text.substr(0, text.find_first_of(";]"));
+  const std::size_t others = text.rfind("; std::string_view");  // g++ lists aliases as well
+  return text.substr(0, others != std::string_view::npos ? others : text.rfind(']'));
 }
 
 }  // namespace detail
@@ -103,7 +104,8 @@ void relocate(C* to, C* from) {
 template <class C>
 void construct_rows(std::byte* column, std::size_t first, std::size_t count, bool fresh) {
   C* rows = reinterpret_cast<C*>(column) + first;
-  if constexpr (std::is_trivially_copyable_v<C>) {
+  constexpr std::size_t kLargestModel = 4096;  // on the stack
+  if constexpr (std::is_trivially_copyable_v<C> && sizeof(C) <= kLargestModel) {
     alignas(C) std::byte model[sizeof(C)]{};
     ::new (static_cast<void*>(model)) C();
     const bool zero =

@@ -7,7 +7,7 @@
 namespace psygen::ecs::detail {
 
 EntitySlots::EntitySlots(std::size_t max_entities, std::uint32_t first_generation)
-    : memory_(max_entities * sizeof(Slot)),
+    : memory_(std::min<std::size_t>(max_entities, UINT32_MAX) * sizeof(Slot)),
       max_entities_(std::min<std::size_t>(max_entities, UINT32_MAX)),
       first_generation_(std::max(first_generation, 1U)) {}
 

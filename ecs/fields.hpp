@@ -15,6 +15,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "ecs/check.hpp"
 #include "ecs/entity.hpp"
 
 namespace psygen::ecs {
@@ -105,8 +106,17 @@ concept Describable = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_sa
     std::is_same_v<T, std::string> || kIsArray<T> || kIsList<T> || HasFields<T> ||
     std::is_empty_v<T>;
 
+// Elements of lists and arrays: without fields they would take no bytes.
+template <class T>
+constexpr bool has_content() {
+  if constexpr (HasFields<T>) return std::tuple_size_v<decltype(ComponentTraits<T>::fields)> > 0;
+  if constexpr (kIsArray<T>) return std::tuple_size_v<T> > 0;
+  return !std::is_empty_v<T>;
+}
+
 template <class T>
 TypeDescription describe_list(FieldKind kind) {
+  static_assert(has_content<typename T::value_type>(), "a list of nothing is a number: its length");
   TypeDescription result;
   result.kind = kind;
   result.size_bytes = sizeof(T);
@@ -128,10 +138,10 @@ TypeDescription describe_struct() {
   TypeDescription result;
   result.size_bytes = sizeof(T);
   if constexpr (HasFields<T>) {
-    const T model{};
+    const auto model = std::make_unique<const T>();
     const auto add = [&]<class M>(const Field<T, M>& f) {
-      const auto* base = reinterpret_cast<const std::byte*>(&model);
-      const auto* at = reinterpret_cast<const std::byte*>(std::addressof(model.*f.member));
+      const auto* base = reinterpret_cast<const std::byte*>(model.get());
+      const auto* at = reinterpret_cast<const std::byte*>(std::addressof(model.get()->*f.member));
       result.fields.push_back(
           {f.name, static_cast<std::size_t>(at - base), &description_of<M>(), f.notes});
     };
@@ -148,6 +158,8 @@ TypeDescription make_description() {
   if constexpr (std::is_same_v<T, std::string>) return describe_list<T>(FieldKind::kString);
   if constexpr (kIsList<T>) return describe_list<T>(FieldKind::kList);
   if constexpr (kIsArray<T>) {
+    static_assert(has_content<T>() && has_content<typename T::value_type>(),
+                  "an array of nothing is nothing");
     TypeDescription result;
     result.kind = FieldKind::kArray;
     result.size_bytes = sizeof(T);
@@ -167,13 +179,21 @@ TypeDescription make_description() {
 
 template <class T>
 const TypeDescription& description_of() {
+  thread_local bool under_way = false;
+  if (under_way) give_up("a described type contains itself");
+  under_way = true;
   static const TypeDescription description = make_description<T>();
+  under_way = false;
   return description;
 }
 
 // Null for a type that says nothing about its fields.
 template <class C>
 const TypeDescription* describe_component() {
+  static_assert(
+      !HasFields<C> || requires { ComponentTraits<C>::name; },
+      "a component with fields has a name of its own: compilers disagree about the "
+      "default, and snapshots keep it");
   if constexpr (HasFields<C> || std::is_empty_v<C>) return &description_of<C>();
   return nullptr;
 }

@@ -7,7 +7,6 @@ void RowFilter::want(const Storage& storage, const ComponentInfo& info) {
   if (id == kNoComponent) {
     impossible_ = true;
   } else if (info.sparse) {
-    if (with_count_ == kMaxSets) give_up("a query filters by more than 8 sparse components");
     with_[with_count_++] = storage.record(id).sparse.get();
   } else {
     wanted_.insert(id);
@@ -20,7 +19,6 @@ void RowFilter::refuse(const Storage& storage, const ComponentInfo& info) {
   if (!info.sparse) {
     unwanted_.insert(id);
   } else if (storage.record(id).sparse->rows().rows() > 0) {
-    if (without_count_ == kMaxSets) give_up("a query filters by more than 8 sparse components");
     without_[without_count_++] = storage.record(id).sparse.get();
   }
 }

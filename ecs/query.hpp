@@ -24,12 +24,6 @@ struct Without {};
 
 namespace detail {
 
-template <class... Cs>
-inline constexpr std::array<QueryTerm, sizeof...(Cs)> kQueryTerms{
-    QueryTerm{component_name<std::remove_const_t<Cs>>(), !std::is_const_v<Cs>}...};
-template <class... Cs>
-inline constexpr std::span<const QueryTerm> kQuery{kQueryTerms<Cs...>};
-
 template <class C, class... Cs>
 inline constexpr std::size_t kCount = (std::size_t{0} + ... + std::size_t{std::is_same_v<C, Cs>});
 template <class... Cs>
@@ -77,6 +71,15 @@ class TableRows {
 
 namespace detail {
 
+// How many components the filters of one query may name.
+inline constexpr std::size_t kMaxFilters = 8;
+template <class F>
+inline constexpr std::size_t kFilterSize = 0;
+template <class... Cs>
+inline constexpr std::size_t kFilterSize<With<Cs...>> = sizeof...(Cs);
+template <class... Cs>
+inline constexpr std::size_t kFilterSize<Without<Cs...>> = sizeof...(Cs);
+
 // Which rows a query visits. Made from its columns and filters, then walked once.
 class RowFilter {
  public:
@@ -97,7 +100,7 @@ class RowFilter {
   void each_run(const Storage& storage, F&& visit) const;
 
  private:
-  static constexpr std::size_t kMaxSets = 8;
+  static constexpr std::size_t kMaxSets = kMaxFilters;
   bool fits(const Table& table) const {
     return table.signature().includes(wanted_) && !table.signature().intersects(unwanted_);
   }

@@ -70,9 +70,23 @@ struct Schedule::Parts {
   std::vector<std::size_t> ready;  // steps that may run now
   std::size_t unfinished = 0;
   bool stopping = false;
+  bool running = false;
   std::vector<std::thread> workers;
 
   explicit Parts(World& w) : world(w) {}
+  ~Parts() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    changed.notify_all();
+    for (std::thread& worker : workers)
+      worker.join();
+  }
+
+  void expect_idle(std::string_view verb) const {
+    if (running) detail::give_up("schedule: " + std::string(verb) + " from inside a system");
+  }
 
   void add_step(std::size_t system, bool applies_commands) {
     const std::size_t index = steps.size();
@@ -102,7 +116,7 @@ struct Schedule::Parts {
       system.commands->apply(world);
       info.last_seconds += now_s() - start_s;
     } else {
-      system.run();
+      system.runner->run();
       info.last_start_s = start_s;
       info.last_seconds = now_s() - start_s;
     }
@@ -143,7 +157,8 @@ struct Schedule::Parts {
 
 Schedule::Schedule(World& world, std::size_t threads)
     : world_(world), parts_(std::make_unique<Parts>(world)) {
-  for (std::size_t i = 1; i < threads; ++i) {
+  constexpr std::size_t kMostThreads = 64;
+  for (std::size_t i = 1; i < std::min(threads, kMostThreads); ++i) {
     parts_->workers.emplace_back([parts = parts_.get()] {
       std::unique_lock lock(parts->mutex);
       parts->work(lock, false, [parts] { return parts->stopping; });
@@ -151,15 +166,7 @@ Schedule::Schedule(World& world, std::size_t threads)
   }
 }
 
-Schedule::~Schedule() {
-  {
-    const std::lock_guard lock(parts_->mutex);
-    parts_->stopping = true;
-  }
-  parts_->changed.notify_all();
-  for (std::thread& worker : parts_->workers)
-    worker.join();
-}
+Schedule::~Schedule() = default;
 
 std::span<const SystemInfo> Schedule::systems() const {
   return parts_->infos;
@@ -185,6 +192,7 @@ void* Schedule::resource(const System& asker, const void* type, const std::strin
 }
 
 void Schedule::append(System system) {
+  parts_->expect_idle("add");
   const std::lock_guard lock(parts_->mutex);
   const std::size_t index = parts_->systems.size();
   const bool records = system.info.records_commands;
@@ -195,11 +203,18 @@ void Schedule::append(System system) {
 }
 
 void Schedule::run() {
+  parts_->expect_idle("run");
+  parts_->running = true;
   if (parts_->workers.empty()) {
     for (std::size_t step = 0; step < parts_->steps.size(); ++step)
       parts_->run_step(step);
-    return;
+  } else {
+    run_on_threads();
   }
+  parts_->running = false;
+}
+
+void Schedule::run_on_threads() {
   std::unique_lock lock(parts_->mutex);
   parts_->unfinished = parts_->steps.size();
   for (std::size_t i = 0; i < parts_->steps.size(); ++i) {

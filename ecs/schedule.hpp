@@ -2,7 +2,8 @@
 // parameters:
 //   Query<A, const B>     writes the component A, reads B
 //   const R& / R&         reads / writes a resource: any object given to provide()
-//   ChangeReader<C>&      drains a reader that was provided; reads C
+//   ChangeReader<C, Tag>& drains a reader that was provided; reads C. A reader hidden in another
+//                         resource is not seen: nothing would keep its drain from a writer of C
 //   Commands&             structural changes, applied right after the system
 //   World& / const World& everything: alone / beside others that only read
 // Systems run in the order of add(); on several threads those that do not conflict run at the same
@@ -12,7 +13,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -58,7 +58,7 @@ bool conflict(const SystemInfo& a, const SystemInfo& b);
 
 class Schedule {
  public:
-  // `threads` counts the calling one: 1 runs everything there, in order.
+  // `threads` (at most 64) counts the calling one: 1 runs everything there, in order.
   explicit Schedule(World& world, std::size_t threads = 1);
   ~Schedule();
   Schedule(const Schedule&) = delete;
@@ -67,11 +67,13 @@ class Schedule {
   // Makes an object known to systems by its type, one of each. It must outlive the schedule.
   template <class... Rs>
   void provide(Rs&... resources) {
+    static_assert((!std::is_const_v<Rs> && ...),
+                  "provide what can be written; systems that take const R& only read it");
     (provide_one(&kIdentity<Rs>, type_label<Rs>(), &resources), ...);
   }
 
   // Appends a system. What it wants must have been provided before; ends the program with a message
-  // that names what is missing.
+  // that names what is missing. Not from inside a system.
   template <class F>
   void add(std::string_view name, F system, RunsOn runs_on = RunsOn::kAnyThread);
 
@@ -87,9 +89,17 @@ class Schedule {
   template <class T>
   static std::string type_label();
 
+  // A function with its parameters, owned.
+  class Runner {
+   public:
+    virtual ~Runner() = default;
+    virtual void run() = 0;
+  };
+  template <class F, class... Ps>
+  class RunnerOf;
   struct System {
     SystemInfo info;
-    std::function<void()> run;
+    std::unique_ptr<Runner> runner;
     std::unique_ptr<Commands> commands;
   };
   struct Parts;
@@ -103,6 +113,7 @@ class Schedule {
   void provide_one(const void* type, std::string label, void* resource);
   void* resource(const System& asker, const void* type, const std::string& label) const;
   void append(System system);
+  void run_on_threads();
 
   World& world_;
   std::unique_ptr<Parts> parts_;
@@ -118,9 +129,17 @@ template <class R, class F, class... Ps>
 struct ParametersOf<R (F::*)(Ps...)> : std::type_identity<std::tuple<Ps...>> {};
 template <class R, class F, class... Ps>
 struct ParametersOf<R (F::*)(Ps...) const> : std::type_identity<std::tuple<Ps...>> {};
+template <class R, class... Ps>
+struct ParametersOf<R (*)(Ps...) noexcept> : std::type_identity<std::tuple<Ps...>> {};
+template <class R, class F, class... Ps>
+struct ParametersOf<R (F::*)(Ps...) noexcept> : std::type_identity<std::tuple<Ps...>> {};
+template <class R, class F, class... Ps>
+struct ParametersOf<R (F::*)(Ps...) const noexcept> : std::type_identity<std::tuple<Ps...>> {};
 
-template <class P>
-inline constexpr bool kNever = false;
+template <class T>
+inline constexpr bool kIsQuery = false;
+template <class... Cs>
+inline constexpr bool kIsQuery<Query<Cs...>> = true;
 
 // The last part of a qualified name.
 std::string without_namespace(std::string_view name);
@@ -137,6 +156,8 @@ struct Schedule::Parameter {
   static_assert(std::is_lvalue_reference_v<P>,
                 "a system takes Query<...> by value, everything else by reference");
   using R = std::remove_cvref_t<P>;
+  static_assert(!detail::kIsQuery<R> && !std::is_same_v<R, Commands>,
+                "a system takes Query<...> by value and Commands by a reference to write");
   R* resource;
   Parameter(Schedule& schedule, System& system)
       : resource(static_cast<R*>(schedule.resource(system, &kIdentity<R>, type_label<R>()))) {
@@ -159,18 +180,18 @@ struct Schedule::Parameter<Query<Cs...>> {
   Query<Cs...> get() const { return Query<Cs...>(world); }
 };
 
-template <class C>
-struct Schedule::Parameter<ChangeReader<C>&> {
-  ChangeReader<C>* reader;
+template <class C, class Tag>
+struct Schedule::Parameter<ChangeReader<C, Tag>&> {
+  using Reader = ChangeReader<C, Tag>;
+  Reader* reader;
   Parameter(Schedule& schedule, System& system)
-      : reader(static_cast<ChangeReader<C>*>(schedule.resource(system, &kIdentity<ChangeReader<C>>,
-                                                               type_label<ChangeReader<C>>()))) {
-    system.info.accesses.push_back(
-        {type_label<ChangeReader<C>>(), &kIdentity<ChangeReader<C>>, true, false});
+      : reader(static_cast<Reader*>(
+            schedule.resource(system, &kIdentity<Reader>, type_label<Reader>()))) {
+    system.info.accesses.push_back({type_label<Reader>(), &kIdentity<Reader>, true, false});
     system.info.accesses.push_back(
         {detail::without_namespace(component_name<C>()), &kIdentity<C>, false, true});
   }
-  ChangeReader<C>& get() const { return *reader; }
+  Reader& get() const { return *reader; }
 };
 
 template <>
@@ -178,7 +199,7 @@ struct Schedule::Parameter<Commands&> {
   Commands* commands;
   Parameter(Schedule&, System& system) {
     system.info.records_commands = true;
-    system.commands = std::make_unique<Commands>();
+    if (system.commands == nullptr) system.commands = std::make_unique<Commands>();
     commands = system.commands.get();
   }
   Commands& get() const { return *commands; }
@@ -212,12 +233,24 @@ void Schedule::add(std::string_view name, F system, RunsOn runs_on) {
 }
 
 template <class F, class... Ps>
+class Schedule::RunnerOf : public Runner {
+ public:
+  RunnerOf(F f, std::tuple<Parameter<Ps>...> parameters)
+      : f_(std::move(f)), parameters_(std::move(parameters)) {}
+  void run() override {
+    std::apply([this](auto&... each) { f_(each.get()...); }, parameters_);
+  }
+
+ private:
+  F f_;
+  std::tuple<Parameter<Ps>...> parameters_;
+};
+
+template <class F, class... Ps>
 void Schedule::add_with(System system, F f, std::type_identity<std::tuple<Ps...>>) {
   // Braces: from left to right, so that accesses are listed in the order of the parameters.
   std::tuple<Parameter<Ps>...> parameters{Parameter<Ps>(*this, system)...};
-  system.run = [f = std::move(f), parameters]() mutable {
-    std::apply([&](auto&... each) { f(each.get()...); }, parameters);
-  };
+  system.runner = std::make_unique<RunnerOf<F, Ps...>>(std::move(f), std::move(parameters));
   append(std::move(system));
 }
 

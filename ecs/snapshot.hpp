@@ -27,7 +27,7 @@ enum class SnapshotStatus : std::uint8_t {
   kCorrupt,           // the checksum does not fit, or what it protects makes no sense
   kUnknownComponent,  // not declared in this world (World::declare)
   kTypeMismatch,      // a field has another type now
-  kTooLarge,          // more than this world's WorldLimits
+  kTooLarge,          // more than this world's WorldLimits, or lists beyond all measure
   kWorldInUse,        // the world had entities before
 };
 
@@ -39,8 +39,9 @@ struct SnapshotResult {
 
 // Fills a world that never had an entity and in which all component types of the snapshot are
 // known. Everything is checked before anything is changed: unless it returns kLoaded, the world is
-// as it was. Fields that the snapshot lacks keep the value of a new component; fields that the type
-// lacks are skipped. Safe on any bytes.
+// as it was. When a component's constructor or memory throws, the exception passes through and the
+// world has no entities. Fields that the snapshot lacks keep the value of a new component; fields
+// that the type lacks are skipped. Safe on any bytes.
 [[nodiscard]] SnapshotResult load_snapshot(std::span<const std::byte> bytes, World& world);
 
 // A hash of everything that save_snapshot keeps: equal for worlds in the same state.

@@ -11,6 +11,7 @@
 // elements; other values their bytes. Nothing is aligned. Internal to the library.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +32,6 @@ inline constexpr std::string_view kSnapshotMagic = "psyg-ecs";
 inline constexpr std::uint32_t kSnapshotVersion = 1;
 inline constexpr std::size_t kSnapshotHeaderBytes = 8 + 4 + 8;
 inline constexpr std::size_t kSnapshotChecksumBytes = 8;
-inline constexpr std::uint32_t kDeepestType = 32;  // types within types
 
 // Every step is a bijection of the state: a change of one word always changes the result.
 inline std::uint64_t checksum(std::span<const std::byte> bytes) {

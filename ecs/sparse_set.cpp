@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "ecs/check.hpp"
+
 namespace psygen::ecs::detail {
 namespace {
 
@@ -27,7 +29,8 @@ SparseSet::SparseSet(ComponentId id, const ComponentInfo& info, std::size_t max_
 
 std::size_t SparseSet::add(std::span<const Entity> entities, const EntitySlots& slots) {
   if (entities.empty()) return 0;
-  rows_.reserve_more(entities.size());
+  const std::size_t room = std::min(entities.size(), rows_.max_rows() - rows_.rows());
+  rows_.reserve_more(room);
   memory_.commit(slots.used() * sizeof(std::uint32_t));
   indexed_ = slots.used();
   const std::uint32_t first = rows_.rows();
@@ -42,6 +45,7 @@ std::size_t SparseSet::add(std::span<const Entity> entities, const EntitySlots& 
     const Entity entity = entities[i];
     const Slot* slot = slots.find(entity);
     if (slot == nullptr || slot->location == kNowhere || rows_after[entity.index] != 0) continue;
+    if (end - first == room) give_up("a sparse component has max_rows_per_table members");
     members[end] = entity;
     rows_after[entity.index] = ++end;
   }

@@ -17,11 +17,19 @@ std::size_t place_of(const ComponentInfo& info, std::size_t places) {
   return static_cast<std::size_t>((address >> 3) * 0x9E3779B97F4A7C15ull >> 40) % places;
 }
 
+WorldLimits clamped(WorldLimits limits) {
+  constexpr std::size_t kMost = UINT32_MAX - 1;
+  limits.max_entities = std::min(limits.max_entities, kMost);
+  limits.max_rows_per_table = std::min(limits.max_rows_per_table, kMost);
+  return limits;
+}
+
 }  // namespace
 
 Storage::Storage(const WorldLimits& limits)
-    : limits_(limits), slots_(limits.max_entities, limits.first_generation) {
+    : limits_(clamped(limits)), slots_(limits_.max_entities, limits_.first_generation) {
   tables_.emplace_back(nullptr);
+  absent_.origin_of_chunk.assign(directory_.chunk_count(), 0);
   table_index_.assign(64, 0);
   id_index_.fill(kNoComponent);
 }
@@ -38,6 +46,11 @@ ComponentId Storage::find_id(const ComponentInfo& info) const {
 ComponentId Storage::id_of(const ComponentInfo& info) {
   if (const ComponentId known = find_id(info); known != kNoComponent) return known;
   if (records_.size() == kMaxComponents) give_up("more than 256 component types in one world");
+  for (const auto& other : records_) {
+    if (other->info->name != info.name) continue;
+    give_up("two component types are named '" + std::string(info.name) +
+            "': give one another ComponentTraits<>::name");
+  }
   const auto id = static_cast<ComponentId>(records_.size());
   auto& record = *records_.emplace_back(std::make_unique<ComponentRecord>());
   record.info = &info;
@@ -65,6 +78,7 @@ Table& Storage::table_for(const Signature& kind) {
 }
 
 Table& Storage::make_table(const Signature& kind) {
+  if (tables_.size() > limits_.max_tables) give_up("more kinds than WorldLimits::max_tables");
   const auto id = static_cast<std::uint32_t>(tables_.size());
   std::vector<Column> columns;
   for (std::size_t c = 0; c < records_.size(); ++c) {
@@ -80,15 +94,22 @@ Table& Storage::make_table(const Signature& kind) {
     for (auto& reader : records_[c]->readers)
       reader->bits_of_table.emplace_back();
   }
-  if (tables_.size() * 2 > table_index_.size()) table_index_.assign(table_index_.size() * 2, 0);
-  const std::size_t mask = table_index_.size() - 1;
-  for (std::uint32_t t = 1; t < tables_.size(); ++t) {
-    std::size_t i = tables_[t]->signature().hash() & mask;
-    while (table_index_[i] != 0 && table_index_[i] != t)
-      i = (i + 1) & mask;
-    table_index_[i] = t;
+  if (tables_.size() * 2 <= table_index_.size()) {
+    index_table(id);
+  } else {  // at most half full: everybody finds a new place
+    table_index_.assign(table_index_.size() * 2, 0);
+    for (std::uint32_t t = 1; t < tables_.size(); ++t)
+      index_table(t);
   }
   return table;
+}
+
+void Storage::index_table(std::uint32_t id) {
+  const std::size_t mask = table_index_.size() - 1;
+  std::size_t i = tables_[id]->signature().hash() & mask;
+  while (table_index_[i] != 0)
+    i = (i + 1) & mask;
+  table_index_[i] = id;
 }
 
 // Room for `count` more rows, and every component knows where its rows of the new chunks are.
@@ -155,6 +176,17 @@ Storage::Batch Storage::restore_rows(const Signature& kind, std::span<const Enti
     slots_[table.entities()[row].index].location = table.location(row);
   mark_new_rows(table, first, entities.size(), kind);
   return {&table, first};
+}
+
+void Storage::forget_restored() {
+  std::vector<Entity> all;
+  for (const auto& table : tables_) {
+    if (table != nullptr)
+      all.insert(all.end(), table->entities(), table->entities() + table->rows());
+  }
+  destroy(all);
+  slots_.restore({}, {});
+  ever_sparse_.clear();
 }
 
 void Storage::report_removed(const Table& table, const Signature& which) {

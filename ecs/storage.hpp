@@ -22,16 +22,9 @@
 #include "ecs/signature.hpp"
 #include "ecs/sparse_set.hpp"
 #include "ecs/table.hpp"
+#include "ecs/world_limits.hpp"
 
 namespace psygen::ecs {
-
-// How much address space a world reserves. Address space is not memory: raising these is cheap.
-struct WorldLimits {
-  std::size_t max_entities = std::size_t{1} << 28;
-  std::size_t max_rows_per_table = std::size_t{1} << 26;
-  // The generation of a slot's first entity, at least 1. Near UINT32_MAX, slots retire soon.
-  std::uint32_t first_generation = 1;
-};
 
 namespace detail {
 
@@ -41,6 +34,7 @@ struct ReaderState {
   bool reports_removed = false;
   std::vector<RowBits> bits_of_table;  // by table id; [0] of a sparse component
   std::vector<Entity> removed;
+  std::vector<Entity> handed_out;  // scratch of draining
 };
 
 struct ComponentRecord {
@@ -66,6 +60,12 @@ struct QueryTerm {
   std::string_view name;
   bool writes;
 };
+
+template <class... Cs>
+inline constexpr std::array<QueryTerm, sizeof...(Cs)> kQueryTerms{
+    QueryTerm{component_name<std::remove_const_t<Cs>>(), !std::is_const_v<Cs>}...};
+template <class... Cs>
+inline constexpr std::span<const QueryTerm> kQuery{kQueryTerms<Cs...>};
 
 // Which query is being iterated; structural changes meanwhile break the contract.
 struct IterationState {
@@ -127,7 +127,10 @@ class Storage {
   // The same for one sparse component.
   std::size_t add_sparse(ComponentId id, std::span<const Entity> entities);
   std::size_t remove_sparse(ComponentId id, std::span<const Entity> entities);
-  void reserve(const Signature& kind, std::size_t count) { make_room(table_for(kind), count); }
+  void reserve(const Signature& kind, std::size_t count) {
+    expect_no_iteration("reserve");
+    make_room(table_for(kind), count);
+  }
 
   ReaderState& add_reader(ComponentId id, bool reports_removed);
   void remove_reader(const ReaderState& reader);
@@ -148,43 +151,37 @@ class Storage {
       reader->bits_of_table[table].mark_range(first, count);
   }
 
-  // Ends the program in checked builds when a query is being iterated.
+  // Ends the program when a query is being iterated.
   void expect_no_iteration(std::string_view verb) const {
-#ifndef NDEBUG
     if (iteration_.depth.load(std::memory_order_relaxed) != 0) structural_change_inside(verb);
-#else
-    (void)verb;
-#endif
   }
-  IterationState& iteration() const {
-    return iteration_;
-  }
+  IterationState& iteration() const { return iteration_; }
   std::size_t committed_bytes() const;
 
-  const ChildLists& child_lists() const {
-    return child_lists_;
-  }
+  const ChildLists& child_lists() const { return child_lists_; }
   // Null where the entity has no Children.
   Children* children_of(Entity entity) const;
   void set_children(Children& list, std::span<const Entity> children) {
+    expect_no_iteration("set_children");
     child_lists_.assign(list, children);
   }
 
   // For loading into a world that never had an entity: first the slots, then rows for handles that
   // these slots know.
-  const WorldLimits& limits() const {
-    return limits_;
-  }
+  const WorldLimits& limits() const { return limits_; }
   void restore_slots(std::span<const std::uint32_t> generations,
                      std::span<const std::uint32_t> free) {
     slots_.restore(generations, free);
   }
   Batch restore_rows(const Signature& kind, std::span<const Entity> entities);
+  // Undoes all of it.
+  void forget_restored();
 
  private:
   [[noreturn]] void structural_change_inside(std::string_view verb) const;
   Table& table_for(const Signature& kind);
   Table& make_table(const Signature& kind);
+  void index_table(std::uint32_t id);
   void make_room(Table& table, std::size_t count);
   void mark_new_rows(const Table& table, std::uint32_t first, std::size_t count,
                      const Signature& which);

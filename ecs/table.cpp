@@ -55,7 +55,7 @@ Table::Table(std::uint32_t id, const Signature& signature, std::vector<Column> c
       entities_(max_rows * sizeof(Entity)) {
   column_of_.fill(kNoColumn);
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    column_of_[columns_[i].id] = static_cast<std::uint8_t>(i);
+    column_of_[columns_[i].id] = static_cast<std::uint16_t>(i);
   }
 }
 
@@ -75,8 +75,10 @@ void Table::name_rows(std::size_t count, RowDirectory& directory) {
 }
 
 void Table::reserve_more(std::size_t count) {
+  if (count > max_rows_ - rows_) {
+    give_up("more rows of one kind than WorldLimits::max_rows_per_table");
+  }
   const std::size_t need = rows_ + count;
-  if (need > max_rows_) give_up("more rows of one kind than WorldLimits::max_rows_per_table");
   if (need <= capacity_) return;
   capacity_ = std::min(std::max({need, capacity_ * 2, kFirstRows}), max_rows_);
   const auto commit = [&](ReservedMemory& memory, std::size_t row_bytes) {

@@ -39,7 +39,7 @@ class Table {
   std::span<const Column> columns() const { return columns_; }
   // The column of a component, null where the table has none.
   std::byte* column_data(ComponentId id) const {
-    const std::uint8_t at = column_of_[id];
+    const std::uint16_t at = column_of_[id];
     return at == kNoColumn ? nullptr : columns_[at].memory.data();
   }
 
@@ -47,6 +47,8 @@ class Table {
   std::uint32_t location(std::uint32_t row) const {
     return chunks_[row / kChunkRows] + row % kChunkRows;
   }
+
+  std::size_t max_rows() const { return max_rows_; }
 
   // Makes room for `count` more rows, without objects in them.
   void reserve_more(std::size_t count);
@@ -71,7 +73,7 @@ class Table {
   std::vector<std::uint32_t> leaving;
 
  private:
-  static constexpr std::uint8_t kNoColumn = UINT8_MAX;
+  static constexpr std::uint16_t kNoColumn = UINT16_MAX;
   void plan_moves(std::span<const std::uint32_t> leaving_rows, std::vector<RowMove>& moves);
 
   std::uint32_t id_;
@@ -84,7 +86,7 @@ class Table {
   ReservedMemory entities_;
   std::vector<std::uint32_t> chunks_;  // location of every 4096th row
   std::vector<std::uint64_t> dead_;    // scratch: which of the last rows are leaving
-  std::array<std::uint8_t, kMaxComponents> column_of_;
+  std::array<std::uint16_t, kMaxComponents> column_of_;
 };
 
 }  // namespace psygen::ecs::detail

@@ -5,16 +5,20 @@
 namespace psygen::ecs {
 
 std::size_t World::destroy_with_children(std::span<const Entity> parents) {
+  storage_.expect_no_iteration("destroy_with_children");
   std::size_t died = 0;
-  std::vector<Entity> generation(parents.begin(), parents.end());
-  while (!generation.empty()) {
+  std::vector<Entity> level(parents.begin(), parents.end());
+  while (!level.empty()) {
     std::vector<Entity> next;
-    for (const Entity parent : generation) {
-      const std::span<const Entity> list = children(parent);
-      next.insert(next.end(), list.begin(), list.end());
+    for (const Entity parent : level) {
+      Children* list = storage_.children_of(parent);
+      if (list == nullptr) continue;
+      const std::span<const Entity> found = children(*list);
+      next.insert(next.end(), found.begin(), found.end());
+      storage_.set_children(*list, {});  // who is met again has given its children away
     }
-    died += destroy(generation);
-    generation = std::move(next);
+    died += destroy(level);
+    level = std::move(next);
   }
   return died;
 }

@@ -1,7 +1,7 @@
 // The world: entities, their components in tables, and verbs that work on batches.
 // Every verb takes a span or a count; single look-ups are for tools and tests. A structural change
-// (create, destroy, add, remove) invalidates spans and pointers into columns, and must not happen
-// while a query is iterated: checked builds stop and name the query; use Commands. Component
+// (create, destroy, add, remove, reserve) invalidates spans and pointers into columns, and must not
+// happen while a query is iterated: the program ends and names the query; use Commands. Component
 // constructors and destructors must not touch the world. One thread changes a world; const
 // functions may run on several threads while nobody changes it. When a component's constructor
 // throws, the exception passes through and no entity was created.
@@ -32,6 +32,12 @@ struct Created {
     return std::get<std::span<C>>(columns);
   }
 };
+
+// What change_kind gives and takes.
+template <Component... Cs>
+struct Add {};
+template <Component... Cs>
+struct Remove {};
 
 // A value that arrives for an entity which may have died meanwhile.
 template <class C>
@@ -88,6 +94,13 @@ class World {
     }
   }
 
+  // Both at once: one move from kind to kind.
+  //   world.change_kind(entities, Add<Asleep>{}, Remove<Awake>{})
+  template <Component... As, Component... Rs>
+  std::size_t change_kind(std::span<const Entity> entities, Add<As...>, Remove<Rs...>) {
+    return storage_.change_kind(entities, signature<As...>(), signature<Rs...>());
+  }
+
   // Prepares the kind with exactly these components for `count` further entities.
   template <Component... Cs>
   void reserve(std::size_t count) {
@@ -137,7 +150,8 @@ class World {
   // ---- iteration -------------------------------------------------------------------------------
 
   // Calls f(std::span<const Entity>, std::span<Cs>...) once per non-empty table that has all of Cs
-  // and passes the filters (With<...>, Without<...>). Write `const C` for what is only read. With a
+  // and passes the filters (With<...>, Without<...>); filters by sparse components cut tables into
+  // runs of rows. Write `const C` for what is only read. With a
   // first parameter `TableRows<Cs...>`, f can mark the rows that it changed. A sparse component is
   // either the only one of Cs (its members are one run) or a filter.
   template <class... Cs, class F, class... Filters>
@@ -177,8 +191,8 @@ class World {
   // Replaces the children of an entity that has the component Children; false when it has not.
   // O(children). Children may be dead or die: their handles are stale then.
   bool set_children(Entity parent, std::span<const Entity> children);
-  // The children in the order in which they were set; valid until the next set_children or
-  // structural change. Empty for who has none.
+  // The children in the order in which they were set; valid until the next set_children (which is
+  // not possible while a query is iterated) or structural change. Empty for who has none.
   std::span<const Entity> children(Entity parent) const {
     const Children* list = storage_.children_of(parent);
     return list == nullptr ? std::span<const Entity>{} : children(*list);
@@ -197,9 +211,10 @@ class World {
     mark_changed<C>(std::span<const Entity>(&entity, 1));
   }
 
-  // A further consumer of C's changes; to it, all rows are new.
-  template <Component C>
-  ChangeReader<C> reader(Removed removed = Removed::kIgnore) {
+  // A further consumer of C's changes; to it, all rows are new. A tag tells readers of the same
+  // component apart where they are known by their type, as in a schedule.
+  template <Component C, class Tag = void>
+  ChangeReader<C, Tag> reader(Removed removed = Removed::kIgnore) {
     static_assert(is_tracked<C>(), "only a tracked component has changes");
     return {storage_, storage_.add_reader(storage_.id_of(detail::kComponentInfo<C>),
                                           removed == Removed::kReport)};
@@ -309,6 +324,8 @@ void World::each_in(S& storage, F& f, Filters... filters) {
   constexpr bool sparse = (is_sparse<std::remove_const_t<Cs>>() || ...);
   static_assert(!sparse || (sizeof...(Cs) == 1 && sizeof...(Filters) == 0),
                 "a sparse component is iterated by itself; in other queries it is a filter");
+  static_assert((std::size_t{0} + ... + detail::kFilterSize<Filters>) <= detail::kMaxFilters,
+                "the filters of a query name at most 8 components");
   constexpr std::size_t kColumns = sizeof...(Cs);
   const std::array<detail::ComponentId, kColumns> ids{
       storage.find_id(detail::kComponentInfo<std::remove_const_t<Cs>>)...};

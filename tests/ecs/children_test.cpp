@@ -104,5 +104,39 @@ TEST(Children, commands_end_families_too) {
   EXPECT_EQ(world.size(), 0U);
 }
 
+TEST(Children, lists_that_share_children_end_in_linear_time) {
+  World world;
+  std::vector<Entity> chain = copy(world.create<Children>(200).entities);
+  for (std::size_t i = 0; i + 1 < chain.size(); ++i)
+    world.set_children(chain[i], std::vector{chain[i + 1], chain[i + 1]});
+  EXPECT_EQ(world.destroy_with_children(std::vector{chain[0], chain[0]}), 200U);
+}
+
+TEST(Children, a_list_of_another_world_is_empty_here) {
+  World world;
+  World other;
+  const Entity parent = world.create<Children>(1).entities[0];
+  world.set_children(parent, world.create<Mesh>(5).entities);
+  EXPECT_TRUE(other.children(*world.get<Children>(parent)).empty());
+  static_assert(!std::is_copy_constructible_v<Children> && !std::is_move_assignable_v<Children>);
+}
+
+TEST(Children, commands_set_them) {
+  World world;
+  const Entity parent = world.create<Children>(1).entities[0];
+  const std::vector<Entity> children = copy(world.create<Mesh>(3).entities);
+  Commands commands;
+  world.each<const Mesh>([&](auto entities, auto) { commands.set_children(parent, entities); });
+  commands.apply(world);
+  EXPECT_EQ(copy(world.children(parent)), children);
+}
+
+TEST(ChildrenDeathTest, setting_them_while_iterating_ends_the_program) {
+  World world;
+  const Entity parent = world.create<Children>(1).entities[0];
+  EXPECT_DEATH(world.each<const Children>([&](auto, auto) { world.set_children(parent, {}); }),
+               "structural change .set_children. while iterating <const Children>");
+}
+
 }  // namespace
 }  // namespace psygen::ecs::test

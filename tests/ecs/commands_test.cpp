@@ -74,5 +74,22 @@ TEST(Commands, that_are_never_applied_leave_nothing_behind) {
   EXPECT_EQ(Throwing::alive, 0);
 }
 
+TEST(Commands, what_follows_a_throwing_constructor_is_kept) {
+  World world;
+  const std::vector<Entity> entities = [&] {
+    const auto created = world.create<Position>(2).entities;
+    return std::vector<Entity>(created.begin(), created.end());
+  }();
+  Commands commands;
+  commands.add<Throwing>(entities[0]);
+  commands.destroy(entities[1]);
+  Throwing::fuse = 0;
+  EXPECT_THROW(commands.apply(world), std::runtime_error);
+  Throwing::fuse = -1;
+  EXPECT_FALSE(commands.empty());
+  commands.apply(world);
+  EXPECT_FALSE(world.alive(entities[1]));
+}
+
 }  // namespace
 }  // namespace psygen::ecs

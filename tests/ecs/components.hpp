@@ -49,6 +49,8 @@ struct Throwing {
 };
 
 struct Fused : Throwing {};  // sparse
+struct Twin {};
+struct OtherTwin {};  // of the same name
 
 }  // namespace psygen::ecs::test
 
@@ -67,6 +69,7 @@ struct psygen::ecs::ComponentTraits<psygen::ecs::test::Selected> {
 };
 template <>
 struct psygen::ecs::ComponentTraits<psygen::ecs::test::Edited> {
+  static constexpr std::string_view name = "edited";
   static constexpr bool sparse = true;
   static constexpr bool tracked = true;
   static constexpr auto fields = std::tuple{field("version", &psygen::ecs::test::Edited::version)};
@@ -74,4 +77,12 @@ struct psygen::ecs::ComponentTraits<psygen::ecs::test::Edited> {
 template <>
 struct psygen::ecs::ComponentTraits<psygen::ecs::test::Fused> {
   static constexpr bool sparse = true;
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Twin> {
+  static constexpr std::string_view name = "twin";
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::OtherTwin> {
+  static constexpr std::string_view name = "twin";
 };

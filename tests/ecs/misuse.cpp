@@ -14,6 +14,7 @@ struct Opaque {
 };
 template <>
 struct psygen::ecs::ComponentTraits<Opaque> {
+  static constexpr std::string_view name = "opaque";
   static constexpr auto fields = std::tuple{field("pointer", &Opaque::pointer)};
 };
 

@@ -253,5 +253,65 @@ TEST(Query, follows_handles_and_lands_only_where_it_may) {
   EXPECT_EQ(rows, 1U);
 }
 
+void quiet(Wind&) noexcept {}
+
+TEST(Schedule, takes_functions_that_do_not_throw_and_lambdas_that_only_move) {
+  World world;
+  Wind wind;
+  Schedule schedule(world);
+  schedule.provide(wind);
+  schedule.add("quiet", quiet);
+  schedule.add("owner",
+               [owned = std::make_unique<float>(5.0F)](Wind& w) noexcept { w.strength = *owned; });
+  schedule.run();
+  EXPECT_EQ(wind.strength, 5.0F);
+}
+
+TEST(Schedule, a_system_may_name_its_commands_twice) {
+  World world;
+  Schedule schedule(world);
+  schedule.add("both", [](Commands& a, Commands& b) {
+    a.create(Position{});
+    b.create(Position{});
+  });
+  schedule.run();
+  EXPECT_EQ(world.size(), 2U);
+}
+
+struct Uploads;
+struct Sounds;
+
+TEST(Schedule, several_readers_of_a_component_are_told_apart_by_tag) {
+  World world;
+  auto uploads = world.reader<Mesh, Uploads>();
+  auto sounds = world.reader<Mesh, Sounds>();
+  Tally tally;
+  Schedule schedule(world, 2);
+  schedule.provide(uploads, sounds, tally);
+  schedule.add("upload", [](ChangeReader<Mesh, Uploads>& r, Tally& t) {
+    t.seen += r.drain([](auto, auto) {});
+  });
+  schedule.add("sound", [](ChangeReader<Mesh, Sounds>& r, Tally& t) {
+    t.seen += r.drain([](auto, auto) {});
+  });
+  schedule.add("write", [](Query<Mesh>) {});
+  EXPECT_TRUE(conflict(info(schedule, "upload"), info(schedule, "write")));
+  world.create<Mesh>(10);
+  schedule.run();
+  EXPECT_EQ(tally.seen, 20U);
+}
+
+TEST(ScheduleDeathTest, adding_and_running_from_inside_a_system_is_said) {
+  World world;
+  Schedule schedule(world);
+  schedule.provide(schedule);
+  schedule.add("grow", [](Schedule& s) { s.add("more", [](World&) {}); });
+  EXPECT_DEATH(schedule.run(), "add from inside a system");
+  Schedule again(world);
+  again.provide(again);
+  again.add("again", [](Schedule& s) { s.run(); });
+  EXPECT_DEATH(again.run(), "run from inside a system");
+}
+
 }  // namespace
 }  // namespace psygen::ecs::test

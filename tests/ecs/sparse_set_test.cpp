@@ -170,7 +170,6 @@ TEST(SparseSet, a_throwing_constructor_leaves_nobody_in_the_set) {
   EXPECT_EQ(world.add<Fused>(all), 8U);
 }
 
-#ifndef NDEBUG
 TEST(SparseSetDeathTest, toggling_while_iterating_is_a_broken_contract) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(1).entities);
@@ -178,7 +177,13 @@ TEST(SparseSetDeathTest, toggling_while_iterating_is_a_broken_contract) {
   EXPECT_DEATH(world.each<const Position>([&](auto, auto) { world.add<Selected>(all); }),
                "structural change .add. while iterating <const .*Position>");
 }
-#endif
+
+TEST(SparseSet, adding_members_again_needs_no_room) {
+  World world(WorldLimits{.max_rows_per_table = 100});
+  const std::vector<Entity> all = copy(world.create<Position>(60).entities);
+  EXPECT_EQ(world.add<Selected>(all), 60U);
+  EXPECT_EQ(world.add<Selected>(all), 0U);
+}
 
 }  // namespace
 }  // namespace psygen::ecs::test

@@ -214,7 +214,6 @@ TEST(World, reserving_commits_memory_ahead) {
   EXPECT_EQ(world.get<Position>(created.entities[99999]), &created.column<Position>()[99999]);
 }
 
-#ifndef NDEBUG
 TEST(WorldDeathTest, a_structural_change_while_iterating_names_the_query) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   World world;
@@ -224,12 +223,85 @@ TEST(WorldDeathTest, a_structural_change_while_iterating_names_the_query) {
   };
   EXPECT_DEATH(misuse(), "structural change .create. while iterating <const mesh, .*Health>");
 }
-#endif
 
 TEST(WorldDeathTest, a_full_world_ends_with_a_message) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   World world({.max_entities = 10});
   EXPECT_DEATH(world.create<Position>(11), "max_entities");
+}
+
+TEST(World, change_kind_gives_and_takes_in_one_move) {
+  World world;
+  const auto created = world.create<Mesh, Position>(5);
+  created.column<Mesh>()[3].id = 7;
+  const std::vector<Entity> all(created.entities.begin(), created.entities.end());
+  EXPECT_EQ(
+      world.change_kind(std::span(all).subspan(2), Add<Velocity, Health>{}, Remove<Position>{}),
+      3U);
+  EXPECT_EQ(world.get<Mesh>(all[3])->id, 7U);
+  EXPECT_EQ(world.get<Health>(all[3])->points, 100);
+  EXPECT_EQ(world.get<Position>(all[3]), nullptr);
+  EXPECT_EQ(world.table_count(), 2U);  // no kind in between
+}
+
+struct Large {
+  std::array<std::uint8_t, std::size_t{16} << 20> bytes{};
+};
+
+TEST(World, a_component_larger_than_the_stack_is_created) {
+  World world;
+  const Entity e = world.create<Large>(1).entities[0];
+  EXPECT_EQ(world.get<Large>(e)->bytes.back(), 0);
+}
+
+template <std::size_t>
+struct Numbered {
+  std::uint8_t value = 3;
+};
+template <std::size_t... I>
+Entity create_many(World& world, std::index_sequence<I...>) {
+  return world.create<Numbered<I>...>(1).entities[0];
+}
+
+TEST(World, a_kind_may_have_all_256_component_types) {
+  World world;
+  const Entity e = create_many(world, std::make_index_sequence<256>{});
+  EXPECT_EQ(world.get<Numbered<0>>(e)->value, 3);
+  EXPECT_EQ(world.get<Numbered<255>>(e)->value, 3);
+}
+
+TEST(World, limits_beyond_all_measure_are_fine) {
+  World world(WorldLimits{.max_entities = SIZE_MAX, .max_rows_per_table = SIZE_MAX});
+  EXPECT_EQ(world.create<Position>(1000).entities.size(), 1000U);
+}
+
+TEST(WorldDeathTest, a_count_beyond_the_limits_is_said) {
+  World world;
+  world.create<Position>(10);
+  EXPECT_DEATH(world.create<Position>(SIZE_MAX), "max_rows_per_table");
+  EXPECT_DEATH(world.reserve<Position>(SIZE_MAX - 5), "max_rows_per_table");
+}
+
+TEST(WorldDeathTest, reserving_while_iterating_ends_the_program) {
+  World world;
+  world.create<Position>(1);
+  EXPECT_DEATH(world.each<const Position>([&](auto, auto) { world.reserve<Mesh>(1); }),
+               "structural change .reserve. while iterating <const .*Position>");
+}
+
+TEST(WorldDeathTest, structural_changes_while_following_handles_end_the_program) {
+  World world;
+  const auto created = world.create<Position>(3).entities;
+  const std::vector<Entity> all(created.begin(), created.end());
+  EXPECT_DEATH(
+      world.accessor<Position>().each(all, [&](std::size_t, Position*) { world.destroy(all); }),
+      "structural change .destroy. while iterating <.*Position>");
+}
+
+TEST(WorldDeathTest, two_types_of_one_name_are_refused) {
+  World world;
+  world.declare<Twin>();
+  EXPECT_DEATH(world.declare<OtherTwin>(), "two component types are named 'twin'");
 }
 
 }  // namespace

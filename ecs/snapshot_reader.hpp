@@ -1,0 +1,96 @@
+// Reading a snapshot: a cursor over its bytes that refuses instead of running over the end, and the
+// types that the snapshot tells, matched with those of the program. Internal to the library.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ecs/fields.hpp"
+#include "ecs/snapshot.hpp"
+
+namespace psygen::ecs::detail {
+
+// The first refusal stays; afterwards every read gives zero.
+class SnapshotReader {
+ public:
+  explicit SnapshotReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  std::size_t at() const { return at_; }
+  void go_to(std::size_t at) { at_ = at; }
+  std::size_t left() const { return bytes_.size() - at_; }
+  std::size_t size() const { return bytes_.size(); }
+  // Shortens what there is to read; the cursor stays.
+  void end_at(std::size_t size) { bytes_ = bytes_.first(size); }
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+  bool ok() const { return bool(result_); }
+  SnapshotResult take_result() { return std::move(result_); }
+  bool refuse(SnapshotStatus status, std::string sentence) {
+    if (result_) result_ = {status, "snapshot: " + std::move(sentence)};
+    return false;
+  }
+  bool corrupt(std::string_view what) {
+    return refuse(SnapshotStatus::kCorrupt,
+                  std::string(what) + " (at byte " + std::to_string(at_) + context_ + ")");
+  }
+  // What is being read, for sentences.
+  void set_context(std::string context) { context_ = std::move(context); }
+
+  // `count` bytes, null when there are not so many.
+  const std::byte* take(std::size_t count) {
+    if (count > left()) {
+      corrupt("a list is longer than the data");
+      return nullptr;
+    }
+    return bytes_.data() + std::exchange(at_, at_ + count);
+  }
+  template <class T>
+  T number() {
+    T value{};
+    if (const std::byte* from = take(sizeof(T))) std::memcpy(&value, from, sizeof(T));
+    return value;
+  }
+  // How many things follow that take at least `least_bytes` each.
+  std::uint32_t length(std::size_t least_bytes) {
+    const auto value = number<std::uint32_t>();
+    if (value <= left() / least_bytes) return value;
+    corrupt("a list is longer than the data");
+    return 0;
+  }
+  // A name of at most kLongestName bytes.
+  std::string name();
+
+ private:
+  static constexpr std::size_t kLongestName = 1024;
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+  SnapshotResult result_;
+  std::string context_;
+};
+
+// A type as the snapshot tells it.
+struct SavedType {
+  FieldKind kind = FieldKind::kStruct;
+  std::size_t size_bytes = 0;            // scalars
+  std::size_t count = 0;                 // arrays
+  std::vector<SavedType> parts;          // fields that take bytes, or the one element
+  const TypeDescription* own = nullptr;  // what the program has there; null: it is skipped
+  std::size_t offset_bytes = 0;          // in the program's struct
+
+  bool has_bytes() const {
+    if (kind == FieldKind::kStruct) return !parts.empty();
+    return kind != FieldKind::kArray || (count > 0 && parts[0].has_bytes());
+  }
+};
+
+// Reads a type and compares it with `own`, the program's type of that name (null: it has none).
+// Refuses types that changed, naming `name` and the fields on the way.
+SavedType read_saved_type(SnapshotReader& in, const TypeDescription* own, const std::string& name);
+
+}  // namespace psygen::ecs::detail
