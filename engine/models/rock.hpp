@@ -30,7 +30,7 @@ enum RockFamily : int { kRockRounded = 0, kRockFaceted, kRockLayered, kRockFamil
 
 // Level l has max(subdivisions − l, 0) subdivisions: 4·4^n triangles exactly and 2·4^n + 2
 // core::ModelVertex, or three a triangle where faceted. Corners that two levels share have the same
-// places. Needs 800 KiB of stack; nothing on the heap.
+// places. Needs 700 KiB of stack; nothing on the heap.
 std::unique_ptr<ModelType> make_rock_type();
 
 }  // namespace psygen::models

@@ -21,7 +21,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kPad = RockTopology::kPad;
 using Wide = hn::CappedTag<float, kPad>;
-using Small = hn::CappedTag<float, 4>;  // for the last two vertices: their count is 2 + 2 · 4^n
+using Narrow = hn::CappedTag<float, 8>;  // for few midpoints
+using Small = hn::CappedTag<float, 4>;   // for the last two vertices: their count is 2 + 2 · 4^n
 
 // The mesh of a rock of at most kMost subdivisions.
 template <int kMost>
@@ -54,8 +55,12 @@ class RockMesher {
     float amplitude = s_.amplitude;
     for (int n = 1; n <= subdivisions_; ++n) {
       amplitude *= s_.decay;
-      for (std::size_t v = rock_vertices(n - 1); v < rock_vertices(n); v += hn::Lanes(Wide()))
-        find_midpoints(v, amplitude, n < subdivisions_);
+      const bool have_children = n < subdivisions_;
+      const std::size_t end = rock_vertices(n);
+      std::size_t v = rock_vertices(n - 1);
+      for (; v + hn::Lanes(Narrow()) < end; v += hn::Lanes(Wide()))
+        find_midpoints(Wide(), v, amplitude, have_children);
+      if (v < end) find_midpoints(Narrow(), v, amplitude, have_children);
     }
     // Whole groups of four for box().
     for (std::size_t v = vertex_count_; v % 4 != 0; ++v)
@@ -118,12 +123,12 @@ class RockMesher {
   }
 
   // Beyond the last midpoint of a step this writes vertices of no meaning.
-  HWY_INLINE void find_midpoints(std::size_t first, float amplitude, bool have_children) {
-    const Wide d;
-    const Vectors<Wide> m =
+  template <class D>
+  HWY_INLINE void find_midpoints(D d, std::size_t first, float amplitude, bool have_children) {
+    const Vectors<D> m =
         to_lanes(d, add(load_items(d, unit_, topology_.parents()[0].data() + (first - 4)),
                         load_items(d, unit_, topology_.parents()[1].data() + (first - 4))));
-    hn::Vec<Wide> grain;
+    hn::Vec<D> grain;
     const auto move = numbers(d, steps(d, first), s_.key, grain);
     hn::StoreU(hn::Mul(hn::Add(move, grain), hn::Set(d, 0.5F)), d, grain_ + first);
     settle(d, first, m, hn::Div(hn::Set(d, 1.0F), hn::Sqrt(dot(m, m))),
@@ -160,29 +165,30 @@ class RockMesher {
 
   core::Bounds box() const {
     const Wide d;
-    constexpr std::size_t kLanes = hn::MaxLanes(Wide()), kGroup = 16;
-    hn::Vec<Wide> least[kGroup / kLanes], most[kGroup / kLanes];
-    HWY_ALIGN float low[kGroup], high[kGroup];
-    for (std::size_t i = 0; i < kGroup / kLanes; ++i)
-      least[i] = most[i] = hn::Load(d, place_ + i * kLanes);
-    const std::size_t end = 4 * vertex_count_;
-    for (std::size_t first = kGroup; first < end; first += kGroup) {
-      for (std::size_t i = 0; i < kGroup / kLanes; ++i) {
-        const auto item = hn::Load(d, place_ + first + i * kLanes);
-        least[i] = hn::Min(least[i], item);
-        most[i] = hn::Max(most[i], item);
+    constexpr std::size_t kLanes = hn::MaxLanes(Wide()), kGroup = std::max<std::size_t>(kLanes, 4);
+    float low[4], high[4];
+    for (std::size_t i = 0; i < kGroup; i += kLanes) {
+      auto least = hn::Load(d, place_ + i), most = least;
+      for (std::size_t k = kGroup; k < 4 * vertex_count_; k += kGroup) {
+        least = hn::Min(least, hn::Load(d, place_ + k + i));
+        most = hn::Max(most, hn::Load(d, place_ + k + i));
       }
+      store_folded(d, least, low + i, [](auto a, auto b) HWY_ATTR { return hn::Min(a, b); });
+      store_folded(d, most, high + i, [](auto a, auto b) HWY_ATTR { return hn::Max(a, b); });
     }
-    for (std::size_t i = 0; i < kGroup / kLanes; ++i) {
-      hn::Store(least[i], d, low + i * kLanes);
-      hn::Store(most[i], d, high + i * kLanes);
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+  }
+  // Four numbers, or one on the scalar target, from those of all blocks.
+  template <class D, class Fold>
+  HWY_INLINE static void store_folded(D d, hn::Vec<D> v, float* to,
+                                      [[maybe_unused]] const Fold& fold) {
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (hn::MaxLanes(D()) > 4) {
+      const hn::Half<D> half;
+      return store_folded(half, fold(hn::LowerHalf(half, v), hn::UpperHalf(half, v)), to, fold);
     }
-    core::Bounds bounds;
-    for (int i = 0; i < 3; ++i) {
-      bounds.min[i] = std::min(std::min(low[i], low[4 + i]), std::min(low[8 + i], low[12 + i]));
-      bounds.max[i] = std::max(std::max(high[i], high[4 + i]), std::max(high[8 + i], high[12 + i]));
-    }
-    return bounds;
+#endif
+    hn::StoreU(v, d, to);
   }
 
   // ---- Vertices ----

@@ -53,8 +53,8 @@ constexpr std::uint32_t rock_mesh_vertices(int subdivisions, bool faceted) {
   return faceted ? rock_triangles(subdivisions) * 3 : rock_vertices(subdivisions);
 }
 
-// Writes so many core::ModelVertex to `out` and returns their box. Needs 800 KiB of stack for 6
-// subdivisions, 6 KiB for 2.
+// Writes so many core::ModelVertex to `out` and returns their box. Needs 700 KiB of stack for 6
+// subdivisions, 5 KiB for 2.
 core::Bounds mesh_rock(const RockShape& shape, const RockTopology& topology, int subdivisions,
                        std::byte* out);
 
