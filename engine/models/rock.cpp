@@ -27,83 +27,72 @@ constexpr ParameterSpec kSchema[kRockParameterCount] = {
     {"albedo", kReal, "1", 0.26, 0.02, 0.9, 0.1, 0.5, "mean reflected share of light"},
     {"warmth", kReal, "1", 0.25, -1, 1, -0.5, 0.7, "blue-grey (-1) to red-brown (1)"},
     {"moss", kReal, "1", 0.3, 0, 1, 0, 1, "cover of moss on what faces up"},
-    {"family", kInteger, "", kRockFaceted, 0, kRockFamilyCount - 1, 0, kRockFamilyCount - 1,
+    {"family", kInteger, "", kRockRounded, 0, kRockFamilyCount - 1, 0, kRockFamilyCount - 1,
      "0 rounded, 1 faceted, 2 layered"},
 };
 
 constexpr float kLift = 0.45F;    // height of the centre over the ground, of the half-height
 constexpr float kWidest = 1.2F;   // largest stretch along x and z
 constexpr float kHighest = 0.9F;  // largest stretch along y
-constexpr std::uint64_t kLayerItem = std::uint64_t{1} << 32;
-constexpr float kJitter = 0.15F;  // of the tetrahedron's corners; below 1 / (3·√3)
+constexpr std::uint32_t kLayerItem = 1U << 31;
 
 // What distinguishes the families.
 struct Family {
   float amplitude;    // of the parameter
   float height;       // of the stretch along y
-  float facet;        // share of the triangle's own normal in its vertices' normals
-  float ledge, tint;  // of layers: of the distance from the centre, of the albedo
+  float facet;        // share of the triangle's own normal in its vertices'; 0: shared vertices
+  float ledge, tint;  // of layers: of the distance from the centre, of the stored colour
 };
 constexpr Family kFamilies[kRockFamilyCount] = {
-    {0.5F, 1.0F, 0.1F, 0, 0}, {1.0F, 1.0F, 0.7F, 0, 0}, {0.7F, 0.75F, 0.6F, 0.13F, 0.2F}};
+    {0.8F, 1.0F, 0, 0, 0}, {1.0F, 1.0F, 0.7F, 0, 0}, {0.8F, 0.75F, 0, 0.13F, 0.14F}};
 const Family& family_of(const Parameters& p) {
   return kFamilies[static_cast<std::size_t>(p.integer(kRockFamily))];
-}
-
-// The corners of the tetrahedron, jittered and turned, with unit distance from the centre.
-void place_corners(RockShape& shape) {
-  const RockRandom turn(shape.key, 0);
-  const float w = std::abs(turn.f[3]) + 0.1F;
-  const glm::vec3 axis{turn.f[0], turn.f[1], turn.f[2]};
-  const float unit = 1.0F / std::sqrt(axis.x * axis.x + axis.y * axis.y + axis.z * axis.z + w * w);
-  const glm::vec3 q = axis * unit;
-  constexpr float kCorner = 0.577350269F;
-  constexpr std::array<glm::vec3, 4> kTetrahedron{glm::vec3{kCorner, kCorner, kCorner},
-                                                  {kCorner, -kCorner, -kCorner},
-                                                  {-kCorner, kCorner, -kCorner},
-                                                  {-kCorner, -kCorner, kCorner}};
-  for (std::size_t v = 0; v < 4; ++v) {
-    const RockRandom s(shape.key, 2 + v);
-    const glm::vec3 corner = kTetrahedron[v] + glm::vec3(s.f[0], s.f[1], s.f[2]) * kJitter;
-    const glm::vec3 twice = glm::cross(q, corner) * 2.0F;
-    const glm::vec3 turned = corner + twice * (w * unit) + glm::cross(q, twice);
-    shape.corner_radius[v] = 1.0F + shape.amplitude * s.f[3];
-    shape.corners[v] = turned * (1.0F / std::sqrt(glm::dot(turned, turned)));
-  }
 }
 
 RockShape shape_of(const Parameters& p, const core::Bounds& box) {
   const Family& family = family_of(p);
   RockShape shape;
-  shape.key = core::mix64(static_cast<std::uint64_t>(p.integer(kRockSeed)));
+  const std::uint64_t key = core::mix64(static_cast<std::uint64_t>(p.integer(kRockSeed)));
+  shape.key = key;
+  const RockRandom turn(key, 0);
+  std::ranges::copy(turn.f, shape.turn);
+  shape.turn[3] = std::abs(turn.f[3]) + 0.1F;
   shape.amplitude = static_cast<float>(p.real(kRockAmplitude)) * family.amplitude;
   shape.decay = static_cast<float>(p.real(kRockDecay));
-  shape.moss = static_cast<float>(p.real(kRockMoss));
+  const auto moss = static_cast<float>(p.real(kRockMoss));
+  shape.moss = moss * (2.0F - moss);
   shape.facet = family.facet;
   shape.ledge = family.ledge;
   shape.tint = family.tint;
   const auto radius = static_cast<float>(p.real(kRockRadiusM));
-  const RockRandom s(shape.key, 1);
+  const RockRandom s(key, 1);
   shape.stretch = {(1.0F + 0.2F * s.f[0]) * radius,
                    (0.75F + 0.15F * s.f[1]) * radius * family.height,
                    (1.0F + 0.2F * s.f[2]) * radius};
   shape.lift = kLift * shape.stretch.y;
+  shape.rise = 0.8F / shape.stretch.y;
   const float warmth = static_cast<float>(p.real(kRockWarmth)) * 0.22F;
   const float albedo = static_cast<float>(p.real(kRockAlbedo)) * (1.0F + 0.15F * s.f[3]);
-  shape.colour = glm::vec3(1.0F + warmth, 1.0F, 1.0F - warmth) * albedo;
-  const RockRandom layers(shape.key, kLayerItem);
+  shape.colour = glm::vec3(std::sqrt((1.0F + warmth) * albedo), std::sqrt(albedo),
+                           std::sqrt((1.0F - warmth) * albedo)) *
+                 255.0F;
+  const RockRandom layers(key, kLayerItem);
   shape.layer_axis =
       glm::vec3(0.35F * layers.f[1], 1.0F, 0.35F * layers.f[2]) * (2.2F + 0.6F * layers.f[3]);
   shape.layer_phase = layers.f[0];
-  place_corners(shape);
   const glm::vec3 half = box.half_extent();
   shape.box_centre = box.center();
-  shape.box_scale = {1.0F / half.x, 1.0F / half.y, 1.0F / half.z};
+  shape.box_scale = {32767.0F / half.x, 32767.0F / half.y, 32767.0F / half.z};
   return shape;
 }
 
 int subdivisions_at(const Parameters& p, int level) {
   return std::max(static_cast<int>(p.integer(kRockSubdivisions)) - level, 0);
+}
+
+// The id of the shared list of triangles.
+constexpr std::uint32_t index_list(int subdivisions, bool faceted) {
+  return (2U << 24) | (faceted ? 0x100U : 0U) | static_cast<std::uint32_t>(subdivisions + 1);
 }
 
 class RockType final : public ModelType {
@@ -159,8 +148,8 @@ core::Bounds RockType::bounds(const Parameters& p) const {
 
 MeshSize RockType::mesh_size(const Parameters& p, int level) const {
   const int n = subdivisions_at(p, level);
-  const std::uint32_t corners = rock_triangles(n) * 3;
-  return {corners, corners, (2U << 24) | static_cast<std::uint32_t>(n + 1),
+  const bool faceted = family_of(p).facet > 0;
+  return {rock_mesh_vertices(n, faceted), rock_triangles(n) * 3, index_list(n, faceted),
           core::VertexLayout::kModel};
 }
 
@@ -170,18 +159,23 @@ double RockType::complexity(const Parameters& p, int level) const {
 }
 
 void RockType::write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const {
-  const std::uint32_t n = (id & 0xFFU) - 1;
-  PSYGEN_CHECK(id >> 24 == 2 && n <= kMaxSubdivisions, "the index list is one of mesh_size()");
-  PSYGEN_CHECK(out.size() == rock_triangles(static_cast<int>(n)) * 3,
-               "the span has exactly the size of the list");
-  std::iota(out.begin(), out.end(), std::uint16_t{0});
+  const int n = static_cast<int>(id & 0xFFU) - 1;
+  const bool faceted = id == index_list(n, true);
+  PSYGEN_CHECK(n >= 0 && n <= kMaxSubdivisions && (faceted || id == index_list(n, false)),
+               "the index list is one of mesh_size()");
+  PSYGEN_CHECK(out.size() == rock_triangles(n) * 3, "the span has exactly the size of the list");
+  if (faceted) {
+    std::iota(out.begin(), out.end(), std::uint16_t{0});
+  } else {
+    std::ranges::copy(topology_.indices(n), out.begin());
+  }
 }
 
 core::Bounds RockType::synthesize(const Parameters& p, int level, const MeshView& out) const {
   const int n = subdivisions_at(p, level);
-  PSYGEN_CHECK(
-      out.vertices.size() == std::size_t{rock_triangles(n)} * 3 * sizeof(core::ModelVertex),
-      "the destination has exactly the size of the mesh");
+  PSYGEN_CHECK(out.vertices.size() ==
+                   rock_mesh_vertices(n, family_of(p).facet > 0) * sizeof(core::ModelVertex),
+               "the destination has exactly the size of the mesh");
   return mesh_rock(shape_of(p, bounds(p)), topology_, n, out.vertices.data());
 }
 

@@ -1,5 +1,6 @@
-// Vertices and triangles of one rock are the lanes. What is looked up through the topology is kept
-// as four floats per item, so that a look-up is one load; everything else runs on separate arrays.
+// Vertices of one rock are the lanes. What is looked up through the topology is kept as items of
+// four floats, so that a look-up is one load; everything else runs on separate vectors. Faceted
+// rocks take one more step from vertices to the corners of triangles.
 #include "engine/models/rock_kernel.hpp"
 
 #include <algorithm>
@@ -10,354 +11,352 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "engine/models/rock_lanes-inl.hpp"
+#include "engine/models/simd_hash-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t kPad = 16;
-using FloatTag = hn::CappedTag<float, kPad>;
-using IntTag = hn::RebindToSigned<FloatTag>;
-using UintTag = hn::RebindToUnsigned<FloatTag>;
-using Float = hn::Vec<FloatTag>;
+constexpr std::size_t kPad = RockTopology::kPad;
+using Wide = hn::CappedTag<float, kPad>;
+using Narrow = hn::CappedTag<float, 8>;  // for few midpoints
+using Small = hn::CappedTag<float, 4>;   // for the last two vertices: their count is 2 + 2 · 4^n
 
-constexpr std::size_t kVertices = rock_vertices(kMaxSubdivisions);
-constexpr std::size_t kTriangles = rock_triangles(kMaxSubdivisions);
-constexpr std::size_t kChunk = 16;  // triangles that are written together
-
-// Four floats, or four words, of one item.
-#if HWY_TARGET == HWY_SCALAR
-struct Four {
-  float x, y, z, w;
-};
-HWY_INLINE Four load4(const float* p) {
-  return {p[0], p[1], p[2], p[3]};
-}
-HWY_INLINE void store4(const Four& v, float* p) {
-  std::memcpy(p, &v, sizeof v);
-}
-HWY_INLINE Four add(const Four& a, const Four& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w};
-}
-HWY_INLINE Four scaled(const Four& a, float s) {
-  return {a.x * s, a.y * s, a.z * s, a.w * s};
-}
-HWY_INLINE Four area(const Four& a, const Four& b, const Four& c) {
-  const Four p{b.x - a.x, b.y - a.y, b.z - a.z, 0}, q{c.x - a.x, c.y - a.y, c.z - a.z, 0};
-  return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x, 0};
-}
-HWY_INLINE void write_vertex(const std::uint32_t* words, std::uint32_t normal, std::byte* out) {
-  const std::uint32_t all[4] = {words[0], words[1], normal, words[3]};
-  std::memcpy(out, all, sizeof all);
-}
-#else
-using FourTag = hn::FixedTag<float, 4>;
-using Four = hn::Vec<FourTag>;
-HWY_INLINE Four load4(const float* p) {
-  return hn::Load(FourTag(), p);
-}
-HWY_INLINE void store4(Four v, float* p) {
-  hn::Store(v, FourTag(), p);
-}
-HWY_INLINE Four add(Four a, Four b) {
-  return hn::Add(a, b);
-}
-HWY_INLINE Four scaled(Four a, float s) {
-  return hn::Mul(a, hn::Set(FourTag(), s));
-}
-// (y, z, x, w)
-HWY_INLINE Four turned(Four v) {
-  alignas(16) static constexpr std::int32_t kOrder[4] = {1, 2, 0, 3};
-  return hn::TableLookupLanes(v, hn::SetTableIndices(FourTag(), kOrder));
-}
-HWY_INLINE Four area(Four a, Four b, Four c) {
-  const Four p = hn::Sub(b, a), q = hn::Sub(c, a);
-  return turned(hn::Sub(hn::Mul(p, turned(q)), hn::Mul(turned(p), q)));
-}
-HWY_INLINE void write_vertex(const std::uint32_t* words, std::uint32_t normal, std::byte* out) {
-  const hn::FixedTag<std::uint32_t, 4> d;
-  hn::StoreU(hn::InsertLane(hn::Load(d, words), 2, normal), d,
-             reinterpret_cast<std::uint32_t*>(out));
-}
-#endif
-
-// The place of an item in an array of four words for each.
-HWY_INLINE std::size_t at(std::uint16_t item) {
-  return std::size_t{item} * 4;
-}
-
-struct Vectors {
-  Float x, y, z;
-};
-HWY_INLINE Float dot(const Vectors& a, const Vectors& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vectors load(const float* items, Float& fourth) {
-  Vectors v;
-  hn::LoadInterleaved4(FloatTag(), items, v.x, v.y, v.z, fourth);
-  return v;
-}
-
-HWY_INLINE Float set(float value) {
-  return hn::Set(FloatTag(), value);
-}
-HWY_INLINE Float clamp(Float v, float low, float high) {
-  return hn::Min(hn::Max(v, set(low)), set(high));
-}
-// Nearest integer, halves to even, as in packing.hpp.
-HWY_INLINE hn::Vec<UintTag> rounded(Float v) {
-  const auto bits = hn::BitCast(IntTag(), hn::Add(v, set(12582912.0F)));
-  return hn::BitCast(UintTag(), hn::Sub(bits, hn::Set(IntTag(), 0x4B400000)));
-}
-HWY_INLINE hn::Vec<UintTag> snorm16(Float v) {
-  return hn::And(rounded(hn::Mul(clamp(v, -1.0F, 1.0F), set(32767.0F))),
-                 hn::Set(UintTag(), 0xFFFFU));
-}
-HWY_INLINE hn::Vec<UintTag> unorm8(Float v) {
-  return rounded(hn::Mul(clamp(v, 0.0F, 1.0F), set(255.0F)));
-}
-HWY_INLINE hn::Vec<UintTag> albedo8(Float v) {
-  return unorm8(hn::Sqrt(hn::Max(v, hn::Zero(FloatTag()))));
-}
-HWY_INLINE hn::Vec<UintTag> pair(hn::Vec<UintTag> low, hn::Vec<UintTag> high) {
-  return hn::Or(low, hn::ShiftLeft<16>(high));
-}
-
-// Octahedral normal around +Y, snorm16 twice (packing.hpp).
-HWY_INLINE hn::Vec<UintTag> octahedral(const Vectors& n) {
-  const FloatTag d;
-  const Float zero = hn::Zero(d), one = set(1.0F), positive_zero = set(0.0F);
-  const Float size_x = hn::Abs(n.x), size_z = hn::Abs(n.z);
-  const Float scale = hn::Div(one, hn::Add(hn::Add(size_x, hn::Abs(n.y)), size_z));
-  const Float x = hn::Mul(hn::Add(n.x, positive_zero), scale);  // −0 becomes 0
-  const Float z = hn::Mul(hn::Add(n.z, positive_zero), scale);
-  const Float folded_x = hn::CopySignToAbs(hn::Sub(one, hn::Abs(z)), x);
-  const Float folded_z = hn::CopySignToAbs(hn::Sub(one, hn::Abs(x)), z);
-  const auto above = hn::Ge(n.y, zero);
-  // Within [−1, 1] but for a rounding that cannot reach the next integer.
-  const Float to_snorm = set(32767.0F);
-  const auto low = rounded(hn::Mul(hn::IfThenElse(above, x, folded_x), to_snorm));
-  const auto high = rounded(hn::Mul(hn::IfThenElse(above, z, folded_z), to_snorm));
-  return pair(hn::And(low, hn::Set(UintTag(), 0xFFFFU)), high);
-}
-
+// The mesh of a rock of at most kMost subdivisions.
+template <int kMost>
 class RockMesher {
  public:
   RockMesher(const RockShape& shape, const RockTopology& topology, int subdivisions)
       : s_(shape),
         topology_(topology),
         subdivisions_(subdivisions),
-        vertex_count_(rock_vertices(subdivisions)),
-        triangle_count_(rock_triangles(subdivisions)) {}
+        vertex_count_(rock_vertices(subdivisions)) {}
 
   core::Bounds run(std::byte* out) {
     displace();
-    const core::Bounds box = place();
-    find_areas();
-    finish_vertices();
-    write(out);
-    return box;
+    if (s_.facet > 0) {
+      finish<true>(words_);
+      write_facets(out);
+    } else {
+      finish<false>(out);
+    }
+    return box();
   }
 
  private:
-  // Directions times distances from the centre, and the distances, in units of the radius.
+  static constexpr std::size_t kVertices = rock_vertices(kMost);
+
+  // ---- Places ----
+
   void displace() {
-    for (std::size_t v = 0; v < 4; ++v) {
-      const glm::vec3 p = s_.corners[v] * s_.corner_radius[v];
-      const float item[4] = {p.x, p.y, p.z, s_.corner_radius[v]};
-      std::memcpy(place_ + 4 * v, item, sizeof item);
-      grain_[v] = RockRandom(s_.key, 2 + v).f[1];
-    }
+    place_corners();
     float amplitude = s_.amplitude;
     for (int n = 1; n <= subdivisions_; ++n) {
       amplitude *= s_.decay;
-      for (std::size_t v = rock_vertices(n - 1); v < rock_vertices(n); v += hn::Lanes(FloatTag()))
-        find_midpoints(v, rock_vertices(n), amplitude);
+      const bool have_children = n < subdivisions_;
+      const std::size_t end = rock_vertices(n);
+      std::size_t v = rock_vertices(n - 1);
+      for (; v + hn::Lanes(Narrow()) < end; v += hn::Lanes(Wide()))
+        find_midpoints(Wide(), v, amplitude, have_children);
+      if (v < end) find_midpoints(Narrow(), v, amplitude, have_children);
+    }
+    // Whole groups of four for box().
+    for (std::size_t v = vertex_count_; v % 4 != 0; ++v)
+      std::memcpy(place_ + 4 * v, place_, 4 * sizeof(float));
+  }
+
+  // Numbers 0 and 1, or 2 and 3, of the items of vertices.
+  template <class D>
+  HWY_INLINE hn::Vec<D> numbers(D d, Uint<D> steps, std::uint64_t word, hn::Vec<D>& second) const {
+    const hn::RebindToUnsigned<D> du;
+    const auto hash = mix32(du, hn::Add(steps, hn::Set(du, static_cast<std::uint32_t>(word))));
+    second = number(d, hn::ShiftRight<16>(hash));
+    return number(d, hn::And(hash, hn::Set(du, 0xFFFFU)));
+  }
+  template <class D>
+  HWY_INLINE static hn::Vec<D> number(D d, Uint<D> bits) {
+    const auto real = hn::ConvertTo(d, hn::BitCast(hn::RebindToSigned<D>(), bits));
+    return hn::Sub(hn::Mul(real, hn::Set(d, 1.0F / 32768.0F)), hn::Set(d, 1.0F));
+  }
+  template <class D>
+  HWY_INLINE static Uint<D> steps(D, std::size_t first) {
+    const hn::RebindToUnsigned<D> du;
+    return hn::Mul(hn::Iota(du, static_cast<std::uint32_t>(first + 2)),
+                   hn::Set(du, RockRandom::kStep));
+  }
+
+  // The corners of the tetrahedron, jittered and turned.
+  void place_corners() {
+    const Small d;
+    constexpr float kCorner = 0.577350269F;
+    HWY_ALIGN static constexpr float kX[4] = {kCorner, kCorner, -kCorner, -kCorner};
+    HWY_ALIGN static constexpr float kY[4] = {kCorner, -kCorner, kCorner, -kCorner};
+    HWY_ALIGN static constexpr float kZ[4] = {kCorner, -kCorner, -kCorner, kCorner};
+    for (std::size_t v = 0; v < 4; v += hn::Lanes(d)) {
+      Vectors<Small> r;
+      r.x = numbers(d, steps(d, v), s_.key, r.y);
+      r.z = numbers(d, steps(d, v), s_.key >> 32, r.w);
+      hn::StoreU(hn::Mul(hn::Add(r.w, r.y), hn::Set(d, 0.5F)), d, grain_ + v);
+      const auto jitter = hn::Set(d, kRockJitter), zero = hn::Zero(d);
+      const Vectors<Small> corner{hn::Add(hn::Load(d, kX + v), hn::Mul(r.x, jitter)),
+                                  hn::Add(hn::Load(d, kY + v), hn::Mul(r.y, jitter)),
+                                  hn::Add(hn::Load(d, kZ + v), hn::Mul(r.z, jitter)), zero};
+      const Vectors<Small> p = turned(corner);
+      settle(d, v, p, hn::Div(hn::Set(d, 1.0F), hn::Sqrt(dot(p, p))),
+             hn::Add(hn::Set(d, 1.0F), hn::Mul(hn::Set(d, s_.amplitude), r.w)), true);
     }
   }
-
-  void find_midpoints(std::size_t first, std::size_t end, float amplitude) {
-    const FloatTag d;
-    const UintTag du;
-    const std::size_t count = std::min(hn::Lanes(d), end - first);
-    HWY_ALIGN std::uint64_t hash[kPad];
-    HWY_ALIGN float middle[4 * kPad];
-    const RockTopology::Edge* const edges = topology_.parents().data() + (first - 4);
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
-      hash[i] = core::mix64(s_.key + 0x9E3779B97F4A7C15ull * (first + i + 3));
-    for (std::size_t i = 0; i < count; ++i)
-      store4(scaled(add(load4(place_ + at(edges[i].a)), load4(place_ + at(edges[i].b))), 0.5F),
-             middle + 4 * i);
-    std::fill(middle + 4 * count, middle + 4 * hn::Lanes(d), 1.0F);
-    hn::Vec<UintTag> low, unused;
-    hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(hash), low, unused);
-    hn::StoreU(from_16_bits(hn::ShiftRight<16>(low)), d, grain_ + first);
-    const Float move = from_16_bits(hn::And(low, hn::Set(du, 0xFFFFU)));
-    Float radius;
-    const Vectors m = load(middle, radius);
-    radius = hn::Mul(radius, hn::Add(set(1.0F), hn::Mul(set(amplitude), move)));
-    const Float scale = hn::Div(radius, hn::Sqrt(dot(m, m)));
-    hn::StoreInterleaved4(hn::Mul(m.x, scale), hn::Mul(m.y, scale), hn::Mul(m.z, scale), radius, d,
-                          place_ + 4 * first);
-  }
-  HWY_INLINE static Float from_16_bits(hn::Vec<UintTag> bits) {
-    return hn::Sub(
-        hn::Mul(hn::ConvertTo(FloatTag(), hn::BitCast(IntTag(), bits)), set(1.0F / 32768.0F)),
-        set(1.0F));
+  // By the quaternion q = (a, w): v |q|² + 2 w a × v + 2 a × (a × v) with |q|² = a² + w².
+  HWY_INLINE Vectors<Small> turned(const Vectors<Small>& v) const {
+    const Small d;
+    const float* const q = s_.turn;
+    const Vectors<Small> axis{hn::Set(d, q[0]), hn::Set(d, q[1]), hn::Set(d, q[2]), hn::Zero(d)};
+    const auto size = hn::Set(d, ((q[0] * q[0] + q[1] * q[1]) + q[2] * q[2]) + q[3] * q[3]);
+    const auto w = hn::Set(d, q[3]), two = hn::Set(d, 2.0F);
+    const Vectors<Small> a = cross(axis, v), b = cross(axis, a);
+    const auto sum = [&](hn::Vec<Small> v0, hn::Vec<Small> a0, hn::Vec<Small> b0) HWY_ATTR {
+      return hn::Add(hn::Mul(v0, size), hn::Mul(hn::Add(hn::Mul(w, a0), b0), two));
+    };
+    return {sum(v.x, a.x, b.x), sum(v.y, a.y, b.y), sum(v.z, a.z, b.z), v.w};
   }
 
-  // Layers, stretch and lift; places become metres, their fourth number the band of layers.
-  core::Bounds place() {
-    const FloatTag d;
-    Vectors least{set(1e30F), set(1e30F), set(1e30F)}, most{set(-1e30F), set(-1e30F), set(-1e30F)};
-    for (std::size_t v = 0; v < vertex_count_; v += hn::Lanes(d)) {
-      Float radius;
-      Vectors p = load(place_ + 4 * v, radius);
-      Float band = hn::Zero(d);
-      if (s_.ledge > 0) {
-        const Vectors axis{set(s_.layer_axis.x), set(s_.layer_axis.y), set(s_.layer_axis.z)};
-        const Float t = hn::Add(hn::Div(dot(p, axis), radius), set(s_.layer_phase));
-        const Float wave = hn::Sub(hn::Mul(hn::Sub(t, hn::Floor(t)), set(2.0F)), set(1.0F));
-        band = hn::Sub(hn::Mul(hn::Abs(wave), set(2.0F)), set(1.0F));
-        const Float factor = hn::Add(set(1.0F), hn::Mul(set(s_.ledge), band));
-        p = {hn::Mul(p.x, factor), hn::Mul(p.y, factor), hn::Mul(p.z, factor)};
+  // Beyond the last midpoint of a step this writes vertices of no meaning.
+  template <class D>
+  HWY_INLINE void find_midpoints(D d, std::size_t first, float amplitude, bool have_children) {
+    const Vectors<D> m =
+        to_lanes(d, add(load_items(d, unit_, topology_.parents()[0].data() + (first - 4)),
+                        load_items(d, unit_, topology_.parents()[1].data() + (first - 4))));
+    hn::Vec<D> grain;
+    const auto move = numbers(d, steps(d, first), s_.key, grain);
+    hn::StoreU(hn::Mul(hn::Add(move, grain), hn::Set(d, 0.5F)), d, grain_ + first);
+    settle(d, first, m, hn::Div(hn::Set(d, 1.0F), hn::Sqrt(dot(m, m))),
+           hn::Mul(m.w, hn::Add(hn::Set(d, 0.5F), hn::Mul(hn::Set(d, 0.5F * amplitude), move))),
+           have_children);
+  }
+
+  // Vertices in the direction of `m`, whose length is 1 / `unit`, at a distance from the centre:
+  // for the midpoints of further steps, and in metres after layers, stretch and lift.
+  template <class D>
+  HWY_INLINE void settle(D d, std::size_t v, const Vectors<D>& m, hn::Vec<D> unit,
+                         hn::Vec<D> radius, bool have_children) {
+    const auto length = hn::Mul(unit, radius);
+    Vectors<D> p{hn::Mul(m.x, length), hn::Mul(m.y, length), hn::Mul(m.z, length), radius};
+    if (have_children) hn::StoreInterleaved4(p.x, p.y, p.z, p.w, d, unit_ + 4 * v);
+    if (s_.ledge > 0) {
+      const Vectors<D> axis{hn::Set(d, s_.layer_axis.x), hn::Set(d, s_.layer_axis.y),
+                            hn::Set(d, s_.layer_axis.z), radius};
+      const auto t = hn::Add(hn::Mul(dot(m, axis), unit), hn::Set(d, s_.layer_phase));
+      const auto wave = hn::Abs(hn::Sub(hn::Sub(t, hn::Floor(t)), hn::Set(d, 0.5F)));
+      const auto band = hn::Sub(hn::Mul(wave, hn::Set(d, 4.0F)), hn::Set(d, 1.0F));
+      const auto factor = hn::Add(hn::Set(d, 1.0F), hn::Mul(hn::Set(d, s_.ledge), band));
+      p = {hn::Mul(p.x, factor), hn::Mul(p.y, factor), hn::Mul(p.z, factor), band};
+      hn::StoreU(band, d, band_ + v);
+    }
+    p.x = hn::Mul(p.x, hn::Set(d, s_.stretch.x));
+    p.y = hn::Add(hn::Mul(p.y, hn::Set(d, s_.stretch.y)), hn::Set(d, s_.lift));
+    p.z = hn::Mul(p.z, hn::Set(d, s_.stretch.z));
+    hn::StoreInterleaved4(p.x, p.y, p.z, p.w, d, place_ + 4 * v);
+    hn::StoreU(p.x, d, x_ + v);
+    hn::StoreU(p.y, d, y_ + v);
+    hn::StoreU(p.z, d, z_ + v);
+  }
+
+  core::Bounds box() const {
+    const Wide d;
+    constexpr std::size_t kLanes = hn::MaxLanes(Wide()), kGroup = std::max<std::size_t>(kLanes, 4);
+    float low[4], high[4];
+    for (std::size_t i = 0; i < kGroup; i += kLanes) {
+      auto least = hn::Load(d, place_ + i), most = least;
+      for (std::size_t k = kGroup; k < 4 * vertex_count_; k += kGroup) {
+        least = hn::Min(least, hn::Load(d, place_ + k + i));
+        most = hn::Max(most, hn::Load(d, place_ + k + i));
       }
-      p.x = hn::Mul(p.x, set(s_.stretch.x));
-      p.y = hn::Add(hn::Mul(p.y, set(s_.stretch.y)), set(s_.lift));
-      p.z = hn::Mul(p.z, set(s_.stretch.z));
-      hn::StoreInterleaved4(p.x, p.y, p.z, band, d, place_ + 4 * v);
-      const auto used = hn::FirstN(d, vertex_count_ - v);
-      least.x = hn::Min(least.x, hn::IfThenElse(used, p.x, least.x));
-      least.y = hn::Min(least.y, hn::IfThenElse(used, p.y, least.y));
-      least.z = hn::Min(least.z, hn::IfThenElse(used, p.z, least.z));
-      most.x = hn::Max(most.x, hn::IfThenElse(used, p.x, most.x));
-      most.y = hn::Max(most.y, hn::IfThenElse(used, p.y, most.y));
-      most.z = hn::Max(most.z, hn::IfThenElse(used, p.z, most.z));
+      store_folded(d, least, low + i, [](auto a, auto b) HWY_ATTR { return hn::Min(a, b); });
+      store_folded(d, most, high + i, [](auto a, auto b) HWY_ATTR { return hn::Max(a, b); });
     }
-    return {{lowest(least.x), lowest(least.y), lowest(least.z)},
-            {-lowest(hn::Neg(most.x)), -lowest(hn::Neg(most.y)), -lowest(hn::Neg(most.z))}};
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
   }
-  HWY_INLINE static float lowest(Float v) { return hn::GetLane(hn::MinOfLanes(FloatTag(), v)); }
-
-  // Of every triangle: its normal times twice its area, and what makes that `facet` long.
-  void find_areas() {
-    const FloatTag d;
-    const std::uint16_t* const corner = topology_.indices(subdivisions_).data();
-    for (std::size_t t = 0; t < triangle_count_; ++t)
-      store4(area(load4(place_ + at(corner[3 * t])), load4(place_ + at(corner[3 * t + 1])),
-                  load4(place_ + at(corner[3 * t + 2]))),
-             area_ + 4 * t);
-    std::fill_n(area_ + 4 * triangle_count_, 4, 0.0F);  // the triangle that vertices lack
-    for (std::size_t t = 0; t < triangle_count_; t += hn::Lanes(d)) {
-      Float unused;
-      const Vectors a = load(area_ + 4 * t, unused);
-      hn::Store(hn::Div(set(s_.facet), hn::Sqrt(dot(a, a))), d, area_scale_ + t);
+  // Four numbers, or one on the scalar target, from those of all blocks.
+  template <class D, class Fold>
+  HWY_INLINE static void store_folded(D d, hn::Vec<D> v, float* to,
+                                      [[maybe_unused]] const Fold& fold) {
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (hn::MaxLanes(D()) > 4) {
+      const hn::Half<D> half;
+      return store_folded(half, fold(hn::LowerHalf(half, v), hn::UpperHalf(half, v)), to, fold);
     }
+#endif
+    hn::StoreU(v, d, to);
   }
 
-  // Normals of the vertices, 1 − facet long, and all words of their bytes but the normal's.
-  void finish_vertices() {
-    const FloatTag d;
-    const UintTag du;
-    const RockTopology::Fan* const fans = topology_.fans(subdivisions_).data();
-    for (std::size_t v = 0; v < vertex_count_; v += hn::Lanes(d)) {
-      HWY_ALIGN float sums[4 * kPad];
-      const std::size_t count = std::min(hn::Lanes(d), vertex_count_ - v);
-      for (std::size_t i = 0; i < count; ++i) {
-        const RockTopology::Fan& fan = fans[v + i];
-        store4(add(add(add(load4(area_ + at(fan[0])), load4(area_ + at(fan[1]))),
-                       add(load4(area_ + at(fan[2])), load4(area_ + at(fan[3])))),
-                   add(load4(area_ + at(fan[4])), load4(area_ + at(fan[5])))),
-               sums + 4 * i);
-      }
-      std::fill(sums + 4 * count, sums + 4 * hn::Lanes(d), 1.0F);
-      Float band;
-      const Vectors n = load(sums, band);
-      const Float unit = hn::Div(set(1.0F), hn::Sqrt(dot(n, n)));
-      const Float length = hn::Mul(unit, set(1.0F - s_.facet));
+  // ---- Vertices ----
+
+  // All vertices as core::ModelVertex; for facets their normals apart, 1 − facet long.
+  template <bool kFaceted>
+  void finish(std::byte* out) {
+    std::size_t v = 0;
+    for (; v + hn::Lanes(Wide()) <= vertex_count_; v += hn::Lanes(Wide()))
+      write<kFaceted>(Wide(), v, reinterpret_cast<std::uint32_t*>(out + 16 * v));
+    for (; v < vertex_count_; v += hn::Lanes(Small())) {
+      HWY_ALIGN std::uint32_t last[16];
+      write<kFaceted>(Small(), v, last);
+      std::memcpy(out + 16 * v, last, 16 * std::min(hn::Lanes(Small()), vertex_count_ - v));
+    }
+  }
+
+  template <bool kFaceted, class D>
+  HWY_INLINE void write(D d, std::size_t v, std::uint32_t* out) {
+    const hn::RebindToUnsigned<D> du;
+    const Vectors<D> n = normals(d, v);
+    const auto scale = octahedral_scale(d, n);
+    auto normal = hn::Zero(du);
+    if constexpr (kFaceted) {
+      const auto length = hn::Div(hn::Set(d, 1.0F - s_.facet), hn::Sqrt(dot(n, n)));
       hn::StoreInterleaved4(hn::Mul(n.x, length), hn::Mul(n.y, length), hn::Mul(n.z, length),
                             hn::Zero(d), d, normal_ + 4 * v);
-      const Vectors p = load(place_ + 4 * v, band);
-      const auto x = snorm16(hn::Mul(hn::Sub(p.x, set(s_.box_centre.x)), set(s_.box_scale.x)));
-      const auto y = snorm16(hn::Mul(hn::Sub(p.y, set(s_.box_centre.y)), set(s_.box_scale.y)));
-      const auto z = snorm16(hn::Mul(hn::Sub(p.z, set(s_.box_centre.z)), set(s_.box_scale.z)));
-      hn::Vec<UintTag> ambient, colour;
-      paint(p.y, hn::Mul(n.y, unit), hn::LoadU(d, grain_ + v), band, ambient, colour);
-      hn::StoreInterleaved4(pair(x, y), pair(z, ambient), hn::Zero(du), colour, du, words_ + 4 * v);
+    } else {
+      normal = octahedral(d, n, scale);
     }
+    const auto height = hn::LoadU(d, y_ + v);
+    const auto x = packed(d, hn::LoadU(d, x_ + v), s_.box_centre.x, s_.box_scale.x);
+    const auto y = packed(d, height, s_.box_centre.y, s_.box_scale.y);
+    const auto z = packed(d, hn::LoadU(d, z_ + v), s_.box_centre.z, s_.box_scale.z);
+    Uint<D> ambient, colour;
+    paint(d, v, height, hn::Mul(n.y, scale), ambient, colour);
+    hn::StoreInterleaved4(pair(d, x, y), pair(d, z, ambient), normal, colour, du, out);
+  }
+  // As snorm16; the box has room on all sides.
+  template <class D>
+  HWY_INLINE static Uint<D> packed(D d, hn::Vec<D> place, float centre, float scale) {
+    return rounded(d, hn::Mul(hn::Sub(place, hn::Set(d, centre)), hn::Set(d, scale)));
   }
 
-  // Ambient light, and colour with the material above it.
-  HWY_INLINE void paint(Float height, Float up, Float grain, Float band, hn::Vec<UintTag>& ambient,
-                        hn::Vec<UintTag>& colour) const {
-    const Float one = set(1.0F);
-    const Float relative = hn::Mul(height, set(1.0F / s_.stretch.y));
-    const Float rise = clamp(hn::Mul(hn::Add(relative, set(0.2F)), set(0.8F)), 0.0F, 1.0F);
-    ambient = unorm8(hn::Mul(hn::Add(set(0.3F), hn::Mul(set(0.7F), rise)),
-                             hn::Add(set(0.8F), hn::Mul(set(0.2F), up))));
-    const Float green =
-        hn::Add(hn::Mul(hn::Sub(up, set(0.35F)), set(2.5F)), hn::Mul(grain, set(0.8F)));
-    const Float cover = hn::Mul(set(s_.moss), clamp(green, 0.0F, 1.0F));
-    const Float tone = hn::Mul(hn::Mul(hn::Add(one, hn::Mul(set(0.22F), grain)),
-                                       hn::Add(set(0.75F), hn::Mul(set(0.25F), rise))),
-                               hn::Add(one, hn::Mul(set(s_.tint), band)));
-    const auto red = channel(s_.colour.x, tone, 0.07F, cover);
-    const auto middle = channel(s_.colour.y, tone, 0.11F, cover);
-    const auto blue = channel(s_.colour.z, tone, 0.03F, cover);
-    colour = hn::Or(hn::Or(red, hn::ShiftLeft<8>(middle)), hn::ShiftLeft<16>(blue));
+  // Twice the area of the ring of neighbours, as a vector: the sum of the triangles' own.
+  template <class D>
+  HWY_INLINE Vectors<D> normals(D d, std::size_t v) const {
+    const std::array<RockTopology::Offsets, 6>& rings = topology_.rings(subdivisions_);
+    const auto ring = [&](std::size_t i) { return rings[i].data() + v; };
+    Vectors<D> a, b;
+    if constexpr (hn::MaxLanes(D()) == 16 && kMost == 2) {
+      const Vectors<D> p1 = look_up(d, ring(1)), p4 = look_up(d, ring(4));
+      a = cross(minus(look_up(d, ring(3)), p1), minus(p4, look_up(d, ring(2))));
+      b = cross(minus(look_up(d, ring(5)), p1), minus(look_up(d, ring(0)), p4));
+    } else {
+      const Items<D> p1 = load_items(d, place_, ring(1)), p4 = load_items(d, place_, ring(4));
+      a = cross(difference(d, load_items(d, place_, ring(3)), p1),
+                difference(d, p4, load_items(d, place_, ring(2))));
+      b = cross(difference(d, load_items(d, place_, ring(5)), p1),
+                difference(d, load_items(d, place_, ring(0)), p4));
+    }
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z), a.w};
   }
-  HWY_INLINE static hn::Vec<UintTag> channel(float stone_albedo, Float tone, float moss_albedo,
-                                             Float cover) {
-    const Float stone = hn::Mul(set(stone_albedo), tone);
-    return albedo8(hn::Add(stone, hn::Mul(hn::Sub(set(moss_albedo), stone), cover)));
+
+  // Places of vertices by their offsets where all of them fit into three vectors, no matter which.
+  template <class D>
+  HWY_INLINE Vectors<D> look_up(D d, const std::uint16_t* offsets) const {
+    const hn::RebindToSigned<D> di;
+    const auto vertex =
+        hn::ShiftRight<2>(hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::uint16_t, D>(), offsets)));
+    const auto in_third = hn::RebindMask(d, hn::Gt(vertex, hn::Set(di, 31)));
+    const auto lane = hn::IndicesFromVec(d, hn::And(vertex, hn::Set(di, 15)));
+    const auto of = [&](const float* places) HWY_ATTR {
+      const auto first = hn::Load(d, places), second = hn::Load(d, places + 16);
+#if HWY_TARGET == HWY_AVX3
+      const hn::Vec<D> some{_mm512_permutex2var_ps(first.raw, vertex.raw, second.raw)};
+#else
+      const auto some =
+          hn::IfThenElse(hn::RebindMask(d, hn::Gt(vertex, hn::Set(di, 15))),
+                         hn::TableLookupLanes(second, lane), hn::TableLookupLanes(first, lane));
+#endif
+      return hn::IfThenElse(in_third, hn::TableLookupLanes(hn::Load(d, places + 32), lane), some);
+    };
+    return {of(x_), of(y_), of(z_), hn::Zero(d)};
   }
+
+  // Ambient light, and the root of the albedo, of vertices at a height with normals so steep.
+  template <class D>
+  HWY_INLINE void paint(D d, std::size_t v, hn::Vec<D> height, hn::Vec<D> up, Uint<D>& ambient,
+                        Uint<D>& colour) const {
+    const hn::RebindToUnsigned<D> du;
+    const auto one = hn::Set(d, 1.0F);
+    const auto grain = hn::LoadU(d, grain_ + v);
+    const auto rise =
+        clamp(d, hn::Add(hn::Mul(height, hn::Set(d, s_.rise)), hn::Set(d, kRiseAtFoot)), 0, 1);
+    ambient = rounded(
+        d, hn::Mul(hn::Add(hn::Set(d, 255.0F * 0.3F), hn::Mul(hn::Set(d, 255.0F * 0.7F), rise)),
+                   hn::Add(hn::Set(d, 0.8F), hn::Mul(hn::Set(d, 0.2F), up))));
+    const auto green = hn::Add(hn::Mul(hn::Sub(up, hn::Set(d, 0.35F)), hn::Set(d, 4.0F)),
+                               hn::Mul(grain, hn::Set(d, 2.0F)));
+    const auto cover = hn::Mul(hn::Set(d, s_.moss), clamp(d, green, 0, 1));
+    auto tone = hn::Mul(hn::Add(one, hn::Mul(hn::Set(d, 0.25F), grain)),
+                        hn::Add(hn::Set(d, 0.86F), hn::Mul(hn::Set(d, 0.14F), rise)));
+    if (s_.ledge > 0)
+      tone = hn::Mul(tone, hn::Add(one, hn::Mul(hn::Set(d, s_.tint), hn::LoadU(d, band_ + v))));
+    const auto red = channel(d, s_.colour.x, tone, 255.0F * 0.26F, cover);
+    const auto middle = channel(d, s_.colour.y, tone, 255.0F * 0.33F, cover);
+    const auto blue = channel(d, s_.colour.z, tone, 255.0F * 0.17F, cover);
+    const auto sum = hn::Add(hn::Add(red, hn::ShiftLeft<8>(middle)), hn::ShiftLeft<16>(blue));
+    colour = hn::Sub(sum, hn::Set(du, kRounding + (kRounding << 8)));
+  }
+  // 0 … 255 plus kRounding.
+  template <class D>
+  HWY_INLINE static Uint<D> channel(D d, float stone_colour, hn::Vec<D> tone, float moss_colour,
+                                    hn::Vec<D> cover) {
+    const auto stone = hn::Mul(hn::Set(d, stone_colour), tone);
+    const auto mixed = hn::Add(stone, hn::Mul(hn::Sub(hn::Set(d, moss_colour), stone), cover));
+    return rounded(d, hn::Min(mixed, hn::Set(d, 255.0F)));
+  }
+
+  // ---- Facets ----
 
   // The corners of all triangles, with normals between the triangle's and the vertex's.
-  void write(std::byte* out) const {
-    const FloatTag d;
-    const std::uint16_t* corner = topology_.indices(subdivisions_).data();
-    HWY_ALIGN float mixed[4 * 3 * kChunk];
-    HWY_ALIGN std::uint32_t packed[3 * kChunk];
-    for (std::size_t first = 0; first < triangle_count_; first += kChunk) {
-      const std::size_t count = std::min(kChunk, triangle_count_ - first);
-      if (count < kChunk) std::fill_n(mixed, 4 * 3 * kChunk, 1.0F);
-      for (std::size_t t = 0; t < count; ++t) {
-        const Four face = scaled(load4(area_ + 4 * (first + t)), area_scale_[first + t]);
-        const std::uint16_t* const c = corner + 3 * t;
-        float* const to = mixed + 12 * t;
-        store4(add(load4(normal_ + at(c[0])), face), to);
-        store4(add(load4(normal_ + at(c[1])), face), to + 4);
-        store4(add(load4(normal_ + at(c[2])), face), to + 8);
+  void write_facets(std::byte* out) const {
+    const Wide d;
+    const std::array<RockTopology::Offsets, 3>& corners = topology_.corners(subdivisions_);
+    const std::size_t triangle_count = rock_triangles(subdivisions_);
+    for (std::size_t t = 0; t < triangle_count; t += hn::Lanes(d)) {
+      const Items<Wide> a = load_items(d, place_, corners[0].data() + t);
+      const Items<Wide> b = load_items(d, place_, corners[1].data() + t);
+      const Items<Wide> c = load_items(d, place_, corners[2].data() + t);
+      const Vectors<Wide> face = cross(difference(d, b, a), difference(d, c, a));
+      const auto length = hn::Div(hn::Set(d, s_.facet), hn::Sqrt(dot(face, face)));
+      const std::size_t count = std::min(hn::Lanes(d), triangle_count - t);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint16_t* const corner = corners[i].data() + t;
+        Vectors<Wide> n = to_lanes(d, load_items(d, normal_, corner));
+        n.x = hn::Add(n.x, hn::Mul(face.x, length));
+        n.y = hn::Add(n.y, hn::Mul(face.y, length));
+        n.z = hn::Add(n.z, hn::Mul(face.z, length));
+        HWY_ALIGN std::uint32_t packed[kPad];
+        hn::Store(octahedral(d, n, octahedral_scale(d, n)), hn::RebindToUnsigned<Wide>(), packed);
+        std::byte* to = out + 16 * (3 * t + i);
+        for (std::size_t k = 0; k < count; ++k, to += 16 * 3) {
+          std::memcpy(to, words_ + std::size_t{corner[k]} * 4, 16);
+          std::memcpy(to + 8, packed + k, 4);
+        }
       }
-      for (std::size_t i = 0; i < 3 * count; i += hn::Lanes(d)) {
-        Float unused;
-        hn::Store(octahedral(load(mixed + 4 * i, unused)), UintTag(), packed + i);
-      }
-      for (std::size_t k = 0; k < 3 * count; k += 3) {
-        write_vertex(words_ + at(corner[k]), packed[k], out + 16 * k);
-        write_vertex(words_ + at(corner[k + 1]), packed[k + 1], out + 16 * k + 16);
-        write_vertex(words_ + at(corner[k + 2]), packed[k + 2], out + 16 * k + 32);
-      }
-      corner += 3 * kChunk;
-      out += 16 * 3 * kChunk;
     }
   }
 
   const RockShape& s_;
   const RockTopology& topology_;
   const int subdivisions_;
-  const std::size_t vertex_count_, triangle_count_;
+  const std::size_t vertex_count_;
+  // Items: places from the centre with the distance, places in metres, normals. Then components.
+  HWY_ALIGN float unit_[4 * (kVertices + kPad)];
   HWY_ALIGN float place_[4 * (kVertices + kPad)];
   HWY_ALIGN float normal_[4 * (kVertices + kPad)];
-  HWY_ALIGN std::uint32_t words_[4 * (kVertices + kPad)];
-  HWY_ALIGN float grain_[kVertices + kPad];
-  HWY_ALIGN float area_[4 * (kTriangles + kPad)];
-  HWY_ALIGN float area_scale_[kTriangles + kPad];
+  HWY_ALIGN std::byte words_[16 * (kVertices + kPad)];
+  HWY_ALIGN float x_[kVertices + kPad], y_[kVertices + kPad], z_[kVertices + kPad];
+  HWY_ALIGN float grain_[kVertices + kPad], band_[kVertices + kPad];
 };
 
 core::Bounds mesh(const RockShape& shape, const RockTopology& topology, int subdivisions,
                   std::byte* out) {
-  return RockMesher(shape, topology, subdivisions).run(out);
+  if (subdivisions <= 2) return RockMesher<2>(shape, topology, subdivisions).run(out);
+  return RockMesher<kMaxSubdivisions>(shape, topology, subdivisions).run(out);
 }
 
 }  // namespace psygen::models::HWY_NAMESPACE

@@ -1,9 +1,13 @@
 #include "engine/models/rock_topology.hpp"
 
+#include <algorithm>
+
 namespace psygen::models {
 namespace {
 
-using Edge = RockTopology::Edge;
+struct Edge {
+  std::uint16_t a, b;
+};
 
 // A triangle with its edges: edge i runs between corner i and corner i + 1.
 struct Triangle {
@@ -49,16 +53,51 @@ Surface split(const Surface& coarse, std::uint32_t first_midpoint) {
   return fine;
 }
 
-std::vector<RockTopology::Fan> fans_of(std::span<const std::uint16_t> corners,
-                                       std::size_t vertex_count) {
-  const std::size_t triangle_count = corners.size() / 3;
-  RockTopology::Fan none;
-  none.fill(static_cast<std::uint16_t>(triangle_count));
-  std::vector<RockTopology::Fan> fans(vertex_count, none);
-  std::vector<std::uint8_t> sizes(vertex_count);
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    fans[corners[i]][sizes[corners[i]]++] = static_cast<std::uint16_t>(i / 3);
-  return fans;
+constexpr std::uint16_t offset_of(std::uint16_t vertex) {
+  return static_cast<std::uint16_t>(4 * vertex);
+}
+
+std::array<RockTopology::Offsets, 3> corners_of(std::span<const std::uint16_t> indices) {
+  std::array<RockTopology::Offsets, 3> corners;
+  for (RockTopology::Offsets& list : corners)
+    list.assign(indices.size() / 3 + RockTopology::kPad, 0);
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    corners[i % 3][i / 3] = offset_of(indices[i]);
+  return corners;
+}
+
+// The neighbours of a vertex in order; of each triangle around it, the two other corners are given.
+std::array<std::uint16_t, 6> ring_of(std::span<const std::array<std::uint16_t, 2>> sides) {
+  std::array<std::uint16_t, 6> ring{};
+  std::uint16_t at = sides[0][0];
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    ring[i] = at;
+    const auto next = std::ranges::find(sides, at, [](const auto& side) { return side[0]; });
+    at = (*next)[1];
+  }
+  if (sides.size() == 3) {
+    ring[3] = ring[4] = ring[2];
+    ring[5] = ring[0];
+  }
+  return ring;
+}
+
+std::array<RockTopology::Offsets, 6> rings_of(std::span<const std::uint16_t> indices,
+                                              std::size_t vertex_count) {
+  std::vector<std::vector<std::array<std::uint16_t, 2>>> sides(vertex_count);
+  for (std::size_t t = 0; t < indices.size(); t += 3) {
+    for (std::size_t i = 0; i < 3; ++i)
+      sides[indices[t + i]].push_back({indices[t + (i + 1) % 3], indices[t + (i + 2) % 3]});
+  }
+  std::array<RockTopology::Offsets, 6> rings;
+  for (RockTopology::Offsets& list : rings)
+    list.assign(vertex_count + RockTopology::kPad, 0);
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    const std::array<std::uint16_t, 6> ring = ring_of(sides[v]);
+    for (std::size_t i = 0; i < 6; ++i)
+      rings[i][v] = offset_of(ring[i]);
+  }
+  return rings;
 }
 
 }  // namespace
@@ -70,17 +109,23 @@ RockTopology::RockTopology() {
                        {{0, 2, 3}, {1, 5, 2}},
                        {{0, 3, 1}, {2, 4, 0}},
                        {{1, 3, 2}, {4, 5, 3}}};
-  parents_.reserve(rock_vertices(kMaxSubdivisions) - 4);
   for (int n = 0;; ++n) {
-    std::vector<std::uint16_t>& list = indices_[static_cast<std::size_t>(n)];
+    const auto step = static_cast<std::size_t>(n);
+    std::vector<std::uint16_t>& list = indices_[step];
     list.reserve(rock_triangles(n) * 3);
     for (const Triangle& t : surface.triangles)
       list.insert(list.end(), t.corner.begin(), t.corner.end());
-    fans_[static_cast<std::size_t>(n)] = fans_of(list, rock_vertices(n));
-    if (n == kMaxSubdivisions) return;
-    parents_.insert(parents_.end(), surface.edges.begin(), surface.edges.end());
+    corners_[step] = corners_of(list);
+    rings_[step] = rings_of(list, rock_vertices(n));
+    if (n == kMaxSubdivisions) break;
+    for (const Edge& e : surface.edges) {
+      parents_[0].push_back(offset_of(e.a));
+      parents_[1].push_back(offset_of(e.b));
+    }
     surface = split(surface, rock_vertices(n));
   }
+  for (Offsets& list : parents_)
+    list.resize(list.size() + kPad);
 }
 
 }  // namespace psygen::models

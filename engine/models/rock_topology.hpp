@@ -1,6 +1,7 @@
 // The surface of a tetrahedron whose triangles are split into four again and again: who is the
-// midpoint of whom, and the triangles of each step. Constant, so all rocks share it. Vertex numbers
-// are nested: those of n subdivisions are the first ones of n + 1. Built once, then read-only.
+// midpoint of whom, the triangles of each step and the ring of neighbours around every vertex.
+// Constant, so all rocks share it. Vertex numbers are nested: those of n subdivisions are the first
+// ones of n + 1. Built once, then read-only.
 #pragma once
 
 #include <array>
@@ -21,31 +22,36 @@ constexpr std::uint32_t rock_vertices(int subdivisions) {
 
 class RockTopology {
  public:
-  struct Edge {
-    std::uint16_t a, b;
-  };
-  // The triangles around a vertex, ascending; where there are fewer than six, the others are
-  // rock_triangles(n), one more than the last.
-  using Fan = std::array<std::uint16_t, 6>;
+  // Tables for kernels hold 4 · vertex, the offset of a vertex in an array of four floats for each,
+  // and at least kPad zeros behind their end.
+  static constexpr std::size_t kPad = 16;
+  using Offsets = std::vector<std::uint16_t>;
 
   RockTopology();
 
-  // The edge that vertex v >= 4 halves, at [v − 4]. Vertices 0 … 3 are the tetrahedron's.
-  std::span<const Edge> parents() const { return parents_; }
+  // The ends of the edge that vertex v >= 4 halves, at [v − 4]. Vertices 0 … 3 are the
+  // tetrahedron's.
+  const std::array<Offsets, 2>& parents() const { return parents_; }
   // Triangles of n subdivisions, three vertices each, counter-clockwise from outside when the
   // tetrahedron is (+ + +), (+ − −), (− + −), (− − +). The four parts of a triangle stay together.
   std::span<const std::uint16_t> indices(int subdivisions) const {
     return indices_[static_cast<std::size_t>(subdivisions)];
   }
-  // One for each vertex of n subdivisions.
-  std::span<const Fan> fans(int subdivisions) const {
-    return fans_[static_cast<std::size_t>(subdivisions)];
+  // The same as offsets: corner i of triangle t at [i][t].
+  const std::array<Offsets, 3>& corners(int subdivisions) const {
+    return corners_[static_cast<std::size_t>(subdivisions)];
+  }
+  // The neighbours of vertex v counter-clockwise from outside, at [0 … 5][v]. Where there are only
+  // three, they stand as 0 1 2 2 2 0, which encloses the same area.
+  const std::array<Offsets, 6>& rings(int subdivisions) const {
+    return rings_[static_cast<std::size_t>(subdivisions)];
   }
 
  private:
-  std::vector<Edge> parents_;
+  std::array<Offsets, 2> parents_;
   std::array<std::vector<std::uint16_t>, kMaxSubdivisions + 1> indices_;
-  std::array<std::vector<Fan>, kMaxSubdivisions + 1> fans_;
+  std::array<std::array<Offsets, 3>, kMaxSubdivisions + 1> corners_;
+  std::array<std::array<Offsets, 6>, kMaxSubdivisions + 1> rings_;
 };
 
 }  // namespace psygen::models

@@ -11,11 +11,12 @@
 namespace psygen::models {
 namespace {
 
-void rock(benchmark::State& state) {
+void synthesize_rocks(benchmark::State& state, RockFamily family, std::int64_t subdivisions) {
   const bench::PinnedTarget target(state);
   const auto type = make_rock_type();
   Parameters p = default_parameters(*type);
-  p.set_integer(kRockSubdivisions, state.range(1));
+  p.set_integer(kRockFamily, family);
+  p.set_integer(kRockSubdivisions, subdivisions);
   const MeshSize size = type->mesh_size(p, 0);
   std::vector<std::byte> vertices(size.vertex_count * sizeof(core::ModelVertex));
   std::int64_t seed = 0;
@@ -26,7 +27,21 @@ void rock(benchmark::State& state) {
   state.counters["triangles_per_second"] = benchmark::Counter(
       size.triangle_count() * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
+
+void rock(benchmark::State& state) {
+  synthesize_rocks(state, kRockRounded, state.range(1));
+}
 BENCHMARK(rock)->Apply([](auto* b) { bench::each_target_with(b, "subdivisions", 0, 6, 2); });
+
+void rock_faceted(benchmark::State& state) {
+  synthesize_rocks(state, kRockFaceted, 2);
+}
+BENCHMARK(rock_faceted)->Apply(bench::each_target);
+
+void rock_layered(benchmark::State& state) {
+  synthesize_rocks(state, kRockLayered, 2);
+}
+BENCHMARK(rock_layered)->Apply(bench::each_target);
 
 void rock_reference(benchmark::State& state) {
   std::uint64_t seed = 0;

@@ -68,7 +68,7 @@ std::pair<std::uint32_t, std::uint32_t> count_again(const ModelType& type, const
     std::uint32_t triangles = 4;
     for (std::int64_t n = p.integer(kRockSubdivisions) - level; n > 0; --n)
       triangles *= 4;
-    return {3 * triangles, triangles};
+    return {p.integer(kRockFamily) == kRockFaceted ? 3 * triangles : triangles / 2 + 2, triangles};
   }
   const auto cells = static_cast<std::uint32_t>(p.integer(kTerrainSize) - 1);
   const auto stride = static_cast<std::uint32_t>(

@@ -27,12 +27,16 @@ struct RockOracle {
 
   // Number `field` (0 … 3) of item `index`, in [−1, 1).
   double random(std::uint64_t index, int field) const {
-    const std::uint64_t h = core::mix64(core::mix64(seed) + 0x9E3779B97F4A7C15ull * (index + 1));
-    return static_cast<double>((h >> (16 * field)) & 0xFFFF) / 32768.0 - 1;
+    const std::uint64_t key = core::mix64(seed) >> (field < 2 ? 0 : 32);
+    std::uint32_t h = static_cast<std::uint32_t>(key + 0x9E3779B9u * index);
+    h = (h ^ (h >> 16)) * 0x7FEB352Du;
+    h = (h ^ (h >> 15)) * 0x846CA68Bu;
+    h ^= h >> 16;
+    return static_cast<double>((h >> (16 * (field % 2))) & 0xFFFF) / 32768.0 - 1;
   }
 
   void build() {
-    amplitude *= family == 0 ? 0.5 : family == 2 ? 0.7 : 1;
+    amplitude *= family == kRockFaceted ? 1 : 0.8;
     const double w = std::abs(random(0, 3)) + 0.1;
     const glm::dvec3 axis{random(0, 0), random(0, 1), random(0, 2)};
     const double length = std::sqrt(glm::dot(axis, axis) + w * w);
@@ -84,9 +88,24 @@ struct RockOracle {
     triangles = parts;
   }
 
+ public:
+  // The area-weighted sum of the normals of the triangles around each place.
+  std::vector<glm::dvec3> normals() const {
+    std::vector<glm::dvec3> sums(places.size(), glm::dvec3(0));
+    for (const auto& t : triangles) {
+      const glm::dvec3 a = places[static_cast<std::size_t>(t[0])];
+      const glm::dvec3 face = glm::cross(places[static_cast<std::size_t>(t[1])] - a,
+                                         places[static_cast<std::size_t>(t[2])] - a);
+      for (const int v : t)
+        sums[static_cast<std::size_t>(v)] += face;
+    }
+    return sums;
+  }
+
+ private:
   // How far a layer stands out in a direction, in [−1, 1].
   double band(const glm::dvec3& direction) const {
-    const std::uint64_t item = std::uint64_t{1} << 32;
+    const std::uint64_t item = std::uint64_t{1} << 31;
     const glm::dvec3 across{0.35 * random(item, 1), 1, 0.35 * random(item, 2)};
     const double t = glm::dot(direction, across) * (2.2 + 0.6 * random(item, 3)) + random(item, 0);
     return std::abs(2 * (t - std::floor(t)) - 1) * 2 - 1;

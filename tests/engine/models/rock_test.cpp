@@ -73,15 +73,34 @@ TEST_F(Rock, PlacesEqualTheOracle) {
     p.set_integer(kRockFamily, trial % kRockFamilyCount);
     const test::RockOracle oracle = test::rock_oracle(p);
     const core::Bounds box = type->bounds(p);
-    const auto vertices = synthesize(*type, p, 0).vertices<ModelVertex>();
-    ASSERT_EQ(vertices.size(), oracle.triangles.size() * 3);
+    const Mesh mesh = synthesize(*type, p, 0);
+    const auto vertices = mesh.vertices<ModelVertex>();
+    ASSERT_EQ(mesh.indices.size(), oracle.triangles.size() * 3);
     const glm::vec3 tolerance =
         box.half_extent() / 60000.0F + static_cast<float>(1e-5 * oracle.radius);
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
       const glm::vec3 expected =
           oracle.places[static_cast<std::size_t>(oracle.triangles[i / 3][i % 3])];
-      const glm::vec3 error = glm::abs(unpack_position(vertices[i], box) - expected);
+      const glm::vec3 error = glm::abs(unpack_position(vertices[mesh.indices[i]], box) - expected);
       ASSERT_TRUE(error.x < tolerance.x && error.y < tolerance.y && error.z < tolerance.z);
+    }
+  }
+}
+
+TEST_F(Rock, SharedVerticesLookTheMeanWayOfTheirTriangles) {
+  core::RandomStream random(8, 0, 0, 0, core::Purpose::kParameters);
+  for (int trial = 0; trial < 42; ++trial) {
+    Parameters p = rock(static_cast<std::int64_t>(random.next_u64()), trial % 7,
+                        random.next_real(0, 0.4), random.next_real(0.3, 0.8));
+    p.set_integer(kRockFamily, trial % 2 == 0 ? kRockRounded : kRockLayered);
+    const test::RockOracle oracle = test::rock_oracle(p);
+    const auto expected = oracle.normals();
+    const auto vertices = synthesize(*type, p, 0).vertices<ModelVertex>();
+    ASSERT_EQ(vertices.size(), expected.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      const glm::vec3 normal =
+          decode_octahedral({vertices[v].normal[0] / 32767.0F, vertices[v].normal[1] / 32767.0F});
+      ASSERT_GT(glm::dot(glm::dvec3(normal), glm::normalize(expected[v])), 0.99999);
     }
   }
 }
@@ -111,25 +130,29 @@ TEST_F(Rock, IsWatertightAndFacesAwayFromItsCentreForLegalParameters) {
       const ModelVertex& corner = v[mesh.indices[i]];
       const glm::vec3 normal =
           decode_octahedral({corner.normal[0] / 32767.0F, corner.normal[1] / 32767.0F});
-      // Smooth normals of the roughest rocks may look past their triangle.
-      const bool smooth = p.integer(kRockFamily) == kRockRounded;
-      ASSERT_TRUE(glm::dot(normal, face) > 0 || (extreme && smooth));
+      // Shared normals of ledges and of the roughest rocks may look past their triangle.
+      const bool may_look_past = p.integer(kRockFamily) == kRockLayered ||
+                                 (extreme && p.integer(kRockFamily) == kRockRounded);
+      ASSERT_TRUE(glm::dot(normal, face) > 0 || may_look_past);
     }
   }
 }
 
 TEST_F(Rock, LevelsKeepThePlacesOfTheirCorners) {
-  const Parameters p = rock(77, 3, 0.3, 0.6);
-  std::set<std::uint64_t> finer;
-  for (int level = 0; level < 4; ++level) {
-    std::set<std::uint64_t> places;
-    for (const ModelVertex& v : synthesize(*type, p, level).vertices<ModelVertex>())
-      places.insert(place(v));
-    EXPECT_EQ(places.size(), rock_vertices(3 - level));
-    if (level > 0) {
-      EXPECT_TRUE(std::includes(finer.begin(), finer.end(), places.begin(), places.end()));
+  for (int family = 0; family < kRockFamilyCount; ++family) {
+    Parameters p = rock(77, 3, 0.3, 0.6);
+    p.set_integer(kRockFamily, family);
+    std::set<std::uint64_t> finer;
+    for (int level = 0; level < 4; ++level) {
+      std::set<std::uint64_t> places;
+      for (const ModelVertex& v : synthesize(*type, p, level).vertices<ModelVertex>())
+        places.insert(place(v));
+      EXPECT_EQ(places.size(), rock_vertices(3 - level));
+      if (level > 0) {
+        EXPECT_TRUE(std::includes(finer.begin(), finer.end(), places.begin(), places.end()));
+      }
+      finer = places;
     }
-    finer = places;
   }
 }
 
@@ -145,18 +168,19 @@ TEST_F(Rock, FamiliesDifferInShadingShapeAndColour) {
       const core::Bounds box = type->bounds(p);
       const auto index = static_cast<std::size_t>(family);
       double sum = 0, squares = 0;
-      for (std::size_t i = 0; i < v.size(); i += 3) {
-        const glm::vec3 a = unpack_position(v[i], box);
-        const glm::vec3 face = glm::normalize(
-            glm::cross(unpack_position(v[i + 1], box) - a, unpack_position(v[i + 2], box) - a));
+      const double count = mesh.size.triangle_count();
+      for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const ModelVertex& corner = v[mesh.indices[i]];
+        const glm::vec3 a = unpack_position(corner, box);
+        const glm::vec3 face =
+            glm::normalize(glm::cross(unpack_position(v[mesh.indices[i + 1]], box) - a,
+                                      unpack_position(v[mesh.indices[i + 2]], box) - a));
         const glm::vec3 normal =
-            decode_octahedral({v[i].normal[0] / 32767.0F, v[i].normal[1] / 32767.0F});
-        bend[index] +=
-            static_cast<double>(1 - glm::dot(face, normal)) / static_cast<double>(v.size());
-        sum += v[i].colour[1];
-        squares += v[i].colour[1] * v[i].colour[1];
+            decode_octahedral({corner.normal[0] / 32767.0F, corner.normal[1] / 32767.0F});
+        bend[index] += static_cast<double>(1 - glm::dot(face, normal)) / count;
+        sum += corner.colour[1];
+        squares += corner.colour[1] * corner.colour[1];
       }
-      const double count = static_cast<double>(v.size()) / 3;
       contrast[index] += std::sqrt(squares / count - std::pow(sum / count, 2)) / (sum / count);
       height[index] += static_cast<double>(mesh.box.max.y - mesh.box.min.y);
     }
@@ -166,12 +190,15 @@ TEST_F(Rock, FamiliesDifferInShadingShapeAndColour) {
   EXPECT_GT(contrast[kRockLayered], 1.15 * contrast[kRockFaceted]) << "layers show";
 }
 
-TEST_F(Rock, SharesOneIndexListPerSubdivision) {
+TEST_F(Rock, SharesOneIndexListPerSubdivisionAndShading) {
   const MeshSize a = type->mesh_size(rock(1, 3, 0.2, 0.5), 1);
   const MeshSize b = type->mesh_size(rock(2, 2, 0.3, 0.6), 0);
   EXPECT_EQ(a.shared_indices, b.shared_indices);
   EXPECT_NE(a.shared_indices, 0u);
   EXPECT_NE(a.shared_indices, type->mesh_size(rock(1, 3, 0.2, 0.5), 0).shared_indices);
+  Parameters faceted = rock(1, 2, 0.2, 0.5);
+  faceted.set_integer(kRockFamily, kRockFaceted);
+  EXPECT_NE(b.shared_indices, type->mesh_size(faceted, 0).shared_indices);
 }
 
 TEST_F(Rock, StandsInTheGroundAndIsDarkerBelow) {

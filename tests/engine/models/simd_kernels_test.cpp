@@ -130,15 +130,15 @@ TEST_F(SimdKernels, OfRocksPlaceVerticesAsTheOracleOnEveryTarget) {
       p.set_integer(kRockFamily, trial % kRockFamilyCount);
       const test::RockOracle oracle = test::rock_oracle(p);
       const core::Bounds box = type->bounds(p);
-      const auto vertices = test::synthesize(*type, p, 0).vertices<core::ModelVertex>();
+      const test::Mesh mesh = test::synthesize(*type, p, 0);
+      const auto vertices = mesh.vertices<core::ModelVertex>();
       const glm::vec3 tolerance =
           box.half_extent() / 60000.0F + static_cast<float>(1e-5 * oracle.radius);
-      for (std::size_t i = 0; i < vertices.size(); ++i) {
+      for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
         const glm::vec3 expected =
             oracle.places[static_cast<std::size_t>(oracle.triangles[i / 3][i % 3])];
-        ASSERT_TRUE(glm::all(
-            glm::lessThan(glm::abs(unpack_position(vertices[i], box) - expected), tolerance)))
-            << target;
+        const glm::vec3 found = unpack_position(vertices[mesh.indices[i]], box);
+        ASSERT_TRUE(glm::all(glm::lessThan(glm::abs(found - expected), tolerance))) << target;
       }
     }
   }
