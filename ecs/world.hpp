@@ -134,18 +134,16 @@ class World {
   const C* get(Entity entity) const {
     return find<C>(entity);
   }
-  template <Component C>
-  Accessor<C> accessor() {
-    return {storage_, record<C>()};
-  }
   template <class C>
-  requires std::is_const_v<C> Accessor<C> accessor() {
+  Accessor<C> accessor() {
     return {storage_, record<std::remove_const_t<C>>()};
   }
   // From a const world: a component that it has never seen stays absent to this accessor.
   template <class C>
-  requires std::is_const_v<C> Accessor<C> accessor()
-  const { return {storage_, known_record<std::remove_const_t<C>>()}; }
+  Accessor<C> accessor() const {
+    static_assert(std::is_const_v<C>, "a const World is only read: ask for const C");
+    return {storage_, known_record<std::remove_const_t<C>>()};
+  }
 
   // ---- iteration -------------------------------------------------------------------------------
 

@@ -62,6 +62,8 @@ void misuse(World& world, const World& read_only, Entity entity) {
   describe<Opaque>();
 #elif CASE == 18
   world.reader<Position>();
+#elif CASE == 19
+  read_only.accessor<Mesh>();
 #endif
   (void)entity;
 }
