@@ -1,6 +1,7 @@
 // The ground of one block for many questions, such as where everything on it stands. Where they pay
 // for it, the heights of all vertices of the block are evaluated at once, in the time of ten single
-// points. The answers have the same bits either way, and are those of sample_ground() (terrain.hpp).
+// points. The answers have the same bits either way, and are those of sample_ground()
+// (terrain.hpp).
 #pragma once
 
 #include <array>

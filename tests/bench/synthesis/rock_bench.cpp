@@ -5,17 +5,16 @@
 #include <vector>
 
 #include "engine/models/rock.hpp"
-#include "tests/bench/models/per_target.hpp"
+#include "tests/bench/synthesis/per_target.hpp"
 #include "tests/engine/models/oracle_rock.hpp"
 
 namespace psygen::models {
 namespace {
 
 void rock(benchmark::State& state) {
-  const bench::PinnedTarget target(state);
   const auto type = make_rock_type();
   Parameters p = default_parameters(*type);
-  p.set_integer(kRockSubdivisions, state.range(1));
+  p.set_integer(kRockSubdivisions, state.range(0));
   const MeshSize size = type->mesh_size(p, 0);
   std::vector<std::byte> vertices(size.vertex_count * sizeof(core::ModelVertex));
   std::int64_t seed = 0;
@@ -23,10 +22,11 @@ void rock(benchmark::State& state) {
     p.set_integer(kRockSeed, seed++);
     benchmark::DoNotOptimize(type->synthesize(p, 0, {vertices, {}}));
   }
-  state.counters["triangles_per_second"] = benchmark::Counter(
-      size.triangle_count() * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  bench::report_triangles(state, size.triangle_count() * static_cast<double>(state.iterations()));
+  bench::report_seconds_each(state, 1);
 }
-BENCHMARK(rock)->Apply([](auto* b) { bench::each_target_with(b, "subdivisions", 0, 6, 2); });
+const bool kRegistered = bench::for_each_target(
+    "rock", rock, [](auto* b, bool) { b->DenseRange(0, 6, 2)->ArgName("subdivisions"); });
 
 void rock_reference(benchmark::State& state) {
   std::uint64_t seed = 0;
@@ -37,10 +37,10 @@ void rock_reference(benchmark::State& state) {
     triangles += static_cast<double>(oracle.triangles.size());
     benchmark::DoNotOptimize(oracle.places.data());
   }
-  state.counters["triangles_per_second"] =
-      benchmark::Counter(triangles, benchmark::Counter::kIsRate);
+  bench::report_triangles(state, triangles);
+  bench::report_seconds_each(state, 1);
 }
-BENCHMARK(rock_reference)->Arg(2)->ArgName("subdivisions");
+BENCHMARK(rock_reference)->Name("rock/reference")->Arg(2)->ArgName("subdivisions");
 
 }  // namespace
 }  // namespace psygen::models
