@@ -1,8 +1,10 @@
 #include "engine/models/terrain_ground.hpp"
 
 #include <cmath>
+#include <cstring>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/vertex_layout.hpp"
 
 namespace psygen::models {
 namespace {
@@ -17,6 +19,12 @@ glm::vec3 unit_normal(double slope_x, double slope_z) {
           static_cast<float>(-slope_z * scale)};
 }
 
+std::uint16_t height_in_mesh(std::span<const std::byte> mesh, std::size_t vertex) {
+  core::TerrainVertex v;
+  std::memcpy(&v, mesh.data() + vertex * sizeof v, sizeof v);
+  return v.height;
+}
+
 }  // namespace
 
 // The noise is left unset where it is not evaluated: writing it would take as long as its reading.
@@ -24,6 +32,16 @@ BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std:
     : shape_(terrain), block_(block) {
   const auto size = static_cast<std::size_t>(shape_.size);
   if (questions * kVerticesPerPoint >= size * size) evaluate_vertices();
+}
+
+BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block,
+                         std::span<const std::byte> mesh)
+    : shape_(terrain),
+      block_(block),
+      vertices_(static_cast<std::size_t>(shape_.size)),
+      mesh_(mesh) {
+  PSYGEN_CHECK(mesh.size() >= vertices_ * vertices_ * sizeof(core::TerrainVertex),
+               "the mesh has every vertex of the block");
 }
 
 // World coordinates of the vertices of a block from `first` on.
@@ -44,33 +62,38 @@ void BlockGround::evaluate_vertices() {
   shape_.noise.evaluate(x, z, noise_, vertices_);
 }
 
-bool BlockGround::is_evaluated(double x, double z) const {
+bool BlockGround::is_inside(double x, double z) const {
   const double end = static_cast<double>(vertices_) - 1;
   return x >= 0 && z >= 0 && x < end && z < end;
 }
 
 BlockGround::Corners BlockGround::corners_of(double x, double z) const {
-  if (is_evaluated(x, z)) {
-    const float* const first =
-        &noise_[static_cast<std::size_t>(z) * vertices_ + static_cast<std::size_t>(x)];
-    return {first[0], first[1], first[vertices_], first[vertices_ + 1]};
+  Corners heights;
+  if (is_inside(x, z)) {
+    const std::size_t first = static_cast<std::size_t>(z) * vertices_ + static_cast<std::size_t>(x);
+    const std::array at{first, first + 1, first + vertices_, first + vertices_ + 1};
+    for (std::size_t i = 0; i < 4; ++i)
+      heights[i] = mesh_.empty() ? shape_.quantise(noise_[at[i]]) : height_in_mesh(mesh_, at[i]);
+    return heights;
   }
   std::array<std::int64_t, 2> columns, rows;
   world_of(block_.x, static_cast<std::int64_t>(x), columns);
   world_of(block_.z, static_cast<std::int64_t>(z), rows);
-  Corners noise;
+  std::array<float, 4> noise;
   shape_.noise.evaluate(columns, rows, noise, 2);
-  return noise;
+  for (std::size_t i = 0; i < 4; ++i)
+    heights[i] = shape_.quantise(noise[i]);
+  return heights;
 }
 
 GroundPoint BlockGround::at(glm::dvec2 local_xz) const {
   const glm::dvec2 cells = local_xz / shape_.cell_m;
   const double x = std::floor(cells.x), z = std::floor(cells.y);
   const double u = cells.x - x, v = cells.y - z;
-  const Corners noise = corners_of(x, z);
+  const Corners heights = corners_of(x, z);
   std::array<double, 4> h;
   for (std::size_t i = 0; i < 4; ++i)
-    h[i] = static_cast<double>(shape_.relief_m) * shape_.quantise(noise[i]) / 65535.0;
+    h[i] = static_cast<double>(shape_.relief_m) * heights[i] / 65535.0;
 
   GroundPoint ground;
   if (u + v <= 1) {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/models/terrain_ground.hpp"
+#include "engine/models/terrain.hpp"
 
 namespace psygen::world {
 namespace {
@@ -100,9 +100,13 @@ std::size_t models_per_block(const World& world) {
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out) {
+  place_models(world, registry, block,
+               models::BlockGround(world.terrain, block, models_per_block(world)), out);
+}
+
+void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
+                  const models::BlockGround& ground, std::vector<Placement>& out) {
   out.clear();
-  out.reserve(models_per_block(world));
-  const models::BlockGround ground(world.terrain, block, models_per_block(world));
   std::uint32_t index = 0;
   for (const Scatter& scatter : world.scatter) {
     const Scattering scattering(world, registry, scatter, block);

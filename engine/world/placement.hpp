@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "engine/models/terrain_ground.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
@@ -37,6 +38,9 @@ std::size_t models_per_block(const World& world);
 // block. Needs 300 KiB of stack.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out);
+// The same with the block's ground at hand.
+void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
+                  const models::BlockGround& ground, std::vector<Placement>& out);
 
 // Sets a parameter of either type; integers are rounded to nearest.
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,

@@ -92,7 +92,7 @@ void expect_same(const GroundPoint& a, const GroundPoint& b) {
     ASSERT_EQ(std::bit_cast<std::uint32_t>(a.normal[c]), std::bit_cast<std::uint32_t>(b.normal[c]));
 }
 
-TEST_F(Ground, OfAWholeBlockHasTheBitsOfSinglePointsOnEveryTargetAnywhere) {
+TEST_F(Ground, OfAWholeBlockOrItsMeshHasTheBitsOfSinglePointsOnEveryTargetAnywhere) {
   constexpr std::int32_t kFar = std::numeric_limits<std::int32_t>::max();
   core::RandomStream random(9, 0, 0, 0, core::Purpose::kPosition);
   for (int trial = 0; trial < 16; ++trial) {
@@ -110,9 +110,15 @@ TEST_F(Ground, OfAWholeBlockHasTheBitsOfSinglePointsOnEveryTargetAnywhere) {
       points.push_back({side * random.next_unit(), side * random.next_unit()});
     for (const std::string_view target : simd_targets()) {
       pin_simd_target(target);
-      const BlockGround whole(p, block, 1000), single(p, block, 0);
-      for (const glm::dvec2& point : points)
+      p.set_integer(kTerrainBlockX, block.x);
+      p.set_integer(kTerrainBlockZ, block.z);
+      const test::Mesh mesh = test::synthesize(*type, p, 0);
+      const BlockGround whole(p, block, 1000), single(p, block, 0),
+          drawn(p, block, mesh.vertex_bytes);
+      for (const glm::dvec2& point : points) {
         expect_same(whole.at(point), single.at(point));
+        expect_same(drawn.at(point), single.at(point));
+      }
       if (HasFatalFailure()) break;
     }
     unpin_simd_target();
