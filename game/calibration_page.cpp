@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "engine/models/species.hpp"
 #include "engine/telemetry/curve_plot.hpp"
 #include "engine/telemetry/report_plot.hpp"
 #include "engine/telemetry/report_style.hpp"
@@ -14,12 +16,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The paper's formulas (equations 1, 3 and 4), as what complexity() computes.
-std::string formula_of(std::string_view model) {
-  if (model == "rock") return "c·n·4^(n−1)";
-  if (model == "terrain") return "c·m·n²";
-  if (model == "tree") return "c·mⁿ";
-  return "c·complexity";
+// The paper's formulas (equations 1, 3 and 4), as what complexity() computes. That of a species is
+// the mean number of branches that its grammar grows.
+std::string formula_of(const models::ModelType& type) {
+  if (type.name() == "rock") return "c·n·4^(n−1)";
+  if (type.name() == "terrain") return "c·m·n²";
+  if (type.name() == "tree") return "c·mⁿ";
+  return models::is_species_type(type) ? "c·branches" : "c·complexity";
+}
+
+// Of the column that names models.
+std::size_t name_width(const models::Registry& registry) {
+  std::size_t width = 8;
+  for (std::size_t i = 0; i < registry.size(); ++i)
+    width = std::max(width, registry[static_cast<models::ModelIndex>(i)].name().size());
+  return width;
 }
 
 std::string seconds_text(double seconds) {
@@ -54,24 +65,24 @@ Json curve_json(const synthesis::CostCurve& curve, const models::Registry& regis
                       {"seconds", point.seconds},
                       {"predicted_seconds", point.predicted_s}});
   }
-  const std::string_view model = registry[curve.model].name();
-  return {{"model", model},
+  const models::ModelType& type = registry[curve.model];
+  return {{"model", type.name()},
           {"parameter", curve.parameter},
-          {"formula", formula_of(model)},
+          {"formula", formula_of(type)},
           {"c_seconds", curve.formula.seconds_per_operation},
           {"r_squared", curve.formula.r_squared},
           {"points", points}};
 }
 
 std::string plot_of(const synthesis::CostCurve& curve, const models::Registry& registry) {
-  const std::string_view model = registry[curve.model].name();
+  const models::ModelType& type = registry[curve.model];
   telemetry::CurvePlot plot;
-  plot.title = fmt::format("{}: time over {}", model, curve.parameter);
+  plot.title = fmt::format("{}: time over {}", type.name(), curve.parameter);
   plot.x_name = curve.parameter;
   plot.unit = "µs";
   plot.note = fmt::format("c = {}, R² = {:.4f}", seconds_text(curve.formula.seconds_per_operation),
                           curve.formula.r_squared);
-  plot.curves = {{formula_of(model), 2, telemetry::CurveKind::kLine, {}},
+  plot.curves = {{formula_of(type), 2, telemetry::CurveKind::kLine, {}},
                  {"cost model", 3, telemetry::CurveKind::kLine, {}},
                  {"measured", 1, telemetry::CurveKind::kPoints, {}}};
   for (const synthesis::CurvePoint& point : curve.points) {
@@ -88,20 +99,21 @@ std::string plot_of(const synthesis::CostCurve& curve, const models::Registry& r
 std::string calibration_text(const Calibration& found, const models::Registry& registry) {
   std::string text = "time over a parameter, level 0\n";
   const auto out = std::back_inserter(text);
+  const std::size_t width = name_width(registry);
   for (const synthesis::CostCurve& curve : found.curves) {
-    const std::string_view model = registry[curve.model].name();
-    fmt::format_to(out, "  {:<8} {:<13} {:<13} c = {:<9} R² = {:.4f}\n", model, curve.parameter,
-                   formula_of(model), seconds_text(curve.formula.seconds_per_operation),
-                   curve.formula.r_squared);
+    const models::ModelType& type = registry[curve.model];
+    fmt::format_to(out, "  {:<{}} {:<13} {:<13} c = {:<9} R² = {:.4f}\n", type.name(), width,
+                   curve.parameter, formula_of(type),
+                   seconds_text(curve.formula.seconds_per_operation), curve.formula.r_squared);
   }
   fmt::format_to(out, "error of predictions for {} other parameter sets of each type, in %\n",
                  found.held_out_sets);
   for (const synthesis::LevelAccuracy& level : found.held_out.levels) {
-    fmt::format_to(out, "  {:<8} level {}  p50 {:>5.1f}  p95 {:>5.1f}\n",
-                   registry[level.model].name(), level.level, level.error.p50_percent,
+    fmt::format_to(out, "  {:<{}} level {}  p50 {:>5.1f}  p95 {:>5.1f}\n",
+                   registry[level.model].name(), width, level.level, level.error.p50_percent,
                    level.error.p95_percent);
   }
-  fmt::format_to(out, "  all               p50 {:>5.1f}  p95 {:>5.1f}\n",
+  fmt::format_to(out, "  {:<{}}  p50 {:>5.1f}  p95 {:>5.1f}\n", "all", width + 8,
                  found.held_out.all.p50_percent, found.held_out.all.p95_percent);
   return text;
 }

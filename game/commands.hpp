@@ -81,8 +81,9 @@ class ExportCommand {
   int run() const;
 
  private:
-  core::Result<exchange::Document> model_document(models::Registry& registry) const;
-  core::Result<exchange::Document> world_document(models::Registry& registry) const;
+  core::Result<exchange::Document> model_document(const models::Registry& registry) const;
+  core::Result<exchange::Document> block_document(const world::World& world,
+                                                  const models::Registry& registry) const;
 
   CLI::App* command_;
   std::string model_, world_ = "game/worlds/paper.toml", out_;

@@ -103,7 +103,16 @@ ExportCommand::ExportCommand(CLI::App& cli)
 
 int ExportCommand::run() const {
   models::Registry registry = models::make_standard_registry();
-  const auto document = block_ ? world_document(registry) : model_document(registry);
+  std::optional<world::World> world;
+  if (block_ || command_->count("--world") > 0) {
+    auto loaded = world::load_world(world_, registry);
+    if (!loaded) {
+      core::log_error(loaded.error().message);
+      return exit_code_of(loaded.error());
+    }
+    world = std::move(*loaded);
+  }
+  const auto document = block_ ? block_document(*world, registry) : model_document(registry);
   if (!document) {
     core::log_error(document.error().message);
     const bool usage = !block_ && document.error().code == core::ErrorCode::kInvalidArgument;
@@ -119,11 +128,8 @@ int ExportCommand::run() const {
   return kOk;
 }
 
-core::Result<exchange::Document> ExportCommand::model_document(models::Registry& registry) const {
-  if (command_->count("--world") > 0) {
-    if (const auto world = world::load_world(world_, registry); !world)
-      return tl::unexpected(world.error());
-  }
+core::Result<exchange::Document> ExportCommand::model_document(
+    const models::Registry& registry) const {
   const int found = registry.find(model_);
   if (found < 0) {
     return refuse(
@@ -147,13 +153,12 @@ core::Result<exchange::Document> ExportCommand::model_document(models::Registry&
   return document;
 }
 
-core::Result<exchange::Document> ExportCommand::world_document(models::Registry& registry) const {
-  const auto world = world::load_world(world_, registry);
-  if (!world) return tl::unexpected(world.error());
+core::Result<exchange::Document> ExportCommand::block_document(
+    const world::World& world, const models::Registry& registry) const {
   const std::int64_t x = block_->x, z = block_->z;
-  if (auto ok = amplify::check_region(*world, {x, z, x + 1, z + 1}); !ok)
+  if (auto ok = amplify::check_region(world, {x, z, x + 1, z + 1}); !ok)
     return tl::unexpected(ok.error());
-  return amplify::block_document(*world, registry, *block_, level_);
+  return amplify::block_document(world, registry, *block_, level_);
 }
 
 }  // namespace psygen::game

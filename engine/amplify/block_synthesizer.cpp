@@ -55,19 +55,29 @@ void BlockSynthesizer::synthesise(core::BlockCoord block, Totals& totals,
                                   const std::function<void(const BlockMesh&)>& visit) {
   const world::Placement terrain{world_.terrain_model, world::kTerrainIndex, glm::vec3(0.0F),
                                  world::terrain_parameters(world_, block)};
-  world::place_models(world_, registry_, block, placements_);
-  const auto make_levels = [&](const world::Placement& placement) {
-    const int coarsest = registry_[placement.model].level_count() - 1;
-    const int first = level_ == kAllLevels ? 0 : std::min(level_, coarsest);
-    const int last = level_ == kAllLevels ? coarsest : first;
-    for (int level = first; level <= last; ++level)
-      make(placement, block, level, totals, visit);
-  };
-  make_levels(terrain);
+  const bool made = make_levels(terrain, block, totals, visit);
+  if (made && level_ == 0) {  // the terrain is still in the memory
+    const models::BlockGround ground(world_.terrain, block, {memory_.get(), capacity_});
+    world::place_models(world_, registry_, block, ground, placements_);
+  } else {
+    world::place_models(world_, registry_, block, placements_);
+  }
   for (const world::Placement& placement : placements_)
-    make_levels(placement);
+    make_levels(placement, block, totals, visit);
   ++totals.blocks;
   totals.models += placements_.size();
+}
+
+bool BlockSynthesizer::make_levels(const world::Placement& placement, core::BlockCoord block,
+                                   Totals& totals,
+                                   const std::function<void(const BlockMesh&)>& visit) {
+  const int coarsest = registry_[placement.model].level_count() - 1;
+  const int first = level_ == kAllLevels ? 0 : std::min(level_, coarsest);
+  const int last = level_ == kAllLevels ? coarsest : first;
+  const std::uint64_t failed = totals.failed;
+  for (int level = first; level <= last; ++level)
+    make(placement, block, level, totals, visit);
+  return totals.failed == failed;
 }
 
 void BlockSynthesizer::make(const world::Placement& placement, core::BlockCoord block, int level,

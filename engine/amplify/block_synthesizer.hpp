@@ -50,6 +50,9 @@ class BlockSynthesizer {
                   const std::function<void(const BlockMesh&)>& visit = {});
 
  private:
+  // False where a level failed.
+  bool make_levels(const world::Placement& placement, core::BlockCoord block, Totals& totals,
+                   const std::function<void(const BlockMesh&)>& visit);
   void make(const world::Placement& placement, core::BlockCoord block, int level, Totals& totals,
             const std::function<void(const BlockMesh&)>& visit);
   models::MeshView room_for(const models::MeshSize& size);

@@ -146,6 +146,7 @@ enum SpeciesParameter : std::size_t {
 
 // A model type of the species' name, whose identity() changes with every number of the species.
 core::Result<std::unique_ptr<ModelType>> make_species_type(const Species& species);
+bool is_species_type(const ModelType& type);
 // The numbers of one tree of a type made by make_species_type.
 TreePlan plan_of_species(const ModelType& type, const Parameters& p);
 

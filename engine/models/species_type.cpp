@@ -318,6 +318,10 @@ core::Result<std::unique_ptr<ModelType>> make_species_type(const Species& specie
   return std::make_unique<SpeciesType>(species);
 }
 
+bool is_species_type(const ModelType& type) {
+  return dynamic_cast<const SpeciesType*>(&type) != nullptr;
+}
+
 TreePlan plan_of_species(const ModelType& type, const Parameters& p) {
   const auto* species = dynamic_cast<const SpeciesType*>(&type);
   PSYGEN_CHECK(species != nullptr, "the type was made by make_species_type");

@@ -55,7 +55,8 @@ struct GroundPoint {
 
 // The ground under points of `block`, on the triangles of level 0 as they are drawn. Points are
 // metres from the block's corner and may lie outside the block (within 10^6 cells). `ground` has as
-// many elements as `local_xz`. About 1 µs a point. The block coordinates in `terrain` are ignored.
+// many elements as `local_xz`. About 1 µs a point; never much more than 20 µs for points inside of
+// the block. The block coordinates in `terrain` are ignored.
 void sample_ground(const Parameters& terrain, core::BlockCoord block,
                    std::span<const glm::dvec2> local_xz, std::span<GroundPoint> ground);
 

@@ -1,12 +1,17 @@
-#include <array>
+#include "engine/models/terrain_ground.hpp"
+
 #include <cmath>
+#include <cstring>
 
 #include "engine/core/assert.hpp"
-#include "engine/models/terrain.hpp"
-#include "engine/models/terrain_shape.hpp"
+#include "engine/core/vertex_layout.hpp"
 
 namespace psygen::models {
 namespace {
+
+// So many vertices of a grid take about as long as one point by itself, whose time is that of
+// finding the lattices.
+constexpr std::size_t kVerticesPerPoint = 128;
 
 glm::vec3 unit_normal(double slope_x, double slope_z) {
   const double scale = 1 / std::sqrt(slope_x * slope_x + 1 + slope_z * slope_z);
@@ -14,52 +19,109 @@ glm::vec3 unit_normal(double slope_x, double slope_z) {
           static_cast<float>(-slope_z * scale)};
 }
 
-GroundPoint ground_at(const TerrainShape& shape, core::BlockCoord block, glm::dvec2 local) {
-  const glm::dvec2 cells = local / shape.cell_m;
-  const double x = std::floor(cells.x), z = std::floor(cells.y);
-  const double u = cells.x - x, v = cells.y - z;
-  const auto world = [&](std::int32_t index, double cell) {
-    const auto origin = static_cast<std::uint64_t>(shape.block_origin(index));
-    const auto first = static_cast<std::uint64_t>(static_cast<std::int64_t>(cell));
-    return std::array<std::int64_t, 2>{
-        static_cast<std::int64_t>(origin + (first << shape.node_level)),
-        static_cast<std::int64_t>(origin + ((first + 1) << shape.node_level))};
-  };
-  std::array<float, 4> noise;
-  shape.noise.evaluate(world(block.x, x), world(block.z, z), noise, 2);
-  std::array<double, 4> h;
-  for (std::size_t i = 0; i < 4; ++i)
-    h[i] = static_cast<double>(shape.relief_m) * shape.quantise(noise[i]) / 65535.0;
-
-  GroundPoint ground;
-  if (u + v <= 1) {
-    ground.height_m = h[0] + u * (h[1] - h[0]) + v * (h[2] - h[0]);
-    ground.normal = unit_normal((h[1] - h[0]) / shape.cell_m, (h[2] - h[0]) / shape.cell_m);
-  } else {
-    ground.height_m = h[3] + (1 - u) * (h[2] - h[3]) + (1 - v) * (h[1] - h[3]);
-    ground.normal = unit_normal((h[3] - h[2]) / shape.cell_m, (h[3] - h[1]) / shape.cell_m);
-  }
-  return ground;
+std::uint16_t height_in_mesh(std::span<const std::byte> mesh, std::size_t vertex) {
+  core::TerrainVertex v;
+  std::memcpy(&v, mesh.data() + vertex * sizeof v, sizeof v);
+  return v.height;
 }
 
 }  // namespace
 
+// The noise is left unset where it is not evaluated: writing it would take as long as its reading.
+BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions)
+    : shape_(terrain), block_(block) {
+  const auto size = static_cast<std::size_t>(shape_.size);
+  if (questions * kVerticesPerPoint >= size * size) evaluate_vertices();
+}
+
+BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block,
+                         std::span<const std::byte> mesh)
+    : shape_(terrain),
+      block_(block),
+      vertices_(static_cast<std::size_t>(shape_.size)),
+      mesh_(mesh) {
+  PSYGEN_CHECK(mesh.size() >= vertices_ * vertices_ * sizeof(core::TerrainVertex),
+               "the mesh has every vertex of the block");
+}
+
+// World coordinates of the vertices of a block from `first` on.
+void BlockGround::world_of(std::int32_t block_index, std::int64_t first,
+                           std::span<std::int64_t> out) const {
+  const auto origin = static_cast<std::uint64_t>(shape_.block_origin(block_index));
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<std::int64_t>(
+        origin + ((static_cast<std::uint64_t>(first) + i) << shape_.node_level));
+}
+
+void BlockGround::evaluate_vertices() {
+  vertices_ = static_cast<std::size_t>(shape_.size);
+  std::array<std::int64_t, kMaxTerrainSize> columns, rows;
+  const std::span x = std::span(columns).first(vertices_), z = std::span(rows).first(vertices_);
+  world_of(block_.x, 0, x);
+  world_of(block_.z, 0, z);
+  shape_.noise.evaluate(x, z, noise_, vertices_);
+}
+
+bool BlockGround::is_inside(double x, double z) const {
+  const double end = static_cast<double>(vertices_) - 1;
+  return x >= 0 && z >= 0 && x < end && z < end;
+}
+
+BlockGround::Corners BlockGround::corners_of(double x, double z) const {
+  Corners heights;
+  if (is_inside(x, z)) {
+    const std::size_t first = static_cast<std::size_t>(z) * vertices_ + static_cast<std::size_t>(x);
+    const std::array at{first, first + 1, first + vertices_, first + vertices_ + 1};
+    for (std::size_t i = 0; i < 4; ++i)
+      heights[i] = mesh_.empty() ? shape_.quantise(noise_[at[i]]) : height_in_mesh(mesh_, at[i]);
+    return heights;
+  }
+  std::array<std::int64_t, 2> columns, rows;
+  world_of(block_.x, static_cast<std::int64_t>(x), columns);
+  world_of(block_.z, static_cast<std::int64_t>(z), rows);
+  std::array<float, 4> noise;
+  shape_.noise.evaluate(columns, rows, noise, 2);
+  for (std::size_t i = 0; i < 4; ++i)
+    heights[i] = shape_.quantise(noise[i]);
+  return heights;
+}
+
+GroundPoint BlockGround::at(glm::dvec2 local_xz) const {
+  const glm::dvec2 cells = local_xz / shape_.cell_m;
+  const double x = std::floor(cells.x), z = std::floor(cells.y);
+  const double u = cells.x - x, v = cells.y - z;
+  const Corners heights = corners_of(x, z);
+  std::array<double, 4> h;
+  for (std::size_t i = 0; i < 4; ++i)
+    h[i] = static_cast<double>(shape_.relief_m) * heights[i] / 65535.0;
+
+  GroundPoint ground;
+  if (u + v <= 1) {
+    ground.height_m = h[0] + u * (h[1] - h[0]) + v * (h[2] - h[0]);
+    ground.normal = unit_normal((h[1] - h[0]) / shape_.cell_m, (h[2] - h[0]) / shape_.cell_m);
+  } else {
+    ground.height_m = h[3] + (1 - u) * (h[2] - h[3]) + (1 - v) * (h[1] - h[3]);
+    ground.normal = unit_normal((h[3] - h[2]) / shape_.cell_m, (h[3] - h[1]) / shape_.cell_m);
+  }
+  return ground;
+}
+
 void sample_ground(const Parameters& terrain, core::BlockCoord block,
                    std::span<const glm::dvec2> local_xz, std::span<GroundPoint> ground) {
   PSYGEN_CHECK(ground.size() == local_xz.size(), "there is room for every point");
-  const TerrainShape shape(terrain);
+  const BlockGround all(terrain, block, local_xz.size());
   for (std::size_t i = 0; i < local_xz.size(); ++i)
-    ground[i] = ground_at(shape, block, local_xz[i]);
+    ground[i] = all.at(local_xz[i]);
 }
 
 double ground_height_m(const Parameters& terrain, core::BlockCoord block, double local_x,
                        double local_z) {
-  return ground_at(TerrainShape(terrain), block, {local_x, local_z}).height_m;
+  return BlockGround(terrain, block, 1).at({local_x, local_z}).height_m;
 }
 
 glm::vec3 ground_normal(const Parameters& terrain, core::BlockCoord block, double local_x,
                         double local_z) {
-  return ground_at(TerrainShape(terrain), block, {local_x, local_z}).normal;
+  return BlockGround(terrain, block, 1).at({local_x, local_z}).normal;
 }
 
 }  // namespace psygen::models

@@ -4,22 +4,13 @@
 #include <bit>
 #include <cmath>
 #include <glm/trigonometric.hpp>
-#include <glm/vec2.hpp>
+#include <optional>
+#include <span>
 
 #include "engine/models/terrain.hpp"
 
 namespace psygen::world {
 namespace {
-
-// An instance that still looks for a place.
-struct Candidate {
-  std::uint32_t index = 0;
-  const Scatter* scatter = nullptr;
-  core::RandomStream position;
-  glm::dvec2 at{0.0};
-  models::GroundPoint ground;
-  bool placed = false;
-};
 
 // A coordinate that is a float and inside of the block, so that the height is that of the very
 // point that is handed out.
@@ -28,49 +19,66 @@ double draw_coordinate(core::RandomStream& random, float block_size_m) {
   return static_cast<double>(drawn < block_size_m ? drawn : std::nextafter(block_size_m, 0.0F));
 }
 
-bool may_stand(const Scatter& scatter, const models::GroundPoint& ground) {
+// Where an instance of a scatter may stand; `least_up` is the least y of the ground's normal.
+bool may_stand(const Scatter& scatter, float least_up, const models::GroundPoint& ground) {
   return ground.height_m >= scatter.min_height_m && ground.height_m <= scatter.max_height_m &&
-         ground.normal.y >= static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)));
+         ground.normal.y >= least_up;
 }
 
-std::vector<Candidate> all_candidates(const World& world, core::BlockCoord block) {
-  std::vector<Candidate> candidates;
-  candidates.reserve(models_per_block(world));
-  std::uint32_t index = 0;
-  for (const Scatter& scatter : world.scatter) {
-    for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
-      candidates.push_back({index,
-                            &scatter,
-                            {world.seed, block.x, block.z, index, core::Purpose::kPosition},
-                            {},
-                            {},
-                            false});
+// One scatter on one block.
+class Scattering {
+ public:
+  Scattering(const World& world, const models::Registry& registry, const Scatter& scatter,
+             core::BlockCoord block)
+      : seed_(world.seed),
+        size_m_(static_cast<float>(world.block_size_m())),
+        scatter_(scatter),
+        specs_(registry[scatter.model].parameters()),
+        defaults_(models::default_parameters(registry[scatter.model])),
+        block_(block),
+        least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))) {}
+
+  // The first allowed one of the places that the instance tries.
+  std::optional<glm::vec3> place(const models::BlockGround& ground, std::uint32_t index) const {
+    core::RandomStream random(seed_, block_.x, block_.z, index, core::Purpose::kPosition);
+    for (int i = 0; i < kPlacementTries; ++i) {
+      const double x = draw_coordinate(random, size_m_), z = draw_coordinate(random, size_m_);
+      const models::GroundPoint point = ground.at({x, z});
+      if (!scatter_.has_filter() || may_stand(scatter_, least_up_, point))
+        return glm::vec3(x, point.height_m, z);
+    }
+    return std::nullopt;
+  }
+
+  models::Parameters parameters(std::uint32_t index) const;
+
+ private:
+  std::uint64_t seed_;
+  float size_m_;
+  const Scatter& scatter_;
+  std::span<const models::ParameterSpec> specs_;
+  models::Parameters defaults_;
+  core::BlockCoord block_;
+  float least_up_;
+};
+
+models::Parameters Scattering::parameters(std::uint32_t index) const {
+  models::Parameters p = defaults_;
+  core::RandomStream values(seed_, block_.x, block_.z, index, core::Purpose::kParameters);
+  core::RandomStream seeds(seed_, block_.x, block_.z, index, core::Purpose::kSeed);
+  for (std::size_t i = 0; i < specs_.size(); ++i) {
+    const ParameterRange& range = scatter_.ranges[i];
+    if (specs_[i].source == models::ParameterSource::kPlaced) {
+      if (specs_[i].name == "seed") p.set_integer(i, std::bit_cast<std::int64_t>(seeds.next_u64()));
+    } else if (specs_[i].type == models::ParameterType::kInteger) {
+      p.set_integer(i, values.next_integer(std::llround(range.low), std::llround(range.high)));
+    } else {
+      // One number for each parameter, so that a changed range leaves the others as they are.
+      const double drawn = values.next_real(range.low, range.high);
+      p.set_real(i, range.low == range.high ? range.low : std::min(drawn, range.high));
     }
   }
-  return candidates;
-}
-
-// One try of everything that has no place yet. Returns how many still have none.
-std::size_t try_places(const World& world, core::BlockCoord block,
-                       std::vector<Candidate>& candidates) {
-  const auto size_m = static_cast<float>(world.block_size_m());
-  std::vector<glm::dvec2> points;
-  for (Candidate& c : candidates) {
-    if (c.placed) continue;
-    c.at.x = draw_coordinate(c.position, size_m);
-    c.at.y = draw_coordinate(c.position, size_m);
-    points.push_back(c.at);
-  }
-  std::vector<models::GroundPoint> ground(points.size());
-  models::sample_ground(world.terrain, block, points, ground);
-  std::size_t next = 0, homeless = 0;
-  for (Candidate& c : candidates) {
-    if (c.placed) continue;
-    c.ground = ground[next++];
-    c.placed = !c.scatter->has_filter() || may_stand(*c.scatter, c.ground);
-    homeless += c.placed ? 0 : 1;
-  }
-  return homeless;
+  return p;
 }
 
 }  // namespace
@@ -92,15 +100,20 @@ std::size_t models_per_block(const World& world) {
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out) {
-  std::vector<Candidate> candidates = all_candidates(world, block);
-  for (int i = 0; i < kPlacementTries && !candidates.empty(); ++i) {
-    if (try_places(world, block, candidates) == 0) break;
-  }
+  place_models(world, registry, block,
+               models::BlockGround(world.terrain, block, models_per_block(world)), out);
+}
+
+void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
+                  const models::BlockGround& ground, std::vector<Placement>& out) {
   out.clear();
-  for (const Candidate& c : candidates) {
-    if (!c.placed) continue;
-    out.push_back({c.scatter->model, c.index, glm::vec3(c.at.x, c.ground.height_m, c.at.y),
-                   draw_parameters(world, registry, *c.scatter, block, c.index)});
+  std::uint32_t index = 0;
+  for (const Scatter& scatter : world.scatter) {
+    const Scattering scattering(world, registry, scatter, block);
+    for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
+      if (const auto place = scattering.place(ground, index))
+        out.push_back({scatter.model, index, *place, scattering.parameters(index)});
+    }
   }
 }
 
@@ -127,23 +140,7 @@ models::Parameters scatter_parameters(const models::Registry& registry, const Sc
 models::Parameters draw_parameters(const World& world, const models::Registry& registry,
                                    const Scatter& scatter, core::BlockCoord block,
                                    std::uint32_t index) {
-  const auto specs = registry[scatter.model].parameters();
-  models::Parameters p = models::default_parameters(registry[scatter.model]);
-  core::RandomStream values(world.seed, block.x, block.z, index, core::Purpose::kParameters);
-  core::RandomStream seeds(world.seed, block.x, block.z, index, core::Purpose::kSeed);
-  for (std::size_t i = 0; i < specs.size(); ++i) {
-    const ParameterRange& range = scatter.ranges[i];
-    if (specs[i].source == models::ParameterSource::kPlaced) {
-      if (specs[i].name == "seed") p.set_integer(i, std::bit_cast<std::int64_t>(seeds.next_u64()));
-    } else if (specs[i].type == models::ParameterType::kInteger) {
-      p.set_integer(i, values.next_integer(std::llround(range.low), std::llround(range.high)));
-    } else {
-      // One number for each parameter, so that a changed range leaves the others as they are.
-      const double drawn = values.next_real(range.low, range.high);
-      p.set_real(i, range.low == range.high ? range.low : std::min(drawn, range.high));
-    }
-  }
-  return p;
+  return Scattering(world, registry, scatter, block).parameters(index);
 }
 
 }  // namespace psygen::world

@@ -44,6 +44,13 @@ bool mentions(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
+// The world's hash in what amplify --json printed; empty where there is none.
+std::string hash_in(const std::string& json) {
+  const std::string name = "\"hash\": \"";
+  const std::size_t at = json.find(name);
+  return at == std::string::npos ? "" : json.substr(at + name.size(), 16);
+}
+
 TEST(CommandLine, HelpAndVersionGoToStdoutAndAreNoFailure) {
   const Outcome help = run_psygen("--help");
   EXPECT_EQ(help.code, 0);
@@ -100,8 +107,8 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
                                 "schedule",
                                 "schedule --requests a --modelers 0",
                                 "schedule --requests a --slower 0",
-                                "calibrate --ranges --world game/worlds/paper.toml",
-                                "export --model rock --world x.toml --out a.glb"}) {
+                                "export --model oak --out a.glb",
+                                "calibrate --ranges --world game/worlds/paper.toml"}) {
     const Outcome outcome = run_psygen(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
     EXPECT_FALSE(outcome.err.empty()) << arguments;
@@ -179,10 +186,18 @@ TEST(CommandLine, AmplifyPrintsItsFiguresAndTheSameHashForAnyNumberOfThreads) {
   const Outcome json = run_psygen("amplify --region 3,4,5,6 --threads 3 --json");
   EXPECT_EQ(json.code, 0) << json.err;
   EXPECT_TRUE(mentions(json.out, "\"blocks\": 4,")) << json.out;
-  const std::string name = "\"hash\": \"";
-  const std::size_t at = json.out.find(name);
-  ASSERT_NE(at, std::string::npos);
-  EXPECT_TRUE(mentions(text.out, json.out.substr(at + name.size(), 16)));
+  ASSERT_EQ(hash_in(json.out).size(), 16u) << json.out;
+  EXPECT_TRUE(mentions(text.out, hash_in(json.out)));
+}
+
+TEST(CommandLine, AmplifyOfAWorldWithSpeciesHasTheSameHashForAnyNumberOfThreads) {
+  const std::string command =
+      "amplify --world game/worlds/five_species.toml --region=-3,4,-1,6 --json --threads ";
+  const Outcome one = run_psygen(command + "1"), two = run_psygen(command + "2");
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_TRUE(mentions(one.out, "\"failed\": 0,")) << one.out;
+  EXPECT_EQ(hash_in(one.out).size(), 16u) << one.out;
+  EXPECT_EQ(hash_in(one.out), hash_in(two.out));
 }
 
 TEST(CommandLine, AmplifyRefusesWhatIsOutsideOfTheWorld) {
@@ -258,6 +273,22 @@ TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
   EXPECT_EQ(block.code, 1);
   EXPECT_TRUE(mentions(block.err, "0 to 511")) << block.err;
   EXPECT_EQ(run_psygen("export --model rock --out /nonexistent/a.glb").code, 1);
+  const Outcome world = run_psygen("export --model rock --world missing.toml --out a.glb");
+  EXPECT_EQ(world.code, 1);
+  EXPECT_TRUE(mentions(world.err, "missing.toml")) << world.err;
+}
+
+TEST(CommandLine, ExportWritesASpeciesOfAWorld) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "oak.glb").string();
+  const std::string command = "export --world game/worlds/five_species.toml --model ";
+  const Outcome oak = run_psygen(command + "oak --set seed=7 --set season=2 --out " + file);
+  EXPECT_EQ(oak.code, 0) << oak.err;
+  EXPECT_TRUE(mentions(oak.err, "1 objects")) << oak.err;
+  EXPECT_GT(std::filesystem::file_size(file), 10'000u);
+  const Outcome elm = run_psygen(command + "elm --out " + file);
+  EXPECT_EQ(elm.code, 2);
+  EXPECT_TRUE(mentions(elm.err, "oak, birch, spruce, palm, bush, dead_tree")) << elm.err;
 }
 
 TEST(CommandLine, CalibrateWritesFitsAndPlots) {
@@ -269,6 +300,21 @@ TEST(CommandLine, CalibrateWritesFitsAndPlots) {
   EXPECT_TRUE(mentions(read(folder / "calibration.html"), "<svg"));
   EXPECT_TRUE(mentions(read(folder / "calibration.json"), "\"r_squared\""));
   EXPECT_EQ(run_psygen("calibrate --samples 4 --out /proc/nowhere").code, 1);
+}
+
+TEST(CommandLine, CalibrateNamesTheSpeciesOfAWorld) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_psygen("calibrate --samples 4 --world game/worlds/five_species.toml --out " +
+                 folder.path().string());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string json = read(folder / "calibration.json");
+  for (const std::string name : {"oak", "birch", "spruce", "palm", "bush", "dead_tree"}) {
+    EXPECT_TRUE(mentions(outcome.out, name + " ")) << outcome.out;
+    EXPECT_TRUE(mentions(json, "\"model\": \"" + name + "\"")) << name;
+    EXPECT_TRUE(mentions(read(folder / "calibration.html"), name + " level 0")) << name;
+  }
+  EXPECT_TRUE(mentions(outcome.out, "c·branches")) << outcome.out;
 }
 
 TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {

@@ -1,8 +1,12 @@
+#include "engine/models/terrain_ground.hpp"
+
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
+#include "engine/models/simd_targets.hpp"
 #include "engine/models/terrain.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 
@@ -78,6 +82,47 @@ TEST_F(Ground, OfManyPointsIsThatOfEachPoint) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(ground[i].height_m, ground_height_m(p, {8, -8}, points[i].x, points[i].y));
     EXPECT_EQ(ground[i].normal, ground_normal(p, {8, -8}, points[i].x, points[i].y));
+  }
+}
+
+// Fails unless both have the same bits.
+void expect_same(const GroundPoint& a, const GroundPoint& b) {
+  ASSERT_EQ(std::bit_cast<std::uint64_t>(a.height_m), std::bit_cast<std::uint64_t>(b.height_m));
+  for (int c = 0; c < 3; ++c)
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(a.normal[c]), std::bit_cast<std::uint32_t>(b.normal[c]));
+}
+
+TEST_F(Ground, OfAWholeBlockOrItsMeshHasTheBitsOfSinglePointsOnEveryTargetAnywhere) {
+  constexpr std::int32_t kFar = std::numeric_limits<std::int32_t>::max();
+  core::RandomStream random(9, 0, 0, 0, core::Purpose::kPosition);
+  for (int trial = 0; trial < 16; ++trial) {
+    p = test::random_parameters(*type, random);
+    p.set_integer(kTerrainSize, trial == 0 ? 64 : random.next_integer(4, 128));
+    p.set_real(kTerrainWarp, trial % 4 == 3 ? 0.3 : 0);
+    const core::BlockCoord block =
+        trial % 2 == 0 ? core::BlockCoord{kFar - trial / 4, -kFar} : core::BlockCoord{trial, -9};
+    const double side = terrain_block_size_m(p);
+    // Inside, on vertices and edges, at the far corner and outside.
+    std::vector<glm::dvec2> points{{0, 0}, {side, side}, {side, 0}, {-0.1, 3}, {3, side * 1.5}};
+    points.push_back({std::nextafter(side, 0.0), std::nextafter(side, 0.0)});
+    points.push_back({p.real(kTerrainCellM) * 2, p.real(kTerrainCellM) * 3});
+    for (int i = 0; i < 20; ++i)
+      points.push_back({side * random.next_unit(), side * random.next_unit()});
+    for (const std::string_view target : simd_targets()) {
+      pin_simd_target(target);
+      p.set_integer(kTerrainBlockX, block.x);
+      p.set_integer(kTerrainBlockZ, block.z);
+      const test::Mesh mesh = test::synthesize(*type, p, 0);
+      const BlockGround whole(p, block, 1000), single(p, block, 0),
+          drawn(p, block, mesh.vertex_bytes);
+      for (const glm::dvec2& point : points) {
+        expect_same(whole.at(point), single.at(point));
+        expect_same(drawn.at(point), single.at(point));
+      }
+      if (HasFatalFailure()) break;
+    }
+    unpin_simd_target();
+    ASSERT_FALSE(HasFatalFailure()) << "trial " << trial;
   }
 }
 

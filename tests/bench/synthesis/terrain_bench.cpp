@@ -8,20 +8,13 @@
 
 #include "engine/models/ridged_noise.hpp"
 #include "engine/models/terrain.hpp"
-#include "tests/bench/models/per_target.hpp"
+#include "tests/bench/synthesis/per_target.hpp"
 #include "tests/engine/models/oracle_terrain.hpp"
 
 namespace psygen::models {
 namespace {
 
-void report_samples(benchmark::State& state, double samples) {
-  state.counters["per_sample"] =
-      benchmark::Counter(samples * static_cast<double>(state.iterations()),
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
-
 void noise_65x65(benchmark::State& state, double warp) {
-  const bench::PinnedTarget target(state);
   const RidgedNoise noise(
       {.seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600, .warp = warp});
   std::array<std::int64_t, 65> columns, rows;
@@ -33,19 +26,10 @@ void noise_65x65(benchmark::State& state, double warp) {
     noise.evaluate(columns, rows, values, 65);
     benchmark::DoNotOptimize(values.data());
   }
-  report_samples(state, 65 * 65);
+  bench::report_seconds_each(state, 65 * 65);
 }
-void terrain_noise_65x65(benchmark::State& state) {
-  noise_65x65(state, 0);
-}
-BENCHMARK(terrain_noise_65x65)->Apply(bench::each_target);
 
-void terrain_noise_warped_65x65(benchmark::State& state) {
-  noise_65x65(state, 0.3);
-}
-BENCHMARK(terrain_noise_warped_65x65)->Apply(bench::each_target);
-
-void terrain_noise_65x65_reference(benchmark::State& state) {
+void noise_65x65_reference(benchmark::State& state) {
   const test::TerrainOracle oracle{
       .seed = 1, .height = 1.2, .offset = 0.88, .cells_per_step = 1.0 / 600};
   std::int64_t block = 0;
@@ -58,14 +42,13 @@ void terrain_noise_65x65_reference(benchmark::State& state) {
     ++block;
     benchmark::DoNotOptimize(sum);
   }
-  report_samples(state, 65 * 65);
+  bench::report_seconds_each(state, 65 * 65);
 }
-BENCHMARK(terrain_noise_65x65_reference);
+BENCHMARK(noise_65x65_reference)->Name("terrain_noise_65x65/reference");
 
 void terrain_block(benchmark::State& state) {
-  const bench::PinnedTarget target(state);
   const auto type = make_terrain_type();
-  const int level = static_cast<int>(state.range(1));
+  const int level = static_cast<int>(state.range(0));
   Parameters p = default_parameters(*type);
   const MeshSize size = type->mesh_size(p, level);
   std::vector<std::byte> vertices(size.vertex_count * sizeof(core::TerrainVertex));
@@ -74,9 +57,10 @@ void terrain_block(benchmark::State& state) {
     p.set_integer(kTerrainBlockX, block++);
     benchmark::DoNotOptimize(type->synthesize(p, level, {vertices, {}}));
   }
+  bench::report_seconds_each(state, 1);
 }
-BENCHMARK(terrain_block)->Apply([](auto* b) { bench::each_target_with(b, "level", 0, 3, 1); });
 
+// Where 63 models stand.
 void terrain_ground_63_points(benchmark::State& state) {
   const Parameters p = default_parameters(*make_terrain_type());
   std::vector<glm::dvec2> points;
@@ -88,8 +72,16 @@ void terrain_ground_63_points(benchmark::State& state) {
     sample_ground(p, {block++, 0}, points, ground);
     benchmark::DoNotOptimize(ground.data());
   }
+  bench::report_seconds_each(state, 1);
 }
-BENCHMARK(terrain_ground_63_points);
+
+const bool kRegistered =
+    bench::for_each_target("terrain_noise_65x65", [](auto& state) { noise_65x65(state, 0); }) &&
+    bench::for_each_target("terrain_noise_warped_65x65",
+                           [](auto& state) { noise_65x65(state, 0.3); }) &&
+    bench::for_each_target("terrain_block", terrain_block,
+                           [](auto* b, bool) { b->DenseRange(0, 3)->ArgName("level"); }) &&
+    bench::for_each_target("terrain_ground_63_points", terrain_ground_63_points);
 
 }  // namespace
 }  // namespace psygen::models

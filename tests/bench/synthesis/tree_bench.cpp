@@ -3,11 +3,10 @@
 // double-precision reference in the same run, which is the scale.
 #include <benchmark/benchmark.h>
 
-#include <string>
 #include <vector>
 
-#include "engine/models/simd_targets.hpp"
 #include "engine/models/tree.hpp"
+#include "tests/bench/synthesis/per_target.hpp"
 #include "tests/engine/models/oracle_tree.hpp"
 
 namespace psygen::models {
@@ -27,16 +26,12 @@ std::vector<Parameters> trees(const ModelType& type) {
 }
 
 void report(benchmark::State& state, double triangles) {
-  const double done = static_cast<double>(state.iterations());
   state.counters["triangles_per_tree"] = triangles / kTrees;
-  state.counters["triangles_per_second"] =
-      benchmark::Counter(triangles * done, benchmark::Counter::kIsRate);
-  state.counters["seconds_per_tree"] =
-      benchmark::Counter(kTrees * done, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  bench::report_triangles(state, triangles * static_cast<double>(state.iterations()));
+  bench::report_seconds_each(state, kTrees);
 }
 
-void tree_synthesis(benchmark::State& state, const std::string& target) {
-  pin_simd_target(target);
+void tree(benchmark::State& state) {
   const auto type = make_tree_type();
   const int level = static_cast<int>(state.range(0));
   const std::vector<Parameters> parameters = trees(*type);
@@ -56,9 +51,12 @@ void tree_synthesis(benchmark::State& state, const std::string& target) {
           {std::span(vertices).first(bytes), std::span(indices).first(sizes[i].index_count)}));
     }
   }
-  unpin_simd_target();
   report(state, triangles);
 }
+// Full detail on every set, the other levels on the best one.
+const bool kRegistered = bench::for_each_target("tree", tree, [](auto* b, bool best) {
+  b->DenseRange(0, best ? 5 : 0)->ArgName("level")->Unit(benchmark::kMicrosecond);
+});
 
 void tree_reference(benchmark::State& state) {
   const auto type = make_tree_type();
@@ -72,32 +70,22 @@ void tree_reference(benchmark::State& state) {
     }
   report(state, triangles);
 }
-BENCHMARK(tree_reference)->Unit(benchmark::kMicrosecond);
+BENCHMARK(tree_reference)
+    ->Name("tree/reference")
+    ->Arg(0)
+    ->ArgName("level")
+    ->Unit(benchmark::kMicrosecond);
 
+// Hashes integers only: the same code on every instruction set.
 void tree_size(benchmark::State& state) {
   const auto type = make_tree_type();
   const std::vector<Parameters> parameters = trees(*type);
   for (auto _ : state)
     for (const Parameters& p : parameters)
       benchmark::DoNotOptimize(type->mesh_size(p, static_cast<int>(state.range(0))));
-  state.counters["seconds_per_tree"] =
-      benchmark::Counter(kTrees * static_cast<double>(state.iterations()),
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  bench::report_seconds_each(state, kTrees);
 }
-BENCHMARK(tree_size)->DenseRange(0, 5)->ArgName("level");
-
-// Full detail on every set, the other levels on the best one.
-const bool kRegistered = [] {
-  const auto targets = simd_targets();
-  for (const std::string_view target : targets) {
-    const std::string name(target);
-    benchmark::RegisterBenchmark(("tree_synthesis/" + name).c_str(), tree_synthesis, name)
-        ->DenseRange(0, target == targets.front() ? 5 : 0)
-        ->ArgName("level")
-        ->Unit(benchmark::kMicrosecond);
-  }
-  return true;
-}();
+BENCHMARK(tree_size)->Name("tree_size/scalar")->DenseRange(0, 5)->ArgName("level");
 
 }  // namespace
 }  // namespace psygen::models

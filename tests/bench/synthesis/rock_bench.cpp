@@ -5,14 +5,13 @@
 #include <vector>
 
 #include "engine/models/rock.hpp"
-#include "tests/bench/models/per_target.hpp"
+#include "tests/bench/synthesis/per_target.hpp"
 #include "tests/engine/models/oracle_rock.hpp"
 
 namespace psygen::models {
 namespace {
 
 void synthesize_rocks(benchmark::State& state, RockFamily family, std::int64_t subdivisions) {
-  const bench::PinnedTarget target(state);
   const auto type = make_rock_type();
   Parameters p = default_parameters(*type);
   p.set_integer(kRockFamily, family);
@@ -24,24 +23,27 @@ void synthesize_rocks(benchmark::State& state, RockFamily family, std::int64_t s
     p.set_integer(kRockSeed, seed++);
     benchmark::DoNotOptimize(type->synthesize(p, 0, {vertices, {}}));
   }
-  state.counters["triangles_per_second"] = benchmark::Counter(
-      size.triangle_count() * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  bench::report_triangles(state, size.triangle_count() * static_cast<double>(state.iterations()));
+  bench::report_seconds_each(state, 1);
 }
 
 void rock(benchmark::State& state) {
-  synthesize_rocks(state, kRockRounded, state.range(1));
+  synthesize_rocks(state, kRockRounded, state.range(0));
 }
-BENCHMARK(rock)->Apply([](auto* b) { bench::each_target_with(b, "subdivisions", 0, 6, 2); });
+const bool kRegistered = bench::for_each_target(
+    "rock", rock, [](auto* b, bool) { b->DenseRange(0, 6, 2)->ArgName("subdivisions"); });
 
 void rock_faceted(benchmark::State& state) {
-  synthesize_rocks(state, kRockFaceted, 2);
+  synthesize_rocks(state, kRockFaceted, state.range(0));
 }
-BENCHMARK(rock_faceted)->Apply(bench::each_target);
+const bool kFacetedRegistered = bench::for_each_target(
+    "rock_faceted", rock_faceted, [](auto* b, bool) { b->Arg(2)->ArgName("subdivisions"); });
 
 void rock_layered(benchmark::State& state) {
-  synthesize_rocks(state, kRockLayered, 2);
+  synthesize_rocks(state, kRockLayered, state.range(0));
 }
-BENCHMARK(rock_layered)->Apply(bench::each_target);
+const bool kLayeredRegistered = bench::for_each_target(
+    "rock_layered", rock_layered, [](auto* b, bool) { b->Arg(2)->ArgName("subdivisions"); });
 
 void rock_reference(benchmark::State& state) {
   std::uint64_t seed = 0;
@@ -52,10 +54,10 @@ void rock_reference(benchmark::State& state) {
     triangles += static_cast<double>(oracle.triangles.size());
     benchmark::DoNotOptimize(oracle.places.data());
   }
-  state.counters["triangles_per_second"] =
-      benchmark::Counter(triangles, benchmark::Counter::kIsRate);
+  bench::report_triangles(state, triangles);
+  bench::report_seconds_each(state, 1);
 }
-BENCHMARK(rock_reference)->Arg(2)->ArgName("subdivisions");
+BENCHMARK(rock_reference)->Name("rock/reference")->Arg(2)->ArgName("subdivisions");
 
 }  // namespace
 }  // namespace psygen::models

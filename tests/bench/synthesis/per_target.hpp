@@ -1,0 +1,45 @@
+// Benchmarks of kernels once for every instruction set of this CPU, under the name "work/set"; the
+// same work by plain double-precision code is "work/reference". main.cpp makes a table of them.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "engine/models/simd_targets.hpp"
+
+namespace psygen::models::bench {
+
+// Registers `body`, which runs with the set pinned; `adjust` gives the benchmark its arguments.
+// Returns true, for constants that register when the program starts.
+inline bool for_each_target(
+    const std::string& work, const std::function<void(benchmark::State&)>& body,
+    const std::function<void(benchmark::internal::Benchmark*, bool best)>& adjust = {}) {
+  const auto targets = simd_targets();
+  for (const std::string_view target : targets) {
+    const auto pinned = [body, target](benchmark::State& state) {
+      pin_simd_target(target);
+      body(state);
+      unpin_simd_target();
+    };
+    auto* const registered =
+        benchmark::RegisterBenchmark((work + "/" + std::string(target)).c_str(), pinned);
+    if (adjust) adjust(registered, target == targets.front());
+  }
+  return true;
+}
+
+// Counters of the table: seconds for one of `count` equal things done in each iteration, and
+// things per second.
+inline void report_seconds_each(benchmark::State& state, double count) {
+  state.counters["seconds_each"] =
+      benchmark::Counter(count * static_cast<double>(state.iterations()),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+inline void report_triangles(benchmark::State& state, double all) {
+  state.counters["triangles_per_second"] = benchmark::Counter(all, benchmark::Counter::kIsRate);
+}
+
+}  // namespace psygen::models::bench
