@@ -1,5 +1,6 @@
 // Trunk and branches: tapering tubes around the skeleton's curves, with the branches of one kind
 // and depth as lanes; where a depth has few branches, with the rings of all of them as lanes.
+#include "engine/models/tree_indices.hpp"
 #include "engine/models/tree_mesh.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -66,7 +67,7 @@ HWY_INLINE void gather(const BarkJob& job, const BarkLanes& lanes, std::size_t i
   frame_around(b.direction, b.u, b.v);
   for (std::uint32_t c = 0; c < job.tube.sides; ++c)
     b.normal[c] = octahedral(f1(job.circle.x[c]) * b.u + f1(job.circle.z[c]) * b.v);
-  if (job.tip) b.point_normal = octahedral(b.direction);
+  b.point_normal = job.tip ? octahedral(b.direction) : u1(0);
 }
 
 // One of eight steps, for vertex k of each branch.
@@ -81,13 +82,21 @@ HWY_INLINE VU chosen(const std::uint32_t* table, VU step) {
 #endif
 }
 
+// Where a ring is: anywhere, at the foot of a branch that is not the trunk, or at the end of a tip.
+// The last two give the same bits as the first, with less arithmetic.
+enum class RingAt { kAny, kFoot, kPoint };
+
 // The vertices of one ring of every lane, handed to `store` with the number of their corner.
 // `place`: the number of its first vertex for the noise.
-template <class Store>
+template <RingAt kAt, class Store>
 HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWriter& box, VF t,
-                           VU place, VF flare, bool point, const Store& store, Extent& extent) {
+                           VU place, VF flare, const Store& store, Extent& extent) {
+  constexpr bool kPoint = kAt == RingAt::kPoint;
   const TreePlan& plan = job.plan;
-  Vec3 middle = b.base + b.length * (t * b.direction + (t * t) * b.bend);
+  Vec3 middle = b.base;
+  if constexpr (kPoint) middle = middle + b.length * (b.direction + b.bend);
+  if constexpr (kAt == RingAt::kAny)
+    middle = middle + b.length * (t * b.direction + (t * t) * b.bend);
   if (job.trunk) {
     const VF sunk = middle.y - f1(sink_m(plan));
     middle.y = hn::IfThenElse(t <= f1(0.0F), sunk, middle.y);
@@ -106,24 +115,32 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
 
   const Vec3 scale = set3(box.scale);
   const Vec3 at = scaled(middle - set3(box.center), scale);
-  const Vec3 turn = (f1(2.0F) * t) * b.bend;
-  const Vec3 across = scaled(radius * (b.u - dot(b.u, turn) * b.direction), scale);
-  const Vec3 beyond = scaled(radius * (b.v - dot(b.v, turn) * b.direction), scale);
-  const std::uint32_t corners = point ? 1 : job.tube.sides;
+  Vec3 across = b.u, beyond = b.v;
+  if constexpr (kAt == RingAt::kAny) {
+    const Vec3 turn = (f1(2.0F) * t) * b.bend;
+    across = across - dot(b.u, turn) * b.direction;
+    beyond = beyond - dot(b.v, turn) * b.direction;
+  }
+  across = scaled(radius * across, scale);
+  beyond = scaled(radius * beyond, scale);
+  const std::uint32_t corners = kPoint ? 1 : job.tube.sides;
   for (std::uint32_t k = 0; k < corners; ++k) {
-    Vec3 p = f1(job.circle.x[k]) * across + f1(job.circle.z[k]) * beyond;
-    if (job.trunk) {
-      const VF lobe = f1(0.4F) + f1(0.16F) * as_float(noise_step(b.noise, u1(k + 1000)));
-      p = (f1(1.0F) + flare * lobe) * p;
+    Vec3 p = at;
+    if constexpr (!kPoint) {
+      Vec3 out = f1(job.circle.x[k]) * across + f1(job.circle.z[k]) * beyond;
+      if (job.trunk) {
+        const VF lobe = f1(0.4F) + f1(0.16F) * as_float(noise_step(b.noise, u1(k + 1000)));
+        out = (f1(1.0F) + flare * lobe) * out;
+      }
+      p = at + out;
     }
-    p = at + p;
     const VU x = rounded_bits(clamped(p.x, -32767.0F, 32767.0F));
     const VU y = rounded_bits(clamped(p.y, -32767.0F, 32767.0F));
     const VU z = rounded_bits(clamped(p.z, -32767.0F, 32767.0F));
     const VU xy = xy_word(x, y), zl = z_word(z, light);
     extent.add(xy, zl);
     const VU colour = chosen(job.colours, noise_step(b.noise, place + u1(k)));
-    const VU normal = point ? b.point_normal : b.normal[k];
+    const VU normal = kPoint ? b.point_normal : b.normal[k];
     store(vertices_of(xy, zl, paired(normal, colour)), k);
   }
 }
@@ -138,8 +155,8 @@ void mesh_rings(const BarkJob& job, const BarkLanes& rings, MeshWriter& box, std
     Extent extent;
     extent.clear();
     const VU place = hn::Load(DU(), rings.ring + i) * u1(kMaxSides);
-    write_ring(
-        job, b, box, hn::Load(DF(), rings.t + i), place, hn::Load(DF(), rings.flare + i), false,
+    write_ring<RingAt::kAny>(
+        job, b, box, hn::Load(DF(), rings.t + i), place, hn::Load(DF(), rings.flare + i),
         [&](const Vertices& v, std::size_t k) {
           store_apart(v, lanes, sides, to + 16 * (i * sides + k));
         },
@@ -176,10 +193,18 @@ void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, st
         store_apart(v, lanes, stride, to + 16 * (i * stride + first + k));
       };
       const VU place = u1(ring * kMaxSides);
+      const auto write = [&](const auto& store) {
+        if (point)
+          write_ring<RingAt::kPoint>(job, b, box, f1(t), place, f1(0.0F), store, extent);
+        else if (ring == 0 && !job.trunk)
+          write_ring<RingAt::kFoot>(job, b, box, f1(0.0F), place, f1(0.0F), store, extent);
+        else
+          write_ring<RingAt::kAny>(job, b, box, f1(t), place, f1(0.0F), store, extent);
+      };
       if (i < blocked)
-        write_ring(job, b, box, f1(t), place, f1(0.0F), point, in_block, extent);
+        write(in_block);
       else
-        write_ring(job, b, box, f1(t), place, f1(0.0F), point, apart, extent);
+        write(apart);
     }
     if (i + n >= all.count) extent.widen(box.low, box.high, lanes);
   }
@@ -188,15 +213,18 @@ void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, st
 // indices = pattern + base, over and over: `pattern` holds the indices of sixteen tubes.
 void repeat_pattern(const std::uint16_t* pattern, std::size_t length, std::uint32_t first,
                     std::uint32_t step, std::size_t total, std::uint16_t* to) {
+  const HWY_CAPPED(std::uint16_t, 32) wide;
   const HWY_CAPPED(std::uint16_t, 8) d;
   for (std::size_t done = 0; done < total; done += length, first += step) {
-    const auto base = hn::Set(d, static_cast<std::uint16_t>(first));
+    const auto base = static_cast<std::uint16_t>(first);
     const std::size_t count = std::min(length, total - done);
     std::size_t i = 0;
+    for (; i + hn::Lanes(wide) <= count; i += hn::Lanes(wide))
+      hn::StoreU(hn::Load(wide, pattern + i) + hn::Set(wide, base), wide, to + done + i);
     for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d))
-      hn::StoreU(hn::Load(d, pattern + i) + base, d, to + done + i);
+      hn::StoreU(hn::Load(d, pattern + i) + hn::Set(d, base), d, to + done + i);
     for (; i < count; ++i)
-      to[done + i] = static_cast<std::uint16_t>(pattern[i] + first);
+      to[done + i] = static_cast<std::uint16_t>(pattern[i] + base);
   }
 }
 
@@ -233,40 +261,13 @@ float sway_at(int depth, int tips_depth) {
   return static_cast<float>(std::min(30 + 170 * depth / std::max(tips_depth, 1), 200));
 }
 
-// The indices of one tube whose first vertex is `first`.
-std::uint16_t* write_tube(const TubePlan& tube, std::uint32_t first, std::uint16_t* to) {
-  const auto put = [&to](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    *to++ = static_cast<std::uint16_t>(a);
-    *to++ = static_cast<std::uint16_t>(b);
-    *to++ = static_cast<std::uint16_t>(c);
-  };
-  for (std::uint32_t ring = 0; ring < tube.segments; ++ring) {
-    const std::uint32_t low = first + ring * tube.sides, high = low + tube.sides;
-    const bool apex = tube.pointed && ring + 1 == tube.segments;
-    for (std::uint32_t side = 0; side < tube.sides; ++side) {
-      const std::uint32_t next = side + 1 == tube.sides ? 0 : side + 1;
-      put(low + side, low + next, apex ? high : high + side);
-      if (!apex) put(low + next, high + next, high + side);
-    }
-  }
-  return to;
-}
-
 // The indices of `count` tubes from vertex `first` on, of which the first `blocked` are in blocks.
 void write_indices(const TubePlan& tube, std::uint32_t count, std::uint32_t blocked,
                    std::uint32_t first, MeshWriter& out) {
-  alignas(64) std::uint16_t pattern[kTreeLanes * 6 * kMaxSides * kMaxSegments];
   const auto repeat = [&](std::uint32_t tubes, std::uint32_t start, bool in_blocks) {
     const std::uint32_t size = tube.triangles() * 3;
-    std::uint16_t* end = pattern;
-    for (std::uint32_t i = 0; i < std::min(tubes, kTreeLanes); ++i) {
-      std::uint16_t* const mine = end;
-      end = write_tube(tube, in_blocks ? 0 : i * tube.vertices(), end);
-      for (std::uint16_t* index = mine; in_blocks && index < end; ++index)
-        *index = static_cast<std::uint16_t>(*index * kTreeLanes + i % 4 * 4 + i / 4);
-    }
     HWY_DYNAMIC_DISPATCH(repeat_pattern)
-    (pattern, static_cast<std::size_t>(end - pattern), start, kTreeLanes * tube.vertices(),
+    (tube_pattern(tube, in_blocks), kTreeLanes * size, start, kTreeLanes * tube.vertices(),
      std::size_t{tubes} * size, out.append_indices(tubes * size));
   };
   if (blocked > 0) repeat(blocked, first, true);

@@ -127,6 +127,9 @@ void hand_down_all(const TreePlan& plan, const TreeGroup& group, std::size_t fir
     const GrammarRule& only = grammar.rules[grammar.first_rule[parents.kind]];
     if (rules == 1 && only.star != group.kind) {
       const std::uint32_t count = only.count[group.kind];
+      std::uint32_t* const child = &s.child[group.kind][parents.first];
+      for (std::uint32_t p = 0; p < parents.count; ++p)
+        child[p] = static_cast<std::uint32_t>(to) + p * count;
       if (count == 1) {
         hand_down_singly(parents, s, to);
         to += parents.count;
@@ -138,6 +141,7 @@ void hand_down_all(const TreePlan& plan, const TreeGroup& group, std::size_t fir
     }
     for (std::uint32_t p = parents.first; p < parents.first + parents.count; ++p) {
       const std::uint32_t count = children_of(plan, parents.kind, s.draw[p]).of_kind(group.kind);
+      s.child[group.kind][p] = static_cast<std::uint32_t>(to);
       hand_down(s, p, to, count);
       to += count;
     }
@@ -192,7 +196,6 @@ struct PathChild {
   std::uint32_t parent, rank, siblings, share;
   std::uint8_t kind;
 };
-constexpr std::uint32_t kMaxPaths = 64;
 
 // The children of the groups [first, last) that are on paths, in order of their parents.
 std::uint32_t path_children(const TreePlan& plan, const TreeSkeleton& s, std::size_t first,
@@ -301,6 +304,39 @@ void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkel
   }
   for (std::size_t g = 0; g < s.group_count; ++g)
     s.groups[g].tip = s.groups[g].depth == s.depth || !plan.grammar->grows(s.groups[g].kind);
+}
+
+void find_paths(const TreePlan& plan, const TreeSkeleton& s, std::uint32_t max_tips,
+                TreePaths& out) {
+  out.nodes[0] = {0, max_tips, plan.axiom, 0};
+  out.count = 1;
+  out.depth = 0;
+  std::uint32_t first = 0;
+  for (int d = 1; d <= s.depth; ++d) {
+    TreePaths::Node found[kMaxPaths];
+    std::uint32_t count = 0;
+    ChildTotals totals{};
+    for (std::uint32_t i = first; i < out.count; ++i) {
+      const TreePaths::Node& parent = out.nodes[i];
+      if (!plan.grammar->grows(parent.kind)) continue;
+      for_children(plan, parent.kind, s.draw[parent.slot], parent.budget, plan.iterations - d,
+                   [&](std::size_t c, std::uint32_t rank, std::uint32_t, std::uint32_t share) {
+                     found[count++] = {s.child[c][parent.slot] + rank, share,
+                                       static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(d)};
+                     ++totals[c];
+                   });
+    }
+    if (count == 0) break;
+    first = out.count;
+    std::array<std::uint32_t, kMaxKinds> to{};
+    for (std::size_t c = 0; c < plan.grammar->kinds; ++c) {
+      to[c] = out.count;
+      out.count += totals[c];
+    }
+    for (std::uint32_t i = 0; i < count; ++i)
+      out.nodes[to[found[i].kind]++] = found[i];
+    out.depth = d;
+  }
 }
 
 }  // namespace psygen::models

@@ -4,6 +4,7 @@
 // that the outline stays. Normals follow the crown rather than the leaf, which shades it as one
 // soft volume. Spray k hangs on bearer k mod M, so that neighbouring lanes read neighbouring
 // bearers.
+#include "engine/models/tree_indices.hpp"
 #include "engine/models/tree_mesh.hpp"
 #include "engine/models/tree_paths.hpp"
 
@@ -22,7 +23,6 @@ namespace psygen::models {
 struct Bearers {
   static constexpr std::size_t kRows = 9;
   alignas(64) float rows[kRows][kMaxTreeNodes + 2 * kTreeLanes];
-  alignas(64) float length[kMaxTreeNodes + 2 * kTreeLanes];
   std::uint32_t count;
   Bearers() {}
 };
@@ -134,15 +134,27 @@ HWY_INLINE void write_corner(const SprayForm& form, std::size_t k, const Spray& 
 }
 
 // From rows of the skeleton to what the kernel reads.
-void prepare(const TreeCrown& crown, float pull, Bearers& b) {
+void collect(const TreePlan& plan, const TreeSkeleton& s, const TreeCrown& crown, float pull,
+             Bearers& b) {
   const DF d;
   const VF center[3] = {f1(crown.center.x), f1(crown.center.y), f1(crown.center.z)};
-  for (std::size_t i = 0; i < b.count; i += hn::Lanes(d)) {
-    const VF length = hn::Load(d, b.length + i) * f1(pull);
-    for (std::size_t c = 0; c < 3; ++c)
-      hn::Store(f1(pull) * (hn::Load(d, b.rows[c] + i) - center[c]), d, b.rows[c] + i);
-    for (std::size_t r = 3; r < Bearers::kRows; ++r)
-      hn::Store(length * hn::Load(d, b.rows[r] + i), d, b.rows[r] + i);
+  const bool by_leaves = has_bearers(plan, s);
+  b.count = 0;
+  for (std::size_t g = 0; g < s.group_count; ++g) {
+    const TreeGroup& group = s.groups[g];
+    if (by_leaves ? !bears_leaves(plan, group) : !group.tip) continue;
+    for (std::size_t i = 0; i < group.count; i += hn::Lanes(d)) {
+      const std::size_t from = group.first + i, to = b.count + i;
+      const VF length = hn::Load(d, &s.rows[kLength][from]) * f1(pull);
+#pragma GCC unroll 3
+      for (std::size_t c = 0; c < 3; ++c)
+        hn::StoreU(f1(pull) * (hn::Load(d, &s.rows[kBase + c][from]) - center[c]), d,
+                   &b.rows[c][to]);
+#pragma GCC unroll 6
+      for (std::size_t r = 3; r < Bearers::kRows; ++r)
+        hn::StoreU(length * hn::Load(d, &s.rows[r][from]), d, &b.rows[r][to]);
+    }
+    b.count += group.count;
   }
   for (std::size_t r = 0; r < Bearers::kRows; ++r)
     for (std::uint32_t i = 0; i < kTreeLanes; ++i)
@@ -200,7 +212,7 @@ HWY_AFTER_NAMESPACE();
 namespace psygen::models {
 namespace {
 
-HWY_EXPORT(prepare);
+HWY_EXPORT(collect);
 HWY_EXPORT(write_sprays);
 HWY_EXPORT(repeat_block);
 
@@ -277,19 +289,6 @@ SprayJob spray_job(const TreePlan& plan, int level, const TreeCrown& crown, std:
   return job;
 }
 
-void collect(const TreePlan& plan, const TreeSkeleton& s, Bearers& out) {
-  out.count = 0;
-  const bool by_leaves = has_bearers(plan, s);
-  for (std::size_t g = 0; g < s.group_count; ++g) {
-    const TreeGroup& group = s.groups[g];
-    if (by_leaves ? !bears_leaves(plan, group) : !group.tip) continue;
-    for (std::size_t r = 0; r < Bearers::kRows; ++r)
-      std::memcpy(&out.rows[r][out.count], &s.rows[r][group.first], sizeof(float) * group.count);
-    std::memcpy(&out.length[out.count], &s.rows[kLength][group.first], sizeof(float) * group.count);
-    out.count += group.count;
-  }
-}
-
 }  // namespace
 
 const SprayForm& spray_form(const TreePlan& plan, int level) {
@@ -313,22 +312,16 @@ void mesh_sprays(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                  const TreeCrown& crown, std::uint32_t sprays, MeshWriter& out) {
   if (sprays == 0) return;
   Bearers bearers;
-  collect(plan, skeleton, bearers);
   const SpraySize size = spray_size(plan, level, crown, sprays);
-  HWY_DYNAMIC_DISPATCH(prepare)(crown, size.pull, bearers);
+  HWY_DYNAMIC_DISPATCH(collect)(plan, skeleton, crown, size.pull, bearers);
   const SprayJob job = spray_job(plan, level, crown, bearers.count, size, out);
   const std::uint32_t first = out.vertex_count();
   std::byte* to = out.append_vertices(sprays * job.form.vertices);
   HWY_DYNAMIC_DISPATCH(write_sprays)(job, bearers, sprays, out, to);
-  alignas(64) std::uint16_t pattern[kSprayBlock * 3 * kMaxSprayTriangles];
   const std::size_t indices = std::size_t{3} * job.form.triangles;
-  std::uint16_t* next = pattern;
-  for (std::uint32_t i = 0; i < kSprayBlock; ++i)
-    for (std::size_t k = 0; k < indices; ++k)
-      *next++ = static_cast<std::uint16_t>(job.form.indices[k] * kSprayBlock + i % 4 * 4 + i / 4);
   HWY_DYNAMIC_DISPATCH(repeat_block)
-  (pattern, kSprayBlock * indices, kSprayBlock * job.form.vertices, first, sprays / kSprayBlock,
-   out.append_indices(sprays * 3 * job.form.triangles));
+  (spray_pattern(job.form), kSprayBlock * indices, kSprayBlock * job.form.vertices, first,
+   sprays / kSprayBlock, out.append_indices(sprays * 3 * job.form.triangles));
 }
 
 }  // namespace psygen::models
