@@ -17,15 +17,19 @@ struct Circle {
   float x[kMaxSides], z[kMaxSides];
 };
 
-// Branches, or rings with the rows of their branch, side by side.
+// Branches, or rings with the rows of their branch, side by side; after the last one, copies of it
+// up to full lanes.
 inline constexpr std::size_t kMaxRingLanes = 128;
+// Noise of vertex k: (noise + 0x9E3779B9 k) · kNoiseFactor, multiplied out.
+inline constexpr std::uint32_t kNoiseFactor = 0x846CA68BU;
+inline constexpr std::uint32_t kNoiseStep = 0x9E3779B9U * kNoiseFactor;
 struct BarkLanes {
-  alignas(64) float rows[kTreeRows][kMaxTreeNodes + kTreeLanes];
-  alignas(64) std::uint32_t key[kMaxTreeNodes + kTreeLanes];
+  alignas(64) float rows[kTreeRows][kMaxTreeNodes + 2 * kTreeLanes];
+  alignas(64) std::uint32_t key[kMaxTreeNodes + 2 * kTreeLanes];
   std::size_t count = 0;
   // Where rings are in their branch; for rings as lanes only.
-  alignas(64) float t[kMaxRingLanes], flare[kMaxRingLanes];
-  alignas(64) std::uint32_t ring[kMaxRingLanes];
+  alignas(64) float t[kMaxRingLanes + kTreeLanes], flare[kMaxRingLanes + kTreeLanes];
+  alignas(64) std::uint32_t ring[kMaxRingLanes + kTreeLanes];
   BarkLanes() {}
 };
 
@@ -50,7 +54,7 @@ namespace HWY_NAMESPACE {
 struct Branches {
   Vec3 base, direction, bend, u, v;
   VF length, radius;
-  VU noise;
+  VU noise;  // times kNoiseFactor
   VU normal[kMaxSides], point_normal;
 };
 
@@ -63,16 +67,16 @@ HWY_INLINE void gather(const BarkJob& job, const BarkLanes& lanes, std::size_t i
   b.bend = three(kBend);
   b.length = hn::LoadU(DF(), &lanes.rows[kLength][i]);
   b.radius = hn::LoadU(DF(), &lanes.rows[kRadius][i]);
-  b.noise = number(hn::LoadU(DU(), &lanes.key[i]), job.plan.salt, kBarkNumber);
+  b.noise = number(hn::LoadU(DU(), &lanes.key[i]), job.plan.salt, kBarkNumber) * u1(kNoiseFactor);
   frame_around(b.direction, b.u, b.v);
   for (std::uint32_t c = 0; c < job.tube.sides; ++c)
     b.normal[c] = octahedral(f1(job.circle.x[c]) * b.u + f1(job.circle.z[c]) * b.v);
   b.point_normal = job.tip ? octahedral(b.direction) : u1(0);
 }
 
-// One of eight steps, for vertex k of each branch.
-HWY_INLINE VU noise_step(VU noise, VU k) {
-  return hn::ShiftRight<29>((noise + k * u1(0x9E3779B9U)) * u1(0x846CA68BU));
+// One of eight steps for vertex k of each branch; `ahead` is kNoiseStep · k.
+HWY_INLINE VU noise_step(VU noise, VU ahead) {
+  return hn::ShiftRight<29>(noise + ahead);
 }
 HWY_INLINE VU chosen(const std::uint32_t* table, VU step) {
 #if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
@@ -87,7 +91,7 @@ HWY_INLINE VU chosen(const std::uint32_t* table, VU step) {
 enum class RingAt { kAny, kFoot, kPoint };
 
 // The vertices of one ring of every lane, handed to `store` with the number of their corner.
-// `place`: the number of its first vertex for the noise.
+// `place`: kNoiseStep times the number of its first vertex.
 template <RingAt kAt, class Store>
 HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWriter& box, VF t,
                            VU place, VF flare, const Store& store, Extent& extent) {
@@ -129,7 +133,8 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
     if constexpr (!kPoint) {
       Vec3 out = f1(job.circle.x[k]) * across + f1(job.circle.z[k]) * beyond;
       if (job.trunk) {
-        const VF lobe = f1(0.4F) + f1(0.16F) * as_float(noise_step(b.noise, u1(k + 1000)));
+        const VF lobe =
+            f1(0.4F) + f1(0.16F) * as_float(noise_step(b.noise, u1((k + 1000) * kNoiseStep)));
         out = (f1(1.0F) + flare * lobe) * out;
       }
       p = at + out;
@@ -139,7 +144,7 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
     const VU z = rounded_bits(clamped(p.z, -32767.0F, 32767.0F));
     const VU xy = xy_word(x, y), zl = z_word(z, light);
     extent.add(xy, zl);
-    const VU colour = chosen(job.colours, noise_step(b.noise, place + u1(k)));
+    const VU colour = chosen(job.colours, noise_step(b.noise, place + u1(k * kNoiseStep)));
     const VU normal = kPoint ? b.point_normal : b.normal[k];
     store(vertices_of(xy, zl, paired(normal, colour)), k);
   }
@@ -148,21 +153,21 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
 // Rings as lanes: vertices follow each other ring by ring.
 void mesh_rings(const BarkJob& job, const BarkLanes& rings, MeshWriter& box, std::byte* to) {
   const std::size_t n = hn::Lanes(DF()), sides = job.tube.sides;
+  Extent extent;
+  extent.clear();
   for (std::size_t i = 0; i < rings.count; i += n) {
     const std::size_t lanes = std::min<std::size_t>(n, rings.count - i);
     Branches b;
     gather(job, rings, i, b);
-    Extent extent;
-    extent.clear();
-    const VU place = hn::Load(DU(), rings.ring + i) * u1(kMaxSides);
+    const VU place = hn::Load(DU(), rings.ring + i) * u1(kMaxSides * kNoiseStep);
     write_ring<RingAt::kAny>(
         job, b, box, hn::Load(DF(), rings.t + i), place, hn::Load(DF(), rings.flare + i),
         [&](const Vertices& v, std::size_t k) {
           store_apart(v, lanes, sides, to + 16 * (i * sides + k));
         },
         extent);
-    extent.widen(box.low, box.high, lanes);
   }
+  extent.widen(box.low, box.high);
 }
 
 // Branches as lanes: 16 by 16 in blocks, vertex by vertex; the rest branch by branch.
@@ -174,10 +179,6 @@ void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, st
   extent.clear();
   for (std::size_t i = 0; i < all.count; i += n) {
     const std::size_t lanes = std::min<std::size_t>(n, all.count - i);
-    if (lanes < n) {
-      if (i > 0) extent.widen(box.low, box.high, n);
-      extent.clear();
-    }
     Branches b;
     gather(job, all, i, b);
     for (std::uint32_t ring = 0; ring <= segments; ++ring) {
@@ -192,7 +193,7 @@ void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, st
       const auto apart = [&](const Vertices& v, std::size_t k) {
         store_apart(v, lanes, stride, to + 16 * (i * stride + first + k));
       };
-      const VU place = u1(ring * kMaxSides);
+      const VU place = u1(ring * kMaxSides * kNoiseStep);
       const auto write = [&](const auto& store) {
         if (point)
           write_ring<RingAt::kPoint>(job, b, box, f1(t), place, f1(0.0F), store, extent);
@@ -206,8 +207,35 @@ void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, st
       else
         write(apart);
     }
-    if (i + n >= all.count) extent.widen(box.low, box.high, lanes);
   }
+  extent.widen(box.low, box.high);
+}
+
+void add_branches(const TreeSkeleton& s, const TreeGroup& group, BarkLanes& out) {
+  const DF d;
+  const DU du;
+  for (std::size_t i = 0; i < group.count; i += hn::Lanes(d)) {
+    const std::size_t from = group.first + i, to = out.count + i;
+    hn::StoreU(hn::Load(du, &s.key[from]), du, &out.key[to]);
+#pragma GCC unroll 11
+    for (std::size_t r = 0; r < kTreeRows; ++r)
+      hn::StoreU(hn::Load(d, &s.rows[r][from]), d, &out.rows[r][to]);
+  }
+  out.count += group.count;
+}
+
+// Copies of the last lane behind it.
+void fill_up(bool rings, BarkLanes& out) {
+  const DF d;
+  const DU du;
+  const std::size_t n = out.count;
+  hn::StoreU(hn::Set(du, out.key[n - 1]), du, &out.key[n]);
+  for (std::size_t r = 0; r < kTreeRows; ++r)
+    hn::StoreU(hn::Set(d, out.rows[r][n - 1]), d, &out.rows[r][n]);
+  if (!rings) return;
+  hn::StoreU(hn::Set(d, out.t[n - 1]), d, &out.t[n]);
+  hn::StoreU(hn::Set(d, out.flare[n - 1]), d, &out.flare[n]);
+  hn::StoreU(hn::Set(du, out.ring[n - 1]), du, &out.ring[n]);
 }
 
 // indices = pattern + base, over and over: `pattern` holds the indices of sixteen tubes.
@@ -239,6 +267,8 @@ namespace {
 HWY_EXPORT(mesh_branches);
 HWY_EXPORT(mesh_rings);
 HWY_EXPORT(repeat_pattern);
+HWY_EXPORT(add_branches);
+HWY_EXPORT(fill_up);
 
 // Unit circle with `sides` corners, for the numbers of sides that the plans use.
 const Circle& circle(std::uint32_t sides) {
@@ -354,13 +384,6 @@ void add_rings(const BarkJob& job, const TreeSkeleton& s, std::uint32_t node, Ba
   out.count += rings;
 }
 
-void add_branches(const TreeSkeleton& s, const TreeGroup& group, BarkLanes& out) {
-  for (std::size_t r = 0; r < kTreeRows; ++r)
-    std::memcpy(&out.rows[r][out.count], &s.rows[r][group.first], sizeof(float) * group.count);
-  std::memcpy(&out.key[out.count], &s.key[group.first], sizeof(std::uint32_t) * group.count);
-  out.count += group.count;
-}
-
 // The tubes of one depth that are not pointed, or all that are.
 void mesh_depth(const BarkJob& job, const TreeSkeleton& s, std::size_t first, std::size_t last,
                 BarkLanes& lanes, MeshWriter& out) {
@@ -379,9 +402,10 @@ void mesh_depth(const BarkJob& job, const TreeSkeleton& s, std::size_t first, st
       for (std::uint32_t i = 0; i < group.count; ++i)
         add_rings(job, s, group.first + i, lanes);
     } else {
-      add_branches(s, group, lanes);
+      HWY_DYNAMIC_DISPATCH(add_branches)(s, group, lanes);
     }
   }
+  HWY_DYNAMIC_DISPATCH(fill_up)(by_rings, lanes);
   if (by_rings)
     HWY_DYNAMIC_DISPATCH(mesh_rings)(job, lanes, out, to);
   else

@@ -237,7 +237,7 @@ void write_blocks(const SprayJob& job, const Bearers& bearers, std::uint32_t spr
                            extent, std::make_index_sequence<kForm.vertices - 1>());
     words += 4 * kForm.vertices * kChunk;
   }
-  extent.widen(box.low, box.high, n);
+  extent.widen(box.low, box.high);
 }
 
 // `sprays` is a multiple of 16; they are written in blocks of 16, corner by corner.
