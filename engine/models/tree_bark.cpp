@@ -347,12 +347,13 @@ using Colours = std::array<std::uint32_t, 16>;
 // From dark to bright, twice: tables are as long as the widest lanes.
 Colours bark_colours(const TreePlan& plan) {
   Colours words;
-  for (std::size_t i = 0; i < 16; ++i) {
+  for (std::size_t i = 0; i < 8; ++i) {
     const float brightness =
-        1.0F + plan.bark_contrast * (static_cast<float>(i % 8) * (2.0F / 7.0F) - 1.0F);
+        1.0F + plan.bark_contrast * (static_cast<float>(i) * (2.0F / 7.0F) - 1.0F);
     words[i] = 0;
     for (std::size_t c = 0; c < 3; ++c)
       words[i] |= static_cast<std::uint32_t>(pack_unorm8(plan.bark[c] * brightness)) << (8 * c);
+    words[i + 8] = words[i];
   }
   return words;
 }

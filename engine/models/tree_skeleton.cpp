@@ -7,6 +7,19 @@
 #include "engine/models/tree_lanes-inl.hpp"
 #include "engine/models/tree_paths.hpp"
 
+#ifndef PSYGEN_MODELS_TREE_SKELETON_ONCE
+#define PSYGEN_MODELS_TREE_SKELETON_ONCE
+namespace psygen::models {
+// 1 / n.
+inline constexpr std::array<float, kMaxChildren + 1> kInverse = [] {
+  std::array<float, kMaxChildren + 1> inverse{};
+  for (std::size_t n = 1; n <= kMaxChildren; ++n)
+    inverse[n] = 1.0F / static_cast<float>(n);
+  return inverse;
+}();
+}  // namespace psygen::models
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models {
 namespace HWY_NAMESPACE {
@@ -88,7 +101,7 @@ HWY_INLINE void hand_down(TreeSkeleton& s, std::size_t parent, std::size_t to,
   const hn::CappedTag<float, 4> d;
   const hn::CappedTag<std::uint32_t, 4> du;
   const auto key = hn::Set(du, s.key[parent]);
-  const auto share = hn::Set(d, 1.0F / static_cast<float>(count));
+  const auto share = hn::Set(d, kInverse[count]);
   const auto iota = hn::Iota(du, 0);
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   for (std::uint32_t c = 0; c < count; c += lanes) {
