@@ -1,5 +1,6 @@
 // Trunk and branches: tapering tubes around the skeleton's curves, with the branches of one kind
 // and depth as lanes; where a depth has few branches, with the rings of all of them as lanes.
+#include "engine/models/tree_indices.hpp"
 #include "engine/models/tree_mesh.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -16,15 +17,19 @@ struct Circle {
   float x[kMaxSides], z[kMaxSides];
 };
 
-// Branches, or rings with the rows of their branch, side by side.
+// Branches, or rings with the rows of their branch, side by side; after the last one, copies of it
+// up to full lanes.
 inline constexpr std::size_t kMaxRingLanes = 128;
+// Noise of vertex k: (noise + 0x9E3779B9 k) · kNoiseFactor, multiplied out.
+inline constexpr std::uint32_t kNoiseFactor = 0x846CA68BU;
+inline constexpr std::uint32_t kNoiseStep = 0x9E3779B9U * kNoiseFactor;
 struct BarkLanes {
-  alignas(64) float rows[kTreeRows][kMaxTreeNodes + kTreeLanes];
-  alignas(64) std::uint32_t key[kMaxTreeNodes + kTreeLanes];
+  alignas(64) float rows[kTreeRows][kMaxTreeNodes + 2 * kTreeLanes];
+  alignas(64) std::uint32_t key[kMaxTreeNodes + 2 * kTreeLanes];
   std::size_t count = 0;
   // Where rings are in their branch; for rings as lanes only.
-  alignas(64) float t[kMaxRingLanes], flare[kMaxRingLanes];
-  alignas(64) std::uint32_t ring[kMaxRingLanes];
+  alignas(64) float t[kMaxRingLanes + kTreeLanes], flare[kMaxRingLanes + kTreeLanes];
+  alignas(64) std::uint32_t ring[kMaxRingLanes + kTreeLanes];
   BarkLanes() {}
 };
 
@@ -49,7 +54,7 @@ namespace HWY_NAMESPACE {
 struct Branches {
   Vec3 base, direction, bend, u, v;
   VF length, radius;
-  VU noise;
+  VU noise;  // times kNoiseFactor
   VU normal[kMaxSides], point_normal;
 };
 
@@ -62,16 +67,16 @@ HWY_INLINE void gather(const BarkJob& job, const BarkLanes& lanes, std::size_t i
   b.bend = three(kBend);
   b.length = hn::LoadU(DF(), &lanes.rows[kLength][i]);
   b.radius = hn::LoadU(DF(), &lanes.rows[kRadius][i]);
-  b.noise = number(hn::LoadU(DU(), &lanes.key[i]), job.plan.salt, kBarkNumber);
+  b.noise = number(hn::LoadU(DU(), &lanes.key[i]), job.plan.salt, kBarkNumber) * u1(kNoiseFactor);
   frame_around(b.direction, b.u, b.v);
   for (std::uint32_t c = 0; c < job.tube.sides; ++c)
     b.normal[c] = octahedral(f1(job.circle.x[c]) * b.u + f1(job.circle.z[c]) * b.v);
-  if (job.tip) b.point_normal = octahedral(b.direction);
+  b.point_normal = job.tip ? octahedral(b.direction) : u1(0);
 }
 
-// One of eight steps, for vertex k of each branch.
-HWY_INLINE VU noise_step(VU noise, VU k) {
-  return hn::ShiftRight<29>((noise + k * u1(0x9E3779B9U)) * u1(0x846CA68BU));
+// One of eight steps for vertex k of each branch; `ahead` is kNoiseStep · k.
+HWY_INLINE VU noise_step(VU noise, VU ahead) {
+  return hn::ShiftRight<29>(noise + ahead);
 }
 HWY_INLINE VU chosen(const std::uint32_t* table, VU step) {
 #if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
@@ -81,13 +86,21 @@ HWY_INLINE VU chosen(const std::uint32_t* table, VU step) {
 #endif
 }
 
+// Where a ring is: anywhere, at the foot of a branch that is not the trunk, or at the end of a tip.
+// The last two give the same bits as the first, with less arithmetic.
+enum class RingAt { kAny, kFoot, kPoint };
+
 // The vertices of one ring of every lane, handed to `store` with the number of their corner.
-// `place`: the number of its first vertex for the noise.
-template <class Store>
+// `place`: kNoiseStep times the number of its first vertex.
+template <RingAt kAt, class Store>
 HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWriter& box, VF t,
-                           VU place, VF flare, bool point, const Store& store, Extent& extent) {
+                           VU place, VF flare, const Store& store, Extent& extent) {
+  constexpr bool kPoint = kAt == RingAt::kPoint;
   const TreePlan& plan = job.plan;
-  Vec3 middle = b.base + b.length * (t * b.direction + (t * t) * b.bend);
+  Vec3 middle = b.base;
+  if constexpr (kPoint) middle = middle + b.length * (b.direction + b.bend);
+  if constexpr (kAt == RingAt::kAny)
+    middle = middle + b.length * (t * b.direction + (t * t) * b.bend);
   if (job.trunk) {
     const VF sunk = middle.y - f1(sink_m(plan));
     middle.y = hn::IfThenElse(t <= f1(0.0F), sunk, middle.y);
@@ -106,24 +119,33 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
 
   const Vec3 scale = set3(box.scale);
   const Vec3 at = scaled(middle - set3(box.center), scale);
-  const Vec3 turn = (f1(2.0F) * t) * b.bend;
-  const Vec3 across = scaled(radius * (b.u - dot(b.u, turn) * b.direction), scale);
-  const Vec3 beyond = scaled(radius * (b.v - dot(b.v, turn) * b.direction), scale);
-  const std::uint32_t corners = point ? 1 : job.tube.sides;
+  Vec3 across = b.u, beyond = b.v;
+  if constexpr (kAt == RingAt::kAny) {
+    const Vec3 turn = (f1(2.0F) * t) * b.bend;
+    across = across - dot(b.u, turn) * b.direction;
+    beyond = beyond - dot(b.v, turn) * b.direction;
+  }
+  across = scaled(radius * across, scale);
+  beyond = scaled(radius * beyond, scale);
+  const std::uint32_t corners = kPoint ? 1 : job.tube.sides;
   for (std::uint32_t k = 0; k < corners; ++k) {
-    Vec3 p = f1(job.circle.x[k]) * across + f1(job.circle.z[k]) * beyond;
-    if (job.trunk) {
-      const VF lobe = f1(0.4F) + f1(0.16F) * as_float(noise_step(b.noise, u1(k + 1000)));
-      p = (f1(1.0F) + flare * lobe) * p;
+    Vec3 p = at;
+    if constexpr (!kPoint) {
+      Vec3 out = f1(job.circle.x[k]) * across + f1(job.circle.z[k]) * beyond;
+      if (job.trunk) {
+        const VF lobe =
+            f1(0.4F) + f1(0.16F) * as_float(noise_step(b.noise, u1((k + 1000) * kNoiseStep)));
+        out = (f1(1.0F) + flare * lobe) * out;
+      }
+      p = at + out;
     }
-    p = at + p;
     const VU x = rounded_bits(clamped(p.x, -32767.0F, 32767.0F));
     const VU y = rounded_bits(clamped(p.y, -32767.0F, 32767.0F));
     const VU z = rounded_bits(clamped(p.z, -32767.0F, 32767.0F));
     const VU xy = xy_word(x, y), zl = z_word(z, light);
     extent.add(xy, zl);
-    const VU colour = chosen(job.colours, noise_step(b.noise, place + u1(k)));
-    const VU normal = point ? b.point_normal : b.normal[k];
+    const VU colour = chosen(job.colours, noise_step(b.noise, place + u1(k * kNoiseStep)));
+    const VU normal = kPoint ? b.point_normal : b.normal[k];
     store(vertices_of(xy, zl, paired(normal, colour)), k);
   }
 }
@@ -131,21 +153,21 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
 // Rings as lanes: vertices follow each other ring by ring.
 void mesh_rings(const BarkJob& job, const BarkLanes& rings, MeshWriter& box, std::byte* to) {
   const std::size_t n = hn::Lanes(DF()), sides = job.tube.sides;
+  Extent extent;
+  extent.clear();
   for (std::size_t i = 0; i < rings.count; i += n) {
     const std::size_t lanes = std::min<std::size_t>(n, rings.count - i);
     Branches b;
     gather(job, rings, i, b);
-    Extent extent;
-    extent.clear();
-    const VU place = hn::Load(DU(), rings.ring + i) * u1(kMaxSides);
-    write_ring(
-        job, b, box, hn::Load(DF(), rings.t + i), place, hn::Load(DF(), rings.flare + i), false,
+    const VU place = hn::Load(DU(), rings.ring + i) * u1(kMaxSides * kNoiseStep);
+    write_ring<RingAt::kAny>(
+        job, b, box, hn::Load(DF(), rings.t + i), place, hn::Load(DF(), rings.flare + i),
         [&](const Vertices& v, std::size_t k) {
           store_apart(v, lanes, sides, to + 16 * (i * sides + k));
         },
         extent);
-    extent.widen(box.low, box.high, lanes);
   }
+  extent.widen(box.low, box.high);
 }
 
 // Branches as lanes: 16 by 16 in blocks, vertex by vertex; the rest branch by branch.
@@ -157,10 +179,6 @@ void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, st
   extent.clear();
   for (std::size_t i = 0; i < all.count; i += n) {
     const std::size_t lanes = std::min<std::size_t>(n, all.count - i);
-    if (lanes < n) {
-      if (i > 0) extent.widen(box.low, box.high, n);
-      extent.clear();
-    }
     Branches b;
     gather(job, all, i, b);
     for (std::uint32_t ring = 0; ring <= segments; ++ring) {
@@ -175,28 +193,66 @@ void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, st
       const auto apart = [&](const Vertices& v, std::size_t k) {
         store_apart(v, lanes, stride, to + 16 * (i * stride + first + k));
       };
-      const VU place = u1(ring * kMaxSides);
+      const VU place = u1(ring * kMaxSides * kNoiseStep);
+      const auto write = [&](const auto& store) {
+        if (point)
+          write_ring<RingAt::kPoint>(job, b, box, f1(t), place, f1(0.0F), store, extent);
+        else if (ring == 0 && !job.trunk)
+          write_ring<RingAt::kFoot>(job, b, box, f1(0.0F), place, f1(0.0F), store, extent);
+        else
+          write_ring<RingAt::kAny>(job, b, box, f1(t), place, f1(0.0F), store, extent);
+      };
       if (i < blocked)
-        write_ring(job, b, box, f1(t), place, f1(0.0F), point, in_block, extent);
+        write(in_block);
       else
-        write_ring(job, b, box, f1(t), place, f1(0.0F), point, apart, extent);
+        write(apart);
     }
-    if (i + n >= all.count) extent.widen(box.low, box.high, lanes);
   }
+  extent.widen(box.low, box.high);
+}
+
+void add_branches(const TreeSkeleton& s, const TreeGroup& group, BarkLanes& out) {
+  const DF d;
+  const DU du;
+  for (std::size_t i = 0; i < group.count; i += hn::Lanes(d)) {
+    const std::size_t from = group.first + i, to = out.count + i;
+    hn::StoreU(hn::Load(du, &s.key[from]), du, &out.key[to]);
+#pragma GCC unroll 11
+    for (std::size_t r = 0; r < kTreeRows; ++r)
+      hn::StoreU(hn::Load(d, &s.rows[r][from]), d, &out.rows[r][to]);
+  }
+  out.count += group.count;
+}
+
+// Copies of the last lane behind it.
+void fill_up(bool rings, BarkLanes& out) {
+  const DF d;
+  const DU du;
+  const std::size_t n = out.count;
+  hn::StoreU(hn::Set(du, out.key[n - 1]), du, &out.key[n]);
+  for (std::size_t r = 0; r < kTreeRows; ++r)
+    hn::StoreU(hn::Set(d, out.rows[r][n - 1]), d, &out.rows[r][n]);
+  if (!rings) return;
+  hn::StoreU(hn::Set(d, out.t[n - 1]), d, &out.t[n]);
+  hn::StoreU(hn::Set(d, out.flare[n - 1]), d, &out.flare[n]);
+  hn::StoreU(hn::Set(du, out.ring[n - 1]), du, &out.ring[n]);
 }
 
 // indices = pattern + base, over and over: `pattern` holds the indices of sixteen tubes.
 void repeat_pattern(const std::uint16_t* pattern, std::size_t length, std::uint32_t first,
                     std::uint32_t step, std::size_t total, std::uint16_t* to) {
+  const HWY_CAPPED(std::uint16_t, 32) wide;
   const HWY_CAPPED(std::uint16_t, 8) d;
   for (std::size_t done = 0; done < total; done += length, first += step) {
-    const auto base = hn::Set(d, static_cast<std::uint16_t>(first));
+    const auto base = static_cast<std::uint16_t>(first);
     const std::size_t count = std::min(length, total - done);
     std::size_t i = 0;
+    for (; i + hn::Lanes(wide) <= count; i += hn::Lanes(wide))
+      hn::StoreU(hn::Load(wide, pattern + i) + hn::Set(wide, base), wide, to + done + i);
     for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d))
-      hn::StoreU(hn::Load(d, pattern + i) + base, d, to + done + i);
+      hn::StoreU(hn::Load(d, pattern + i) + hn::Set(d, base), d, to + done + i);
     for (; i < count; ++i)
-      to[done + i] = static_cast<std::uint16_t>(pattern[i] + first);
+      to[done + i] = static_cast<std::uint16_t>(pattern[i] + base);
   }
 }
 
@@ -211,6 +267,8 @@ namespace {
 HWY_EXPORT(mesh_branches);
 HWY_EXPORT(mesh_rings);
 HWY_EXPORT(repeat_pattern);
+HWY_EXPORT(add_branches);
+HWY_EXPORT(fill_up);
 
 // Unit circle with `sides` corners, for the numbers of sides that the plans use.
 const Circle& circle(std::uint32_t sides) {
@@ -233,40 +291,13 @@ float sway_at(int depth, int tips_depth) {
   return static_cast<float>(std::min(30 + 170 * depth / std::max(tips_depth, 1), 200));
 }
 
-// The indices of one tube whose first vertex is `first`.
-std::uint16_t* write_tube(const TubePlan& tube, std::uint32_t first, std::uint16_t* to) {
-  const auto put = [&to](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    *to++ = static_cast<std::uint16_t>(a);
-    *to++ = static_cast<std::uint16_t>(b);
-    *to++ = static_cast<std::uint16_t>(c);
-  };
-  for (std::uint32_t ring = 0; ring < tube.segments; ++ring) {
-    const std::uint32_t low = first + ring * tube.sides, high = low + tube.sides;
-    const bool apex = tube.pointed && ring + 1 == tube.segments;
-    for (std::uint32_t side = 0; side < tube.sides; ++side) {
-      const std::uint32_t next = side + 1 == tube.sides ? 0 : side + 1;
-      put(low + side, low + next, apex ? high : high + side);
-      if (!apex) put(low + next, high + next, high + side);
-    }
-  }
-  return to;
-}
-
 // The indices of `count` tubes from vertex `first` on, of which the first `blocked` are in blocks.
 void write_indices(const TubePlan& tube, std::uint32_t count, std::uint32_t blocked,
                    std::uint32_t first, MeshWriter& out) {
-  alignas(64) std::uint16_t pattern[kTreeLanes * 6 * kMaxSides * kMaxSegments];
   const auto repeat = [&](std::uint32_t tubes, std::uint32_t start, bool in_blocks) {
     const std::uint32_t size = tube.triangles() * 3;
-    std::uint16_t* end = pattern;
-    for (std::uint32_t i = 0; i < std::min(tubes, kTreeLanes); ++i) {
-      std::uint16_t* const mine = end;
-      end = write_tube(tube, in_blocks ? 0 : i * tube.vertices(), end);
-      for (std::uint16_t* index = mine; in_blocks && index < end; ++index)
-        *index = static_cast<std::uint16_t>(*index * kTreeLanes + i % 4 * 4 + i / 4);
-    }
     HWY_DYNAMIC_DISPATCH(repeat_pattern)
-    (pattern, static_cast<std::size_t>(end - pattern), start, kTreeLanes * tube.vertices(),
+    (tube_pattern(tube, in_blocks), kTreeLanes * size, start, kTreeLanes * tube.vertices(),
      std::size_t{tubes} * size, out.append_indices(tubes * size));
   };
   if (blocked > 0) repeat(blocked, first, true);
@@ -316,12 +347,13 @@ using Colours = std::array<std::uint32_t, 16>;
 // From dark to bright, twice: tables are as long as the widest lanes.
 Colours bark_colours(const TreePlan& plan) {
   Colours words;
-  for (std::size_t i = 0; i < 16; ++i) {
+  for (std::size_t i = 0; i < 8; ++i) {
     const float brightness =
-        1.0F + plan.bark_contrast * (static_cast<float>(i % 8) * (2.0F / 7.0F) - 1.0F);
+        1.0F + plan.bark_contrast * (static_cast<float>(i) * (2.0F / 7.0F) - 1.0F);
     words[i] = 0;
     for (std::size_t c = 0; c < 3; ++c)
       words[i] |= static_cast<std::uint32_t>(pack_unorm8(plan.bark[c] * brightness)) << (8 * c);
+    words[i + 8] = words[i];
   }
   return words;
 }
@@ -353,13 +385,6 @@ void add_rings(const BarkJob& job, const TreeSkeleton& s, std::uint32_t node, Ba
   out.count += rings;
 }
 
-void add_branches(const TreeSkeleton& s, const TreeGroup& group, BarkLanes& out) {
-  for (std::size_t r = 0; r < kTreeRows; ++r)
-    std::memcpy(&out.rows[r][out.count], &s.rows[r][group.first], sizeof(float) * group.count);
-  std::memcpy(&out.key[out.count], &s.key[group.first], sizeof(std::uint32_t) * group.count);
-  out.count += group.count;
-}
-
 // The tubes of one depth that are not pointed, or all that are.
 void mesh_depth(const BarkJob& job, const TreeSkeleton& s, std::size_t first, std::size_t last,
                 BarkLanes& lanes, MeshWriter& out) {
@@ -378,9 +403,10 @@ void mesh_depth(const BarkJob& job, const TreeSkeleton& s, std::size_t first, st
       for (std::uint32_t i = 0; i < group.count; ++i)
         add_rings(job, s, group.first + i, lanes);
     } else {
-      add_branches(s, group, lanes);
+      HWY_DYNAMIC_DISPATCH(add_branches)(s, group, lanes);
     }
   }
+  HWY_DYNAMIC_DISPATCH(fill_up)(by_rings, lanes);
   if (by_rings)
     HWY_DYNAMIC_DISPATCH(mesh_rings)(job, lanes, out, to);
   else

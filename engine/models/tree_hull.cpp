@@ -1,7 +1,6 @@
-// The crown as a whole: its place and extent, its light and colour, and the closed hull that
-// stands for it at levels 4 and 5.
+// The crown's colour, and the closed hull that stands for it at levels 4 and 5.
 #include "engine/models/tree_mesh.hpp"
-#include "engine/models/tree_paths.hpp"
+#include "engine/models/tree_random.hpp"
 
 namespace psygen::models {
 namespace {
@@ -11,18 +10,6 @@ constexpr std::uint8_t kLeaf = 1;
 std::array<std::uint8_t, 3> packed(const std::array<float, 3>& c, float brightness) {
   return {pack_unorm8(c[0] * brightness), pack_unorm8(c[1] * brightness),
           pack_unorm8(c[2] * brightness)};
-}
-
-// Calls `visit` with the end of every branch that the crown is made of.
-template <class Visit>
-void for_crown_ends(const TreePlan& plan, const TreeSkeleton& s, const Visit& visit) {
-  const bool by_leaves = has_bearers(plan, s);
-  for (std::size_t g = 0; g < s.group_count; ++g) {
-    const TreeGroup& group = s.groups[g];
-    const bool counts = by_leaves ? bears_leaves(plan, group) : group.tip;
-    for (std::uint32_t i = 0; counts && i < group.count; ++i)
-      visit(s.point(group.first + i, 1.0F));
-  }
 }
 
 }  // namespace
@@ -44,32 +31,6 @@ LeafTint leaf_tint(const TreePlan& plan) {
   const std::uint32_t h = number_of(plan.key, plan.salt, kTintNumber);
   return {plan.hue + plan.colour_variation * 0.12F * (low_fraction(h) - 0.5F),
           1.0F + plan.colour_variation * 0.24F * (high_fraction(h) - 0.5F)};
-}
-
-TreeCrown crown_of(const TreePlan& plan, const TreeSkeleton& sample) {
-  glm::vec3 sum(0.0F), squares(0.0F);
-  std::uint32_t count = 0;
-  for_crown_ends(plan, sample, [&](const glm::vec3& end) {
-    sum += end;
-    ++count;
-  });
-  const float inverse = 1.0F / static_cast<float>(std::max(count, 1U));
-  const glm::vec3 center = sum * inverse;
-  for_crown_ends(plan, sample, [&](const glm::vec3& end) {
-    const glm::vec3 d = end - center;
-    squares += d * d;
-  });
-  const float least = 0.3F * plan.size_m;
-  const float across = least + 1.5F * std::sqrt((squares.x + squares.z) * 0.5F * inverse);
-  const float up = least + 1.5F * std::sqrt(squares.y * inverse);
-  const glm::vec3 half{across, up, across};
-  return {center, half, 1.0F / half, (2.0F * across + up) * (1.0F / 3.0F)};
-}
-
-float crown_ambient(const TreeCrown& crown, const glm::vec3& p) {
-  const glm::vec3 r = (p - crown.center) * crown.inverse_half;
-  const float squared = std::min(r.x * r.x + r.y * r.y + r.z * r.z, 1.44F);
-  return (0.3F + 0.7F / 1.44F * squared) * std::min(std::max(0.8F + 0.2F * r.y, 0.6F), 1.0F);
 }
 
 void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, MeshWriter& out) {

@@ -242,19 +242,37 @@ struct Extent {
     low_z = hn::Min(low_z, hn::BitCast(D16(), z));
     high_z = hn::Max(high_z, hn::BitCast(D16(), z));
   }
-  // Only the first `lanes` count.
-  HWY_INLINE void widen(std::int16_t (&low)[3], std::int16_t (&high)[3], std::size_t lanes) const {
-    alignas(64) std::int16_t rows[4][32];
-    hn::Store(low_xy, D16(), rows[0]);
-    hn::Store(high_xy, D16(), rows[1]);
-    hn::Store(low_z, D16(), rows[2]);
-    hn::Store(high_z, D16(), rows[3]);
-    for (std::size_t i = 0; i < 2 * lanes; i += 2) {
+  HWY_INLINE void widen(std::int16_t (&low)[3], std::int16_t (&high)[3]) const {
+    const hn::Vec<hn::Full128<std::int16_t>> rows[4] = {least(low_xy), most(high_xy), least(low_z),
+                                                        most(high_z)};
+    alignas(16) std::int16_t words[4][8];
+    for (std::size_t r = 0; r < 4; ++r)
+      hn::Store(rows[r], hn::Full128<std::int16_t>(), words[r]);
+    for (std::size_t i = 0; i < 8; i += 2) {
       for (std::size_t c = 0; c < 3; ++c) {
-        low[c] = std::min(low[c], c < 2 ? rows[0][i + c] : rows[2][i]);
-        high[c] = std::max(high[c], c < 2 ? rows[1][i + c] : rows[3][i]);
+        low[c] = std::min(low[c], c < 2 ? words[0][i + c] : words[2][i]);
+        high[c] = std::max(high[c], c < 2 ? words[1][i + c] : words[3][i]);
       }
     }
+  }
+
+ private:
+  // Of the four places in each 128 bits.
+  template <class Fold>
+  static HWY_INLINE hn::Vec<hn::Full128<std::int16_t>> folded(hn::Vec<D16> v, const Fold& fold) {
+    const hn::Full128<std::int16_t> d;
+    alignas(64) std::int16_t words[hn::MaxLanes(D16())];
+    hn::Store(v, D16(), words);
+    auto result = hn::Load(d, words);
+    for (std::size_t i = 8; i < hn::Lanes(D16()); i += 8)
+      result = fold(result, hn::Load(d, words + i));
+    return result;
+  }
+  static HWY_INLINE hn::Vec<hn::Full128<std::int16_t>> least(hn::Vec<D16> v) {
+    return folded(v, [](auto a, auto b) { return hn::Min(a, b); });
+  }
+  static HWY_INLINE hn::Vec<hn::Full128<std::int16_t>> most(hn::Vec<D16> v) {
+    return folded(v, [](auto a, auto b) { return hn::Max(a, b); });
   }
 };
 
@@ -304,7 +322,7 @@ struct Extent {
       most[c] = std::max(most[c], v);
     }
   }
-  HWY_INLINE void widen(std::int16_t (&low)[3], std::int16_t (&high)[3], std::size_t) const {
+  HWY_INLINE void widen(std::int16_t (&low)[3], std::int16_t (&high)[3]) const {
     for (std::size_t c = 0; c < 3; ++c) {
       low[c] = std::min(low[c], least[c]);
       high[c] = std::max(high[c], most[c]);

@@ -112,20 +112,17 @@ core::Bounds synthesize_tree(const TreePlan& plan, int level, const MeshView& ou
   MeshWriter writer(plan.bounds, out);
   const bool leafy = plan.foliage.near != nullptr;
   const bool whole = paths_of(plan, level) == kWholeTree;
+  const int depth = whole || plan.always_complete ? plan.iterations : tree_depth(plan);
   TreeSkeleton skeleton;
-  if (whole) grow_tree(plan, plan.iterations, kWholeTree, skeleton);
-  const int depth =
-      whole ? skeleton.depth : (plan.always_complete ? plan.iterations : tree_depth(plan));
-  TreeSkeleton sample;
-  grow_tree(plan, depth, kCrownPaths, sample);
-  const TreeCrown crown = crown_of(plan, sample);
+  grow_tree(plan, depth, whole ? kWholeTree : kCrownPaths, skeleton);
+  const TreeCrown crown = crown_of(plan, skeleton, whole);
   if (leafy && level >= 4) {
     mesh_far_trunk(plan, crown, writer);
     mesh_hull(plan, level, crown, writer);
   } else {
     if (!whole && paths_of(plan, level) != kCrownPaths)
-      grow_tree(plan, depth, paths_of(plan, level), sample);
-    mesh_tree(plan, level, whole ? skeleton : sample, crown, writer);
+      grow_tree(plan, depth, paths_of(plan, level), skeleton);
+    mesh_tree(plan, level, skeleton, crown, writer);
   }
   PSYGEN_ASSERT(writer.index_count() == out.indices.size() &&
                     writer.vertex_count() * sizeof(core::ModelVertex) == out.vertices.size(),

@@ -69,8 +69,8 @@ struct TreeCrown {
   glm::vec3 inverse_half;
   float radius;  // their mean
 };
-// `sample` holds the paths grown with kCrownPaths.
-TreeCrown crown_of(const TreePlan& plan, const TreeSkeleton& sample);
+// From the whole tree, or from the paths grown with kCrownPaths: the same bits.
+TreeCrown crown_of(const TreePlan& plan, const TreeSkeleton& skeleton, bool whole);
 float crown_ambient(const TreeCrown& crown, const glm::vec3& p);
 
 // Sides and segments of the tube of a branch at a depth; 0 sides: not drawn. A tip ends in one
@@ -78,10 +78,10 @@ float crown_ambient(const TreeCrown& crown, const glm::vec3& p);
 struct TubePlan {
   std::uint32_t sides = 0, segments = 0;
   bool pointed = false;
-  std::uint32_t vertices() const {
+  constexpr std::uint32_t vertices() const {
     return sides == 0 ? 0 : sides * segments + (pointed ? 1 : sides);
   }
-  std::uint32_t triangles() const { return sides * 2 * segments - (pointed ? sides : 0); }
+  constexpr std::uint32_t triangles() const { return sides * 2 * segments - (pointed ? sides : 0); }
 };
 inline constexpr std::uint32_t kMaxSides = 8, kMaxSegments = 6;
 TubePlan tube_plan(const TreePlan& plan, int level, int depth, bool tip);

@@ -58,11 +58,21 @@ template <class Visit>
 void for_children(const TreePlan& plan, std::size_t kind, std::uint32_t draw, std::uint32_t budget,
                   int remaining, const Visit& visit) {
   const Children children = children_of(plan, kind, draw);
+  if (budget == 1 && plan.weights == nullptr && children.total() > 0) {
+    // The first child j with (j + 1) / total + φ >= 1.
+    std::uint32_t rank = (children.total() * (65536U - (draw & 0xFFFFU)) + 65535U) / 65536U - 1U;
+    std::size_t c = 0;
+    for (; rank >= children.of_kind(c); ++c)
+      rank -= children.of_kind(c);
+    visit(c, rank, children.of_kind(c), 1U);
+    return;
+  }
   Shares shares(plan, children, budget, remaining, draw);
-  for (std::size_t c = 0; c < plan.grammar->kinds; ++c) {
+  for (std::size_t c = 0; c < plan.grammar->kinds && budget > 0; ++c) {
     const std::uint32_t count = children.of_kind(c);
-    for (std::uint32_t rank = 0; rank < count; ++rank) {
+    for (std::uint32_t rank = 0; rank < count && budget > 0; ++rank) {
       const std::uint32_t share = shares.next(c);
+      budget -= share;
       if (share > 0) visit(c, rank, count, share);
     }
   }

@@ -7,6 +7,19 @@
 #include "engine/models/tree_lanes-inl.hpp"
 #include "engine/models/tree_paths.hpp"
 
+#ifndef PSYGEN_MODELS_TREE_SKELETON_ONCE
+#define PSYGEN_MODELS_TREE_SKELETON_ONCE
+namespace psygen::models {
+// 1 / n.
+inline constexpr std::array<float, kMaxChildren + 1> kInverse = [] {
+  std::array<float, kMaxChildren + 1> inverse{};
+  for (std::size_t n = 1; n <= kMaxChildren; ++n)
+    inverse[n] = 1.0F / static_cast<float>(n);
+  return inverse;
+}();
+}  // namespace psygen::models
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models {
 namespace HWY_NAMESPACE {
@@ -88,7 +101,7 @@ HWY_INLINE void hand_down(TreeSkeleton& s, std::size_t parent, std::size_t to,
   const hn::CappedTag<float, 4> d;
   const hn::CappedTag<std::uint32_t, 4> du;
   const auto key = hn::Set(du, s.key[parent]);
-  const auto share = hn::Set(d, 1.0F / static_cast<float>(count));
+  const auto share = hn::Set(d, kInverse[count]);
   const auto iota = hn::Iota(du, 0);
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   for (std::uint32_t c = 0; c < count; c += lanes) {
@@ -127,6 +140,9 @@ void hand_down_all(const TreePlan& plan, const TreeGroup& group, std::size_t fir
     const GrammarRule& only = grammar.rules[grammar.first_rule[parents.kind]];
     if (rules == 1 && only.star != group.kind) {
       const std::uint32_t count = only.count[group.kind];
+      std::uint32_t* const child = &s.child[group.kind][parents.first];
+      for (std::uint32_t p = 0; p < parents.count; ++p)
+        child[p] = static_cast<std::uint32_t>(to) + p * count;
       if (count == 1) {
         hand_down_singly(parents, s, to);
         to += parents.count;
@@ -138,6 +154,7 @@ void hand_down_all(const TreePlan& plan, const TreeGroup& group, std::size_t fir
     }
     for (std::uint32_t p = parents.first; p < parents.first + parents.count; ++p) {
       const std::uint32_t count = children_of(plan, parents.kind, s.draw[p]).of_kind(group.kind);
+      s.child[group.kind][p] = static_cast<std::uint32_t>(to);
       hand_down(s, p, to, count);
       to += count;
     }
@@ -192,7 +209,6 @@ struct PathChild {
   std::uint32_t parent, rank, siblings, share;
   std::uint8_t kind;
 };
-constexpr std::uint32_t kMaxPaths = 64;
 
 // The children of the groups [first, last) that are on paths, in order of their parents.
 std::uint32_t path_children(const TreePlan& plan, const TreeSkeleton& s, std::size_t first,
@@ -301,6 +317,39 @@ void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkel
   }
   for (std::size_t g = 0; g < s.group_count; ++g)
     s.groups[g].tip = s.groups[g].depth == s.depth || !plan.grammar->grows(s.groups[g].kind);
+}
+
+void find_paths(const TreePlan& plan, const TreeSkeleton& s, std::uint32_t max_tips,
+                TreePaths& out) {
+  out.nodes[0] = {0, max_tips, plan.axiom, 0};
+  out.count = 1;
+  out.depth = 0;
+  std::uint32_t first = 0;
+  for (int d = 1; d <= s.depth; ++d) {
+    TreePaths::Node found[kMaxPaths];
+    std::uint32_t count = 0;
+    ChildTotals totals{};
+    for (std::uint32_t i = first; i < out.count; ++i) {
+      const TreePaths::Node& parent = out.nodes[i];
+      if (!plan.grammar->grows(parent.kind)) continue;
+      for_children(plan, parent.kind, s.draw[parent.slot], parent.budget, plan.iterations - d,
+                   [&](std::size_t c, std::uint32_t rank, std::uint32_t, std::uint32_t share) {
+                     found[count++] = {s.child[c][parent.slot] + rank, share,
+                                       static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(d)};
+                     ++totals[c];
+                   });
+    }
+    if (count == 0) break;
+    first = out.count;
+    std::array<std::uint32_t, kMaxKinds> to{};
+    for (std::size_t c = 0; c < plan.grammar->kinds; ++c) {
+      to[c] = out.count;
+      out.count += totals[c];
+    }
+    for (std::uint32_t i = 0; i < count; ++i)
+      out.nodes[to[found[i].kind]++] = found[i];
+    out.depth = d;
+  }
 }
 
 }  // namespace psygen::models

@@ -54,7 +54,7 @@ enum TreeRow : std::size_t {
 
 // Branch i runs from base along base + length · (t · direction + t² · bend), t in [0, 1].
 // Groups are in order of depth, then kind; branches in order of their parents, then their rank
-// among siblings of their kind. About 300 KiB, meant for the stack; what lies between groups is not
+// among siblings of their kind. About 450 KiB, meant for the stack; what lies between groups is not
 // meant to be read.
 struct TreeSkeleton {
   using Row = std::array<float, kMaxTreeSlots>;
@@ -65,6 +65,7 @@ struct TreeSkeleton {
   alignas(64) Words rank;    // among siblings of the kind
   alignas(64) Row share;     // 1 / number of siblings of the kind
   alignas(64) Words budget;  // paths
+  Words child[kMaxKinds];    // the first child of each kind; of the whole tree only
   std::array<TreeGroup, kMaxTreeGroups> groups;
   std::size_t group_count;
   int depth;
@@ -84,5 +85,21 @@ struct TreeSkeleton {
 // at most `max_tips` paths from the root to tips, shared out by the expected number of tips. The
 // trunk and every branch on a path are exactly those of the whole tree.
 void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkeleton& out);
+
+// The branches on some paths of a tree, in order of depth, kind and parents.
+inline constexpr std::uint32_t kMaxPaths = 64;
+struct TreePaths {
+  struct Node {
+    std::uint32_t slot, budget;
+    std::uint8_t kind, depth;
+  };
+  std::array<Node, kMaxPaths*(kMaxTreeIterations + 1)> nodes;
+  std::uint32_t count;
+  int depth;
+  TreePaths() {}
+};
+// Finds in the whole tree `s` what grow_tree() with this depth and `max_tips` <= kMaxPaths grows.
+void find_paths(const TreePlan& plan, const TreeSkeleton& s, std::uint32_t max_tips,
+                TreePaths& out);
 
 }  // namespace psygen::models

@@ -4,6 +4,10 @@
 // that the outline stays. Normals follow the crown rather than the leaf, which shades it as one
 // soft volume. Spray k hangs on bearer k mod M, so that neighbouring lanes read neighbouring
 // bearers.
+#include <utility>
+
+#include "engine/models/spray_forms.hpp"
+#include "engine/models/tree_indices.hpp"
 #include "engine/models/tree_mesh.hpp"
 #include "engine/models/tree_paths.hpp"
 
@@ -22,7 +26,6 @@ namespace psygen::models {
 struct Bearers {
   static constexpr std::size_t kRows = 9;
   alignas(64) float rows[kRows][kMaxTreeNodes + 2 * kTreeLanes];
-  alignas(64) float length[kMaxTreeNodes + 2 * kTreeLanes];
   std::uint32_t count;
   Bearers() {}
 };
@@ -50,135 +53,201 @@ HWY_BEFORE_NAMESPACE();
 namespace psygen::models {
 namespace HWY_NAMESPACE {
 
-struct Spray {
-  Vec3 foot, axis, side, face;  // in packed units relative to the box
-  VU light_inner, light_outer;
-  Pair inner, outer;  // normal and colour
+// Some sprays at a time go through three steps before their corners are written. Each step is a
+// short loop, so that the long chains of arithmetic of neighbouring vectors overlap; what it hands
+// on are rows of these.
+constexpr std::size_t kChunk = 64;
+struct Chunk {
+  using Row = float[kChunk];
+  using Words = std::uint32_t[kChunk];
+  alignas(64) Row place[3], axis[3], side[3], size, hue;  // place is from the crown's centre
+  alignas(64) Row foot[3], along[3], across[3], face[3];  // in packed units relative to the box
+  alignas(64) Words light_inner, light_outer, normal, inner, outer;
+  Chunk() {}
 };
+HWY_INLINE void store3(Vec3 v, Chunk::Row (&to)[3], std::size_t i) {
+  const DF d;
+  hn::Store(v.x, d, to[0] + i);
+  hn::Store(v.y, d, to[1] + i);
+  hn::Store(v.z, d, to[2] + i);
+}
+HWY_INLINE Vec3 row3(const Chunk::Row (&from)[3], std::size_t i) {
+  const DF d;
+  return {hn::Load(d, from[0] + i), hn::Load(d, from[1] + i), hn::Load(d, from[2] + i)};
+}
+
+// Random numbers; where the sprays are, and about where they point.
+HWY_INLINE void place_sprays(const SprayJob& job, const Bearers& bearers, std::size_t& bearer,
+                             std::uint32_t first, std::size_t count, Chunk& c) {
+  const DF d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const VU id = (u1(first + static_cast<std::uint32_t>(i)) + hn::Iota(DU(), 0)) * u1(kChildStep) +
+                  u1(job.key);
+    const VU h0 = mix(id), h1 = mix(id ^ u1(kNumberStep)), h2 = mix(id ^ u1(2 * kNumberStep)),
+             h3 = mix(id ^ u1(3 * kNumberStep)), h4 = mix(id ^ u1(4 * kNumberStep));
+    const auto at = [&](std::size_t r) {
+      return load3(&bearers.rows[r][bearer], &bearers.rows[r + 1][bearer],
+                   &bearers.rows[r + 2][bearer]);
+    };
+    const VF t = f1(job.from) + f1(job.from_raw) * high_number(h1);
+    const Vec3 along = at(3), bend = t * at(6);
+    const Vec3 o{low_signed(h0), high_signed(h0), low_signed(h1)};
+    const VF ball = f1(job.cluster) - f1(job.cluster_fall) * dot(o, o);
+    const Vec3 place = at(0) + t * (along + bend) + ball * o;
+    const Vec3 out = scaled(place, set3(job.outward));
+    Vec3 axis = f1(job.random_raw) * o + f1(job.out) * out;
+    if (job.branch != 0.0F) axis = axis + f1(job.branch) * unit(along + f1(2.0F) * bend);
+    axis.y = axis.y + f1(job.up);
+    const Vec3 random{low_signed(h2), high_signed(h2), low_signed(h3)};
+    Vec3 towards = f1(job.side_out) * out + f1(job.side_random_raw) * random;
+    towards.y = towards.y + f1(job.side_up);
+    store3(place, c.place, i);
+    store3(axis, c.axis, i);
+    store3(towards, c.side, i);
+    hn::Store(high_number(h3), d, c.size + i);
+    hn::Store(low_number(h4), d, c.hue + i);
+    bearer += hn::Lanes(d);
+    while (bearer >= bearers.count)
+      bearer -= bearers.count;
+  }
+}
+
+// Their exact directions and lengths.
+HWY_INLINE void orient_sprays(const SprayJob& job, std::size_t count, Chunk& c) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(DF())) {
+    const Vec3 axis = unit(row3(c.axis, i));
+    const Vec3 side = unit(cross(row3(c.side, i), axis));
+    const VF size = hn::Load(DF(), c.size + i);
+    const Vec3 k = (f1(job.length) + f1(job.length_raw) * size) * set3(job.scale);
+    const Vec3 middle = scaled(row3(c.place, i), set3(job.scale)) + set3(job.center);
+    const VF most = f1(32767.0F), room = f1(job.room);
+    const Vec3 limit{most - room * k.x, most - room * k.y, most - room * k.z};
+    const Vec3 kept{hn::Max(hn::Min(middle.x, limit.x), hn::Neg(limit.x)),
+                    hn::Max(hn::Min(middle.y, limit.y), hn::Neg(limit.y)),
+                    hn::Max(hn::Min(middle.z, limit.z), hn::Neg(limit.z))};
+    const Vec3 along = scaled(k, axis);
+    store3(axis, c.axis, i);
+    store3(along, c.along, i);
+    store3(scaled(k, side), c.across, i);
+    store3(scaled(k, cross(axis, side)), c.face, i);
+    store3(kept - f1(0.45F) * along, c.foot, i);
+  }
+}
 
 HWY_INLINE VU channel(VF v) {
   return rounded_word(clamped(v, 0.0F, 255.0F));
 }
 
-HWY_INLINE void colour(const SprayJob& job, VU normal, VF ambient, VF hue, VF size, Spray& s) {
-  const VU light = rounded_word(ambient * f1(255.0F));
-  s.light_outer = hn::ShiftLeft<16>(light) | u1(245U << 24);
-  s.light_inner = hn::ShiftLeft<16>(light - hn::ShiftRight<2>(light)) | u1(205U << 24);
-  const VF bright = f1(job.bright) + f1(job.bright_raw) * size;
-  const VU red = channel(bright * (f1(job.colour[0]) + hue * f1(job.colour_raw[0])));
-  const VU green = channel(bright * (f1(job.colour[1]) + hue * f1(job.colour_raw[1])));
-  const VU blue = channel(bright * (f1(job.colour[2]) + hue * f1(job.colour_raw[2])));
-  const VU outer = red | hn::ShiftLeft<8>(green) | hn::ShiftLeft<16>(blue) | u1(1U << 24);
-  const VU inner = outer - (hn::ShiftRight<3>(outer) & u1(0x001F1F1FU));  // 7/8 of each byte
-  s.inner = paired(normal, inner);
-  s.outer = paired(normal, outer);
+HWY_INLINE void colour_sprays(const SprayJob& job, std::size_t count, Chunk& c) {
+  const DU d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const Vec3 place = row3(c.place, i);
+    Vec3 normal = scaled(place, set3(job.outward)) + f1(0.3F) * row3(c.axis, i);
+    normal.y = normal.y + f1(job.normal_up);
+    hn::Store(octahedral(normal), d, c.normal + i);
+    const VF ambient = ambient_at(scaled(place, set3(job.inverse_half)));
+    const VU light = rounded_word(ambient * f1(255.0F));
+    hn::Store(hn::ShiftLeft<16>(light) | u1(245U << 24), d, c.light_outer + i);
+    hn::Store(hn::ShiftLeft<16>(light - hn::ShiftRight<2>(light)) | u1(205U << 24), d,
+              c.light_inner + i);
+    const VF hue = hn::Load(DF(), c.hue + i);
+    const VF bright = f1(job.bright) + f1(job.bright_raw) * hn::Load(DF(), c.size + i);
+    const VU red = channel(bright * (f1(job.colour[0]) + hue * f1(job.colour_raw[0])));
+    const VU green = channel(bright * (f1(job.colour[1]) + hue * f1(job.colour_raw[1])));
+    const VU blue = channel(bright * (f1(job.colour[2]) + hue * f1(job.colour_raw[2])));
+    const VU outer = red | hn::ShiftLeft<8>(green) | hn::ShiftLeft<16>(blue) | u1(1U << 24);
+    hn::Store(outer, d, c.outer + i);
+    hn::Store(outer - (hn::ShiftRight<3>(outer) & u1(0x001F1F1FU)), d, c.inner + i);  // 7/8
+  }
 }
 
-// Place, orientation, light and colour of the sprays from number `first` on.
-HWY_INLINE Spray orient(const SprayJob& job, const Bearers& bearers, std::size_t bearer,
-                        std::uint32_t first) {
-  const VU id = (u1(first) + hn::Iota(DU(), 0)) * u1(kChildStep) + u1(job.key);
-  const VU h0 = mix(id), h1 = mix(id ^ u1(kNumberStep)), h2 = mix(id ^ u1(2 * kNumberStep)),
-           h3 = mix(id ^ u1(3 * kNumberStep)), h4 = mix(id ^ u1(4 * kNumberStep));
-  const auto at = [&](std::size_t r) {
-    return load3(&bearers.rows[r][bearer], &bearers.rows[r + 1][bearer],
-                 &bearers.rows[r + 2][bearer]);
-  };
-  const VF t = f1(job.from) + f1(job.from_raw) * high_number(h1);
-  const Vec3 along = at(3), bend = t * at(6);
-  const Vec3 o{low_signed(h0), high_signed(h0), low_signed(h1)};
-  const VF ball = f1(job.cluster) - f1(job.cluster_fall) * dot(o, o);
-  const Vec3 place = at(0) + t * (along + bend) + ball * o;  // from the crown's centre
-  const Vec3 out = scaled(place, set3(job.outward));
-
-  Vec3 axis = f1(job.random_raw) * o + f1(job.out) * out;
-  if (job.branch != 0.0F) axis = axis + f1(job.branch) * unit(along + f1(2.0F) * bend);
-  axis.y = axis.y + f1(job.up);
-  axis = unit(axis);
-  const Vec3 random{low_signed(h2), high_signed(h2), low_signed(h3)};
-  Vec3 towards = f1(job.side_out) * out + f1(job.side_random_raw) * random;
-  towards.y = towards.y + f1(job.side_up);
-  const Vec3 side = unit(cross(towards, axis));
-
-  Spray s;
-  const VF size = high_number(h3);
-  const Vec3 k = (f1(job.length) + f1(job.length_raw) * size) * set3(job.scale);
-  const Vec3 middle = scaled(place, set3(job.scale)) + set3(job.center);
-  const VF most = f1(32767.0F), room = f1(job.room);
-  const Vec3 limit{most - room * k.x, most - room * k.y, most - room * k.z};
-  const Vec3 kept{hn::Max(hn::Min(middle.x, limit.x), hn::Neg(limit.x)),
-                  hn::Max(hn::Min(middle.y, limit.y), hn::Neg(limit.y)),
-                  hn::Max(hn::Min(middle.z, limit.z), hn::Neg(limit.z))};
-  s.axis = scaled(k, axis);
-  s.side = scaled(k, side);
-  s.face = scaled(k, cross(axis, side));
-  s.foot = kept - f1(0.45F) * s.axis;
-  Vec3 normal = out + f1(0.3F) * axis;
-  normal.y = normal.y + f1(job.normal_up);
-  colour(job, octahedral(normal), ambient_at(scaled(place, set3(job.inverse_half))), low_number(h4),
-         size, s);
-  return s;
-}
-
-// Corner k of the sprays in the lanes, which are those from number `part` on of their block.
-HWY_INLINE void write_corner(const SprayForm& form, std::size_t k, const Spray& s, std::size_t part,
-                             std::uint32_t* block, Extent& extent) {
-  Vec3 p = s.foot;
-  if (form.along[k] != 0.0F) p = p + f1(form.along[k]) * s.axis;
-  if (form.across[k] != 0.0F) p = p + f1(form.across[k]) * s.side;
-  if (form.droop[k] != 0.0F) p = p - f1(form.droop[k]) * s.face;
+// Corner kCorner of the sprays in the lanes, which are those from number `part` on of their block.
+template <const SprayForm& kForm, std::size_t kCorner>
+HWY_INLINE void write_corner(Vec3 p, Vec3 along, Vec3 across, Vec3 face, VU light, Pair look,
+                             std::size_t part, std::uint32_t* block, Extent& extent) {
+  if constexpr (kForm.along[kCorner] != 0.0F) p = p + f1(kForm.along[kCorner]) * along;
+  if constexpr (kForm.across[kCorner] != 0.0F) p = p + f1(kForm.across[kCorner]) * across;
+  if constexpr (kForm.droop[kCorner] != 0.0F) p = p - f1(kForm.droop[kCorner]) * face;
   const VU xy = xy_word(rounded_bits(p.x), rounded_bits(p.y));
-  const VU zl = z_word(rounded_bits(p.z), k == 0 ? s.light_inner : s.light_outer);
+  const VU zl = z_word(rounded_bits(p.z), light);
   extent.add(xy, zl);
-  store_in_block(vertices_of(xy, zl, k == 0 ? s.inner : s.outer), part, block);
+  store_in_block(vertices_of(xy, zl, look), part, block + 64 * kCorner);
+}
+
+template <const SprayForm& kForm, std::size_t... kCorners>
+HWY_INLINE void write_corners(const Chunk& c, std::size_t i, std::uint32_t* block, Extent& extent,
+                              std::index_sequence<kCorners...>) {
+  const DU d;
+  const Vec3 foot = row3(c.foot, i), along = row3(c.along, i), across = row3(c.across, i),
+             face = row3(c.face, i);
+  const VU normal = hn::Load(d, c.normal + i), light = hn::Load(d, c.light_outer + i);
+  const Pair inner = paired(normal, hn::Load(d, c.inner + i));
+  const Pair outer = paired(normal, hn::Load(d, c.outer + i));
+  const std::size_t part = i % kSprayBlock;
+  write_corner<kForm, 0>(foot, along, across, face, hn::Load(d, c.light_inner + i), inner, part,
+                         block, extent);
+  (write_corner<kForm, kCorners + 1>(foot, along, across, face, light, outer, part, block, extent),
+   ...);
 }
 
 // From rows of the skeleton to what the kernel reads.
-void prepare(const TreeCrown& crown, float pull, Bearers& b) {
+void collect(const TreePlan& plan, const TreeSkeleton& s, const TreeCrown& crown, float pull,
+             Bearers& b) {
   const DF d;
   const VF center[3] = {f1(crown.center.x), f1(crown.center.y), f1(crown.center.z)};
-  for (std::size_t i = 0; i < b.count; i += hn::Lanes(d)) {
-    const VF length = hn::Load(d, b.length + i) * f1(pull);
-    for (std::size_t c = 0; c < 3; ++c)
-      hn::Store(f1(pull) * (hn::Load(d, b.rows[c] + i) - center[c]), d, b.rows[c] + i);
-    for (std::size_t r = 3; r < Bearers::kRows; ++r)
-      hn::Store(length * hn::Load(d, b.rows[r] + i), d, b.rows[r] + i);
+  const bool by_leaves = has_bearers(plan, s);
+  b.count = 0;
+  for (std::size_t g = 0; g < s.group_count; ++g) {
+    const TreeGroup& group = s.groups[g];
+    if (by_leaves ? !bears_leaves(plan, group) : !group.tip) continue;
+    for (std::size_t i = 0; i < group.count; i += hn::Lanes(d)) {
+      const std::size_t from = group.first + i, to = b.count + i;
+      const VF length = hn::Load(d, &s.rows[kLength][from]) * f1(pull);
+#pragma GCC unroll 3
+      for (std::size_t c = 0; c < 3; ++c)
+        hn::StoreU(f1(pull) * (hn::Load(d, &s.rows[kBase + c][from]) - center[c]), d,
+                   &b.rows[c][to]);
+#pragma GCC unroll 6
+      for (std::size_t r = 3; r < Bearers::kRows; ++r)
+        hn::StoreU(length * hn::Load(d, &s.rows[r][from]), d, &b.rows[r][to]);
+    }
+    b.count += group.count;
   }
   for (std::size_t r = 0; r < Bearers::kRows; ++r)
     for (std::uint32_t i = 0; i < kTreeLanes; ++i)
       b.rows[r][b.count + i] = b.rows[r][i];
 }
 
-template <std::size_t kVertices>
+template <const SprayForm& kForm>
 void write_blocks(const SprayJob& job, const Bearers& bearers, std::uint32_t sprays,
                   MeshWriter& box, std::byte* to) {
   const std::size_t n = hn::Lanes(DF());
   Extent extent;
   extent.clear();
+  Chunk chunk;
   std::size_t bearer = 0;
   auto* words = reinterpret_cast<std::uint32_t*>(to);
-  for (std::uint32_t first = 0; first < sprays; first += kSprayBlock) {
-    for (std::size_t part = 0; part < kSprayBlock; part += n) {
-      const Spray s = orient(job, bearers, bearer, first + static_cast<std::uint32_t>(part));
-#pragma GCC unroll 10
-      for (std::size_t k = 0; k < kVertices; ++k)
-        write_corner(job.form, k, s, part, words + 64 * k, extent);
-      bearer += n;
-      while (bearer >= bearers.count)
-        bearer -= bearers.count;
-    }
-    words += 64 * kVertices;
+  for (std::uint32_t first = 0; first < sprays; first += kChunk) {
+    const std::size_t count = std::min<std::size_t>(kChunk, sprays - first);
+    place_sprays(job, bearers, bearer, first, count, chunk);
+    orient_sprays(job, count, chunk);
+    colour_sprays(job, count, chunk);
+    for (std::size_t i = 0; i < count; i += n)
+      write_corners<kForm>(chunk, i, words + 4 * kForm.vertices * (i / kSprayBlock * kSprayBlock),
+                           extent, std::make_index_sequence<kForm.vertices - 1>());
+    words += 4 * kForm.vertices * kChunk;
   }
-  extent.widen(box.low, box.high, n);
+  extent.widen(box.low, box.high);
 }
 
 // `sprays` is a multiple of 16; they are written in blocks of 16, corner by corner.
 void write_sprays(const SprayJob& job, const Bearers& bearers, std::uint32_t sprays,
                   MeshWriter& box, std::byte* to) {
-  if (job.form.vertices == kMaxSprayVertices)
-    write_blocks<kMaxSprayVertices>(job, bearers, sprays, box, to);
-  else
-    write_blocks<6>(job, bearers, sprays, box, to);
+  if (&job.form == &kLeaflets) return write_blocks<kLeaflets>(job, bearers, sprays, box, to);
+  if (&job.form == &kNeedles) return write_blocks<kNeedles>(job, bearers, sprays, box, to);
+  if (&job.form == &kFrond) return write_blocks<kFrond>(job, bearers, sprays, box, to);
+  if (&job.form == &kClump) return write_blocks<kClump>(job, bearers, sprays, box, to);
+  write_blocks<kPatch>(job, bearers, sprays, box, to);
 }
 
 void repeat_block(const std::uint16_t* pattern, std::size_t length, std::uint32_t step,
@@ -200,7 +269,7 @@ HWY_AFTER_NAMESPACE();
 namespace psygen::models {
 namespace {
 
-HWY_EXPORT(prepare);
+HWY_EXPORT(collect);
 HWY_EXPORT(write_sprays);
 HWY_EXPORT(repeat_block);
 
@@ -277,19 +346,6 @@ SprayJob spray_job(const TreePlan& plan, int level, const TreeCrown& crown, std:
   return job;
 }
 
-void collect(const TreePlan& plan, const TreeSkeleton& s, Bearers& out) {
-  out.count = 0;
-  const bool by_leaves = has_bearers(plan, s);
-  for (std::size_t g = 0; g < s.group_count; ++g) {
-    const TreeGroup& group = s.groups[g];
-    if (by_leaves ? !bears_leaves(plan, group) : !group.tip) continue;
-    for (std::size_t r = 0; r < Bearers::kRows; ++r)
-      std::memcpy(&out.rows[r][out.count], &s.rows[r][group.first], sizeof(float) * group.count);
-    std::memcpy(&out.length[out.count], &s.rows[kLength][group.first], sizeof(float) * group.count);
-    out.count += group.count;
-  }
-}
-
 }  // namespace
 
 const SprayForm& spray_form(const TreePlan& plan, int level) {
@@ -313,22 +369,16 @@ void mesh_sprays(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                  const TreeCrown& crown, std::uint32_t sprays, MeshWriter& out) {
   if (sprays == 0) return;
   Bearers bearers;
-  collect(plan, skeleton, bearers);
   const SpraySize size = spray_size(plan, level, crown, sprays);
-  HWY_DYNAMIC_DISPATCH(prepare)(crown, size.pull, bearers);
+  HWY_DYNAMIC_DISPATCH(collect)(plan, skeleton, crown, size.pull, bearers);
   const SprayJob job = spray_job(plan, level, crown, bearers.count, size, out);
   const std::uint32_t first = out.vertex_count();
   std::byte* to = out.append_vertices(sprays * job.form.vertices);
   HWY_DYNAMIC_DISPATCH(write_sprays)(job, bearers, sprays, out, to);
-  alignas(64) std::uint16_t pattern[kSprayBlock * 3 * kMaxSprayTriangles];
   const std::size_t indices = std::size_t{3} * job.form.triangles;
-  std::uint16_t* next = pattern;
-  for (std::uint32_t i = 0; i < kSprayBlock; ++i)
-    for (std::size_t k = 0; k < indices; ++k)
-      *next++ = static_cast<std::uint16_t>(job.form.indices[k] * kSprayBlock + i % 4 * 4 + i / 4);
   HWY_DYNAMIC_DISPATCH(repeat_block)
-  (pattern, kSprayBlock * indices, kSprayBlock * job.form.vertices, first, sprays / kSprayBlock,
-   out.append_indices(sprays * 3 * job.form.triangles));
+  (spray_pattern(job.form), kSprayBlock * indices, kSprayBlock * job.form.vertices, first,
+   sprays / kSprayBlock, out.append_indices(sprays * 3 * job.form.triangles));
 }
 
 }  // namespace psygen::models

@@ -242,6 +242,30 @@ TEST(Tree, FollowsPathsWhoseBranchesAreThoseOfTheWholeTree) {
   }
 }
 
+TEST(Tree, FindsTheSamePathsInTheWholeTreeAsItGrows) {
+  const auto type = make_tree_type();
+  const auto whole = std::make_unique<TreeSkeleton>();
+  const auto some = std::make_unique<TreeSkeleton>();
+  const auto paths = std::make_unique<TreePaths>();
+  for (int seed = 0; seed < 60; ++seed) {
+    const TreePlan plan = plan_of_tree(with(*type, seed, 1 + seed % 5, 1 + seed / 5 % 4));
+    const std::uint32_t most = seed % 2 == 0 ? 16 : 64;
+    grow_tree(plan, plan.iterations, kWholeTree, *whole);
+    grow_tree(plan, whole->depth, most, *some);
+    find_paths(plan, *whole, most, *paths);
+    EXPECT_EQ(paths->depth, some->depth);
+    std::uint32_t node = 0;
+    for (std::size_t g = 0; g < some->group_count; ++g)
+      for (std::uint32_t i = 0; i < some->groups[g].count; ++i, ++node) {
+        ASSERT_LT(node, paths->count);
+        EXPECT_EQ(paths->nodes[node].kind, some->groups[g].kind);
+        EXPECT_EQ(paths->nodes[node].depth, some->groups[g].depth);
+        EXPECT_EQ(whole->key[paths->nodes[node].slot], some->key[some->groups[g].first + i]);
+      }
+    EXPECT_EQ(node, paths->count);
+  }
+}
+
 TEST(Tree, TapersAndKeepsDirectionsUnits) {
   const auto type = make_tree_type();
   const auto tree = std::make_unique<TreeSkeleton>();
