@@ -41,14 +41,15 @@ models::MeshView BlockSynthesizer::room_for(const models::MeshSize& size) {
   const std::size_t vertex_bytes =
       std::size_t{size.vertex_count} * core::vertex_stride_bytes(size.layout);
   const std::size_t own_indices = size.shared_indices == 0 ? size.index_count : 0;
-  const std::size_t needed = vertex_bytes + own_indices * sizeof(std::uint16_t);
-  if (needed > capacity_) {
-    capacity_ = std::bit_ceil(needed);
+  const std::size_t vertex_lines = lines_of(vertex_bytes);
+  const std::size_t needed = vertex_lines + lines_of(own_indices * sizeof(std::uint16_t));
+  if (needed > line_count_) {
+    line_count_ = std::bit_ceil(needed);
     memory_.reset();
-    memory_ = std::make_unique_for_overwrite<std::byte[]>(capacity_);
+    memory_ = std::make_unique_for_overwrite<CacheLine[]>(line_count_);
   }
-  return {{memory_.get(), vertex_bytes},
-          {reinterpret_cast<std::uint16_t*>(memory_.get() + vertex_bytes), own_indices}};
+  return {{reinterpret_cast<std::byte*>(memory_.get()), vertex_bytes},
+          {reinterpret_cast<std::uint16_t*>(memory_.get() + vertex_lines), own_indices}};
 }
 
 void BlockSynthesizer::synthesise(core::BlockCoord block, Totals& totals,
@@ -57,7 +58,8 @@ void BlockSynthesizer::synthesise(core::BlockCoord block, Totals& totals,
                                  world::terrain_parameters(world_, block)};
   const bool made = make_levels(terrain, block, totals, visit);
   if (made && level_ == 0) {  // the terrain is still in the memory
-    const models::BlockGround ground(world_.terrain, block, {memory_.get(), capacity_});
+    const models::BlockGround ground(world_.terrain, block,
+                                     std::as_bytes(std::span(memory_.get(), line_count_)));
     world::place_models(world_, registry_, block, ground, placements_);
   } else {
     world::place_models(world_, registry_, block, placements_);
