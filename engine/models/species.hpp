@@ -47,6 +47,8 @@ struct SpeciesFoliage {
   double random = 0.7, out = 0.7, branch = 0, up = -0.25;   // directions of sprays
   double side_random = 0.9, side_out = 0.7, side_up = 0.3;  // and of their width
   double normal_up = 0.25, from = 0, cluster = 1, size = 1, density = 1.6;
+  // Share of the leaves that are there in the middle of each season.
+  double density_spring = 1, density_summer = 1, density_autumn = 1, density_winter = 1;
   friend bool operator==(const SpeciesFoliage&, const SpeciesFoliage&) = default;
 };
 
@@ -64,7 +66,7 @@ struct Species {
   std::int64_t iterations = 4, branches = 3, spread = 2;
   double size_m = 2.4, radius_m = 0.17, flare = 0.7, taper = 0.72, trunk_curvature = 0.3;
   double crown_limit = 1;  // branches end within an ellipsoid of this relative size; 0: anywhere
-  double hull_taper = 0, colour_variation = 0.5;
+  double colour_variation = 0.5;
   std::string axiom;
   std::vector<SpeciesKind> kinds;
   std::vector<SpeciesRule> rules;
@@ -82,7 +84,6 @@ void visit_numbers(S& s, const Visit& visit) {
   visit("taper", s.taper, 0.1, 1.0);
   visit("trunk_curvature", s.trunk_curvature, 0.0, 2.0);
   visit("crown_limit", s.crown_limit, 0.0, 4.0);
-  visit("hull_taper", s.hull_taper, 0.0, 1.0);
   visit("colour_variation", s.colour_variation, 0.0, 1.0);
 }
 template <class K, class Visit>
@@ -113,6 +114,10 @@ void visit_foliage_numbers(F& f, const Visit& visit) {
   visit("cluster", f.cluster, 0.0, 2.0);
   visit("size", f.size, 0.1, 3.0);
   visit("density", f.density, 0.1, 64.0);
+  visit("density_spring", f.density_spring, 0.0, 1.0);
+  visit("density_summer", f.density_summer, 0.0, 1.0);
+  visit("density_autumn", f.density_autumn, 0.0, 1.0);
+  visit("density_winter", f.density_winter, 0.0, 1.0);
 }
 
 // What is wrong with a species, and where: part "" (the species itself), "kind", "rule", "foliage"

@@ -56,7 +56,8 @@ FoliagePlan foliage_plan(const SpeciesFoliage& s) {
           f(s.from),
           f(s.cluster),
           f(s.size),
-          f(s.density)};
+          f(s.density),
+          1.0F};
 }
 
 std::uint64_t identity_of(const Species& s) {
@@ -164,6 +165,7 @@ class SpeciesType final : public ModelType {
   void set_plan();
   void set_reach();
   core::Bounds bounds_of(const TreePlan& plan) const;
+  void shed_leaves(float season, FoliagePlan& foliage) const;
 
   Species species_;
   Grammar grammar_;
@@ -218,7 +220,6 @@ void SpeciesType::set_plan() {
   for (std::size_t c = 0; c < 3; ++c)
     plan_.bark[c] = f(species_.colours.bark[c]);
   plan_.bark_contrast = f(species_.colours.bark_contrast);
-  plan_.hull_taper = f(species_.hull_taper);
 }
 
 // From the leaves down: how far the branches of each kind reach after so many iterations more.
@@ -279,6 +280,22 @@ core::Bounds SpeciesType::bounds_of(const TreePlan& tree) const {
           {side, top, side}};
 }
 
+// Fewer leaves of the same size; none where hardly any would be left.
+void SpeciesType::shed_leaves(float season, FoliagePlan& foliage) const {
+  const SpeciesFoliage& s = species_.foliage;
+  const float shares[5] = {f(s.density_spring), f(s.density_summer), f(s.density_autumn),
+                           f(s.density_winter), f(s.density_spring)};
+  const auto i = static_cast<std::size_t>(std::min(season, 3.0F));
+  const float share = shares[i] + (season - static_cast<float>(i)) * (shares[i + 1] - shares[i]);
+  if (share < 0.05F) {
+    foliage.near = foliage.far = nullptr;
+    return;
+  }
+  foliage.density *= share;
+  foliage.fill *= std::sqrt(share);
+  foliage.hull *= std::sqrt(share);
+}
+
 TreePlan SpeciesType::plan(const Parameters& p) const {
   const auto branches = static_cast<std::size_t>(p.integer(kSpeciesBranches));
   const std::uint64_t root =
@@ -305,6 +322,7 @@ TreePlan SpeciesType::plan(const Parameters& p) const {
   tree.limit_across = tree.limit_up = limit > 0.0F ? 1.0F / tree.envelope_across : 0.0F;
   tree.foliage.fill *= f(p.real(kSpeciesLeafScale));
   tree.hue = 0.25F * f(p.real(kSpeciesSeason));
+  shed_leaves(f(p.real(kSpeciesSeason)), tree.foliage);
   tree.colour_variation = f(p.real(kSpeciesColourVariation));
   tree.bounds = bounds_of(tree);
   return tree;

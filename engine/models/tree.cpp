@@ -100,8 +100,8 @@ void set_kinds(const Parameters& p, TreePlan& plan) {
   plan.kinds[kLeader] = plan.kinds[kTrunk] = side;
 }
 
-constexpr FoliagePlan kBroadleaf{&kLeaflets, &kPatch, 0.7F,  0.7F, 0.0F, -0.25F, 0.9F,
-                                 0.7F,       0.3F,    0.25F, 0.0F, 1.0F, 1.0F,   1.6F};
+constexpr FoliagePlan kBroadleaf{&kLeaflets, &kPatch, 0.7F, 0.7F, 0.0F, -0.25F, 0.9F, 0.7F,
+                                 0.3F,       0.25F,   0.0F, 1.0F, 1.0F, 1.6F,   1.0F};
 constexpr std::array<std::array<float, 3>, 5> kLeafRamp = {{{0.21F, 0.33F, 0.17F},
                                                             {0.32F, 0.42F, 0.17F},
                                                             {0.62F, 0.56F, 0.17F},
@@ -187,7 +187,6 @@ TreePlan plan_of_tree(const Parameters& p) {
   plan.bark = {0.98F * (0.48F - 0.12F * tone), 0.98F * (0.46F - 0.18F * tone),
                0.98F * (0.43F - 0.22F * tone)};
   plan.bark_contrast = 0.143F;
-  plan.hull_taper = 0.0F;
   plan.bounds = bounds_of(p, plan);
   return plan;
 }

@@ -69,6 +69,31 @@ TreeCrown crown_of(const TreePlan& plan, const TreeSkeleton& skeleton, bool whol
   return {center, half, 1.0F / half, (2.0F * across + up) * (1.0F / 3.0F)};
 }
 
+CrownOutline outline_of(const TreePlan& plan, const TreeSkeleton& paths, const TreeCrown& crown) {
+  Ends ends;
+  ends_of_paths(plan, paths, ends);
+  float top = ends.at[0].y, bottom = top;
+  for (std::uint32_t i = 1; i < ends.count; ++i) {
+    top = std::max(top, ends.at[i].y);
+    bottom = std::min(bottom, ends.at[i].y);
+  }
+  const float leaves = 0.2F * crown.half.x;
+  const float middle = 0.5F * (top + bottom), half_height = 0.5F * (top - bottom) + leaves;
+  float squares[2] = {0.0F, 0.0F}, weights[2] = {0.0F, 0.0F};
+  for (std::uint32_t i = 0; i < ends.count; ++i) {
+    const glm::vec3 d = ends.at[i] - crown.center;
+    const float up = 0.5F + 0.5F * (ends.at[i].y - middle) / half_height;
+    const float squared[2] = {up * up, (1.0F - up) * (1.0F - up)};
+    const float weight[2] = {squared[0] * squared[0], squared[1] * squared[1]};
+    for (int k = 0; k < 2; ++k) {
+      squares[k] += weight[k] * (d.x * d.x + d.z * d.z);
+      weights[k] += weight[k];
+    }
+  }
+  return {middle, half_height, leaves + 1.25F * std::sqrt(squares[0] / weights[0]),
+          leaves + 1.25F * std::sqrt(squares[1] / weights[1])};
+}
+
 float crown_ambient(const TreeCrown& crown, const glm::vec3& p) {
   const glm::vec3 r = (p - crown.center) * crown.inverse_half;
   const float squared = std::min(r.x * r.x + r.y * r.y + r.z * r.z, 1.44F);

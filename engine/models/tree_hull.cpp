@@ -33,38 +33,66 @@ LeafTint leaf_tint(const TreePlan& plan) {
           1.0F + plan.colour_variation * 0.24F * (high_fraction(h) - 0.5F)};
 }
 
-void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, MeshWriter& out) {
-  static constexpr float kA = 0.525731112F, kB = 0.850650808F;
-  static constexpr float kBall[kBallVertices][3] = {
-      {-kA, kB, 0},  {kA, kB, 0},  {-kA, -kB, 0}, {kA, -kB, 0}, {0, -kA, kB},  {0, kA, kB},
-      {0, -kA, -kB}, {0, kA, -kB}, {kB, 0, -kA},  {kB, 0, kA},  {-kB, 0, -kA}, {-kB, 0, kA}};
-  static constexpr std::uint32_t kBallIndices[3 * kBallTriangles] = {
-      0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
-      4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
-      6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
-  static constexpr float kR = 0.85F, kH = 0.52F, kS = 0.736121593F;
-  static constexpr float kOctahedron[kOctahedronVertices][3] = {
-      {kR, kH, 0},          {-0.5F * kR, kH, kS}, {-0.5F * kR, kH, -kS},
-      {0.5F * kR, -kH, kS}, {-kR, -kH, 0},        {0.5F * kR, -kH, -kS}};
-  static constexpr std::uint32_t kOctahedronIndices[3 * kOctahedronTriangles] = {
-      0, 2, 1, 3, 4, 5, 0, 1, 3, 1, 4, 3, 1, 2, 4, 2, 5, 4, 2, 0, 5, 0, 3, 5};
+namespace {
+
+// Corners of a unit sphere: top, rings, bottom.
+constexpr float kA = 0.894427191F, kB = 0.447213595F;  // of an icosahedron
+constexpr float kC1 = 0.309016994F, kS1 = 0.951056516F, kC2 = 0.809016994F, kS2 = 0.587785252F;
+constexpr float kBall[kBallVertices][3] = {{0, 1, 0},
+                                           {kA, kB, 0},
+                                           {kA * kC1, kB, kA* kS1},
+                                           {-kA * kC2, kB, kA* kS2},
+                                           {-kA * kC2, kB, -kA* kS2},
+                                           {kA * kC1, kB, -kA* kS1},
+                                           {kA * kC2, -kB, kA* kS2},
+                                           {-kA * kC1, -kB, kA* kS1},
+                                           {-kA, -kB, 0},
+                                           {-kA * kC1, -kB, -kA* kS1},
+                                           {kA * kC2, -kB, -kA* kS2},
+                                           {0, -1, 0}};
+constexpr std::uint32_t kBallIndices[3 * kBallTriangles] = {
+    0, 2,  1, 0, 3,  2,  0, 4, 3,  0, 5, 4,  0, 1, 5,  1, 2,  6,  2,  7,
+    6, 2,  3, 7, 3,  8,  7, 3, 4,  8, 4, 9,  8, 4, 5,  9, 5,  10, 9,  5,
+    1, 10, 1, 6, 10, 11, 6, 7, 11, 7, 8, 11, 8, 9, 11, 9, 10, 11, 10, 6};
+constexpr float kOctahedron[kOctahedronVertices][3] = {{0, 1, 0},  {1, 0, 0},  {0, 0, 1},
+                                                       {-1, 0, 0}, {0, 0, -1}, {0, -1, 0}};
+constexpr std::uint32_t kOctahedronIndices[3 * kOctahedronTriangles] = {
+    0, 2, 1, 0, 3, 2, 0, 4, 3, 0, 1, 4, 5, 1, 2, 5, 2, 3, 5, 3, 4, 5, 4, 1};
+
+// From a corner of the sphere to one of the crown, relative to its middle. The ring of the wider
+// half is the closer to its end, the more a crown narrows towards the other one.
+glm::vec3 stretched(const float (&corner)[3], bool ball, const CrownOutline& o) {
+  const bool end = corner[0] == 0.0F && corner[2] == 0.0F;
+  const float narrow = (o.upper - o.lower) / (o.upper + o.lower);
+  float radius = 1.1F * std::max(o.upper, o.lower), y = corner[1];
+  if (ball) {
+    radius = (corner[1] > 0.0F ? o.upper : o.lower) * (1.0F / kA);
+    const float shift = 0.6F * narrow;
+    if (!end) y += corner[1] > 0.0F ? std::max(shift, 0.0F) : std::min(shift, 0.0F);
+  } else if (!end) {
+    y = std::clamp(1.2F * narrow, -0.9F, 0.9F);
+  }
+  return {radius * corner[0], o.half_height * y, radius * corner[2]};
+}
+
+}  // namespace
+
+void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const CrownOutline& outline,
+               MeshWriter& out) {
   const bool ball = level == 4;
   const LeafTint tint = leaf_tint(plan);
   const std::uint32_t first = out.vertex_count();
-  const float grow = ball ? 1.05F : 1.3F;
+  const glm::vec3 middle{crown.center.x, outline.middle, crown.center.z};
   for (std::uint32_t k = 0; k < (ball ? kBallVertices : kOctahedronVertices); ++k) {
-    const float* corner = ball ? kBall[k] : kOctahedron[k];
-    const float narrow = 1.0F - plan.hull_taper * (0.5F + 0.5F * corner[1]);
-    const glm::vec3 unit{corner[0], corner[1], corner[2]};
+    const auto& corner = ball ? kBall[k] : kOctahedron[k];
     const std::uint32_t h = number_of(plan.key, plan.salt, kHullNumber + k);
-    const glm::vec3 shape{narrow * corner[0], corner[1], narrow * corner[2]};
-    const glm::vec3 place =
-        crown.center + crown.half * shape * (grow * (0.85F + 0.3F * low_fraction(h)));
+    const glm::vec3 place = middle + (plan.foliage.hull * (0.85F + 0.3F * low_fraction(h))) *
+                                         stretched(corner, ball, outline);
     const std::array<float, 3> colour =
         leaf_colour(plan, tint.hue + 0.1F * plan.colour_variation * (high_fraction(h) - 0.5F));
-    out.vertex(place,
-               {pack_unorm8((ball ? 0.78F : 0.7F) * crown_ambient(crown, place)), 200,
-                unit + glm::vec3(0.0F, 0.2F, 0.0F), packed(colour, 0.9F * tint.brightness), kLeaf});
+    out.vertex(place, {pack_unorm8((ball ? 0.78F : 0.7F) * crown_ambient(crown, place)), 200,
+                       glm::vec3(corner[0], corner[1] + 0.2F, corner[2]),
+                       packed(colour, 0.9F * tint.brightness), kLeaf});
   }
   const std::uint32_t* indices = ball ? kBallIndices : kOctahedronIndices;
   for (std::uint32_t k = 0; k < 3 * (ball ? kBallTriangles : kOctahedronTriangles); k += 3)

@@ -118,7 +118,7 @@ core::Bounds synthesize_tree(const TreePlan& plan, int level, const MeshView& ou
   const TreeCrown crown = crown_of(plan, skeleton, whole);
   if (leafy && level >= 4) {
     mesh_far_trunk(plan, crown, writer);
-    mesh_hull(plan, level, crown, writer);
+    mesh_hull(plan, level, crown, outline_of(plan, skeleton, crown), writer);
   } else {
     if (!whole && paths_of(plan, level) != kCrownPaths)
       grow_tree(plan, depth, paths_of(plan, level), skeleton);

@@ -73,6 +73,14 @@ struct TreeCrown {
 TreeCrown crown_of(const TreePlan& plan, const TreeSkeleton& skeleton, bool whole);
 float crown_ambient(const TreeCrown& crown, const glm::vec3& p);
 
+// The outline of a crown about its vertical axis: where the same ends lie, and room for leaves.
+struct CrownOutline {
+  float middle, half_height;  // of top and bottom
+  float upper, lower;         // radius in the upper and in the lower half
+};
+// `paths` are those grown with kCrownPaths.
+CrownOutline outline_of(const TreePlan& plan, const TreeSkeleton& paths, const TreeCrown& crown);
+
 // Sides and segments of the tube of a branch at a depth; 0 sides: not drawn. A tip ends in one
 // vertex.
 struct TubePlan {
@@ -118,7 +126,8 @@ void mesh_core(const TreePlan& plan, const TreeSkeleton& skeleton, const TreeCro
 void mesh_far_trunk(const TreePlan& plan, const TreeCrown& crown, MeshWriter& out);
 void mesh_sprays(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                  const TreeCrown& crown, std::uint32_t sprays, MeshWriter& out);
-void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, MeshWriter& out);
+void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const CrownOutline& outline,
+               MeshWriter& out);
 
 // All of them: what synthesize() and mesh_size() of every tree do.
 core::Bounds synthesize_tree(const TreePlan& plan, int level, const MeshView& out);

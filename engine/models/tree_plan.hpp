@@ -69,10 +69,11 @@ struct FoliagePlan {
   const SprayForm* far = nullptr;   // levels 2 and 3
   float random, out, branch, up;
   float side_random, side_out, side_up, normal_up;
-  float from;     // where on a branch they begin
-  float cluster;  // radius of clusters, relative
-  float fill;     // size of leaves over the size that just fills the crown
-  float density;  // sprays per bearer at level 0
+  float from;         // where on a branch they begin
+  float cluster;      // radius of clusters, relative
+  float fill;         // size of leaves over the size that just fills the crown
+  float density;      // sprays per bearer at level 0
+  float hull = 1.0F;  // size of hulls over the size that holds the crown
 };
 
 struct TreePlan {
@@ -97,7 +98,6 @@ struct TreePlan {
   float hue, colour_variation;
   std::array<float, 3> bark;  // stored colour
   float bark_contrast;
-  float hull_taper;  // how much narrower hulls are at their top
   core::Bounds bounds;
 };
 

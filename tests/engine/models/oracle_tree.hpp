@@ -369,26 +369,46 @@ class TreeOracle {
   }
 
   void hull(int level) {
-    std::vector<glm::dvec3> corners;
-    if (level == 4) {
-      const double a = 1 / std::sqrt(1 + std::numbers::phi * std::numbers::phi);
-      const double b = a * std::numbers::phi;
-      corners = {{-a, b, 0},  {a, b, 0},  {-a, -b, 0}, {a, -b, 0}, {0, -a, b},  {0, a, b},
-                 {0, -a, -b}, {0, a, -b}, {b, 0, -a},  {b, 0, a},  {-b, 0, -a}, {-b, 0, a}};
-    } else {
-      for (int k = 0; k < 6; ++k) {
-        const double turns = (k < 3 ? k : k - 3) / 3.0 + (k < 3 ? 0 : 1 / 6.0);
-        const double angle = 2 * std::numbers::pi * turns;
-        corners.emplace_back(0.85 * std::cos(angle), k < 3 ? 0.52 : -0.52, 0.85 * std::sin(angle));
+    std::vector<glm::dvec3> ends;
+    for (const Branch& b : bearers(grow(16)))
+      ends.push_back(b.at(1));
+    double top = -1e9, bottom = 1e9;
+    for (const glm::dvec3& e : ends)
+      top = std::max(top, e.y), bottom = std::min(bottom, e.y);
+    const double leaves = 0.2 * half_.x;
+    const double middle = (top + bottom) / 2, half = (top - bottom) / 2 + leaves;
+    const auto radius = [&](bool upper) {
+      double sum = 0, weights = 0;
+      for (const glm::dvec3& e : ends) {
+        const double up = 0.5 + 0.5 * (e.y - middle) / half, w = std::pow(upper ? up : 1 - up, 4);
+        sum += w * (std::pow(e.x - center_.x, 2) + std::pow(e.z - center_.z, 2));
+        weights += w;
       }
+      return leaves + 1.25 * std::sqrt(sum / weights);
+    };
+    const double upper = radius(true), lower = radius(false);
+    auto add = [&, k = 0U](const glm::dvec3& place, const glm::dvec3& corner) mutable {
+      const double grown = d(p_.foliage.hull) * (0.85 + 0.3 * low(number(p_.key, 16 + k++)));
+      vertices_.push_back({glm::dvec3(center_.x, middle, center_.z) + grown * place,
+                           glm::normalize(corner + glm::dvec3{0, 0.2, 0})});
+    };
+    const double y = 1 / std::sqrt(5.0), r = 2 * y, narrow = (upper - lower) / (upper + lower);
+    add({0, half, 0}, {0, 1, 0});
+    for (int k = 0; k < 10 && level == 4; ++k) {
+      const double angle = 2 * std::numbers::pi * (k < 5 ? k : k - 4.5) / 5;
+      const glm::dvec3 o{std::cos(angle), 0, std::sin(angle)};
+      const double up = k < 5 ? y : -y;
+      const double shift = 0.6 * (k < 5 ? std::max(narrow, 0.0) : std::min(narrow, 0.0));
+      add((k < 5 ? upper : lower) * o + glm::dvec3{0, half * (up + shift), 0},
+          r * o + glm::dvec3{0, up, 0});
     }
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const double x = low(number(p_.key, static_cast<std::uint32_t>(16 + k)));
-      const double grown = (level == 4 ? 1.05 : 1.3) * (0.85 + 0.3 * x);
-      const double narrow = 1 - d(p_.hull_taper) * (0.5 + 0.5 * corners[k].y);
-      vertices_.push_back({center_ + grown * half_ * corners[k] * glm::dvec3{narrow, 1, narrow},
-                           glm::normalize(corners[k] + glm::dvec3{0, 0.2, 0})});
+    for (int k = 0; k < 4 && level == 5; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 4;
+      const glm::dvec3 o{std::cos(angle), 0, std::sin(angle)};
+      const double up = half * std::clamp(1.2 * narrow, -0.9, 0.9);
+      add(1.1 * std::max(upper, lower) * o + glm::dvec3{0, up, 0}, o);
     }
+    add({0, -half, 0}, {0, -1, 0});
   }
 
   const TreePlan& p_;

@@ -71,6 +71,7 @@ std::optional<Species> random_species(core::RandomStream& random) {
   }
   s.foliage.form = kForms[random.next_integer(0, 4)];
   s.foliage.density = random.next_real(0.2, 8);
+  s.foliage.density_summer = random.next_real(0, 1);
   if (find_fault(s)) return std::nullopt;
   return s;
 }
@@ -152,6 +153,31 @@ TEST(Species, ChangesItsIdentityWithEveryNumber) {
             parameters_hash(*make_species_type(small_species()).value(), p));
 }
 
+TEST(Species, ShedsLeavesOfTheSameSizeWithTheSeason) {
+  Species s = small_species();
+  s.foliage.density = 40;
+  s.foliage.density_autumn = 0.5;
+  s.foliage.density_winter = 0;
+  const auto type = make_species_type(s).value();
+  const auto at = [&](double season) {
+    Parameters p = default_parameters(*type);
+    p.set_real(kSpeciesSeason, season);
+    return p;
+  };
+  const TreePlan summer = plan_of_species(*type, at(1)), autumn = plan_of_species(*type, at(2));
+  EXPECT_FLOAT_EQ(autumn.foliage.density, 0.5F * summer.foliage.density);
+  EXPECT_FLOAT_EQ(autumn.foliage.fill / std::sqrt(autumn.foliage.density),
+                  summer.foliage.fill / std::sqrt(summer.foliage.density));
+  EXPECT_EQ(plan_of_species(*type, at(3)).foliage.near, nullptr);
+  for (int level = 0; level < 2; ++level) {
+    EXPECT_LT(type->mesh_size(at(2), level).vertex_count,
+              type->mesh_size(at(1), level).vertex_count);
+    EXPECT_LT(type->mesh_size(at(3), level).vertex_count,
+              type->mesh_size(at(2.5), level).vertex_count);
+    test::synthesize(*type, at(3), level);
+  }
+}
+
 TEST(Species, ChangesColourButNotShapeWithTheSeason) {
   const auto type = make_species_type(small_species()).value();
   Parameters summer = default_parameters(*type), autumn = summer;
@@ -193,6 +219,8 @@ TEST(Species, RefusesHostileGrammarsBeforeTheyGrow) {
   EXPECT_THAT(message([](Species& s) { s.kinds[1].symbol = "T"; }), HasSubstr("symbol"));
   EXPECT_THAT(message([](Species& s) { s.rules.erase(s.rules.begin()); }), HasSubstr("axiom"));
   EXPECT_THAT(message([](Species& s) { s.foliage.density = -1; }), HasSubstr("foliage.density"));
+  EXPECT_THAT(message([](Species& s) { s.foliage.density_winter = 1.1; }),
+              HasSubstr("foliage.density_winter"));
   EXPECT_EQ(message([](Species&) {}), "accepted");
 }
 

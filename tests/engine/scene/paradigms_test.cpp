@@ -171,7 +171,7 @@ TEST(Paradigms, AModelThatFailsIsAHoleAndTheOthersGoOn) {
 TEST(Paradigms, AModelThatHangsIsReplacedByAnotherLevelAndTheOthersGoOn) {
   std::atomic<bool> release{false};
   Settings settings = small_settings();
-  settings.watchdog_seconds = 0.05;
+  settings.watchdog_seconds = 0.5;
   auto scene = scene_with(
       [](const models::ModelType& rock, const std::atomic<bool>& gate) {
         return std::unique_ptr<models::ModelType>(std::make_unique<HangingRock>(rock, gate));
