@@ -30,7 +30,8 @@ class TypeReader {
         return read_fields(type);
       case FieldKind::kArray:
         type.count = in_.number<std::uint32_t>();
-        if (own == nullptr && type.count > kLongestSkippedArray) in_.corrupt("an array is too long");
+        if (own == nullptr && type.count > kLongestSkippedArray)
+          in_.corrupt("an array is too long");
         if (own != nullptr && own->count != type.count) return mismatch();
         return read_element(type);
       case FieldKind::kList:
@@ -54,7 +55,8 @@ class TypeReader {
       path_.push_back(in_.name());
       const FieldDescription* own = nullptr;
       if (type.own != nullptr) {
-        const auto found = std::ranges::find(type.own->fields, path_.back(), &FieldDescription::name);
+        const auto found =
+            std::ranges::find(type.own->fields, path_.back(), &FieldDescription::name);
         if (found != type.own->fields.end()) own = &*found;
       }
       SavedType part;
@@ -94,8 +96,7 @@ std::string SnapshotReader::name() {
     return {};
   }
   const std::byte* from = take(count);
-  return from == nullptr ? std::string()
-                         : std::string(reinterpret_cast<const char*>(from), count);
+  return from == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(from), count);
 }
 
 SavedType read_saved_type(SnapshotReader& in, const TypeDescription* own, const std::string& name) {
