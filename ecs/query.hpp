@@ -71,6 +71,33 @@ class TableRows {
 
 namespace detail {
 
+// Joins rows that are neighbours in a table to runs; calls visit(table, first row, count) for each.
+template <class F>
+class RunMerger {
+ public:
+  RunMerger(const Storage& storage, F& visit) : storage_(storage), visit_(visit) {}
+
+  void add(RowPlace at) {
+    if (count_ > 0 && at.table == begin_.table && at.row == begin_.row + count_) {
+      ++count_;
+      return;
+    }
+    finish();
+    begin_ = at;
+    count_ = 1;
+  }
+  // Hands out the last run. After the last row, once.
+  void finish() {
+    if (count_ > 0) visit_(*storage_.tables()[begin_.table], begin_.row, count_);
+  }
+
+ private:
+  const Storage& storage_;
+  F& visit_;
+  RowPlace begin_{0, 0};
+  std::uint32_t count_ = 0;
+};
+
 // How many components the filters of one query may name.
 inline constexpr std::size_t kMaxFilters = 8;
 template <class F>
@@ -141,20 +168,12 @@ void RowFilter::each_run_of_members(const Storage& storage, F& visit) const {
     if (with_[i]->rows().rows() < smallest->rows().rows()) smallest = with_[i];
   }
   const std::span<const Entity> members(smallest->rows().entities(), smallest->rows().rows());
-  RowPlace begin{0, 0};
-  std::uint32_t count = 0;
+  RunMerger runs(storage, visit);
   for (const Entity member : members) {
     const RowPlace at = storage.directory().place_of(storage.slots()[member.index].location);
-    if (!fits(*storage.tables()[at.table]) || !fits(member)) continue;
-    if (count > 0 && at.table == begin.table && at.row == begin.row + count) {
-      ++count;
-      continue;
-    }
-    if (count > 0) visit(*storage.tables()[begin.table], begin.row, count);
-    begin = at;
-    count = 1;
+    if (fits(*storage.tables()[at.table]) && fits(member)) runs.add(at);
   }
-  if (count > 0) visit(*storage.tables()[begin.table], begin.row, count);
+  runs.finish();
 }
 
 template <class F>
@@ -173,23 +192,14 @@ void RowFilter::each_run_of_rows(const Table& table, F& visit) const {
 // neighbours in a table.
 template <class F>
 void each_run_of(const Storage& storage, std::span<const Entity> entities, F&& visit) {
-  RowPlace begin{0, 0};
-  std::uint32_t count = 0;
+  RunMerger runs(storage, visit);
   for (std::size_t i = 0; i < entities.size(); ++i) {
     if (i + kPrefetchAhead < entities.size())
       storage.slots().prefetch(entities[i + kPrefetchAhead]);
-    const Slot* slot = storage.living(entities[i]);
-    if (slot == nullptr) continue;
-    const RowPlace at = storage.directory().place_of(slot->location);
-    if (count > 0 && at.table == begin.table && at.row == begin.row + count) {
-      ++count;
-      continue;
-    }
-    if (count > 0) visit(*storage.tables()[begin.table], begin.row, count);
-    begin = at;
-    count = 1;
+    if (const Slot* slot = storage.living(entities[i]))
+      runs.add(storage.directory().place_of(slot->location));
   }
-  if (count > 0) visit(*storage.tables()[begin.table], begin.row, count);
+  runs.finish();
 }
 
 // f(entities, spans of Cs...), or f(TableRows<Cs...>, entities, spans of Cs...), for one run.

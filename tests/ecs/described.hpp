@@ -32,6 +32,14 @@ struct Creature {
   friend bool operator==(const Creature&, const Creature&) = default;
 };
 
+// Elements of half a kilobyte.
+struct Item {
+  std::array<double, 64> values{};
+};
+struct Crate {
+  std::vector<Item> items;
+};
+
 }  // namespace psygen::ecs::test
 
 template <>
@@ -57,4 +65,13 @@ struct psygen::ecs::ComponentTraits<psygen::ecs::test::Creature> {
       field("awake", &Creature::awake),
       field("debt", &Creature::debt),
   };
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Item> {
+  static constexpr auto fields = std::tuple{field("values", &psygen::ecs::test::Item::values)};
+};
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Crate> {
+  static constexpr std::string_view name = "crate";
+  static constexpr auto fields = std::tuple{field("items", &psygen::ecs::test::Crate::items)};
 };

@@ -269,7 +269,30 @@ TEST(ForgedSnapshot, lists_of_nothing_are_refused) {
   EXPECT_EQ(status_of(creature_with_path(0).done()), SnapshotStatus::kCorrupt);
 }
 
+// A crate's list whose elements take one byte there and half a kilobyte here.
 TEST(ForgedSnapshot, lists_that_would_grow_beyond_all_measure_are_refused) {
+  const auto status_with = [](std::uint32_t length) {
+    Forger f;
+    f.number<std::uint32_t>(1).name("crate").number(kSparseNo).number(kDescribed);
+    f.number(kStructKind).number<std::uint32_t>(1).name("items").number(kListKind);
+    f.number(kStructKind).number<std::uint32_t>(1);
+    f.name("lost").number<std::uint8_t>(0).number<std::uint32_t>(1);               // a bool
+    f.number<std::uint32_t>(1).number<std::uint32_t>(1).number<std::uint32_t>(0);  // slots
+    f.number<std::uint32_t>(1).number<std::uint32_t>(1).number<std::uint32_t>(0);  // a table
+    f.number<std::uint32_t>(1).number<std::uint32_t>(0).number<std::uint32_t>(1);  // its handle
+    f.number<std::uint32_t>(length).bytes(std::string(length, '\0'));
+    f.number<std::uint32_t>(0);  // no sparse components
+    World world;
+    world.declare<Crate>();
+    const SnapshotStatus status = load_snapshot(f.done(), world).status;
+    EXPECT_EQ(world.size(), status == SnapshotStatus::kLoaded ? 1U : 0U);
+    return status;
+  };
+  EXPECT_EQ(status_with(10), SnapshotStatus::kLoaded);
+  EXPECT_EQ(status_with(20'000), SnapshotStatus::kTooLarge);
+}
+
+TEST(ForgedSnapshot, lists_that_claim_more_than_there_is_are_refused) {
   Forger f = creature_with_path(1);
   constexpr std::uint32_t kRows = 2000;
   f.name("lost").number<std::uint8_t>(0).number<std::uint32_t>(1);  // a bool of one byte
