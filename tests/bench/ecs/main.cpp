@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/run_with_table.hpp"
+
 namespace {
 
 // Keeps the best repetition of each benchmark: the machine only ever adds time.
@@ -53,15 +55,5 @@ class TableReporter : public benchmark::ConsoleReporter {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<char*> arguments(argv, argv + argc);
-  std::string json = "--benchmark_out=psygen_bench_ecs.json";
-  arguments.insert(arguments.begin() + 1, json.data());  // a later one wins
-  argc = static_cast<int>(arguments.size());
-  argv = arguments.data();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  TableReporter reporter;
-  benchmark::RunSpecifiedBenchmarks(&reporter);
-  reporter.print_table();
-  return 0;
+  return psygen::bench::run_with_table<TableReporter>(argc, argv, "psygen_bench_ecs.json");
 }

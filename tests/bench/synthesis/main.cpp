@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/run_with_table.hpp"
+
 namespace {
 
 // A line of the table: the benchmark "work/set" with these arguments, and one of its counters.
@@ -77,15 +79,5 @@ class TableReporter : public benchmark::ConsoleReporter {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<char*> arguments(argv, argv + argc);
-  std::string json = "--benchmark_out=psygen_bench_synthesis.json";
-  arguments.insert(arguments.begin() + 1, json.data());  // a later one wins
-  argc = static_cast<int>(arguments.size());
-  argv = arguments.data();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  TableReporter reporter;
-  benchmark::RunSpecifiedBenchmarks(&reporter);
-  reporter.print_table();
-  return 0;
+  return psygen::bench::run_with_table<TableReporter>(argc, argv, "psygen_bench_synthesis.json");
 }
