@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "ecs/ecs.hpp"
@@ -31,8 +30,6 @@ class BlockGrid {
   // The entity kept for a block of the window; null if there is none.
   ecs::Entity& entity_of(core::BlockCoord coord);
   ecs::Entity entity_of(core::BlockCoord coord) const;
-  // All places of the table, null where there is no entity; more than side² of them.
-  std::span<ecs::Entity> entities() { return cells_; }
 
  private:
   std::size_t cell_of(core::BlockCoord coord) const;

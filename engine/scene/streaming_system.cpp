@@ -46,22 +46,21 @@ void fill(const Created& created, std::size_t i, const models::Registry& registr
 void create_block(const WorldFacts& facts, core::BlockCoord coord,
                   std::vector<world::Placement>& scratch, Streaming& streaming,
                   ecs::World& entities) {
-  scratch.clear();
+  const auto created =
+      entities.create<Block, ecs::Children, Visibility, Placed, Detail, Source, Demand, Mesh>(1);
+  created.template column<Block>()[0] = {coord};
+  fill(created, 0, facts.registry, coord,
+       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F),
+        world::terrain_parameters(facts.world, coord)});
+  const ecs::Entity block = created.entities[0];
+  streaming.grid.entity_of(coord) = block;
+
   world::place_models(facts.world, facts.registry, coord, scratch);
   const auto models = entities.create<Placed, Detail, Source, Demand, Mesh>(scratch.size());
   for (std::size_t i = 0; i < scratch.size(); ++i) {
     fill(models, i, facts.registry, coord, scratch[i]);
   }
-  const std::span<const ecs::Entity> children = models.entities;
-
-  const auto block =
-      entities.create<Block, ecs::Children, Visibility, Placed, Detail, Source, Demand, Mesh>(1);
-  block.template column<Block>()[0] = {coord};
-  fill(block, 0, facts.registry, coord,
-       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F),
-        world::terrain_parameters(facts.world, coord)});
-  entities.set_children(block.entities[0], children);
-  streaming.grid.entity_of(coord) = block.entities[0];
+  entities.set_children(block, models.entities);
 }
 
 // Their meshes stay in the cache while there is room: the camera may come back.
