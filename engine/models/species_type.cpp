@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/planned_tree.hpp"
 #include "engine/models/species_grammar.hpp"
 #include "engine/models/spray_forms.hpp"
-#include "engine/models/tree_mesh.hpp"
 
 namespace psygen::models {
 namespace {
@@ -99,7 +99,7 @@ struct Reach {
   double along = 0, aside = 0;
 };
 
-class SpeciesType final : public ModelType {
+class SpeciesType final : public PlannedTree {
  public:
   explicit SpeciesType(Species species)
       : species_(std::move(species)),
@@ -121,18 +121,7 @@ class SpeciesType final : public ModelType {
   std::string_view name() const override { return species_.name; }
   std::string_view doc() const override { return species_.doc; }
   std::span<const ParameterSpec> parameters() const override { return schema_; }
-  int level_count() const override { return kTreeLevels; }
-  bool may_run_on_main_thread() const override { return true; }
   std::uint64_t identity() const override { return identity_; }
-  double level_error_m(const Parameters& p, int level) const override {
-    const TreePlan tree = plan(p);
-    return kLevelErrors[level] * static_cast<double>(2 * tree.envelope_across + tree.envelope_up) /
-           3;
-  }
-  core::Bounds bounds(const Parameters& p) const override { return plan(p).bounds; }
-  MeshSize mesh_size(const Parameters& p, int level) const override {
-    return tree_mesh_size(plan(p), level);
-  }
   double complexity(const Parameters& p, int level) const override {
     const auto n = static_cast<std::size_t>(
         std::clamp<std::int64_t>(p.integer(kSpeciesIterations), 0, kMaxTreeIterations));
@@ -149,13 +138,7 @@ class SpeciesType final : public ModelType {
         std::max(branches_log2(n, std::max(m, 0.0), true) + std::log2(each), 12.0) + 0.9;
     return n <= kMaxTreeIterations && m <= kMostBranches ? std::min(grown, 16.3) : grown;
   }
-  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override {
-    return synthesize_tree(plan(p), level, out);
-  }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
-    PSYGEN_CHECK(false, "trees share no indices");
-  }
-  TreePlan plan(const Parameters& p) const;
+  TreePlan plan(const Parameters& p) const override;
 
  private:
   double branches_log2(double iterations, double branches, bool most) const {

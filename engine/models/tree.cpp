@@ -2,9 +2,8 @@
 
 #include <cmath>
 
-#include "engine/core/assert.hpp"
+#include "engine/models/planned_tree.hpp"
 #include "engine/models/spray_forms.hpp"
-#include "engine/models/tree_mesh.hpp"
 
 namespace psygen::models {
 namespace {
@@ -108,7 +107,7 @@ constexpr std::array<std::array<float, 3>, 5> kLeafRamp = {{{0.21F, 0.33F, 0.17F
                                                             {0.64F, 0.36F, 0.13F},
                                                             {0.50F, 0.18F, 0.12F}}};
 
-class TreeType final : public ModelType {
+class TreeType final : public PlannedTree {
  public:
   std::string_view name() const override { return "tree"; }
   std::string_view doc() const override {
@@ -116,28 +115,12 @@ class TreeType final : public ModelType {
            "branches^iterations";
   }
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
-  int level_count() const override { return kTreeLevels; }
-  bool may_run_on_main_thread() const override { return true; }
-  double level_error_m(const Parameters& p, int level) const override {
-    const TreePlan plan = plan_of_tree(p);
-    return kLevelErrors[level] * static_cast<double>(2 * plan.envelope_across + plan.envelope_up) /
-           3;
-  }
-  core::Bounds bounds(const Parameters& p) const override { return plan_of_tree(p).bounds; }
-  MeshSize mesh_size(const Parameters& p, int level) const override {
-    return tree_mesh_size(plan_of_tree(p), level);
-  }
   double complexity(const Parameters& p, int level) const override {
     return kLevelShares[level] * std::pow(static_cast<double>(p.integer(kTreeBranches)),
                                           static_cast<double>(p.integer(kTreeIterations)));
   }
   double log2_cost(const Parameters& p) const override;
-  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override {
-    return synthesize_tree(plan_of_tree(p), level, out);
-  }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
-    PSYGEN_CHECK(false, "trees share no indices");
-  }
+  TreePlan plan(const Parameters& p) const override { return plan_of_tree(p); }
 };
 
 double TreeType::log2_cost(const Parameters& p) const {
