@@ -87,7 +87,8 @@ class Chooser {
     if (!settings_.levels_of_detail) return 0;
     const std::span<const float> errors(detail.error_m.data(), detail.level_count);
     if (is_terrain) error_pixels *= kTerrainErrorFactor;
-    const int current = demand.drawn_level == kNoLevel ? -1 : demand.drawn_level;
+    const bool keep = demand.drawn_level != kNoLevel && !synthesis_.settling;
+    const int current = keep ? demand.drawn_level : -1;
     return static_cast<std::uint8_t>(visibility::choose_level(
         errors, distance_m, camera_.pixels_per_radian, error_pixels, current));
   }
@@ -142,8 +143,8 @@ class Chooser {
     const bool coarse_first = hole && settings_.levels_of_detail &&
                               settings_.paradigm == Paradigm::kParallelLazyAmplification;
     // A modeler that holds the coarsest one may not get a processor for a while: then the next one.
-    const bool stuck =
-        demand.seen_s >= 0 && clock_.real_s - double{demand.seen_s} > kHolePatienceSeconds;
+    const bool stuck = !synthesis_.settling && demand.seen_s >= 0 &&
+                       clock_.real_s - double{demand.seen_s} > kHolePatienceSeconds;
     const int coarsest = stuck && levels > 1 ? levels - 2 : levels - 1;
     const int first = coarse_first ? coarsest : demand.wanted_level;
     for (int distance = 0; distance < levels; ++distance) {

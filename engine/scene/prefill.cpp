@@ -102,6 +102,7 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   State& s = state_;
   std::uint64_t synthesised = 0;
   int quiet = 0, idle = 0;
+  s.synthesis.settling = true;
   while (quiet < kQuietTicks && idle < kIdleTicks) {
     const float coarsening = s.synthesis.coarsening;
     tick_without_drawing(pose);
@@ -116,6 +117,7 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
     const double made = static_cast<double>(synthesised);
     if (progress && !progress("filling the cache", made / (made + missing + 1.0))) break;
   }
+  s.synthesis.settling = false;
   return synthesised;
 }
 

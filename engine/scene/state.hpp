@@ -97,6 +97,7 @@ struct Synthesis {
     synthesis::MeshHandle handle;
   };
   std::vector<Ready> ready;  // found in the cache in this tick
+  bool settling = false;     // levels follow from the pose alone: not from what came first, or when
   float coarsening = 1;      // ≥ 1: how much the wanted error grows under memory pressure
 };
 
