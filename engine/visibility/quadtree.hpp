@@ -1,0 +1,162 @@
+// The cut through the quadtree of blocks: which node of which level stands for each piece of ground.
+// A node of level k covers 2^k × 2^k blocks; node (x, z) begins at block (x << k, z << k). Distances
+// alone decide, so that a level is known before anything is generated. Restricted: leaves that touch
+// differ by one level at most (proof at split_distances). Knows no entities and no meshes. Linear in
+// the nodes of the cut, whose number grows with the logarithm of the view distance; allocates only
+// while results grow. Values only; usable from any thread.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/core/coordinates.hpp"
+
+namespace psygen::visibility {
+
+inline constexpr std::uint8_t kMaxNodeLevel = 30;
+
+// A level in [0, kMaxNodeLevel] and coordinates in units of the node's side. Canonical: they lie in
+// [−2^(31 − level), 2^(31 − level)), as those of node_of() do; block indices wrap at 2^32.
+struct NodeCoord {
+  core::BlockCoord coord;
+  std::uint8_t level = 0;
+  friend constexpr auto operator<=>(const NodeCoord&, const NodeCoord&) = default;
+};
+
+// The node of a level that holds a block.
+constexpr NodeCoord node_of(core::BlockCoord block, std::uint8_t level) {
+  return {{block.x >> level, block.z >> level}, level};
+}
+
+// The block at the node's corner of smallest x and z.
+constexpr core::BlockCoord corner_block(const NodeCoord& node) {
+  const auto shifted = [&node](std::int32_t index) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(index) << node.level);
+  };
+  return {shifted(node.coord.x), shifted(node.coord.z)};
+}
+
+constexpr NodeCoord parent_of(const NodeCoord& node) {
+  return {{node.coord.x >> 1, node.coord.z >> 1}, static_cast<std::uint8_t>(node.level + 1)};
+}
+
+// Child i in 0 … 3 of a node of level >= 1: bit 0 of i is the step in x, bit 1 the step in z.
+constexpr NodeCoord child_of(const NodeCoord& node, unsigned i) {
+  const auto step = [](std::int32_t index, unsigned bit) {
+    return static_cast<std::int32_t>((static_cast<std::uint32_t>(index) << 1) | bit);
+  };
+  return {{step(node.coord.x, i & 1U), step(node.coord.z, i >> 1)},
+          static_cast<std::uint8_t>(node.level - 1)};
+}
+
+// The node `dx`, `dz` steps further, across the seam of the block indices if need be.
+NodeCoord neighbour_of(const NodeCoord& node, std::int32_t dx, std::int32_t dz);
+
+// ---- From errors to distances ------------------------------------------------------------------
+
+// What happens to a node of a level, by its distance. 0 < split_m <= merge_m.
+struct LevelDistances {
+  double split_m = 0;  // nearer than this it is split into its four children
+  double merge_m = 0;  // once split, it stays so up to this distance
+  double morph_m = 0;  // its children begin to take its shape here and have it at split_m
+};
+
+struct SplitSettings {
+  double block_size_m = 64;
+  double pixels_per_radian = 1000;
+  double max_error_pixels = 1;  // what an error in metres may cover
+  double min_ratio = 1;         // a node is split nearer than so many of its sides, whatever its error
+  double merge_factor = 1.1;    // merge_m / split_m, >= 1
+  double morph_share = 0.7;     // of split_m, where morphing begins at the earliest
+};
+
+// One LevelDistances for each level; level_errors_m[k] is by how much the mesh of a node of level k
+// is off. Both spans have one length, at most kMaxNodeLevel + 1. A node of level 0 that is "split"
+// is a block drawn with its finest mesh (CutNode::fine), so level_errors_m[0] is the error of a
+// block's coarser mesh.
+//
+// split(k) = max(error(k) · pixels per radian / max error in pixels, min_ratio · side(k),
+//                merge(k − 1) + diagonal(k − 1)).
+//
+// The last term makes the cut restricted. Let P of level p be split, so d(P) < merge(p), and let B
+// of level b > p touch it. Distances are horizontal distances to squares, or hypot of these and a
+// clearance that does not grow with the level, hence d(B) <= d(P) + diagonal(p) < split(p + 1) <=
+// split(b): B is split as well. It also keeps split nodes within split nodes, and lets a node that
+// has just replaced its children (at merge(k)) begin without morph: morph(k + 1) >= merge(k).
+void split_distances(std::span<const double> level_errors_m, const SplitSettings& settings,
+                     std::span<LevelDistances> levels);
+
+// ---- The cut -----------------------------------------------------------------------------------
+
+// A rectangle of blocks; nodes that do not reach into it do not exist. 0 along an axis: endless.
+struct BlockArea {
+  core::BlockCoord corner;
+  std::uint32_t blocks_x = 0, blocks_z = 0;
+};
+
+struct CutInput {
+  core::WorldPosition camera;  // within 2^30 blocks of all roots
+  double block_size_m = 64;
+  std::span<const NodeCoord> roots;  // canonical, of one level, none twice
+  std::span<const LevelDistances> levels;  // of split_distances, for 0 … the roots' level at least
+  // How far the camera is above (or below) all ground that nodes of a level could show, metres; by
+  // level, not growing with it, for the proof above. Empty: 0 for all.
+  std::span<const double> clearances_m;
+  double view_distance_m = std::numeric_limits<double>::infinity();  // horizontal, for any node
+  BlockArea world;
+};
+
+inline constexpr std::uint32_t kNoNode = UINT32_MAX;
+
+struct CutNode {
+  NodeCoord node;
+  bool leaf = true;   // wanted for drawing; else its children are
+  bool fine = false;  // a leaf of level 0 that is so near that its finest mesh is wanted
+  std::uint32_t parent = kNoNode;  // index in Cut::nodes
+  std::uint32_t end = 0;           // nodes[i + 1] … nodes[end − 1] are its descendants in the cut
+  float corner_x_m = 0, corner_z_m = 0;  // of the node's corner, relative to the camera
+  float side_m = 0;
+  float distance_m = 0;  // the one that decides: horizontal, with the level's clearance
+  // 0: its own shape; 1: the next coarser one (a fine block's is its coarser mesh, any other node's
+  // is its parent). As the camera moves, leaves appear with 1 when their parent is split, and a node
+  // appears with 0 when its children, all at 1, merge.
+  float morph = 0;
+
+  // The node's box relative to the camera, from heights relative to the camera.
+  core::Bounds box(float low_y_m, float high_y_m) const {
+    return {{corner_x_m, low_y_m, corner_z_m},
+            {corner_x_m + side_m, high_y_m, corner_z_m + side_m}};
+  }
+};
+
+// The caller keeps it from tick to tick: which nodes were split before is the hysteresis.
+struct Cut {
+  // Parents before their children and front to back: no vertical plane through the camera meets,
+  // along a half-line from it, a leaf that comes earlier here than one nearer to the camera.
+  std::vector<CutNode> nodes;
+  std::vector<NodeCoord> split;  // inner nodes and fine blocks, sorted
+
+  // Working memory.
+  std::vector<NodeCoord> split_before, roots;
+};
+
+// Replaces the nodes of the cut. Without an earlier cut (cut.split empty) a node is split if its
+// distance is below split_m, otherwise also if it was split and the distance is below merge_m.
+void select_cut(const CutInput& input, Cut& cut);
+
+// Canonical nodes of a level that cover everything up to `view_distance_m` around the camera along
+// both axes. Replaces the contents of `roots`. The square must be less than 2^31 blocks wide.
+void roots_around(const core::WorldPosition& camera, double block_size_m, double view_distance_m,
+                  std::uint8_t level, std::vector<NodeCoord>& roots);
+
+// What to draw while meshes are missing: ready[i] says whether cut.nodes[i] has one. A node is drawn
+// if it is ready and either a leaf or one of its leaves can not be covered by what is ready below
+// it. Nothing drawn overlaps, and all ground under a ready node is covered. Indices into cut.nodes
+// in their order replace the contents of `drawn`; `scratch` is working memory.
+void drawn_nodes(const Cut& cut, std::span<const std::uint8_t> ready,
+                 std::vector<std::uint8_t>& scratch, std::vector<std::uint32_t>& drawn);
+
+}  // namespace psygen::visibility
