@@ -1,6 +1,6 @@
-// Decides what every mesh entity of the window should show, takes from the cache what it has, ranks
-// what it keeps, and plans what is missing. Blocks in view are looked at in every tick in PLP
-// order; those around the camera in turns.
+// Decides what every mesh entity should show, takes from the cache what it has, ranks what it
+// keeps, and plans what is missing. Nodes that the picture depends on are looked at in every tick,
+// front to back; those around the camera in turns.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,19 +17,22 @@ namespace {
 using synthesis::Rank;
 using synthesis::RankGroup;
 
-// Blocks out of view are looked at once in so many ticks, and kept this much coarser.
+// Nodes out of view are looked at once in so many ticks, and their models kept this much coarser.
 constexpr std::size_t kAroundTurns = 8;
 constexpr float kAroundErrorFactor = 2.0F;
 // So long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
-// A terrain's error is the sum of what all octaves could lose at worst; seen is about half of it.
-constexpr float kTerrainErrorFactor = 2.0F;
 
-// Where a block stands in the order of importance, in this tick.
-struct BlockView {
+// Where a node stands in the order of importance, in this tick.
+struct NodeView {
   glm::vec3 corner{0.0F};  // relative to the camera
   const Visibility* visibility = nullptr;
+  std::uint8_t level = 0;
+  bool wanted = false;  // in view, or needed to draw what is
   bool in_view = false;
+  bool covered = false;  // an ancestor can be drawn instead
+  bool leaf = false;
+  bool fine = false;
   float error_pixels = 0;
 };
 
@@ -54,49 +57,60 @@ class Chooser {
         synthesis_(synthesis),
         counters_(counters) {}
 
-  void consider(const MeshEntity& row, const BlockView& block, bool is_terrain) {
+  // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
+  bool consider(const MeshEntity& row, const NodeView& node, bool is_ground) {
     const Placed& placed = row.placed;
     Demand& demand = row.demand;
-    const glm::vec3 center = block.corner + placed.position + placed.box_center;
+    const glm::vec3 center = node.corner + placed.position + placed.box_center;
+    const bool near = is_ground || node.level > 0;  // as near as the node itself
     const float distance_m =
-        is_terrain ? block.visibility->distance_m
-                   : std::max(glm::length(center) - placed.radius_m, camera_.projection.near_m);
+        near ? node.visibility->distance_m
+             : std::max(glm::length(center) - placed.radius_m, camera_.projection.near_m);
     const bool in_view =
-        block.in_view &&
-        (is_terrain || visibility::intersects(frustum_, {center - placed.box_half_extent,
-                                                         center + placed.box_half_extent}));
-    demand.wanted_level =
-        wanted_level(placed, row.detail, demand, distance_m, block.error_pixels, is_terrain);
-    in_view ? note_in_view(demand) : note_out_of_view(demand);
+        node.in_view &&
+        (near || visibility::intersects(
+                     frustum_, {center - placed.box_half_extent, center + placed.box_half_extent}));
+    demand.wanted_level = is_ground ? ground_level(row.detail, demand, node)
+                                    : wanted_level(placed, row.detail, demand, distance_m, node);
+    in_view ? note_in_view(demand, node.leaf) : note_out_of_view(demand);
     if (demand.wanted_level == kNoLevel) {
       // Too small to be drawn: the first to go when room is needed.
       if (demand.drawn_level != kNoLevel) {
         synthesis_.cache->set_rank(row.mesh.handle, Rank::unwanted());
       }
-      return;
+      return true;
     }
-    provide(row, in_view, *block.visibility, distance_m);
+    provide(row, node, in_view, distance_m);
+    const unsigned all_levels = (1U << row.detail.level_count) - 1;
+    return demand.drawn_level != kNoLevel || demand.failed_levels == all_levels;
   }
 
  private:
+  static std::uint8_t ground_level(const Detail& detail, const Demand& demand,
+                                   const NodeView& node) {
+    if (node.fine) return 0;
+    if (!node.wanted && demand.drawn_level != kNoLevel) return demand.drawn_level;
+    return static_cast<std::uint8_t>(detail.level_count - 1);
+  }
+
   std::uint8_t wanted_level(const Placed& placed, const Detail& detail, const Demand& demand,
-                            float distance_m, float error_pixels, bool is_terrain) const {
+                            float distance_m, const NodeView& node) const {
     const float size_pixels = 2 * placed.radius_m * camera_.pixels_per_radian /
                               std::max(distance_m + placed.radius_m, camera_.projection.near_m);
-    if (!is_terrain && size_pixels < static_cast<float>(settings_.min_size_pixels)) return kNoLevel;
+    if (node.level == 0 && size_pixels < static_cast<float>(settings_.min_size_pixels))
+      return kNoLevel;
     if (!settings_.levels_of_detail) return 0;
     const std::span<const float> errors(detail.error_m.data(), detail.level_count);
-    if (is_terrain) error_pixels *= kTerrainErrorFactor;
     const bool keep = demand.drawn_level != kNoLevel && !synthesis_.settling;
     const int current = keep ? demand.drawn_level : -1;
     return static_cast<std::uint8_t>(visibility::choose_level(
-        errors, distance_m, camera_.pixels_per_radian, error_pixels, current));
+        errors, distance_m, camera_.pixels_per_radian, node.error_pixels, current));
   }
 
-  void note_in_view(Demand& demand) {
+  void note_in_view(Demand& demand, bool leaf) {
     const bool entered = demand.in_view_tick + 1 != clock_.tick;
     demand.in_view_tick = clock_.tick;
-    if (demand.wanted_level == kNoLevel) return;
+    if (demand.wanted_level == kNoLevel || !leaf) return;
     if (demand.drawn_level == kNoLevel) {
       if (demand.seen_s < 0) demand.seen_s = static_cast<float>(clock_.real_s);
     } else if (entered) {
@@ -106,7 +120,11 @@ class Chooser {
 
   static void note_out_of_view(Demand& demand) { demand.seen_s = -1; }
 
-  Rank rank_of(RankGroup group, const Visibility& visibility, float distance_m) const {
+  Rank rank_of(RankGroup group, const NodeView& node, float distance_m) const {
+    const Visibility& visibility = *node.visibility;
+    // Where nothing can be drawn coarse nodes come first: they fill most with least.
+    if (group == RankGroup::kVisibleHole)
+      return Rank::by_layer(group, visibility::kMaxNodeLevel - node.level, distance_m);
     if (synthesis::is_visible(group)) return Rank::by_layer(group, visibility.layer, distance_m);
     if (std::isfinite(visibility.deadline_s)) {
       return Rank::by_deadline(visibility.deadline_s, distance_m);
@@ -115,24 +133,25 @@ class Chooser {
   }
 
   // Keeps what is drawn, and sees to it that the wanted level comes.
-  void provide(const MeshEntity& row, bool in_view, const Visibility& visibility,
-               float distance_m) {
+  void provide(const MeshEntity& row, const NodeView& node, bool in_view, float distance_m) {
     Demand& demand = row.demand;
+    const bool wanted = in_view || (node.wanted && !node.in_view);
     if (demand.drawn_level != kNoLevel) {
-      const RankGroup kept = in_view ? RankGroup::kDrawn : RankGroup::kPrefetch;
-      synthesis_.cache->set_rank(row.mesh.handle, rank_of(kept, visibility, distance_m));
+      const RankGroup kept = wanted ? RankGroup::kDrawn : RankGroup::kPrefetch;
+      synthesis_.cache->set_rank(row.mesh.handle, rank_of(kept, node, distance_m));
     }
     if (demand.drawn_level == demand.wanted_level) {
       demand.requested_level = kNoLevel;
       return;
     }
-    const bool hole = demand.drawn_level == kNoLevel;
-    const std::uint8_t level = level_to_request(row, hole && in_view);
+    const bool nothing = demand.drawn_level == kNoLevel;
+    const bool hole = nothing && in_view && !node.covered;
+    const std::uint8_t level = level_to_request(row, hole);
     if (level == kNoLevel) return;
-    const RankGroup group = !in_view ? RankGroup::kPrefetch
-                            : hole   ? RankGroup::kVisibleHole
-                                     : RankGroup::kVisibleCoarse;
-    request(row, level, rank_of(group, visibility, distance_m), visibility.deadline_s);
+    const RankGroup group = hole     ? RankGroup::kVisibleHole
+                            : wanted ? RankGroup::kVisibleCoarse
+                                     : RankGroup::kPrefetch;
+    request(row, level, rank_of(group, node, distance_m), node.visibility->deadline_s);
   }
 
   // The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
@@ -159,7 +178,8 @@ class Chooser {
   void request(const MeshEntity& row, std::uint8_t level, Rank rank, float deadline_s) {
     const Source& source = row.source;
     Demand& demand = row.demand;
-    const synthesis::MeshKey key{row.placed.block, source.index, source.model, level,
+    const auto type_level = static_cast<std::uint16_t>(source.first_level + level);
+    const synthesis::MeshKey key{row.placed.block, source.index, source.model, type_level,
                                  source.parameters_hash};
     const bool first_time = demand.requested_level != level;
     demand.requested_level = level;
@@ -188,38 +208,57 @@ class Chooser {
   Counters& counters_;
 };
 
-// Looks at these blocks and their models, in this order.
-class BlockWalk {
+// Looks at nodes and their models.
+class NodeWalk {
  public:
-  BlockWalk(Chooser& chooser, const Camera& camera, double block_size_m, const CacheQuery& entities)
+  NodeWalk(Chooser& chooser, const Camera& camera, double block_size_m, const CacheQuery& entities)
       : chooser_(chooser), camera_(camera), block_size_m_(block_size_m), entities_(entities) {}
 
-  void consider(std::span<const ecs::Entity> blocks, bool in_view, float error_pixels) {
-    entities_.each_of<const Block, const ecs::Children, const Visibility>(
-        blocks, [&](std::span<const ecs::Entity> rows, std::span<const Block> block,
-                    std::span<const ecs::Children> models, std::span<const Visibility> visibility) {
+  void consider(std::span<const ChosenNode> nodes, bool only_leaves, float error_pixels) {
+    for (const ChosenNode& node : nodes) {
+      if (only_leaves && !(node.leaf && node.in_view)) continue;
+      consider(std::span(&node.entity, 1), {.wanted = true,
+                                            .in_view = node.in_view,
+                                            .covered = node.covered,
+                                            .leaf = node.leaf,
+                                            .fine = node.fine,
+                                            .error_pixels = error_pixels});
+    }
+  }
+
+  // Every node of `entities`, in this order; `view` says what they have in common.
+  void consider(std::span<const ecs::Entity> nodes, NodeView view) {
+    entities_.each_of<const Node, const ecs::Children, const Visibility, Lacking>(
+        nodes, [&](std::span<const ecs::Entity> rows, std::span<const Node> node,
+                   std::span<const ecs::Children> models, std::span<const Visibility> visibility,
+                   std::span<Lacking> lacking) {
           for (std::size_t i = 0; i < rows.size(); ++i) {
-            const glm::vec3 corner(
-                core::offset_m(block[i].coord, camera_.pose.position, block_size_m_));
-            const BlockView view{corner, &visibility[i], in_view, error_pixels};
-            consider_rows(rows.subspan(i, 1), view, true);
-            consider_rows(entities_.children(models[i]), view, false);
+            const core::BlockCoord corner = visibility::corner_block(node[i].at);
+            view.corner = glm::vec3(core::offset_m(corner, camera_.pose.position, block_size_m_));
+            view.visibility = &visibility[i];
+            view.level = node[i].at.level;
+            lacking[i].meshes = consider_rows(rows.subspan(i, 1), view, true) +
+                                consider_rows(entities_.children(models[i]), view, false);
           }
         });
   }
 
  private:
-  void consider_rows(std::span<const ecs::Entity> entities, const BlockView& view,
-                     bool is_terrain) {
+  // Returns how many lack a mesh.
+  std::uint32_t consider_rows(std::span<const ecs::Entity> entities, const NodeView& view,
+                              bool is_ground) {
+    std::uint32_t lacking = 0;
     entities_.each_of<const Placed, const Detail, const Source, const Mesh, Demand>(
         entities, [&](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
                       std::span<const Detail> detail, std::span<const Source> source,
                       std::span<const Mesh> mesh, std::span<Demand> demand) {
           for (std::size_t i = 0; i < rows.size(); ++i) {
-            chooser_.consider({rows[i], placed[i], detail[i], source[i], mesh[i], demand[i]}, view,
-                              is_terrain);
+            const bool there = chooser_.consider(
+                {rows[i], placed[i], detail[i], source[i], mesh[i], demand[i]}, view, is_ground);
+            lacking += there ? 0 : 1;
           }
         });
+    return lacking;
   }
 
   Chooser& chooser_;
@@ -284,17 +323,17 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
   synthesis.ready.clear();
 
   Chooser chooser(settings, clock, camera, view.frustum, synthesis, counters);
-  BlockWalk walk(chooser, camera, facts.world.block_size_m(), entities);
+  NodeWalk walk(chooser, camera, facts.world.block_size_m(), entities);
   const float error_pixels = static_cast<float>(settings.max_error_pixels) * synthesis.coarsening;
-  walk.consider(view.visible, true, error_pixels);
+  const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
+  walk.consider(view.chosen, wait, error_pixels);
   if (settings.paradigm == Paradigm::kParallelLazyAmplification) {
-    walk.consider(view.expected, false, error_pixels);
+    walk.consider(view.expected, NodeView{.error_pixels = error_pixels});
     std::vector<ecs::Entity> around;  // those whose turn it is
     for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns)
       around.push_back(view.around[i]);
-    walk.consider(around, false, error_pixels * kAroundErrorFactor);
+    walk.consider(around, NodeView{.error_pixels = error_pixels * kAroundErrorFactor});
   }
-  const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
   synthesis::PlanLimits limits;
   limits.seconds_ahead =
       wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead;

@@ -1,6 +1,8 @@
 // The components of the scene. Plain data, split by who touches it; sizes are part of the contract.
-// A *mesh entity* is anything with a mesh: a block (its terrain), a tree, a rock. Whether a mesh is
-// there yet is a value in `Mesh`, never a difference in archetype. Main thread only.
+// A *node* is a piece of ground: a block, or 2^k × 2^k of them (engine/visibility/quadtree.hpp). A
+// *mesh entity* is anything with a mesh: a node (its terrain), a tree, a rock, or everything on a
+// node as one mesh. Whether a mesh is there yet is a value in `Mesh`, never a difference in
+// archetype. Main thread only.
 #pragma once
 
 #include <array>
@@ -12,6 +14,7 @@
 #include "engine/core/geometry_memory.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/synthesis/geometry_cache.hpp"
+#include "engine/visibility/quadtree.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::scene {
@@ -19,20 +22,28 @@ namespace psygen::scene {
 inline constexpr std::uint8_t kNoLevel = 0xFF;
 inline constexpr std::size_t kMaxLevels = 8;
 
-// A block of the grid. Its models are its children (ecs::Children).
-struct Block {
-  core::BlockCoord coord;
+// A node of the quadtree. The models on it are its children (ecs::Children): a block's trees and
+// rocks, or the one mesh that stands for all of them.
+struct Node {
+  visibility::NodeCoord at;
+  float low_m = 0, high_m = 0;  // of its ground; all that is possible until a mesh is there
 };
-static_assert(sizeof(Block) == 8);
+static_assert(sizeof(Node) == 20);
 
-// What the visibility system found out about a block in this tick.
+// What the visibility system found out about a node in this tick.
 struct Visibility {
-  float distance_m = 0;     // from the camera to the nearest point of the block's box
+  float distance_m = 0;     // from the camera to the nearest point of the node's box
   float deadline_s = 0;     // seconds until it is expected in view; 0 in view; +inf not expected
   std::uint16_t layer = 0;  // PLP layer; the paper's priority is −(layer + 1)
   std::uint16_t in_view = 0;
 };
 static_assert(sizeof(Visibility) == 12);
+
+// Meshes that a node and its models lack of what is wanted of them, at any level of detail; when
+// there are none it can be drawn instead of its parent.
+struct Lacking {
+  std::uint32_t meshes = UINT32_MAX;  // not yet looked at
+};
 
 // Where a mesh entity stands: block, metres from the block's corner, box relative to its foot.
 struct Placed {
@@ -56,6 +67,7 @@ struct Source {
   std::uint64_t parameters_hash = 0;
   std::uint32_t index = 0;  // within the block; models count from 0, terrain is kTerrainIndex
   models::ModelIndex model = 0;
+  std::uint16_t first_level = 0;  // of the model type: what level 0 of Detail and Demand is
 };
 using world::kTerrainIndex;
 

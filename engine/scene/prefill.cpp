@@ -11,7 +11,7 @@
 namespace psygen::scene {
 namespace {
 
-// A tick looks at each block around the camera once in 8 turns; so long must nothing be missing.
+// A tick looks at each node around the camera once in 8 turns; so long must nothing be missing.
 constexpr int kQuietTicks = 9;
 // After so many ticks in which nothing became ready, what is still wanted cannot be had.
 constexpr int kIdleTicks = 40;
@@ -20,6 +20,7 @@ struct RegionSize {
   std::uint64_t meshes = 0, bytes = 0;
 };
 
+// Of a mesh entity, the first so many; the levels are those of its Detail.
 int levels_needed(const Settings& settings, const Detail& detail) {
   return settings.levels_of_detail ? static_cast<int>(detail.level_count) : 1;
 }
@@ -32,8 +33,8 @@ RegionSize region_size(const State& s) {
                                                   std::span<const Detail> details) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
       for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
-        const models::MeshSize mesh =
-            s.facts.registry[sources[i].model].mesh_size(sources[i].parameters, level);
+        const models::MeshSize mesh = s.facts.registry[sources[i].model].mesh_size(
+            sources[i].parameters, sources[i].first_level + level);
         size.bytes += s.memory->charged_bytes(mesh.layout, mesh.vertex_count,
                                               mesh.shared_indices != 0 ? 0 : mesh.index_count);
         ++size.meshes;
@@ -53,7 +54,7 @@ void want_everything(State& s) {
         for (std::size_t i = 0; i < entities.size(); ++i) {
           for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
             const synthesis::MeshKey key{placed[i].block, sources[i].index, sources[i].model,
-                                         static_cast<std::uint16_t>(level),
+                                         static_cast<std::uint16_t>(sources[i].first_level + level),
                                          sources[i].parameters_hash};
             wants.push_back({key, &sources[i].parameters, owner_of(entities[i]),
                              synthesis::Rank(synthesis::RankGroup::kDrawn, 0, 0.0F), 0.0F});
@@ -71,7 +72,7 @@ void land_everything(State& s) {
                 s.counters, s.totals);
 }
 
-void create_all_blocks(State& s) {
+void create_all_nodes(State& s) {
   do {
     streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.synthesis,
                      s.counters);
@@ -87,8 +88,8 @@ void Scene::tick_without_drawing(const core::CameraPose& pose) {
   s.counters = {};
   input_system(s.input, s.clock, s.facts, s.camera);
   streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.synthesis, s.counters);
-  visibility_system(s.settings, s.camera, s.facts, s.streaming, VisibilityQuery(s.entities), s.view,
-                    s.counters);
+  visibility_system(s.settings, s.camera, s.facts, s.streaming, s.synthesis,
+                    VisibilityQuery(s.entities), s.view, s.counters);
   cache_system(s.settings, s.clock, s.camera, s.facts, s.view, CacheQuery(s.entities), s.synthesis,
                s.counters, s.totals);
   s.synthesis.manager->wait_all();
@@ -108,7 +109,7 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
     tick_without_drawing(pose);
     synthesised += s.counters.models_synthesised;
     const bool moved = s.counters.models_synthesised > 0 || s.counters.failed > 0 ||
-                       s.counters.blocks_created > 0 || s.synthesis.coarsening != coarsening;
+                       s.counters.nodes_created > 0 || s.synthesis.coarsening != coarsening;
     idle = moved ? 0 : idle + 1;
     const bool complete = s.streaming.missing.empty() && s.synthesis.finished.empty();
     quiet = complete && s.counters.requests == 0 ? quiet + 1 : 0;
@@ -127,18 +128,17 @@ core::Result<void> Scene::check_region() const {
   constexpr double kMiB = 1 << 20;
   return core::fail(
       core::ErrorCode::kOverBudget,
-      fmt::format("amplifying the {0} × {0} blocks around the camera takes {1:.0f} MiB for {2} "
-                  "meshes, more than the budget of {3:.0f} MiB; lower the view distance or raise "
-                  "the budget",
-                  state_.streaming.grid.side(), static_cast<double>(size.bytes) / kMiB, size.meshes,
-                  static_cast<double>(state_.settings.budget_bytes) / kMiB));
+      fmt::format("amplifying the {} nodes around the camera takes {:.0f} MiB for {} meshes, more "
+                  "than the budget of {:.0f} MiB; lower the view distance or raise the budget",
+                  state_.entities.count<Node>(), static_cast<double>(size.bytes) / kMiB,
+                  size.meshes, static_cast<double>(state_.settings.budget_bytes) / kMiB));
 }
 
 core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const Progress& progress) {
   State& s = state_;
   s.input.pose = pose;
   input_system(s.input, s.clock, s.facts, s.camera);
-  create_all_blocks(s);
+  create_all_nodes(s);
   if (auto fits = check_region(); !fits) return tl::unexpected(fits.error());
   want_everything(s);
   const std::vector<synthesis::Want> all = std::move(s.synthesis.wants);

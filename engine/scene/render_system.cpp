@@ -1,5 +1,6 @@
-// Turns what is in view and resident into draw lists, nearest blocks first, counts what is missing,
-// and hands the lists to the renderer.
+// Turns what is in view and resident into draw lists, nearest nodes first, counts what is missing,
+// and hands the lists to the renderer. Where nodes of the cut are not ready an ancestor is drawn
+// until all that replaces it is.
 #include <algorithm>
 
 #include "engine/scene/missing.hpp"
@@ -8,78 +9,127 @@
 namespace psygen::scene {
 namespace {
 
-// How far a block's border hangs down, in metres per metre of its coarsest error, at least one.
-constexpr float kSkirtPerError = 2.0F;
+class Drawing {
+ public:
+  Drawing(const Clock& clock, const Camera& camera, const WorldFacts& facts, const View& view,
+          const RenderQuery& entities, DrawLists& draws, Counters& counters)
+      : clock_(clock),
+        camera_(camera),
+        facts_(facts),
+        view_(view),
+        entities_(entities),
+        draws_(draws),
+        counters_(counters) {}
 
-// Counts a node in view; true if it can be drawn.
-bool count_node(const Camera& camera, const Demand& demand, glm::vec3 center, float radius_m,
-                Counters& counters) {
-  ++counters.nodes_in_view;
-  const bool hole = demand.drawn_level == kNoLevel;
-  const bool coarse = !hole && demand.drawn_level > demand.wanted_level + 1;
-  if (hole) ++counters.holes;
-  if (coarse) ++counters.coarse;
-  if (hole || coarse) {
-    counters.missing_pixels_percent += covered_percent(camera, center, radius_m);
+  // Entities of the nodes of the cut, in its order; null where there is none.
+  void run(std::span<const ecs::Entity> entities) {
+    const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
+    draws_.ready.assign(cut.size(), 0);
+    for (std::size_t i = 0; i < cut.size(); ++i) {
+      const Lacking* lacking = entities_.get<Lacking>(entities[i]);
+      draws_.ready[i] = lacking != nullptr && lacking->meshes == 0 ? 1 : 0;
+    }
+    visibility::drawn_nodes(view_.cut, draws_.ready, draws_.scratch, draws_.nodes);
+    std::size_t next = 0;
+    for (std::uint32_t i = 0; i < cut.size();) {
+      const bool drawn = next < draws_.nodes.size() && draws_.nodes[next] == i;
+      // What has no ancestor to stand for it is drawn as far as it goes.
+      if ((drawn || cut[i].leaf) && view_.in_view[i] != 0) draw(i, entities[i]);
+      next += drawn ? 1 : 0;
+      i = drawn ? cut[i].end : i + 1;
+    }
   }
-  return !hole;
-}
 
-void add_terrain(const WorldFacts& facts, const Mesh& mesh, const Placed& placed,
-                 const Detail& detail, glm::vec3 corner, DrawLists& draws) {
-  render::TerrainDraw draw;
-  draw.range = mesh.range;
-  draw.shared_indices = mesh.shared_indices;
-  draw.origin = corner;
-  draw.cell_m = facts.cell_m;
-  draw.height_min_m = placed.box_center.y - placed.box_half_extent.y;
-  draw.height_range_m = 2 * placed.box_half_extent.y;
-  draw.skirt_m = 1.0F + kSkirtPerError * detail.error_m[detail.level_count - 1];
-  draws.terrain.push_back(draw);
-}
+ private:
+  void draw(std::uint32_t index, ecs::Entity entity) {
+    if (!entities_.alive(entity)) return;  // counted by the visibility system
+    const visibility::CutNode& node = view_.cut.nodes[index];
+    const auto [placed, demand, mesh] = std::tuple(
+        entities_.get<Placed>(entity), entities_.get<Demand>(entity), entities_.get<Mesh>(entity));
+    const Node& at = *entities_.get<Node>(entity);
+    const glm::vec3 corner(core::offset_m(visibility::corner_block(node.node),
+                                          camera_.pose.position, facts_.world.block_size_m()));
+    const glm::vec3 middle =
+        corner + glm::vec3(node.side_m / 2, (at.low_m + at.high_m) / 2, node.side_m / 2);
+    const bool hole = demand->drawn_level == kNoLevel;
+    count(middle, placed->radius_m, hole, !node.leaf && is_coarse(index));
+    if (!hole) add_ground(node, *placed, *demand, *mesh, corner);
+    add_models(*entities_.get<ecs::Children>(entity), corner);
+  }
 
-void add_models(const Camera& camera, const RenderQuery& entities, const ecs::Children& models,
-                glm::vec3 corner, std::uint32_t tick, DrawLists& draws, Counters& counters) {
-  entities.each_of<const Placed, const Demand, const Mesh>(
-      entities.children(models),
-      [&](std::span<const ecs::Entity>, std::span<const Placed> placed,
-          std::span<const Demand> demands, std::span<const Mesh> meshes) {
-        for (std::size_t i = 0; i < placed.size(); ++i) {
-          const Demand& demand = demands[i];
-          if (demand.wanted_level == kNoLevel || demand.in_view_tick != tick) continue;
-          const glm::vec3 foot = corner + placed[i].position;
-          if (!count_node(camera, demand, foot + placed[i].box_center, placed[i].radius_m,
-                          counters)) {
-            continue;
+  // Drawn for something wanted more than one level finer.
+  bool is_coarse(std::uint32_t index) const {
+    const visibility::CutNode& node = view_.cut.nodes[index];
+    for (std::uint32_t i = index + 1; i < node.end; ++i) {
+      if (view_.in_view[i] != 0 && view_.cut.nodes[i].node.level + 1 < node.node.level) return true;
+    }
+    return false;
+  }
+
+  void count(glm::vec3 center, float radius_m, bool hole, bool coarse) {
+    ++counters_.nodes_in_view;
+    if (hole) ++counters_.holes;
+    if (coarse) ++counters_.coarse;
+    if (hole || coarse)
+      counters_.missing_pixels_percent += covered_percent(camera_, center, radius_m);
+  }
+
+  void add_ground(const visibility::CutNode& node, const Placed& placed, const Demand& demand,
+                  const Mesh& mesh, glm::vec3 corner) {
+    const NodeLevel& level = facts_.levels[node.node.level];
+    render::TerrainDraw draw;
+    draw.range = mesh.range;
+    draw.shared_indices = mesh.shared_indices;
+    draw.origin = corner;
+    draw.cell_m = facts_.cell_m * static_cast<float>(1U << node.node.level);
+    draw.height_min_m = placed.box_center.y - placed.box_half_extent.y;
+    draw.height_range_m = 2 * placed.box_half_extent.y;
+    draw.skirt_m = level.skirt_m;
+    // A mesh finer than wanted looks like the wanted one; a coarser one has nothing to morph from.
+    const bool finest = node.node.level == 0 && demand.drawn_level == 0 && level.mesh_level != 0;
+    if (finest) draw.morph = node.fine ? node.morph : 1.0F;
+    draws_.terrain.push_back(draw);
+  }
+
+  void add_models(const ecs::Children& models, glm::vec3 corner) {
+    entities_.each_of<const Placed, const Demand, const Mesh>(
+        entities_.children(models),
+        [&](std::span<const ecs::Entity>, std::span<const Placed> placed,
+            std::span<const Demand> demands, std::span<const Mesh> meshes) {
+          for (std::size_t i = 0; i < placed.size(); ++i) {
+            const Demand& demand = demands[i];
+            if (demand.wanted_level == kNoLevel || demand.in_view_tick != clock_.tick) continue;
+            const glm::vec3 foot = corner + placed[i].position;
+            const bool hole = demand.drawn_level == kNoLevel;
+            const bool coarse = !hole && demand.drawn_level > demand.wanted_level + 1;
+            count(foot + placed[i].box_center, placed[i].radius_m, hole, coarse);
+            if (hole) continue;
+            draws_.models.push_back({meshes[i].range, meshes[i].shared_indices, foot,
+                                     placed[i].box_center, placed[i].box_half_extent, 1.0F});
           }
-          draws.models.push_back({meshes[i].range, meshes[i].shared_indices, foot,
-                                  placed[i].box_center, placed[i].box_half_extent, 1.0F});
-        }
-      });
-}
+        });
+  }
+
+  const Clock& clock_;
+  const Camera& camera_;
+  const WorldFacts& facts_;
+  const View& view_;
+  const RenderQuery& entities_;
+  DrawLists& draws_;
+  Counters& counters_;
+};
 
 }  // namespace
 
 void render_system(const Input& input, const Clock& clock, const Camera& camera,
-                   const WorldFacts& facts, const View& view, RenderQuery entities,
-                   DrawLists& draws, Output& output, Counters& counters) {
+                   const WorldFacts& facts, const Streaming& streaming, const View& view,
+                   RenderQuery entities, DrawLists& draws, Output& output, Counters& counters) {
   draws.terrain.clear();
   draws.models.clear();
-  entities.each_of(
-      view.visible, [&](std::span<const ecs::Entity>, std::span<const Block> blocks,
-                        std::span<const ecs::Children> models, std::span<const Placed> placed,
-                        std::span<const Detail> details, std::span<const Demand> demands,
-                        std::span<const Mesh> meshes) {
-        for (std::size_t i = 0; i < blocks.size(); ++i) {
-          const glm::vec3 corner(
-              core::offset_m(blocks[i].coord, camera.pose.position, facts.world.block_size_m()));
-          if (count_node(camera, demands[i], corner + placed[i].box_center, placed[i].radius_m,
-                         counters)) {
-            add_terrain(facts, meshes[i], placed[i], details[i], corner, draws);
-          }
-          add_models(camera, entities, models[i], corner, clock.tick, draws, counters);
-        }
-      });
+  draws.entities.clear();
+  for (const visibility::CutNode& node : view.cut.nodes)
+    draws.entities.push_back(streaming.grids[node.node.level].entity_of(node.node.coord));
+  Drawing(clock, camera, facts, view, entities, draws, counters).run(draws.entities);
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
   if (output.renderer == nullptr) return;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
@@ -20,8 +21,8 @@ core::Result<void> check(const Settings& settings) {
   const auto refuse = [](std::string sentence) {
     return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
   };
-  if (!(settings.view_distance_m >= 32 && settings.view_distance_m <= 8192)) {
-    return refuse("view distance must be between 32 and 8192 m");
+  if (!(settings.view_distance_m >= 32 && settings.view_distance_m <= 65536)) {
+    return refuse("view distance must be between 32 and 65536 m");
   }
   if (!(settings.max_error_pixels > 0 && settings.max_error_pixels <= 1000)) {
     return refuse("the error of levels of detail must be above 0 and at most 1000 pixels");
@@ -35,15 +36,16 @@ core::Result<void> check(const Settings& settings) {
   return {};
 }
 
-// Blocks to each side of the camera's: the view, and two more to get ready before they are seen.
-double window_radius(const world::World& world, const Settings& settings) {
-  return std::ceil(settings.view_distance_m / world.block_size_m()) + 2;
-}
-
-// Blocks and models that exist at once, before anything is allocated for them.
-core::Result<void> check_size(const world::World& world, const Settings& settings) {
-  const double side = 2 * window_radius(world, settings) + 1;
-  const double entities = side * side * (1.0 + static_cast<double>(world::models_per_block(world)));
+// Nodes and models that exist at once at most, before anything is allocated for them. Nodes of a
+// level lie in a disc.
+core::Result<void> check_size(const world::World& world, const std::vector<NodeLevel>& levels,
+                              const Settings& settings) {
+  const double models = static_cast<double>(world::models_per_block(world));
+  double entities = 0;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const double radius = window_radius(levels, settings, k);
+    entities += std::numbers::pi * radius * radius * (k == 0 ? 1 + models : 2);
+  }
   if (entities <= Scene::kMaxEntities) return {};
   return core::fail(
       core::ErrorCode::kOverBudget,
@@ -130,7 +132,8 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
                                                    telemetry::TraceLog* trace,
                                                    const Progress& progress) {
   if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_size(world, settings); !ok) return tl::unexpected(ok.error());
+  std::vector<NodeLevel> levels = node_levels(world, registry, settings, nullptr);
+  if (auto ok = check_size(world, levels, settings); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<Scene> scene(new Scene);
   State& s = scene->state_;
   s.settings = settings;
@@ -144,8 +147,11 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.cell_m = static_cast<float>(facts.world.cell_m());
   facts.models_reach_m = models_reach(facts.world, facts.registry);
 
-  s.streaming = Streaming{
-      BlockGrid(static_cast<std::uint32_t>(window_radius(facts.world, settings))), {}, false};
+  facts.levels = std::move(levels);
+  for (std::size_t k = 0; k < facts.levels.size(); ++k) {
+    s.streaming.grids.emplace_back(static_cast<std::uint8_t>(k),
+                                   window_radius(facts.levels, settings, k));
+  }
   s.output.renderer = renderer;
   if (renderer == nullptr) {
     s.heap = std::make_unique<core::HeapGeometryMemory>(settings.budget_bytes);

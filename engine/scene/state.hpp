@@ -12,8 +12,9 @@
 #include "engine/core/camera.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/scene/block_grid.hpp"
 #include "engine/scene/components.hpp"
+#include "engine/scene/node_grid.hpp"
+#include "engine/scene/node_levels.hpp"
 #include "engine/scene/settings.hpp"
 #include "engine/synthesis/cost_model.hpp"
 #include "engine/synthesis/geometry_cache.hpp"
@@ -63,26 +64,47 @@ struct WorldFacts {
   models::Registry registry;
   render::Light light;
   render::TerrainPalette palette;
+  std::vector<NodeLevel> levels;  // of the quadtree, finest first
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
 };
 
 struct Streaming {
-  BlockGrid grid;
-  std::vector<core::BlockCoord> missing;  // nearest last
-  bool centred = false;
+  std::vector<NodeGrid> grids;                        // one for each level
+  std::vector<visibility::LevelDistances> distances;  // where nodes are split in this tick
+  std::vector<visibility::NodeCoord> missing;         // most important last
+  double listed_split_m = 0;  // of the coarsest level, when the window was last looked at
 };
 
-// The visibility of this tick. Cells are those of the window, row by row.
-struct View {
+// The nodes of one level in this tick. Cells are those of its window, row by row.
+struct LevelView {
   visibility::PlpResult plp;
+  std::vector<core::Bounds> bounds;  // relative to the camera
+  std::vector<float> deadlines;      // seconds until it is expected in view; +inf: it is not
+  std::vector<std::uint8_t> chosen;  // 1: its entity is in View::chosen
+};
+
+// A node that matters to the picture of this tick.
+struct ChosenNode {
+  ecs::Entity entity;
+  std::uint8_t level = 0;
+  bool leaf = true;      // the level that is wanted here; else an ancestor of such
+  bool fine = false;     // of the finest mesh
+  bool in_view = false;  // else the sibling of one in view, without which the parent stays
+  bool covered = false;  // an ancestor could be drawn instead
+};
+
+// The visibility of this tick.
+struct View {
   visibility::Frustum frustum;
-  std::vector<core::Bounds> bounds;  // per cell, relative to the camera
-  std::vector<float> deadlines;  // per cell, seconds until it is expected in view; +inf: it is not
-  std::vector<ecs::Entity> visible;   // blocks in view, most important first
-  std::vector<ecs::Entity> expected;  // blocks expected in view, soonest first
-  std::vector<ecs::Entity> around;    // the others, nearest layers first
+  visibility::Cut cut;  // what should be drawn
+  std::vector<visibility::NodeCoord> roots;
+  std::vector<std::uint8_t> in_view;  // per node of the cut
+  std::vector<LevelView> levels;
+  std::vector<ChosenNode> chosen;     // of the cut, ancestors first, front to back
+  std::vector<ecs::Entity> expected;  // nodes expected in view, soonest first
+  std::vector<ecs::Entity> around;    // the others, coarsest level first, then nearest layers
 };
 
 struct Synthesis {
@@ -102,13 +124,16 @@ struct Synthesis {
 };
 
 struct DrawLists {
+  std::vector<ecs::Entity> entities;  // per node of the cut; null where there is none
+  std::vector<std::uint32_t> nodes;   // of the cut: what stands for it while meshes are missing
+  std::vector<std::uint8_t> ready, scratch;  // per node of the cut
   std::vector<render::TerrainDraw> terrain;
   std::vector<render::MeshDraw> models;
 };
 
 // Counts of one tick, reset by the tick.
 struct Counters {
-  std::uint32_t blocks_created = 0, blocks_destroyed = 0;
+  std::uint32_t nodes_created = 0, nodes_destroyed = 0;
   std::uint32_t nodes_in_view = 0;
   std::uint32_t holes = 0;   // nodes in view that are drawn at no level
   std::uint32_t coarse = 0;  // nodes in view coarser than wanted by more than one level

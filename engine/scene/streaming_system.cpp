@@ -1,6 +1,8 @@
-// Keeps one entity per block of the window around the camera, and one per model on it: created and
-// destroyed in batches, nearest first, within a time budget per tick.
+// Keeps one entity per node of the quadtree that may be drawn soon, and one per model on it:
+// created and destroyed in batches, coarse nodes before fine ones and nearest first, within a time
+// budget per tick.
 #include <algorithm>
+#include <climits>
 #include <cmath>
 
 #include "engine/core/clock.hpp"
@@ -8,6 +10,9 @@
 
 namespace psygen::scene {
 namespace {
+
+// The window is looked at again when distances have changed by this share.
+constexpr double kRelistedChange = 0.05;
 
 Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box) {
   Placed placed;
@@ -19,61 +24,109 @@ Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds&
   return placed;
 }
 
-Detail detail_of(const models::ModelType& type, const models::Parameters& parameters) {
+// Levels `first` … `last` of a model type, at most as many as it has.
+Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first,
+                 int last) {
   Detail detail;
-  detail.level_count =
-      std::min<std::uint32_t>(static_cast<std::uint32_t>(type.level_count()), kMaxLevels);
-  for (std::uint32_t level = 0; level < detail.level_count; ++level) {
-    detail.error_m[level] =
-        static_cast<float>(type.level_error_m(parameters, static_cast<int>(level)));
+  for (int level = first; level <= std::min(last, type.level_count() - 1); ++level) {
+    if (detail.level_count == kMaxLevels) break;
+    detail.error_m[detail.level_count++] =
+        static_cast<float>(type.level_error_m(parameters, level));
   }
   return detail;
 }
 
-// Fills row `i` of the shared columns of blocks and models.
+// Fills row `i` of the shared columns of nodes and models; of the type only these levels are used.
 template <class Created>
 void fill(const Created& created, std::size_t i, const models::Registry& registry,
-          core::BlockCoord block, const world::Placement& placement) {
+          core::BlockCoord block, const world::Placement& placement, int first_level = 0,
+          int last_level = INT_MAX) {
   const models::ModelType& type = registry[placement.model];
   created.template column<Placed>()[i] =
       placed_at(block, placement.position, type.bounds(placement.parameters));
-  created.template column<Detail>()[i] = detail_of(type, placement.parameters);
-  created.template column<Source>()[i] = {placement.parameters,
-                                          models::parameters_hash(type, placement.parameters),
-                                          placement.index, placement.model};
+  created.template column<Detail>()[i] =
+      detail_of(type, placement.parameters, first_level, last_level);
+  created.template column<Source>()[i] = {
+      placement.parameters, models::parameters_hash(type, placement.parameters), placement.index,
+      placement.model, static_cast<std::uint16_t>(first_level)};
 }
 
-void create_block(const WorldFacts& facts, core::BlockCoord coord,
-                  std::vector<world::Placement>& scratch, Streaming& streaming,
-                  ecs::World& entities) {
-  const auto created =
-      entities.create<Block, ecs::Children, Visibility, Placed, Detail, Source, Demand, Mesh>(1);
-  created.template column<Block>()[0] = {coord};
-  fill(created, 0, facts.registry, coord,
-       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F),
-        world::terrain_parameters(facts.world, coord)});
-  const ecs::Entity block = created.entities[0];
-  streaming.grid.entity_of(coord) = block;
-
-  world::place_models(facts.world, facts.registry, coord, scratch);
-  const auto models = entities.create<Placed, Detail, Source, Demand, Mesh>(scratch.size());
-  for (std::size_t i = 0; i < scratch.size(); ++i) {
-    fill(models, i, facts.registry, coord, scratch[i]);
+// The models of a block, or the one mesh of all models on a coarser node.
+void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
+                   std::vector<world::Placement>& scratch, ecs::World& entities) {
+  const core::BlockCoord block = visibility::corner_block(at);
+  if (at.level == 0) {
+    world::place_models(facts.world, facts.registry, block, scratch);
+  } else if (facts.levels[at.level].merged) {
+    return;
+  } else {
+    return;
   }
-  entities.set_children(block, models.entities);
+  const auto models = entities.create<Placed, Detail, Source, Demand, Mesh>(scratch.size());
+  for (std::size_t i = 0; i < scratch.size(); ++i)
+    fill(models, i, facts.registry, block, scratch[i]);
+  entities.set_children(node, models.entities);
 }
+
+void create_node(const WorldFacts& facts, const visibility::NodeCoord& at,
+                 std::vector<world::Placement>& scratch, Streaming& streaming,
+                 ecs::World& entities) {
+  const NodeLevel& level = facts.levels[at.level];
+  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, Placed, Detail,
+                                       Source, Demand, Mesh>(1);
+  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y};
+  fill(created, 0, facts.registry, visibility::corner_block(at),
+       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), node_terrain(facts.world, at)},
+       at.level == 0 ? 0 : level.mesh_level, level.mesh_level);
+  const ecs::Entity node = created.entities[0];
+  streaming.grids[at.level].entity_of(at.coord) = node;
+  create_models(facts, at, node, scratch, entities);
+}
+
+// How far the middle of the camera's block is from a node's square.
+double distance_m(const Camera& camera, const WorldFacts& facts, const visibility::NodeCoord& at) {
+  const double block_m = facts.world.block_size_m();
+  const core::WorldPosition middle{camera.pose.position.block, {block_m / 2, 0, block_m / 2}};
+  const glm::dvec3 corner = core::offset_m(visibility::corner_block(at), middle, block_m);
+  const double size_m = facts.levels[at.level].size_m;
+  const auto outside = [size_m](double low) { return std::max({low, -(low + size_m), 0.0}); };
+  return std::hypot(outside(corner.x), outside(corner.z));
+}
+
+// Which nodes exist at the camera's place.
+class Window {
+ public:
+  Window(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+         const Streaming& streaming)
+      : camera_(camera), facts_(facts) {
+    for (std::size_t k = 0; k < facts.levels.size(); ++k)
+      reach_m_.push_back(existing_distance_m(facts.levels, settings, k, streaming.distances));
+  }
+
+  bool holds(const visibility::NodeCoord& at) const {
+    if (!contains(facts_.world, at)) return false;
+    const bool top = at.level + 1U == facts_.levels.size();
+    return distance_m(camera_, facts_, top ? at : visibility::parent_of(at)) < reach_m_[at.level];
+  }
+
+ private:
+  const Camera& camera_;
+  const WorldFacts& facts_;
+  std::vector<double> reach_m_;
+};
 
 // Their meshes stay in the cache while there is room: the camera may come back.
-void destroy_leaving_blocks(Streaming& streaming, ecs::World& entities,
-                            synthesis::GeometryCache& cache, Counters& counters) {
+void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs::World& entities,
+                           synthesis::GeometryCache& cache, Counters& counters) {
   std::vector<ecs::Entity> leaving;
-  const BlockGrid& grid = streaming.grid;
-  entities.each<const Block>([&](std::span<const ecs::Entity> rows, std::span<const Block> blocks) {
+  entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node> nodes) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!grid.contains(blocks[i].coord)) leaving.push_back(rows[i]);
+      const visibility::NodeCoord& at = nodes[i].at;
+      if (!streaming.grids[at.level].contains(at.coord) || !window.holds(at))
+        leaving.push_back(rows[i]);
     }
   });
-  counters.blocks_destroyed += static_cast<std::uint32_t>(leaving.size());
+  counters.nodes_destroyed += static_cast<std::uint32_t>(leaving.size());
   const auto give_back = [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
                              std::span<const Mesh> meshes) {
     for (std::size_t i = 0; i < demands.size(); ++i) {
@@ -82,31 +135,33 @@ void destroy_leaving_blocks(Streaming& streaming, ecs::World& entities,
     }
   };
   entities.each_of<const Demand, const Mesh>(leaving, give_back);
-  for (const ecs::Entity block : leaving)
-    entities.each_of<const Demand, const Mesh>(entities.children(block), give_back);
+  for (const ecs::Entity node : leaving)
+    entities.each_of<const Demand, const Mesh>(entities.children(node), give_back);
   entities.destroy_with_children(leaving);
 }
 
-void list_missing_blocks(const WorldFacts& facts, const ecs::World& entities,
-                         Streaming& streaming) {
+// Coarse nodes are few and stand for all finer ones: they come first.
+void list_missing_nodes(const Window& window, const Camera& camera, const WorldFacts& facts,
+                        const ecs::World& entities, Streaming& streaming) {
   streaming.missing.clear();
-  const BlockGrid& grid = streaming.grid;
-  for (std::uint32_t row = 0; row < grid.side(); ++row) {
-    for (std::uint32_t column = 0; column < grid.side(); ++column) {
-      const core::BlockCoord coord = grid.coord_at(column, row);
-      if (facts.world.contains(coord) && !entities.alive(grid.entity_of(coord))) {
-        streaming.missing.push_back(coord);
+  struct Missing {
+    double distance_m;
+    visibility::NodeCoord at;
+  };
+  std::vector<Missing> of_level;
+  for (const NodeGrid& grid : streaming.grids) {
+    of_level.clear();
+    for (std::uint32_t row = 0; row < grid.side(); ++row) {
+      for (std::uint32_t column = 0; column < grid.side(); ++column) {
+        const visibility::NodeCoord at = grid.node_at(column, row);
+        if (!entities.alive(grid.entity_of(at.coord)) && window.holds(at))
+          of_level.push_back({distance_m(camera, facts, at), at});
       }
     }
+    std::ranges::sort(of_level, std::greater{}, &Missing::distance_m);
+    for (const Missing& missing : of_level)
+      streaming.missing.push_back(missing.at);
   }
-  const auto distance_squared = [centre = grid.centre()](core::BlockCoord c) {
-    const auto dx = static_cast<std::int32_t>(static_cast<std::uint32_t>(c.x) -
-                                              static_cast<std::uint32_t>(centre.x));
-    const auto dz = static_cast<std::int32_t>(static_cast<std::uint32_t>(c.z) -
-                                              static_cast<std::uint32_t>(centre.z));
-    return std::int64_t{dx} * dx + std::int64_t{dz} * dz;
-  };
-  std::ranges::sort(streaming.missing, std::greater{}, distance_squared);
 }
 
 }  // namespace
@@ -114,19 +169,25 @@ void list_missing_blocks(const WorldFacts& facts, const ecs::World& entities,
 void streaming_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                       Streaming& streaming, ecs::World& entities, Synthesis& synthesis,
                       Counters& counters) {
+  split_distances(facts.levels, settings, camera.pixels_per_radian,
+                  settings.max_error_pixels * synthesis.coarsening, streaming.distances);
   const core::BlockCoord centre = camera.pose.position.block;
-  if (!streaming.centred || centre != streaming.grid.centre()) {
-    streaming.grid.set_centre(centre);
-    streaming.centred = true;
-    destroy_leaving_blocks(streaming, entities, *synthesis.cache, counters);
-    list_missing_blocks(facts, entities, streaming);
+  const double reach = streaming.distances.back().split_m;
+  if (centre != streaming.grids[0].centre().coord ||
+      std::abs(reach - streaming.listed_split_m) > kRelistedChange * reach) {
+    for (NodeGrid& grid : streaming.grids)
+      grid.set_centre(centre);
+    streaming.listed_split_m = reach;
+    const Window window(settings, camera, facts, streaming);
+    destroy_leaving_nodes(window, streaming, entities, *synthesis.cache, counters);
+    list_missing_nodes(window, camera, facts, entities, streaming);
   }
   const double start_s = core::monotonic_seconds();
   std::vector<world::Placement> scratch;
   while (!streaming.missing.empty()) {
-    create_block(facts, streaming.missing.back(), scratch, streaming, entities);
+    create_node(facts, streaming.missing.back(), scratch, streaming, entities);
     streaming.missing.pop_back();
-    ++counters.blocks_created;
+    ++counters.nodes_created;
     if (settings.paradigm == Paradigm::kLazyEvaluation) continue;  // all of it, in every frame
     if ((core::monotonic_seconds() - start_s) * 1000.0 > settings.streaming_budget_ms) break;
   }

@@ -12,20 +12,21 @@ namespace psygen::scene {
 // poses.
 void input_system(const Input& input, const Clock& clock, const WorldFacts& facts, Camera& camera);
 
-// Creates and destroys block entities with their models around the camera, in batches.
+// Creates and destroys nodes with their models around the camera, in batches.
 void streaming_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                       Streaming& streaming, ecs::World& entities, Synthesis& synthesis,
                       Counters& counters);
 
-// Runs Prioritized-Layered Projection over the window; what predicted cameras see gets a deadline.
-using VisibilityQuery = ecs::Query<const Block, Visibility>;
+// Chooses the cut through the quadtree and runs Prioritized-Layered Projection over the nodes of
+// each level; what predicted cameras see gets a deadline.
+using VisibilityQuery = ecs::Query<const Node, const Lacking, Visibility>;
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                       const Streaming& streaming, VisibilityQuery blocks, View& view,
-                       Counters& counters);
+                       const Streaming& streaming, const Synthesis& synthesis,
+                       VisibilityQuery nodes, View& view, Counters& counters);
 
 // Chooses levels of detail, finds what the cache has, ranks what it keeps, plans what is missing.
-using CacheQuery = ecs::Query<const Block, const ecs::Children, const Visibility, const Placed,
-                              const Detail, const Source, const Mesh, Demand>;
+using CacheQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
+                              const Detail, const Source, const Mesh, Demand, Lacking>;
 void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
                   const WorldFacts& facts, const View& view, CacheQuery entities,
                   Synthesis& synthesis, Counters& counters, Totals& totals);
@@ -35,17 +36,17 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
                       Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
-using UploadQuery = ecs::Query<Mesh, Demand>;
+using UploadQuery = ecs::Query<Mesh, Demand, Node>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
-using RenderQuery = ecs::Query<const Block, const ecs::Children, const Placed, const Detail,
+using RenderQuery = ecs::Query<const Node, const ecs::Children, const Placed, const Lacking,
                                const Demand, const Mesh>;
 void render_system(const Input& input, const Clock& clock, const Camera& camera,
-                   const WorldFacts& facts, const View& view, RenderQuery entities,
-                   DrawLists& draws, Output& output, Counters& counters);
+                   const WorldFacts& facts, const Streaming& streaming, const View& view,
+                   RenderQuery entities, DrawLists& draws, Output& output, Counters& counters);
 
 // Writes down what the tick did.
 void telemetry_system(const Clock& clock, const Counters& counters, const Synthesis& synthesis,

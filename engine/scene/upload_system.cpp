@@ -2,6 +2,8 @@
 // device the modeler has already written the final bytes, and this is only book-keeping.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/core/log.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/synthesis/landing.hpp"
@@ -44,13 +46,21 @@ bool accept(Demand& demand, std::uint8_t level, double now_s, Counters& counters
   return true;
 }
 
-void give_up(const synthesis::Completion& job, const UploadQuery& entities, Totals& totals) {
+// The level of the terrain type that is level 0 of a node's ground.
+int first_ground_level(const WorldFacts& facts, const Node& node) {
+  return node.at.level == 0 ? 0 : facts.levels[node.at.level].mesh_level;
+}
+
+void give_up(const synthesis::Completion& job, const WorldFacts& facts, const UploadQuery& entities,
+             Totals& totals) {
   if (job.late) return;  // it was given up before
   if (totals.failed++ == 0) {
     core::log_warning(fmt::format("a model could not be synthesised: {}", job.error));
   }
   if (Demand* demand = entities.get<Demand>(entity_of(job.owner))) {
-    demand->failed_levels |= static_cast<std::uint8_t>(1u << job.key.level);
+    const Node* node = entities.get<Node>(entity_of(job.owner));
+    const int level = job.key.level - (node != nullptr ? first_ground_level(facts, *node) : 0);
+    demand->failed_levels |= static_cast<std::uint8_t>(1u << level);
     demand->requested_level = kNoLevel;
   }
 }
@@ -66,23 +76,37 @@ std::size_t count_within_budget(const Synthesis& synthesis, std::uint64_t budget
   return count;
 }
 
+// From now on the ground of a node is known: as far as the mesh is off, it may be higher or lower.
+void narrow(Node& node, const synthesis::MeshRecord& record, const WorldFacts& facts) {
+  const NodeLevel& level = facts.levels[node.at.level];
+  const bool finest = node.at.level == 0 && record.key.level == 0;
+  const float off_m = finest ? 0.0F : static_cast<float>(2 * level.error_m);
+  node.low_m = std::max(level.bounds.min.y, record.tight.min.y - off_m);
+  node.high_m = std::min(level.bounds.max.y, record.tight.max.y + off_m);
+}
+
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.
 void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::MeshRecord& record,
-           std::uint32_t shared_indices, double now_s, const UploadQuery& entities,
-           Synthesis& synthesis, Counters& counters, std::vector<ecs::Landing<Mesh>>& landings) {
+           std::uint32_t shared_indices, const WorldFacts& facts, double now_s,
+           const UploadQuery& entities, Synthesis& synthesis, Counters& counters,
+           std::vector<ecs::Landing<Mesh>>& landings) {
   Demand* demand = entities.get<Demand>(owner);
   if (demand == nullptr) {
     synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());  // destroyed meanwhile
     return;
   }
   const bool replaces = demand->drawn_level != kNoLevel;
-  if (!accept(*demand, static_cast<std::uint8_t>(record.key.level), now_s, counters)) {
+  Node* node = entities.get<Node>(owner);
+  const int first_level = node != nullptr ? first_ground_level(facts, *node) : 0;
+  const auto level = static_cast<std::uint8_t>(record.key.level - first_level);
+  if (!accept(*demand, level, now_s, counters)) {
     synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());
     return;
   }
   if (replaces) {
     synthesis.cache->set_rank(entities.get<Mesh>(owner)->handle, synthesis::Rank::unwanted());
   }
+  if (node != nullptr) narrow(*node, record, facts);
   landings.push_back({owner, {record.range, handle, shared_indices}});
 }
 
@@ -95,7 +119,7 @@ void upload_system(const Settings& settings, const Clock& clock, const WorldFact
   for (const Synthesis::Ready& ready : synthesis.ready) {
     const synthesis::MeshRecord* record = synthesis.cache->get(ready.handle);
     if (record == nullptr || record->state != synthesis::MeshState::kReady) continue;
-    offer(ready.entity, ready.handle, *record, shared_indices_of(*record, facts, output),
+    offer(ready.entity, ready.handle, *record, shared_indices_of(*record, facts, output), facts,
           clock.real_s, entities, synthesis, counters, landings);
   }
   // Lazy evaluation draws in this frame what it made for this frame.
@@ -105,13 +129,13 @@ void upload_system(const Settings& settings, const Clock& clock, const WorldFact
   const std::span<const synthesis::Completion> batch(synthesis.finished.data(), count);
   counters.bytes_synthesised = synthesis::land(batch, *synthesis.cache, synthesis.cost.get()).bytes;
   for (const synthesis::Completion& job : batch) {
-    if (!job.ok) give_up(job, entities, totals);
+    if (!job.ok) give_up(job, facts, entities, totals);
     const synthesis::MeshRecord* record = synthesis.cache->get(job.handle);
     if (record == nullptr || record->state != synthesis::MeshState::kReady) continue;
     ++counters.models_synthesised;
     counters.triangles_synthesised += record->size.triangle_count();
     offer(entity_of(job.owner), job.handle, *record, shared_indices_of(*record, facts, output),
-          clock.real_s, entities, synthesis, counters, landings);
+          facts, clock.real_s, entities, synthesis, counters, landings);
   }
   synthesis.finished.erase(synthesis.finished.begin(),
                            synthesis.finished.begin() + static_cast<std::ptrdiff_t>(count));

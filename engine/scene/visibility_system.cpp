@@ -1,6 +1,7 @@
-// Prioritized-Layered Projection over the blocks of the window (paper, section 4) from where the
-// camera is. Blocks that the camera would see from where it is predicted to be get the time until
-// then as their deadline. Models inherit their block's key.
+// What should be drawn: the cut through the quadtree of nodes, and Prioritized-Layered Projection
+// over the nodes of each level (paper, section 4) from where the camera is. Nodes that the camera
+// would see from where it is predicted to be get the time until then as their deadline. Models
+// inherit their node's key.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,14 +13,19 @@
 namespace psygen::scene {
 namespace {
 
-core::Bounds block_bounds(const WorldFacts& facts, const core::Bounds& terrain,
-                          const core::WorldPosition& camera, core::BlockCoord coord) {
-  const glm::vec3 corner(core::offset_m(coord, camera, facts.world.block_size_m()));
-  core::Bounds box{corner + terrain.min, corner + terrain.max};
-  box.max.y += facts.models_reach_m.y;
-  // Crowns reach over the block's edge.
-  const glm::vec3 overhang(facts.models_reach_m.x, 0.0F, facts.models_reach_m.x);
-  return {box.min - overhang, box.max + overhang};
+// With room for what stands on the ground and reaches over the node's edge.
+core::Bounds node_bounds(const WorldFacts& facts, const glm::vec3& corner, double size_m,
+                         float low_m, float high_m) {
+  const auto size = static_cast<float>(size_m);
+  const float reach_m = facts.models_reach_m.x;
+  return {corner + glm::vec3(-reach_m, low_m, -reach_m),
+          corner + glm::vec3(size + reach_m, high_m + facts.models_reach_m.y, size + reach_m)};
+}
+
+glm::vec3 corner_of(const WorldFacts& facts, const Camera& camera,
+                    const visibility::NodeCoord& at) {
+  return glm::vec3(core::offset_m(visibility::corner_block(at), camera.pose.position,
+                                  facts.world.block_size_m()));
 }
 
 float distance_to(const core::Bounds& box) {
@@ -27,126 +33,190 @@ float distance_to(const core::Bounds& box) {
   return glm::length(nearest);
 }
 
-visibility::PlpInput plp_input(const BlockGrid& grid, const std::vector<core::Bounds>& bounds,
-                               const visibility::Frustum& frustum) {
-  return {grid.side(),
-          grid.side(),
-          grid.radius(),
-          grid.radius(),
-          bounds,
-          &frustum,
-          grid.side() * grid.side()};
-}
-
 visibility::Frustum frustum_of(const core::CameraPose& pose, const core::Projection& projection) {
   return visibility::make_frustum(core::projection_matrix(projection) * core::view_rotation(pose));
 }
 
-// Lowers the deadline of every cell that the predicted camera sees.
-void expect(const Camera& camera, const Camera::Prediction& prediction, double block_size_m,
-            std::span<const core::Bounds> bounds, std::span<float> deadlines) {
-  const core::WorldPosition& to = prediction.pose.position;
-  const glm::vec3 moved(core::offset_m(to.block, camera.pose.position, block_size_m) + to.local);
-  const visibility::Frustum frustum = frustum_of(prediction.pose, camera.projection);
-  for (std::size_t cell = 0; cell < bounds.size(); ++cell) {
-    if (deadlines[cell] <= prediction.tau_s) continue;
-    if (visibility::intersects(frustum, {bounds[cell].min - moved, bounds[cell].max - moved})) {
-      deadlines[cell] = prediction.tau_s;
+// The boxes of all cells of all windows: as far as the ground could reach at most where there is no
+// node, or none with a mesh.
+void find_bounds(const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
+                 const VisibilityQuery& nodes, View& view) {
+  view.levels.resize(facts.levels.size());
+  for (const NodeGrid& grid : streaming.grids) {
+    const NodeLevel& level = facts.levels[grid.level()];
+    std::vector<core::Bounds>& bounds = view.levels[grid.level()].bounds;
+    bounds.clear();
+    const glm::vec3 first = corner_of(facts, camera, grid.node_at(0, 0));
+    const auto size = static_cast<float>(level.size_m);
+    for (std::uint32_t row = 0; row < grid.side(); ++row) {
+      for (std::uint32_t column = 0; column < grid.side(); ++column) {
+        const glm::vec3 steps(static_cast<float>(column), 0.0F, static_cast<float>(row));
+        bounds.push_back(node_bounds(facts, first + steps * size, level.size_m, level.bounds.min.y,
+                                     level.bounds.max.y));
+      }
     }
   }
-}
-
-void write_visibility(const View& view, const BlockGrid& grid, float view_distance_m,
-                      const VisibilityQuery& query) {
-  query.each([&](std::span<const ecs::Entity>, std::span<const Block> blocks,
-                 std::span<Visibility> visibilities) {
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      const std::size_t cell = grid.window_index(blocks[i].coord);
-      Visibility& visibility = visibilities[i];
-      visibility.distance_m = distance_to(view.bounds[cell]);
-      visibility.layer = view.plp.layer[cell];
-      visibility.in_view =
-          view.plp.in_view[cell] != 0 && visibility.distance_m <= view_distance_m ? 1 : 0;
-      visibility.deadline_s = visibility.in_view != 0 ? 0.0F : view.deadlines[cell];
+  nodes.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> rows) {
+    for (const Node& node : rows) {
+      const NodeGrid& grid = streaming.grids[node.at.level];
+      view.levels[node.at.level].bounds[grid.window_index(node.at.coord)] =
+          node_bounds(facts, corner_of(facts, camera, node.at), facts.levels[node.at.level].size_m,
+                      node.low_m, node.high_m);
     }
   });
 }
 
-// A block in view that has no entity yet is a hole like any other.
-void count_missing_block(const Camera& camera, const core::Bounds& box, Counters& counters) {
+void project_layers(const NodeGrid& grid, const visibility::Frustum& frustum, LevelView& level) {
+  visibility::PlpInput input;
+  input.width = input.depth = grid.side();
+  input.start_x = input.start_z = grid.radius();
+  input.bounds = level.bounds;
+  input.frustum = &frustum;
+  visibility::run_plp(input, level.plp);
+  level.deadlines.assign(level.bounds.size(), std::numeric_limits<float>::infinity());
+  level.chosen.assign(level.bounds.size(), 0);
+}
+
+// Lowers the deadline of every node that the predicted camera sees and that is fine enough only
+// for a camera so near.
+void expect(const Camera& camera, const Camera::Prediction& prediction, const WorldFacts& facts,
+            const Streaming& streaming, View& view) {
+  const core::WorldPosition& to = prediction.pose.position;
+  const glm::vec3 moved(core::offset_m(to.block, camera.pose.position, facts.world.block_size_m()) +
+                        to.local);
+  const visibility::Frustum frustum = frustum_of(prediction.pose, camera.projection);
+  for (std::size_t k = 0; k < view.levels.size(); ++k) {
+    LevelView& level = view.levels[k];
+    const bool top = k + 1 == view.levels.size();
+    const auto reach_m =
+        static_cast<float>(top ? std::numeric_limits<double>::infinity()
+                               : streaming.distances[k + 1].merge_m + 2 * facts.levels[k].size_m);
+    for (std::size_t cell = 0; cell < level.bounds.size(); ++cell) {
+      if (level.deadlines[cell] <= prediction.tau_s) continue;
+      const core::Bounds box{level.bounds[cell].min - moved, level.bounds[cell].max - moved};
+      if (distance_to(box) < reach_m && visibility::intersects(frustum, box))
+        level.deadlines[cell] = prediction.tau_s;
+    }
+  }
+}
+
+void choose_cut(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                const Streaming& streaming, bool settling, View& view) {
+  const auto top = static_cast<std::uint8_t>(facts.levels.size() - 1);
+  visibility::roots_around(camera.pose.position, facts.world.block_size_m(),
+                           settings.view_distance_m, top, view.roots);
+  visibility::CutInput input;
+  input.camera = camera.pose.position;
+  input.block_size_m = facts.world.block_size_m();
+  input.roots = view.roots;
+  input.levels = streaming.distances;
+  input.view_distance_m = settings.view_distance_m;
+  input.world = {{},
+                 static_cast<std::uint32_t>(facts.world.blocks_x),
+                 static_cast<std::uint32_t>(facts.world.blocks_z)};
+  if (settling) view.cut.split.clear();  // no hysteresis
+  visibility::select_cut(input, view.cut);
+}
+
+// A node in view that has no entity yet is a hole unless an ancestor stands for it.
+void count_missing_node(const Camera& camera, const core::Bounds& box, Counters& counters) {
   ++counters.nodes_in_view;
   ++counters.holes;
   counters.missing_pixels_percent +=
       covered_percent(camera, box.center(), glm::length(box.half_extent()));
 }
 
-// Sorts the window's blocks into the three lists of the view, each in order of importance.
-void list_blocks(const Camera& camera, const WorldFacts& facts, const BlockGrid& grid,
-                 float view_distance_m, const VisibilityQuery& query, View& view,
-                 Counters& counters) {
-  view.visible.clear();
-  view.expected.clear();
-  view.around.clear();
-  const auto coord_of = [&grid](std::uint32_t cell) {
-    return grid.coord_at(cell % grid.side(), cell / grid.side());
-  };
-  struct Expected {
-    float deadline_s;
-    ecs::Entity block;
-  };
-  std::vector<Expected> expected;
-  const auto keep_out_of_view = [&](std::uint32_t cell, ecs::Entity entity) {
-    if (std::isfinite(view.deadlines[cell])) {
-      expected.push_back({view.deadlines[cell], entity});
-    } else {
-      view.around.push_back(entity);
-    }
-  };
-  for (const std::uint32_t cell : view.plp.visible) {
-    const core::BlockCoord coord = coord_of(cell);
-    const ecs::Entity entity = grid.entity_of(coord);
-    const bool near = distance_to(view.bounds[cell]) <= view_distance_m;
-    if (query.alive(entity)) {
-      // Straight ahead, but beyond the view distance: the next to come.
-      near ? view.visible.push_back(entity) : keep_out_of_view(cell, entity);
-    } else if (near && facts.world.contains(coord)) {
-      count_missing_block(camera, view.bounds[cell], counters);
+// The nodes of the cut that are in view, and those without which one of these cannot be drawn.
+void list_chosen(const Camera& camera, const Streaming& streaming, const VisibilityQuery& nodes,
+                 View& view, Counters& counters) {
+  const std::vector<visibility::CutNode>& cut = view.cut.nodes;
+  view.chosen.clear();
+  view.in_view.assign(cut.size(), 0);
+  std::vector<std::uint8_t> covered(cut.size(), 0);  // an ancestor or the node itself is complete
+  for (std::size_t i = 0; i < cut.size(); ++i) {
+    const visibility::CutNode& node = cut[i];
+    const NodeGrid& grid = streaming.grids[node.node.level];
+    const std::size_t cell = grid.window_index(node.node.coord);
+    LevelView& level = view.levels[node.node.level];
+    view.in_view[i] = level.plp.in_view[cell];
+    const bool root = node.parent == visibility::kNoNode;
+    const bool covered_above = !root && covered[node.parent] != 0;
+    const ecs::Entity entity = grid.entity_of(node.node.coord);
+    const bool alive = nodes.alive(entity);
+    covered[i] = covered_above || (alive && nodes.get<Lacking>(entity)->meshes == 0) ? 1 : 0;
+    if (view.in_view[i] == 0 && (root || view.in_view[node.parent] == 0)) continue;
+    if (alive) {
+      view.chosen.push_back(
+          {entity, node.node.level, node.leaf, node.fine, view.in_view[i] != 0, covered_above});
+      level.chosen[cell] = 1;
+    } else if (node.leaf && view.in_view[i] != 0 && !covered_above) {
+      count_missing_node(camera, level.bounds[cell], counters);
     }
   }
-  for (const std::uint32_t cell : view.plp.prefetch) {
-    const ecs::Entity entity = grid.entity_of(coord_of(cell));
-    if (query.alive(entity)) keep_out_of_view(cell, entity);
+}
+
+void write_visibility(const View& view, const Streaming& streaming, const VisibilityQuery& query) {
+  query.each<const Node, Visibility>([&](std::span<const ecs::Entity>, std::span<const Node> nodes,
+                                         std::span<Visibility> visibilities) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const visibility::NodeCoord& at = nodes[i].at;
+      const LevelView& level = view.levels[at.level];
+      const std::size_t cell = streaming.grids[at.level].window_index(at.coord);
+      Visibility& visibility = visibilities[i];
+      visibility.distance_m = distance_to(level.bounds[cell]);
+      visibility.layer = level.plp.layer[cell];
+      visibility.in_view = level.chosen[cell] != 0 && level.plp.in_view[cell] != 0 ? 1 : 0;
+      visibility.deadline_s = visibility.in_view != 0 ? 0.0F : level.deadlines[cell];
+    }
+  });
+}
+
+// All other nodes, in order of importance.
+void list_others(const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
+  view.expected.clear();
+  view.around.clear();
+  struct Expected {
+    float deadline_s;
+    ecs::Entity node;
+  };
+  std::vector<Expected> expected;
+  for (std::size_t k = view.levels.size(); k-- > 0;) {
+    const LevelView& level = view.levels[k];
+    const NodeGrid& grid = streaming.grids[k];
+    for (const auto* list : {&level.plp.visible, &level.plp.prefetch}) {
+      for (const std::uint32_t cell : *list) {
+        if (level.chosen[cell] != 0) continue;
+        const ecs::Entity entity =
+            grid.entity_of(grid.node_at(cell % grid.side(), cell / grid.side()).coord);
+        if (!nodes.alive(entity)) continue;
+        if (std::isfinite(level.deadlines[cell])) {
+          expected.push_back({level.deadlines[cell], entity});
+        } else {
+          view.around.push_back(entity);
+        }
+      }
+    }
   }
   std::ranges::stable_sort(expected, {}, &Expected::deadline_s);
   for (const Expected& soon : expected)
-    view.expected.push_back(soon.block);
+    view.expected.push_back(soon.node);
 }
 
 }  // namespace
 
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                       const Streaming& streaming, VisibilityQuery blocks, View& view,
-                       Counters& counters) {
-  const BlockGrid& grid = streaming.grid;
-  const core::Bounds terrain =
-      facts.registry[facts.world.terrain_model].bounds(facts.world.terrain);
-  view.bounds.clear();
-  for (std::uint32_t row = 0; row < grid.side(); ++row) {
-    for (std::uint32_t column = 0; column < grid.side(); ++column) {
-      view.bounds.push_back(
-          block_bounds(facts, terrain, camera.pose.position, grid.coord_at(column, row)));
-    }
-  }
+                       const Streaming& streaming, const Synthesis& synthesis,
+                       VisibilityQuery nodes, View& view, Counters& counters) {
+  find_bounds(camera, facts, streaming, nodes, view);
   view.frustum = frustum_of(camera.pose, camera.projection);
-  visibility::run_plp(plp_input(grid, view.bounds, view.frustum), view.plp);
-
-  view.deadlines.assign(view.bounds.size(), std::numeric_limits<float>::infinity());
-  for (const Camera::Prediction& prediction : camera.predictions) {
-    expect(camera, prediction, facts.world.block_size_m(), view.bounds, view.deadlines);
-  }
-  const auto view_distance_m = static_cast<float>(settings.view_distance_m);
-  write_visibility(view, grid, view_distance_m, blocks);
-  list_blocks(camera, facts, grid, view_distance_m, blocks, view, counters);
+  for (const NodeGrid& grid : streaming.grids)
+    project_layers(grid, view.frustum, view.levels[grid.level()]);
+  for (const Camera::Prediction& prediction : camera.predictions)
+    expect(camera, prediction, facts, streaming, view);
+  choose_cut(settings, camera, facts, streaming, synthesis.settling, view);
+  list_chosen(camera, streaming, nodes, view, counters);
+  write_visibility(view, streaming, nodes);
+  list_others(streaming, nodes, view);
 }
 
 }  // namespace psygen::scene

@@ -1,0 +1,46 @@
+// The window of nodes of one level around the camera that may exist as entities: a square of side ×
+// side nodes in a table addressed modulo a power of two, so that moving the window touches only
+// what enters and leaves, and node coordinates may wrap. Holds handles, not data. Main thread.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ecs/ecs.hpp"
+#include "engine/visibility/quadtree.hpp"
+
+namespace psygen::scene {
+
+class NodeGrid {
+ public:
+  // A window of 2·radius + 1 nodes of `level` a side.
+  explicit NodeGrid(std::uint8_t level = 0, std::uint32_t radius = 0);
+
+  std::uint8_t level() const { return level_; }
+  std::uint32_t radius() const { return radius_; }
+  std::uint32_t side() const { return 2 * radius_ + 1; }
+  visibility::NodeCoord centre() const { return centre_; }
+  void set_centre(core::BlockCoord block) { centre_ = visibility::node_of(block, level_); }
+
+  // The node at window position (column, row), 0 … side − 1 each.
+  visibility::NodeCoord node_at(std::uint32_t column, std::uint32_t row) const;
+  // row · side + column of a node of the window.
+  std::size_t window_index(core::BlockCoord coord) const;
+  // True if the node lies in the window.
+  bool contains(core::BlockCoord coord) const;
+  // The entity kept for a node of the window; null if there is none.
+  ecs::Entity& entity_of(core::BlockCoord coord);
+  ecs::Entity entity_of(core::BlockCoord coord) const;
+
+ private:
+  std::uint32_t column_of(std::int32_t index, std::int32_t centre) const;
+  std::size_t cell_of(core::BlockCoord coord) const;
+
+  std::uint8_t level_;
+  std::uint32_t radius_;
+  std::uint32_t mask_;
+  visibility::NodeCoord centre_;
+  std::vector<ecs::Entity> cells_;
+};
+
+}  // namespace psygen::scene

@@ -1,0 +1,119 @@
+#include "engine/scene/node_levels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/models/terrain.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::scene {
+namespace {
+
+constexpr double kMinSplitRatio = 1.5, kMaxSplitRatio = 3.0;
+constexpr double kMergeFactor = 1.1;
+// Children exist before their parent is split by so much of its distance.
+constexpr double kAheadFactor = 1.1;
+// A terrain's error is the sum of what all octaves could lose at worst; seen is about half of it.
+constexpr double kTerrainErrorSeen = 0.5;
+// How far a border hangs down, in metres per metre of the next coarser error, and at least.
+constexpr float kSkirtPerError = 2.0F, kLeastSkirtM = 1.0F;
+// Beyond all distances, and finite.
+constexpr double kEverywhereM = 1e30;
+// Meshes of nodes have at least so many triangles; else the next finer level is used.
+constexpr std::uint32_t kFewestTriangles = 98;
+
+int count_of_levels(const world::World& world, const Settings& settings) {
+  if (!settings.levels_of_detail) return 1;
+  const auto side = [&](int level) { return std::ldexp(world.block_size_m(), level); };
+  const std::int64_t blocks =
+      world.is_endless() ? INT32_MAX : std::max(world.blocks_x, world.blocks_z);
+  int top = 0;
+  while (top < visibility::kMaxNodeLevel / 2 && 4 * side(top) < settings.view_distance_m &&
+         (std::int64_t{1} << top) < blocks)
+    ++top;
+  return top + 1;
+}
+
+}  // namespace
+
+models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node) {
+  models::Parameters p = world::terrain_parameters(world, node.coord);
+  p.set_integer(models::kTerrainNodeLevel, node.level);
+  return p;
+}
+
+bool contains(const world::World& world, const visibility::NodeCoord& node) {
+  const core::BlockCoord corner = visibility::corner_block(node);
+  const std::int64_t side = std::int64_t{1} << node.level;
+  const auto inside = [side](std::int64_t first, std::int64_t count) {
+    return count == 0 || (first + side > 0 && first < count);
+  };
+  return inside(corner.x, world.blocks_x) && inside(corner.z, world.blocks_z);
+}
+
+std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
+                                   const Settings& settings, const models::ModelType* merged) {
+  const models::ModelType& terrain = registry[world.terrain_model];
+  const bool coarse = settings.levels_of_detail &&
+                      models::terrain_surface_triangles(world.terrain, 1) >= kFewestTriangles;
+  std::vector<NodeLevel> levels(static_cast<std::size_t>(count_of_levels(world, settings)));
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    NodeLevel& level = levels[k];
+    const models::Parameters p = node_terrain(world, {{}, static_cast<std::uint8_t>(k)});
+    level.size_m = std::ldexp(world.block_size_m(), static_cast<int>(k));
+    level.mesh_level = coarse ? 1 : 0;
+    level.bounds = terrain.bounds(p);
+    level.error_m = kTerrainErrorSeen * terrain.level_error_m(p, 1);
+    level.skirt_m = kLeastSkirtM + kSkirtPerError * static_cast<float>(2 * level.error_m);
+    if (merged == nullptr || k == 0) continue;
+    level.merged = true;
+  }
+  return levels;
+}
+
+void split_distances(std::span<const NodeLevel> levels, const Settings& settings,
+                     double pixels_per_radian, double error_pixels,
+                     std::vector<visibility::LevelDistances>& distances) {
+  distances.resize(levels.size());
+  std::vector<double> errors;
+  const double error_per_m = error_pixels / pixels_per_radian;
+  for (const NodeLevel& level : levels)
+    errors.push_back(std::min(level.error_m, kMaxSplitRatio * level.size_m * error_per_m));
+  visibility::SplitSettings split;
+  split.block_size_m = levels[0].size_m;
+  split.pixels_per_radian = pixels_per_radian;
+  split.max_error_pixels = error_pixels;
+  split.min_ratio = kMinSplitRatio;
+  split.merge_factor = kMergeFactor;
+  visibility::split_distances(errors, split, distances);
+  // Blocks are made of their finest mesh only where its error asks for it.
+  const double fine_m = settings.levels_of_detail ? errors[0] / error_per_m : kEverywhereM;
+  distances[0] = {fine_m, fine_m * kMergeFactor, fine_m * split.morph_share};
+}
+
+double existing_distance_m(std::span<const NodeLevel> levels, const Settings& settings,
+                           std::size_t level,
+                           std::span<const visibility::LevelDistances> distances) {
+  // The camera moves within its block before the window is looked at again.
+  const double step_m = std::numbers::sqrt2 / 2 * levels[0].size_m;
+  if (level + 1 >= levels.size()) return settings.view_distance_m + step_m;
+  const double split_m = distances[level + 1].merge_m * kAheadFactor;
+  return std::min(split_m, settings.view_distance_m) + step_m;
+}
+
+std::uint32_t window_radius(std::span<const NodeLevel> levels, const Settings& settings,
+                            std::size_t level) {
+  std::vector<visibility::LevelDistances> farthest(levels.size());
+  double below_m = 0;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const double split_m = std::max(kMaxSplitRatio * levels[k].size_m, below_m);
+    farthest[k] = {split_m, kMergeFactor * split_m, split_m};
+    below_m = farthest[k].merge_m + std::numbers::sqrt2 * levels[k].size_m;
+  }
+  const double reach_m = existing_distance_m(levels, settings, level, farthest);
+  // A parent that begins there may reach one more node beyond.
+  return static_cast<std::uint32_t>(std::ceil(reach_m / levels[level].size_m)) + 2;
+}
+
+}  // namespace psygen::scene
