@@ -66,7 +66,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->default_str("on");
   c.add_option("--view-distance", scene.view_distance_m, "Metres; blocks beyond do not exist")
       ->capture_default_str()
-      ->check(number_between(32, 8192));
+      ->check(number_between(32, 65536));
   c.add_option("--error", scene.max_error_pixels, "Allowed error of a level of detail in pixels")
       ->capture_default_str()
       ->check(number_between(0.1, 1000));
