@@ -70,8 +70,8 @@ class Selection {
         return std::abs(std::int64_t{canonical(
             static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from), root.level)});
       };
-      return std::tuple(
-          steps(root.coord.x, middle.coord.x) + steps(root.coord.z, middle.coord.z), root);
+      return std::tuple(steps(root.coord.x, middle.coord.x) + steps(root.coord.z, middle.coord.z),
+                        root);
     });
   }
 
@@ -128,9 +128,9 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
                      std::span<LevelDistances> levels) {
   PSYGEN_ASSERT(level_errors_m.size() == levels.size() && levels.size() <= kMaxNodeLevel + 1U,
                 "there is one error for each level");
-  PSYGEN_ASSERT(settings.merge_factor >= 1 && settings.max_error_pixels > 0 &&
-                    settings.morph_share <= 1,
-                "settings are in range");
+  PSYGEN_ASSERT(
+      settings.merge_factor >= 1 && settings.max_error_pixels > 0 && settings.morph_share <= 1,
+      "settings are in range");
   // More than the roundings of distances, so that the proof holds for computed numbers.
   constexpr double kSlack = 1 + 1e-9;
   double merge_below = 0, reach_below = 0;

@@ -1,9 +1,9 @@
-// The cut through the quadtree of blocks: which node of which level stands for each piece of ground.
-// A node of level k covers 2^k × 2^k blocks; node (x, z) begins at block (x << k, z << k). Distances
-// alone decide, so that a level is known before anything is generated. Restricted: leaves that touch
-// differ by one level at most (proof at split_distances). Knows no entities and no meshes. Linear in
-// the nodes of the cut, whose number grows with the logarithm of the view distance; allocates only
-// while results grow. Values only; usable from any thread.
+// The cut through the quadtree of blocks: which node of which level stands for each piece of
+// ground. A node of level k covers 2^k × 2^k blocks; node (x, z) begins at block (x << k, z << k).
+// Distances alone decide, so that a level is known before anything is generated. Restricted: leaves
+// that touch differ by one level at most (proof at split_distances). Knows no entities and no
+// meshes. Linear in the nodes of the cut, whose number grows with the logarithm of the view
+// distance; allocates only while results grow. Values only; usable from any thread.
 #pragma once
 
 #include <compare>
@@ -68,9 +68,9 @@ struct SplitSettings {
   double block_size_m = 64;
   double pixels_per_radian = 1000;
   double max_error_pixels = 1;  // what an error in metres may cover
-  double min_ratio = 1;         // a node is split nearer than so many of its sides, whatever its error
-  double merge_factor = 1.1;    // merge_m / split_m, >= 1
-  double morph_share = 0.7;     // of split_m, where morphing begins at the earliest
+  double min_ratio = 1;  // a node is split nearer than so many of its sides, whatever its error
+  double merge_factor = 1.1;  // merge_m / split_m, >= 1
+  double morph_share = 0.7;   // of split_m, where morphing begins at the earliest
 };
 
 // One LevelDistances for each level; level_errors_m[k] is by how much the mesh of a node of level k
@@ -100,7 +100,7 @@ struct BlockArea {
 struct CutInput {
   core::WorldPosition camera;  // within 2^30 blocks of all roots
   double block_size_m = 64;
-  std::span<const NodeCoord> roots;  // canonical, of one level, none twice
+  std::span<const NodeCoord> roots;        // canonical, of one level, none twice
   std::span<const LevelDistances> levels;  // of split_distances, for 0 … the roots' level at least
   // How far the camera is above (or below) all ground that nodes of a level could show, metres; by
   // level, not growing with it, for the proof above. Empty: 0 for all.
@@ -116,13 +116,13 @@ struct CutNode {
   bool leaf = true;   // wanted for drawing; else its children are
   bool fine = false;  // a leaf of level 0 that is so near that its finest mesh is wanted
   std::uint32_t parent = kNoNode;  // index in Cut::nodes
-  std::uint32_t end = 0;           // nodes[i + 1] … nodes[end − 1] are its descendants in the cut
+  std::uint32_t end = 0;  // nodes[i + 1] … nodes[end − 1] are its descendants in the cut
   float corner_x_m = 0, corner_z_m = 0;  // of the node's corner, relative to the camera
   float side_m = 0;
   float distance_m = 0;  // the one that decides: horizontal, with the level's clearance
   // 0: its own shape; 1: the next coarser one (a fine block's is its coarser mesh, any other node's
-  // is its parent). As the camera moves, leaves appear with 1 when their parent is split, and a node
-  // appears with 0 when its children, all at 1, merge.
+  // is its parent). As the camera moves, leaves appear with 1 when their parent is split, and a
+  // node appears with 0 when its children, all at 1, merge.
   float morph = 0;
 
   // The node's box relative to the camera, from heights relative to the camera.
@@ -152,10 +152,10 @@ void select_cut(const CutInput& input, Cut& cut);
 void roots_around(const core::WorldPosition& camera, double block_size_m, double view_distance_m,
                   std::uint8_t level, std::vector<NodeCoord>& roots);
 
-// What to draw while meshes are missing: ready[i] says whether cut.nodes[i] has one. A node is drawn
-// if it is ready and either a leaf or one of its leaves can not be covered by what is ready below
-// it. Nothing drawn overlaps, and all ground under a ready node is covered. Indices into cut.nodes
-// in their order replace the contents of `drawn`; `scratch` is working memory.
+// What to draw while meshes are missing: ready[i] says whether cut.nodes[i] has one. A node is
+// drawn if it is ready and either a leaf or one of its leaves can not be covered by what is ready
+// below it. Nothing drawn overlaps, and all ground under a ready node is covered. Indices into
+// cut.nodes in their order replace the contents of `drawn`; `scratch` is working memory.
 void drawn_nodes(const Cut& cut, std::span<const std::uint8_t> ready,
                  std::vector<std::uint8_t>& scratch, std::vector<std::uint32_t>& drawn);
 

@@ -59,11 +59,11 @@ BlockLevels raster(const Cut& cut, core::BlockCoord origin) {
     const core::BlockCoord corner = corner_block(node.node);
     for (std::int64_t z = 0; z < 1 << node.node.level; ++z) {
       for (std::int64_t x = 0; x < 1 << node.node.level; ++x) {
-        const bool first = blocks
-                               .emplace(std::pair(steps(corner.x, origin.x) + x,
-                                                  steps(corner.z, origin.z) + z),
-                                        node.fine ? -1 : node.node.level)
-                               .second;
+        const bool first =
+            blocks
+                .emplace(std::pair(steps(corner.x, origin.x) + x, steps(corner.z, origin.z) + z),
+                         node.fine ? -1 : node.node.level)
+                .second;
         EXPECT_TRUE(first) << "two leaves lie on one block";
       }
     }
@@ -118,8 +118,11 @@ TEST(NodeCoord, NeighboursAcrossTheSeamAreCanonical) {
 
 TEST(SplitDistances, FollowTheErrorTheRatioAndTheLevelBelow) {
   std::vector<LevelDistances> levels(3);
-  const SplitSettings settings{.block_size_m = 64, .pixels_per_radian = 1000,
-                               .max_error_pixels = 2, .min_ratio = 1.5, .merge_factor = 1.25,
+  const SplitSettings settings{.block_size_m = 64,
+                               .pixels_per_radian = 1000,
+                               .max_error_pixels = 2,
+                               .min_ratio = 1.5,
+                               .merge_factor = 1.25,
                                .morph_share = 0.5};
   split_distances(std::vector{0.1, 2.0, 2.0}, settings, levels);
   EXPECT_DOUBLE_EQ(levels[0].split_m, 96);  // the ratio; the error would give 50
