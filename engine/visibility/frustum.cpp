@@ -24,50 +24,69 @@ namespace {
 using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = std::int32_t;
 
-// The first four planes side by side. A component of a normal counts for the largest coordinate of
-// a box where it is positive, for the smallest where it is negative: that is the corner which lies
-// furthest inside.
-struct Planes4 {
-  Float4 positive[3], negative[3], offset;
+Float4 absolute(Float4 v) {
+  return v < 0 ? -v : v;
+}
 
-  explicit Planes4(const Frustum& frustum) {
-    for (int k = 0; k < 4; ++k) {
-      const glm::vec4& plane = frustum.planes[static_cast<std::size_t>(k)];
-      for (int axis = 0; axis < 3; ++axis) {
-        positive[axis][k] = std::max(plane[axis], 0.0F);
-        negative[axis][k] = std::min(plane[axis], 0.0F);
-      }
-      offset[k] = plane.w;
+// A plane whose normal counts for the largest coordinate of a box where it is positive, for the
+// smallest where it is negative: that is the corner which lies furthest inside.
+struct SplitPlane {
+  glm::vec3 positive, negative;
+  float offset;
+
+  explicit SplitPlane(const glm::vec4& plane)
+      : positive(glm::max(glm::vec3(plane), 0.0F)),
+        negative(glm::min(glm::vec3(plane), 0.0F)),
+        offset(plane.w) {}
+};
+
+// Four boxes side by side.
+struct Boxes4 {
+  Float4 min[3], max[3];
+
+  explicit Boxes4(const core::Bounds* boxes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      min[axis] =
+          Float4{boxes[0].min[axis], boxes[1].min[axis], boxes[2].min[axis], boxes[3].min[axis]};
+      max[axis] =
+          Float4{boxes[0].max[axis], boxes[1].max[axis], boxes[2].max[axis], boxes[3].max[axis]};
     }
   }
 
-  bool are_missed(const core::Bounds& box, float limit) const {
-    const Float4 distance = (positive[0] * box.max.x + negative[0] * box.min.x) +
-                            (positive[1] * box.max.y + negative[1] * box.min.y) +
-                            (positive[2] * box.max.z + negative[2] * box.min.z) + offset;
-    const Int4 outside = distance < limit;
-    return (outside[0] | outside[1] | outside[2] | outside[3]) != 0;
+  Float4 limit() const {
+    return -1e-6F * (absolute(min[0]) + absolute(min[1]) + absolute(min[2]) + absolute(max[0]) +
+                     absolute(max[1]) + absolute(max[2]));
+  }
+
+  // −1 for each box outside the plane, else 0.
+  Int4 miss(const SplitPlane& plane, Float4 limit) const {
+    return (plane.positive.x * max[0] + plane.negative.x * min[0]) +
+               (plane.positive.y * max[1] + plane.negative.y * min[1]) +
+               (plane.positive.z * max[2] + plane.negative.z * min[2]) + plane.offset <
+           limit;
   }
 };
-
-float distance_to(const glm::vec4& plane, const core::Bounds& box) {
-  return plane.x * (plane.x > 0 ? box.max.x : box.min.x) +
-         plane.y * (plane.y > 0 ? box.max.y : box.min.y) +
-         plane.z * (plane.z > 0 ? box.max.z : box.min.z) + plane.w;
-}
 
 }  // namespace
 
 void intersects(const Frustum& frustum, std::span<const core::Bounds> boxes,
                 std::span<std::uint8_t> in_view) {
   PSYGEN_ASSERT(boxes.size() == in_view.size(), "there is one answer for each box");
-  const Planes4 sides(frustum);
-  const glm::vec4 near = frustum.planes[4];
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const core::Bounds box = boxes[i];
-    const float limit = -rounding_slack(box);
-    in_view[i] = sides.are_missed(box, limit) || distance_to(near, box) < limit ? 0 : 1;
+  const SplitPlane planes[5] = {SplitPlane(frustum.planes[0]), SplitPlane(frustum.planes[1]),
+                                SplitPlane(frustum.planes[2]), SplitPlane(frustum.planes[3]),
+                                SplitPlane(frustum.planes[4])};
+  std::size_t i = 0;
+  for (; i + 4 <= boxes.size(); i += 4) {
+    const Boxes4 four(&boxes[i]);
+    const Float4 limit = four.limit();
+    Int4 missed{};
+    for (const SplitPlane& plane : planes)
+      missed |= four.miss(plane, limit);
+    for (int k = 0; k < 4; ++k)
+      in_view[i + static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(1 + missed[k]);
   }
+  for (; i < boxes.size(); ++i)
+    in_view[i] = intersects(frustum, boxes[i]) ? 1 : 0;
 }
 
 }  // namespace psygen::visibility

@@ -11,15 +11,16 @@
 namespace psygen::visibility {
 namespace {
 
-using Keys = PlpResult::Keys;
-
 std::uint32_t cell_of(std::uint64_t key) {
   return static_cast<std::uint32_t>(key);
 }
 
 // Square of the distance from the origin to the box; 0 inside.
 float distance_squared(const core::Bounds& box) {
-  const auto outside = [](float low, float high) { return std::max(std::max(low, -high), 0.0F); };
+  const auto outside = [](float low, float high) {
+    const float beyond = std::max(low, -high);
+    return (beyond + std::abs(beyond)) * 0.5F;  // max(beyond, 0), without a branch hard to guess
+  };
   const float x = outside(box.min.x, box.max.x), y = outside(box.min.y, box.max.y),
               z = outside(box.min.z, box.max.z);
   return x * x + y * y + z * z;
@@ -37,7 +38,7 @@ void insertion_sort(std::span<std::uint64_t> keys) {
 
 // The distances within a layer are spread so evenly that buckets of equal width, as many as there
 // are keys, hold one or two each: after dealing them out little is left to sort.
-void sort_keys(Keys& keys, Keys& scratch) {
+void sort_keys(std::span<std::uint64_t> keys, std::vector<std::uint64_t>& scratch) {
   constexpr std::size_t kMaxBuckets = 1024, kFew = 24;
   if (keys.size() < kFew) return insertion_sort(keys);
   std::uint64_t low = keys[0], high = keys[0];
@@ -61,10 +62,9 @@ void sort_keys(Keys& keys, Keys& scratch) {
     fullest = std::max(fullest, end);
     sum += std::exchange(end, sum);
   }
-  scratch.resize(keys.size());
-  for (const std::uint64_t key : keys)
-    scratch[ends[bucket_of(key)]++] = key;
-  keys.swap(scratch);
+  scratch.assign(keys.begin(), keys.end());
+  for (const std::uint64_t key : scratch)
+    keys[ends[bucket_of(key)]++] = key;
   if (fullest <= kFew) return insertion_sort(keys);
   std::size_t begin = 0;
   for (const std::uint32_t end : ends) {
@@ -75,105 +75,163 @@ void sort_keys(Keys& keys, Keys& scratch) {
 
 class Search {
  public:
-  Search(const PlpInput& input, PlpResult& result) : in_(input), out_(result) {
-    const std::size_t cells = std::size_t{in_.width} * in_.depth;
-    out_.layer.assign(cells, kUnvisited);
-    out_.in_view.resize(cells);
-    out_.distance_bits.resize(cells);
+  Search(const PlpInput& input, PlpResult& result)
+      : in_(input),
+        out_(result),
+        start_x_(std::min(input.start_x, input.width - 1)),
+        start_z_(std::min(input.start_z, input.depth - 1)) {}
+
+  void run() {
+    measure_cells();
+    find_layers_and_keys();
+    deal_into_buckets();
+    const std::size_t visits = std::min<std::size_t>(in_.max_visits, cells_);
+    visit(visits);
+    out_.front.clear();
+    if (visits < cells_) stop(visits);
+  }
+
+ private:
+  // Distances and what is in view.
+  void measure_cells() {
+    out_.in_view.resize(cells_);
+    out_.distance_bits.resize(cells_);
     constexpr std::size_t kChunk = 256;  // of boxes that stay in the first-level cache
-    for (std::size_t first = 0; first < cells; first += kChunk) {
-      const std::size_t count = std::min(kChunk, cells - first);
+    for (std::size_t first = 0; first < cells_; first += kChunk) {
+      const std::size_t count = std::min(kChunk, cells_ - first);
       const auto boxes = in_.bounds.subspan(first, count);
       intersects(*in_.frustum, boxes, std::span(out_.in_view).subspan(first, count));
       for (std::size_t i = 0; i < count; ++i)
         out_.distance_bits[first + i] = std::bit_cast<std::uint32_t>(distance_squared(boxes[i]));
     }
-    for (auto* list : {&out_.visible, &out_.prefetch, &out_.front})
-      list->clear();
-    for (auto* lists : {&out_.current, &out_.next}) {
-      for (auto& list : *lists)
-        list.clear();
-    }
   }
 
-  void run() {
-    const std::uint32_t x = std::min(in_.start_x, in_.width - 1);
-    const std::uint32_t z = std::min(in_.start_z, in_.depth - 1);
-    push(z * in_.width + x, 0);
-    for (std::uint16_t layer = 0; !out_.next[0].empty() || !out_.next[1].empty(); ++layer) {
-      out_.current.swap(out_.next);
-      for (std::size_t view = 0; view < 2; ++view) {
-        out_.next[view].clear();
-        sort_keys(out_.current[view], out_.scratch);
+  void find_layers_and_keys() {
+    out_.layer.resize(cells_);
+    out_.key.resize(cells_);
+    for (std::uint32_t z = 0, cell = 0; z < in_.depth; ++z) {
+      const std::uint32_t steps_z = z < start_z_ ? start_z_ - z : z - start_z_;
+      for (std::uint32_t x = 0; x < in_.width; ++x, ++cell) {
+        const std::uint32_t layer = std::max(steps_z, x < start_x_ ? start_x_ - x : x - start_x_);
+        out_.layer[cell] = static_cast<std::uint16_t>(layer);
+        out_.key[cell] = kKeysPerLayer * layer;
       }
-      const std::size_t near_visits = visit(out_.current[1], out_.visible, layer);
-      const std::size_t far_visits = visit(out_.current[0], out_.prefetch, layer);
-      if (near_visits < out_.current[1].size() || far_visits < out_.current[0].size())
-        return stop(near_visits, far_visits);
+    }
+    if (in_.mode == PlpMode::kSolidity) accumulate_solidity();
+  }
+
+  // Ring by ring, so that the cells before a cell are known. behind[c] first holds what passing
+  // through c adds, then what the way has added behind it.
+  void accumulate_solidity() {
+    out_.behind.resize(cells_);
+    const float scale = in_.solidity_layers * float{kKeysPerLayer};
+    for (std::size_t cell = 0; cell < cells_; ++cell) {
+      // 0 for what is not a number, too.
+      const float solidity = in_.solidity[cell] > 0 ? std::min(in_.solidity[cell], 1.0F) : 0.0F;
+      out_.behind[cell] = kKeysPerLayer + static_cast<std::uint32_t>(
+                                              static_cast<std::int32_t>(solidity * scale + 0.5F));
+    }
+    const std::uint32_t left = start_x_, right = in_.width - 1 - start_x_, up = start_z_,
+                        down = in_.depth - 1 - start_z_;
+    const auto w = static_cast<std::int32_t>(in_.width);
+    const std::uint32_t last = std::max({left, right, up, down});
+    std::vector<std::uint32_t>& shares = out_.diagonal_shares;
+    for (std::uint32_t layer = 1; layer <= last; ++layer) {
+      shares.clear();
+      for (std::uint32_t aside = 0; aside <= layer; ++aside)
+        shares.push_back((256 * aside + layer / 2) / layer);
+      // The sides left and right with the corners, the other two without.
+      for (const auto& [ahead, room] : {std::pair{-1, left}, {1, right}}) {
+        if (layer > room) continue;
+        accumulate(layer, ahead, w, 0, std::min(layer, down));
+        accumulate(layer, ahead, -w, 1, std::min(layer, up));
+      }
+      for (const auto& [ahead, room] : {std::pair{-w, up}, {w, down}}) {
+        if (layer > room) continue;
+        accumulate(layer, ahead, 1, 0, std::min(layer - 1, right));
+        accumulate(layer, ahead, -1, 1, std::min(layer - 1, left));
+      }
     }
   }
 
- private:
-  // A clean cell enters the front.
-  void push(std::uint32_t cell, std::uint16_t layer) {
-    out_.layer[cell] = layer;
-    out_.next[out_.in_view[cell]].push_back((std::uint64_t{out_.distance_bits[cell]} << 32) | cell);
+  // The keys of the cells `layer` steps ahead of the camera's and `first` … `last` steps aside; the
+  // steps are differences of indices.
+  void accumulate(std::uint32_t layer, std::int32_t ahead, std::int32_t aside, std::uint32_t first,
+                  std::uint32_t last) {
+    const std::int64_t start = std::int64_t{start_z_} * in_.width + start_x_;
+    std::int64_t cell = start + std::int64_t{ahead} * layer + std::int64_t{aside} * first;
+    // What is straight before a cell is diagonally before the next one.
+    std::uint64_t diagonal = first == 0 ? 0 : out_.behind[at(cell - ahead - aside)];
+    for (std::uint32_t steps = first; steps <= last; ++steps, cell += aside) {
+      const std::uint64_t straight = out_.behind[at(cell - ahead)], t = out_.diagonal_shares[steps];
+      const std::uint64_t key = (straight * (256 - t) + diagonal * t + 128) >> 8;
+      out_.key[at(cell)] = static_cast<std::uint32_t>(key);
+      out_.behind[at(cell)] += static_cast<std::uint32_t>(key);
+      diagonal = straight;
+    }
   }
 
-  void push_neighbours(std::uint32_t cell, std::uint16_t layer) {
-    const std::uint32_t w = in_.width, x = cell % w, z = cell / w;
-    if (x == 0 || z == 0 || x + 1 == w || z + 1 == in_.depth)
-      return push_border_neighbours(x, z, layer);
-    // Most neighbours are not clean, and which ones are is hard to guess for a branch.
-    const std::uint32_t around[8] = {cell - w - 1, cell - w,     cell - w + 1, cell - 1,
-                                     cell + 1,     cell + w - 1, cell + w,     cell + w + 1};
-    unsigned clean = 0;
-    for (unsigned i = 0; i < 8; ++i)
-      clean |= (out_.layer[around[i]] == kUnvisited ? 1U : 0U) << i;
-    for (; clean != 0; clean &= clean - 1)
-      push(around[std::countr_zero(clean)], layer);
+  static std::size_t at(std::int64_t cell) { return static_cast<std::size_t>(cell); }
+
+  std::size_t bucket_of(std::size_t cell) const {
+    return out_.key[cell] * std::size_t{2} + (1U - out_.in_view[cell]);
   }
 
-  void push_border_neighbours(std::uint32_t x, std::uint32_t z, std::uint16_t layer) {
+  void deal_into_buckets() {
+    const std::uint32_t largest = *std::ranges::max_element(out_.key);
+    out_.bucket_ends.assign((std::size_t{largest} + 1) * 2, 0);
+    for (std::size_t cell = 0; cell < cells_; ++cell)
+      ++out_.bucket_ends[bucket_of(cell)];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& end : out_.bucket_ends)
+      sum += std::exchange(end, sum);
+    out_.sorted.resize(cells_);
+    for (std::size_t cell = 0; cell < cells_; ++cell)
+      out_.sorted[out_.bucket_ends[bucket_of(cell)]++] =
+          (std::uint64_t{out_.distance_bits[cell]} << 32) | cell;
+  }
+
+  // Cells leave the front bucket by bucket, until the budget ends.
+  void visit(std::size_t visits) {
+    out_.visible.clear();
+    out_.prefetch.clear();
+    std::size_t begin = 0, bucket = 0;
+    for (const std::uint32_t end : out_.bucket_ends) {
+      auto& cells = bucket++ % 2 == 0 ? out_.visible : out_.prefetch;
+      if (end - begin > 1)
+        sort_keys(std::span(out_.sorted).subspan(begin, end - begin), out_.scratch);
+      for (; begin < std::min<std::size_t>(end, visits); ++begin)
+        cells.push_back(cell_of(out_.sorted[begin]));
+      begin = end;
+    }
+  }
+
+  // The budget has ended: the clean neighbours of what was visited are the front.
+  void stop(std::size_t visits) {
+    const auto later = std::span(out_.sorted).subspan(visits);
+    for (const std::uint64_t key : later)
+      out_.layer[cell_of(key)] = kUnvisited;
+    if (visits == 0) return out_.front.push_back(cell_of(out_.sorted[0]));
+    for (const std::uint64_t key : later) {
+      if (has_visited_neighbour(cell_of(key))) out_.front.push_back(cell_of(key));
+    }
+  }
+
+  bool has_visited_neighbour(std::uint32_t cell) const {
+    const std::uint32_t x = cell % in_.width, z = cell / in_.width;
     const std::uint32_t x_end = std::min(x + 2, in_.width), z_end = std::min(z + 2, in_.depth);
     for (std::uint32_t nz = z > 0 ? z - 1 : 0; nz < z_end; ++nz) {
       for (std::uint32_t nx = x > 0 ? x - 1 : 0; nx < x_end; ++nx) {
-        const std::uint32_t neighbour = nz * in_.width + nx;
-        if (out_.layer[neighbour] == kUnvisited) push(neighbour, layer);
+        if (out_.layer[nz * in_.width + nx] != kUnvisited) return true;
       }
     }
-  }
-
-  // Takes cells from the front in order, as far as the budget goes. Returns how many.
-  std::size_t visit(const Keys& keys, std::vector<std::uint32_t>& list, std::uint16_t layer) {
-    const std::size_t count = std::min<std::size_t>(keys.size(), in_.max_visits - visits_);
-    visits_ += static_cast<std::uint32_t>(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      list.push_back(cell_of(keys[i]));
-      push_neighbours(cell_of(keys[i]), static_cast<std::uint16_t>(layer + 1));
-    }
-    return count;
-  }
-
-  // The budget has ended: what was pushed and not visited is the front, and clean again.
-  void stop(std::size_t near_visits, std::size_t far_visits) {
-    const auto keep = [this](const Keys& keys, std::size_t first) {
-      for (std::size_t i = first; i < keys.size(); ++i) {
-        out_.front.push_back(cell_of(keys[i]));
-        out_.layer[cell_of(keys[i])] = kUnvisited;
-      }
-    };
-    keep(out_.current[1], near_visits);
-    keep(out_.current[0], far_visits);
-    for (const std::size_t view : {1U, 0U}) {
-      sort_keys(out_.next[view], out_.scratch);
-      keep(out_.next[view], 0);
-    }
+    return false;
   }
 
   const PlpInput& in_;
   PlpResult& out_;
-  std::uint32_t visits_ = 0;
+  const std::uint32_t start_x_, start_z_;
+  const std::size_t cells_ = in_.bounds.size();
 };
 
 std::uint32_t clamp_to_axis(std::int32_t corner, std::uint32_t length, std::int32_t block) {
@@ -189,8 +247,15 @@ void run_plp(const PlpInput& input, PlpResult& result) {
   PSYGEN_ASSERT(input.bounds.size() == std::size_t{input.width} * input.depth,
                 "there is one box for each cell");
   PSYGEN_ASSERT(input.width < kUnvisited && input.depth < kUnvisited, "layers fit 16 bits");
-  Search search(input, result);
-  if (!input.bounds.empty()) search.run();
+  PSYGEN_ASSERT(input.mode == PlpMode::kLayers || input.solidity.size() == input.bounds.size(),
+                "there is one solidity for each cell");
+  PSYGEN_ASSERT(input.solidity_layers >= 0 && input.solidity_layers <= 64, "keys fit 32 bits");
+  if (!input.bounds.empty()) return Search(input, result).run();
+  result.layer.clear();
+  result.key.clear();
+  result.in_view.clear();
+  for (auto* cells : {&result.visible, &result.prefetch, &result.front})
+    cells->clear();
 }
 
 GridCell nearest_cell(core::BlockCoord corner, std::uint32_t width, std::uint32_t depth,

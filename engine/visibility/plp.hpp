@@ -1,11 +1,10 @@
-// Prioritized-Layered Projection over a grid of blocks (Klosowski and Silva, as the paper uses it
-// in section 4.2; mode "layers", Corrêa's heuristic): which blocks are seen, in order of
-// importance, and which surround them. Neighbours are the eight cells around a cell, so the layer
-// is the breadth-first distance from the camera's cell. Knows no entities and nothing of what
-// stands in a cell. Linear in the number of cells; allocates only while results grow.
+// Prioritized-Layered Projection over a grid of blocks (Klosowski and Silva 2000, as the paper uses
+// it in section 4.2): which blocks are seen, in order of importance, and which surround them.
+// Neighbours are the eight cells around a cell. Knows no entities and nothing of what stands in a
+// cell but, in the mode `solidity`, how much light it stops. Linear in the number of cells and in
+// the largest key; allocates only while results grow.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,6 +16,12 @@ namespace psygen::visibility {
 
 inline constexpr std::uint16_t kUnvisited = UINT16_MAX;
 
+// What a cell's key is (below).
+enum class PlpMode : std::uint8_t { kLayers, kSolidity };
+
+// Keys are in sixteenths of a layer.
+inline constexpr std::uint32_t kKeysPerLayer = 16;
+
 // A grid of width × depth cells, each at most 65,534; cell (x, z) has the index z · width + x.
 struct PlpInput {
   std::uint32_t width = 0, depth = 0;
@@ -24,28 +29,48 @@ struct PlpInput {
   std::span<const core::Bounds> bounds;    // of each cell, metres, relative to the camera
   const Frustum* frustum = nullptr;
   std::uint32_t max_visits = UINT32_MAX;  // the budget: cells taken from the front at most
+  PlpMode mode = PlpMode::kLayers;
+  // Of each cell, the share in [0, 1] of the light through it that it stops; not read in kLayers.
+  std::span<const float> solidity = {};
+  // By how many layers a cell of solidity 1 puts off what lies behind it, in [0, 64].
+  float solidity_layers = 8;
 };
 
-// The caller keeps it from tick to tick, so that nothing is allocated in the long run.
+// The key of the camera's cell is 0. In kLayers it is 16 × the layer, the number of steps from the
+// camera's cell (Corrêa's heuristic; the paper's priority of a cell is −(layer + 1)). In kSolidity
+// it is the solidity accumulated on the way from the camera's cell, projected along the step, with
+// 16 for the step: let the cell be (dx, dz) from the camera's, |dx| >= |dz| (else with x and z
+// exchanged). The line of sight to its middle passes from the cell s = (dx − sign dx, dz), straight
+// before it, to d = (dx − sign dx, dz − sign dz), diagonally before it, in the proportion
+// t = |dz| / |dx|, in steps of 1/256:
+//   key = round((1 − t) · behind(s) + t · behind(d)),
+//   behind(c) = key(c) + 16 + round(16 · solidity_layers · solidity(c)).
+// So the key depends on nothing but the cells between; it is at least 16 × the layer and equals
+// that where nothing is solid; making a cell more solid lowers no key; where all cells are equally
+// solid the order is that of kLayers, in every respect.
 //
-// Cells leave the front by growing key (layer, in view before out of view, nearer first, smaller
-// index first), where near is the distance from the camera to the cell's box. Cells out of view
-// are expanded too: from high above the ground every neighbour of the camera's cell may be out of
-// view, and the search would end there. The paper's priority of a cell is −(layer + 1).
+// Cells leave the front by growing (key, in view before out of view, nearer first, smaller index
+// first), where near is the distance from the camera to the cell's box. Every cell but the camera's
+// has a neighbour with a smaller key, so no key is smaller than one that left before, and the
+// search comes everywhere; for that reason it is done by sorting. Cells out of view are expanded
+// too: from high above the ground every neighbour of the camera's cell may be out of view, and the
+// search would end there.
+//
+// The caller keeps the result from tick to tick, so that nothing is allocated in the long run.
 struct PlpResult {
   std::vector<std::uint16_t> layer;     // per cell; kUnvisited where the search did not come
+  std::vector<std::uint32_t> key;       // per cell, visited or not
   std::vector<std::uint8_t> in_view;    // per cell: 1 or 0, visited or not
   std::vector<std::uint32_t> visible;   // visited cells in view, most important first
   std::vector<std::uint32_t> prefetch;  // visited cells out of view, most important first
   std::vector<std::uint32_t> front;     // not visited when the budget ended, most important first
 
-  // Working memory. A key is the square of the distance as the bits of a float >= 0, which sort
-  // like the float, above the cell: smaller keys leave the front first.
-  using Keys = std::vector<std::uint64_t>;
-  using Lists = std::array<Keys, 2>;         // out of view, in view
-  std::vector<std::uint32_t> distance_bits;  // per cell
-  Lists current, next;                       // of the layer being visited, of the next
-  Keys scratch;
+  // Working memory. A sort key is the square of the distance as the bits of a float >= 0, which
+  // sort like the float, above the cell.
+  std::vector<std::uint32_t> distance_bits, behind;  // per cell
+  std::vector<std::uint32_t> diagonal_shares;        // t · 256 along a ring
+  std::vector<std::uint32_t> bucket_ends;            // two buckets for each key: in view, out of it
+  std::vector<std::uint64_t> sorted, scratch;
 };
 
 void run_plp(const PlpInput& input, PlpResult& result);

@@ -14,21 +14,31 @@ testing::GridScene scene_of(std::uint32_t side, double height_m) {
   return {side, side, {{{middle, middle}, {20, height_m, 40}}, 0.7, -0.05}};
 }
 
+std::vector<float> random_solidity(std::size_t count) {
+  core::RandomStream random(9, 0, 0, 0, core::Purpose::kStructure);
+  std::vector<float> solidity;
+  while (solidity.size() < count)
+    solidity.push_back(static_cast<float>(random.next_unit()));
+  return solidity;
+}
+
 void plp_visits_every_cell(benchmark::State& state) {
   const auto side = static_cast<std::uint32_t>(state.range(0));
   const testing::GridScene scene = scene_of(side, static_cast<double>(state.range(1)));
+  const std::vector<float> solidity = random_solidity(scene.bounds.size());
+  const PlpMode mode = state.range(2) == 0 ? PlpMode::kLayers : PlpMode::kSolidity;
   PlpResult result;
   for (auto _ : state) {
-    run_plp({side, side, side / 2, side / 2, scene.bounds, &scene.frustum, UINT32_MAX}, result);
+    run_plp(
+        {side, side, side / 2, side / 2, scene.bounds, &scene.frustum, UINT32_MAX, mode, solidity},
+        result);
     benchmark::DoNotOptimize(result.visible.data());
   }
   state.SetItemsProcessed(state.iterations() * side * side);
 }
 BENCHMARK(plp_visits_every_cell)
-    ->ArgNames({"side", "height_m"})
-    ->Args({33, 20})
-    ->Args({317, 20})
-    ->Args({317, 600})
+    ->ArgNames({"side", "height_m", "solidity"})
+    ->ArgsProduct({{33, 317}, {20, 600}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
 void frustum_tests_boxes(benchmark::State& state) {

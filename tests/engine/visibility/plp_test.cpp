@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
+#include <functional>
+#include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -51,63 +55,109 @@ float distance(const core::Bounds& box) {
   return p.x * p.x + p.y * p.y + p.z * p.z;
 }
 
+// The definitions of the keys, written down for one cell at a time.
+std::vector<std::uint32_t> keys_of(const PlpInput& input) {
+  const int w = static_cast<int>(input.width), start_x = static_cast<int>(input.start_x),
+            start_z = static_cast<int>(input.start_z);
+  std::map<int, std::uint32_t> known;
+  const std::function<std::uint32_t(int, int)> key_at = [&](int x, int z) -> std::uint32_t {
+    const int dx = x - start_x, dz = z - start_z, far = std::max(std::abs(dx), std::abs(dz)),
+              near = std::min(std::abs(dx), std::abs(dz));
+    if (input.mode == PlpMode::kLayers || far == 0) return static_cast<std::uint32_t>(16 * far);
+    if (const auto found = known.find(z * w + x); found != known.end()) return found->second;
+    const auto behind = [&](int bx, int bz) {
+      const float solidity = input.solidity[static_cast<std::size_t>(bz * w + bx)];
+      return key_at(bx, bz) + 16 +
+             static_cast<std::uint32_t>(std::lround(16 * input.solidity_layers * solidity));
+    };
+    const int sx = (dx > 0) - (dx < 0), sz = (dz > 0) - (dz < 0);
+    const auto t = static_cast<std::uint32_t>(std::lround(256.0 * near / far));
+    std::uint32_t sum = 128;
+    if (t > 0) sum += t * behind(x - sx, z - sz);
+    if (t < 256)
+      sum += (256 - t) * (std::abs(dx) >= std::abs(dz) ? behind(x - sx, z) : behind(x, z - sz));
+    return known[z * w + x] = sum / 256;
+  };
+  std::vector<std::uint32_t> keys;
+  for (int cell = 0; cell < w * static_cast<int>(input.depth); ++cell)
+    keys.push_back(key_at(cell % w, cell / w));
+  return keys;
+}
+
+std::vector<float> random_solidity(const GridScene& scene, core::RandomStream& random) {
+  std::vector<float> solidity;
+  while (solidity.size() < scene.bounds.size())
+    solidity.push_back(static_cast<float>(std::floor(random.next_real(0, 9)) / 8));
+  return solidity;
+}
+
 // The definition of PLP, written down with an ordered set as the front.
 struct Oracle {
-  using Key = std::tuple<int, bool, float, std::uint32_t>;  // layer, out of view, distance, cell
+  // key, out of view, distance, cell
+  using Key = std::tuple<std::uint32_t, bool, float, std::uint32_t>;
   std::vector<Key> visited;
   std::set<Key> front;
 
-  Oracle(const GridScene& scene, std::uint32_t start, std::uint32_t budget) {
+  Oracle(const GridScene& scene, const PlpInput& input) {
+    const std::vector<std::uint32_t> keys = keys_of(input);
     std::set<std::uint32_t> clean;
     for (std::uint32_t cell = 0; cell < scene.bounds.size(); ++cell)
       clean.insert(cell);
-    const auto push = [&](std::uint32_t cell, int layer) {
+    const auto push = [&](std::uint32_t cell) {
       if (clean.erase(cell) == 0) return;
       const core::Bounds& box = scene.bounds[cell];
-      front.insert({layer, !intersects(scene.frustum, box), distance(box), cell});
+      front.insert({keys[cell], !intersects(scene.frustum, box), distance(box), cell});
     };
-    push(start, 0);
-    while (!front.empty() && visited.size() < budget) {
+    push(input.start_z * input.width + input.start_x);
+    while (!front.empty() && visited.size() < input.max_visits) {
       visited.push_back(*front.begin());
       front.erase(front.begin());
       for (const std::uint32_t n : neighbours(scene, std::get<3>(visited.back())))
-        push(n, std::get<0>(visited.back()) + 1);
+        push(n);
     }
   }
 };
 
-void expect_equal(const PlpResult& result, const Oracle& oracle) {
+void expect_equal_to_definition(const GridScene& scene, const PlpInput& input) {
+  PlpResult result;
+  run_plp(input, result);
+  const Oracle oracle(scene, input);
   std::vector<std::uint32_t> visible, prefetch, front;
-  std::vector<std::uint16_t> layer(result.layer.size(), kUnvisited);
-  for (const auto& [l, out_of_view, d, cell] : oracle.visited) {
+  std::set<std::uint32_t> visited;
+  for (const auto& [key, out_of_view, d, cell] : oracle.visited) {
     (out_of_view ? prefetch : visible).push_back(cell);
-    layer[cell] = static_cast<std::uint16_t>(l);
+    visited.insert(cell);
+    EXPECT_EQ(result.key[cell], key);
   }
   for (const auto& key : oracle.front)
     front.push_back(std::get<3>(key));
+  EXPECT_TRUE(std::ranges::is_sorted(oracle.visited));  // keys never decrease
   EXPECT_EQ(result.visible, visible);
   EXPECT_EQ(result.prefetch, prefetch);
   EXPECT_EQ(result.front, front);
-  EXPECT_EQ(result.layer, layer);
+  for (std::uint32_t cell = 0; cell < scene.bounds.size(); ++cell)
+    EXPECT_EQ(result.layer[cell] != kUnvisited, visited.contains(cell));
 }
 
-TEST(Plp, EqualsItsDefinitionOnRandomScenesAndBudgets) {
+TEST(Plp, EqualsItsDefinitionOnRandomScenesAndBudgetsInBothModes) {
   core::RandomStream random = stream(0);
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 80; ++i) {
     const auto width = static_cast<std::uint32_t>(random.next_integer(1, 24));
     const auto depth = static_cast<std::uint32_t>(random.next_integer(1, 24));
     const GridScene scene(width, depth, random_pose(random, width, depth));
-    const auto budget = static_cast<std::uint32_t>(random.next_integer(0, width * depth + 5));
-    const PlpInput input = input_of(scene, budget);
-    PlpResult result;
-    run_plp(input, result);
-    expect_equal(result, Oracle(scene, input.start_z * width + input.start_x, budget));
+    const std::vector<float> solidity = random_solidity(scene, random);
+    PlpInput input =
+        input_of(scene, static_cast<std::uint32_t>(random.next_integer(0, width * depth + 5)));
+    input.mode = i % 2 == 0 ? PlpMode::kLayers : PlpMode::kSolidity;
+    input.solidity = solidity;
+    input.solidity_layers = static_cast<float>(random.next_integer(0, 20));
+    expect_equal_to_definition(scene, input);
   }
 }
 
 TEST(Plp, EqualsItsDefinitionOnLargeLayersThatAreSortedByBuckets) {
   const GridScene scene(90, 90, {{{45, 44}, {10, 200, 50}}, 2.1, -0.5});
-  expect_equal(run(scene), Oracle(scene, 44 * 90 + 45, UINT32_MAX));
+  expect_equal_to_definition(scene, input_of(scene));
 }
 
 TEST(Plp, EqualsItsDefinitionWhereMostCellsAreEquallyFar) {
@@ -116,7 +166,81 @@ TEST(Plp, EqualsItsDefinitionWhereMostCellsAreEquallyFar) {
   for (std::size_t i = 0; i < scene.bounds.size(); ++i) {
     if (i % 97 != 0) scene.bounds[i] = {glm::vec3(-1), glm::vec3(1)};
   }
-  expect_equal(run(scene), Oracle(scene, 30 * 60 + 30, UINT32_MAX));
+  expect_equal_to_definition(scene, input_of(scene));
+}
+
+TEST(Plp, WithEqualSolidityEverywhereIsThatOfLayersWithAnyBudget) {
+  core::RandomStream random = stream(6);
+  for (int i = 0; i < 30; ++i) {
+    const GridScene scene(40, 33, random_pose(random, 40, 33));
+    const std::vector<float> solidity(scene.bounds.size(),
+                                      i % 5 == 0 ? 0.0F : static_cast<float>(random.next_unit()));
+    PlpInput input = input_of(scene, static_cast<std::uint32_t>(random.next_integer(0, 1500)));
+    PlpResult layers, solid;
+    run_plp(input, layers);
+    input.mode = PlpMode::kSolidity;
+    input.solidity = solidity;
+    run_plp(input, solid);
+    EXPECT_EQ(solid.visible, layers.visible);
+    EXPECT_EQ(solid.prefetch, layers.prefetch);
+    EXPECT_EQ(solid.front, layers.front);
+    EXPECT_EQ(solid.layer, layers.layer);
+    if (i % 5 == 0) {
+      EXPECT_EQ(solid.key, layers.key);  // nothing is solid
+    }
+  }
+}
+
+TEST(Plp, MoreSolidCellsLowerNoKeyAndRaiseOnlyThoseBehindThem) {
+  core::RandomStream random = stream(7);
+  const GridScene scene(31, 31, {{{15, 15}, {30, 30, 30}}, 0, 0});
+  std::vector<float> solidity = random_solidity(scene, random);
+  PlpInput input = input_of(scene);
+  input.mode = PlpMode::kSolidity;
+  input.solidity = solidity;
+  PlpResult before, after;
+  run_plp(input, before);
+  const std::uint32_t changed = 15 * 31 + 20;  // five cells to the right of the camera
+  solidity[changed] = 2;                       // counts as 1
+  run_plp(input, after);
+  for (std::uint32_t cell = 0; cell < scene.bounds.size(); ++cell) {
+    const int dx = static_cast<int>(cell % 31) - 15, dz = static_cast<int>(cell / 31) - 15;
+    EXPECT_GE(after.key[cell], before.key[cell]);
+    if (dx <= 5 || std::abs(dz) >= dx) {
+      EXPECT_EQ(after.key[cell], before.key[cell]);
+    }
+  }
+  EXPECT_GT(after.key[changed + 1], before.key[changed + 1]);
+}
+
+TEST(Plp, WhatLiesBehindAWallComesAfterOpenGroundThatIsFurtherAway) {
+  const GridScene scene(41, 41, {{{20, 20}, {32, 30, 32}}, 0.78, 0});
+  std::vector<float> solidity(scene.bounds.size(), 0.0F);
+  for (std::uint32_t z = 0; z < 41; ++z)
+    solidity[z * 41 + 23] = 1;  // a wall from end to end, three cells to the right
+  PlpInput input = input_of(scene);
+  input.mode = PlpMode::kSolidity;
+  input.solidity = solidity;
+  PlpResult result;
+  run_plp(input, result);
+  EXPECT_EQ(result.key[20 * 41 + 23], 3U * 16);                   // the wall itself is seen
+  EXPECT_EQ(result.key[20 * 41 + 24], (4U + 8) * 16);             // eight layers later
+  EXPECT_GT(result.key[20 * 41 + 24], result.key[10 * 41 + 20]);  // than ten cells ahead
+}
+
+TEST(Plp, SolidityThatIsNotANumberOrBelowZeroCountsAsNone) {
+  const GridScene scene(9, 9, {{{4, 4}, {32, 30, 32}}, 0.78, 0});
+  const std::vector<float> solidity(81, std::numeric_limits<float>::quiet_NaN()),
+      negative(81, -3.0F);
+  PlpInput input = input_of(scene);
+  const PlpResult layers = run(scene);
+  input.mode = PlpMode::kSolidity;
+  for (const auto* values : {&solidity, &negative}) {
+    input.solidity = *values;
+    PlpResult result;
+    run_plp(input, result);
+    EXPECT_EQ(result.key, layers.key);
+  }
 }
 
 TEST(Plp, LayersAreBreadthFirst) {

@@ -1,0 +1,32 @@
+// How much light a cell of the world stops, estimated from parameters before anything is generated:
+// what PLP's mode `solidity` accumulates. An estimate for ordering work, not for hiding anything.
+// Pure; usable from any thread.
+#pragma once
+
+#include <span>
+
+namespace psygen::visibility {
+
+// Things of one kind that stand in a cell at random places. All values are >= 0.
+struct Standing {
+  float count = 0;     // in the cell; may be an expected value
+  float width_m = 0;   // as seen from the side
+  float height_m = 0;  // above the ground
+  float density = 1;   // share of the light through its outline that it stops
+};
+
+// The share in [0, 1] of the light through a square cell that is stopped in it, of level rays in all
+// directions at heights spread evenly over the `band_m` > 0 above the cell's lowest ground: the band
+// in which what lies behind is to be seen.
+//
+// - Ground: where a ray meets it, its height is spread evenly over `relief_m` >= 0 (highest less
+//   lowest of the cell).
+// - Things: a ray of length l meets count · width · l / side² of them, Poisson distributed, in the
+//   part of the band that they fill; the mean ray through a square is π / 4 sides long.
+//
+// All of these stop light independently. Never shrinks as relief, counts, widths, heights or
+// densities grow; never grows with the side or the band.
+float estimate_solidity(float side_m, float relief_m, std::span<const Standing> standing,
+                        float band_m);
+
+}  // namespace psygen::visibility
