@@ -4,8 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <glm/trigonometric.hpp>
-#include <optional>
-#include <span>
 
 #include "engine/models/terrain.hpp"
 
@@ -25,42 +23,29 @@ bool may_stand(const Scatter& scatter, float least_up, const models::GroundPoint
          ground.normal.y >= least_up;
 }
 
-// One scatter on one block.
-class Scattering {
- public:
-  Scattering(const World& world, const models::Registry& registry, const Scatter& scatter,
-             core::BlockCoord block)
-      : seed_(world.seed),
-        size_m_(static_cast<float>(world.block_size_m())),
-        scatter_(scatter),
-        specs_(registry[scatter.model].parameters()),
-        defaults_(models::default_parameters(registry[scatter.model])),
-        block_(block),
-        least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))) {}
+}  // namespace
 
-  // The first allowed one of the places that the instance tries.
-  std::optional<glm::vec3> place(const models::BlockGround& ground, std::uint32_t index) const {
-    core::RandomStream random(seed_, block_.x, block_.z, index, core::Purpose::kPosition);
-    for (int i = 0; i < kPlacementTries; ++i) {
-      const double x = draw_coordinate(random, size_m_), z = draw_coordinate(random, size_m_);
-      const models::GroundPoint point = ground.at({x, z});
-      if (!scatter_.has_filter() || may_stand(scatter_, least_up_, point))
-        return glm::vec3(x, point.height_m, z);
-    }
-    return std::nullopt;
+Scattering::Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
+                       core::BlockCoord block)
+    : seed_(world.seed),
+      size_m_(static_cast<float>(world.block_size_m())),
+      scatter_(scatter),
+      specs_(type.parameters()),
+      defaults_(models::default_parameters(type)),
+      block_(block),
+      least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))) {}
+
+std::optional<glm::vec3> Scattering::place(const models::BlockGround& ground, std::uint32_t index,
+                                           glm::dvec2 corner_m) const {
+  core::RandomStream random(seed_, block_.x, block_.z, index, core::Purpose::kPosition);
+  for (int i = 0; i < kPlacementTries; ++i) {
+    const double x = draw_coordinate(random, size_m_), z = draw_coordinate(random, size_m_);
+    const models::GroundPoint point = ground.at(corner_m + glm::dvec2(x, z));
+    if (!scatter_.has_filter() || may_stand(scatter_, least_up_, point))
+      return glm::vec3(x, point.height_m, z);
   }
-
-  models::Parameters parameters(std::uint32_t index) const;
-
- private:
-  std::uint64_t seed_;
-  float size_m_;
-  const Scatter& scatter_;
-  std::span<const models::ParameterSpec> specs_;
-  models::Parameters defaults_;
-  core::BlockCoord block_;
-  float least_up_;
-};
+  return std::nullopt;
+}
 
 models::Parameters Scattering::parameters(std::uint32_t index) const {
   models::Parameters p = defaults_;
@@ -80,8 +65,6 @@ models::Parameters Scattering::parameters(std::uint32_t index) const {
   }
   return p;
 }
-
-}  // namespace
 
 models::Parameters terrain_parameters(const World& world, core::BlockCoord block) {
   models::Parameters p = world.terrain;
@@ -109,7 +92,7 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
   out.clear();
   std::uint32_t index = 0;
   for (const Scatter& scatter : world.scatter) {
-    const Scattering scattering(world, registry, scatter, block);
+    const Scattering scattering(world, registry[scatter.model], scatter, block);
     for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
       if (const auto place = scattering.place(ground, index))
         out.push_back({scatter.model, index, *place, scattering.parameters(index)});
@@ -140,7 +123,7 @@ models::Parameters scatter_parameters(const models::Registry& registry, const Sc
 models::Parameters draw_parameters(const World& world, const models::Registry& registry,
                                    const Scatter& scatter, core::BlockCoord block,
                                    std::uint32_t index) {
-  return Scattering(world, registry, scatter, block).parameters(index);
+  return Scattering(world, registry[scatter.model], scatter, block).parameters(index);
 }
 
 }  // namespace psygen::world

@@ -4,7 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/models/terrain_ground.hpp"
@@ -25,6 +28,30 @@ struct Placement {
 // Tries of an instance to find a place that its Scatter allows.
 inline constexpr int kPlacementTries = 24;
 
+// One scatter on one block: what place_models() does, instance by instance. All arguments must
+// outlive it.
+class Scattering {
+ public:
+  Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
+             core::BlockCoord block);
+
+  // The first allowed one of the places that instance `index` of the block tries, in metres from
+  // the block's corner. `ground` is that of the block, or of a larger node that has the block's
+  // corner at `corner_m`.
+  std::optional<glm::vec3> place(const models::BlockGround& ground, std::uint32_t index,
+                                 glm::dvec2 corner_m = {0, 0}) const;
+  models::Parameters parameters(std::uint32_t index) const;
+
+ private:
+  std::uint64_t seed_;
+  float size_m_;
+  const Scatter& scatter_;
+  std::span<const models::ParameterSpec> specs_;
+  models::Parameters defaults_;
+  core::BlockCoord block_;
+  float least_up_;
+};
+
 // The terrain of one block.
 models::Parameters terrain_parameters(const World& world, core::BlockCoord block);
 
@@ -41,6 +68,10 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 // The same with the block's ground at hand.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out);
+
+// The mean number of instances of each scatter that find a place in a block: exact where nothing
+// has a filter, else over kSizeBlocks blocks, always the same ones.
+std::vector<double> placed_per_block(const World& world, const models::Registry& registry);
 
 // Sets a parameter of either type; integers are rounded to nearest.
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,

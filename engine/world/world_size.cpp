@@ -31,7 +31,8 @@ MeanSize mean_size(const World& world, const models::Registry& registry, const S
   return {sum.triangles / kSizeSamples, sum.bytes / kSizeSamples};
 }
 
-// The mean number of instances of each scatter that find a place in a block.
+}  // namespace
+
 std::vector<double> placed_per_block(const World& world, const models::Registry& registry) {
   std::vector<double> counts;
   bool filtered = false;
@@ -58,8 +59,6 @@ std::vector<double> placed_per_block(const World& world, const models::Registry&
   }
   return counts;
 }
-
-}  // namespace
 
 WorldSize world_size(const World& world, const models::Registry& registry) {
   WorldSize size;
