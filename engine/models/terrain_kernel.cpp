@@ -192,7 +192,7 @@ HWY_INLINE hn::Vec<UintTag> normals(const SampleRow& row, std::size_t x, Float s
 
 // A vertex as its bytes lie in memory.
 struct PackedVertex {
-  std::uint32_t low, high;
+  std::uint32_t low, high, light;
 };
 static_assert(sizeof(PackedVertex) == sizeof(core::TerrainVertex));
 
@@ -219,7 +219,8 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
                               hn::ShiftLeft<16>(hn::BitCast(du, height)));
       const auto below = hn::And(hn::BitCast(du, coarse.at(x)), hn::Set(du, 0xFFFFU));
       const auto high = hn::Or(below, normals(samples, x, slope_scale));
-      hn::StoreInterleaved2(low, high, du, reinterpret_cast<std::uint32_t*>(row + x));
+      hn::StoreInterleaved3(low, high, hn::Set(du, 0xFFFFU), du,
+                            reinterpret_cast<std::uint32_t*>(row + x));
       if (s.n - x < hn::Lanes(d)) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, lowest);
       lowest = hn::Min(lowest, height);
       if (s.n - x < hn::Lanes(d)) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, highest);
