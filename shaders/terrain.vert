@@ -6,7 +6,8 @@
 #include "draw.glsl"
 #include "atmosphere.glsl"
 
-layout(location = 0) in uvec2 packed;  // x: grid x, grid z, height; y: coarse height, normal
+// x: grid x, grid z, height; y: coarse height, normal; z: sun, ambient, cover
+layout(location = 0) in uvec3 packed;
 layout(location = 0) out vec3 colour;
 
 float lattice(uvec2 i) {
@@ -59,8 +60,9 @@ void main() {
 
   float grain = float((fine * 0x9E3779B1u) >> 24) * (1.0 / 255.0);
   vec3 albedo = ground_albedo(p.y + frame.horizon_colour.w, n, p.xz + frame.ground_anchor.xy, grain);
-  float sun = max(dot(n, frame.sun_direction.xyz), 0.0);
-  vec3 light = albedo * (ambient_light(n) + sun * frame.sun_colour.rgb);
+  vec2 visible = vec2(packed.z & 0xFFu, (packed.z >> 8) & 0xFFu) * (1.0 / 255.0);  // sun, sky
+  float sun = max(dot(n, frame.sun_direction.xyz), 0.0) * visible.x;
+  vec3 light = albedo * (ambient_light(n) * visible.y + sun * frame.sun_colour.rgb);
 
   p.y -= skirt * draw.scale.y;
   colour = shown(through_haze(light, p));

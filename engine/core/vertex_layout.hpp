@@ -24,8 +24,12 @@ struct TerrainVertex {
   std::uint16_t coarse_height;  // height of the next coarser level here, for morphing
   std::int8_t normal_x;         // octahedral normal, snorm8 twice
   std::int8_t normal_z;
+  std::uint8_t sun = 255;      // unorm8: visible share of the sun, 255 = unshadowed
+  std::uint8_t ambient = 255;  // unorm8: visible share of the sky, 255 = open
+  std::uint8_t cover = 0;      // unorm8: ground hidden by vegetation too far for meshes of its own
+  std::uint8_t spare = 0;
 };
-static_assert(sizeof(TerrainVertex) == 8);
+static_assert(sizeof(TerrainVertex) == 12);
 inline constexpr std::uint8_t kTerrainSkirtBit = 0x80;
 
 // A vertex of a tree, rock or any other model. Position is snorm16 within the mesh's box:

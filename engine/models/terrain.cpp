@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "engine/core/assert.hpp"
 #include "engine/models/exact_math.hpp"
@@ -48,12 +49,9 @@ struct SampleAxis {
   std::size_t count = 0;
   std::size_t step;  // samples from one vertex to the next
 
-  SampleAxis(const TerrainGrid& grid, std::int64_t origin, int node_level)
+  SampleAxis(const TerrainGrid& grid, const TerrainShape& shape, std::int64_t block)
       : step(static_cast<std::size_t>(std::min(grid.stride, 3))) {
-    const auto add = [&](int i) {
-      world[count++] = static_cast<std::int64_t>(static_cast<std::uint64_t>(origin) +
-                                                 (static_cast<std::uint64_t>(i) << node_level));
-    };
+    const auto add = [&](int i) { world[count++] = shape.world_of(block, i); };
     if (grid.stride <= 3) {
       for (int i = -1; i <= grid.size; ++i)
         add(i);
@@ -94,6 +92,38 @@ TerrainGrid grid_of(const Parameters& p, int level) {
 double cell_of(const Parameters& p) {
   return std::ldexp(p.real(kTerrainCellM), static_cast<int>(p.integer(kTerrainNodeLevel)));
 }
+
+// The samples of the parent's mesh of level 1 that a node's mesh of level 1 lies on: every second
+// of the node's own vertices and, where the parent has none at the node's border, those beyond.
+struct ParentSamples {
+  static constexpr std::size_t kStride = (kMaxTerrainSize + 1) / 2 + 1;
+  std::array<float, kStride * kStride> noise;
+  CoarseSamples view;
+
+  ParentSamples(const TerrainShape& shape, const TerrainGrid& grid, std::int64_t block_x,
+                std::int64_t block_z) {
+    const Axis columns(shape, grid, block_x), rows(shape, grid, block_z);
+    shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
+                         noise, kStride);
+    view = {noise.data(), kStride, 1, 2, columns.phase, rows.phase};
+  }
+
+ private:
+  struct Axis {
+    std::array<std::int64_t, kStride> world;
+    std::size_t count;
+    std::size_t phase;  // 1 where the first sample lies one vertex before the node
+
+    Axis(const TerrainShape& shape, const TerrainGrid& grid, std::int64_t block)
+        : phase(static_cast<std::size_t>(block & (grid.n - 1) & 1)) {
+      count = (static_cast<std::size_t>(grid.n) + phase) / 2 + 1;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::int64_t vertex = static_cast<std::int64_t>(2 * i) - static_cast<int>(phase);
+        world[i] = shape.world_of(block, vertex * grid.stride);
+      }
+    }
+  };
+};
 
 // An octave of wavelength λ and amplitude A (half a ridge's height counts) leaves A · d/λ when it
 // is sampled d apart, at most A.
@@ -142,24 +172,29 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
   PSYGEN_CHECK(out.vertices.size() ==
                    (grid.surface_vertices() + grid.border_vertices()) * sizeof(core::TerrainVertex),
                "the destination has exactly the size of the mesh");
-  const SampleAxis columns(grid, shape.block_origin(p.integer(kTerrainBlockX)), shape.node_level);
-  const SampleAxis rows(grid, shape.block_origin(p.integer(kTerrainBlockZ)), shape.node_level);
+  const SampleAxis columns(grid, shape, p.integer(kTerrainBlockX));
+  const SampleAxis rows(grid, shape, p.integer(kTerrainBlockZ));
   constexpr std::size_t kMaxStride = RidgedNoise::kMaxAxis;
   alignas(64) std::array<float, kMaxStride*(kMaxTerrainSize + 2) + 16> noise;
   const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at lines of the cache
   shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
                        noise, stride);
-  const int coarser = TerrainGrid(grid.size, std::min(level + 1, kTerrainLevels - 1)).stride;
-  const HeightRange heights =
-      pack_terrain({.first = &noise[rows.vertex(0) * stride + columns.vertex(0)],
-                    .row_stride = stride,
-                    .step = columns.step,
-                    .n = static_cast<std::size_t>(grid.n),
-                    .stride = static_cast<std::size_t>(grid.stride),
-                    .ratio = static_cast<std::size_t>(coarser / grid.stride),
-                    .quantum = shape.quantum,
-                    .slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m)},
-                   out.vertices.data());
+  const float* const first = &noise[rows.vertex(0) * stride + columns.vertex(0)];
+  std::optional<ParentSamples> parent;
+  if (level == 1) parent.emplace(shape, grid, p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ));
+  const auto ratio = static_cast<std::size_t>(
+      TerrainGrid(grid.size, std::min(level + 1, kTerrainLevels - 1)).stride / grid.stride);
+  const HeightRange heights = pack_terrain(
+      {.first = first,
+       .row_stride = stride,
+       .step = columns.step,
+       .n = static_cast<std::size_t>(grid.n),
+       .stride = static_cast<std::size_t>(grid.stride),
+       .coarse =
+           parent ? parent->view : CoarseSamples{first, stride, columns.step * ratio, ratio, 0, 0},
+       .quantum = shape.quantum,
+       .slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m)},
+      out.vertices.data());
   core::Bounds box = bounds(p);
   box.min.y = shape.relief_m * (static_cast<float>(heights.lowest) / 65535.0F);
   box.max.y = shape.relief_m * (static_cast<float>(heights.highest) / 65535.0F);

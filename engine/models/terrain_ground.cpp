@@ -47,10 +47,8 @@ BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block,
 // World coordinates of the vertices of a block from `first` on.
 void BlockGround::world_of(std::int32_t block_index, std::int64_t first,
                            std::span<std::int64_t> out) const {
-  const auto origin = static_cast<std::uint64_t>(shape_.block_origin(block_index));
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = static_cast<std::int64_t>(
-        origin + ((static_cast<std::uint64_t>(first) + i) << shape_.node_level));
+    out[i] = shape_.world_of(block_index, first + static_cast<std::int64_t>(i));
 }
 
 void BlockGround::evaluate_vertices() {

@@ -41,20 +41,24 @@ HWY_INLINE Float quantise(Float noise, Float quantum) {
   return hn::Add(hn::Min(hn::Mul(noise, quantum), set(65535.0F)), set(kToInteger));
 }
 
-// Heights of the next coarser level on its triangles, `ratio` vertices apart. On the lower left
+// Heights on the triangles of coarser samples, `ratio` vertices apart. On the lower left
 // half of a cell the sum of the corners' heights with whole weights is linear in the row, and so it
 // is on the upper right half: what depends on the column is found once per row of cells.
 class CoarseHeights {
  public:
   explicit CoarseHeights(const TerrainSurface& surface)
-      : s_(surface), ratio_(static_cast<float>(surface.ratio)) {
+      : s_(surface),
+        c_(surface.coarse),
+        columns_(last_of(c_.phase_x) + 1),
+        last_row_(last_of(c_.phase_z)),
+        ratio_(static_cast<float>(c_.ratio)) {
     const std::size_t lanes = hn::Lanes(FloatTag());
-    std::size_t cell = 0, along = 0;
+    std::size_t cell = 0, along = c_.phase_x;
     for (std::size_t x = 0; x < s_.n + lanes; ++x) {
       along_[x] = static_cast<float>(along);
       if (x % lanes == 0) first_[x / lanes] = cell;
       slot_[x] = static_cast<std::int32_t>(cell - first_[x / lanes]);
-      if (++along == s_.ratio && x + 1 < s_.n) {
+      if (++along == c_.ratio && cell + 1 < columns_) {
         along = 0;
         ++cell;
       }
@@ -64,10 +68,11 @@ class CoarseHeights {
 
   // Moves on to a row of vertices, from 0 without gaps.
   void move_to(std::size_t z) {
-    across_ = static_cast<float>(z % s_.ratio);
-    if (across_ != 0) return;
+    const std::size_t row = (z + c_.phase_z) / c_.ratio;
+    across_ = static_cast<float>((z + c_.phase_z) % c_.ratio);
+    if (across_ != 0 && z != 0) return;
     std::swap(near_, far_);
-    load(z + s_.ratio < s_.n ? z + s_.ratio : z);
+    load(std::min(row + 1, last_row_));
     find_planes();
   }
 
@@ -79,7 +84,7 @@ class CoarseHeights {
     const Float high = hn::Add(hn::Load(d, high_ + x), hn::Mul(rest, hn::Load(d, high_rise_ + x)));
     const Float sum = hn::IfThenElse(hn::Le(hn::Load(d, along_ + x), rest), low, high);
     // The quarter decides halves; up to this ratio it outweighs the errors of single precision.
-    if (s_.ratio <= 32)
+    if (c_.ratio <= 32)
       return hn::BitCast(IntTag(), hn::Add(hn::Mul(hn::Add(sum, set(0.25F)), set(1.0F / ratio_)),
                                            set(kToInteger)));
     // An estimate from below is right or one too low, which the remainder tells.
@@ -99,14 +104,19 @@ class CoarseHeights {
     HWY_ALIGN float right[kRow];
   };
 
-  // Makes the coarse row through row z of the vertices the far one.
-  void load(std::size_t z) {
+  // The number of the sample at the level's end or, where there is none, of the first beyond.
+  std::size_t last_of(std::size_t phase) const {
+    return (s_.n - 1 + phase + c_.ratio - 1) / c_.ratio;
+  }
+
+  // Makes a row of the samples the far one.
+  void load(std::size_t row) {
     const FloatTag d;
     HWY_ALIGN float height[kRow + 33];
-    const std::size_t count = (s_.n - 1) / s_.ratio + 1;
-    const float* const samples = s_.first + z * s_.row_stride * s_.step;
+    const std::size_t count = columns_;
+    const float* const samples = c_.first + row * c_.row_stride * c_.step;
     for (std::size_t i = 0; i < count; ++i)
-      height[i] = samples[i * s_.ratio * s_.step];
+      height[i] = samples[i * c_.step];
     std::fill(height + count, height + count + 33, height[count - 1]);
     const Float quantum = set(s_.quantum);
     for (std::size_t i = 0; i <= count; i += hn::Lanes(d))
@@ -135,6 +145,8 @@ class CoarseHeights {
   }
 
   const TerrainSurface& s_;
+  const CoarseSamples& c_;
+  const std::size_t columns_, last_row_;  // of the coarse samples
   const float ratio_;
   float across_ = 0;             // cells from the coarse row before
   HWY_ALIGN float along_[kRow];  // cells from the coarse vertex on the left
@@ -192,7 +204,7 @@ HWY_INLINE hn::Vec<UintTag> normals(const SampleRow& row, std::size_t x, Float s
 
 // A vertex as its bytes lie in memory.
 struct PackedVertex {
-  std::uint32_t low, high;
+  std::uint32_t low, high, light;
 };
 static_assert(sizeof(PackedVertex) == sizeof(core::TerrainVertex));
 
@@ -219,7 +231,8 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
                               hn::ShiftLeft<16>(hn::BitCast(du, height)));
       const auto below = hn::And(hn::BitCast(du, coarse.at(x)), hn::Set(du, 0xFFFFU));
       const auto high = hn::Or(below, normals(samples, x, slope_scale));
-      hn::StoreInterleaved2(low, high, du, reinterpret_cast<std::uint32_t*>(row + x));
+      hn::StoreInterleaved3(low, high, hn::Set(du, 0xFFFFU), du,
+                            reinterpret_cast<std::uint32_t*>(row + x));
       if (s.n - x < hn::Lanes(d)) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, lowest);
       lowest = hn::Min(lowest, height);
       if (s.n - x < hn::Lanes(d)) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, highest);

@@ -8,6 +8,17 @@
 
 namespace psygen::models {
 
+// The samples whose triangles the coarse heights lie on: (i, k) is
+// first[(k · row_stride + i) · step], at the vertex (i · ratio − phase_x, k · ratio − phase_z) of
+// the level. They reach to the level's ends or beyond.
+struct CoarseSamples {
+  const float* first;
+  std::size_t row_stride;
+  std::size_t step;
+  std::size_t ratio;             // cells of the level in one of these
+  std::size_t phase_x, phase_z;  // less than ratio
+};
+
 // A level of a block. Vertex (x, z) has the sample first[(z · row_stride + x) · step]; the samples
 // next to it, one cell away, exist as well, and every row may be read 16 samples beyond its end.
 struct TerrainSurface {
@@ -16,9 +27,9 @@ struct TerrainSurface {
   std::size_t step;
   std::size_t n;       // vertices per side
   std::size_t stride;  // grid distance of neighbouring vertices
-  std::size_t ratio;   // cells of this level in a cell of the next coarser one; divides n − 1
-  float quantum;       // noise → quantised height
-  float slope_scale;   // difference of the samples on two sides → slope
+  CoarseSamples coarse;
+  float quantum;      // noise → quantised height
+  float slope_scale;  // difference of the samples on two sides → slope
 };
 
 struct HeightRange {

@@ -22,10 +22,11 @@ struct TerrainShape {
 
   explicit TerrainShape(const Parameters& p);
 
-  // World coordinate of vertex 0 of a block, in cells of node level 0. Any vertex i of the same
-  // block has block_origin() + i · 2^node_level.
-  std::int64_t block_origin(std::int64_t block) const {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(block * (size - 1)) << node_level);
+  // World coordinate of vertex i of a block, which need not be one of its own, in cells of node
+  // level 0.
+  std::int64_t world_of(std::int64_t block, std::int64_t i) const {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(block * (size - 1) + i)
+                                     << node_level);
   }
   std::uint16_t quantise(float noise_value) const {
     return static_cast<std::uint16_t>(round_to_int(std::min(noise_value * quantum, 65535.0F)));

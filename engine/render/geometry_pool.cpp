@@ -1,6 +1,7 @@
 #include "engine/render/geometry_pool.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "engine/core/assert.hpp"
@@ -13,12 +14,27 @@ using core::GeometryReservation;
 using core::Result;
 using core::VertexLayout;
 
+namespace {
+
+// A slot starts at a whole unit, its vertices at the next multiple of their stride: so many bytes
+// later at most.
+std::uint32_t most_padding(std::uint32_t stride) {
+  return stride - std::gcd(stride, GeometryPool::kUnitBytes);
+}
+
+std::uint32_t whole_strides(std::uint32_t offset, std::uint32_t stride) {
+  return (offset + stride - 1) / stride * stride;
+}
+
+}  // namespace
+
 GeometryPool::GeometryPool(std::uint64_t budget_bytes, BlockSource source)
     : budget_bytes_(budget_bytes / kUnitBytes * kUnitBytes), source_(std::move(source)) {}
 
 std::uint32_t GeometryPool::charged_bytes(VertexLayout layout, std::uint32_t vertex_count,
                                           std::uint32_t index_count) const {
-  const std::uint64_t bytes = std::uint64_t{vertex_count} * vertex_stride_bytes(layout) +
+  const std::uint32_t stride = vertex_stride_bytes(layout);
+  const std::uint64_t bytes = most_padding(stride) + std::uint64_t{vertex_count} * stride +
                               std::uint64_t{index_count} * sizeof(std::uint16_t);
   const std::uint64_t whole =
       std::max<std::uint64_t>((bytes + kUnitBytes - 1) / kUnitBytes * kUnitBytes, kUnitBytes);
@@ -70,7 +86,9 @@ Result<GeometryReservation> GeometryPool::reserve(VertexLayout layout, std::uint
   const Result<std::uint32_t> id = allocate_slot(bytes);
   if (!id) return tl::unexpected(id.error());
   Slot& slot = slots_[*id];
-  slot.vertex_bytes = vertex_count * vertex_stride_bytes(layout);
+  const std::uint32_t stride = vertex_stride_bytes(layout);
+  slot.offset_bytes = whole_strides(slot.offset_bytes, stride);
+  slot.vertex_bytes = vertex_count * stride;
   slot.index_count = index_count;
   slot.bytes = bytes;
   slot.state = SlotState::kReserved;
@@ -80,7 +98,7 @@ Result<GeometryReservation> GeometryPool::reserve(VertexLayout layout, std::uint
   GeometryRange& range = reservation.range;
   range.id = *id;
   range.pool_block = slot.block;
-  range.first_vertex = slot.offset_bytes / vertex_stride_bytes(layout);
+  range.first_vertex = slot.offset_bytes / stride;
   range.first_index =
       (slot.offset_bytes + slot.vertex_bytes) / static_cast<std::uint32_t>(sizeof(std::uint16_t));
   range.vertex_count = vertex_count;

@@ -20,7 +20,7 @@ namespace psygen::render {
 class GeometryPool final : public core::GeometryMemory {
  public:
   static constexpr std::uint64_t kBlockBytes = 64ull << 20;
-  static constexpr std::uint32_t kUnitBytes = 16;  // so that offsets are whole for every stride
+  static constexpr std::uint32_t kUnitBytes = 16;
 
   // Makes the memory of the next block of `bytes` and returns where it is mapped, 16-byte aligned.
   // It stays until the pool's owner ends it, after the pool.

@@ -96,7 +96,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
       VK_VERTEX_INPUT_RATE_VERTEX};
   // One fetch of whole words, unpacked in the shader: cheaper than four attributes.
   const VkVertexInputAttributeDescription attribute{
-      0, 0, terrain ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0};
+      0, 0, terrain ? VK_FORMAT_R32G32B32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0};
   VkPipelineVertexInputStateCreateInfo input{};
   input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
   input.vertexBindingDescriptionCount = meshes ? 1 : 0;

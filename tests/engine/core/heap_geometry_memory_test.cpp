@@ -21,7 +21,7 @@ TEST(HeapGeometryMemory, GivesWritableSpansOfTheSizesAskedFor) {
 }
 
 TEST(HeapGeometryMemory, RefusesWhatDoesNotFitAndCountsExactly) {
-  HeapGeometryMemory memory(1000);
+  HeapGeometryMemory memory(1500);
   const std::uint32_t bytes = memory.charged_bytes(VertexLayout::kTerrain, 50, 3);
   const auto first = memory.reserve(VertexLayout::kTerrain, 50, 3);
   ASSERT_TRUE(first);

@@ -135,7 +135,7 @@ TEST_F(Terrain, CoarseHeightsLieOnTheNextLevelsTriangles) {
   Parameters p = at(4, 4);
   for (const int size : {64, 65, 62, 128, 5}) {
     p.set_integer(kTerrainSize, size);
-    for (int level = 0; level < 3; ++level) {
+    for (const int level : {0, 2}) {
       const TerrainGrid grid(size, level), next(size, level + 1);
       const auto mesh = vertices(p, level), coarse = vertices(p, level + 1);
       const int ratio = next.stride / grid.stride;
@@ -157,6 +157,64 @@ TEST_F(Terrain, CoarseHeightsLieOnTheNextLevelsTriangles) {
     }
     for (const TerrainVertex& v : vertices(p, 3))
       EXPECT_EQ(v.coarse_height, v.height);
+  }
+}
+
+// The surface of a node's mesh of level 1 at a place in its cells, as quantised heights.
+double surface_height(const std::vector<TerrainVertex>& mesh, const TerrainGrid& grid, double x,
+                      double z) {
+  const auto cell = [&](double at) { return std::min(static_cast<int>(at), grid.n - 2); };
+  const int cx = cell(x / grid.stride), cz = cell(z / grid.stride);
+  const double u = x / grid.stride - cx, v = z / grid.stride - cz;
+  const auto h = [&](int dx, int dz) {
+    return static_cast<double>(mesh[static_cast<std::size_t>((cz + dz) * grid.n + cx + dx)].height);
+  };
+  return u + v <= 1 ? h(0, 0) * (1 - u - v) + h(1, 0) * u + h(0, 1) * v
+                    : h(1, 1) * (u + v - 1) + h(1, 0) * (1 - v) + h(0, 1) * (1 - u);
+}
+
+TEST_F(Terrain, CoarseHeightsOfTheFourChildrenAreTheSurfaceOfTheirParent) {
+  for (const int size : {64, 65, 62, 128, 123, 5, 4}) {
+    const TerrainGrid grid(size, 1);
+    for (const std::int64_t node : {std::int64_t{3}, std::int64_t{-6}, kFar / 2, -kFar / 2 - 1}) {
+      for (const int level : {1, 5, 20}) {
+        Parameters p = at(node, 7);
+        p.set_integer(kTerrainSize, size);
+        p.set_integer(kTerrainNodeLevel, level);
+        const auto parent = vertices(p, 1);
+        for (int child = 0; child < 4; ++child) {
+          const int right = child % 2, down = child / 2;
+          p.set_integer(kTerrainNodeLevel, level - 1);
+          p.set_integer(kTerrainBlockX, 2 * node + right);
+          p.set_integer(kTerrainBlockZ, 2 * 7 + down);
+          const auto mesh = vertices(p, 1);
+          for (std::uint32_t i = 0; i < grid.surface_vertices(); ++i) {
+            const double x = (right * (size - 1) + mesh[i].grid_x) / 2.0;
+            const double z = (down * (size - 1) + mesh[i].grid_z) / 2.0;
+            // Halves are rounded upwards; at the parent's own vertices nothing is rounded.
+            ASSERT_EQ(mesh[i].coarse_height, std::floor(surface_height(parent, grid, x, z) + 0.5))
+                << size << " level " << level << " child " << child << " vertex " << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Terrain, CoarseHeightsOfNeighboursAgreeBitForBitAlongTheirSeams) {
+  for (const auto& [x, z, level] : {std::tuple{std::int64_t{0}, std::int64_t{-1}, 0},
+                                    {-3, 7, 3},
+                                    {kFar - 1, -kFar, 0},
+                                    {kFar - 1, -kFar, 20}}) {
+    paper.set_integer(kTerrainNodeLevel, level);
+    const auto here = vertices(at(x, z), 1), east = vertices(at(x + 1, z), 1),
+               south = vertices(at(x, z + 1), 1);
+    for (std::size_t i = 0; i < 22; ++i) {
+      ASSERT_TRUE(same(here[i * 22 + 21], east[i * 22]));
+      ASSERT_TRUE(same(here[21 * 22 + i], south[i]));
+      ASSERT_EQ(here[i * 22 + 21].coarse_height, east[i * 22].coarse_height);
+      ASSERT_EQ(here[21 * 22 + i].coarse_height, south[i].coarse_height);
+    }
   }
 }
 

@@ -37,8 +37,9 @@ TEST(GeometryPool, makes_no_block_before_it_is_needed) {
 TEST(GeometryPool, places_vertices_at_whole_strides_and_indices_behind_them) {
   HeapBlocks heap;
   GeometryPool pool(1 << 20, heap.source());
+  std::vector<std::pair<GeometryRange, std::byte>> held;
   for (const VertexLayout layout : {VertexLayout::kTerrain, VertexLayout::kModel}) {
-    for (const std::uint32_t vertices : {1u, 3u, 5u, 64u}) {
+    for (const std::uint32_t vertices : {1u, 3u, 5u, 7u, 11u, 64u}) {
       const auto reserved = pool.reserve(layout, vertices, 3 * vertices).value();
       const GeometryRange& range = reserved.range;
       const std::byte* base = heap.blocks[range.pool_block].get();
@@ -50,6 +51,16 @@ TEST(GeometryPool, places_vertices_at_whole_strides_and_indices_behind_them) {
       EXPECT_EQ(reserved.indices.size(), 3 * vertices);
       EXPECT_EQ(range.bytes, pool.charged_bytes(layout, vertices, 3 * vertices));
       EXPECT_EQ(range.bytes % 16, 0u);
+      // The neighbours in memory are left alone.
+      const int mark = static_cast<int>(held.size()) + 1;
+      std::memset(reserved.vertices.data(), mark, reserved.vertices.size());
+      std::memset(reserved.indices.data(), mark, reserved.indices.size_bytes());
+      pool.commit(range);
+      for (const auto& [other, value] : held) {
+        EXPECT_EQ(pool.vertex_bytes(other).front(), value);
+        EXPECT_EQ(pool.indices(other).back() >> 8, static_cast<int>(value));
+      }
+      held.emplace_back(range, static_cast<std::byte>(mark));
     }
   }
 }
