@@ -65,11 +65,12 @@ struct Detail {
 struct Source {
   models::Parameters parameters;
   std::uint64_t parameters_hash = 0;
-  std::uint32_t index = 0;  // within the block; models count from 0, terrain is kTerrainIndex
+  std::uint32_t index = 0;  // within the node; models count from 0, others are below
   models::ModelIndex model = 0;
   std::uint16_t first_level = 0;  // of the model type: what level 0 of Detail and Demand is
 };
 using world::kTerrainIndex;
+inline constexpr std::uint32_t kMergedIndex = kTerrainIndex - 1;
 
 // The mesh that is resident and drawn. Results of synthesis land here in batches.
 struct Mesh {

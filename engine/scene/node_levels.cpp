@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/models/terrain.hpp"
+#include "engine/world/merged_models.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::scene {
@@ -18,6 +19,9 @@ constexpr double kAheadFactor = 1.1;
 constexpr double kTerrainErrorSeen = 0.5;
 // How far a border hangs down, in metres per metre of the next coarser error, and at least.
 constexpr float kSkirtPerError = 2.0F, kLeastSkirtM = 1.0F;
+// What a merged mesh of level 1 is off, in parts of the height of what it stands for; with every
+// level twice as much.
+constexpr double kMergedErrorPerHeight = 0.15;
 // Beyond all distances, and finite.
 constexpr double kEverywhereM = 1e30;
 // Meshes of nodes have at least so many triangles; else the next finer level is used.
@@ -66,8 +70,13 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
     level.bounds = terrain.bounds(p);
     level.error_m = kTerrainErrorSeen * terrain.level_error_m(p, 1);
     level.skirt_m = kLeastSkirtM + kSkirtPerError * static_cast<float>(2 * level.error_m);
-    if (merged == nullptr || k == 0) continue;
-    level.merged = true;
+    if (merged == nullptr || k == 0 || k > world::kMaxMergedLevel) continue;
+    const models::Parameters all = world::merged_parameters({}, static_cast<int>(k));
+    level.merged = merged->mesh_size(all, 0).vertex_count > 0;
+    if (!level.merged) continue;
+    const double height_m = merged->bounds(all).max.y - level.bounds.max.y;
+    level.error_m = std::max(level.error_m,
+                             kMergedErrorPerHeight * std::ldexp(height_m, static_cast<int>(k) - 1));
   }
   return levels;
 }

@@ -87,7 +87,9 @@ class Drawing {
     draw.skirt_m = level.skirt_m;
     // A mesh finer than wanted looks like the wanted one; a coarser one has nothing to morph from.
     const bool finest = node.node.level == 0 && demand.drawn_level == 0 && level.mesh_level != 0;
-    if (finest) draw.morph = node.fine ? node.morph : 1.0F;
+    draw.morph = !finest     ? level.mesh_level != 0 && node.leaf && !node.fine ? node.morph : 0.0F
+                 : node.fine ? node.morph
+                             : 1.0F;
     draws_.terrain.push_back(draw);
   }
 

@@ -10,6 +10,7 @@
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/scene/lighting.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/world/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -38,8 +39,9 @@ core::Result<void> check(const Settings& settings) {
 
 // Nodes and models that exist at once at most, before anything is allocated for them. Nodes of a
 // level lie in a disc.
-core::Result<void> check_size(const world::World& world, const std::vector<NodeLevel>& levels,
+core::Result<void> check_size(const world::World& world, const models::Registry& registry,
                               const Settings& settings) {
+  const std::vector<NodeLevel> levels = node_levels(world, registry, settings, nullptr);
   const double models = static_cast<double>(world::models_per_block(world));
   double entities = 0;
   for (std::size_t k = 0; k < levels.size(); ++k) {
@@ -82,12 +84,30 @@ glm::vec2 models_reach(const world::World& world, const models::Registry& regist
   return reach_m;
 }
 
+// The levels of the quadtree, and the type of the meshes that stand for everything on a node.
+core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
+  const models::ModelType* merged = nullptr;
+  if (settings.levels_of_detail && world::models_per_block(facts.world) > 0) {
+    const auto world = std::make_shared<const world::World>(facts.world);
+    const auto added = facts.registry.add(world::make_merged_type(world, facts.registry));
+    if (!added) return tl::unexpected(added.error());
+    facts.merged_model = *added;
+    merged = &facts.registry[*added];
+  }
+  facts.levels = node_levels(facts.world, facts.registry, settings, merged);
+  return {};
+}
+
 std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
   std::vector<world::Placement> placements;
   const core::BlockCoord block{};
   world::place_models(facts.world, facts.registry, block, placements);
   std::vector<synthesis::CostSample> samples{
       {facts.world.terrain_model, world::terrain_parameters(facts.world, block)}};
+  for (std::size_t k = 1; k < facts.levels.size(); ++k) {
+    if (facts.levels[k].merged)
+      samples.push_back({facts.merged_model, world::merged_parameters(block, static_cast<int>(k))});
+  }
   constexpr std::size_t kPerType = 24;
   std::vector<std::size_t> taken(facts.registry.size(), 0);
   for (const world::Placement& placement : placements) {
@@ -132,8 +152,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
                                                    telemetry::TraceLog* trace,
                                                    const Progress& progress) {
   if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
-  std::vector<NodeLevel> levels = node_levels(world, registry, settings, nullptr);
-  if (auto ok = check_size(world, levels, settings); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_size(world, registry, settings); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<Scene> scene(new Scene);
   State& s = scene->state_;
   s.settings = settings;
@@ -147,7 +166,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.cell_m = static_cast<float>(facts.world.cell_m());
   facts.models_reach_m = models_reach(facts.world, facts.registry);
 
-  facts.levels = std::move(levels);
+  if (auto ok = find_levels(settings, facts); !ok) return tl::unexpected(ok.error());
   for (std::size_t k = 0; k < facts.levels.size(); ++k) {
     s.streaming.grids.emplace_back(static_cast<std::uint8_t>(k),
                                    window_radius(facts.levels, settings, k));

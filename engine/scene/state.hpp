@@ -64,7 +64,8 @@ struct WorldFacts {
   models::Registry registry;
   render::Light light;
   render::TerrainPalette palette;
-  std::vector<NodeLevel> levels;  // of the quadtree, finest first
+  std::vector<NodeLevel> levels;        // of the quadtree, finest first
+  models::ModelIndex merged_model = 0;  // of meshes that stand for all models on a node
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up

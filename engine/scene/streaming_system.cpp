@@ -7,6 +7,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/world/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -58,7 +59,8 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
   if (at.level == 0) {
     world::place_models(facts.world, facts.registry, block, scratch);
   } else if (facts.levels[at.level].merged) {
-    return;
+    scratch.assign(1, {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
+                       world::merged_parameters(at.coord, at.level)});
   } else {
     return;
   }

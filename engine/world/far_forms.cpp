@@ -92,8 +92,8 @@ void make_spire(const Outline& o, float width, glm::vec2 turn, FormMesh& out) {
   out.corners[0] = o.top;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::vec3 away = turned(turn, kCorners[i][0], kCorners[i][1]);
-    out.corners[1 + i] = placed(lower, glm::vec3(axis.x, base, axis.y) + r * away,
-                                away + glm::vec3(0, 0.2F, 0));
+    out.corners[1 + i] =
+        placed(lower, glm::vec3(axis.x, base, axis.y) + r * away, away + glm::vec3(0, 0.2F, 0));
   }
   set_indices(out, {0, 2, 1, 0, 3, 2, 0, 1, 3});
 }
@@ -102,11 +102,16 @@ void make_spire(const Outline& o, float width, glm::vec2 turn, FormMesh& out) {
 
 void make_form(Form form, const Outline& outline, float width, glm::vec2 turn, FormMesh& out) {
   switch (form) {
-    case Form::kSpindleTrunk: return make_spindle_trunk(outline, width, turn, out);
-    case Form::kSpindle: return make_spindle(outline, width, out);
-    case Form::kChunk: return make_chunk(outline, width, turn, out);
-    case Form::kSpire: return make_spire(outline, width, turn, out);
-    case Form::kRow: return make_row(outline, {outline.ring_radius(), 0}, turn, {0, 0}, out);
+    case Form::kSpindleTrunk:
+      return make_spindle_trunk(outline, width, turn, out);
+    case Form::kSpindle:
+      return make_spindle(outline, width, out);
+    case Form::kChunk:
+      return make_chunk(outline, width, turn, out);
+    case Form::kSpire:
+      return make_spire(outline, width, turn, out);
+    case Form::kRow:
+      return make_row(outline, {outline.ring_radius(), 0}, turn, {0, 0}, out);
   }
 }
 
@@ -116,8 +121,7 @@ Row row_of(const Outline& outline, const Silhouette& silhouette, float models) {
   const float height = 0.5F * (1 + kLowerEnd) * std::max(outline.top.position.y, 1e-3F);
   const float edges = 0.5F * (1 + kUpperEdge);
   const float half = models * silhouette.side_m2 / (kMeanWidth * edges * height);
-  const float lean =
-      half > 0 ? models * silhouette.plan_m2 / (2 * edges * half) : 0.0F;
+  const float lean = half > 0 ? models * silhouette.plan_m2 / (2 * edges * half) : 0.0F;
   return {half, lean};
 }
 

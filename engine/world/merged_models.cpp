@@ -40,7 +40,8 @@ constexpr ParameterSpec kSchema[kMergedParameterCount] = {
 };
 
 int level_of(const Parameters& p) {
-  return static_cast<int>(std::clamp<std::int64_t>(p.integer(kMergedNodeLevel), 1, kMaxMergedLevel));
+  return static_cast<int>(
+      std::clamp<std::int64_t>(p.integer(kMergedNodeLevel), 1, kMaxMergedLevel));
 }
 
 std::uint64_t identity_of(const World& world, const models::Registry& registry) {
@@ -267,10 +268,14 @@ glm::vec2 direction_of(std::uint64_t hash) {
   const float scale = 1 / (1 + t * t);
   const glm::vec2 v{(1 - t * t) * scale, 2 * t * scale};
   switch (hash & 3) {
-    case 0: return v;
-    case 1: return {-v.y, v.x};
-    case 2: return {-v.x, -v.y};
-    default: return {v.y, -v.x};
+    case 0:
+      return v;
+    case 1:
+      return {-v.y, v.x};
+    case 2:
+      return {-v.x, -v.y};
+    default:
+      return {v.y, -v.x};
   }
 }
 
@@ -301,8 +306,7 @@ void MergedType::add_instance(std::size_t s, const NodeBlock& block, const Scatt
                             r.silhouette.plan_m2 * across * across};
       const Row row = row_of(outline, area, static_cast<float>(how.together));
       const auto end = [&](float sign) {
-        const glm::dvec2 at = block.in_tile_m +
-                              glm::dvec2(place->x, place->z) +
+        const glm::dvec2 at = block.in_tile_m + glm::dvec2(place->x, place->z) +
                               glm::dvec2(turn) * static_cast<double>(sign * row.half_length_m);
         const double limit = making.tile_side_m * (1 - 1e-9);
         const glm::dvec2 inside{std::clamp(at.x, 0.0, limit), std::clamp(at.y, 0.0, limit)};
@@ -345,11 +349,18 @@ core::Bounds MergedType::synthesize(const Parameters& p, int, const MeshView& ou
   PSYGEN_CHECK(out.vertices.size() == level.vertices * sizeof(core::ModelVertex) &&
                    out.indices.size() == 3 * level.triangles,
                "the destination has exactly the size of the mesh");
-  const NodeWalk walk(*world_, {static_cast<std::int32_t>(p.integer(kMergedBlockX)),
-                                static_cast<std::int32_t>(p.integer(kMergedBlockZ))},
+  const NodeWalk walk(*world_,
+                      {static_cast<std::int32_t>(p.integer(kMergedBlockX)),
+                       static_cast<std::int32_t>(p.integer(kMergedBlockZ))},
                       level_of(p));
-  Making making{level, level_of(p), core::combine(world_->seed, p.hash()), walk.tile_side_m(),
-                FormWriter(level.box, out), std::nullopt, {}, {}};
+  Making making{level,
+                level_of(p),
+                core::combine(world_->seed, p.hash()),
+                walk.tile_side_m(),
+                FormWriter(level.box, out),
+                std::nullopt,
+                {},
+                {}};
   for (std::uint32_t i = 0; level.vertices > 0 && i < walk.block_count(); ++i) {
     if (walk.starts_tile(i)) making.ground.reset();
     const NodeBlock block = walk.block(i);

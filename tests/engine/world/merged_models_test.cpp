@@ -47,7 +47,8 @@ struct Scenery {
   }
   glm::vec3 corner_m(core::BlockCoord block, core::BlockCoord node, int level) const {
     const auto steps = [level](std::int32_t b, std::int32_t n) {
-      return static_cast<double>(static_cast<std::uint32_t>(b) - (static_cast<std::uint32_t>(n) << level));
+      return static_cast<double>(static_cast<std::uint32_t>(b) -
+                                 (static_cast<std::uint32_t>(n) << level));
     };
     return {steps(block.x, node.x) * world->block_size_m(), 0,
             steps(block.z, node.z) * world->block_size_m()};
@@ -105,8 +106,7 @@ struct CoarsestModel {
   Silhouette silhouette;
 };
 
-std::vector<CoarsestModel> single_models(const Scenery& scenery, core::BlockCoord node,
-                                         int level) {
+std::vector<CoarsestModel> single_models(const Scenery& scenery, core::BlockCoord node, int level) {
   std::vector<CoarsestModel> all;
   CoarsestMesh mesh;
   for (const core::BlockCoord block : blocks_of(*scenery.world, node, level)) {
@@ -131,8 +131,8 @@ std::vector<CoarsestModel> single_models(const Scenery& scenery, core::BlockCoor
 
 // Areas of the forms of a mesh, each by itself. Forms are runs of triangles that share vertices;
 // those of a tree and of its trunk are two.
-Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level,
-                         core::BlockCoord node, float least_height_m) {
+Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level, core::BlockCoord node,
+                         float least_height_m) {
   const core::Bounds box = scenery.type->bounds(merged_parameters(node, level));
   const auto vertices = mesh.vertices<core::ModelVertex>();
   Silhouette sum;
@@ -141,8 +141,8 @@ Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level,
     std::size_t end = i;
     std::uint16_t first = UINT16_MAX, last = 0;
     for (; end < mesh.indices.size() && mesh.indices[end] != mesh.indices[end + 1]; end += 3) {
-      const auto [low, high] = std::minmax(
-          {mesh.indices[end], mesh.indices[end + 1], mesh.indices[end + 2]});
+      const auto [low, high] =
+          std::minmax({mesh.indices[end], mesh.indices[end + 1], mesh.indices[end + 2]});
       if (end > i && low > last) break;
       first = std::min(first, low);
       last = std::max(last, high);
