@@ -201,7 +201,7 @@ void MergedType::plan_scatters(int level, std::uint32_t thinning, LevelPlan& pla
         std::sqrt(static_cast<double>(far.mean_silhouette().side_m2) * how.together);
     const double pixels = kPixelsPerRadian * width / (kNearestSides * side);
     if (!far.empty() && pixels >= kLeastPixels) {
-      how.form = how.together > 1 ? Form::kRow : far.form_at(level);
+      how.form = how.together > 1 ? Form::kSheet : far.form_at(level);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * level);
       how.forms = (instances + how.together - 1) / how.together;
     }
@@ -213,7 +213,7 @@ void MergedType::plan_scatters(int level, std::uint32_t thinning, LevelPlan& pla
 
 LevelPlan MergedType::plan_of(int level) const {
   LevelPlan plan;
-  std::uint32_t thinning = level <= 3 ? 1 : 1U << (2 * (level - 3));
+  std::uint32_t thinning = level <= 3 ? 1 : 3U << (2 * (level - 4));
   plan_scatters(level, thinning, plan);
   while (plan.vertices > kMostVertices)
     plan_scatters(level, thinning *= 2, plan);
@@ -289,28 +289,28 @@ void MergedType::add_instance(std::size_t s, const NodeBlock& block, const Scatt
     making.mesh.make(far.type(), p);
     const auto outline = making.mesh.outline();
     if (!outline) return;
-    make_form(how.form, *outline, far.width_of(how.form), turn, making.form);
+    make_form(how.form, *outline, far.stretch_of(how.form), turn, making.form);
   } else {
     const core::Bounds box = far.type().bounds(p);
     const float width = box.max.x - box.min.x, height = box.max.y - box.min.y;
     const Representative& r = far.like(width, height, hash >> 8);
     const float across = width / r.bounds_width_m, up = height / r.bounds_height_m;
     const Outline outline = r.outline.scaled(across, up);
-    if (how.form == Form::kRow) {
+    if (how.form == Form::kSheet) {
       const Silhouette area{r.silhouette.side_m2 * across * up,
                             r.silhouette.plan_m2 * across * across};
-      const Row row = row_of(outline, area, static_cast<float>(how.together));
+      const Sheet sheet = sheet_of(outline, area, static_cast<float>(how.together));
       const auto end = [&](float sign) {
         const glm::dvec2 at = block.in_tile_m +
                               glm::dvec2(place->x, place->z) +
-                              glm::dvec2(turn) * static_cast<double>(sign * row.half_length_m);
+                              glm::dvec2(turn) * static_cast<double>(sign * sheet.half_length_m);
         const double limit = making.tile_side_m * (1 - 1e-9);
         const glm::dvec2 inside{std::clamp(at.x, 0.0, limit), std::clamp(at.y, 0.0, limit)};
         return static_cast<float>(making.ground->at(inside).height_m) - place->y;
       };
-      make_row(outline, row, turn, {end(-1), end(1)}, making.form);
+      make_sheet(outline, sheet, turn, {end(-1), end(1)}, making.form);
     } else {
-      make_form(how.form, outline, far.width_of(how.form), turn, making.form);
+      make_form(how.form, outline, far.stretch_of(how.form), turn, making.form);
     }
   }
   const glm::vec3 corner{static_cast<float>(block.in_node_m.x), 0,

@@ -159,7 +159,7 @@ Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level,
       place.y -= lowest;
     for (; i < end; ++i)
       indices.push_back(static_cast<std::uint16_t>(mesh.indices[i] - first));
-    if (highest - lowest < least_height_m) continue;
+    if (highest - lowest < least_height_m || vertices[first].material != kLeaf) continue;
     const Silhouette one = silhouette_of(places, indices);
     sum.side_m2 += one.side_m2;
     sum.plan_m2 += one.plan_m2;
