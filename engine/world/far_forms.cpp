@@ -117,27 +117,31 @@ void make_form(Form form, const Outline& outline, const Stretch& stretch, glm::v
     case Form::kSpindleTrunk:
       make_spindle(outline, stretch, out);
       return add_trunk_cone(outline, turn, out);
-    case Form::kSpindle: return make_spindle(outline, stretch, out);
+    case Form::kSpindle:
+      return make_spindle(outline, stretch, out);
     case Form::kChunkTrunk:
       make_chunk(outline, stretch, turn, out);
       return add_trunk_triangle(outline, turn, out);
-    case Form::kChunk: return make_chunk(outline, stretch, turn, out);
-    case Form::kSpire: return make_spire(outline, stretch, turn, out);
+    case Form::kChunk:
+      return make_chunk(outline, stretch, turn, out);
+    case Form::kSpire:
+      return make_spire(outline, stretch, turn, out);
     case Form::kSheet:
-      return make_sheet(outline, {outline.ring_radius(), 0}, turn, {0, 0}, out);
+      return make_sheet(outline, {outline.ring_radius(), 0, 0}, turn, {0, 0}, out);
   }
 }
 
 // A triangle with a base of 2a and the height h has, over all directions, the mean area 2 a h / π.
-// Sheets reach down to the ground and are not much longer than wide, so that they look like trees.
+// It would be about as wide as long; where it must be higher than there is room for, it is longer
+// instead, up to a limit beyond which it would not look like trees any more.
 Sheet sheet_of(const Outline& outline, const Silhouette& silhouette, float models) {
-  constexpr float kHalfPi = 1.57079633F, kMostElongation = 3.0F;
-  const float height = std::max(outline.top.position.y, 1e-3F);
-  const float half = models * silhouette.side_m2 * kHalfPi / height;
-  if (!(half > 0)) return {0, 0};
-  const float lean = models * silhouette.plan_m2 / half;
-  const float most = std::sqrt(0.5F * kMostElongation * half * lean);
-  return half > most ? Sheet{most, half * lean / most} : Sheet{half, lean};
+  constexpr float kHalfPi = 1.57079633F, kLean = 1.5F, kMostElongation = 2.4F;
+  const float plan = models * silhouette.plan_m2, side = models * silhouette.side_m2 * kHalfPi;
+  const float top = std::max(outline.top.position.y, 1e-3F);
+  const float compact = std::sqrt(plan / kLean);
+  const float half = std::clamp(side / top, compact, kMostElongation * compact);
+  if (!(half > 0)) return {0, 0, 0};
+  return {half, plan / half, std::max(top - side / half, 0.0F)};
 }
 
 void make_sheet(const Outline& o, const Sheet& sheet, glm::vec2 turn, std::array<float, 2> ground,
@@ -149,11 +153,12 @@ void make_sheet(const Outline& o, const Sheet& sheet, glm::vec2 turn, std::array
   for (std::size_t i = 0; i < 2; ++i) {
     const glm::vec3 end =
         turned(turn, i == 0 ? -sheet.half_length_m : sheet.half_length_m, -0.5F * sheet.lean_m);
-    out.corners[i] = placed(lower, axis + end + ground[i] * kUp, away + 0.5F * kUp);
+    out.corners[i] =
+        placed(lower, axis + end + (sheet.base_m + ground[i]) * kUp, away + 0.5F * kUp);
   }
   const float top = o.top.position.y + 0.5F * (ground[0] + ground[1]);
-  out.corners[2] = placed(upper, axis + turned(turn, 0, 0.5F * sheet.lean_m) + top * kUp,
-                          0.5F * away + kUp);
+  out.corners[2] =
+      placed(upper, axis + turned(turn, 0, 0.5F * sheet.lean_m) + top * kUp, 0.5F * away + kUp);
   set_indices(out, {0, 2, 1});
 }
 

@@ -48,6 +48,7 @@ void make_form(Form form, const Outline& outline, const Stretch& stretch, glm::v
 // over all directions) and from above as they have together.
 struct Sheet {
   float half_length_m, lean_m;
+  float base_m;  // height of the lower edge above the ground
 };
 Sheet sheet_of(const Outline& outline, const Silhouette& silhouette, float models);
 // `ground` is the ground's height at the ends, −turn and +turn, above that at the foot.

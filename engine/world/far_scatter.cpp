@@ -20,8 +20,8 @@ float ratio(float a, float b) {
 }
 
 FarScatter::Reach reach_of(const core::Bounds& box) {
-  return {std::max({-box.min.x, -box.min.z, box.max.x, box.max.z, 0.0F}),
-          std::max(box.max.y, 0.0F), std::max(-box.min.y, 0.0F)};
+  return {std::max({-box.min.x, -box.min.z, box.max.x, box.max.z, 0.0F}), std::max(box.max.y, 0.0F),
+          std::max(-box.min.y, 0.0F)};
 }
 
 FarScatter::Reach larger(const FarScatter::Reach& a, const FarScatter::Reach& b) {
@@ -115,7 +115,7 @@ void FarScatter::fit_forms() {
 }
 
 Form FarScatter::form_at(int node_level) const {
-  if (node_level >= 3) return Form::kSpire;
+  if (node_level >= 3) return Form::kSheet;
   if (node_level == 2) {
     if (!leafy_) return Form::kChunk;
     return conical_ ? Form::kSpire : trunk_ ? Form::kChunkTrunk : Form::kChunk;
@@ -131,7 +131,8 @@ const Representative& FarScatter::like(float width_m, float height_m, std::uint6
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = start + k < count ? start + k : start + k - count;
     const Representative& r = representatives_[i];
-    const float apart = std::max(ratio(width_m, r.bounds_width_m), ratio(height_m, r.bounds_height_m));
+    const float apart =
+        std::max(ratio(width_m, r.bounds_width_m), ratio(height_m, r.bounds_height_m));
     if (apart < kAlike) return r;
     if (apart < least) {
       least = apart;

@@ -27,8 +27,15 @@ constexpr std::uint64_t kEdition = 1;  // of what this file makes of a world
 constexpr std::uint64_t kMostVertices = 65'536;
 
 // A node of side s is drawn from about 2.4 s on, by 700 pixels a radian; what is less wide and high
-// than 1.2 of them then is left out.
+// than 1.2 of them then is left out, but trees and bushes are first put together, up to so many.
 constexpr double kNearestSides = 2.4, kPixelsPerRadian = 700, kLeastPixels = 1.2;
+constexpr std::uint32_t kMostTogether = 32;
+
+// How many models of this size must be together so that they can be seen from `distance_m` on.
+std::uint32_t least_together(double side_m2, double distance_m) {
+  const double least_m = kLeastPixels / kPixelsPerRadian * distance_m;
+  return static_cast<std::uint32_t>(std::ceil(std::min(least_m * least_m / side_m2, 1e6)));
+}
 
 constexpr ParameterSpec kSchema[kMergedParameterCount] = {
     {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
@@ -40,7 +47,8 @@ constexpr ParameterSpec kSchema[kMergedParameterCount] = {
 };
 
 int level_of(const Parameters& p) {
-  return static_cast<int>(std::clamp<std::int64_t>(p.integer(kMergedNodeLevel), 1, kMaxMergedLevel));
+  return static_cast<int>(
+      std::clamp<std::int64_t>(p.integer(kMergedNodeLevel), 1, kMaxMergedLevel));
 }
 
 std::uint64_t identity_of(const World& world, const models::Registry& registry) {
@@ -196,11 +204,11 @@ void MergedType::plan_scatters(int level, std::uint32_t thinning, LevelPlan& pla
   plan.vertices = plan.triangles = 0;
   for (const FarScatter& far : scatters_) {
     ScatterPlan how;
-    how.together = thinning;
-    const double width =
-        std::sqrt(static_cast<double>(far.mean_silhouette().side_m2) * how.together);
-    const double pixels = kPixelsPerRadian * width / (kNearestSides * side);
-    if (!far.empty() && pixels >= kLeastPixels) {
+    const std::uint32_t least =
+        far.empty() ? 0 : least_together(far.mean_silhouette().side_m2, kNearestSides * side);
+    how.together = std::max(thinning, far.is_leafy() ? least : 1);
+    const std::uint32_t most = far.is_leafy() ? std::max(thinning, kMostTogether) : thinning;
+    if (!far.empty() && least <= most) {
       how.form = how.together > 1 ? Form::kSheet : far.form_at(level);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * level);
       how.forms = (instances + how.together - 1) / how.together;
@@ -244,8 +252,9 @@ double MergedType::complexity(const Parameters& p, int) const {
   for (std::size_t s = 0; s < scatters_.size(); ++s) {
     const ScatterPlan& how = all.scatters[s];
     const FarScatter& far = scatters_[s];
-    const double each = !is_by_synthesis(far, how, level) ? 500 : far.is_leafy() ? 3000 : 400;
-    sum += each * static_cast<double>(how.forms);
+    const double make = !is_by_synthesis(far, how, level) ? 500 : far.is_leafy() ? 3000 : 400;
+    const double search = far.scatter().has_filter() ? 200 : 0;
+    sum += (make + search) * static_cast<double>(how.forms) + std::ldexp(80, 2 * level);
   }
   return sum + 100;
 }
@@ -267,10 +276,14 @@ glm::vec2 direction_of(std::uint64_t hash) {
   const float scale = 1 / (1 + t * t);
   const glm::vec2 v{(1 - t * t) * scale, 2 * t * scale};
   switch (hash & 3) {
-    case 0: return v;
-    case 1: return {-v.y, v.x};
-    case 2: return {-v.x, -v.y};
-    default: return {v.y, -v.x};
+    case 0:
+      return v;
+    case 1:
+      return {-v.y, v.x};
+    case 2:
+      return {-v.x, -v.y};
+    default:
+      return {v.y, -v.x};
   }
 }
 
@@ -301,8 +314,7 @@ void MergedType::add_instance(std::size_t s, const NodeBlock& block, const Scatt
                             r.silhouette.plan_m2 * across * across};
       const Sheet sheet = sheet_of(outline, area, static_cast<float>(how.together));
       const auto end = [&](float sign) {
-        const glm::dvec2 at = block.in_tile_m +
-                              glm::dvec2(place->x, place->z) +
+        const glm::dvec2 at = block.in_tile_m + glm::dvec2(place->x, place->z) +
                               glm::dvec2(turn) * static_cast<double>(sign * sheet.half_length_m);
         const double limit = making.tile_side_m * (1 - 1e-9);
         const glm::dvec2 inside{std::clamp(at.x, 0.0, limit), std::clamp(at.y, 0.0, limit)};
@@ -345,11 +357,18 @@ core::Bounds MergedType::synthesize(const Parameters& p, int, const MeshView& ou
   PSYGEN_CHECK(out.vertices.size() == level.vertices * sizeof(core::ModelVertex) &&
                    out.indices.size() == 3 * level.triangles,
                "the destination has exactly the size of the mesh");
-  const NodeWalk walk(*world_, {static_cast<std::int32_t>(p.integer(kMergedBlockX)),
-                                static_cast<std::int32_t>(p.integer(kMergedBlockZ))},
+  const NodeWalk walk(*world_,
+                      {static_cast<std::int32_t>(p.integer(kMergedBlockX)),
+                       static_cast<std::int32_t>(p.integer(kMergedBlockZ))},
                       level_of(p));
-  Making making{level, level_of(p), core::combine(world_->seed, p.hash()), walk.tile_side_m(),
-                FormWriter(level.box, out), std::nullopt, {}, {}};
+  Making making{level,
+                level_of(p),
+                core::combine(world_->seed, p.hash()),
+                walk.tile_side_m(),
+                FormWriter(level.box, out),
+                std::nullopt,
+                {},
+                {}};
   for (std::uint32_t i = 0; level.vertices > 0 && i < walk.block_count(); ++i) {
     if (walk.starts_tile(i)) making.ground.reset();
     const NodeBlock block = walk.block(i);

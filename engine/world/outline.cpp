@@ -14,8 +14,7 @@ constexpr std::uint8_t kLeaf = 1;
 Corner corner_of(const core::ModelVertex& v, const core::Bounds& box) {
   const glm::vec3 colour = glm::vec3(v.colour[0], v.colour[1], v.colour[2]) * (1.0F / 255.0F);
   return {models::unpack_position(v, box),
-          models::decode_octahedral(
-              glm::vec2(v.normal[0], v.normal[1]) * (1.0F / 32767.0F)),
+          models::decode_octahedral(glm::vec2(v.normal[0], v.normal[1]) * (1.0F / 32767.0F)),
           colour,
           static_cast<float>(v.ambient) * (1.0F / 255.0F),
           static_cast<float>(v.sway) * (1.0F / 255.0F),
@@ -85,17 +84,12 @@ void measure_trunk(std::span<const std::byte> vertices, const core::Bounds& box,
 
 Corner mixed(const Corner& a, const Corner& b, float t) {
   const float s = 1 - t;
-  return {a.position * s + b.position * t,
-          a.normal * s + b.normal * t,
-          a.colour * s + b.colour * t,
-          a.ambient * s + b.ambient * t,
-          a.sway * s + b.sway * t,
-          a.material};
+  return {a.position * s + b.position * t, a.normal * s + b.normal * t, a.colour * s + b.colour * t,
+          a.ambient * s + b.ambient * t,   a.sway * s + b.sway * t,     a.material};
 }
 
 glm::vec2 Outline::axis() const {
-  const glm::vec3 sum =
-      ring[0].position + ring[1].position + ring[2].position + ring[3].position;
+  const glm::vec3 sum = ring[0].position + ring[1].position + ring[2].position + ring[3].position;
   return {0.25F * sum.x, 0.25F * sum.z};
 }
 
