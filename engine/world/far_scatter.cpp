@@ -30,7 +30,7 @@ FarScatter::Reach larger(const FarScatter::Reach& a, const FarScatter::Reach& b)
 
 Silhouette silhouette_of_form(Form form, const Outline& outline) {
   FormMesh mesh;
-  make_form(form, outline, 1, {0.8F, 0.6F}, mesh);
+  make_form(form, outline, {}, {0.8F, 0.6F}, mesh);
   std::array<glm::vec3, 10> places;
   const FormSize size = size_of(form);
   for (std::size_t i = 0; i < size.vertices; ++i)
@@ -53,7 +53,7 @@ FarScatter::FarScatter(const World& world, const models::ModelType& type, const 
   if (mean_.side_m2 <= 0) representatives_.clear();
   if (representatives_.empty()) return;
   measure_shape();
-  fit_widths();
+  fit_forms();
 }
 
 void FarScatter::measure(const World& world) {
@@ -101,19 +101,25 @@ void FarScatter::measure_shape() {
   slender_ = slender > 2.5F * count;
 }
 
-void FarScatter::fit_widths() {
+void FarScatter::fit_forms() {
   for (std::size_t f = 0; f < kFormCount; ++f) {
+    const auto form = static_cast<Form>(f);
     float sum = 0;
     for (const Representative& r : representatives_)
-      sum += silhouette_of_form(static_cast<Form>(f), r.outline).side_m2;
+      sum += silhouette_of_form(form, r.outline).side_m2;
     const float meshes = mean_.side_m2 * static_cast<float>(representatives_.size());
-    widths_[f] = sum > 0 ? std::clamp(meshes / sum, 0.05F, 3.0F) : 1.0F;
+    const float factor = sum > 0 ? std::clamp(meshes / sum, 0.05F, 3.0F) : 1.0F;
+    const bool down = leafy_ && form >= Form::kChunkTrunk;
+    stretches_[f] = down ? Stretch{1, factor} : Stretch{factor, 1};
   }
 }
 
 Form FarScatter::form_at(int node_level) const {
-  if (node_level >= 3) return Form::kSpire;
-  if (node_level == 2) return leafy_ && conical_ ? Form::kSpire : Form::kChunk;
+  if (node_level >= 3) return Form::kSheet;
+  if (node_level == 2) {
+    if (!leafy_) return Form::kChunk;
+    return conical_ ? Form::kSpire : trunk_ ? Form::kChunkTrunk : Form::kChunk;
+  }
   if (!leafy_) return slender_ ? Form::kSpindle : Form::kChunk;
   return trunk_ ? Form::kSpindleTrunk : Form::kSpindle;
 }
@@ -140,11 +146,11 @@ FarScatter::Reach FarScatter::reach(float models) const {
   Reach most = reach_;
   for (const Representative& r : representatives_) {
     float aside = 0;
-    for (const float width : widths_)
-      aside = std::max(aside, width * r.outline.ring_radius());
+    for (const Stretch& stretch : stretches_)
+      aside = std::max(aside, stretch.width * r.outline.ring_radius());
     const glm::vec2 axis = r.outline.axis();
-    const Row row = row_of(r.outline, r.silhouette, models);
-    if (models > 1) aside = std::max(aside, row.half_length_m + row.lean_m);
+    const Sheet sheet = sheet_of(r.outline, r.silhouette, models);
+    if (models > 1) aside = std::max(aside, sheet.half_length_m + sheet.lean_m);
     most.aside = std::max(most.aside, aside + std::abs(axis.x) + std::abs(axis.y));
   }
   return {kRoom * most.aside, kRoom * most.up, kRoom * most.down};

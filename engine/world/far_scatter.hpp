@@ -40,10 +40,11 @@ class FarScatter {
   // Whether the coarsest meshes are small enough to be made for every single instance.
   bool is_cheap() const { return cheap_; }
 
-  // The form that fits when nothing is left out, at a node level >= 1, and how wide it must be to
-  // cover as much of the picture as the coarsest meshes do on average.
+  // The form for single instances at a node level >= 1, and how it must be stretched to cover as
+  // much of the picture as the coarsest meshes do on average: crowns downwards, others about the
+  // axis.
   Form form_at(int node_level) const;
-  float width_of(Form form) const { return widths_[static_cast<std::size_t>(form)]; }
+  const Stretch& stretch_of(Form form) const { return stretches_[static_cast<std::size_t>(form)]; }
 
   // One that is like the instance with these bounds; which one of those is up to `hash`.
   const Representative& like(float width_m, float height_m, std::uint64_t hash) const;
@@ -58,7 +59,7 @@ class FarScatter {
  private:
   void measure(const World& world);
   void measure_shape();
-  void fit_widths();
+  void fit_forms();
 
   const models::ModelType* type_;
   const Scatter* scatter_;
@@ -66,7 +67,7 @@ class FarScatter {
   std::vector<Representative> representatives_;
   Silhouette mean_;
   Reach reach_;  // of the type's bounds
-  std::array<float, kFormCount> widths_{};
+  std::array<Stretch, kFormCount> stretches_;
   bool leafy_ = false, conical_ = false, trunk_ = false, slender_ = false, cheap_ = false;
 };
 

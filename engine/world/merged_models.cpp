@@ -27,8 +27,15 @@ constexpr std::uint64_t kEdition = 1;  // of what this file makes of a world
 constexpr std::uint64_t kMostVertices = 65'536;
 
 // A node of side s is drawn from about 2.4 s on, by 700 pixels a radian; what is less wide and high
-// than 1.2 of them then is left out.
+// than 1.2 of them then is left out, but trees and bushes are first put together, up to so many.
 constexpr double kNearestSides = 2.4, kPixelsPerRadian = 700, kLeastPixels = 1.2;
+constexpr std::uint32_t kMostTogether = 32;
+
+// How many models of this size must be together so that they can be seen from `distance_m` on.
+std::uint32_t least_together(double side_m2, double distance_m) {
+  const double least_m = kLeastPixels / kPixelsPerRadian * distance_m;
+  return static_cast<std::uint32_t>(std::ceil(std::min(least_m * least_m / side_m2, 1e6)));
+}
 
 constexpr ParameterSpec kSchema[kMergedParameterCount] = {
     {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
@@ -197,12 +204,12 @@ void MergedType::plan_scatters(int level, std::uint32_t thinning, LevelPlan& pla
   plan.vertices = plan.triangles = 0;
   for (const FarScatter& far : scatters_) {
     ScatterPlan how;
-    how.together = thinning;
-    const double width =
-        std::sqrt(static_cast<double>(far.mean_silhouette().side_m2) * how.together);
-    const double pixels = kPixelsPerRadian * width / (kNearestSides * side);
-    if (!far.empty() && pixels >= kLeastPixels) {
-      how.form = how.together > 1 ? Form::kRow : far.form_at(level);
+    const std::uint32_t least =
+        far.empty() ? 0 : least_together(far.mean_silhouette().side_m2, kNearestSides * side);
+    how.together = std::max(thinning, far.is_leafy() ? least : 1);
+    const std::uint32_t most = far.is_leafy() ? std::max(thinning, kMostTogether) : thinning;
+    if (!far.empty() && least <= most) {
+      how.form = how.together > 1 ? Form::kSheet : far.form_at(level);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * level);
       how.forms = (instances + how.together - 1) / how.together;
     }
@@ -214,7 +221,7 @@ void MergedType::plan_scatters(int level, std::uint32_t thinning, LevelPlan& pla
 
 LevelPlan MergedType::plan_of(int level) const {
   LevelPlan plan;
-  std::uint32_t thinning = level <= 3 ? 1 : 1U << (2 * (level - 3));
+  std::uint32_t thinning = level <= 3 ? 1 : 3U << (2 * (level - 4));
   plan_scatters(level, thinning, plan);
   while (plan.vertices > kMostVertices)
     plan_scatters(level, thinning *= 2, plan);
@@ -245,8 +252,9 @@ double MergedType::complexity(const Parameters& p, int) const {
   for (std::size_t s = 0; s < scatters_.size(); ++s) {
     const ScatterPlan& how = all.scatters[s];
     const FarScatter& far = scatters_[s];
-    const double each = !is_by_synthesis(far, how, level) ? 500 : far.is_leafy() ? 3000 : 400;
-    sum += each * static_cast<double>(how.forms);
+    const double make = !is_by_synthesis(far, how, level) ? 500 : far.is_leafy() ? 3000 : 400;
+    const double search = far.scatter().has_filter() ? 200 : 0;
+    sum += (make + search) * static_cast<double>(how.forms) + std::ldexp(80, 2 * level);
   }
   return sum + 100;
 }
@@ -294,27 +302,27 @@ void MergedType::add_instance(std::size_t s, const NodeBlock& block, const Scatt
     making.mesh.make(far.type(), p);
     const auto outline = making.mesh.outline();
     if (!outline) return;
-    make_form(how.form, *outline, far.width_of(how.form), turn, making.form);
+    make_form(how.form, *outline, far.stretch_of(how.form), turn, making.form);
   } else {
     const core::Bounds box = far.type().bounds(p);
     const float width = box.max.x - box.min.x, height = box.max.y - box.min.y;
     const Representative& r = far.like(width, height, hash >> 8);
     const float across = width / r.bounds_width_m, up = height / r.bounds_height_m;
     const Outline outline = r.outline.scaled(across, up);
-    if (how.form == Form::kRow) {
+    if (how.form == Form::kSheet) {
       const Silhouette area{r.silhouette.side_m2 * across * up,
                             r.silhouette.plan_m2 * across * across};
-      const Row row = row_of(outline, area, static_cast<float>(how.together));
+      const Sheet sheet = sheet_of(outline, area, static_cast<float>(how.together));
       const auto end = [&](float sign) {
         const glm::dvec2 at = block.in_tile_m + glm::dvec2(place->x, place->z) +
-                              glm::dvec2(turn) * static_cast<double>(sign * row.half_length_m);
+                              glm::dvec2(turn) * static_cast<double>(sign * sheet.half_length_m);
         const double limit = making.tile_side_m * (1 - 1e-9);
         const glm::dvec2 inside{std::clamp(at.x, 0.0, limit), std::clamp(at.y, 0.0, limit)};
         return static_cast<float>(making.ground->at(inside).height_m) - place->y;
       };
-      make_row(outline, row, turn, {end(-1), end(1)}, making.form);
+      make_sheet(outline, sheet, turn, {end(-1), end(1)}, making.form);
     } else {
-      make_form(how.form, outline, far.width_of(how.form), turn, making.form);
+      make_form(how.form, outline, far.stretch_of(how.form), turn, making.form);
     }
   }
   const glm::vec3 corner{static_cast<float>(block.in_node_m.x), 0,
