@@ -15,9 +15,9 @@ struct Standing {
   float density = 1;   // share of the light through its outline that it stops
 };
 
-// The share in [0, 1] of the light through a square cell that is stopped in it, of level rays in all
-// directions at heights spread evenly over the `band_m` > 0 above the cell's lowest ground: the band
-// in which what lies behind is to be seen.
+// The share in [0, 1] of the light through a square cell that is stopped in it, of level rays in
+// all directions at heights spread evenly over the `band_m` > 0 above the cell's lowest ground: the
+// band in which what lies behind is to be seen.
 //
 // - Ground: where a ray meets it, its height is spread evenly over `relief_m` >= 0 (highest less
 //   lowest of the cell).

@@ -67,8 +67,7 @@ TEST(EstimateSolidity, OfThingsInACellIsTheShareOfRandomRaysThatMeetOne) {
     // Rays have different lengths: somewhat less is stopped than by as many mean rays.
     EXPECT_GT(estimated, met - 0.01) << count << " of " << width << " m";
     EXPECT_LT(estimated, met + 0.11) << count << " of " << width << " m";
-    EXPECT_NEAR(estimate_solidity(64, 0, things, 32), estimated / 4,
-                1e-6F);
+    EXPECT_NEAR(estimate_solidity(64, 0, things, 32), estimated / 4, 1e-6F);
   }
 }
 
