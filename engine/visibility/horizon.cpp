@@ -11,8 +11,8 @@ namespace psygen::visibility {
 namespace {
 
 constexpr double kBinCount = Horizon::kBins;
-constexpr double kTolerance = 1e-3;  // of a bin, for ends that meet and for the boxes' sides
-constexpr double kSlack = 1e-5;      // more than all roundings; a hundredth of a pixel or less
+constexpr double kTolerance = 1e-3;   // of a bin, for ends that meet and for the boxes' sides
+constexpr double kSlack = 1e-5;       // more than all roundings; a hundredth of a pixel or less
 constexpr double kNoDistance = 1e-3;  // nearer points have no direction
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
@@ -52,7 +52,7 @@ struct Horizon::Point {
 // The part of a line that is being followed which lies in one bin.
 struct Horizon::Piece {
   std::int64_t bin = 0;
-  double end = 0;  // in the bin, 0 … 1; where the line came from
+  double end = 0;                    // in the bin, 0 … 1; where the line came from
   double tangent = 0, distance = 0;  // smallest, largest so far
 
   explicit Piece(const Point& start)
@@ -103,9 +103,9 @@ void Horizon::raise(std::size_t bin, float tangent, float distance_m) {
 
 // A piece that ends at `other_end` covers its bin, or a part of it that may meet another one.
 void Horizon::place(const Piece& piece, double other_end) {
-  // Along a straight line the elevation is A · cos(angle − angle0). Where it is negative its minimum
-  // may lie inside, lower than at both ends by 1 / cos(half the width of the bin) at most, which is
-  // far below kSlack.
+  // Along a straight line the elevation is A · cos(angle − angle0). Where it is negative its
+  // minimum may lie inside, lower than at both ends by 1 / cos(half the width of the bin) at most,
+  // which is far below kSlack.
   static_assert(8 / kBinCount * (8 / kBinCount) / 8 < kSlack);
   const auto tangent = static_cast<float>(piece.tangent - kSlack * (1 + std::abs(piece.tangent)));
   const auto distance_m = static_cast<float>(piece.distance * (1 + kSlack));
@@ -190,25 +190,33 @@ bool Horizon::hides_in(std::size_t first, std::size_t last, const glm::vec2& nea
 }
 
 bool Horizon::hides(const core::Bounds& box) const {
-  const int side_x = box.min.x > 0 ? 1 : box.max.x < 0 ? -1 : 0,
-            side_z = box.min.z > 0 ? 1 : box.max.z < 0 ? -1 : 0;
+  const int side_x = box.min.x > 0   ? 1
+                     : box.max.x < 0 ? -1
+                                     : 0,
+            side_z = box.min.z > 0   ? 1
+                     : box.max.z < 0 ? -1
+                                     : 0;
   if (side_x == 0 && side_z == 0) return false;
   // The corners that are first and last, turning from +X over +Z.
   const bool first_max_x = side_z > 0 || (side_z == 0 && side_x < 0),
              last_max_x = side_z < 0 || (side_z == 0 && side_x < 0),
              first_max_z = side_x < 0 || (side_x == 0 && side_z < 0),
              last_max_z = side_x > 0 || (side_x == 0 && side_z < 0);
-  const double begin = bins_of(first_max_x ? box.max.x : box.min.x,
-                               first_max_z ? box.max.z : box.min.z) -
-                       kTolerance;
-  double end = bins_of(last_max_x ? box.max.x : box.min.x, last_max_z ? box.max.z : box.min.z) +
-               kTolerance;
+  const double begin =
+      bins_of(first_max_x ? box.max.x : box.min.x, first_max_z ? box.max.z : box.min.z) -
+      kTolerance;
+  double end =
+      bins_of(last_max_x ? box.max.x : box.min.x, last_max_z ? box.max.z : box.min.z) + kTolerance;
   if (end < begin) end += kBinCount;
   // Counted from one turn before, so that nothing is negative.
   const auto first = static_cast<std::size_t>(begin + kBinCount),
              last = static_cast<std::size_t>(end + kBinCount), wrap = first / kBins * kBins;
-  const glm::vec2 near(side_x > 0 ? box.min.x : side_x < 0 ? -box.max.x : 0.0F,
-                       side_z > 0 ? box.min.z : side_z < 0 ? -box.max.z : 0.0F);
+  const glm::vec2 near(side_x > 0   ? box.min.x
+                       : side_x < 0 ? -box.max.x
+                                    : 0.0F,
+                       side_z > 0   ? box.min.z
+                       : side_z < 0 ? -box.max.z
+                                    : 0.0F);
   const float far_m = glm::length(glm::vec2(std::max(std::abs(box.min.x), std::abs(box.max.x)),
                                             std::max(std::abs(box.min.z), std::abs(box.max.z))));
   if (last < wrap + kBins) return hides_in(first - wrap, last - wrap, near, far_m, box.max.y);

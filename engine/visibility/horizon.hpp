@@ -1,9 +1,9 @@
 // The horizon that the ground makes around the camera, to find what lies hidden behind ridges: for
 // each of kBins directions the highest elevation up to which ground is known to stand, and how far
 // away it stands. Conservative: hides() is true only for boxes of which nothing can be seen; of
-// others it may say so or not. Everything is relative to the camera. Knows no entities. Adding costs
-// a few divisions per point and bin, asking a few operations per bin that the box reaches into.
-// Nothing is allocated after construction; one thread at a time while adding.
+// others it may say so or not. Everything is relative to the camera. Knows no entities. Adding
+// costs a few divisions per point and bin, asking a few operations per bin that the box reaches
+// into. Nothing is allocated after construction; one thread at a time while adding.
 //
 // Use: reset() for each camera position; then, for the leaves of a cut from front to back
 // (quadtree.hpp), first ask hides() with a leaf's box, then add() lines of its surface if it is

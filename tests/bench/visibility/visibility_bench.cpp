@@ -73,82 +73,110 @@ void levels_are_chosen(benchmark::State& state) {
 }
 BENCHMARK(levels_are_chosen);
 
-// Hilly ground, 30 m below the camera on average.
+// A camera over an endless world, with roots up to the view distance.
+struct QuadtreeScene {
+  std::vector<LevelDistances> levels = std::vector<LevelDistances>(8);
+  std::vector<NodeCoord> roots;
+  CutInput input;
+
+  QuadtreeScene(double view_m, double max_error_pixels) {
+    std::vector<double> errors;
+    for (double error = 0.2; errors.size() < levels.size(); error *= 2)
+      errors.push_back(error);
+    split_distances(errors, {.pixels_per_radian = 745, .max_error_pixels = max_error_pixels},
+                    levels);
+    input.camera = {{1000, -2000}, {20, 30, 40}};
+    input.levels = levels;
+    input.view_distance_m = view_m;
+    roots_around(input.camera, input.block_size_m, view_m, 7, roots);
+    input.roots = roots;
+  }
+};
+
+void cut_is_selected(benchmark::State& state) {
+  const QuadtreeScene scene(static_cast<double>(state.range(0)) * 1000, 1);
+  Cut cut;
+  for (auto _ : state) {
+    select_cut(scene.input, cut);
+    benchmark::DoNotOptimize(cut.nodes.data());
+  }
+  state.counters["nodes"] = static_cast<double>(cut.nodes.size());
+}
+BENCHMARK(cut_is_selected)->ArgName("km")->Arg(8)->Arg(32)->Unit(benchmark::kMicrosecond);
+
+// Hilly ground relative to a camera that stands on one of the slopes.
 float hills(float x, float z) {
-  return 40 * std::sin(x * 0.004F) * std::cos(z * 0.005F) + 15 * std::sin(x * 0.021F + z * 0.017F) -
-         70;
+  return 60 * std::sin(x * 0.004F) * std::cos(z * 0.005F) + 15 * std::sin(x * 0.021F + z * 0.017F) -
+         20;
 }
 
-// Nodes around the camera, twice as large at twice the distance, nearest first.
-std::vector<core::Bounds> nodes_around(std::size_t count) {
-  core::RandomStream random(10, 0, 0, 0, core::Purpose::kPosition);
-  std::vector<core::Bounds> nodes;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double turn = random.next_real(0, 6.2832),
-                 distance = 64 * std::exp2(7 * static_cast<double>(i) / static_cast<double>(count));
-    const auto x = static_cast<float>(distance * std::cos(turn)),
-               z = static_cast<float>(distance * std::sin(turn)),
-               side = static_cast<float>(distance / 3), ground = hills(x, z);
-    nodes.push_back({{x, ground - 10, z}, {x + side, ground + 15, z + side}});
-  }
-  return nodes;
-}
+// The leaves of a cut, from front to back: their boxes and for each a line across, 22 points long.
+struct Leaves {
+  std::vector<core::Bounds> boxes;
+  std::vector<std::vector<glm::vec3>> lines;
 
-void horizon_is_built_and_asked(benchmark::State& state) {
-  const std::vector<core::Bounds> nodes = nodes_around(2000);
-  const auto lines = static_cast<std::size_t>(state.range(0));
-  std::vector<std::vector<glm::vec3>> rows;
-  for (std::size_t i = 0; i < lines; ++i) {
-    const core::Bounds& node = nodes[i * nodes.size() / lines];
-    std::vector<glm::vec3> row;
-    for (int k = 0; k < 22; ++k) {
-      const float f = static_cast<float>(k) / 21, x = std::lerp(node.min.x, node.max.x, f);
-      row.emplace_back(x, hills(x, node.max.z), node.max.z);
+  explicit Leaves(const Cut& cut) {
+    for (const CutNode& node : cut.nodes) {
+      if (!node.leaf) continue;
+      std::vector<glm::vec3> line;
+      core::Bounds box = node.box(1e9F, -1e9F);
+      // Across the direction of view, as well as a grid of heights has it.
+      const bool along_x = std::abs(box.center().z) > std::abs(box.center().x);
+      for (int k = 0; k < 22; ++k) {
+        const float f = static_cast<float>(k) / 21;
+        glm::vec3 p = box.center();
+        (along_x ? p.x : p.z) =
+            along_x ? std::lerp(box.min.x, box.max.x, f) : std::lerp(box.min.z, box.max.z, f);
+        p.y = hills(p.x, p.z);
+        line.push_back(p);
+        for (int j = 0; j < 22; ++j) {
+          glm::vec3 q = p;
+          (along_x ? q.z : q.x) = along_x
+                                      ? std::lerp(box.min.z, box.max.z, static_cast<float>(j) / 21)
+                                      : std::lerp(box.min.x, box.max.x, static_cast<float>(j) / 21);
+          box.min.y = std::min(box.min.y, hills(q.x, q.z));
+          box.max.y = std::max(box.max.y, hills(q.x, q.z));
+        }
+      }
+      boxes.push_back(box);
+      lines.push_back(line);
     }
-    rows.push_back(row);
   }
+};
+
+// All 2,000 boxes are asked; the nearest `lines` leaves add a line, if they are not hidden.
+void horizon_is_built_and_asked(benchmark::State& state) {
+  const QuadtreeScene scene(8000, 0.25);
+  Cut cut;
+  select_cut(scene.input, cut);
+  const Leaves leaves(cut);
+  const std::size_t count = std::min<std::size_t>(leaves.boxes.size(), 2000),
+                    lines = std::min<std::size_t>(static_cast<std::size_t>(state.range(0)), count);
   Horizon horizon;
-  std::size_t hidden = 0;
+  std::size_t hidden = 0, added = 0;
   for (auto _ : state) {
     horizon.reset();
-    hidden = 0;
-    for (std::size_t i = 0, line = 0; i < nodes.size(); ++i) {
-      hidden += horizon.hides(nodes[i]) ? 1 : 0;
-      if (line < lines && line * nodes.size() <= i * lines) horizon.add(rows[line++], 0.1F);
+    hidden = added = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (horizon.hides(leaves.boxes[i])) {
+        ++hidden;
+      } else if (added < lines) {
+        ++added;
+        horizon.add(leaves.lines[i], 0.1F);
+      }
     }
     benchmark::DoNotOptimize(hidden);
   }
+  state.counters["boxes"] = static_cast<double>(count);
+  state.counters["lines"] = static_cast<double>(added);
   state.counters["hidden"] = static_cast<double>(hidden);
 }
 BENCHMARK(horizon_is_built_and_asked)
     ->ArgName("lines")
     ->Arg(0)
     ->Arg(200)
-    ->Arg(1000)
+    ->Arg(2000)
     ->Unit(benchmark::kMicrosecond);
-
-void cut_is_selected(benchmark::State& state) {
-  const double view_m = static_cast<double>(state.range(0)) * 1000;
-  std::vector<double> errors;
-  for (double error = 0.2; errors.size() < 8; error *= 2)
-    errors.push_back(error);
-  std::vector<LevelDistances> levels(8);
-  split_distances(errors, {.pixels_per_radian = 745}, levels);
-  CutInput input;
-  input.camera = {{1000, -2000}, {20, 30, 40}};
-  input.levels = levels;
-  input.view_distance_m = view_m;
-  std::vector<NodeCoord> roots;
-  roots_around(input.camera, input.block_size_m, view_m, 7, roots);
-  input.roots = roots;
-  Cut cut;
-  for (auto _ : state) {
-    select_cut(input, cut);
-    benchmark::DoNotOptimize(cut.nodes.data());
-  }
-  state.counters["nodes"] = static_cast<double>(cut.nodes.size());
-}
-BENCHMARK(cut_is_selected)->ArgName("km")->Arg(8)->Arg(32)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace psygen::visibility

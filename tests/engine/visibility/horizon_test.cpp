@@ -36,9 +36,10 @@ class Heightfield {
     for (int z = 0; z < kSide; ++z) {
       for (int x = 0; x < kSide; ++x) {
         const double wx = x * kCell_m, wz = z * kCell_m;
-        heights_.push_back(
-            relief * (std::sin(wx * phase[0] + wz * phase[1]) + std::sin(wx * phase[2]) *
-                      std::sin(wz * phase[3] + phase[4] * 50)) + random.next_real(0, relief / 8));
+        heights_.push_back(relief *
+                               (std::sin(wx * phase[0] + wz * phase[1]) +
+                                std::sin(wx * phase[2]) * std::sin(wz * phase[3] + phase[4] * 50)) +
+                           random.next_real(0, relief / 8));
       }
     }
     camera_y_ = ground(0, 0) + camera_above_m;
@@ -95,8 +96,8 @@ class Heightfield {
 
  private:
   glm::vec3 vertex(int x, int z) const {
-    return glm::vec3(glm::dvec3(x * kCell_m - origin_.x, at(x, z) - camera_y_,
-                                z * kCell_m - origin_.y));
+    return glm::vec3(
+        glm::dvec3(x * kCell_m - origin_.x, at(x, z) - camera_y_, z * kCell_m - origin_.y));
   }
   double at(int x, int z) const { return heights_[static_cast<std::size_t>(z * kSide + x)]; }
   // Cells are split along the diagonal on which x + z is constant.
@@ -208,12 +209,12 @@ TEST(Horizon, ARidgeHidesWhatIsLowerBehindItAndNothingElse) {
     horizon.add(ridge(sign * 100, 10), 0);
     EXPECT_TRUE(horizon.hides(box_at(0, sign * 200, 18)));
     EXPECT_TRUE(horizon.hides(box_at(-150, sign * 200, 18)));
-    EXPECT_FALSE(horizon.hides(box_at(0, sign * 200, 20)));   // higher
-    EXPECT_FALSE(horizon.hides(box_at(0, sign * 60, -20)));   // before it
-    EXPECT_FALSE(horizon.hides(box_at(0, sign * 100, -20)));  // around it
+    EXPECT_FALSE(horizon.hides(box_at(0, sign * 200, 20)));    // higher
+    EXPECT_FALSE(horizon.hides(box_at(0, sign * 60, -20)));    // before it
+    EXPECT_FALSE(horizon.hides(box_at(0, sign * 100, -20)));   // around it
     EXPECT_FALSE(horizon.hides(box_at(0, -sign * 200, -20)));  // on the other side
-    EXPECT_FALSE(horizon.hides(box_at(900, sign * 150, 0)));  // beside it
-    EXPECT_FALSE(horizon.hides(box_at(0, 0, -20)));           // below the camera
+    EXPECT_FALSE(horizon.hides(box_at(900, sign * 150, 0)));   // beside it
+    EXPECT_FALSE(horizon.hides(box_at(0, 0, -20)));            // below the camera
   }
 }
 
