@@ -257,6 +257,45 @@ TEST(Horizon, ALineThatCoversABinInPartRaisesNothing) {
   EXPECT_NEAR(horizon.elevation(100, 0.05F), 0.4F, 1e-3F);  // both parts together
 }
 
+// A line in the plane x = 100 m, from and to a number of bins (the first one is 0.39 m wide there).
+std::vector<glm::vec3> line_in_bins(double from, double to, float height) {
+  const auto z = [](double bins) { return static_cast<float>(100 * bins / (256 - bins)); };
+  return {{100, height, z(from)}, {100, height, z(to)}};
+}
+
+TEST(Horizon, TwoPartsOfABinThatMeetCoverItUpToTheLowerOne) {
+  for (const bool higher_first : {false, true}) {
+    Horizon horizon;
+    horizon.add(line_in_bins(9.5, 10.6, higher_first ? 50 : 30), 0);
+    horizon.add(line_in_bins(10.4, 11.5, higher_first ? 30 : 50), 0);
+    EXPECT_NEAR(horizon.elevation(100, 100 * 10.5F / 245.5F), 0.3F, 1e-3F);
+    EXPECT_EQ(horizon.elevation(100, 100 * 9.5F / 246.5F), kNothing);
+    EXPECT_EQ(horizon.elevation(100, 100 * 11.5F / 244.5F), kNothing);
+  }
+}
+
+TEST(Horizon, TwoPartsOfABinHideWhatIsBehindBoth) {
+  for (const bool far_left : {true, false}) {
+    std::vector<glm::vec3> left = line_in_bins(9.5, 10.6, 50), right = line_in_bins(10.4, 11.5, 50);
+    for (glm::vec3& point : far_left ? left : right)
+      point *= 3;  // 300 m away
+    Horizon horizon;
+    horizon.add(left, 0);
+    horizon.add(right, 0);
+    EXPECT_FALSE(horizon.hides({{200, -9, 8.3F}, {201, 0, 8.5F}}));
+    EXPECT_TRUE(horizon.hides({{400, -9, 16.6F}, {401, 0, 17}}));
+  }
+}
+
+TEST(Horizon, TwoPartsOfABinWithAGapBetweenThemDoNotCoverIt) {
+  Horizon horizon;
+  horizon.add(line_in_bins(9.5, 10.4, 50), 0);
+  horizon.add(line_in_bins(10.6, 11.5, 50), 0);
+  EXPECT_EQ(horizon.elevation(100, 100 * 10.2F / 245.8F), kNothing);
+  horizon.add(line_in_bins(9.5, 10.7, 20), 0);  // lower, but it closes the gap
+  EXPECT_NEAR(horizon.elevation(100, 100 * 10.2F / 245.8F), 0.2F, 1e-3F);
+}
+
 TEST(Horizon, AClosedLineHidesAllAroundAcrossTheSeamOfTheBins) {
   std::vector<glm::vec3> ring;
   for (int i = 0; i <= 100; ++i) {
