@@ -1,9 +1,14 @@
-// How long visibility takes: PLP over about 100,000 blocks, box tests against the frustum, choosing
-// levels. Run with --benchmark_repetitions=9 and read the medians.
+// How long visibility takes: PLP over about 100,000 blocks, box tests against the frustum and the
+// horizon, the cut through the quadtree, choosing levels. Run with --benchmark_repetitions=9 and
+// read the medians.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+
+#include "engine/visibility/horizon.hpp"
 #include "engine/visibility/level_choice.hpp"
 #include "engine/visibility/plp.hpp"
+#include "engine/visibility/quadtree.hpp"
 #include "tests/engine/visibility/scenes.hpp"
 
 namespace psygen::visibility {
@@ -67,6 +72,111 @@ void levels_are_chosen(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kCount));
 }
 BENCHMARK(levels_are_chosen);
+
+// A camera over an endless world, with roots up to the view distance.
+struct QuadtreeScene {
+  std::vector<LevelDistances> levels = std::vector<LevelDistances>(8);
+  std::vector<NodeCoord> roots;
+  CutInput input;
+
+  QuadtreeScene(double view_m, double max_error_pixels) {
+    std::vector<double> errors;
+    for (double error = 0.2; errors.size() < levels.size(); error *= 2)
+      errors.push_back(error);
+    split_distances(errors, {.pixels_per_radian = 745, .max_error_pixels = max_error_pixels},
+                    levels);
+    input.camera = {{1000, -2000}, {20, 30, 40}};
+    input.levels = levels;
+    input.view_distance_m = view_m;
+    roots_around(input.camera, input.block_size_m, view_m, 7, roots);
+    input.roots = roots;
+  }
+};
+
+void cut_is_selected(benchmark::State& state) {
+  const QuadtreeScene scene(static_cast<double>(state.range(0)) * 1000, 1);
+  Cut cut;
+  for (auto _ : state) {
+    select_cut(scene.input, cut);
+    benchmark::DoNotOptimize(cut.nodes.data());
+  }
+  state.counters["nodes"] = static_cast<double>(cut.nodes.size());
+}
+BENCHMARK(cut_is_selected)->ArgName("km")->Arg(8)->Arg(32)->Unit(benchmark::kMicrosecond);
+
+// Hilly ground relative to a camera that stands on one of the slopes.
+float hills(float x, float z) {
+  return 60 * std::sin(x * 0.004F) * std::cos(z * 0.005F) + 15 * std::sin(x * 0.021F + z * 0.017F) -
+         20;
+}
+
+// The leaves of a cut, from front to back: their boxes and for each a line across, 22 points long.
+struct Leaves {
+  std::vector<core::Bounds> boxes;
+  std::vector<std::vector<glm::vec3>> lines;
+
+  explicit Leaves(const Cut& cut) {
+    for (const CutNode& node : cut.nodes) {
+      if (!node.leaf) continue;
+      std::vector<glm::vec3> line;
+      core::Bounds box = node.box(1e9F, -1e9F);
+      // Across the direction of view, as well as a grid of heights has it.
+      const bool along_x = std::abs(box.center().z) > std::abs(box.center().x);
+      for (int k = 0; k < 22; ++k) {
+        const float f = static_cast<float>(k) / 21;
+        glm::vec3 p = box.center();
+        (along_x ? p.x : p.z) =
+            along_x ? std::lerp(box.min.x, box.max.x, f) : std::lerp(box.min.z, box.max.z, f);
+        p.y = hills(p.x, p.z);
+        line.push_back(p);
+        for (int j = 0; j < 22; ++j) {
+          glm::vec3 q = p;
+          (along_x ? q.z : q.x) = along_x
+                                      ? std::lerp(box.min.z, box.max.z, static_cast<float>(j) / 21)
+                                      : std::lerp(box.min.x, box.max.x, static_cast<float>(j) / 21);
+          box.min.y = std::min(box.min.y, hills(q.x, q.z));
+          box.max.y = std::max(box.max.y, hills(q.x, q.z));
+        }
+      }
+      boxes.push_back(box);
+      lines.push_back(line);
+    }
+  }
+};
+
+// All 2,000 boxes are asked; the nearest `lines` leaves add a line, if they are not hidden.
+void horizon_is_built_and_asked(benchmark::State& state) {
+  const QuadtreeScene scene(8000, 0.25);
+  Cut cut;
+  select_cut(scene.input, cut);
+  const Leaves leaves(cut);
+  const std::size_t count = std::min<std::size_t>(leaves.boxes.size(), 2000),
+                    lines = std::min<std::size_t>(static_cast<std::size_t>(state.range(0)), count);
+  Horizon horizon;
+  std::size_t hidden = 0, added = 0;
+  for (auto _ : state) {
+    horizon.reset();
+    hidden = added = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (horizon.hides(leaves.boxes[i])) {
+        ++hidden;
+      } else if (added < lines) {
+        ++added;
+        horizon.add(leaves.lines[i], 0.1F);
+      }
+    }
+    benchmark::DoNotOptimize(hidden);
+  }
+  state.counters["boxes"] = static_cast<double>(count);
+  state.counters["lines"] = static_cast<double>(added);
+  state.counters["hidden"] = static_cast<double>(hidden);
+}
+BENCHMARK(horizon_is_built_and_asked)
+    ->ArgName("lines")
+    ->Arg(0)
+    ->Arg(200)
+    ->Arg(2000)
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace psygen::visibility
