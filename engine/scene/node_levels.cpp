@@ -21,7 +21,7 @@ constexpr double kTerrainErrorSeen = 0.5;
 constexpr float kSkirtPerError = 2.0F, kLeastSkirtM = 1.0F;
 // What a merged mesh of level 1 is off, in parts of the height of what it stands for; with every
 // level twice as much.
-constexpr double kMergedErrorPerHeight = 0.15;
+constexpr double kMergedErrorPerHeight = 0.06;
 // Beyond all distances, and finite.
 constexpr double kEverywhereM = 1e30;
 // Meshes of nodes have at least so many triangles; else the next finer level is used.
@@ -68,8 +68,9 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
     level.size_m = std::ldexp(world.block_size_m(), static_cast<int>(k));
     level.mesh_level = coarse ? 1 : 0;
     level.bounds = terrain.bounds(p);
-    level.error_m = kTerrainErrorSeen * terrain.level_error_m(p, 1);
-    level.skirt_m = kLeastSkirtM + kSkirtPerError * static_cast<float>(2 * level.error_m);
+    level.ground_error_m = terrain.level_error_m(p, 1);
+    level.error_m = kTerrainErrorSeen * level.ground_error_m;
+    level.skirt_m = kLeastSkirtM + kSkirtPerError * static_cast<float>(level.ground_error_m);
     if (merged == nullptr || k == 0 || k > world::kMaxMergedLevel) continue;
     const models::Parameters all = world::merged_parameters({}, static_cast<int>(k));
     level.merged = merged->mesh_size(all, 0).vertex_count > 0;

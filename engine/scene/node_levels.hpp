@@ -15,7 +15,8 @@ namespace psygen::scene {
 
 struct NodeLevel {
   double size_m = 0;             // side of a node
-  double error_m = 0;            // of what its nodes draw (blocks: when not near)
+  double ground_error_m = 0;     // of the ground that its nodes draw (blocks: when not near)
+  double error_m = 0;            // with what stands on it
   float skirt_m = 0;             // how far the borders of its ground hang down
   std::uint16_t mesh_level = 0;  // of the terrain type, that its nodes draw (blocks: when not near)
   bool merged = false;           // its nodes have one mesh for all models on them

@@ -177,6 +177,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   }
   s.memory = renderer != nullptr ? &renderer->geometry() : s.heap.get();
   Synthesis& synthesis = s.synthesis;
+  synthesis.memory = s.memory;
   synthesis.cache =
       std::make_unique<synthesis::GeometryCache>(*s.memory, facts.registry, settings.budget_bytes);
   synthesis.cost = std::make_unique<synthesis::CostModel>(facts.registry);

@@ -13,6 +13,7 @@
 #include "engine/models/registry.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
+#include "engine/scene/ground_lines.hpp"
 #include "engine/scene/node_grid.hpp"
 #include "engine/scene/node_levels.hpp"
 #include "engine/scene/settings.hpp"
@@ -83,7 +84,7 @@ struct LevelView {
   visibility::PlpResult plp;
   std::vector<core::Bounds> bounds;  // relative to the camera
   std::vector<float> deadlines;      // seconds until it is expected in view; +inf: it is not
-  std::vector<std::uint8_t> chosen;  // 1: its entity is in View::chosen
+  std::vector<std::uint8_t> chosen;  // not 0: its entity is in View::chosen
 };
 
 // A node that matters to the picture of this tick.
@@ -101,7 +102,8 @@ struct View {
   visibility::Frustum frustum;
   visibility::Cut cut;  // what should be drawn
   std::vector<visibility::NodeCoord> roots;
-  std::vector<std::uint8_t> in_view;  // per node of the cut
+  visibility::Horizon horizon;        // of the ground that is ready
+  std::vector<std::uint8_t> in_view;  // per node of the cut, and not behind the horizon
   std::vector<LevelView> levels;
   std::vector<ChosenNode> chosen;     // of the cut, ancestors first, front to back
   std::vector<ecs::Entity> expected;  // nodes expected in view, soonest first
@@ -113,6 +115,7 @@ struct Synthesis {
   std::unique_ptr<synthesis::CostModel> cost;
   std::unique_ptr<synthesis::SynthesisManager> manager;
   std::unique_ptr<synthesis::Planner> planner;
+  const core::GeometryMemory* memory = nullptr;  // where meshes lie
   std::vector<synthesis::Want> wants;
   std::vector<synthesis::Completion> finished;  // synthesised, not yet resident; oldest first
   struct Ready {
@@ -136,8 +139,9 @@ struct DrawLists {
 struct Counters {
   std::uint32_t nodes_created = 0, nodes_destroyed = 0;
   std::uint32_t nodes_in_view = 0;
-  std::uint32_t holes = 0;   // nodes in view that are drawn at no level
-  std::uint32_t coarse = 0;  // nodes in view coarser than wanted by more than one level
+  std::uint32_t nodes_hidden = 0;  // of the cut, behind ridges
+  std::uint32_t holes = 0;         // nodes in view that are drawn at no level
+  std::uint32_t coarse = 0;        // nodes in view coarser than wanted by more than one level
   double missing_pixels_percent = 0;
   std::uint32_t requests = 0;  // wanted, but not there
   std::uint32_t refused = 0;   // of these, for want of memory

@@ -74,8 +74,8 @@ void create_node(const WorldFacts& facts, const visibility::NodeCoord& at,
                  std::vector<world::Placement>& scratch, Streaming& streaming,
                  ecs::World& entities) {
   const NodeLevel& level = facts.levels[at.level];
-  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, Placed, Detail,
-                                       Source, Demand, Mesh>(1);
+  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundLines,
+                                       Placed, Detail, Source, Demand, Mesh>(1);
   created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y};
   fill(created, 0, facts.registry, visibility::corner_block(at),
        {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), node_terrain(facts.world, at)},

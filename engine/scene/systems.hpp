@@ -19,7 +19,7 @@ void streaming_system(const Settings& settings, const Camera& camera, const Worl
 
 // Chooses the cut through the quadtree and runs Prioritized-Layered Projection over the nodes of
 // each level; what predicted cameras see gets a deadline.
-using VisibilityQuery = ecs::Query<const Node, const Lacking, Visibility>;
+using VisibilityQuery = ecs::Query<const Node, const Lacking, const GroundLines, Visibility>;
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                        const Streaming& streaming, const Synthesis& synthesis,
                        VisibilityQuery nodes, View& view, Counters& counters);
@@ -36,7 +36,7 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
                       Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
-using UploadQuery = ecs::Query<Mesh, Demand, Node>;
+using UploadQuery = ecs::Query<Mesh, Demand, Node, GroundLines>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);

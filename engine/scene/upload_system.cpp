@@ -77,12 +77,21 @@ std::size_t count_within_budget(const Synthesis& synthesis, std::uint64_t budget
 }
 
 // From now on the ground of a node is known: as far as the mesh is off, it may be higher or lower.
-void narrow(Node& node, const synthesis::MeshRecord& record, const WorldFacts& facts) {
+void note_ground(Node& node, GroundLines& lines, const synthesis::MeshRecord& record,
+                 const WorldFacts& facts, const core::GeometryMemory& memory) {
   const NodeLevel& level = facts.levels[node.at.level];
   const bool finest = node.at.level == 0 && record.key.level == 0;
-  const float off_m = finest ? 0.0F : static_cast<float>(2 * level.error_m);
-  node.low_m = std::max(level.bounds.min.y, record.tight.min.y - off_m);
-  node.high_m = std::min(level.bounds.max.y, record.tight.max.y + off_m);
+  const auto off_m = static_cast<float>(level.ground_error_m);
+  const float possible_m = finest ? 0.0F : off_m;
+  node.low_m = std::max(level.bounds.min.y, record.tight.min.y - possible_m);
+  node.high_m = std::min(level.bounds.max.y, record.tight.max.y + possible_m);
+  const std::span<const std::byte> bytes = memory.vertex_bytes(record.range);
+  if (bytes.empty()) return;
+  // The finest ground may give way to the next: both must lie above the lines.
+  lines = ground_lines({reinterpret_cast<const core::TerrainVertex*>(bytes.data()),
+                        bytes.size() / sizeof(core::TerrainVertex)},
+                       level.bounds.min.y, level.bounds.max.y - level.bounds.min.y,
+                       node.at.level == 0 ? off_m : 0.0F);
 }
 
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.
@@ -106,7 +115,9 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
   if (replaces) {
     synthesis.cache->set_rank(entities.get<Mesh>(owner)->handle, synthesis::Rank::unwanted());
   }
-  if (node != nullptr) narrow(*node, record, facts);
+  if (node != nullptr) {
+    note_ground(*node, *entities.get<GroundLines>(owner), record, facts, *synthesis.memory);
+  }
   landings.push_back({owner, {record.range, handle, shared_indices}});
 }
 

@@ -7,11 +7,15 @@
 #include <limits>
 #include <span>
 
+#include "engine/models/terrain.hpp"
 #include "engine/scene/missing.hpp"
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
 namespace {
+
+// LevelView::chosen of nodes in view, and of those that are chosen only for their sake.
+constexpr std::uint8_t kInView = 1, kBeside = 2;
 
 // With room for what stands on the ground and reaches over the node's edge.
 core::Bounds node_bounds(const WorldFacts& facts, const glm::vec3& corner, double size_m,
@@ -126,19 +130,47 @@ void count_missing_node(const Camera& camera, const core::Bounds& box, Counters&
       covered_percent(camera, box.center(), glm::length(box.half_extent()));
 }
 
+// Which nodes of the cut are in view: in the frustum, and not behind the ground of others that are
+// ready to be drawn. Front to back, so that each is held against what lies before it.
+void find_hidden(const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
+                 const VisibilityQuery& nodes, View& view, Counters& counters) {
+  const std::vector<visibility::CutNode>& cut = view.cut.nodes;
+  view.horizon.reset();
+  view.in_view.assign(cut.size(), 0);
+  const glm::dvec3& local = camera.pose.position.local;
+  const bool above_ground =
+      local.y >
+      models::ground_height_m(facts.world.terrain, camera.pose.position.block, local.x, local.z);
+  for (std::uint32_t i = 0; i < cut.size();) {
+    const visibility::NodeCoord& at = cut[i].node;
+    const NodeGrid& grid = streaming.grids[at.level];
+    const std::size_t cell = grid.window_index(at.coord);
+    const core::Bounds& box = view.levels[at.level].bounds[cell];
+    const bool in_frustum = view.levels[at.level].plp.in_view[cell] != 0;
+    const bool hidden = in_frustum && view.horizon.hides(box);
+    counters.nodes_hidden += hidden ? 1 : 0;
+    view.in_view[i] = in_frustum && !hidden ? 1 : 0;
+    const ecs::Entity entity = grid.entity_of(at.coord);
+    if (above_ground && cut[i].leaf && view.in_view[i] != 0 && nodes.alive(entity)) {
+      const GroundLines& lines = *nodes.get<GroundLines>(entity);
+      if (lines.lower_by_m >= 0 && nodes.get<Lacking>(entity)->meshes == 0)
+        add_lines(lines, corner_of(facts, camera, at), cut[i].side_m, view.horizon);
+    }
+    i = view.in_view[i] != 0 ? i + 1 : cut[i].end;
+  }
+}
+
 // The nodes of the cut that are in view, and those without which one of these cannot be drawn.
 void list_chosen(const Camera& camera, const Streaming& streaming, const VisibilityQuery& nodes,
                  View& view, Counters& counters) {
   const std::vector<visibility::CutNode>& cut = view.cut.nodes;
   view.chosen.clear();
-  view.in_view.assign(cut.size(), 0);
   std::vector<std::uint8_t> covered(cut.size(), 0);  // an ancestor or the node itself is complete
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const visibility::CutNode& node = cut[i];
     const NodeGrid& grid = streaming.grids[node.node.level];
     const std::size_t cell = grid.window_index(node.node.coord);
     LevelView& level = view.levels[node.node.level];
-    view.in_view[i] = level.plp.in_view[cell];
     const bool root = node.parent == visibility::kNoNode;
     const bool covered_above = !root && covered[node.parent] != 0;
     const ecs::Entity entity = grid.entity_of(node.node.coord);
@@ -148,7 +180,7 @@ void list_chosen(const Camera& camera, const Streaming& streaming, const Visibil
     if (alive) {
       view.chosen.push_back(
           {entity, node.node.level, node.leaf, node.fine, view.in_view[i] != 0, covered_above});
-      level.chosen[cell] = 1;
+      level.chosen[cell] = view.in_view[i] != 0 ? kInView : kBeside;
     } else if (node.leaf && view.in_view[i] != 0 && !covered_above) {
       count_missing_node(camera, level.bounds[cell], counters);
     }
@@ -165,7 +197,7 @@ void write_visibility(const View& view, const Streaming& streaming, const Visibi
       Visibility& visibility = visibilities[i];
       visibility.distance_m = distance_to(level.bounds[cell]);
       visibility.layer = level.plp.layer[cell];
-      visibility.in_view = level.chosen[cell] != 0 && level.plp.in_view[cell] != 0 ? 1 : 0;
+      visibility.in_view = level.chosen[cell] == kInView ? 1 : 0;
       visibility.deadline_s = visibility.in_view != 0 ? 0.0F : level.deadlines[cell];
     }
   });
@@ -214,6 +246,7 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
   for (const Camera::Prediction& prediction : camera.predictions)
     expect(camera, prediction, facts, streaming, view);
   choose_cut(settings, camera, facts, streaming, synthesis.settling, view);
+  find_hidden(camera, facts, streaming, nodes, view, counters);
   list_chosen(camera, streaming, nodes, view, counters);
   write_visibility(view, streaming, nodes);
   list_others(streaming, nodes, view);
