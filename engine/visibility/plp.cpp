@@ -85,10 +85,7 @@ class Search {
     measure_cells();
     find_layers_and_keys();
     deal_into_buckets();
-    const std::size_t visits = std::min<std::size_t>(in_.max_visits, cells_);
-    visit(visits);
-    out_.front.clear();
-    if (visits < cells_) stop(visits);
+    visit(std::min<std::size_t>(in_.max_visits, cells_));
   }
 
  private:
@@ -173,47 +170,75 @@ class Search {
 
   static std::size_t at(std::int64_t cell) { return static_cast<std::size_t>(cell); }
 
+  // All keys of cells in view, then all of cells out of view.
   std::size_t bucket_of(std::size_t cell) const {
-    return out_.key[cell] * std::size_t{2} + (1U - out_.in_view[cell]);
+    return out_.key[cell] + (out_.in_view[cell] != 0 ? 0 : keys_);
   }
 
   void deal_into_buckets() {
-    const std::uint32_t largest = *std::ranges::max_element(out_.key);
-    out_.bucket_ends.assign((std::size_t{largest} + 1) * 2, 0);
+    keys_ = std::size_t{*std::ranges::max_element(out_.key)} + 1;
+    out_.bucket_ends.assign(2 * keys_, 0);
     for (std::size_t cell = 0; cell < cells_; ++cell)
       ++out_.bucket_ends[bucket_of(cell)];
     std::uint32_t sum = 0;
     for (std::uint32_t& end : out_.bucket_ends)
       sum += std::exchange(end, sum);
     out_.sorted.resize(cells_);
-    for (std::size_t cell = 0; cell < cells_; ++cell)
+    for (std::size_t cell = 0; cell < cells_; ++cell) {
       out_.sorted[out_.bucket_ends[bucket_of(cell)]++] =
           (std::uint64_t{out_.distance_bits[cell]} << 32) | cell;
-  }
-
-  // Cells leave the front bucket by bucket, until the budget ends.
-  void visit(std::size_t visits) {
-    out_.visible.clear();
-    out_.prefetch.clear();
-    std::size_t begin = 0, bucket = 0;
+    }
+    std::size_t begin = 0;
     for (const std::uint32_t end : out_.bucket_ends) {
-      auto& cells = bucket++ % 2 == 0 ? out_.visible : out_.prefetch;
       if (end - begin > 1)
         sort_keys(std::span(out_.sorted).subspan(begin, end - begin), out_.scratch);
-      for (; begin < std::min<std::size_t>(end, visits); ++begin)
-        cells.push_back(cell_of(out_.sorted[begin]));
       begin = end;
     }
   }
 
-  // The budget has ended: the clean neighbours of what was visited are the front.
-  void stop(std::size_t visits) {
-    const auto later = std::span(out_.sorted).subspan(visits);
-    for (const std::uint64_t key : later)
-      out_.layer[cell_of(key)] = kUnvisited;
-    if (visits == 0) return out_.front.push_back(cell_of(out_.sorted[0]));
-    for (const std::uint64_t key : later) {
-      if (has_visited_neighbour(cell_of(key))) out_.front.push_back(cell_of(key));
+  void list(std::size_t first, std::size_t last, std::vector<std::uint32_t>& cells) const {
+    cells.resize(last - first);
+    std::transform(out_.sorted.begin() + static_cast<std::ptrdiff_t>(first),
+                   out_.sorted.begin() + static_cast<std::ptrdiff_t>(last), cells.begin(), cell_of);
+  }
+
+  // The first `visits` cells leave the front. Where the budget ends among the cells of one key,
+  // those in view come first.
+  void visit(std::size_t visits) {
+    const std::size_t in_view = out_.bucket_ends[keys_ - 1];
+    std::size_t key = 0, near_end = in_view, far_end = cells_;
+    if (visits < cells_) {
+      while (out_.bucket_ends[key] + (out_.bucket_ends[key + keys_] - in_view) <= visits)
+        ++key;
+      const std::size_t far_begin = key == 0 ? in_view : out_.bucket_ends[key + keys_ - 1];
+      near_end = std::min<std::size_t>(out_.bucket_ends[key], visits - (far_begin - in_view));
+      far_end = in_view + visits - near_end;
+    }
+    list(0, near_end, out_.visible);
+    list(in_view, far_end, out_.prefetch);
+    out_.front.clear();
+    if (visits < cells_) stop(key, near_end, far_end);
+  }
+
+  // The budget has ended among the cells of `key`: of what was not visited, the neighbours of what
+  // was are the front.
+  void stop(std::size_t key, std::size_t near_begin, std::size_t far_begin) {
+    const std::size_t in_view = out_.bucket_ends[keys_ - 1];
+    for (std::size_t i = near_begin; i < in_view; ++i)
+      out_.layer[cell_of(out_.sorted[i])] = kUnvisited;
+    for (std::size_t i = far_begin; i < cells_; ++i)
+      out_.layer[cell_of(out_.sorted[i])] = kUnvisited;
+    const bool nothing_visited = near_begin == 0 && far_begin == in_view;
+    const auto keep = [&](std::size_t& begin, std::size_t end) {
+      for (; begin < end; ++begin) {
+        const std::uint32_t cell = cell_of(out_.sorted[begin]);
+        if (has_visited_neighbour(cell) || (nothing_visited && out_.key[cell] == 0))
+          out_.front.push_back(cell);
+      }
+    };
+    for (; key < keys_; ++key) {
+      keep(near_begin, out_.bucket_ends[key]);
+      keep(far_begin, out_.bucket_ends[key + keys_]);
     }
   }
 
@@ -232,6 +257,7 @@ class Search {
   PlpResult& out_;
   const std::uint32_t start_x_, start_z_;
   const std::size_t cells_ = in_.bounds.size();
+  std::size_t keys_ = 0;  // the largest key and one
 };
 
 std::uint32_t clamp_to_axis(std::int32_t corner, std::uint32_t length, std::int32_t block) {

@@ -69,7 +69,7 @@ struct PlpResult {
   // sort like the float, above the cell.
   std::vector<std::uint32_t> distance_bits, behind;  // per cell
   std::vector<std::uint32_t> diagonal_shares;        // t · 256 along a ring
-  std::vector<std::uint32_t> bucket_ends;            // two buckets for each key: in view, out of it
+  std::vector<std::uint32_t> bucket_ends;  // for each key: of cells in view, then out of it
   std::vector<std::uint64_t> sorted, scratch;
 };
 
