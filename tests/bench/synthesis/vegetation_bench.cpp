@@ -16,8 +16,8 @@ constexpr const char* kFiles[] = {"paper", "five_species", "silver_combe"};
 // Nodes after nodes of one level. Arguments: world, node level.
 void vegetation(benchmark::State& state) {
   models::Registry registry = models::make_standard_registry();
-  const std::string file = std::string(PSYGEN_SOURCE_DIR) + "/game/worlds/" +
-                           kFiles[state.range(0)] + ".toml";
+  const std::string file =
+      std::string(PSYGEN_SOURCE_DIR) + "/game/worlds/" + kFiles[state.range(0)] + ".toml";
   auto loaded = load_world(file, registry);
   if (!loaded) return state.SkipWithError(loaded.error().message.c_str());
   const auto type = make_merged_type(std::make_shared<const World>(*std::move(loaded)), registry);
