@@ -63,7 +63,8 @@ TEST(FarForms, FaceOutwards) {
     for (const glm::vec3& place : places)
       middle += place / static_cast<float>(places.size());
     for (std::size_t i = 0; i < indices.size(); i += 3) {
-      const glm::vec3 a = places[indices[i]], b = places[indices[i + 1]], c = places[indices[i + 2]];
+      const glm::vec3 a = places[indices[i]], b = places[indices[i + 1]],
+                      c = places[indices[i + 2]];
       EXPECT_GT(glm::dot(glm::cross(b - a, c - a), a + b + c - 3.0F * middle), 0);
     }
   }
@@ -101,8 +102,8 @@ TEST(FarForms, SheetsHaveTheAreasOfTheModelsThatTheyStandFor) {
       const double angle = 0.2617993878 * k;
       FormMesh mesh;
       make_sheet(crown(), sheet,
-                 {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))},
-                 {0, 0}, mesh);
+                 {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))}, {0, 0},
+                 mesh);
       const Silhouette area =
           silhouette_of(places_of(Form::kSheet, mesh), indices_of(Form::kSheet, mesh));
       sum.side_m2 += area.side_m2 / kTurns;

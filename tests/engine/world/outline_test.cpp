@@ -64,8 +64,8 @@ TEST(Outline, OfACrownIsItsExtremeCornersAndTheTrunkIsApart) {
 }
 
 TEST(Outline, WithoutLeavesIsThatOfEverything) {
-  const auto outline = outline_of(vertices_of({{{1, 0, 0}, 0}, {{-1, 2, 1}, 0}, {{0, 1, -1}, 0}}),
-                                  kBox);
+  const auto outline =
+      outline_of(vertices_of({{{1, 0, 0}, 0}, {{-1, 2, 1}, 0}, {{0, 1, -1}, 0}}), kBox);
   ASSERT_TRUE(outline);
   EXPECT_FALSE(outline->leafy);
   EXPECT_EQ(outline->trunk_radius, 0);
