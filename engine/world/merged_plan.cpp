@@ -10,9 +10,10 @@ namespace psygen::world {
 namespace {
 
 // A node of side s is drawn from about 2.4 s on, by 700 pixels a radian; what is less wide and high
-// than 1.2 of them then is left out, but trees and bushes are first put together, up to so many.
+// than 1.2 of them then is left out, but trees and bushes are first put together, up to so many or
+// twice as many as all are.
 constexpr double kNearestSides = 2.4, kPixelsPerRadian = 700, kLeastPixels = 1.2;
-constexpr std::uint32_t kMostTogether = 32;
+constexpr std::uint32_t kMostTogether = 8;
 constexpr std::uint32_t kMostThinning = 1U << 26;  // more than there are in any node
 constexpr std::uint64_t kMostVertices = 65'536;
 
@@ -31,7 +32,7 @@ void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint3
     const std::uint32_t least =
         far.empty() ? 0 : least_together(far.mean_silhouette().side_m2, kNearestSides * side);
     how.together = std::max(thinning, far.is_leafy() ? least : 1);
-    const std::uint32_t most = far.is_leafy() ? std::max(thinning, kMostTogether) : thinning;
+    const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMostTogether) : thinning;
     if (!far.empty() && least <= most) {
       how.form = how.together > 1 ? Form::kSheet : far.form_at(plan.level);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * plan.level);
