@@ -124,7 +124,7 @@ Form FarScatter::form_at(int node_level) const {
   return trunk_ ? Form::kSpindleTrunk : Form::kSpindle;
 }
 
-const Representative& FarScatter::like(float width_m, float height_m, std::uint64_t hash) const {
+Likeness FarScatter::like(float width_m, float height_m, std::uint64_t hash) const {
   const std::size_t count = representatives_.size(), start = hash % count;
   std::size_t best = start;
   float least = 1e30F;
@@ -133,13 +133,15 @@ const Representative& FarScatter::like(float width_m, float height_m, std::uint6
     const Representative& r = representatives_[i];
     const float apart =
         std::max(ratio(width_m, r.bounds_width_m), ratio(height_m, r.bounds_height_m));
-    if (apart < kAlike) return r;
     if (apart < least) {
       least = apart;
       best = i;
     }
+    if (apart < kAlike) break;
   }
-  return representatives_[best];
+  const Representative& r = representatives_[best];
+  return {&r, r.bounds_width_m > 0 ? width_m / r.bounds_width_m : 1,
+          r.bounds_height_m > 0 ? height_m / r.bounds_height_m : 1};
 }
 
 FarScatter::Reach FarScatter::reach(float models) const {

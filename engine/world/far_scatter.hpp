@@ -19,6 +19,12 @@ struct Representative {
   float bounds_width_m = 0, bounds_height_m = 0;
 };
 
+// A representative that is like an instance once it is so many times as wide and as high.
+struct Likeness {
+  const Representative* model;
+  float across, up;
+};
+
 class FarScatter {
  public:
   static constexpr std::uint32_t kRepresentatives = 32;
@@ -47,7 +53,7 @@ class FarScatter {
   const Stretch& stretch_of(Form form) const { return stretches_[static_cast<std::size_t>(form)]; }
 
   // One that is like the instance with these bounds; which one of those is up to `hash`.
-  const Representative& like(float width_m, float height_m, std::uint64_t hash) const;
+  Likeness like(float width_m, float height_m, std::uint64_t hash) const;
 
   // Largest reach of any corner from the foot: to the side, up and down (positive), with forms that
   // stand for up to `models` instances.
