@@ -64,12 +64,22 @@ FlyCommand::FlyCommand(CLI::App& cli)
        "Levels of detail: on, or off for full detail everywhere")
       ->check(CLI::IsMember({"on", "off"}))
       ->default_str("on");
-  c.add_option("--view-distance", scene.view_distance_m, "Metres; blocks beyond do not exist")
+  c.add_option("--view-distance", scene.view_distance_m, "Metres; nothing beyond exists")
       ->capture_default_str()
       ->check(number_between(32, 65536));
   c.add_option("--error", scene.max_error_pixels, "Allowed error of a level of detail in pixels")
       ->capture_default_str()
       ->check(number_between(0.1, 1000));
+  c.add_option_function<double>(
+       "--target-fps", [this](double hz) { options_.target_hz = hz; },
+       "Hold this frame rate with a larger error (up to 4 times); 0: fixed error")
+      ->default_str("60 in a window, 0 headless")
+      ->check(number_between(0, 1000));
+  c.add_option_function<std::string>(
+       "--occlusion", [this](const std::string& text) { options_.scene.occlusion = text == "on"; },
+       "Leave out what lies behind ridges: on, off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->default_str("on");
   c.add_option("--device", options_.device_name, "Part of the name of the Vulkan device");
   c.add_flag("--validation", options_.validation,
              "Vulkan validation; any message makes the run fail");

@@ -13,6 +13,7 @@ namespace psygen::app {
 namespace {
 
 constexpr double kEyeHeightM = 25.0;
+constexpr double kWindowHz = 60;  // held in windows unless the options say otherwise
 
 // One progress bar for each label that comes along; nothing where stderr is no terminal. False, to
 // end what is going on, once `stop` is set.
@@ -96,6 +97,8 @@ core::Result<void> App::open() {
   renderer_ = std::move(*renderer);
   core::log_info(fmt::format("drawing with {}", renderer_->device().name));
 
+  const double target_hz = options_.target_hz.value_or(options_.headless ? 0 : kWindowHz);
+  options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;
   trace_ = std::make_unique<telemetry::TraceLog>();
   Bars bars(options_.stop);
   auto scene = scene::Scene::create(std::move(*world), std::move(*registry), options_.scene,

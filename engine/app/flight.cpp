@@ -1,6 +1,7 @@
 // The main loop: from the first pose to the end of the flight.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -107,6 +108,8 @@ core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double d
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
   record_frame(index, flight_s, frame_ms, (core::thread_cpu_seconds() - cpu_start_s) * 1000.0);
   overlay_figures_.add_frame(frame_ms);
+  // The device's time counts where it is the longer one; waiting, for it or a display, does not.
+  state.input.frame_ms = std::max(frame_ms - state.record.wait_ms, state.record.gpu_ms);
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,10 @@ struct Options {
   std::string device_name;   // part of a name; empty: the best device
   double seconds = 0;        // 0: as long as the path; without one 27 s headless, else endless
   std::uint64_t frames = 0;  // 0: no limit
-  double fixed_step_hz = 0;  // 0: the flight follows the wall clock
+  // Frames a second that are held by a larger error of levels of detail; 0: the error is fixed.
+  // Not set: 60 in a window, 0 headless.
+  std::optional<double> target_hz;
+  double fixed_step_hz = 0;        // 0: the flight follows the wall clock
   std::uint64_t images_every = 0;  // every so many frames a PNG; 0: none
   double warmup_seconds = 1;       // left out of all figures
   bool prefill = true;             // fill the cache for the first pose before the first frame

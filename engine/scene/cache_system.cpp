@@ -316,15 +316,15 @@ void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& repo
 }  // namespace
 
 void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
-                  const WorldFacts& facts, const View& view, CacheQuery entities,
-                  Synthesis& synthesis, Counters& counters, Totals& totals) {
+                  const Quality& quality, const WorldFacts& facts, const View& view,
+                  CacheQuery entities, Synthesis& synthesis, Counters& counters, Totals& totals) {
   if (settings.paradigm == Paradigm::kLazyEvaluation) forget_last_frame(entities, synthesis);
   synthesis.wants.clear();
   synthesis.ready.clear();
 
   Chooser chooser(settings, clock, camera, view.frustum, synthesis, counters);
   NodeWalk walk(chooser, camera, facts.world.block_size_m(), entities);
-  const float error_pixels = static_cast<float>(settings.max_error_pixels) * synthesis.coarsening;
+  const float error_pixels = static_cast<float>(quality.error_pixels);
   const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
   walk.consider(view.chosen, wait, error_pixels);
   if (settings.paradigm == Paradigm::kParallelLazyAmplification) {

@@ -13,7 +13,7 @@ namespace psygen::scene {
 // Heights on a lattice of 8 × 8 points of the mesh, row by row. Component of nodes.
 struct GroundLines {
   static constexpr std::size_t kPoints = 8;  // along each side
-  float lower_by_m = -1;                     // how far lines between them lie above the mesh at most; < 0: unknown
+  float lower_by_m = -1;  // how far lines between them lie above the mesh at most; < 0: unknown
   std::array<float, kPoints> place{};  // along a side, 0 … 1
   std::array<float, kPoints * kPoints> height_m{};
 };

@@ -8,7 +8,9 @@ namespace {
 constexpr std::array kPredictionSeconds{0.25F, 0.75F, 1.5F, 3.0F};
 }  // namespace
 
-void input_system(const Input& input, const Clock& clock, const WorldFacts& facts, Camera& camera) {
+void input_system(const Settings& settings, const Input& input, const Clock& clock,
+                  const WorldFacts& facts, const Synthesis& synthesis, Camera& camera,
+                  Quality& quality) {
   const double block_size_m = facts.world.block_size_m();
   if (core::is_valid(input.pose)) {
     camera.pose = input.pose;
@@ -27,6 +29,10 @@ void input_system(const Input& input, const Clock& clock, const WorldFacts& fact
   for (const float tau_s : kPredictionSeconds) {
     camera.predictions.push_back({tau_s, camera.predictor.predict(tau_s)});
   }
+
+  quality.governor.observe(input.frame_ms);
+  quality.error_pixels =
+      settings.max_error_pixels * synthesis.coarsening * quality.governor.error_factor();
 }
 
 }  // namespace psygen::scene

@@ -15,8 +15,10 @@ constexpr double kMinSplitRatio = 1.5, kMaxSplitRatio = 3.0;
 constexpr double kMergeFactor = 1.1;
 // Children exist before their parent is split by so much of its distance.
 constexpr double kAheadFactor = 1.1;
-// A terrain's error is the sum of what all octaves could lose at worst; seen is about half of it.
-constexpr double kTerrainErrorSeen = 0.5;
+// The error of a level of the terrain type is the sum of what its octaves could lose at worst. The
+// largest in a block of the paper's world is about 0.7 of it; in a coarser node, whose finest level
+// has lost something already, 1.05 (medians of the largest, for 4 … 300 m between vertices).
+constexpr double kBlockErrorSeen = 0.7, kNodeErrorSeen = 1.05;
 // How far a border hangs down, in metres per metre of the next coarser error, and at least.
 constexpr float kSkirtPerError = 2.0F, kLeastSkirtM = 1.0F;
 // What a merged mesh of level 1 is off, in parts of the height of what it stands for; with every
@@ -68,8 +70,9 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
     level.size_m = std::ldexp(world.block_size_m(), static_cast<int>(k));
     level.mesh_level = coarse ? 1 : 0;
     level.bounds = terrain.bounds(p);
-    level.ground_error_m = terrain.level_error_m(p, 1);
-    level.error_m = kTerrainErrorSeen * level.ground_error_m;
+    level.ground_error_m =
+        (k == 0 ? kBlockErrorSeen : kNodeErrorSeen) * terrain.level_error_m(p, 1);
+    level.error_m = level.ground_error_m;
     level.skirt_m = kLeastSkirtM + kSkirtPerError * static_cast<float>(level.ground_error_m);
     if (merged == nullptr || k == 0 || k > world::kMaxMergedLevel) continue;
     const models::Parameters all = world::merged_parameters({}, static_cast<int>(k));

@@ -74,7 +74,7 @@ void land_everything(State& s) {
 
 void create_all_nodes(State& s) {
   do {
-    streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.synthesis,
+    streaming_system(s.settings, s.camera, s.quality, s.facts, s.streaming, s.entities, s.synthesis,
                      s.counters);
   } while (!s.streaming.missing.empty());
 }
@@ -86,12 +86,13 @@ void Scene::tick_without_drawing(const core::CameraPose& pose) {
   s.input.pose = pose;
   s.clock.real_s = core::monotonic_seconds() - s.clock.origin_s;
   s.counters = {};
-  input_system(s.input, s.clock, s.facts, s.camera);
-  streaming_system(s.settings, s.camera, s.facts, s.streaming, s.entities, s.synthesis, s.counters);
+  input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);
+  streaming_system(s.settings, s.camera, s.quality, s.facts, s.streaming, s.entities, s.synthesis,
+                   s.counters);
   visibility_system(s.settings, s.camera, s.facts, s.streaming, s.synthesis,
                     VisibilityQuery(s.entities), s.view, s.counters);
-  cache_system(s.settings, s.clock, s.camera, s.facts, s.view, CacheQuery(s.entities), s.synthesis,
-               s.counters, s.totals);
+  cache_system(s.settings, s.clock, s.camera, s.quality, s.facts, s.view, CacheQuery(s.entities),
+               s.synthesis, s.counters, s.totals);
   s.synthesis.manager->wait_all();
   synthesis_system(s.settings, s.synthesis, s.counters, s.trace);
   upload_system(s.settings, s.clock, s.facts, UploadQuery(s.entities), s.synthesis, s.output,
@@ -137,7 +138,7 @@ core::Result<void> Scene::check_region() const {
 core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const Progress& progress) {
   State& s = state_;
   s.input.pose = pose;
-  input_system(s.input, s.clock, s.facts, s.camera);
+  input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);
   create_all_nodes(s);
   if (auto fits = check_region(); !fits) return tl::unexpected(fits.error());
   want_everything(s);

@@ -28,6 +28,12 @@ core::Result<void> check(const Settings& settings) {
   if (!(settings.max_error_pixels > 0 && settings.max_error_pixels <= 1000)) {
     return refuse("the error of levels of detail must be above 0 and at most 1000 pixels");
   }
+  if (!(settings.target_frame_ms >= 0 && settings.target_frame_ms <= 10'000)) {
+    return refuse("the target of the frame time must be between 0 and 10000 ms");
+  }
+  if (!(settings.max_error_factor >= 1 && settings.max_error_factor <= 100)) {
+    return refuse("the error may grow by a factor between 1 and 100");
+  }
   if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
   if (settings.budget_bytes < Scene::kMinBudgetBytes) {
     return core::fail(core::ErrorCode::kOverBudget,
@@ -190,6 +196,8 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   options.watchdog_seconds = settings.watchdog_seconds;
   synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
   s.settings.modelers = synthesis.manager->modeler_count();
+  s.quality.governor =
+      Governor({.target_ms = settings.target_frame_ms, .max_factor = settings.max_error_factor});
   build_tick(s);
   s.trace = tracing_of(trace, s.settings.modelers, facts.registry, s.tick);
   return scene;

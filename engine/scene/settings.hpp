@@ -23,10 +23,13 @@ struct Settings {
   synthesis::Policy policy = synthesis::Policy::kDeadline;
   std::uint32_t modelers = 0;                 // 0: cores − 1, at least 1
   std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
-  double view_distance_m = 640;               // blocks farther away do not exist
+  double view_distance_m = 16'000;            // nothing farther away exists
   double max_error_pixels = 4.0;              // of the level of detail that is chosen
+  double target_frame_ms = 0;                 // held by a larger error; 0: the error is fixed
+  double max_error_factor = 4;                // so much larger at most
   double min_size_pixels = 1.5;               // models smaller on screen are not drawn
   bool levels_of_detail = true;               // false: full detail everywhere, as in the paper
+  bool occlusion = true;                      // leave out what lies behind ridges
   double watchdog_seconds = 10;               // a model that takes longer is given up
   double hole_budget_ms = 2.0;       // per tick, of the main thread, for what is missing in view
   double plan_seconds_ahead = 0.05;  // synthesis time per modeler in one plan

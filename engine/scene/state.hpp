@@ -13,6 +13,7 @@
 #include "engine/models/registry.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
+#include "engine/scene/governor.hpp"
 #include "engine/scene/ground_lines.hpp"
 #include "engine/scene/node_grid.hpp"
 #include "engine/scene/node_levels.hpp"
@@ -36,6 +37,13 @@ struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
   std::vector<std::string> overlay_lines;
+  double frame_ms = 0;  // what the last frame took, without waiting for a display; 0: unknown
+};
+
+// How fine the picture is in this tick.
+struct Quality {
+  Governor governor;
+  double error_pixels = 0;  // that levels of detail may have
 };
 
 struct Clock {
@@ -191,6 +199,7 @@ struct State {
   Input input;
   Clock clock;
   Camera camera;
+  Quality quality;
   Streaming streaming;
   View view;
   std::unique_ptr<core::GeometryMemory> heap;  // the null device's memory; unused with a renderer

@@ -168,11 +168,11 @@ void list_missing_nodes(const Window& window, const Camera& camera, const WorldF
 
 }  // namespace
 
-void streaming_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                      Streaming& streaming, ecs::World& entities, Synthesis& synthesis,
-                      Counters& counters) {
-  split_distances(facts.levels, settings, camera.pixels_per_radian,
-                  settings.max_error_pixels * synthesis.coarsening, streaming.distances);
+void streaming_system(const Settings& settings, const Camera& camera, const Quality& quality,
+                      const WorldFacts& facts, Streaming& streaming, ecs::World& entities,
+                      Synthesis& synthesis, Counters& counters) {
+  split_distances(facts.levels, settings, camera.pixels_per_radian, quality.error_pixels,
+                  streaming.distances);
   const core::BlockCoord centre = camera.pose.position.block;
   const double reach = streaming.distances.back().split_m;
   if (centre != streaming.grids[0].centre().coord ||

@@ -8,14 +8,16 @@
 
 namespace psygen::scene {
 
-// Takes over the wanted pose (an invalid one is refused, the last valid one stays) and predicts
-// poses.
-void input_system(const Input& input, const Clock& clock, const WorldFacts& facts, Camera& camera);
+// Takes over the wanted pose (an invalid one is refused, the last valid one stays), predicts poses,
+// and decides how fine the picture shall be.
+void input_system(const Settings& settings, const Input& input, const Clock& clock,
+                  const WorldFacts& facts, const Synthesis& synthesis, Camera& camera,
+                  Quality& quality);
 
 // Creates and destroys nodes with their models around the camera, in batches.
-void streaming_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                      Streaming& streaming, ecs::World& entities, Synthesis& synthesis,
-                      Counters& counters);
+void streaming_system(const Settings& settings, const Camera& camera, const Quality& quality,
+                      const WorldFacts& facts, Streaming& streaming, ecs::World& entities,
+                      Synthesis& synthesis, Counters& counters);
 
 // Chooses the cut through the quadtree and runs Prioritized-Layered Projection over the nodes of
 // each level; what predicted cameras see gets a deadline.
@@ -28,8 +30,8 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
 using CacheQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
                               const Detail, const Source, const Mesh, Demand, Lacking>;
 void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
-                  const WorldFacts& facts, const View& view, CacheQuery entities,
-                  Synthesis& synthesis, Counters& counters, Totals& totals);
+                  const Quality& quality, const WorldFacts& facts, const View& view,
+                  CacheQuery entities, Synthesis& synthesis, Counters& counters, Totals& totals);
 
 // Collects what the modelers have finished since the last tick.
 void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& counters,

@@ -11,6 +11,9 @@
 namespace psygen::scene {
 namespace {
 
+// The largest error of a node over the usual one.
+constexpr double kPossibleError = 2.5;
+
 std::uint32_t shared_indices_of(const synthesis::MeshRecord& record, const WorldFacts& facts,
                                 Output& output) {
   if (record.size.shared_indices == 0) return render::kNoSharedIndices;
@@ -81,7 +84,7 @@ void note_ground(Node& node, GroundLines& lines, const synthesis::MeshRecord& re
                  const WorldFacts& facts, const core::GeometryMemory& memory) {
   const NodeLevel& level = facts.levels[node.at.level];
   const bool finest = node.at.level == 0 && record.key.level == 0;
-  const auto off_m = static_cast<float>(level.ground_error_m);
+  const auto off_m = static_cast<float>(kPossibleError * level.ground_error_m);
   const float possible_m = finest ? 0.0F : off_m;
   node.low_m = std::max(level.bounds.min.y, record.tight.min.y - possible_m);
   node.high_m = std::min(level.bounds.max.y, record.tight.max.y + possible_m);

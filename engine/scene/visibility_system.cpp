@@ -132,15 +132,17 @@ void count_missing_node(const Camera& camera, const core::Bounds& box, Counters&
 
 // Which nodes of the cut are in view: in the frustum, and not behind the ground of others that are
 // ready to be drawn. Front to back, so that each is held against what lies before it.
-void find_hidden(const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                 const VisibilityQuery& nodes, View& view, Counters& counters) {
+void find_hidden(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                 const Streaming& streaming, const VisibilityQuery& nodes, View& view,
+                 Counters& counters) {
   const std::vector<visibility::CutNode>& cut = view.cut.nodes;
   view.horizon.reset();
   view.in_view.assign(cut.size(), 0);
   const glm::dvec3& local = camera.pose.position.local;
-  const bool above_ground =
-      local.y >
-      models::ground_height_m(facts.world.terrain, camera.pose.position.block, local.x, local.z);
+  const bool hides =
+      settings.occlusion &&
+      local.y > models::ground_height_m(facts.world.terrain, camera.pose.position.block, local.x,
+                                        local.z);
   for (std::uint32_t i = 0; i < cut.size();) {
     const visibility::NodeCoord& at = cut[i].node;
     const NodeGrid& grid = streaming.grids[at.level];
@@ -151,7 +153,7 @@ void find_hidden(const Camera& camera, const WorldFacts& facts, const Streaming&
     counters.nodes_hidden += hidden ? 1 : 0;
     view.in_view[i] = in_frustum && !hidden ? 1 : 0;
     const ecs::Entity entity = grid.entity_of(at.coord);
-    if (above_ground && cut[i].leaf && view.in_view[i] != 0 && nodes.alive(entity)) {
+    if (hides && cut[i].leaf && view.in_view[i] != 0 && nodes.alive(entity)) {
       const GroundLines& lines = *nodes.get<GroundLines>(entity);
       if (lines.lower_by_m >= 0 && nodes.get<Lacking>(entity)->meshes == 0)
         add_lines(lines, corner_of(facts, camera, at), cut[i].side_m, view.horizon);
@@ -246,7 +248,7 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
   for (const Camera::Prediction& prediction : camera.predictions)
     expect(camera, prediction, facts, streaming, view);
   choose_cut(settings, camera, facts, streaming, synthesis.settling, view);
-  find_hidden(camera, facts, streaming, nodes, view, counters);
+  find_hidden(settings, camera, facts, streaming, nodes, view, counters);
   list_chosen(camera, streaming, nodes, view, counters);
   write_visibility(view, streaming, nodes);
   list_others(streaming, nodes, view);

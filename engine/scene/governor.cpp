@@ -1,0 +1,32 @@
+#include "engine/scene/governor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace psygen::scene {
+namespace {
+
+constexpr double kSmoothing = 0.1;  // share of the newest frame
+// Largest steps of a frame; at 60 Hz the error doubles in a second and halves in four at most.
+constexpr double kStepUp = 0.012, kStepDown = 0.003;
+// The whole step is taken when the frame time is off by this share.
+constexpr double kFullStepAt = 0.25;
+
+}  // namespace
+
+void Governor::observe(double frame_ms) {
+  const double target_ms = settings_.target_ms;
+  if (!(target_ms > 0) || !(frame_ms > 0)) return;
+  const double counted_ms = std::min(frame_ms, 3 * target_ms);
+  smoothed_ms_ += (counted_ms - smoothed_ms_) * (smoothed_ms_ == 0 ? 1 : kSmoothing);
+  const double over = smoothed_ms_ / target_ms - 1;
+  const double under = settings_.rest_share - smoothed_ms_ / target_ms;
+  if (over > 0) {
+    factor_ *= 1 + kStepUp * std::min(over / kFullStepAt, 1.0);
+  } else if (under > 0) {
+    factor_ *= 1 - kStepDown * std::min(under / kFullStepAt, 1.0);
+  }
+  factor_ = std::clamp(factor_, 1.0, settings_.max_factor);
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,31 @@
+// Holds a frame time by the error that levels of detail may have: more when frames take too long,
+// less, slowly, when there is time to spare. What it steers acts late (meshes must be synthesised
+// first), so that it takes small steps and rests inside a band. Pure; no clock of its own.
+#pragma once
+
+namespace psygen::scene {
+
+struct GovernorSettings {
+  double target_ms = 0;       // of a frame; 0: the error stays at its lower bound
+  double max_factor = 4;      // upper bound of the error over its lower bound, >= 1
+  double rest_share = 0.85;   // of the target: between it and the target nothing changes
+};
+
+class Governor {
+ public:
+  explicit Governor(const GovernorSettings& settings = {}) : settings_(settings) {}
+
+  // What the last frame took, without waiting for a display. Values that are not positive are
+  // ignored, one frame counts for at most three targets.
+  void observe(double frame_ms);
+
+  // By how much the error exceeds its lower bound, 1 … max_factor.
+  double error_factor() const { return factor_; }
+
+ private:
+  GovernorSettings settings_;
+  double smoothed_ms_ = 0;
+  double factor_ = 1;
+};
+
+}  // namespace psygen::scene

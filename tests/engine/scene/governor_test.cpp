@@ -1,0 +1,85 @@
+#include "engine/scene/governor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <limits>
+
+namespace psygen::scene {
+namespace {
+
+// Frames cost a fixed part and one that falls with the error, `delay` frames late.
+class Load {
+ public:
+  Load(double fixed_ms, double varied_ms, int delay)
+      : fixed_ms_(fixed_ms), varied_ms_(varied_ms), delay_(delay) {}
+  double frame_ms(double factor) {
+    factors_.push_back(factor);
+    const double acting = factors_.front();
+    if (factors_.size() > static_cast<std::size_t>(delay_)) factors_.pop_front();
+    return fixed_ms_ + varied_ms_ / std::pow(acting, 1.2);
+  }
+
+ private:
+  double fixed_ms_, varied_ms_;
+  int delay_;
+  std::deque<double> factors_;
+};
+
+TEST(Governor, WithoutATargetTheErrorStays) {
+  Governor governor;
+  for (int i = 0; i < 100; ++i)
+    governor.observe(1000);
+  EXPECT_EQ(governor.error_factor(), 1);
+}
+
+TEST(Governor, FramesThatTakeTooLongGetCoarserUntilTheyAreInTheBand) {
+  Governor governor({.target_ms = 16.7});
+  Load load(4, 25, 30);
+  double frame_ms = 0;
+  for (int i = 0; i < 600; ++i)
+    governor.observe(frame_ms = load.frame_ms(governor.error_factor()));
+  EXPECT_LE(frame_ms, 16.7 * 1.02);
+  EXPECT_GE(frame_ms, 16.7 * 0.80);
+}
+
+TEST(Governor, ComesToRestInsteadOfOscillating) {
+  Governor governor({.target_ms = 16.7});
+  Load load(4, 40, 40);
+  for (int i = 0; i < 3000; ++i)
+    governor.observe(load.frame_ms(governor.error_factor()));
+  const double rest = governor.error_factor();
+  for (int i = 0; i < 600; ++i) {
+    // Noise of a tenth does not stir it.
+    governor.observe(load.frame_ms(governor.error_factor()) * (i % 2 == 0 ? 0.95 : 1.0));
+    EXPECT_NEAR(governor.error_factor(), rest, 0.03 * rest);
+  }
+}
+
+TEST(Governor, GoesBackToTheFinestWhenThereIsTime) {
+  Governor governor({.target_ms = 16.7});
+  for (int i = 0; i < 300; ++i)
+    governor.observe(30);
+  EXPECT_GT(governor.error_factor(), 2);
+  for (int i = 0; i < 1500; ++i)
+    governor.observe(5);
+  EXPECT_EQ(governor.error_factor(), 1);
+}
+
+TEST(Governor, StaysBelowItsBoundAndASingleHitchHardlyCounts) {
+  Governor governor({.target_ms = 16.7, .max_factor = 3});
+  governor.observe(15);
+  governor.observe(5000);
+  EXPECT_LT(governor.error_factor(), 1.02);
+  for (int i = 0; i < 5000; ++i)
+    governor.observe(100);
+  EXPECT_EQ(governor.error_factor(), 3);
+  governor.observe(std::numeric_limits<double>::quiet_NaN());
+  governor.observe(-1);
+  governor.observe(0);
+  EXPECT_EQ(governor.error_factor(), 3);
+}
+
+}  // namespace
+}  // namespace psygen::scene
