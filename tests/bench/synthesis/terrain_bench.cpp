@@ -59,6 +59,34 @@ void terrain_light(benchmark::State& state) {
   bench::report_seconds_each(state, 1);
 }
 
+// Heights and vertices of level 0 as terrain_block has them, all in full light.
+void terrain_block_unlit(benchmark::State& state) {
+  const TerrainShape shape(default_parameters(*make_terrain_type()));
+  constexpr std::size_t kSide = 66, kStride = 80;
+  const std::vector<float> light(23 * 64 + 32, 255.0F);
+  std::vector<float> noise(kSide * kStride + 16);
+  std::vector<std::byte> vertices((64 * 64 + 4 * 63) * sizeof(core::TerrainVertex));
+  std::array<std::int64_t, kSide> columns, rows;
+  std::iota(rows.begin(), rows.end(), -1);
+  std::int64_t block = 0;
+  for (auto _ : state) {
+    std::iota(columns.begin(), columns.end(), 63 * block++ - 1);
+    shape.noise.evaluate(columns, rows, noise, kStride);
+    const float* const first = &noise[kStride + 1];
+    const TerrainSurface surface{.first = first,
+                                 .row_stride = kStride,
+                                 .step = 1,
+                                 .n = 64,
+                                 .stride = 1,
+                                 .coarse = {first, kStride, 3, 3, 0, 0},
+                                 .light = {light.data(), light.data(), 64, 3, 0, 0},
+                                 .quantum = shape.quantum,
+                                 .slope_scale = shape.metres / 2};
+    benchmark::DoNotOptimize(pack_terrain(surface, vertices.data()));
+  }
+  bench::report_seconds_each(state, 1);
+}
+
 void terrain_block(benchmark::State& state) {
   const auto type = make_terrain_type();
   const int level = static_cast<int>(state.range(0));
@@ -98,6 +126,7 @@ const bool kRegistered =
                            [](auto* b, bool) {
                              b->ArgNames({"level", "sun"})->ArgsProduct({{0, 1, 2, 3}, {90, 30}});
                            }) &&
+    bench::for_each_target("terrain_block_unlit", terrain_block_unlit) &&
     bench::for_each_target("terrain_light", terrain_light,
                            [](auto* b, bool) { b->ArgName("sun")->Arg(90)->Arg(30)->Arg(8); }) &&
     bench::for_each_target("terrain_ground_63_points", terrain_ground_63_points);
