@@ -96,6 +96,15 @@ class LightHeights {
   alignas(64) std::array<float, kLongest * 80 + (kMaxLightGrids - 1) * kWideLongest * 48> memory_;
 };
 
+// A grid without heights whose wanted points are these.
+LightGrid grid_over(const LightAxis& x, const LightAxis& z) {
+  LightGrid grid{};
+  grid.stride = (x.count() + 2 * kLightReach + 15) / 16 * 16 + 16;
+  grid.count_x = x.count();
+  grid.count_z = z.count();
+  return grid;
+}
+
 }  // namespace
 
 TerrainLight::TerrainLight(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
@@ -115,17 +124,14 @@ TerrainLight::TerrainLight(const TerrainShape& shape, const SunDirection& sun, s
   std::array<LightGrid, kMaxLightGrids> grids;
   std::size_t count = 0;
   for (std::size_t g = finest; g < kMaxLightGrids; ++g) {
-    const auto spacing_m = static_cast<float>(static_cast<double>(spacing) * shape.cell_m);
     const LightAxis wide_x = x.over(kLightRatio), wide_z = z.over(kLightRatio);
-    LightGrid grid{.heights = nullptr,
-                   .stride = (x.count() + 2 * kLightReach + 15) / 16 * 16 + 16,
-                   .count_x = x.count(),
-                   .count_z = z.count(),
-                   .phase_x = x.phase_in(wide_x, kLightRatio),
-                   .phase_z = z.phase_in(wide_z, kLightRatio),
-                   .spacing = spacing_m / shape.metres,
-                   .sun_steps = shadows ? useful_steps(rays, spacing_m, shape.relief_m) : 0,
-                   .sky = spacing_m <= static_cast<float>(kSkyReach) * shape.relief_m};
+    LightGrid grid = grid_over(x, z);
+    grid.phase_x = x.phase_in(wide_x, kLightRatio);
+    grid.phase_z = z.phase_in(wide_z, kLightRatio);
+    const auto spacing_m = static_cast<float>(static_cast<double>(spacing) * shape.cell_m);
+    grid.spacing = spacing_m / shape.metres;
+    grid.sun_steps = shadows ? useful_steps(rays, spacing_m, shape.relief_m) : 0;
+    grid.sky = spacing_m <= static_cast<float>(kSkyReach) * shape.relief_m;
     if (grid.sun_steps == 0 && !grid.sky && count > 0) break;
     grid.heights = heights.evaluate(grid, x, z, spacing);
     grids[count++] = grid;
