@@ -1,6 +1,7 @@
-// Powers whose bits do not depend on the C library or the CPU: only additions, multiplications and
-// divisions in double precision, each rounded on its own. For constants of a model (amplitudes of
-// octaves), not for kernels. Relative error below 1e-14 for results within 1e±30.
+// Powers and sines whose bits do not depend on the C library or the CPU: only additions,
+// multiplications and divisions in double precision, each rounded on its own. For constants of a
+// model (amplitudes of octaves), not for kernels. Relative error below 1e-14 for results within
+// 1e±30.
 #pragma once
 
 #include <cmath>
@@ -35,6 +36,21 @@ inline double exact_exp(double x) {
 // base^exponent. Requires base > 0.
 inline double exact_pow(double base, double exponent) {
   return exact_exp(exponent * exact_log(base));
+}
+
+// Sine and cosine of degrees. Errors below 1e-15; exact at multiples of 180° and 90° off them.
+inline double exact_sin_degrees(double degrees) {
+  double r = degrees - 360 * std::floor(degrees / 360 + 0.5);  // −180 … 180
+  if (r > 90) r = 180 - r;
+  if (r < -90) r = -180 - r;
+  const double x = r * 0.017453292519943295, y = x * x;
+  double sum = 1;
+  for (int k = 24; k >= 2; k -= 2)
+    sum = 1 - sum * y / (k * (k + 1));
+  return x * sum;
+}
+inline double exact_cos_degrees(double degrees) {
+  return exact_sin_degrees(degrees + 90);
 }
 
 }  // namespace psygen::models

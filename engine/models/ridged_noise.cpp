@@ -33,7 +33,8 @@ RidgedOctave octave_of(std::uint64_t key, double frequency) {
 
 }  // namespace
 
-RidgedNoise::RidgedNoise(const RidgedSettings& s) {
+RidgedNoise::RidgedNoise(const RidgedSettings& s)
+    : cells_per_step_(s.cells_per_step), lacunarity_(s.lacunarity) {
   PSYGEN_ASSERT(s.octaves >= 1 && s.octaves <= kMaxOctaves, "octaves are within their range");
   const double highest = std::max(s.offset * s.offset, (s.offset - 1) * (s.offset - 1));
   const double ratio = exact_pow(s.lacunarity, -s.height);
@@ -65,14 +66,26 @@ RidgedNoise::RidgedNoise(const RidgedSettings& s) {
   }
 }
 
+int RidgedNoise::octaves_wider_than(double steps) const {
+  double cells = cells_per_step_ * lacunarity_ * steps;
+  int octaves = 1;
+  for (; octaves < kernel_.octave_count && cells <= 1; ++octaves)
+    cells *= lacunarity_;
+  return octaves;
+}
+
 void RidgedNoise::evaluate(std::span<const std::int64_t> columns,
                            std::span<const std::int64_t> rows, std::span<float> values,
-                           std::size_t stride) const {
+                           std::size_t stride, int octaves) const {
   PSYGEN_ASSERT(columns.size() <= kMaxAxis && rows.size() <= kMaxAxis, "axes are short enough");
   PSYGEN_ASSERT(stride >= columns.size() && values.size() >= rows.size() * stride,
                 "the values have room for every row");
   if (columns.empty() || rows.empty()) return;
-  evaluate_ridged(kernel_, columns, rows, values.data(), stride);
+  if (octaves >= kernel_.octave_count)
+    return evaluate_ridged(kernel_, columns, rows, values.data(), stride);
+  RidgedKernel kernel = kernel_;
+  kernel.octave_count = octaves;
+  evaluate_ridged(kernel, columns, rows, values.data(), stride);
 }
 
 }  // namespace psygen::models

@@ -31,16 +31,21 @@ class RidgedNoise {
   // Values lie in [0, max_value()] but for rounding (1e-5 of it).
   double max_value() const { return max_value_; }
 
+  // The number of octaves, at least one, whose lattice cells are no narrower than `steps` integers.
+  int octaves_wider_than(double steps) const;
+
   // values[r · stride + c] = R(columns[c], rows[r]). Ascending coordinates without large gaps are
   // fastest; a warp takes ten times as long. Takes about 170 KiB of stack; at most kMaxAxis
-  // columns and kMaxAxis rows; stride >= number of columns.
+  // columns and kMaxAxis rows; stride >= number of columns. With fewer than all octaves, the sum of
+  // the first ones.
   static constexpr std::size_t kMaxAxis = kMaxNoiseAxis;
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
-                std::span<float> values, std::size_t stride) const;
+                std::span<float> values, std::size_t stride, int octaves = kMaxOctaves) const;
 
  private:
   RidgedKernel kernel_;
   double max_value_ = 0;
+  double cells_per_step_, lacunarity_;
 };
 
 }  // namespace psygen::models

@@ -10,6 +10,7 @@
 #include "engine/models/exact_math.hpp"
 #include "engine/models/terrain_grid.hpp"
 #include "engine/models/terrain_kernel.hpp"
+#include "engine/models/terrain_light.hpp"
 #include "engine/models/terrain_shape.hpp"
 
 namespace psygen::models {
@@ -40,6 +41,10 @@ constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
     {"relief_m", kReal, "m", 120, 0.01, 1e5, 10, 500, "highest height that is possible"},
     {"warp", kReal, "1", 0, 0, 1, 0, 0.5,
      "bends the coarse ridges: largest displacement, in parts of feature_m; 0 is fastest"},
+    {"sun_azimuth_deg", kReal, "degrees", 0, -360, 360, 0, 360,
+     "where shadows come from, from north over east", kPlaced},
+    {"sun_elevation_deg", kReal, "degrees", 90, -90, 90, 0, 90,
+     "of the sun that casts shadows: 90 none, 0 and below all in the dark", kPlaced},
 };
 
 // Sample positions along one axis: every vertex of the level with its neighbours one cell away.
@@ -179,6 +184,8 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
   const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at lines of the cache
   shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
                        noise, stride);
+  const TerrainLight light(shape, {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)},
+                           p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ), level < 2 ? 0 : 1);
   const float* const first = &noise[rows.vertex(0) * stride + columns.vertex(0)];
   std::optional<ParentSamples> parent;
   if (level == 1) parent.emplace(shape, grid, p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ));
@@ -192,6 +199,7 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
        .stride = static_cast<std::size_t>(grid.stride),
        .coarse =
            parent ? parent->view : CoarseSamples{first, stride, columns.step * ratio, ratio, 0, 0},
+       .light = light.samples(),
        .quantum = shape.quantum,
        .slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m)},
       out.vertices.data());

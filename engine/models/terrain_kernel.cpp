@@ -16,6 +16,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "engine/models/terrain_spread-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
@@ -161,6 +163,65 @@ class CoarseHeights {
   HWY_ALIGN float high_rise_[kRow];
 };
 
+// The light of one row of vertices after another.
+class LightRows {
+ public:
+  explicit LightRows(const TerrainSurface& s)
+      : s_(s), l_(s.light), spread_(s.n, l_.phase_x, s.stride, l_.spacing) {
+    load(0, *near_);
+    load(1, *far_);
+  }
+
+  // Moves on to a row of vertices, upwards.
+  void move_to(std::size_t z) {
+    const std::size_t cell = l_.phase_z + z * s_.stride, row = cell / l_.spacing;
+    weight_ = static_cast<float>(cell % l_.spacing) / static_cast<float>(l_.spacing);
+    if (row == row_) return;
+    std::swap(near_, far_);
+    if (row != row_ + 1) load(row, *near_);
+    load(row + 1, *far_);
+    row_ = row;
+  }
+
+  // Sun in the low byte and ambient above it, of the vertices from x on.
+  HWY_INLINE hn::Vec<UintTag> at(std::size_t x) const {
+    return hn::Or(byte(near_->sun + x, far_->sun + x),
+                  hn::ShiftLeft<8>(byte(near_->ambient + x, far_->ambient + x)));
+  }
+
+ private:
+  struct Row {
+    HWY_ALIGN float sun[kRow];
+    HWY_ALIGN float ambient[kRow];
+  };
+
+  void load(std::size_t row, Row& to) const {
+    const FloatTag d;
+    const float* const sun = l_.sun + row * l_.row_stride;
+    const float* const ambient = l_.ambient + row * l_.row_stride;
+    for (std::size_t x = 0; x < s_.n; x += hn::Lanes(d)) {
+      hn::Store(spread_.at(sun, x), d, to.sun + x);
+      hn::Store(spread_.at(ambient, x), d, to.ambient + x);
+    }
+  }
+
+  HWY_INLINE hn::Vec<UintTag> byte(const float* near, const float* far) const {
+    const FloatTag d;
+    const Float a = hn::Load(d, near), b = hn::Load(d, far);
+    const Float value = hn::Add(a, hn::Mul(set(weight_), hn::Sub(b, a)));
+    return hn::And(hn::BitCast(UintTag(), hn::Add(value, set(kToInteger))),
+                   hn::Set(UintTag(), 0xFFU));
+  }
+
+  const TerrainSurface& s_;
+  const LightSamples& l_;
+  const Spread<kMaxTerrainSize> spread_;
+  std::size_t row_ = 0;
+  float weight_ = 0;
+  Row rows_[2];
+  Row *near_ = &rows_[0], *far_ = &rows_[1];
+};
+
 // The samples of one row of vertices and those on their four sides.
 struct SampleRow {
   const float *centre, *west, *east, *north, *south;
@@ -212,6 +273,7 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
   const FloatTag d;
   const UintTag du;
   CoarseHeights coarse(s);
+  LightRows light(s);
   SampleRow samples;
   HWY_ALIGN std::uint32_t grid_x[kRow];
   HWY_ALIGN PackedVertex row[kRow];
@@ -223,6 +285,7 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
   const std::size_t last = s.n - 1;
   for (std::size_t z = 0; z < s.n; ++z) {
     coarse.move_to(z);
+    light.move_to(z);
     samples.load(s, z);
     const auto grid_z = hn::Set(du, static_cast<std::uint32_t>(z * s.stride) << 8);
     for (std::size_t x = 0; x < s.n; x += hn::Lanes(d)) {
@@ -231,8 +294,7 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
                               hn::ShiftLeft<16>(hn::BitCast(du, height)));
       const auto below = hn::And(hn::BitCast(du, coarse.at(x)), hn::Set(du, 0xFFFFU));
       const auto high = hn::Or(below, normals(samples, x, slope_scale));
-      hn::StoreInterleaved3(low, high, hn::Set(du, 0xFFFFU), du,
-                            reinterpret_cast<std::uint32_t*>(row + x));
+      hn::StoreInterleaved3(low, high, light.at(x), du, reinterpret_cast<std::uint32_t*>(row + x));
       if (s.n - x < hn::Lanes(d)) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, lowest);
       lowest = hn::Min(lowest, height);
       if (s.n - x < hn::Lanes(d)) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, highest);

@@ -19,6 +19,15 @@ struct CoarseSamples {
   std::size_t phase_x, phase_z;  // less than ratio
 };
 
+// Light in [0, 255] at points `spacing` cells apart, `phase` cells before the first vertex; also at
+// the ends and one point beyond. Rows may be read 16 points beyond that.
+struct LightSamples {
+  const float *sun, *ambient;
+  std::size_t row_stride;
+  std::size_t spacing;
+  std::size_t phase_x, phase_z;  // less than spacing
+};
+
 // A level of a block. Vertex (x, z) has the sample first[(z · row_stride + x) · step]; the samples
 // next to it, one cell away, exist as well, and every row may be read 16 samples beyond its end.
 struct TerrainSurface {
@@ -28,6 +37,7 @@ struct TerrainSurface {
   std::size_t n;       // vertices per side
   std::size_t stride;  // grid distance of neighbouring vertices
   CoarseSamples coarse;
+  LightSamples light;
   float quantum;      // noise → quantised height
   float slope_scale;  // difference of the samples on two sides → slope
 };

@@ -6,9 +6,9 @@
 namespace psygen::scene {
 
 struct GovernorSettings {
-  double target_ms = 0;       // of a frame; 0: the error stays at its lower bound
-  double max_factor = 4;      // upper bound of the error over its lower bound, >= 1
-  double rest_share = 0.85;   // of the target: between it and the target nothing changes
+  double target_ms = 0;      // of a frame; 0: the error stays at its lower bound
+  double max_factor = 4;     // upper bound of the error over its lower bound, >= 1
+  double rest_share = 0.85;  // of the target: between it and the target nothing changes
 };
 
 class Governor {

@@ -66,11 +66,22 @@ models::Parameters Scattering::parameters(std::uint32_t index) const {
   return p;
 }
 
+void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_deg) {
+  const double elevation =
+      std::max(std::round(elevation_deg / kSunElevationStep) * kSunElevationStep, 0.0);
+  const double azimuth = std::round(azimuth_deg / kSunAzimuthStep) * kSunAzimuthStep;
+  const double turns = std::floor(azimuth / 360);
+  const bool casts_shadows = elevation > 0 && elevation < 90;
+  terrain.set_real(models::kTerrainSunAzimuth, casts_shadows ? azimuth - 360 * turns : 0.0);
+  terrain.set_real(models::kTerrainSunElevation, std::min(elevation, 90.0));
+}
+
 models::Parameters terrain_parameters(const World& world, core::BlockCoord block) {
   models::Parameters p = world.terrain;
   p.set_integer(models::kTerrainSeed, std::bit_cast<std::int64_t>(world.seed));
   p.set_integer(models::kTerrainBlockX, block.x);
   p.set_integer(models::kTerrainBlockZ, block.z);
+  set_sun(p, world.sky.sun_azimuth_deg, world.sky.sun_elevation_deg);
   return p;
 }
 

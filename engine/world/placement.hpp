@@ -52,7 +52,14 @@ class Scattering {
   float least_up_;
 };
 
-// The terrain of one block.
+// Steps in degrees in which the terrain's shadows follow the sun: each makes new meshes.
+inline constexpr double kSunAzimuthStep = 2, kSunElevationStep = 1;
+
+// Sets the sun of a terrain to the nearest step. One value for all suns that are down, one for all
+// that stand in the zenith.
+void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_deg);
+
+// The terrain of one block in the light of the world's sky.
 models::Parameters terrain_parameters(const World& world, core::BlockCoord block);
 
 // An upper bound of the placements of one block: the sum of all counts. Exact where no scatter has

@@ -23,7 +23,12 @@ struct Row {
 constexpr const char *kSeconds = "seconds_each", *kTriangles = "triangles_per_second";
 constexpr std::array kRows = {
     Row{"terrain_noise_65x65", "", "terrain, 9 octaves, 65², ns/sample", kSeconds, 1e9, 2},
-    Row{"terrain_block", "level:0", "terrain block, packed, with normals, µs", kSeconds, 1e6, 1},
+    Row{"terrain_block_unlit", "", "terrain block, packed, with normals, no light, µs", kSeconds,
+        1e6, 1},
+    Row{"terrain_block", "level:0/sun:90", "the same with the light of the sky, µs", kSeconds, 1e6,
+        1},
+    Row{"terrain_block", "level:0/sun:30", "the same with the sun at 30° as well, µs", kSeconds,
+        1e6, 1},
     Row{"tree", "level:0", "trees of about 5,000 triangles, Mtri/s", kTriangles, 1e-6, 0},
     Row{"rock", "subdivisions:2", "rocks of 64 triangles, Mtri/s", kTriangles, 1e-6, 0},
     Row{"paper_block", "parts:7", "the paper's block, ms", kSeconds, 1e3, 3},

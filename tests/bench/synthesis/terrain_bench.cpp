@@ -8,6 +8,7 @@
 
 #include "engine/models/ridged_noise.hpp"
 #include "engine/models/terrain.hpp"
+#include "engine/models/terrain_light.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
 #include "tests/engine/models/oracle_terrain.hpp"
 
@@ -46,10 +47,52 @@ void noise_65x65_reference(benchmark::State& state) {
 }
 BENCHMARK(noise_65x65_reference)->Name("terrain_noise_65x65/reference");
 
+// Shadows and horizons of a block by themselves, with the sun at an elevation in degrees.
+void terrain_light(benchmark::State& state) {
+  const Parameters p = default_parameters(*make_terrain_type());
+  const TerrainShape shape(p);
+  std::int64_t block = 0;
+  for (auto _ : state) {
+    const TerrainLight light(shape, {128, static_cast<double>(state.range(0))}, block++, 7, 0);
+    benchmark::DoNotOptimize(light.samples().sun);
+  }
+  bench::report_seconds_each(state, 1);
+}
+
+// Heights and vertices of level 0 as terrain_block has them, all in full light.
+void terrain_block_unlit(benchmark::State& state) {
+  const TerrainShape shape(default_parameters(*make_terrain_type()));
+  constexpr std::size_t kSide = 66, kStride = 80;
+  const std::vector<float> light(23 * 64 + 32, 255.0F);
+  std::vector<float> noise(kSide * kStride + 16);
+  std::vector<std::byte> vertices((64 * 64 + 4 * 63) * sizeof(core::TerrainVertex));
+  std::array<std::int64_t, kSide> columns, rows;
+  std::iota(rows.begin(), rows.end(), -1);
+  std::int64_t block = 0;
+  for (auto _ : state) {
+    std::iota(columns.begin(), columns.end(), 63 * block++ - 1);
+    shape.noise.evaluate(columns, rows, noise, kStride);
+    const float* const first = &noise[kStride + 1];
+    const TerrainSurface surface{.first = first,
+                                 .row_stride = kStride,
+                                 .step = 1,
+                                 .n = 64,
+                                 .stride = 1,
+                                 .coarse = {first, kStride, 3, 3, 0, 0},
+                                 .light = {light.data(), light.data(), 64, 3, 0, 0},
+                                 .quantum = shape.quantum,
+                                 .slope_scale = shape.metres / 2};
+    benchmark::DoNotOptimize(pack_terrain(surface, vertices.data()));
+  }
+  bench::report_seconds_each(state, 1);
+}
+
 void terrain_block(benchmark::State& state) {
   const auto type = make_terrain_type();
   const int level = static_cast<int>(state.range(0));
   Parameters p = default_parameters(*type);
+  p.set_real(kTerrainSunAzimuth, 128);
+  p.set_real(kTerrainSunElevation, static_cast<double>(state.range(1)));
   const MeshSize size = type->mesh_size(p, level);
   std::vector<std::byte> vertices(size.vertex_count * sizeof(core::TerrainVertex));
   std::int64_t block = 0;
@@ -80,7 +123,12 @@ const bool kRegistered =
     bench::for_each_target("terrain_noise_warped_65x65",
                            [](auto& state) { noise_65x65(state, 0.3); }) &&
     bench::for_each_target("terrain_block", terrain_block,
-                           [](auto* b, bool) { b->DenseRange(0, 3)->ArgName("level"); }) &&
+                           [](auto* b, bool) {
+                             b->ArgNames({"level", "sun"})->ArgsProduct({{0, 1, 2, 3}, {90, 30}});
+                           }) &&
+    bench::for_each_target("terrain_block_unlit", terrain_block_unlit) &&
+    bench::for_each_target("terrain_light", terrain_light,
+                           [](auto* b, bool) { b->ArgName("sun")->Arg(90)->Arg(30)->Arg(8); }) &&
     bench::for_each_target("terrain_ground_63_points", terrain_ground_63_points);
 
 }  // namespace

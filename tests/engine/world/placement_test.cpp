@@ -183,6 +183,55 @@ TEST(Placement, TerrainParametersCarrySeedAndBlock) {
   EXPECT_TRUE(models::validate(registry()[world.terrain_model], p).has_value());
 }
 
+models::Parameters lit(double azimuth, double elevation) {
+  models::Parameters p = parsed(kSmallWorld).terrain;
+  set_sun(p, azimuth, elevation);
+  return p;
+}
+
+TEST(Placement, ShadowsFollowTheSunInSteps) {
+  World world = parsed(kSmallWorld);
+  world.sky.sun_azimuth_deg = 127.2;
+  world.sky.sun_elevation_deg = 43.6;
+  const models::Parameters p = terrain_parameters(world, {0, 0});
+  EXPECT_EQ(p.real(models::kTerrainSunAzimuth), 128);
+  EXPECT_EQ(p.real(models::kTerrainSunElevation), 44);
+  world.sky.sun_azimuth_deg = 128.9;
+  world.sky.sun_elevation_deg = 44.4;
+  EXPECT_EQ(terrain_parameters(world, {0, 0}), p);
+  world.sky.sun_azimuth_deg = 129.1;
+  EXPECT_NE(terrain_parameters(world, {0, 0}), p);
+}
+
+TEST(Placement, TheSameSunIsTheSameTerrain) {
+  EXPECT_EQ(lit(-10, 30), lit(350, 30));
+  EXPECT_EQ(lit(359.5, 30), lit(0, 30));
+  EXPECT_EQ(lit(40, -3), lit(200, -80));
+  EXPECT_EQ(lit(40, 0.3), lit(200, -80));
+  EXPECT_EQ(lit(40, 89.8), lit(200, 90));
+  EXPECT_NE(lit(40, 89), lit(40, 90));
+  EXPECT_NE(lit(40, 1), lit(40, 0));
+  for (const double azimuth : {-360.0, -359.5, -0.5, 0.0, 359.0, 360.0}) {
+    const models::Parameters p = lit(azimuth, 20);
+    EXPECT_TRUE(models::validate(*models::make_terrain_type(), p).has_value()) << azimuth;
+  }
+}
+
+TEST(Placement, OfModelsDoesNotDependOnTheSun) {
+  World morning = parsed(kSmallWorld), noon = morning;
+  morning.sky.sun_elevation_deg = 5;
+  morning.terrain = terrain_parameters(morning, {0, 0});
+  noon.sky.sun_elevation_deg = 80;
+  noon.terrain = terrain_parameters(noon, {0, 0});
+  const auto a = placed(morning, {3, 4}), b = placed(noon, {3, 4});
+  ASSERT_EQ(a.size(), b.size());
+  ASSERT_FALSE(a.empty());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].position, b[i].position);
+    EXPECT_EQ(a[i].parameters, b[i].parameters);
+  }
+}
+
 TEST(Placement, ScatterParametersAreTheLowEnds) {
   const World world = parsed(kSmallWorld);
   const models::Parameters p = scatter_parameters(registry(), world.scatter[0]);

@@ -1,0 +1,75 @@
+// Spreads a row of coarse samples over the finer ones between them, linearly. Included once per
+// instruction set, by kernels of terrain only; hence its include guard.
+#if defined(PSYGEN_MODELS_TERRAIN_SPREAD_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSYGEN_MODELS_TERRAIN_SPREAD_INL
+#undef PSYGEN_MODELS_TERRAIN_SPREAD_INL
+#else
+#define PSYGEN_MODELS_TERRAIN_SPREAD_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace psygen::models::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Fine sample i lies `phase` + i · `step` from the first coarse one, the coarse ones `spacing` from
+// each other. A place depends on its remainder by `spacing` alone, so that rows which begin
+// elsewhere give the same bits.
+template <std::size_t kLongest>
+class Spread {
+ public:
+  using FloatTag = hn::CappedTag<float, 16>;
+  using IntTag = hn::RebindToSigned<FloatTag>;
+  using Float = hn::Vec<FloatTag>;
+  static constexpr std::size_t kRow = kLongest + 16;
+
+  Spread(std::size_t count, std::size_t phase, std::size_t step, std::size_t spacing)
+      : step_(step), spacing_(spacing), scale_(1.0F / static_cast<float>(spacing)) {
+    const std::size_t lanes = hn::Lanes(FloatTag());
+    std::size_t at = phase / spacing, rest = phase % spacing, first = at;
+    dense_ = step <= spacing;
+    for (std::size_t i = 0; i < (count + lanes - 1) / lanes * lanes; ++i) {
+      if (i % lanes == 0) first_[i / lanes] = first = at;
+      slot_[i] = static_cast<std::int32_t>(at - first);
+      weight_[i] = static_cast<float>(rest) * scale_;
+      if (i + 1 >= count) continue;  // the padding repeats the last sample
+      for (rest += step; rest >= spacing; rest -= spacing)
+        ++at;
+    }
+  }
+
+  // Fine samples i, i + 1, … of a row that may be read 16 samples beyond its last.
+  HWY_INLINE Float at(const float* coarse, std::size_t i) const {
+    const FloatTag d;
+    const float* const from = coarse + first_[i / hn::Lanes(d)];
+    Float left, right;
+    if (HWY_LIKELY(dense_)) {
+      const auto slots = hn::IndicesFromVec(d, hn::Load(IntTag(), slot_ + i));
+      left = hn::TableLookupLanes(hn::LoadU(d, from), slots);
+      right = hn::TableLookupLanes(hn::LoadU(d, from + 1), slots);
+    } else {
+      const auto slots = hn::Load(IntTag(), slot_ + i);
+      left = hn::GatherIndex(d, from, slots);
+      right = hn::GatherIndex(d, from + 1, slots);
+    }
+    return hn::Add(left, hn::Mul(hn::Load(d, weight_ + i), hn::Sub(right, left)));
+  }
+
+ private:
+  std::size_t step_, spacing_;
+  float scale_;
+  bool dense_;  // no fine sample is a coarse one further on than its place in the vector
+  std::size_t first_[kRow];
+  HWY_ALIGN std::int32_t slot_[kRow];
+  HWY_ALIGN float weight_[kRow];
+};
+
+}  // namespace psygen::models::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
