@@ -39,7 +39,9 @@ GroundLines ground_lines(std::span<const core::TerrainVertex> vertices, float lo
                          float off_m) {
   const std::size_t n = side_of(vertices.size());
   const auto height = [&](std::size_t x, std::size_t z) {
-    return low_m + static_cast<float>(vertices[z * n + x].height) * (range_m / 65535.0F);
+    // Wherever between its own height and the coarser one the vertex is drawn.
+    const core::TerrainVertex& v = vertices[z * n + x];
+    return low_m + static_cast<float>(std::min(v.height, v.coarse_height)) * (range_m / 65535.0F);
   };
   GroundLines lines;
   float above_m = 0;

@@ -66,9 +66,6 @@ TEST(Occlusion, WhatIsLeftOutBehindRidgesWasNotToBeSeen) {
     options.scene.occlusion = false;
     const auto all = settled_picture(options, seconds);
     ASSERT_TRUE(hidden && all);
-    image::write_png("/tmp/f2/hid.png", *hidden);
-    image::write_png("/tmp/f2/all.png", *all);
-    if (seconds == 9.0) break;
     const image::ImageDifference difference = image::compare(*all, *hidden, 0);
     EXPECT_EQ(difference.pixels_over, 0u) << "at " << seconds << " s";
   }
