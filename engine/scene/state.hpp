@@ -34,6 +34,7 @@ struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
   std::vector<std::string> overlay_lines;
+  render::View view = render::View::kNormal;
 };
 
 struct Clock {
