@@ -11,12 +11,12 @@
 namespace psygen::render {
 
 struct PresetTraits {
-  bool pixel_light = false;       // light and haze per pixel, else per vertex
-  bool fine_grain = false;        // on near ground
-  bool waves = false;             // on water
-  std::uint32_t samples = 1;      // per pixel, where the device has so many
-  std::uint32_t cascades = 0;     // of the sun's shadow
-  std::uint32_t shadow_size = 1;  // pixels along one side of a cascade
+  bool pixel_light = false;        // light and haze per pixel, else per vertex
+  bool fine_grain = false;         // on near ground
+  bool waves = false;              // on water
+  std::uint32_t samples = 1;       // per pixel, where the device has so many
+  std::uint32_t cascades = 0;      // of the sun's shadow
+  std::uint32_t shadow_size = 1;   // pixels along one side of a cascade
   std::array<float, 3> reach_m{};  // from the camera, of each cascade
 };
 PresetTraits traits_of(Preset preset);

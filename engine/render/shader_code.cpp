@@ -95,7 +95,8 @@ constexpr ShaderCode kMeshes[2][4][2] = {
      {kModelShadowVert, kModelShadowPushedVert}},
 };
 
-constexpr OtherCode kOthers{kSurfaceFrag, kSurfaceLitFrag, kWaterVert, kWaterLitVert, kWaterFrag, kLineVert, kSkyVert, kSkyFrag, kOverlayVert, kOverlayFrag};
+constexpr OtherCode kOthers{kSurfaceFrag, kSurfaceLitFrag, kWaterVert, kWaterLitVert, kWaterFrag,
+                            kLineVert,    kSkyVert,        kSkyFrag,   kOverlayVert,  kOverlayFrag};
 
 }  // namespace
 

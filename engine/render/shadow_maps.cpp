@@ -59,8 +59,8 @@ Result<void> ShadowMaps::create(const Device& device, const PresetTraits& traits
   if (!image) return tl::unexpected(image.error());
   image_ = std::move(*image);
   for (std::uint32_t i = 0; i < cascades_; ++i) {
-    Result<UniqueImageView> view = make_layer_view(device, image_, kDepthFormat,
-                                                   VK_IMAGE_ASPECT_DEPTH_BIT, i);
+    Result<UniqueImageView> view =
+        make_layer_view(device, image_, kDepthFormat, VK_IMAGE_ASPECT_DEPTH_BIT, i);
     if (!view) return tl::unexpected(view.error());
     layers_[i] = std::move(*view);
   }
@@ -79,8 +79,8 @@ void ShadowMaps::record(const Device& device, VkCommandBuffer commands,
   barrier.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   image_barrier(device, commands, barrier);
   const VkRect2D area{{0, 0}, {size_, size_}};
-  const VkViewport viewport{
-      0.0F, 0.0F, static_cast<float>(size_), static_cast<float>(size_), 0.0F, 1.0F};
+  const VkViewport viewport{0.0F, 0.0F, static_cast<float>(size_), static_cast<float>(size_),
+                            0.0F, 1.0F};
   for (std::uint32_t i = 0; i < cascades_ && draw; ++i) {
     VkRenderingAttachmentInfo depth{};
     depth.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
@@ -115,9 +115,8 @@ void set_shadows(const FrameInput& input, const PresetTraits& traits, shaders::F
   out.shadow = {1.0F / static_cast<float>(traits.shadow_size),
                 lit ? static_cast<float>(traits.cascades) : 0.0F, 0.0F, 0.0F};
   out.shadow_reach = {traits.reach_m[0], traits.reach_m[1], traits.reach_m[2], 0.0F};
-  const glm::vec3 across = glm::normalize(std::abs(sun.y) < 0.99F
-                                              ? glm::cross(sun, glm::vec3(0, 1, 0))
-                                              : glm::vec3(1, 0, 0));
+  const glm::vec3 across = glm::normalize(
+      std::abs(sun.y) < 0.99F ? glm::cross(sun, glm::vec3(0, 1, 0)) : glm::vec3(1, 0, 0));
   const glm::vec3 along = glm::cross(across, sun);
   for (std::uint32_t i = 0; i < traits.cascades; ++i) {
     const float reach = traits.reach_m[i], depth = reach + kCasterReachM;

@@ -9,8 +9,8 @@
 namespace psygen::scene {
 namespace {
 
-// Extinction over the view distance that hides where the world ends (contrast e^−2, 14 %).
-constexpr double kOpaque = 2.0;
+// Extinction over the view distance that hides where the world ends (contrast e^−1.5, 22 %).
+constexpr double kOpaque = 1.5;
 constexpr float kGlow = 1.0F / 0.13F;  // the shader's glow is 0.13 of the colour at its brightest
 constexpr float kMostCloud = 32.0F;    // times brighter than under the sun of the file
 

@@ -28,7 +28,8 @@ constexpr double kMoreScattering = 0.5;
 // of light the eye does not make up for.
 constexpr double kNight = 2e-4;
 constexpr double kAdaptation = 0.36;
-// Light that the sky itself scatters again is as bright and much bluer: its share away from the sun.
+// Light that the sky itself scatters again is as bright and much bluer: its share away from the
+// sun.
 constexpr dvec3 kSkyBlue{0.72, 1.0, 1.55};
 constexpr double kZenithFill = 0.55, kHorizonFill = 0.6, kHazeFill = 0.7;
 constexpr dvec3 kLuminance{0.2126, 0.7152, 0.0722};
@@ -53,7 +54,8 @@ dvec3 transmittance(double h, double cosine) {
   const dvec3 depth = kAir * air + kDustExtinction * dust + kOzoneDepth * ozone;
   // The Earth's edge over half a degree.
   const double edge = -std::sqrt(std::max(0.0, 1 - kEarth * kEarth / (r * r)));
-  return glm::exp(-glm::min(depth, dvec3(60.0))) * glm::smoothstep(edge - 0.006, edge + 0.006, cosine);
+  return glm::exp(-glm::min(depth, dvec3(60.0))) *
+         glm::smoothstep(edge - 0.006, edge + 0.006, cosine);
 }
 
 double air_phase(double cosine) {
@@ -109,8 +111,8 @@ Daylight daylight(double sun_elevation_deg) {
   const dvec3 zenith = aside_of({0, 1, 0}, kZenithFill);
   const dvec3 horizon = aside_of(direction(glm::radians(14.0), aside), kHorizonFill);
   const dvec3 haze = aside_of(direction(glm::radians(4.0), aside), kHazeFill);
-  const dvec3 glow = glm::max(
-      sky(direction(near_sun, 0), sun) - sky(direction(near_sun, aside), sun), dvec3(0.0));
+  const dvec3 glow =
+      glm::max(sky(direction(near_sun, 0), sun) - sky(direction(near_sun, aside), sun), dvec3(0.0));
   const dvec3 direct = transmittance(0, sun.y);
   // Light from below: what the ground reflects of sun and sky.
   const dvec3 ground = std::max(sun.y, 0.0) * direct + std::numbers::pi * 0.5 * (zenith + horizon);
