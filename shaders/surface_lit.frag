@@ -25,7 +25,8 @@ float sun_at(vec3 p, vec3 n) {
   float end = frame.shadow_reach[last];
   if (cascade > last || away > end) return 1.0;
   float texel_m = 2.0 * frame.shadow_reach[cascade] * frame.shadow.x;
-  vec3 q = (frame.shadow_from_camera[cascade] * vec4(p + n * (1.5 * texel_m), 1.0)).xyz;
+  vec3 off = (n + frame.sun_direction.xyz) * (1.5 * texel_m);  // else ground shades itself
+  vec3 q = (frame.shadow_from_camera[cascade] * vec4(p + off, 1.0)).xyz;
   vec2 uv = q.xy * 0.5 + 0.5;
   float lit = 0.0;
   for (int y = -1; y <= 1; ++y) {
