@@ -6,6 +6,7 @@
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/render/preset.hpp"
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
 #include "game/option_checks.hpp"
@@ -80,6 +81,16 @@ FlyCommand::FlyCommand(CLI::App& cli)
        "Leave out what lies behind ridges: on, off")
       ->check(CLI::IsMember({"on", "off"}))
       ->default_str("on");
+  c.add_option_function<std::string>(
+       "--preset",
+       [this](const std::string& text) { options_.preset = *render::preset_from(text); },
+       "Light and detail: low, medium, high, ultra; without it what suits the device")
+      ->check(valid_if(render::preset_from, "low|medium|high|ultra"));
+  c.add_option_function<std::string>(
+       "--view", [this](const std::string& text) { options_.view = *render::view_from(text); },
+       "What is shown: normal, levels, layers, bounds, wireframe, missing")
+      ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing"))
+      ->default_str("normal");
   c.add_option("--device", options_.device_name, "Part of the name of the Vulkan device");
   c.add_flag("--validation", options_.validation,
              "Vulkan validation; any message makes the run fail");

@@ -92,6 +92,7 @@ core::Result<void> App::open() {
   render_options.geometry_budget_bytes = options_.scene.budget_bytes;
   render_options.surface = window_.get();
   render_options.vsync = options_.vsync;
+  render_options.preset = options_.preset;
   auto renderer = render::Renderer::create(render_options);
   if (!renderer) return tl::unexpected(renderer.error());
   renderer_ = std::move(*renderer);
@@ -109,6 +110,7 @@ core::Result<void> App::open() {
   const synthesis::CalibrationReport& costs = scene_->calibration();
   core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
                              costs.seconds, costs.fit_error_percent_p50));
+  scene_->state().input.view = options_.view;
   pose_ = home();
 
   std::vector<std::string> systems;

@@ -9,6 +9,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/models/terrain.hpp"
+#include "engine/render/preset.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 
 namespace psygen::app {
@@ -67,6 +68,10 @@ void App::handle_window() {
   }
   if (window_->should_close() || input_.was_pressed(platform::Key::kEscape)) closed_ = true;
   if (input_.was_pressed(platform::Key::kF1)) overlay_ = !overlay_;
+  if (input_.was_pressed(platform::Key::kF2)) {
+    render::View& view = scene_->state().input.view;
+    view = render::next_view(view);
+  }
   if (input_.was_pressed(platform::Key::kF12)) save_screenshot();
   if (moves_camera(input_)) user_flies_ = true;  // from here on the path is left
 }

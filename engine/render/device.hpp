@@ -36,15 +36,19 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
+  // The largest number of samples up to `wanted` that colour and depth can have.
+  VkSampleCountFlagBits samples_for(std::uint32_t wanted) const;
+
   VolkDeviceTable vk{};
   VkDevice handle = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
   VkPhysicalDeviceMemoryProperties memory{};
-  std::uint32_t max_image_side = 0;  // pixels
-  std::uint32_t max_multi_draw = 0;  // 0: no VK_EXT_multi_draw
-  double timestamp_period_ns = 0;    // 0: no timestamps on the queue
+  std::uint32_t max_image_side = 0;                          // pixels
+  VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;  // of colour and depth
+  std::uint32_t max_multi_draw = 0;                          // 0: no VK_EXT_multi_draw
+  double timestamp_period_ns = 0;                            // 0: no timestamps on the queue
   DeviceInfo info;
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 shaders::DrawData data_of(const TerrainDraw& draw) {
   return {.origin = {draw.origin.x, draw.origin.y + draw.height_min_m, draw.origin.z, draw.cell_m},
-          .scale = {draw.height_range_m, draw.skirt_m, draw.morph, 0.0F}};
+          .scale = {draw.height_range_m, draw.skirt_m, draw.morph, draw.cover}};
 }
 
 shaders::DrawData data_of(const MeshDraw& draw) {
@@ -20,6 +20,14 @@ shaders::DrawData data_of(const MeshDraw& draw) {
   // A phase that belongs to the mesh, not to the camera: its box is unlike its neighbour's.
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
   return {.origin = {center, phase - std::floor(phase)}, .scale = {extent, draw.fade}};
+}
+
+// Where the colour of a draw stands in the views that show it.
+float& colour_in(shaders::DrawData& data, const TerrainDraw&) {
+  return data.scale.w;
+}
+float& colour_in(shaders::DrawData& data, const MeshDraw&) {
+  return data.origin.w;
 }
 
 }  // namespace
@@ -47,6 +55,7 @@ void DrawList::append(const Draw& draw) {
   draws_.push_back({indices.first_index, indices.index_count,
                     static_cast<std::int32_t>(draw.range.first_vertex)});
   data_.push_back(data_of(draw));
+  if (coloured_) colour_in(data_.back(), draw) = static_cast<float>(draw.debug_colour & 0xFFFFFF);
   triangle_count_ += indices.index_count / 3;
 }
 
@@ -71,13 +80,14 @@ void DrawList::add(std::span<const Draw> input) {
 }
 
 void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-                     std::span<const IndexList> lists, std::uint32_t pushed_from) {
+                     std::span<const IndexList> lists, std::uint32_t pushed_from, bool coloured) {
   runs_.clear();
   draws_.clear();
   data_.clear();
   triangle_count_ = 0;
   lists_ = lists;
   pushed_from_ = pushed_from;
+  coloured_ = coloured;
   add(terrain);
   add(models);
   lists_ = {};

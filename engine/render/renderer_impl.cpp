@@ -115,8 +115,10 @@ Result<void> RendererImpl::create() {
   if (!timeline) return tl::unexpected(timeline.error());
   timeline_ = std::move(*timeline);
   if (Result<void> made = shared_.create(*device_); !made) return made;
-  if (Result<void> made = pipelines_.create(*device_, colour_format_, overlay_,
-                                            static_cast<std::uint32_t>(kFramesInFlight));
+  const Preset usual = device_->info.software ? Preset::kLow : Preset::kHigh;
+  if (Result<void> made =
+          pipelines_.create(*device_, colour_format_, traits_of(options_.preset.value_or(usual)),
+                            overlay_, static_cast<std::uint32_t>(kFramesInFlight));
       !made) {
     return made;
   }
@@ -146,14 +148,14 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
   wait_idle();
   targets_.reset();
   has_picture_ = false;
-  Result<Targets> made = make_targets(*device_, colour_format_, extent);
+  Result<Targets> made = make_targets(*device_, colour_format_, extent, pipelines_.samples());
   if (!made) return tl::unexpected(made.error());
   targets_ = std::move(*made);
   return {};
 }
 
 Result<void> RendererImpl::warm_up() {
-  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16});
+  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
   if (!small) return tl::unexpected(small.error());
   FrameSlot& slot = slots_[0];
   const FrameInput nothing;
@@ -216,7 +218,13 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
 Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   if (Result<void> begun = slot.begin(*device_); !begun) return begun;
   const ScenePass pass{
-      list_, {pool_blocks_, shared_.buffer()}, static_cast<std::uint32_t>(glyphs_.size())};
+      .list = list_,
+      .buffers = {pool_blocks_, shared_.buffer()},
+      .glyph_vertex_count = static_cast<std::uint32_t>(glyphs_.size()) - line_vertices_,
+      .line_vertex_count = line_vertices_,
+      .view = view_,
+      .water = water_,
+      .shadows = frame_.shadow.y > 0};
   record_scene(*device_, pipelines_, slot, *targets_, pass);
   if (windowed) {
     record_copy_to_window(*device_, slot.commands(), *targets_, swapchain_.image(),
@@ -248,6 +256,14 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   return noted(draw_frame(input, slots_[(frame_value_ + 1) % kFramesInFlight]));
 }
 
+void RendererImpl::add_lines(std::span<const Line> lines) {
+  line_vertices_ = static_cast<std::uint32_t>(2 * std::min(lines.size(), kMaxLines));
+  for (const Line& line : lines.first(line_vertices_ / 2)) {
+    glyphs_.push_back({{line.from, 1.0F}, {line.colour, 1.0F}});
+    glyphs_.push_back({{line.to, 1.0F}, {line.colour, 1.0F}});
+  }
+}
+
 Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot& slot) {
   const bool windowed = options_.surface != nullptr;
   FrameResult out;
@@ -260,9 +276,13 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   FrameInput checked = input;
   checked.pose = last_pose_.value_or(core::CameraPose{});
   checked.projection = last_projection_.value_or(core::Projection{});
-  list_.build(input.terrain, input.models, shared_.lists(), pushed_from_);
+  list_.build(input.terrain, input.models, shared_.lists(), pushed_from_,
+              colours_draws(input.view));
   overlay_.lay_out(input.overlay_lines, glyphs_);
-  frame_ = frame_data(checked, targets_->extent);
+  add_lines(input.lines);
+  view_ = input.view;
+  water_ = input.water.has_value();
+  frame_ = frame_data(checked, targets_->extent, pipelines_.traits());
   if (Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
       !written) {
     return tl::unexpected(written.error());

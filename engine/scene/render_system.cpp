@@ -3,6 +3,7 @@
 // until all that replaces it is.
 #include <algorithm>
 
+#include "engine/scene/lighting.hpp"
 #include "engine/scene/missing.hpp"
 #include "engine/scene/systems.hpp"
 
@@ -139,8 +140,11 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
   frame.pose = camera.pose;
   frame.projection = camera.projection;
   frame.light = facts.light;
+  if (facts.world.sky.day_length_s > 0) move_sun(facts.world, clock.now_s, frame.light);
   frame.light.time_seconds = static_cast<float>(clock.now_s);
   frame.palette = facts.palette;
+  frame.water = water_of(facts.world);
+  frame.view = input.view;
   frame.block_size_m = facts.world.block_size_m();
   frame.terrain = draws.terrain;
   frame.models = draws.models;

@@ -37,6 +37,7 @@ struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
   std::vector<std::string> overlay_lines;
+  render::View view = render::View::kNormal;
   double frame_ms = 0;  // what the last frame took, without waiting for a display; 0: unknown
 };
 
