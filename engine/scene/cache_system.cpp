@@ -140,7 +140,7 @@ class Chooser {
       const RankGroup kept = wanted ? RankGroup::kDrawn : RankGroup::kPrefetch;
       synthesis_.cache->set_rank(row.mesh.handle, rank_of(kept, node, distance_m));
     }
-    if (demand.drawn_level == demand.wanted_level) {
+    if (demand.drawn_level == demand.wanted_level && !demand.stale) {
       demand.requested_level = kNoLevel;
       return;
     }
@@ -169,7 +169,8 @@ class Chooser {
     for (int distance = 0; distance < levels; ++distance) {
       for (const int level : {first + distance, first - distance}) {
         if (level < 0 || level >= levels || (demand.failed_levels >> level & 1) != 0) continue;
-        return level == demand.drawn_level ? kNoLevel : static_cast<std::uint8_t>(level);
+        const bool there = level == demand.drawn_level && !demand.stale;
+        return there ? kNoLevel : static_cast<std::uint8_t>(level);
       }
     }
     return kNoLevel;

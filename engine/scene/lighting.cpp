@@ -1,7 +1,9 @@
 #include "engine/scene/lighting.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
+#include <glm/trigonometric.hpp>
 #include <limits>
 
 #include "engine/world/atmosphere.hpp"
@@ -70,6 +72,37 @@ render::TerrainPalette palette_of(const world::World& world) {
   to.rock_slope_full = metres(from.rock_slope_full);
   to.snow_slope_max = metres(from.snow_slope_max);
   return to;
+}
+
+render::Canopy canopy_of(const world::World& world, const glm::vec3& albedo) {
+  constexpr double kAnywhere = 1e6;
+  double lowest = kAnywhere, highest = -kAnywhere, slope_deg = 0;
+  for (const world::Scatter& scatter : world.scatter) {
+    if (scatter.count == 0) continue;
+    lowest = std::min(lowest, std::max(scatter.min_height_m, -kAnywhere));
+    highest = std::max(highest, std::min(scatter.max_height_m, kAnywhere));
+    slope_deg = std::max(slope_deg, scatter.max_slope_deg);
+  }
+  render::Canopy canopy;
+  canopy.colour = albedo;
+  canopy.lowest_m = static_cast<float>(lowest);
+  canopy.highest_m = static_cast<float>(highest);
+  canopy.slope_max = static_cast<float>(1 - std::cos(glm::radians(slope_deg)));
+  return canopy;
+}
+
+render::WorldEdge edge_of(const world::World& world, const core::WorldPosition& camera) {
+  render::WorldEdge edge;
+  const glm::dvec3 first = core::offset_m({}, camera, world.block_size_m());
+  const auto bound = [&](std::int64_t blocks, double least, int axis) {
+    if (blocks == 0) return;
+    edge.least[axis] = static_cast<float>(least);
+    edge.greatest[axis] =
+        static_cast<float>(least + static_cast<double>(blocks) * world.block_size_m());
+  };
+  bound(world.blocks_x, first.x, 0);
+  bound(world.blocks_z, first.z, 1);
+  return edge;
 }
 
 }  // namespace psygen::scene

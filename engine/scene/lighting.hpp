@@ -15,5 +15,9 @@ render::Light light_of(const world::World& world, double view_distance_m, double
 void move_sun(const world::World& world, double time_s, render::Light& light);
 std::optional<render::Water> water_of(const world::World& world);
 render::TerrainPalette palette_of(const world::World& world);
+// Where the world's plants may stand, in the colour that they have from above.
+render::Canopy canopy_of(const world::World& world, const glm::vec3& albedo);
+// The rectangle of a finite world, seen from the camera.
+render::WorldEdge edge_of(const world::World& world, const core::WorldPosition& camera);
 
 }  // namespace psygen::scene
