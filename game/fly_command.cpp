@@ -30,6 +30,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
   c.add_flag("--headless", options_.headless, "No window; needs no display");
   c.add_option("--seconds", options_.seconds, "Length of the flight; 0: that of the path")
       ->check(number_between(0, 86400));
+  c.add_flag("--loop", options_.loop, "Fly the path again and again, until --seconds are over");
   c.add_option("--frames", options_.frames, "End after so many frames; 0: no limit")
       ->check(number_between(0, 1e9));
   c.add_option("--fixed-step", options_.fixed_step_hz,

@@ -35,7 +35,7 @@ bool App::wants_more(double flight_s, std::uint64_t frames) const {
   if (options_.frames > 0 && frames >= options_.frames) return false;
   if (options_.seconds > 0) return flight_s < options_.seconds;
   if (options_.frames > 0 || user_flies_) return true;
-  if (path_) return flight_s < path_->duration_seconds();
+  if (path_ && !options_.loop) return flight_s < path_->duration_seconds();
   return window_ != nullptr || flight_s < kDefaultSeconds;
 }
 
@@ -49,7 +49,9 @@ core::CameraPose App::next_pose(double flight_s, double dt_s) {
         models::ground_height_m(world.terrain, pose_.position.block, local.x, local.z);
     pose_.position.local.y = std::max(local.y, ground_m + kEyeHeightM);
   } else if (path_) {
-    pose_ = path_->pose_at(std::min(flight_s, path_->duration_seconds()), world);
+    const double end_s = path_->duration_seconds();
+    const bool again = options_.loop && end_s > 0;
+    pose_ = path_->pose_at(again ? std::fmod(flight_s, end_s) : std::min(flight_s, end_s), world);
   } else {
     pose_ = home();
     pose_.yaw += 2 * std::numbers::pi * flight_s / kDefaultSeconds;

@@ -47,6 +47,7 @@ struct Options {
   std::optional<double> target_hz;
   double fixed_step_hz = 0;        // 0: the flight follows the wall clock
   std::uint64_t images_every = 0;  // every so many frames a PNG; 0: none
+  bool loop = false;               // the path again and again
   double warmup_seconds = 1;       // left out of all figures
   bool prefill = true;             // fill the cache for the first pose before the first frame
   bool hash_world = true;          // hash.world of the summary (some 50 ms)
