@@ -35,7 +35,6 @@ class Studio {
     auto app = App::create(options);
     EXPECT_TRUE(app) << app.error().message;
     app_ = std::move(*app);
-    state().input.size = options.size;
   }
 
   scene::Scene& scene() { return app_->scene(); }
