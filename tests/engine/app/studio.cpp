@@ -12,20 +12,38 @@ constexpr double kLeastToleranceM = 0.5;
 
 }  // namespace
 
-image::Image Studio::ground_under(float haze_colour) {
+image::Image Studio::drawn_again(const render::Light& light, bool models) {
   const scene::State& s = state();
   render::FrameInput frame;
   frame.pose = s.camera.pose;
   frame.projection = s.camera.projection;
-  frame.light = s.facts.light;
-  frame.light.haze_density = 0;
-  frame.light.cloud_cover = 0;
-  frame.light.haze_colour = glm::vec3(haze_colour);
+  frame.light = light;
   frame.palette = s.facts.palette;
+  frame.block_size_m = s.facts.world.block_size_m();
   frame.terrain = s.draws.terrain;
+  if (models) frame.models = s.draws.models;
   const auto drawn = app_->renderer().render(frame);
   EXPECT_TRUE(drawn) << drawn.error().message;
-  return picture();
+  auto picture = app_->renderer().capture();
+  if (!picture) {
+    ADD_FAILURE() << picture.error().message;
+    return {};
+  }
+  return {picture->width, picture->height, std::move(picture->rgba)};
+}
+
+image::Image Studio::picture() {
+  render::Light light = state().facts.light;
+  light.time_seconds = 0;
+  return drawn_again(light, true);
+}
+
+image::Image Studio::ground_under(float haze_colour) {
+  render::Light light = state().facts.light;
+  light.haze_density = 0;
+  light.cloud_cover = 0;
+  light.haze_colour = glm::vec3(haze_colour);
+  return drawn_again(light, false);
 }
 
 std::size_t Studio::holes() {

@@ -71,14 +71,8 @@ class Studio {
     const auto drawn = app_->frame(pose, 1.0 / 60.0);
     ASSERT_TRUE(drawn) << drawn.error().message;
   }
-  image::Image picture() {
-    auto picture = app_->renderer().capture();
-    if (!picture) {
-      ADD_FAILURE() << picture.error().message;
-      return {};
-    }
-    return {picture->width, picture->height, std::move(picture->rgba)};
-  }
+  // What the last frame drew, with clouds and wind standing still.
+  image::Image picture();
 
   // For each pixel, row by row: not 0 where the ground of the last frame (without what stands on
   // it) leaves the sky to be seen. A sky of another colour changes nothing but the sky.
@@ -104,6 +98,7 @@ class Studio {
   std::size_t holes();
 
  private:
+  image::Image drawn_again(const render::Light& light, bool models);
   image::Image ground_under(float haze_colour);
   bool is_hole(const glm::dvec3& direction);
 
