@@ -12,7 +12,9 @@ constexpr double kLeastToleranceM = 0.5;
 
 }  // namespace
 
-image::Image Studio::drawn_again(const render::Light& light, bool models) {
+image::Image Studio::drawn_again(const render::Light& light,
+                                 std::span<const render::TerrainDraw> terrain,
+                                 std::span<const render::MeshDraw> models) {
   const scene::State& s = state();
   render::FrameInput frame;
   frame.pose = s.camera.pose;
@@ -20,8 +22,8 @@ image::Image Studio::drawn_again(const render::Light& light, bool models) {
   frame.light = light;
   frame.palette = s.facts.palette;
   frame.block_size_m = s.facts.world.block_size_m();
-  frame.terrain = s.draws.terrain;
-  if (models) frame.models = s.draws.models;
+  frame.terrain = terrain;
+  frame.models = models;
   const auto drawn = app_->renderer().render(frame);
   EXPECT_TRUE(drawn) << drawn.error().message;
   auto picture = app_->renderer().capture();
@@ -35,7 +37,28 @@ image::Image Studio::drawn_again(const render::Light& light, bool models) {
 image::Image Studio::picture() {
   render::Light light = state().facts.light;
   light.time_seconds = 0;
-  return drawn_again(light, true);
+  return drawn_again(light, state().draws.terrain, state().draws.models);
+}
+
+Studio::Lists Studio::lists() {
+  const scene::State& s = state();
+  return {s.camera.pose.position, s.draws.terrain, s.draws.models};
+}
+
+image::Image Studio::picture_of(Lists terrain_of, const Lists& models_of) {
+  const scene::State& s = state();
+  Lists lists{{}, std::move(terrain_of.terrain), models_of.models};
+  const auto moved = [&](const core::WorldPosition& from) {
+    const core::WorldPosition& eye = s.camera.pose.position;
+    return glm::vec3(core::offset_m(from.block, eye, s.facts.world.block_size_m()) + from.local);
+  };
+  for (render::TerrainDraw& draw : lists.terrain)
+    draw.origin += moved(terrain_of.eye);
+  for (render::MeshDraw& draw : lists.models)
+    draw.origin += moved(models_of.eye);
+  render::Light light = s.facts.light;
+  light.time_seconds = 0;
+  return drawn_again(light, lists.terrain, lists.models);
 }
 
 image::Image Studio::ground_under(float haze_colour) {
@@ -43,7 +66,7 @@ image::Image Studio::ground_under(float haze_colour) {
   light.haze_density = 0;
   light.cloud_cover = 0;
   light.haze_colour = glm::vec3(haze_colour);
-  return drawn_again(light, false);
+  return drawn_again(light, state().draws.terrain, {});
 }
 
 std::size_t Studio::holes() {

@@ -74,6 +74,15 @@ class Studio {
   // What the last frame drew, with clouds and wind standing still.
   image::Image picture();
 
+  // The same of lists of an earlier frame, from where the camera is now.
+  struct Lists {
+    core::WorldPosition eye;
+    std::vector<render::TerrainDraw> terrain;
+    std::vector<render::MeshDraw> models;
+  };
+  Lists lists();
+  image::Image picture_of(Lists terrain_of, const Lists& models_of);
+
   // For each pixel, row by row: not 0 where the ground of the last frame (without what stands on
   // it) leaves the sky to be seen. A sky of another colour changes nothing but the sky.
   std::vector<std::uint8_t> sky() {
@@ -98,7 +107,8 @@ class Studio {
   std::size_t holes();
 
  private:
-  image::Image drawn_again(const render::Light& light, bool models);
+  image::Image drawn_again(const render::Light& light, std::span<const render::TerrainDraw> terrain,
+                           std::span<const render::MeshDraw> models);
   image::Image ground_under(float haze_colour);
   bool is_hole(const glm::dvec3& direction);
 
