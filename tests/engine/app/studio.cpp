@@ -107,11 +107,11 @@ bool Studio::is_hole(const glm::dvec3& direction) {
       if (direction.y >= 0) return false;
       continue;
     }
-    const core::WorldPosition at = core::normalised(
-        {eye.block,
-         {eye.local.x + direction.x / level_run * run_m, 0,
-          eye.local.z + direction.z / level_run * run_m}},
-        s.facts.world.block_size_m());
+    const core::WorldPosition at =
+        core::normalised({eye.block,
+                          {eye.local.x + direction.x / level_run * run_m, 0,
+                           eye.local.z + direction.z / level_run * run_m}},
+                         s.facts.world.block_size_m());
     if (!s.facts.world.contains(at.block)) continue;
     const double ground_m =
         models::ground_height_m(s.facts.world.terrain, at.block, at.local.x, at.local.z);
