@@ -123,8 +123,8 @@ TEST(NodeLevels, EveryNodeThatIsWantedExistsAsSoonAsThereWasTime) {
         std::size_t missing = 0;
         for (const visibility::CutNode& node : s.view.cut.nodes) {
           const NodeGrid& grid = s.streaming.grids[node.node.level];
-          missing += !grid.contains(node.node.coord) ||
-                     !s.entities.alive(grid.entity_of(node.node.coord));
+          missing +=
+              !grid.contains(node.node.coord) || !s.entities.alive(grid.entity_of(node.node.coord));
         }
         EXPECT_EQ(missing, 0u) << wish.view_m << " m, " << vertices << " vertices";
         EXPECT_GT(s.view.cut.nodes.size(), 0u);
@@ -140,10 +140,15 @@ TEST(NodeLevels, WorldsOfAnySizeAndShapeAreDrawnWithoutAHole) {
     double view_m;
     bool levels_of_detail;
   };
-  for (const Case& c :
-       {Case{1, 1, 64, 16000, true}, {1, 1, 64, 32, true}, {3, 5, 59, 1000, true},
-        {3, 5, 64, 65536, true}, {3, 5, 59, 1000, false}, {0, 4, 17, 500, true},
-        {512, 1, 64, 400, true}, {512, 512, 8, 32, true}, {0, 0, 97, 65536, true}}) {
+  for (const Case& c : {Case{1, 1, 64, 16000, true},
+                        {1, 1, 64, 32, true},
+                        {3, 5, 59, 1000, true},
+                        {3, 5, 64, 65536, true},
+                        {3, 5, 59, 1000, false},
+                        {0, 4, 17, 500, true},
+                        {512, 1, 64, 400, true},
+                        {512, 512, 8, 32, true},
+                        {0, 0, 97, 65536, true}}) {
     SCOPED_TRACE(testing::Message() << c.x << " x " << c.z << " blocks of " << c.vertices);
     Settings settings = small_settings();
     settings.view_distance_m = c.view_m;

@@ -71,7 +71,9 @@ class Gate {
     opened_.wait(lock, [this] { return open_ || passes_ > 0; });
     if (!open_) --passes_;
   }
-  void let_through(int passes) { change([&] { passes_ += passes; }); }
+  void let_through(int passes) {
+    change([&] { passes_ += passes; });
+  }
   void set_open(bool open) {
     change([&] {
       open_ = open;
@@ -250,9 +252,8 @@ void fly_a_second(const Settings& settings, const Pose& pose_of) {
 }
 
 TEST(Steady, AfterASpinAt720DegreesASecondNothingIsMissing) {
-  fly_a_second(far_settings(), [](int i) {
-    return pose_at(256, 256, 4 * std::numbers::pi * i / 60.0);
-  });
+  fly_a_second(far_settings(),
+               [](int i) { return pose_at(256, 256, 4 * std::numbers::pi * i / 60.0); });
 }
 
 TEST(Steady, AfterAFlightAt500MetresASecondNothingIsMissing) {

@@ -32,9 +32,11 @@ core::CameraPose endless_pose(core::BlockCoord block) {
   return pose;
 }
 
-constexpr core::BlockCoord kPlaces[] = {
-    {0, 0},           {1 << 30, -(1 << 30)}, {INT32_MAX, INT32_MIN}, {INT32_MIN, INT32_MAX},
-    {INT32_MAX - 15, 15}};
+constexpr core::BlockCoord kPlaces[] = {{0, 0},
+                                        {1 << 30, -(1 << 30)},
+                                        {INT32_MAX, INT32_MIN},
+                                        {INT32_MIN, INT32_MAX},
+                                        {INT32_MAX - 15, 15}};
 
 TEST(Extent, EverywhereInAnEndlessWorldAsMuchExistsAndIsDrawn) {
   std::size_t nodes = 0, entities = 0, draws = 0;
@@ -70,9 +72,8 @@ TEST(Extent, EverythingIsDrawnWhereItIsToTheMillimetre) {
     SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
     Settings settings = far_settings();
     settings.view_distance_m = 1500;
-    const auto scene = make_scene_of(settings, [](world::World& world) {
-      world.blocks_x = world.blocks_z = 0;
-    });
+    const auto scene =
+        make_scene_of(settings, [](world::World& world) { world.blocks_x = world.blocks_z = 0; });
     const core::CameraPose pose = endless_pose(block);
     scene->settle(pose);
     tick_at(*scene, pose);
@@ -102,9 +103,8 @@ TEST(Extent, EverythingIsDrawnWhereItIsToTheMillimetre) {
 TEST(Extent, WhenTheCameraMovesByAMillimetreNothingMovesFarther) {
   for (const core::BlockCoord block : kPlaces) {
     SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
-    const auto scene = make_scene_of(far_settings(), [](world::World& world) {
-      world.blocks_x = world.blocks_z = 0;
-    });
+    const auto scene = make_scene_of(
+        far_settings(), [](world::World& world) { world.blocks_x = world.blocks_z = 0; });
     core::CameraPose pose = endless_pose(block);
     scene->settle(pose);
     tick_at(*scene, pose);
@@ -137,9 +137,8 @@ TEST(Extent, AWorldOfAMillionBlocksASideTakesNoMoreThanOneOf512) {
   };
   std::vector<Size> sizes;
   for (const std::int64_t blocks : {std::int64_t{512}, std::int64_t{1} << 20}) {
-    const auto scene = make_scene_of(far_settings(), [&](world::World& world) {
-      world.blocks_x = world.blocks_z = blocks;
-    });
+    const auto scene = make_scene_of(
+        far_settings(), [&](world::World& world) { world.blocks_x = world.blocks_z = blocks; });
     core::CameraPose pose = pose_at(256, 256, 0.3);
     scene->settle(pose);
     tick_at(*scene, pose);
