@@ -1,6 +1,6 @@
 // Turns what is in view and resident into draw lists, nearest nodes first, counts what is missing,
 // and hands the lists to the renderer. Where nodes of the cut are not ready an ancestor is drawn
-// until all that replaces it is.
+// until all that replaces it is; where nothing is complete, the finest ground that closes the gap.
 #include <algorithm>
 
 #include "engine/scene/missing.hpp"

@@ -61,9 +61,9 @@ Pops fly(Studio& studio, core::CameraPose pose, int frames, const Move& move) {
   image::Image picture_before = studio.picture();
   for (int i = 0; i < frames; ++i) {
     const double above_m =
-        pose.position.local.y - studio.above(pose.position.block, pose.position.local.x,
-                                             pose.position.local.z, 0, 0, 0)
-                                    .position.local.y;
+        pose.position.local.y -
+        studio.above(pose.position.block, pose.position.local.x, pose.position.local.z, 0, 0, 0)
+            .position.local.y;
     pose.position.local += move(i);
     pose.position = core::normalised(pose.position, studio.state().facts.world.block_size_m());
     pose = studio.above(pose.position.block, pose.position.local.x, pose.position.local.z,
@@ -108,23 +108,20 @@ Options view() {
 
 TEST(Pops, FlyingForwardNoChangeOfLevelIsSeen) {
   Studio studio("paper.toml", view());
-  expect_unseen(fly(studio, studio.above({250, 250}, 5, 60, 40, 0.3, -0.2), 30, [](int) {
-    return glm::dvec3(0.6, 0, -2.0);
-  }));
+  expect_unseen(fly(studio, studio.above({250, 250}, 5, 60, 40, 0.3, -0.2), 30,
+                    [](int) { return glm::dvec3(0.6, 0, -2.0); }));
 }
 
 TEST(Pops, FlyingBackwardNoChangeOfLevelIsSeen) {
   Studio studio("paper.toml", view());
-  expect_unseen(fly(studio, studio.above({300, 120}, 5, 60, 30, 0.3, -0.2), 30, [](int) {
-    return glm::dvec3(-0.5, 0.1, 2.0);
-  }));
+  expect_unseen(fly(studio, studio.above({300, 120}, 5, 60, 30, 0.3, -0.2), 30,
+                    [](int) { return glm::dvec3(-0.5, 0.1, 2.0); }));
 }
 
 TEST(Pops, ClimbingNoChangeOfLevelIsSeen) {
   Studio studio("paper.toml", view());
-  expect_unseen(fly(studio, studio.above({200, 270}, 5, 60, 20, 4.0, -0.35), 30, [](int i) {
-    return glm::dvec3(0.5, 0.1 * i, -0.5);
-  }));
+  expect_unseen(fly(studio, studio.above({200, 270}, 5, 60, 20, 4.0, -0.35), 30,
+                    [](int i) { return glm::dvec3(0.5, 0.1 * i, -0.5); }));
 }
 
 }  // namespace

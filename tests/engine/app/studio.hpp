@@ -60,7 +60,7 @@ class Studio {
   }
   // The next frame of a flight, after everything that it asks for has come.
   void fly(const core::CameraPose& pose) {
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 40; ++i) {
       draw(pose);
       state().synthesis.manager->wait_all();
       if (state().counters.requests == 0 && state().synthesis.finished.empty()) break;

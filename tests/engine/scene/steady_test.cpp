@@ -242,12 +242,14 @@ void fly_a_second(const Settings& settings, const Pose& pose_of) {
     expect_bounded(*scene);
     EXPECT_EQ(overlaps(drawn_ground(scene->state())), 0u) << "frame " << i;
   }
-  for (int i = 0; i < 3; ++i) {
+  // A plan is what modelers do in a moment: on a slow machine it takes several.
+  const Counters& counters = scene->state().counters;
+  for (int i = 0; i < 3 || (i < 60 && counters.holes + counters.coarse > 0); ++i) {
     tick_at(*scene, pose_of(60));
     scene->state().synthesis.manager->wait_all();
   }
-  EXPECT_EQ(scene->state().counters.holes, 0u);
-  EXPECT_EQ(scene->state().counters.coarse, 0u);
+  EXPECT_EQ(counters.holes, 0u);
+  EXPECT_EQ(counters.coarse, 0u);
   expect_consistent(*scene);
 }
 
