@@ -1,6 +1,6 @@
 // Turns what is in view and resident into draw lists, nearest nodes first, counts what is missing,
 // and hands the lists to the renderer. Where nodes of the cut are not ready an ancestor is drawn
-// until all that replaces it is.
+// until all that replaces it is; where nothing is complete, the finest ground that closes the gap.
 #include <algorithm>
 
 #include "engine/scene/lighting.hpp"
@@ -27,11 +27,7 @@ class Drawing {
   // Entities of the nodes of the cut, in its order; null where there is none.
   void run(std::span<const ecs::Entity> entities) {
     const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
-    draws_.ready.assign(cut.size(), 0);
-    for (std::size_t i = 0; i < cut.size(); ++i) {
-      const Lacking* lacking = entities_.get<Lacking>(entities[i]);
-      draws_.ready[i] = lacking != nullptr && lacking->meshes == 0 ? 1 : 0;
-    }
+    find_ready(entities);
     visibility::drawn_nodes(view_.cut, draws_.ready, draws_.scratch, draws_.nodes);
     std::size_t next = 0;
     for (std::uint32_t i = 0; i < cut.size();) {
@@ -44,6 +40,23 @@ class Drawing {
   }
 
  private:
+  // Complete nodes; where no ancestor is complete bare ground is better than nothing.
+  void find_ready(std::span<const ecs::Entity> entities) {
+    const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
+    draws_.ready.assign(cut.size(), 0);
+    std::vector<std::uint8_t>& complete = draws_.scratch;  // the node or an ancestor
+    complete.assign(cut.size(), 0);
+    for (std::size_t i = 0; i < cut.size(); ++i) {
+      const bool above = cut[i].parent != visibility::kNoNode && complete[cut[i].parent] != 0;
+      const Lacking* lacking = entities_.get<Lacking>(entities[i]);
+      const bool itself = lacking != nullptr && lacking->meshes == 0;
+      const bool ground =
+          lacking != nullptr && entities_.get<Demand>(entities[i])->drawn_level != kNoLevel;
+      complete[i] = above || itself ? 1 : 0;
+      draws_.ready[i] = itself || (ground && !above) ? 1 : 0;
+    }
+  }
+
   void draw(std::uint32_t index, ecs::Entity entity) {
     if (!entities_.alive(entity)) return;  // counted by the visibility system
     const visibility::CutNode& node = view_.cut.nodes[index];
