@@ -76,6 +76,11 @@ class BlockFolder::Sink final : public BlockSink {
     return written;
   }
 
+  void drop(core::BlockCoord) override {
+    document_.objects.clear();
+    error_.reset();
+  }
+
  private:
   BlockFolder& folder_;
   exchange::Document document_;

@@ -1,5 +1,5 @@
-// A moving sun: when its shadows have moved by a step, the ground of every node gets new parameters.
-// Its old mesh is drawn until the new one is there; that is synthesis like any other.
+// A moving sun: when its shadows have moved by a step, the ground of every node gets new
+// parameters. Its old mesh is drawn until the new one is there; that is synthesis like any other.
 #include "engine/scene/node_levels.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/world/placement.hpp"
@@ -13,8 +13,7 @@ void daylight_system(const Clock& clock, const WorldFacts& facts, DaylightQuery 
   if (facts.world.sky.day_length_s <= 0) return;
   const models::ModelType& terrain = facts.registry[facts.world.terrain_model];
   nodes.each<const Node, Source, Demand>([&](std::span<const ecs::Entity>, std::span<const Node>,
-                                             std::span<Source> sources,
-                                             std::span<Demand> demands) {
+                                             std::span<Source> sources, std::span<Demand> demands) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
       models::Parameters lit = sources[i].parameters;
       world::set_sun(lit, daylight.azimuth_deg, daylight.elevation_deg);
