@@ -141,5 +141,19 @@ TEST(BlockFiles, ADocumentHoldsEverythingOnTheBlockWhereItStands) {
   EXPECT_LT(block_document(world, registry(), {2, 1}, 3)->triangle_count(), totals.triangles / 10);
 }
 
+TEST(BlockFiles, GroundAtTheWaterIsSandAsItIsDrawn) {
+  world::World world = parsed(kSmallWorld);
+  const auto red = [&] {
+    double sum = 0;
+    const auto document = block_document(world, registry(), {2, 1}, 0);
+    for (const glm::vec3& colour : document->objects[0].parts[0].colours)
+      sum += static_cast<double>(colour.x);
+    return sum;
+  };
+  const double dry = red();
+  world.water.level_m = 200;  // above everything
+  EXPECT_GT(red(), 1.5 * dry);
+}
+
 }  // namespace
 }  // namespace psygen::amplify
