@@ -163,7 +163,8 @@ core::Result<amplify::Report> AmplifyCommand::amplify(const world::World& world,
     folder = std::move(*opened);
     options.make_sink = [&folder] { return folder->make_sink(); };
   }
-  options.threads = threads_ > 0 ? threads_ : std::max(std::thread::hardware_concurrency(), 1u);
+  options.threads =
+      threads_ > 0 ? threads_ : amplify::threads_for(std::thread::hardware_concurrency());
   options.stop = &stop_at_interrupt();
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "amplifying " + world.name,
                              static_cast<double>(region->block_count()));
@@ -182,13 +183,14 @@ int AmplifyCommand::print_report(const amplify::Report& report) const {
   const int printed = print(json_ ? json_of(report, shown) : text_of(report, shown));
   const amplify::Totals& totals = report.totals;
   if (totals.failed > 0) {
-    core::log_error(
-        fmt::format("{} meshes failed; the first: {}", totals.failed, totals.first_failure));
+    core::log_error(fmt::format("{} meshes failed{}; the first: {}", totals.failed,
+                                shown != nullptr ? " (their blocks have no files)" : "",
+                                totals.first_failure));
   }
-  if (!report.complete) {
+  if (totals.blocks < report.region_blocks) {
     core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));
   }
-  return totals.failed > 0 || !report.complete ? kFailed : printed;
+  return report.complete ? printed : kFailed;
 }
 
 }  // namespace psygen::game

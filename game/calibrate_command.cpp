@@ -1,11 +1,14 @@
 // psygen calibrate: the paper's Figure 9 on this machine, and how good predictions are.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "game/calibration_page.hpp"
+#include "game/calibration_samples.hpp"
 #include "game/commands.hpp"
 #include "game/option_checks.hpp"
 
@@ -16,24 +19,12 @@ namespace {
 constexpr std::uint64_t kFittedSets = 1, kHeldOutSets = 2;
 constexpr int kSeedsPerPoint = 12;
 
-// Up to `count` parameter sets of each type that stands in the world, from a row of blocks that
-// begins at `first`.
-std::vector<synthesis::CostSample> world_samples(const world::World& world,
-                                                 const models::Registry& registry,
-                                                 std::int32_t first, std::size_t count) {
-  std::vector<synthesis::CostSample> samples;
-  std::vector<std::size_t> taken(registry.size(), 0);
-  std::vector<world::Placement> placements;
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(count); ++i) {
-    const core::BlockCoord block{first + i, first};
-    samples.push_back({world.terrain_model, world::terrain_parameters(world, block)});
-    world::place_models(world, registry, block, placements);
-    for (const world::Placement& placement : placements) {
-      if (taken[placement.model]++ < count)
-        samples.push_back({placement.model, placement.parameters});
-    }
-  }
-  return samples;
+// Each sentence once.
+void warn_of(std::vector<std::string> failures) {
+  std::sort(failures.begin(), failures.end());
+  failures.erase(std::unique(failures.begin(), failures.end()), failures.end());
+  for (const std::string& failure : failures)
+    core::log_warning(fmt::format("not measured: {}", failure));
 }
 
 }  // namespace
@@ -70,8 +61,7 @@ int CalibrateCommand::run() const {
     world = std::move(*loaded);
   }
   const auto sets = [&](std::uint64_t which) {
-    return world ? world_samples(*world, registry, static_cast<std::int32_t>(which * 20'000),
-                                 samples_)
+    return world ? world_samples(*world, registry, which == kFittedSets ? 0 : 1, samples_)
                  : synthesis::random_samples(registry, samples_, which);
   };
   const double start_s = core::monotonic_seconds();
@@ -91,6 +81,9 @@ int CalibrateCommand::run() const {
                                           [&bar](double fraction) { bar.update(2 + fraction); });
   found.seconds = core::monotonic_seconds() - start_s;
   bar.finish();
+  found.fits.failures.insert(found.fits.failures.end(), found.held_out.failures.begin(),
+                             found.held_out.failures.end());
+  warn_of(found.fits.failures);
   if (!out_.empty()) {
     const std::filesystem::path folder = out_;
     for (const auto& [name, text] :

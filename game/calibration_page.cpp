@@ -46,7 +46,22 @@ std::string fit_text(const synthesis::CostFit& fit) {
 }
 
 Json error_json(const synthesis::CostError& error) {
+  if (error.count == 0) return {{"measured", 0}, {"p50", nullptr}, {"p95", nullptr}};
   return {{"measured", error.count}, {"p50", error.p50_percent}, {"p95", error.p95_percent}};
+}
+
+std::string error_text(const synthesis::CostError& error) {
+  if (error.count == 0) return "not measured";
+  return fmt::format("p50 {:>5.1f}  p95 {:>5.1f}  of {}", error.p50_percent, error.p95_percent,
+                     error.count);
+}
+
+// Of the page's first sentence.
+std::string worst_text(const Calibration& found, const models::Registry& registry) {
+  if (!found.held_out.worst) return "";
+  return fmt::format("; worst for {}: {}",
+                     telemetry::escaped(registry[found.held_out.worst->model].name()),
+                     error_text(found.held_out.worst->error));
 }
 
 // [log2 of 1 + full triangles, factor] of each knot.
@@ -109,12 +124,14 @@ std::string calibration_text(const Calibration& found, const models::Registry& r
   fmt::format_to(out, "error of predictions for {} other parameter sets of each type, in %\n",
                  found.held_out_sets);
   for (const synthesis::LevelAccuracy& level : found.held_out.levels) {
-    fmt::format_to(out, "  {:<{}} level {}  p50 {:>5.1f}  p95 {:>5.1f}\n",
-                   registry[level.model].name(), width, level.level, level.error.p50_percent,
-                   level.error.p95_percent);
+    fmt::format_to(out, "  {:<{}} level {}  {}\n", registry[level.model].name(), width, level.level,
+                   error_text(level.error));
   }
-  fmt::format_to(out, "  {:<{}}  p50 {:>5.1f}  p95 {:>5.1f}\n", "all", width + 8,
-                 found.held_out.all.p50_percent, found.held_out.all.p95_percent);
+  if (found.held_out.worst) {
+    fmt::format_to(out, "  {:<{}} worst    {}\n", registry[found.held_out.worst->model].name(),
+                   width, error_text(found.held_out.worst->error));
+  }
+  fmt::format_to(out, "  {:<{}}  {}\n", "all", width + 8, error_text(found.held_out.all));
   return text;
 }
 
@@ -125,25 +142,32 @@ std::string calibration_json(const Calibration& found, const models::Registry& r
     json["curves"].push_back(curve_json(curve, registry));
   json["fits"] = Json::array();
   for (const synthesis::LevelCalibration& level : found.fits.levels) {
-    json["fits"].push_back({{"model", registry[level.model].name()},
-                            {"level", level.level},
-                            {"fixed_seconds", level.fit.fixed_s},
-                            {"seconds_per_operation", level.fit.per_operation_s},
-                            {"seconds_per_triangle", level.fit.per_triangle_s},
-                            {"seconds_per_full_triangle", level.fit.per_full_triangle_s},
-                            {"correction", correction_json(level.fit)},
-                            {"samples", level.samples},
-                            {"error_percent_p50", level.fit_error_percent}});
+    json["fits"].push_back(
+        {{"model", registry[level.model].name()},
+         {"level", level.level},
+         {"fixed_seconds", level.fit.fixed_s},
+         {"seconds_per_operation", level.fit.per_operation_s},
+         {"seconds_per_triangle", level.fit.per_triangle_s},
+         {"seconds_per_full_triangle", level.fit.per_full_triangle_s},
+         {"correction", correction_json(level.fit)},
+         {"samples", level.samples},
+         {"error_percent_p50", level.samples > 0 ? Json(level.fit_error_percent) : Json(nullptr)}});
   }
   Json& held_out = json["held_out"];
   held_out["sets_of_each_model"] = found.held_out_sets;
   held_out["error_percent"] = error_json(found.held_out.all);
+  held_out["worst_model"] = nullptr;
+  if (found.held_out.worst) {
+    held_out["worst_model"] = {{"model", registry[found.held_out.worst->model].name()},
+                               {"error_percent", error_json(found.held_out.worst->error)}};
+  }
   held_out["levels"] = Json::array();
   for (const synthesis::LevelAccuracy& level : found.held_out.levels) {
     held_out["levels"].push_back({{"model", registry[level.model].name()},
                                   {"level", level.level},
                                   {"error_percent", error_json(level.error)}});
   }
+  json["failures"] = found.fits.failures;
   json["seconds"] = found.seconds;
   return json.dump(2) + "\n";
 }
@@ -160,22 +184,21 @@ std::string calibration_page(const Calibration& found, const models::Registry& r
   html += fmt::format(
       "<p class=\"lead\">Time of one core at full detail over each parameter of the paper's "
       "formulas. "
-      "Predictions for {} other parameter sets of each type, all levels: error {:.1f} % in the "
-      "median, {:.1f} % at p95.</p>\n<div class=\"plots\">\n",
-      found.held_out_sets, found.held_out.all.p50_percent, found.held_out.all.p95_percent);
+      "Error of predictions for {} other parameter sets of each type, all levels, in %: {}{}."
+      "</p>\n<div class=\"plots\">\n",
+      found.held_out_sets, error_text(found.held_out.all), worst_text(found, registry));
   for (const synthesis::CostCurve& curve : found.curves)
     html += plot_of(curve, registry);
-  html += "</div>\n<div class=\"facts\"><section><h2>Cost model and error, p50 / p95</h2><table>";
+  html += "</div>\n<div class=\"facts\"><section><h2>Cost model and error in %</h2><table>";
   for (std::size_t i = 0; i < found.held_out.levels.size(); ++i) {
     const synthesis::LevelAccuracy& level = found.held_out.levels[i];
     std::string fit;
     for (const synthesis::LevelCalibration& line : found.fits.levels) {
       if (line.model == level.model && line.level == level.level) fit = fit_text(line.fit);
     }
-    fmt::format_to(std::back_inserter(html),
-                   "<tr><th>{} level {}</th><td>{}</td><td>{:.1f} / {:.1f} %</td></tr>",
+    fmt::format_to(std::back_inserter(html), "<tr><th>{} level {}</th><td>{}</td><td>{}</td></tr>",
                    telemetry::escaped(registry[level.model].name()), level.level, fit,
-                   level.error.p50_percent, level.error.p95_percent);
+                   error_text(level.error));
   }
   return html + "</table></section></div>\n</main></body></html>\n";
 }

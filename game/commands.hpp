@@ -81,7 +81,8 @@ class ExportCommand {
   int run() const;
 
  private:
-  core::Result<exchange::Document> model_document(const models::Registry& registry) const;
+  core::Result<exchange::Document> model_document(const models::Registry& registry,
+                                                  const world::Palette& palette) const;
   core::Result<exchange::Document> block_document(const world::World& world,
                                                   const models::Registry& registry) const;
 

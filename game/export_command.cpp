@@ -112,7 +112,9 @@ int ExportCommand::run() const {
     }
     world = std::move(*loaded);
   }
-  const auto document = block_ ? block_document(*world, registry) : model_document(registry);
+  const auto document =
+      block_ ? block_document(*world, registry)
+             : model_document(registry, world ? world::drawn_palette(*world) : world::Palette{});
   if (!document) {
     core::log_error(document.error().message);
     const bool usage = !block_ && document.error().code == core::ErrorCode::kInvalidArgument;
@@ -129,7 +131,7 @@ int ExportCommand::run() const {
 }
 
 core::Result<exchange::Document> ExportCommand::model_document(
-    const models::Registry& registry) const {
+    const models::Registry& registry, const world::Palette& palette) const {
   const int found = registry.find(model_);
   if (found < 0) {
     return refuse(
@@ -146,7 +148,7 @@ core::Result<exchange::Document> ExportCommand::model_document(
   if (!mesh) return tl::unexpected(mesh.error());
   const auto outcome = synthesis::synthesize_guarded(type, p, level_, mesh->view());
   if (!outcome.ok) return core::fail(core::ErrorCode::kSynthesisFailed, outcome.error);
-  auto object = exchange::unpack(type, p, level_, mesh->size(), mesh->view(), world::Palette{});
+  auto object = exchange::unpack(type, p, level_, mesh->size(), mesh->view(), palette);
   if (!object) return tl::unexpected(object.error());
   exchange::Document document{model_, {}};
   document.objects.push_back(std::move(*object));

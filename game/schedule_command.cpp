@@ -2,13 +2,12 @@
 // clock.
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "engine/core/log.hpp"
 #include "engine/synthesis/request_stream.hpp"
+#include "engine/world/text_file.hpp"
 #include "game/commands.hpp"
 #include "game/option_checks.hpp"
 
@@ -16,12 +15,9 @@ namespace psygen::game {
 namespace {
 
 core::Result<std::vector<synthesis::SimulatedJob>> read_stream(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  if (!stream || !text)
-    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be read", file));
-  return synthesis::parse_stream(text.str(), file);
+  const auto text = world::read_text_file(file, synthesis::kMaxStreamBytes);
+  if (!text) return tl::unexpected(text.error());
+  return synthesis::parse_stream(*text, file);
 }
 
 std::string table_of(std::span<const synthesis::PolicyFigures> rows) {

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <condition_variable>
+#include <exception>
 #include <mutex>
+#include <new>
 #include <optional>
-#include <system_error>
 #include <thread>
 
 #include "engine/core/clock.hpp"
@@ -56,8 +57,11 @@ core::Result<void> Worker::make_blocks(Shared& shared) {
     if (i >= shared.block_count) break;
     block = shared.region.block(i);
     const bool wanted = sink && sink->wants(block);
+    const std::uint64_t failed = totals.failed;
     synthesizer.synthesise(block, totals, wanted ? visit : discard);
-    if (wanted) {
+    if (wanted && totals.failed > failed) {
+      sink->drop(block);
+    } else if (wanted) {
       if (auto ok = sink->finish(block); !ok) return ok;
     }
     blocks_done.store(totals.blocks, std::memory_order_relaxed);
@@ -68,10 +72,16 @@ core::Result<void> Worker::make_blocks(Shared& shared) {
 void Worker::work(Shared& shared) {
   synthesis::name_this_thread("amplify");
   if (shared.options.lowest_priority) synthesis::lower_priority_of_this_thread();
-  try {  // when memory ends
+  try {  // types and sinks of users may throw; nothing of ours does unless memory ends
     if (auto ok = make_blocks(shared); !ok) error = ok.error();
+  } catch (const std::bad_alloc&) {
+    error = core::Error{core::ErrorCode::kOutOfMemory, "the heap has no memory for a block"};
   } catch (const std::exception& e) {
-    error = core::Error{core::ErrorCode::kOutOfMemory, fmt::format("a block failed: {}", e.what())};
+    error =
+        core::Error{core::ErrorCode::kSynthesisFailed, fmt::format("a block failed: {}", e.what())};
+  } catch (...) {
+    error = core::Error{core::ErrorCode::kSynthesisFailed,
+                        "a block failed: something threw that is no std::exception"};
   }
   if (error) shared.failed.store(true, std::memory_order_relaxed);
   cpu_seconds = core::thread_cpu_seconds();
@@ -94,23 +104,31 @@ void wait_for(Shared& shared, std::span<const std::unique_ptr<Worker>> workers) 
   }
 }
 
+// False where the system allows no more threads or memory: those that there are do it.
+bool start_one(Shared& shared, std::vector<std::unique_ptr<Worker>>& workers) {
+  const auto set_running = [&shared](bool one_more) {
+    const std::lock_guard lock(shared.mutex);
+    one_more ? ++shared.running : --shared.running;
+  };
+  std::unique_ptr<Worker> worker(new (std::nothrow) Worker);
+  if (!worker) return false;
+  set_running(true);
+  try {
+    worker->thread = std::thread([&shared, w = worker.get()] { w->work(shared); });
+  } catch (const std::exception&) {  // system_error or bad_alloc
+    set_running(false);
+    return false;
+  }
+  workers.push_back(std::move(worker));
+  return true;
+}
+
 void start(Shared& shared, std::vector<std::unique_ptr<Worker>>& workers) {
   // No more threads than blocks.
   const std::uint64_t threads = std::min<std::uint64_t>(shared.options.threads, shared.block_count);
+  workers.reserve(threads);  // nothing may throw while threads run that nobody joins
   for (std::uint64_t i = 0; i < threads; ++i) {
-    auto worker = std::make_unique<Worker>();
-    {
-      const std::lock_guard lock(shared.mutex);
-      ++shared.running;
-    }
-    try {
-      worker->thread = std::thread([&shared, w = worker.get()] { w->work(shared); });
-    } catch (const std::system_error&) {  // the system allows no more: those that there are do it
-      const std::lock_guard lock(shared.mutex);
-      --shared.running;
-      return;
-    }
-    workers.push_back(std::move(worker));
+    if (!start_one(shared, workers)) return;
   }
 }
 
@@ -140,7 +158,8 @@ core::Result<Report> amplify(const world::World& world, const models::Registry& 
   for (const auto& worker : workers) {
     if (worker->error) return tl::unexpected(*worker->error);
   }
-  report.complete = report.totals.blocks == shared.block_count;
+  report.region_blocks = shared.block_count;
+  report.complete = report.totals.blocks == shared.block_count && report.totals.failed == 0;
   return report;
 }
 

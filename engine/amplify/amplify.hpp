@@ -4,6 +4,7 @@
 // atomic number of the next block and nothing else.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -14,6 +15,10 @@
 namespace psygen::amplify {
 
 inline constexpr unsigned kMaxThreads = 256;
+// One for each processor, as far as allowed; 0 processors: it is not known how many there are.
+constexpr unsigned threads_for(unsigned processors) {
+  return std::clamp(processors, 1u, kMaxThreads);
+}
 
 // What takes the meshes. Each thread has one of its own.
 class BlockSink {
@@ -22,6 +27,8 @@ class BlockSink {
   virtual void add(core::BlockCoord block, const BlockMesh& mesh) = 0;  // terrain first
   // All meshes of the block have been added. A failure ends everything.
   virtual core::Result<void> finish(core::BlockCoord block) = 0;
+  // Instead of finish(), where a mesh of the block failed: what was added is to be forgotten.
+  virtual void drop(core::BlockCoord block) = 0;
   // Whether the block's meshes are wanted; called first.
   virtual bool wants(core::BlockCoord block) = 0;
 };
@@ -42,14 +49,16 @@ struct Report {
   unsigned threads = 0;    // that could be started
   double seconds = 0;      // wall-clock time
   double cpu_seconds = 0;  // of all threads together
-  bool complete = false;   // every block of the region was made
+  std::uint64_t region_blocks = 0;
+  bool complete = false;  // every mesh of every block of the region was made
   double triangles_per_second_per_core() const {
     return cpu_seconds > 0 ? static_cast<double>(totals.triangles) / cpu_seconds : 0;
   }
 };
 
 // Fails with kInvalidArgument for a region or a number of threads that is not allowed, with
-// kInternal if no thread starts, and with what a sink failed with. A mesh that fails is counted.
+// kInternal if no thread starts, and with what a sink failed with. A mesh that fails is counted; an
+// exception from anywhere else is kSynthesisFailed, or kOutOfMemory where memory ended.
 core::Result<Report> amplify(const world::World& world, const models::Registry& registry,
                              const Region& region, const Options& options);
 

@@ -23,7 +23,7 @@ core::Result<exchange::Object> object_of(const world::World& world,
                                          const models::Registry& registry, const BlockMesh& mesh) {
   const world::Placement& placement = mesh.placement;
   auto object = exchange::unpack(registry[placement.model], placement.parameters, mesh.level,
-                                 mesh.size, mesh.view, world.palette);
+                                 mesh.size, mesh.view, world::drawn_palette(world));
   if (object && placement.index != world::kTerrainIndex) {
     object->name += fmt::format("_{}", placement.index);
     object->position = placement.position;
@@ -74,6 +74,11 @@ class BlockFolder::Sink final : public BlockSink {
     document_.objects.clear();
     if (written) folder_.written_.fetch_add(1, std::memory_order_relaxed);
     return written;
+  }
+
+  void drop(core::BlockCoord) override {
+    document_.objects.clear();
+    error_.reset();
   }
 
  private:

@@ -1,6 +1,7 @@
 // A folder with one file per block: glTF or OBJ with everything on it at one level of detail. Can
 // be gone on with: what is there already is not written again, what a killed process left half-done
-// is removed. The folder also holds the world's own file, so that blocks of two worlds never mix.
+// is removed, a block with a mesh that failed gets no file. The folder also holds the world's own
+// file, so that blocks of two worlds never mix.
 #pragma once
 
 #include <atomic>

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <exception>
 #include <glm/geometric.hpp>
+#include <new>
 #include <span>
+#include <string_view>
 
 #include "engine/exchange/ground_colour.hpp"
 #include "engine/models/packing.hpp"
@@ -119,11 +122,9 @@ std::vector<Vertex> vertices_of(const models::ModelType& type, const models::Par
   return vertices;
 }
 
-}  // namespace
-
-core::Result<Object> unpack(const models::ModelType& type, const models::Parameters& p, int level,
-                            const models::MeshSize& size, const models::MeshView& mesh,
-                            const world::Palette& palette) {
+core::Result<Object> object_of(const models::ModelType& type, const models::Parameters& p,
+                               int level, const models::MeshSize& size,
+                               const models::MeshView& mesh, const world::Palette& palette) {
   std::vector<std::uint16_t> shared;
   std::span<const std::uint16_t> indices = mesh.indices;
   if (size.shared_indices != 0) {
@@ -149,6 +150,27 @@ core::Result<Object> unpack(const models::ModelType& type, const models::Paramet
     builder.add(triangle, vertices);
   }
   return object;
+}
+
+}  // namespace
+
+core::Result<Object> unpack(const models::ModelType& type, const models::Parameters& p, int level,
+                            const models::MeshSize& size, const models::MeshView& mesh,
+                            const world::Palette& palette) {
+  const auto fail = [&type, level](std::string_view what) {
+    return core::fail(
+        core::ErrorCode::kSynthesisFailed,
+        fmt::format("{} level {} threw while it was unpacked{}", type.name(), level, what));
+  };
+  try {  // types of users may throw; nothing of ours does unless memory ends
+    return object_of(type, p, level, size, mesh, palette);
+  } catch (const std::bad_alloc&) {
+    return core::fail(core::ErrorCode::kOutOfMemory, "the heap has no memory for an object");
+  } catch (const std::exception& e) {
+    return fail(fmt::format(": {}", e.what()));
+  } catch (...) {
+    return fail("");
+  }
 }
 
 }  // namespace psygen::exchange

@@ -65,7 +65,8 @@ struct Species {
   std::string name, doc;
   std::int64_t iterations = 4, branches = 3, spread = 2;
   double size_m = 2.4, radius_m = 0.17, flare = 0.7, taper = 0.72, trunk_curvature = 0.3;
-  double crown_limit = 1;  // branches end within an ellipsoid of this relative size; 0: anywhere
+  double crown_limit =
+      1;  // branches end within an ellipsoid of this size, 0.05 or more; 0: anywhere
   double colour_variation = 0.5;
   std::string axiom;
   std::vector<SpeciesKind> kinds;

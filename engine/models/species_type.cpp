@@ -5,6 +5,7 @@
 #include "engine/models/planned_tree.hpp"
 #include "engine/models/species_grammar.hpp"
 #include "engine/models/spray_forms.hpp"
+#include "engine/models/tree_reach.hpp"
 
 namespace psygen::models {
 namespace {
@@ -93,12 +94,6 @@ std::uint64_t identity_of(const Species& s) {
   return h;
 }
 
-// Upper bounds of how far branches reach, in lengths of the trunk: along the chain of leaders from
-// the trunk, and away from that chain.
-struct Reach {
-  double along = 0, aside = 0;
-};
-
 class SpeciesType final : public PlannedTree {
  public:
   explicit SpeciesType(Species species)
@@ -115,7 +110,13 @@ class SpeciesType final : public PlannedTree {
     }
     identity_ = identity_of(species_);
     set_plan();
-    set_reach();
+    for (int n = 0; n <= kMaxTreeIterations; ++n) {
+      TreePlan tree = plan_;
+      tree.iterations = n;
+      tree.size_m = 1.0F;
+      set_envelope(tree);
+      reach_[static_cast<std::size_t>(n)] = reach_of(tree);
+    }
   }
 
   std::string_view name() const override { return species_.name; }
@@ -146,7 +147,7 @@ class SpeciesType final : public PlannedTree {
   }
   void set_schema();
   void set_plan();
-  void set_reach();
+  void set_envelope(TreePlan& tree) const;
   core::Bounds bounds_of(const TreePlan& plan) const;
   void shed_leaves(float season, FoliagePlan& foliage) const;
 
@@ -156,9 +157,10 @@ class SpeciesType final : public PlannedTree {
   std::array<ParameterSpec, kSpeciesParameterCount> schema_;
   std::array<PathWeights, kMostBranches + 1> weights_;
   std::array<std::array<double, kMaxTreeIterations + 1>, kMostBranches + 1> mean_log2_, most_log2_;
-  std::array<Reach, kMaxTreeIterations + 1> reach_;
+  std::array<TreeReach, kMaxTreeIterations + 1> reach_;  // by iterations
   std::uint64_t identity_ = 0;
   float decay_ = 0.3F;  // of lengths, by the longest kind
+  double ring_ = 0;     // farthest vertex of a branch's rings, over the trunk's radius
   TreePlan plan_{};     // what is the same for every tree of the species
 };
 
@@ -192,6 +194,11 @@ void SpeciesType::set_plan() {
     plan_.kinds[i] = kind_plan(species_.kinds[i]);
   for (std::size_t i = 0; i < species_.kinds.size(); ++i)
     if (i != axiom_) decay_ = std::max(decay_, plan_.kinds[i].length_high);
+  double bend = 0.3536 * species_.trunk_curvature;
+  for (std::size_t i = 0; i < species_.kinds.size(); ++i)
+    bend = std::max(
+        bend, 0.4331 * double{plan_.kinds[i].curvature} + std::abs(double{plan_.kinds[i].bend_up}));
+  ring_ = ring_reach(bend);
   plan_.taper = f(species_.taper);
   plan_.flare = f(species_.flare);
   plan_.trunk_curvature = f(species_.trunk_curvature);
@@ -205,61 +212,34 @@ void SpeciesType::set_plan() {
   plan_.bark_contrast = f(species_.colours.bark_contrast);
 }
 
-// From the leaves down: how far the branches of each kind reach after so many iterations more.
-void SpeciesType::set_reach() {
-  struct Extent {
-    double any = 0, along = 0, aside = 0;
-  };
-  std::array<Extent, kMaxKinds> now{}, before{};
-  const auto grow = [&](std::size_t kind, double factor, bool leaf) {
-    Extent children;
-    for (std::size_t r = grammar_.first_rule[kind]; !leaf && r < grammar_.first_rule[kind + 1]; ++r)
-      for (std::size_t c = 0; c < grammar_.kinds; ++c) {
-        const GrammarRule& rule = grammar_.rules[r];
-        if (rule.count[c] == 0 && rule.star != c) continue;
-        children.any = std::max(children.any, before[c].any);
-        if (plan_.kinds[c].leader) {
-          children.along = std::max(children.along, before[c].along);
-          children.aside = std::max(children.aside, before[c].aside);
-        } else {
-          children.aside = std::max(children.aside, before[c].any);
-        }
-      }
-    const KindPlan& k = plan_.kinds[kind];
-    const double own = 1 + 0.433 * double{k.curvature} + std::abs(double{k.bend_up});
-    return Extent{factor * (own + children.any), factor * (own + children.along),
-                  factor * children.aside};
-  };
-  for (std::size_t n = 0; n <= kMaxTreeIterations; ++n) {
-    const Extent trunk = grow(axiom_, 1.1, n == 0);
-    reach_[n] = {trunk.along, trunk.aside};
-    for (std::size_t kind = 0; kind < grammar_.kinds; ++kind) {
-      const KindPlan& k = plan_.kinds[kind];
-      const double low = 1 - double{k.along_low}, high = 1 - double{k.along_high};
-      const double slope = double{k.length_foot} - double{k.length_high};
-      const double longest = double{k.length_high} + std::max(low * slope, high * slope);
-      now[kind] = grow(kind, 1.15 * longest, n == 0);
-    }
-    before = now;
+// Of a tree that has its size and iterations.
+void SpeciesType::set_envelope(TreePlan& tree) const {
+  float length = tree.size_m, sum = 0.0F;
+  for (int i = 0; i < tree.iterations; ++i) {
+    length *= decay_;
+    sum += length;
   }
+  const float limit = f(species_.crown_limit);
+  const float extent = 0.25F * tree.size_m + 0.40F * sum;
+  tree.envelope_across = tree.envelope_up = limit > 0.0F ? limit * extent : extent;
+  tree.envelope_y = tree.size_m + 0.40F * sum;
+  tree.limit_across = tree.limit_up = limit > 0.0F ? 1.0F / tree.envelope_across : 0.0F;
 }
 
 core::Bounds SpeciesType::bounds_of(const TreePlan& tree) const {
   const double size = tree.size_m;
-  const Reach& reach = reach_[static_cast<std::size_t>(tree.iterations)];
-  double aside = size * reach.aside, along = size * reach.along;
-  if (species_.crown_limit > 0) {
-    aside = std::min(aside, 1.35 * double{tree.envelope_across});
-    along = std::min(along, 0.1 * size + double{tree.envelope_y} + 1.35 * double{tree.envelope_up});
-  }
+  const TreeReach& reach = reach_[static_cast<std::size_t>(tree.iterations)];
   const double foliage =
       tree.foliage.near == nullptr
           ? 0.02 * size
           : 0.6 * size + 0.3 * double{tree.envelope_across} * double{tree.foliage.fill};
+  const double ring = ring_ * double{tree.radius_m};
   const double foot = double{tree.radius_m} * (1.2 + 2.0 * double{tree.flare});
-  const auto side = static_cast<float>(std::max(0.3 * along + aside + foliage, foot));
-  const auto top = static_cast<float>(along + (species_.crown_limit > 0 ? 0.0 : aside) + foliage);
-  return {{-side, -1.1F * sink_m(tree) - 0.12F * static_cast<float>(foot) - 0.1F * side, -side},
+  const auto side = static_cast<float>(
+      std::max(size * reach.side + ring + foliage, 0.4 * size * trunk_side(tree) + foot));
+  const auto top = static_cast<float>(size * reach.top + ring + foliage);
+  const float bottom = -1.1F * sink_m(tree) - 0.12F * static_cast<float>(foot) - 0.1F * side;
+  return {{-side, std::min(bottom, static_cast<float>(size * reach.low - ring)), -side},
           {side, top, side}};
 }
 
@@ -293,16 +273,7 @@ TreePlan SpeciesType::plan(const Parameters& p) const {
   tree.weights = &weights_[branches];
   tree.size_m = f(p.real(kSpeciesSizeM));
   tree.radius_m = f(p.real(kSpeciesRadiusM));
-  float length = tree.size_m, sum = 0.0F;
-  for (std::size_t i = 0; i < n; ++i) {
-    length *= decay_;
-    sum += length;
-  }
-  const float limit = f(species_.crown_limit);
-  const float extent = 0.25F * tree.size_m + 0.40F * sum;
-  tree.envelope_across = tree.envelope_up = limit > 0.0F ? limit * extent : extent;
-  tree.envelope_y = tree.size_m + 0.40F * sum;
-  tree.limit_across = tree.limit_up = limit > 0.0F ? 1.0F / tree.envelope_across : 0.0F;
+  set_envelope(tree);
   tree.foliage.fill *= f(p.real(kSpeciesLeafScale));
   tree.hue = 0.25F * f(p.real(kSpeciesSeason));
   shed_leaves(f(p.real(kSpeciesSeason)), tree.foliage);

@@ -4,6 +4,7 @@
 
 #include "engine/models/planned_tree.hpp"
 #include "engine/models/spray_forms.hpp"
+#include "engine/models/tree_reach.hpp"
 
 namespace psygen::models {
 namespace {
@@ -51,23 +52,31 @@ constexpr Grammar kGrammar = [] {
   return g;
 }();
 
-// How far branches reach from the trunk's end and from the axis: geometric sums of upper bounds.
+// The reach of tree_reach.hpp in closed form, because it is wanted for every tree.
 core::Bounds bounds_of(const Parameters& p, const TreePlan& plan) {
-  const double crooked = 1 + 0.45 * p.real(kTreeCurvature) + 0.35 * std::abs(p.real(kTreeTropism));
+  const double bend = 0.4331 * p.real(kTreeCurvature) + 0.35 * std::abs(p.real(kTreeTropism));
   const double size = p.real(kTreeSizeM), trunk = 1.1 * size;
+  const double middle = plan.envelope_y, radius = plan.envelope_across;
+  const double aside = size * trunk_side(plan);
+  const double low = std::max(middle - 0.62 * size, trunk - middle);  // limbs begin at 0.7
+  double in_crown = std::sqrt(low * low + 2 * aside * aside) / radius;
   double length = trunk, sum = 0;
   for (int i = 0; i < plan.iterations; ++i) {
     length *= p.real(kTreeLengthDecay) * 1.15 * 1.09;
-    sum += length * crooked;
+    sum += length * (1 + bend);
+    in_crown = reach_in_crown(in_crown, length / radius, bend);
   }
-  const double foliage = 0.6 * size + 0.3 * plan.envelope_across * p.real(kTreeLeafScale);
-  const double across = std::min(sum, 1.35 * plan.envelope_across) + foliage;
+  const double foliage = 0.6 * size + 0.3 * radius * p.real(kTreeLeafScale);
+  const double ring = ring_reach(bend) * p.real(kTreeRadiusM);
   const double foot = p.real(kTreeRadiusM) * (1.2 + 2.0 * p.real(kTreeFlare));
-  const double up = std::min(sum, plan.envelope_y - size + 1.35 * plan.envelope_up);
-  const auto side = static_cast<float>(std::max(0.35 * trunk + across, foot));
-  const auto top = static_cast<float>(trunk + up + foliage);
+  const double crown = radius * in_crown;
+  const auto side = static_cast<float>(
+      std::max(std::max(std::min(aside + sum, crown), aside) + ring + foliage, 0.4 * aside + foot));
+  const auto top =
+      static_cast<float>(std::max(std::min(trunk + sum, middle + crown), trunk) + ring + foliage);
+  const auto sunk = static_cast<float>(std::max(middle - crown, 0.62 * size - sum) - ring);
   const float bottom = -1.1F * sink_m(plan) - 0.12F * static_cast<float>(foot);
-  return {{-side, bottom, -side}, {side, top, side}};
+  return {{-side, std::min(bottom, sunk), -side}, {side, top, side}};
 }
 
 bool is_always_complete(int iterations, int branches) {

@@ -50,7 +50,7 @@ std::optional<render::Water> water_of(const world::World& world) {
 }
 
 render::TerrainPalette palette_of(const world::World& world) {
-  const world::Palette& from = world.palette;
+  const world::Palette from = world::drawn_palette(world);
   const auto metres = [](double value) { return static_cast<float>(value); };
   render::TerrainPalette to;
   to.grass = from.grass;
@@ -60,9 +60,6 @@ render::TerrainPalette palette_of(const world::World& world) {
   to.snow = from.snow;
   to.sand = from.sand;
   to.sand_end_m = metres(from.sand_end_m);
-  if (world.water.exists()) {  // the shore is sand
-    to.sand_end_m = std::max(to.sand_end_m, metres(world.water.level_m + world.water.shore_m));
-  }
   to.sand_blend_m = metres(from.sand_blend_m);
   to.dry_start_m = metres(from.dry_start_m);
   to.dry_blend_m = metres(from.dry_blend_m);

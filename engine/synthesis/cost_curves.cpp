@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/core/clock.hpp"
 
@@ -10,7 +9,6 @@ namespace psygen::synthesis {
 namespace {
 
 constexpr std::size_t kMostPoints = 13;
-constexpr double kNoDeadline = std::numeric_limits<double>::infinity();
 
 CalibrationOptions with_clocks(CalibrationOptions options) {
   if (!options.wall_clock) options.wall_clock = core::monotonic_seconds;
@@ -44,14 +42,14 @@ std::vector<std::int64_t> values_of(const models::ParameterSpec& spec) {
 
 // The mean over the seeds of one set of parameters; no seconds if it cannot be synthesised.
 CurvePoint point_at(const CostModel& cost, CostSample sample, const models::ModelType& type,
-                    int seeds, const CalibrationOptions& options) {
+                    int seeds, const CalibrationOptions& options, double deadline_s) {
   const int seed = models::parameter_index(type, "seed");
   const int runs = seed < 0 ? 1 : seeds;
   CurvePoint point;
   CalibrationReport ignored;
   for (int s = 0; s < runs; ++s) {
     if (seed >= 0) sample.parameters.set_integer(static_cast<std::size_t>(seed), s);
-    const auto m = cost.measure(sample, 0, options, kNoDeadline, ignored);
+    const auto m = cost.measure(sample, 0, options, deadline_s, ignored);
     if (!m) return {};
     point.seconds += m->seconds / runs;
     point.operations += m->work.operations / runs;
@@ -94,6 +92,7 @@ std::vector<CostCurve> cost_curves(const models::Registry& registry, const CostM
                                    const CalibrationOptions& given, int seeds,
                                    const std::function<void(double)>& progress) {
   const CalibrationOptions options = with_clocks(given);
+  const double deadline_s = options.wall_clock() + options.seconds_limit;
   std::vector<CostCurve> curves;
   for (std::size_t m = 0; m < registry.size(); ++m) {
     const auto model = static_cast<models::ModelIndex>(m);
@@ -106,7 +105,7 @@ std::vector<CostCurve> cost_curves(const models::Registry& registry, const CostM
         CostSample sample{model, models::default_parameters(type)};
         sample.parameters.set_integer(i, value);
         if (!models::validate(type, sample.parameters)) continue;
-        CurvePoint point = point_at(cost, sample, type, seeds, options);
+        CurvePoint point = point_at(cost, sample, type, seeds, options, deadline_s);
         if (!(point.seconds > 0)) continue;
         point.value = static_cast<double>(value);
         curve.points.push_back(point);
@@ -142,26 +141,33 @@ Accuracy accuracy_of(const models::Registry& registry, const CostModel& cost,
                      std::span<const CostSample> samples, const CalibrationOptions& given,
                      const std::function<void(double)>& progress) {
   const CalibrationOptions options = with_clocks(given);
+  const double deadline_s = options.wall_clock() + options.seconds_limit;
   Accuracy accuracy;
+  CalibrationReport report;
   std::vector<double> all;
   for (std::size_t m = 0; m < registry.size(); ++m) {
     const auto model = static_cast<models::ModelIndex>(m);
+    std::vector<double> of_type;
     for (int level = 0; level < registry[model].level_count(); ++level) {
       std::vector<double> percents;
-      CalibrationReport ignored;
       for (const CostSample& sample : samples) {
         if (sample.model != model) continue;
-        const auto measured = cost.measure(sample, level, options, kNoDeadline, ignored);
+        const auto measured = cost.measure(sample, level, options, deadline_s, report);
         if (!measured) continue;
         const double predicted = cost.predict_from(model, level, measured->work);
         percents.push_back(std::abs(predicted - measured->seconds) / measured->seconds * 100);
       }
-      all.insert(all.end(), percents.begin(), percents.end());
+      of_type.insert(of_type.end(), percents.begin(), percents.end());
       accuracy.levels.push_back({model, level, error_of(percents)});
     }
+    all.insert(all.end(), of_type.begin(), of_type.end());
+    const CostError error = error_of(of_type);
+    const bool worse = !accuracy.worst || error.p95_percent > accuracy.worst->error.p95_percent;
+    if (error.count > 0 && worse) accuracy.worst = {model, error};
     if (progress) progress(static_cast<double>(m + 1) / static_cast<double>(registry.size()));
   }
   accuracy.all = error_of(all);
+  accuracy.failures = std::move(report.failures);
   return accuracy;
 }
 

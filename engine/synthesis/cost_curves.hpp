@@ -4,6 +4,7 @@
 // tick.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct CostCurve {
 
 // Curves of every type over every integer parameter that its formula depends on, within the
 // parameter's soft range; models with a seed are the mean of `seeds` of them.
+// Ends after options.seconds_limit: what comes later has no points.
 std::vector<CostCurve> cost_curves(const models::Registry& registry, const CostModel& cost,
                                    const CalibrationOptions& options, int seeds,
                                    const std::function<void(double)>& progress = {});
@@ -41,12 +43,19 @@ struct LevelAccuracy {
   int level = 0;
   CostError error;
 };
+struct TypeAccuracy {
+  models::ModelIndex model = 0;
+  CostError error;  // of all its levels together
+};
 struct Accuracy {
-  std::vector<LevelAccuracy> levels;
+  std::vector<LevelAccuracy> levels;  // count 0: not measured
   CostError all;
+  std::optional<TypeAccuracy> worst;  // by p95, of the types that were measured
+  std::vector<std::string> failures;  // as in CalibrationReport
 };
 
-// The errors of what `cost` predicts for samples, each measured at every level.
+// The errors of what `cost` predicts for samples, each measured at every level. Ends after
+// options.seconds_limit: what comes later is not measured.
 Accuracy accuracy_of(const models::Registry& registry, const CostModel& cost,
                      std::span<const CostSample> samples, const CalibrationOptions& options,
                      const std::function<void(double)>& progress = {});

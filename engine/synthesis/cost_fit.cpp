@@ -34,7 +34,7 @@ double residual(const Row& row, const Coefficients& c) {
   return sum;
 }
 
-// Gaussian elimination with pivoting over the terms of `subset` (a bit each). Nothing if they
+// Gaussian elimination without exchanges over the terms of `subset` (a bit each). Nothing if they
 // cannot be told apart.
 std::optional<Coefficients> solve(std::span<const Row> rows, std::span<const double> weights,
                                   unsigned subset) {

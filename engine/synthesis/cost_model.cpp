@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -154,6 +155,7 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
     for (int finer = level; finer >= 0; --finer)
       fits_[model][static_cast<std::size_t>(finer)] = line;
   };
+  const auto set_guess = [&] { set({.per_operation_s = quantile(ratios, 0.5)}); };
   for (const auto& [planned, sample] : cheapest_first) {
     const double expected = predict_from(model, level, planned) * (options.rounds + 1);
     if (options.wall_clock() + expected >= deadline_s) break;
@@ -161,8 +163,9 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
     if (!m) continue;
     measured.push_back(*m);
     ratios.push_back(m->seconds / m->work.operations);
-    set({.per_operation_s = quantile(ratios, 0.5)});
+    if (std::has_single_bit(ratios.size())) set_guess();  // sorting after each would be quadratic
   }
+  if (!ratios.empty()) set_guess();
   if (measured.size() >= kMinForTerms) set(fit_cost(measured));
   LevelCalibration result{model, level, fit(model, level), 0,
                           static_cast<std::uint32_t>(measured.size())};

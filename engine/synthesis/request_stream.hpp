@@ -15,6 +15,7 @@ namespace psygen::synthesis {
 // The deadline of a request that has none.
 inline constexpr double kNoDeadline = 1e9;
 inline constexpr std::size_t kMaxStreamRequests = 10'000'000;
+inline constexpr std::size_t kMaxStreamBytes = 96 * kMaxStreamRequests;
 
 // Text: a line "psygen requests 1", then one line for each: arrival in seconds, seconds of one
 // core, deadline in seconds or "-", and the rank's bits in hexadecimal. Ordered by arrival.

@@ -1,4 +1,4 @@
-// Reads a small text file whole. Not for data: files above the limit are refused unread.
+// Reads a text file whole. Not for data: files above the limit are refused.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@ namespace psygen::world {
 inline constexpr std::size_t kMaxFileBytes = std::size_t{1} << 20;
 
 // Fails with kIo if `file` is not a regular file that can be read, and with kOverBudget if it has
-// more than kMaxFileBytes.
-core::Result<std::string> read_text_file(const std::filesystem::path& file);
+// more than `limit_bytes`. Takes memory as it reads: for no more than twice the file.
+core::Result<std::string> read_text_file(const std::filesystem::path& file,
+                                         std::size_t limit_bytes = kMaxFileBytes);
 
 }  // namespace psygen::world

@@ -1,5 +1,7 @@
 #include "engine/world/world.hpp"
 
+#include <algorithm>
+
 #include "engine/models/terrain.hpp"
 
 namespace psygen::world {
@@ -10,6 +12,13 @@ double World::block_size_m() const {
 
 double World::cell_m() const {
   return terrain.real(models::kTerrainCellM);
+}
+
+Palette drawn_palette(const World& world) {
+  Palette palette = world.palette;
+  if (world.water.exists())
+    palette.sand_end_m = std::max(palette.sand_end_m, world.water.level_m + world.water.shore_m);
+  return palette;
 }
 
 bool World::contains(core::BlockCoord block) const {

@@ -129,6 +129,10 @@ struct World {
   friend bool operator==(const World&, const World&) = default;
 };
 
+// The palette that the ground is drawn with: the shore of the water is sand. What draws or exports
+// ground takes this one.
+Palette drawn_palette(const World& world);
+
 // Reads a world file. Errors name file, line and field and say what is allowed: kParse for texts
 // that are no world file, kInvalidArgument and kOverBudget for parameters that a model refuses
 // (with the predicted cost), kOverBudget for files above 1 MiB, kIo for files that cannot be read.

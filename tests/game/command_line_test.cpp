@@ -291,6 +291,21 @@ TEST(CommandLine, ExportWritesASpeciesOfAWorld) {
   EXPECT_TRUE(mentions(elm.err, "oak, birch, spruce, palm, bush, dead_tree")) << elm.err;
 }
 
+TEST(CommandLine, ExportColoursTerrainAsTheWorldDoes) {
+  const TemporaryFolder folder;
+  const auto exported = [&](const std::string& options) {
+    const std::string file = (folder / "ground.obj").string();
+    const Outcome outcome = run_psygen("export --model terrain --level 3 --out " + file + options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return read(file);
+  };
+  std::ofstream(folder / "flooded.toml")
+      << read(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml") << "\n[water]\nlevel_m = 5000\n";
+  const std::string flooded = exported(" --world " + (folder / "flooded.toml").string());
+  EXPECT_FALSE(flooded.empty());
+  EXPECT_NE(flooded, exported(""));
+}
+
 TEST(CommandLine, CalibrateWritesFitsAndPlots) {
   const TemporaryFolder folder;
   const Outcome outcome = run_psygen("calibrate --samples 4 --out " + folder.path().string());
@@ -315,6 +330,16 @@ TEST(CommandLine, CalibrateNamesTheSpeciesOfAWorld) {
     EXPECT_TRUE(mentions(read(folder / "calibration.html"), name + " level 0")) << name;
   }
   EXPECT_TRUE(mentions(outcome.out, "c·branches")) << outcome.out;
+  const auto samples_of = [&json](const std::string& name) {
+    const std::size_t fits = json.find("\"fits\""), end = json.find("\"held_out\"");
+    const std::size_t model = json.find("\"model\": \"" + name + "\"", fits);
+    const std::size_t at = json.find("\"samples\": ", model);
+    return at < end ? std::stoi(json.substr(at + 11)) : -1;
+  };
+  for (const std::string name : {"terrain", "oak", "birch", "spruce", "palm", "bush", "dead_tree"})
+    EXPECT_GT(samples_of(name), 0) << name;
+  EXPECT_EQ(samples_of("tree"), 0) << "no tree stands in this world";
+  EXPECT_TRUE(mentions(outcome.out, "tree      level 0  not measured")) << outcome.out;
 }
 
 TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {
@@ -331,6 +356,11 @@ TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {
   const Outcome missing = run_psygen("schedule --requests nowhere.requests");
   EXPECT_EQ(missing.code, 1);
   EXPECT_TRUE(mentions(missing.err, "nowhere.requests")) << missing.err;
+  std::ofstream(folder / "empty");
+  const Outcome empty = run_psygen("schedule --requests " + (folder / "empty").string());
+  EXPECT_EQ(empty.code, 1);
+  EXPECT_TRUE(mentions(empty.err, "there is no request")) << empty.err;
+  EXPECT_EQ(run_psygen("schedule --requests /dev/zero").code, 1);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <set>
 
+#include "tests/engine/amplify/throwing_type.hpp"
 #include "tests/engine/world/files.hpp"
 
 namespace psygen::amplify {
@@ -80,7 +81,7 @@ TEST(Amplify, ThatIsStoppedIsNotCompleteAndKeepsWhatWasDone) {
 struct Notes {
   std::mutex mutex;
   std::multiset<core::BlockCoord> finished;
-  std::size_t meshes = 0;
+  std::size_t meshes = 0, dropped = 0;
 };
 class NotingSink final : public BlockSink {
  public:
@@ -93,6 +94,11 @@ class NotingSink final : public BlockSink {
     notes_.finished.insert(block);
     notes_.meshes += std::exchange(meshes_, 0);
     return {};
+  }
+  void drop(core::BlockCoord) override {
+    const std::lock_guard lock(notes_.mutex);
+    ++notes_.dropped;
+    meshes_ = 0;
   }
 
  private:
@@ -124,6 +130,62 @@ TEST(Amplify, ASinkThatFailsEndsItWithItsSentence) {
   const auto report = amplify(world, registry(), *whole(world), options);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().message, "disk full");
+}
+
+TEST(Amplify, ABlockThatLacksAMeshIsDroppedAndTheReportIsNotComplete) {
+  ThrowingWorld throwing;
+  Notes notes;
+  Options options = with_threads(2);
+  options.make_sink = [&] { return std::make_unique<NotingSink>(notes, nullptr); };
+  const Region all = *whole(throwing.world);
+  const auto report = amplify(throwing.world, throwing.registry, all, options);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->totals.failed, 2u * 32);
+  EXPECT_EQ(report->totals.blocks, report->region_blocks);
+  EXPECT_FALSE(report->complete);
+  EXPECT_EQ(notes.dropped, 28u);
+  EXPECT_TRUE(notes.finished.empty());
+  throwing.throws = false;
+  const auto mended = amplify(throwing.world, throwing.registry, all, options);
+  ASSERT_TRUE(mended);
+  EXPECT_TRUE(mended->complete);
+  EXPECT_EQ(notes.finished.size(), 28u);
+  EXPECT_EQ(notes.meshes, 28u * 11);
+}
+
+// Throws whatever it is told to.
+class ThrowingSink final : public BlockSink {
+ public:
+  explicit ThrowingSink(const std::function<void()>& thrower) : thrower_(thrower) {}
+  bool wants(core::BlockCoord) override { return true; }
+  void add(core::BlockCoord, const BlockMesh&) override { thrower_(); }
+  core::Result<void> finish(core::BlockCoord) override { return {}; }
+  void drop(core::BlockCoord) override {}
+
+ private:
+  const std::function<void()>& thrower_;
+};
+
+TEST(Amplify, ExceptionsEndItAndOnlyThoseOfMemoryAreCalledSo) {
+  const world::World world = parsed(kSmallWorld);
+  const auto error_of = [&](const std::function<void()>& thrower) {
+    Options options = with_threads(3);
+    options.make_sink = [&] { return std::make_unique<ThrowingSink>(thrower); };
+    const auto report = amplify(world, registry(), *whole(world), options);
+    return report ? core::Error{} : report.error();
+  };
+  const core::Error any = error_of([] { throw std::runtime_error("a broken type"); });
+  EXPECT_EQ(any.code, core::ErrorCode::kSynthesisFailed);
+  EXPECT_NE(any.message.find("a broken type"), std::string::npos);
+  EXPECT_EQ(error_of([] { throw 7; }).code, core::ErrorCode::kSynthesisFailed);
+  EXPECT_EQ(error_of([] { throw std::bad_alloc(); }).code, core::ErrorCode::kOutOfMemory);
+}
+
+TEST(Amplify, TakesNoMoreThreadsByItselfThanItAllows) {
+  const world::World world = parsed(kSmallWorld);
+  EXPECT_EQ(threads_for(0), 1u);
+  EXPECT_EQ(threads_for(6), 6u);
+  EXPECT_TRUE(amplify(world, registry(), {0, 0, 1, 1}, with_threads(threads_for(4096))));
 }
 
 }  // namespace

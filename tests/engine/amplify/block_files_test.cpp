@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "tests/engine/amplify/throwing_type.hpp"
 #include "tests/engine/world/files.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -23,14 +24,15 @@ struct Made {
 };
 
 core::Result<Made> make_files(const world::World& world, const std::filesystem::path& folder,
-                              Format format, const std::atomic<bool>* stop = nullptr) {
-  auto files = BlockFolder::open(folder, world, registry(), format);
+                              Format format, const std::atomic<bool>* stop = nullptr,
+                              const models::Registry& types = registry()) {
+  auto files = BlockFolder::open(folder, world, types, format);
   if (!files) return tl::unexpected(files.error());
   Options options;
   options.threads = 2;
   options.stop = stop;
   options.make_sink = [&] { return (*files)->make_sink(); };
-  auto report = amplify(world, registry(), kRegion, options);
+  auto report = amplify(world, types, kRegion, options);
   if (!report) return tl::unexpected(report.error());
   return Made{*report, (*files)->written(), (*files)->skipped()};
 }
@@ -69,6 +71,26 @@ TEST(BlockFiles, WhatIsThereIsNotWrittenAgainAndTheHashIsStillThatOfEverything) 
   EXPECT_EQ(content(folder / "block_2_2.glb"), complete);
   EXPECT_EQ(content(folder / "block_1_1.glb"), "mine");
   EXPECT_EQ(second->report.totals.hash.value(), first->report.totals.hash.value());
+}
+
+TEST(BlockFiles, ABlockThatLacksAMeshHasNoFileUntilItIsWhole) {
+  const TemporaryFolder folder;
+  ThrowingWorld throwing;
+  const auto run = [&] {
+    return make_files(throwing.world, folder.path(), Format::kGlb, nullptr, throwing.registry);
+  };
+  const auto broken = run();
+  ASSERT_TRUE(broken) << broken.error().message;
+  EXPECT_EQ(broken->written, 0u);
+  EXPECT_FALSE(broken->report.complete);
+  EXPECT_EQ(folder.file_count(), 1u);
+  throwing.throws = false;
+  const auto mended = run();
+  ASSERT_TRUE(mended) << mended.error().message;
+  EXPECT_EQ(mended->written, 6u);
+  EXPECT_EQ(mended->skipped, 0u);
+  EXPECT_TRUE(mended->report.complete);
+  EXPECT_EQ(folder.file_count(), 7u);
 }
 
 TEST(BlockFiles, WhatAKilledRunLeftHalfDoneIsRemoved) {
@@ -117,6 +139,20 @@ TEST(BlockFiles, ADocumentHoldsEverythingOnTheBlockWhereItStands) {
   for (std::size_t i = 0; i < placements.size(); ++i)
     EXPECT_EQ(document->objects[i + 1].position, placements[i].position);
   EXPECT_LT(block_document(world, registry(), {2, 1}, 3)->triangle_count(), totals.triangles / 10);
+}
+
+TEST(BlockFiles, GroundAtTheWaterIsSandAsItIsDrawn) {
+  world::World world = parsed(kSmallWorld);
+  const auto red = [&] {
+    double sum = 0;
+    const auto document = block_document(world, registry(), {2, 1}, 0);
+    for (const glm::vec3& colour : document->objects[0].parts[0].colours)
+      sum += static_cast<double>(colour.x);
+    return sum;
+  };
+  const double dry = red();
+  world.water.level_m = 200;  // above everything
+  EXPECT_GT(red(), 1.5 * dry);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/models/terrain.hpp"
+#include "tests/engine/amplify/throwing_type.hpp"
 #include "tests/engine/world/files.hpp"
 
 namespace psygen::amplify {
@@ -79,32 +80,10 @@ TEST(BlockSynthesizer, MemoryThatWasUsedBeforeLeavesNoTrace) {
   EXPECT_EQ(second.hash.value(), totals_of(world, {2, 1}).hash.value());
 }
 
-class ThrowingType final : public models::ModelType {
- public:
-  std::string_view name() const override { return "faulty"; }
-  std::string_view doc() const override { return "throws"; }
-  std::span<const models::ParameterSpec> parameters() const override { return {}; }
-  int level_count() const override { return 1; }
-  double level_error_m(const models::Parameters&, int) const override { return 0; }
-  core::Bounds bounds(const models::Parameters&) const override { return {}; }
-  models::MeshSize mesh_size(const models::Parameters&, int) const override { return {3, 3}; }
-  double complexity(const models::Parameters&, int) const override { return 1; }
-  double log2_cost(const models::Parameters&) const override { return 0; }
-  core::Bounds synthesize(const models::Parameters&, int, const models::MeshView&) const override {
-    throw std::runtime_error("no geometry today");
-  }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}
-};
-
 TEST(BlockSynthesizer, AModelThatThrowsIsCountedAndTheOthersGoOn) {
-  models::Registry with_faulty = models::make_standard_registry();
-  world::World world = parsed(kSmallWorld);
-  world::Scatter faulty;
-  faulty.model = *with_faulty.add(std::make_unique<ThrowingType>());
-  faulty.count = 2;
-  world.scatter.insert(world.scatter.begin(), faulty);
+  const ThrowingWorld throwing;
   Totals totals;
-  BlockSynthesizer(world, with_faulty).synthesise({0, 0}, totals);
+  BlockSynthesizer(throwing.world, throwing.registry).synthesise({0, 0}, totals);
   EXPECT_EQ(totals.failed, 2u);
   EXPECT_EQ(totals.models, 10u);
   EXPECT_NE(totals.first_failure.find("no geometry today"), std::string::npos);

@@ -1,6 +1,9 @@
 #include "engine/exchange/unpack.hpp"
 
+#include <functional>
 #include <glm/geometric.hpp>
+#include <new>
+#include <stdexcept>
 
 #include "engine/models/terrain.hpp"
 #include "tests/engine/exchange/synthesised.hpp"
@@ -87,6 +90,54 @@ TEST(Unpack, AnIndexThatNamesNoVertexIsRefused) {
   const auto object = unpack(type, p, 0, mesh->size(), mesh->view(), world::Palette{});
   ASSERT_FALSE(object);
   EXPECT_NE(object.error().message.find("65535"), std::string::npos);
+}
+
+// Behaves until its mesh is to be unpacked, then throws as it is told to.
+class LateThrower final : public models::ModelType {
+ public:
+  explicit LateThrower(std::function<void()> thrower, std::uint32_t shared = 0)
+      : thrower_(std::move(thrower)), shared_(shared) {}
+  std::string_view name() const override { return "late"; }
+  std::string_view doc() const override { return "throws"; }
+  std::span<const models::ParameterSpec> parameters() const override { return {}; }
+  int level_count() const override { return 1; }
+  double level_error_m(const models::Parameters&, int) const override { return 0; }
+  core::Bounds bounds(const models::Parameters&) const override {
+    if (shared_ == 0) thrower_();
+    return {};
+  }
+  models::MeshSize mesh_size(const models::Parameters&, int) const override {
+    return {3, 3, shared_};
+  }
+  double complexity(const models::Parameters&, int) const override { return 1; }
+  double log2_cost(const models::Parameters&) const override { return 0; }
+  core::Bounds synthesize(const models::Parameters&, int, const models::MeshView&) const override {
+    return {};
+  }
+  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override { thrower_(); }
+
+ private:
+  std::function<void()> thrower_;
+  std::uint32_t shared_;
+};
+
+TEST(Unpack, ATypeThatThrowsIsAFailure) {
+  const auto error_of = [](const LateThrower& type) {
+    std::vector<std::byte> vertices(3 * sizeof(core::ModelVertex));
+    std::vector<std::uint16_t> indices(3);
+    const auto object = unpack(type, {}, 0, type.mesh_size({}, 0), {vertices, indices}, {});
+    return object ? core::Error{} : object.error();
+  };
+  for (const std::uint32_t shared : {0u, 9u}) {
+    const auto any = error_of(LateThrower([] { throw std::runtime_error("no box"); }, shared));
+    EXPECT_EQ(any.code, core::ErrorCode::kSynthesisFailed);
+    EXPECT_NE(any.message.find("late level 0"), std::string::npos);
+    EXPECT_NE(any.message.find("no box"), std::string::npos);
+    EXPECT_EQ(error_of(LateThrower([] { throw 7; }, shared)).code,
+              core::ErrorCode::kSynthesisFailed);
+    EXPECT_EQ(error_of(LateThrower([] { throw std::bad_alloc(); }, shared)).code,
+              core::ErrorCode::kOutOfMemory);
+  }
 }
 
 }  // namespace

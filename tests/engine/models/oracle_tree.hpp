@@ -21,6 +21,7 @@ class TreeOracle {
 
   struct Vertex {
     glm::dvec3 place, normal;
+    bool bark = false;  // of a tube: never pulled in by the tree's box
   };
   struct Branch {
     std::uint32_t key = 0;
@@ -304,7 +305,7 @@ class TreeOracle {
             ((z + (static_cast<std::uint32_t>(x) + 1000) * 0x9E3779B9U) * 0x846CA68BU) >> 29;
         const double distance = b.start * (1 - t * (1 - end)) * (1 + flare * (0.4 + 0.16 * e));
         result.push_back({middle + distance * (o - glm::dot(o, 2 * t * b.bend) * b.direction),
-                          corners == 1 ? b.direction : o});
+                          corners == 1 ? b.direction : o, true});
       }
     }
     return result;

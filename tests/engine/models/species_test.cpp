@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstddef>
 
 #include "engine/models/packing.hpp"
 #include "engine/models/simd_targets.hpp"
@@ -39,6 +40,7 @@ std::optional<Species> random_species(core::RandomStream& random) {
   s.branches = random.next_integer(1, 5);
   s.spread = random.next_integer(0, 3);
   s.crown_limit = random.next_integer(0, 1) == 0 ? 0 : random.next_real(0.3, 2);
+  s.trunk_curvature = random.next_real(0, 2);
   const auto kinds = static_cast<std::size_t>(random.next_integer(1, 5));
   static constexpr const char* kLeaves[] = {"none", "tips", "all"};
   static constexpr const char* kForms[] = {"leaflets", "needles", "fronds", "clump", "none"};
@@ -121,14 +123,17 @@ TEST(Species, MeetsTheOracleOnEveryInstructionSet) {
         const auto vertices = mesh.vertices<core::ModelVertex>();
         ASSERT_EQ(vertices.size(), expected.size()) << "level " << level;
         const double size = glm::length(glm::dvec3(plan.bounds.half_extent()));
-        std::size_t far = 0;
+        const double step = size / 32767;
+        std::size_t far = 0, cut = 0;
         for (std::size_t k = 0; k < vertices.size(); ++k) {
           const glm::dvec3 place = glm::clamp(expected[k].place, glm::dvec3(plan.bounds.min),
                                               glm::dvec3(plan.bounds.max));
+          if (expected[k].bark) cut += glm::distance(place, expected[k].place) > step ? 1 : 0;
           const glm::dvec3 found(unpack_position(vertices[k], plan.bounds));
           far += glm::distance(place, found) > size * (1.0 / 65534 + 1e-5) ? 1 : 0;
         }
         EXPECT_EQ(far, 0U) << target << " level " << level;
+        EXPECT_EQ(cut, 0U) << target << " level " << level << ": bark beyond the bounds";
       }
     }
   }
@@ -221,6 +226,10 @@ TEST(Species, RefusesHostileGrammarsBeforeTheyGrow) {
   EXPECT_THAT(message([](Species& s) { s.foliage.density = -1; }), HasSubstr("foliage.density"));
   EXPECT_THAT(message([](Species& s) { s.foliage.density_winter = 1.1; }),
               HasSubstr("foliage.density_winter"));
+  for (const double limit : {1e-60, 1e-39, 0.04, -0.1, 4.1, std::nan("")})
+    EXPECT_THAT(message([&](Species& s) { s.crown_limit = limit; }), HasSubstr("crown_limit"));
+  for (const double limit : {0.0, 0.05, 4.0})
+    EXPECT_EQ(message([&](Species& s) { s.crown_limit = limit; }), "accepted");
   EXPECT_EQ(message([](Species&) {}), "accepted");
 }
 
@@ -234,13 +243,20 @@ TEST(Tree, PredictsTheSizeOfAMillionTrees) {
     const int level = i % 6;
     const MeshSize size = type->mesh_size(p, level);
     const std::size_t bytes = size.vertex_count * sizeof(core::ModelVertex);
+    // Beyond the end, and what no mesh has at its end: neither an index nor a material.
     vertices[bytes] = std::byte{0xC5};
     indices[size.index_count] = 0xC5C5;
-    if (bytes > 0) vertices[bytes - 4] = std::byte{0};
+    ASSERT_GT(size.index_count, 0U);
+    std::byte& last_material =
+        vertices[bytes - sizeof(core::ModelVertex) + offsetof(core::ModelVertex, material)];
+    last_material = std::byte{0xC5};
+    indices[size.index_count - 1] = 0xC5C5;
     type->synthesize(
         p, level, {std::span(vertices).first(bytes), std::span(indices).first(size.index_count)});
     ASSERT_EQ(vertices[bytes], std::byte{0xC5});
     ASSERT_EQ(indices[size.index_count], 0xC5C5);
+    ASSERT_NE(last_material, std::byte{0xC5});
+    ASSERT_NE(indices[size.index_count - 1], 0xC5C5);
     ASSERT_LT(indices[size.index_count - 1], size.vertex_count);
   }
 }

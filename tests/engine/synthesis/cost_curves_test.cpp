@@ -75,5 +75,51 @@ TEST(CostCurves, PredictionsThatAreExactHaveNoErrorAndOthersHaveTheirs) {
   EXPECT_GT(far.all.p50_percent, 99);
 }
 
+TEST(CostCurves, ThePassesEndInTimeAndSayWhatWasNotMeasured) {
+  double now = 0;
+  const models::Registry registry = testing::registry_of(std::make_unique<testing::ScriptedModel>(
+      "slow", [&now](const models::Parameters&, int) { now += 1; }));
+  CalibrationOptions options;
+  options.wall_clock = options.cpu_clock = [&now] { return now; };
+  options.seconds_limit = 20;
+  const CostModel cost(registry);
+  const auto samples = random_samples(registry, 30, 1);
+  const Accuracy accuracy = accuracy_of(registry, cost, samples, options);
+  EXPECT_LE(now, 21);
+  EXPECT_GT(accuracy.levels[0].error.count, 0u);
+  EXPECT_EQ(accuracy.levels[2].error.count, 0u);
+  now = 0;
+  cost_curves(registry, cost, options, 12);
+  EXPECT_LE(now, 21);
+}
+
+TEST(CostCurves, TheWorstTypeIsNamedAndThoseThatThrowAreNotAmongTheMeasured) {
+  double now = 0;
+  models::Registry registry;
+  const auto add = [&](const char* name, testing::ScriptedModel::Script script) {
+    ASSERT_TRUE(registry.add(std::make_unique<testing::ScriptedModel>(name, std::move(script))));
+  };
+  const auto proportional = [&now](double each) {
+    return [&now, each](const models::Parameters& p, int level) {
+      now += each * static_cast<double>(1 + (p.integer(1) >> level));
+    };
+  };
+  add("near", proportional(6e-9));
+  add("far", proportional(5e-6));
+  add("thrower", [](const models::Parameters&, int) { throw std::runtime_error("no"); });
+  CalibrationOptions options;
+  options.wall_clock = options.cpu_clock = [&now] { return now; };
+  options.seconds_limit = 1e9;
+  const CostModel cost(registry);  // 5 ns an operation
+  const Accuracy accuracy = accuracy_of(registry, cost, random_samples(registry, 8, 1), options);
+  ASSERT_TRUE(accuracy.worst);
+  EXPECT_EQ(accuracy.worst->model, 1);
+  EXPECT_EQ(accuracy.worst->error.count, 24u);
+  EXPECT_EQ(accuracy.all.count, 48u);
+  EXPECT_EQ(accuracy.levels[6].error.count, 0u);
+  ASSERT_FALSE(accuracy.failures.empty());
+  EXPECT_NE(accuracy.failures[0].find("thrower"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace psygen::synthesis

@@ -41,6 +41,10 @@ TEST(TextFile, AFileAboveTheLimitIsRefused) {
   ASSERT_FALSE(more.has_value());
   EXPECT_EQ(more.error().code, core::ErrorCode::kOverBudget);
   EXPECT_THAT(more.error().message, HasSubstr("1048576"));
+  EXPECT_EQ(read_text_file(written("psygen_five.txt", "12345"), 5).value(), "12345");
+  EXPECT_FALSE(read_text_file(written("psygen_five.txt", "12345"), 4).has_value());
+  EXPECT_EQ(read_text_file(written("psygen_more.txt", most + "#"), 2 * kMaxFileBytes).value(),
+            most + "#");
 }
 
 }  // namespace

@@ -58,5 +58,16 @@ TEST(Sky, AtTheVisibilityTwoPercentOfTheContrastAreLeft) {
   EXPECT_NEAR(std::exp(-sky.haze_density() * 5000), 0.02, 1e-4);
 }
 
+TEST(World, TheShoreOfItsWaterIsSand) {
+  World world;
+  world.palette.sand_end_m = 3;
+  EXPECT_EQ(drawn_palette(world), world.palette) << "no water";
+  world.water.level_m = 10;
+  world.water.shore_m = 2;
+  EXPECT_EQ(drawn_palette(world).sand_end_m, 12);
+  world.water.level_m = 0;
+  EXPECT_EQ(drawn_palette(world), world.palette) << "sand reaches higher than the shore";
+}
+
 }  // namespace
 }  // namespace psygen::world
