@@ -49,6 +49,12 @@ struct Features {
   }
 };
 
+// What the GPU path needs: indirect draws whose number is in a buffer.
+bool offers_indirect_count(const Features& features) {
+  return features.v12.drawIndirectCount && features.base.features.multiDrawIndirect &&
+         features.base.features.drawIndirectFirstInstance;
+}
+
 bool offers_multi_draw(VkPhysicalDevice physical) {
   if (!has_extension(physical, VK_EXT_MULTI_DRAW_EXTENSION_NAME)) return false;
   Features features;
@@ -72,6 +78,14 @@ std::optional<std::uint32_t> find_queue_family(const Instance& instance, VkPhysi
     if (presents) return i;
   }
   return std::nullopt;
+}
+
+bool can_compute(VkPhysicalDevice physical, std::uint32_t family) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  return (families[family].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
 }
 
 bool is_unified(VkPhysicalDevice physical) {
@@ -130,6 +144,7 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
   candidate.info.software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   candidate.info.unified_memory = is_unified(physical);
   candidate.info.multi_draw = offers_multi_draw(physical);
+  candidate.info.gpu_path = offers_indirect_count(features) && can_compute(physical, *family);
   return candidate;
 }
 
@@ -173,8 +188,13 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   Features features;
   features.v11.shaderDrawParameters = VK_TRUE;
   features.v12.timelineSemaphore = VK_TRUE;
+  const VkBool32 indirect = candidate.info.gpu_path ? VK_TRUE : VK_FALSE;
+  features.v12.drawIndirectCount = indirect;
+  features.base.features.multiDrawIndirect = indirect;
+  features.base.features.drawIndirectFirstInstance = indirect;
   features.v13.dynamicRendering = VK_TRUE;
   features.v13.synchronization2 = VK_TRUE;
+  features.v13.maintenance4 = VK_TRUE;  // every device of 1.3 has it; sizes of workgroups need it
   std::vector<const char*> extensions;
   if (windowed) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   if (candidate.info.multi_draw) {

@@ -7,8 +7,6 @@
 
 namespace psygen::render {
 
-namespace {
-
 shaders::DrawData data_of(const TerrainDraw& draw) {
   return {.origin = {draw.origin.x, draw.origin.y + draw.height_min_m, draw.origin.z, draw.cell_m},
           .scale = {draw.height_range_m, draw.skirt_m, draw.morph, 0.0F}};
@@ -21,8 +19,6 @@ shaders::DrawData data_of(const MeshDraw& draw) {
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
   return {.origin = {center, phase - std::floor(phase)}, .scale = {extent, draw.fade}};
 }
-
-}  // namespace
 
 template <class Draw>
 IndexList DrawList::indices_of(const Draw& draw) const {

@@ -20,6 +20,10 @@ struct IndexList {
   std::uint32_t index_count = 0;
 };
 
+// What the shaders read of a draw.
+shaders::DrawData data_of(const TerrainDraw& draw);
+shaders::DrawData data_of(const MeshDraw& draw);
+
 // Same layout as VkMultiDrawIndexedInfoEXT.
 struct IndexedDraw {
   std::uint32_t first_index = 0;

@@ -123,8 +123,24 @@ Result<void> RendererImpl::create() {
   for (FrameSlot& slot : slots_) {
     if (Result<void> made = slot.create(*device_, pipelines_); !made) return made;
   }
+  if (Result<void> made = create_culling(); !made) return made;
   if (Result<void> warmed = warm_up(); !warmed) return warmed;
   return options_.surface == nullptr ? create_targets(options_.size) : Result<void>{};
+}
+
+Result<void> RendererImpl::create_culling() {
+  const DeviceInfo& info = device_->info;
+  if (options_.path == RenderPath::kGpu && !info.gpu_path) {
+    return core::fail(
+        ErrorCode::kNoDevice,
+        fmt::format("'{}' has no indirect draws with a count, which the GPU path needs",
+                    info.name));
+  }
+  const bool suits = info.gpu_path && !info.software;
+  if (options_.path == RenderPath::kCpu || (options_.path == RenderPath::kAuto && !suits))
+    return {};
+  culling_ = std::make_unique<GpuCulling>();
+  return culling_->create(*device_, options_.occlusion, kFramesInFlight);
 }
 
 Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
@@ -148,6 +164,9 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
   has_picture_ = false;
   Result<Targets> made = make_targets(*device_, colour_format_, extent);
   if (!made) return tl::unexpected(made.error());
+  if (culling_) {
+    if (Result<void> fits = culling_->resize(*device_, extent, made->depth); !fits) return fits;
+  }
   targets_ = std::move(*made);
   return {};
 }
@@ -167,7 +186,25 @@ Result<void> RendererImpl::warm_up() {
   record_warm_up(*device_, pipelines_, slot, *small, shared_.buffer());
   if (Result<void> ended = slot.end(*device_); !ended) return ended;
   if (Result<void> submitted = submit(slot, false); !submitted) return submitted;
-  return wait_for(slot);
+  if (Result<void> waited = wait_for(slot); !waited) return waited;
+  return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
+}
+
+// An empty frame with every dispatch.
+Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
+  return culling_->resize(*device_, small.extent, small.depth)
+      .and_then([&] {
+        culling_->set_frame({}, {}, {}, small.extent, {});
+        return write_frame(slot);
+      })
+      .and_then([&] { return slot.begin(*device_); })
+      .and_then([&] {
+        record_scene(*device_, pipelines_, slot, small,
+                     {list_, {}, {culling_.get(), index_of(slot)}, 0});
+        return slot.end(*device_);
+      })
+      .and_then([&] { return submit(slot, false); })
+      .and_then([&] { return wait_for(slot); });
 }
 
 Result<void> RendererImpl::wait_for(FrameSlot& slot) {
@@ -215,8 +252,10 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
 
 Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   if (Result<void> begun = slot.begin(*device_); !begun) return begun;
-  const ScenePass pass{
-      list_, {pool_blocks_, shared_.buffer()}, static_cast<std::uint32_t>(glyphs_.size())};
+  const ScenePass pass{list_,
+                       {pool_blocks_, shared_.buffer()},
+                       {culling_.get(), index_of(slot)},
+                       static_cast<std::uint32_t>(glyphs_.size())};
   record_scene(*device_, pipelines_, slot, *targets_, pass);
   if (windowed) {
     record_copy_to_window(*device_, slot.commands(), *targets_, swapchain_.image(),
@@ -248,6 +287,29 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   return noted(draw_frame(input, slots_[(frame_value_ + 1) % kFramesInFlight]));
 }
 
+// What is drawn: the lists as they are, what the CPU chooses of them, or what the device will.
+void RendererImpl::list_draws(const FrameInput& input) {
+  const ViewTest test =
+      view_test(frame_.clip_from_camera, input, static_cast<float>(targets_->extent.height));
+  if (culling_) {
+    culling_->set_frame(test, frame_, input, targets_->extent, shared_.lists());
+  } else if (input.choose) {
+    choose_draws(test, input.terrain, chosen_terrain_);
+    choose_draws(test, input.models, chosen_models_);
+    list_.build(chosen_terrain_, chosen_models_, shared_.lists(), pushed_from_);
+  } else {
+    list_.build(input.terrain, input.models, shared_.lists(), pushed_from_);
+  }
+}
+
+Result<void> RendererImpl::write_frame(FrameSlot& slot) {
+  Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
+  if (!written || !culling_) return written;
+  written = culling_->write(*device_, index_of(slot));
+  if (written) slot.read_draws_from(*device_, pipelines_, culling_->draw_data(index_of(slot)));
+  return written;
+}
+
 Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot& slot) {
   const bool windowed = options_.surface != nullptr;
   FrameResult out;
@@ -260,13 +322,12 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   FrameInput checked = input;
   checked.pose = last_pose_.value_or(core::CameraPose{});
   checked.projection = last_projection_.value_or(core::Projection{});
-  list_.build(input.terrain, input.models, shared_.lists(), pushed_from_);
   overlay_.lay_out(input.overlay_lines, glyphs_);
   frame_ = frame_data(checked, targets_->extent);
-  if (Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
-      !written) {
-    return tl::unexpected(written.error());
-  }
+  const GpuCulling::Counts counted =
+      culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
+  list_draws(checked);
+  if (Result<void> written = write_frame(slot); !written) return tl::unexpected(written.error());
   double cpu_ms = ms_since(build_start);
 
   if (windowed) {
@@ -291,8 +352,8 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
     if (!presented) return tl::unexpected(presented.error());
     out.presented = *presented;
   }
-  out.draws = static_cast<std::uint32_t>(list_.draws().size());
-  out.triangles = list_.triangle_count();
+  out.draws = culling_ ? counted.draws : static_cast<std::uint32_t>(list_.draws().size());
+  out.triangles = culling_ ? counted.triangles : list_.triangle_count();
   out.cpu_ms = cpu_ms;
   out.wait_ms = waited_ms;
   out.gpu_ms = gpu_ms_;
@@ -344,13 +405,10 @@ Result<double> RendererImpl::replay_floor_ms(int repeats) {
   double last = core::monotonic_seconds();
   for (int i = 0; i < repeats + lead; ++i) {
     FrameSlot& slot = slots_[(frame_value_ + 1) % kFramesInFlight];
-    const Result<void> drawn =
-        noted(wait_for(slot)
-                  .and_then([&] {
-                    return slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
-                  })
-                  .and_then([&] { return record(slot, false); })
-                  .and_then([&] { return submit(slot, false); }));
+    const Result<void> drawn = noted(wait_for(slot)
+                                         .and_then([&] { return write_frame(slot); })
+                                         .and_then([&] { return record(slot, false); })
+                                         .and_then([&] { return submit(slot, false); }));
     if (!drawn) return tl::unexpected(drawn.error());
     const double now = core::monotonic_seconds();
     if (i >= lead) intervals.push_back((now - last) * 1e3);
@@ -360,6 +418,22 @@ Result<double> RendererImpl::replay_floor_ms(int repeats) {
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
   std::nth_element(intervals.begin(), middle, intervals.end());
   return *middle;
+}
+
+Result<std::vector<DrawnMesh>> RendererImpl::drawn_meshes() {
+  if (!has_list_ || lost_) {
+    return core::fail(ErrorCode::kInvalidArgument, "there is no frame whose meshes could be named");
+  }
+  if (culling_) return noted(culling_->read_drawn(*device_, frame_value_ % kFramesInFlight));
+  std::vector<DrawnMesh> drawn;
+  for (const DrawRun& run : list_.runs()) {
+    for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+      const IndexedDraw& draw = list_.draws()[i];
+      drawn.push_back({run.layout, run.pool_block, run.shared, draw.first_index, draw.index_count,
+                       draw.vertex_offset, glm::vec3(list_.data()[i].origin)});
+    }
+  }
+  return drawn;
 }
 
 void RendererImpl::wait_idle() {

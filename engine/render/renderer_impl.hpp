@@ -42,6 +42,8 @@ class RendererImpl {
   const DeviceInfo& info() const { return device_->info; }
   std::vector<std::string> messages() const { return instance_->messages(); }
   core::Result<double> replay_floor_ms(int repeats);
+  core::Result<std::vector<DrawnMesh>> drawn_meshes();
+  RenderPath path() const { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
   void wait_idle();
 
  private:
@@ -49,7 +51,14 @@ class RendererImpl {
 
   core::Result<void> create_device();
   core::Result<void> create_targets(core::Extent extent);
+  core::Result<void> create_culling();
   core::Result<void> warm_up();
+  core::Result<void> warm_up_culling(FrameSlot& slot, Targets& small);
+  core::Result<void> write_frame(FrameSlot& slot);
+  void list_draws(const FrameInput& input);
+  std::size_t index_of(const FrameSlot& slot) const {
+    return static_cast<std::size_t>(&slot - slots_.data());
+  }
   core::Result<std::byte*> add_pool_block(std::uint64_t bytes);
 
   core::Result<void> wait_for(FrameSlot& slot);
@@ -76,6 +85,7 @@ class RendererImpl {
   SharedIndexLists shared_;
   Pipelines pipelines_;
   std::array<FrameSlot, kFramesInFlight> slots_;
+  std::unique_ptr<GpuCulling> culling_;  // null on the CPU path
   UniqueSemaphore timeline_;
   std::optional<Targets> targets_;
   Swapchain swapchain_;
@@ -88,7 +98,9 @@ class RendererImpl {
   bool lost_ = false;
   std::optional<core::CameraPose> last_pose_;
   std::optional<core::Projection> last_projection_;
-  DrawList list_;
+  DrawList list_;                            // on the CPU path
+  std::vector<TerrainDraw> chosen_terrain_;  // where the renderer chooses
+  std::vector<MeshDraw> chosen_models_;
   shaders::FrameData frame_{};
   std::vector<shaders::OverlayVertex> glyphs_;
   std::optional<double> gpu_ms_;

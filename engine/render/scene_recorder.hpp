@@ -6,6 +6,7 @@
 
 #include "engine/render/draw_list.hpp"
 #include "engine/render/frame_slot.hpp"
+#include "engine/render/gpu_culling.hpp"
 #include "engine/render/pipelines.hpp"
 
 namespace psygen::render {
@@ -24,9 +25,16 @@ struct SceneBuffers {
   VkBuffer shared_indices = VK_NULL_HANDLE;
 };
 
+// Draws that the device chooses itself, instead of a draw list.
+struct CulledDraws {
+  GpuCulling* culling = nullptr;  // null: the draw list is drawn
+  std::size_t slot = 0;
+};
+
 struct ScenePass {
   const DrawList& list;
   SceneBuffers buffers;
+  CulledDraws culled;
   std::uint32_t glyph_vertex_count = 0;
 };
 
