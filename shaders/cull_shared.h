@@ -25,20 +25,20 @@ using glm::uvec4;
 #define PSYGEN_CULL_THREADS 64
 
 // What one dispatch lets through of what is in view.
-#define PSYGEN_CULL_ALL 0           // everything
-#define PSYGEN_CULL_SEEN 1          // what was seen in the last frame
-#define PSYGEN_CULL_NEWLY_SEEN 2    // what the depth pyramid does not hide and SEEN left out
+#define PSYGEN_CULL_ALL 0         // everything
+#define PSYGEN_CULL_SEEN 1        // what was seen in the last frame
+#define PSYGEN_CULL_NEWLY_SEEN 2  // what the depth pyramid does not hide and SEEN left out
 
 struct CullFrame {
   vec4 planes[5];  // of the view, inwards: normal, offset
   mat4 clip_from_camera;
-  vec4 choice;   // x: (pixels per radian)²; y: (allowed error in pixels)²; z: near plane, m
-  uvec4 counts;  // candidates; groups; commands of a phase; levels of the pyramid
-  uvec4 picture; // width, height in pixels
+  vec4 choice;    // x: (pixels per radian)²; y: (allowed error in pixels)²; z: near plane, m
+  uvec4 counts;   // candidates; groups; commands of a phase; levels of the pyramid
+  uvec4 picture;  // width, height in pixels
 };
 
 struct CullCandidate {
-  vec4 least;     // of its box
+  vec4 least;  // of its box
   vec4 greatest;
   DrawData data;
   uvec4 levels;  // x: first in the list of levels; y: how many, finest first; z: name of its bit

@@ -12,6 +12,7 @@
 
 #include "engine/core/surface_provider.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/render/types.hpp"
 #include "engine/scene/settings.hpp"
 
 namespace psygen::app {
@@ -35,8 +36,9 @@ struct Options {
   core::Extent size{1280, 720};
   bool headless = false;
   bool validation = false;
-  bool vsync = true;         // windows only
-  std::string device_name;   // part of a name; empty: the best device
+  bool vsync = true;        // windows only
+  std::string device_name;  // part of a name; empty: the best device
+  render::RenderPath render_path = render::RenderPath::kAuto;
   double seconds = 0;        // 0: as long as the path; without one 27 s headless, else endless
   std::uint64_t frames = 0;  // 0: no limit
   // Frames a second that are held by a larger error of levels of detail; 0: the error is fixed.

@@ -1,6 +1,6 @@
-// From the draws of a frame to what the culling shader reads: candidates with their boxes, levels of
-// detail, and groups of levels that share buffers (one indirect draw each). Plain memory, no Vulkan;
-// reused from frame to frame. Private to engine/render.
+// From the draws of a frame to what the culling shader reads: candidates with their boxes, levels
+// of detail, and groups of levels that share buffers (one indirect draw each). Plain memory, no
+// Vulkan; reused from frame to frame. Private to engine/render.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace psygen::render {
 
-// Levels that are drawn with the same pipeline and buffers, and where their commands lie among those
-// of a phase. There is room for all of them.
+// Levels that are drawn with the same pipeline and buffers, and where their commands lie among
+// those of a phase. There is room for all of them.
 struct DrawGroup {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block

@@ -131,8 +131,7 @@ void ComputePipeline::write_buffer(const Device& device, std::size_t set, std::u
 }
 
 void ComputePipeline::write_image(const Device& device, std::size_t set, std::uint32_t binding,
-                                  VkSampler sampler, VkImageView view,
-                                  VkImageLayout layout) const {
+                                  VkSampler sampler, VkImageView view, VkImageLayout layout) const {
   const VkDescriptorImageInfo info{sampler, view, layout};
   write(device, set, binding, nullptr, &info);
 }

@@ -8,9 +8,9 @@ namespace psygen::render {
 
 namespace {
 
-constexpr float kLargestGrid = 127.0F;                  // cells (core::TerrainVertex)
-constexpr float kSwayXM = 0.12F, kSwayZM = 0.09F;       // of the wind, model.vert
-constexpr float kSlackShare = 1e-6F;                    // of a box's coordinates, for rounding
+constexpr float kLargestGrid = 127.0F;             // cells (core::TerrainVertex)
+constexpr float kSwayXM = 0.12F, kSwayZM = 0.09F;  // of the wind, model.vert
+constexpr float kSlackShare = 1e-6F;               // of a box's coordinates, for rounding
 
 }  // namespace
 
@@ -27,9 +27,9 @@ ViewTest view_test(const glm::mat4& clip_from_camera, const FrameInput& input, f
 }
 
 bool in_view(const ViewTest& test, const core::Bounds& box) {
-  const float slack = kSlackShare * (std::abs(box.min.x) + std::abs(box.min.y) +
-                                     std::abs(box.min.z) + std::abs(box.max.x) +
-                                     std::abs(box.max.y) + std::abs(box.max.z));
+  const float slack =
+      kSlackShare * (std::abs(box.min.x) + std::abs(box.min.y) + std::abs(box.min.z) +
+                     std::abs(box.max.x) + std::abs(box.max.y) + std::abs(box.max.z));
   for (const glm::vec4& plane : test.planes) {
     const float x = plane.x > 0 ? box.max.x : box.min.x;
     const float y = plane.y > 0 ? box.max.y : box.min.y;
@@ -45,8 +45,7 @@ std::size_t level_of(const ViewTest& test, const core::Bounds& box,
   const float y = std::max(std::max(box.min.y, -box.max.y), 0.0F);
   const float z = std::max(std::max(box.min.z, -box.max.z), 0.0F);
   // Squares of error · pixels per radian <= allowed error · distance: no root, no division.
-  const float allowed =
-      test.max_error_pixels * test.max_error_pixels * (x * x + y * y + z * z);
+  const float allowed = test.max_error_pixels * test.max_error_pixels * (x * x + y * y + z * z);
   const float scale = test.pixels_per_radian * test.pixels_per_radian;
   std::size_t level = 0;
   while (level < coarser.size() &&
@@ -64,8 +63,7 @@ core::Bounds bounds_of(const TerrainDraw& draw) {
 
 core::Bounds bounds_of(const MeshDraw& draw) {
   const glm::vec3 center = draw.origin + draw.box_center * draw.fade;
-  const glm::vec3 extent =
-      (draw.box_half_extent + glm::vec3(kSwayXM, 0.0F, kSwayZM)) * draw.fade;
+  const glm::vec3 extent = (draw.box_half_extent + glm::vec3(kSwayXM, 0.0F, kSwayZM)) * draw.fade;
   return {center - extent, center + extent};
 }
 

@@ -131,9 +131,8 @@ Result<void> GpuCulling::grow(const Device& device, std::size_t slot) {
       .and_then([&] { return written(s.levels, levels * sizeof(shaders::CullLevel)); })
       .and_then([&] { return written(s.groups, groups * kWordBytes); })
       .and_then([&] { return made(s.commands, 2 * levels * kCommandBytes, indirect); })
-      .and_then([&] {
-        return made(s.draws, 2 * levels * sizeof(shaders::DrawData), kStorage | kSource);
-      })
+      .and_then(
+          [&] { return made(s.draws, 2 * levels * sizeof(shaders::DrawData), kStorage | kSource); })
       .and_then([&] { return made(s.counts, count_bytes(groups), indirect | kTarget); })
       .and_then([&] {
         return grow_to(device, s.counts_back, count_bytes(groups), kTarget, MemoryUse::kRead);
@@ -141,8 +140,7 @@ Result<void> GpuCulling::grow(const Device& device, std::size_t slot) {
 }
 
 Result<void> GpuCulling::write(const Device& device, std::size_t slot) {
-  const Result<void> grown =
-      grow(device, slot).and_then([&] { return grow_seen(device); });
+  const Result<void> grown = grow(device, slot).and_then([&] { return grow_seen(device); });
   if (!grown) return grown;
   Slot& s = slots_[slot];
   std::memcpy(s.frame.mapped, &frame_, sizeof(frame_));
@@ -157,10 +155,10 @@ Result<void> GpuCulling::write(const Device& device, std::size_t slot) {
 void GpuCulling::write_sets(const Device& device, std::size_t slot) const {
   const Slot& s = slots_[slot];
   const std::pair<std::uint32_t, const Buffer*> buffers[] = {
-      {PSYGEN_CULL_FRAME, &s.frame},          {PSYGEN_CULL_CANDIDATES, &s.candidates},
-      {PSYGEN_CULL_LEVELS, &s.levels},        {PSYGEN_CULL_GROUPS, &s.groups},
-      {PSYGEN_CULL_COMMANDS, &s.commands},    {PSYGEN_CULL_DRAWS, &s.draws},
-      {PSYGEN_CULL_COUNTS, &s.counts},        {PSYGEN_CULL_SEEN_BEFORE, &seen_[1 - now_]},
+      {PSYGEN_CULL_FRAME, &s.frame},       {PSYGEN_CULL_CANDIDATES, &s.candidates},
+      {PSYGEN_CULL_LEVELS, &s.levels},     {PSYGEN_CULL_GROUPS, &s.groups},
+      {PSYGEN_CULL_COMMANDS, &s.commands}, {PSYGEN_CULL_DRAWS, &s.draws},
+      {PSYGEN_CULL_COUNTS, &s.counts},     {PSYGEN_CULL_SEEN_BEFORE, &seen_[1 - now_]},
       {PSYGEN_CULL_SEEN_NOW, &seen_[now_]}};
   for (const auto& [binding, buffer] : buffers)
     pipeline_.write_buffer(device, slot, binding, buffer->buffer.get());
@@ -189,8 +187,8 @@ void GpuCulling::record_first(const Device& device, VkCommandBuffer commands, st
                  VK_ACCESS_2_TRANSFER_WRITE_BIT | kShaderRead);
   device.vk.vkCmdFillBuffer(commands, slots_[slot].counts.buffer.get(), 0, VK_WHOLE_SIZE, 0);
   device.vk.vkCmdFillBuffer(commands, seen_[now_].buffer.get(), 0, VK_WHOLE_SIZE, 0);
-  memory_barrier(device, commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                 kCompute, kShaderRead | kShaderWrite);
+  memory_barrier(device, commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                 VK_ACCESS_2_TRANSFER_WRITE_BIT, kCompute, kShaderRead | kShaderWrite);
   dispatch(device, commands, slot, occlusion_ ? PSYGEN_CULL_SEEN : PSYGEN_CULL_ALL);
 }
 
@@ -218,8 +216,8 @@ void GpuCulling::draw_group(const Device& device, VkCommandBuffer commands, std:
   const std::uint64_t first = std::uint64_t{phase} * s.command_count + drawn.first_command;
   const std::uint64_t count = std::uint64_t{phase} * s.group_count + group;
   device.vk.vkCmdDrawIndexedIndirectCount(commands, s.commands.buffer.get(), first * kCommandBytes,
-                                          s.counts.buffer.get(), count * kWordBytes,
-                                          drawn.capacity, kCommandBytes);
+                                          s.counts.buffer.get(), count * kWordBytes, drawn.capacity,
+                                          kCommandBytes);
 }
 
 GpuCulling::Counts GpuCulling::read_counts(std::size_t slot) const {
@@ -229,8 +227,7 @@ GpuCulling::Counts GpuCulling::read_counts(std::size_t slot) const {
   const auto* values = reinterpret_cast<const std::uint32_t*>(s.counts_back.mapped);
   for (std::uint32_t i = 0; i < 2 * s.group_count; ++i)
     counts.draws += values[i];
-  counts.triangles =
-      std::uint64_t{values[2 * s.group_count]} + values[2 * s.group_count + 1];
+  counts.triangles = std::uint64_t{values[2 * s.group_count]} + values[2 * s.group_count + 1];
   return counts;
 }
 
@@ -240,8 +237,8 @@ Result<std::vector<DrawnMesh>> GpuCulling::read_drawn(const Device& device,
   const std::uint64_t all = 2 * std::uint64_t{s.command_count};
   const std::uint64_t data_at = all * kCommandBytes;
   const std::uint64_t counts_at = data_at + all * sizeof(shaders::DrawData);
-  Result<Buffer> back = make_buffer(device, counts_at + count_bytes(s.group_count), kTarget,
-                                    MemoryUse::kRead);
+  Result<Buffer> back =
+      make_buffer(device, counts_at + count_bytes(s.group_count), kTarget, MemoryUse::kRead);
   if (!back) return tl::unexpected(back.error());
   const Result<void> copied = run_once(device, [&](VkCommandBuffer commands) {
     memory_barrier(device, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,

@@ -1,9 +1,10 @@
-// Compute culling: the candidates of a frame go to the device as they are; a shader tests what is in
-// view, chooses levels of detail and writes the commands of indirect draws, one call for each group
-// of the same pipeline and buffers. With occlusion in two phases: first what was seen in the last
-// frame is drawn; from its depth a pyramid is made; then all that is in view is tested against that,
-// which says what was seen in this frame, and what is newly seen is drawn. So nothing visible is
-// ever left out, and what is hidden is left out from the third frame on. Private to engine/render.
+// Compute culling: the candidates of a frame go to the device as they are; a shader tests what is
+// in view, chooses levels of detail and writes the commands of indirect draws, one call for each
+// group of the same pipeline and buffers. With occlusion in two phases: first what was seen in the
+// last frame is drawn; from its depth a pyramid is made; then all that is in view is tested against
+// that, which says what was seen in this frame, and what is newly seen is drawn. So nothing visible
+// is ever left out, and what is hidden is left out from the third frame on. Private to
+// engine/render.
 #pragma once
 
 #include <array>
@@ -53,9 +54,9 @@ class GpuCulling {
 
  private:
   struct Slot {
-    Buffer frame, candidates, levels, groups;         // from the CPU
-    Buffer commands, draws, counts;                   // of both phases, on the device
-    Buffer counts_back;                               // copy for the CPU
+    Buffer frame, candidates, levels, groups;          // from the CPU
+    Buffer commands, draws, counts;                    // of both phases, on the device
+    Buffer counts_back;                                // copy for the CPU
     std::uint32_t group_count = 0, command_count = 0;  // of the last frame written
   };
   core::Result<void> grow(const Device& device, std::size_t slot);

@@ -95,8 +95,8 @@ struct MeshDraw {
   glm::vec3 origin{0.0F};                           // the mesh's foot
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
-  float fade = 1.0F;                   // 0 … 1, size while a mesh appears
-  std::span<const DrawLevel> coarser;  // read where FrameInput::choose
+  float fade = 1.0F;                        // 0 … 1, size while a mesh appears
+  std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
 };
 
 // A grid of core::VertexLayout::kTerrain.
@@ -109,7 +109,7 @@ struct TerrainDraw {
   float skirt_m = 0.0F;                              // how far skirt vertices hang down
   float morph = 0.0F;                                // 0 fine heights … 1 coarse heights
   float side_m = 0.0F;  // of the square that the grid covers; 0: as large as a grid can be
-  std::span<const DrawLevel> coarser;  // read where FrameInput::choose
+  std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
 };
 
 struct FrameInput {

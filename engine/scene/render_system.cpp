@@ -85,6 +85,7 @@ class Drawing {
     draw.height_min_m = placed.box_center.y - placed.box_half_extent.y;
     draw.height_range_m = 2 * placed.box_half_extent.y;
     draw.skirt_m = level.skirt_m;
+    draw.side_m = node.side_m;
     // A mesh finer than wanted looks like the wanted one; a coarser one has nothing to morph from.
     const bool finest = node.node.level == 0 && demand.drawn_level == 0 && level.mesh_level != 0;
     draw.morph = !finest     ? level.mesh_level != 0 && node.leaf && !node.fine ? node.morph : 0.0F

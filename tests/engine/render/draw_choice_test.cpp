@@ -69,9 +69,9 @@ TEST(DrawChoice, chooses_the_level_that_the_visibility_system_chooses_without_hy
       errors[level + 1] = coarser[level].error_m;
     }
     const glm::vec3 nearest = glm::max(glm::max(box.min, -box.max), glm::vec3(0.0F));
-    const int expected = visibility::choose_level(
-        errors, glm::length(nearest), input.projection.pixels_per_radian(kHeight),
-        input.max_error_pixels, -1);
+    const int expected = visibility::choose_level(errors, glm::length(nearest),
+                                                  input.projection.pixels_per_radian(kHeight),
+                                                  input.max_error_pixels, -1);
     EXPECT_EQ(level_of(test, box, coarser), static_cast<std::size_t>(expected));
     ++chosen[level_of(test, box, coarser)];
   }

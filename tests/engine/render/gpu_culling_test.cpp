@@ -7,6 +7,7 @@
 #include <random>
 #include <tuple>
 
+#include "engine/render/render_path.hpp"
 #include "engine/render/renderer.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
 
@@ -17,8 +18,8 @@ constexpr core::Extent kSize{203, 117};  // halves that do not come out even
 constexpr int kSide = 33;
 
 auto key(const DrawnMesh& m) {
-  return std::tuple(m.layout, m.pool_block, m.shared, m.first_index, m.index_count,
-                    m.vertex_offset, m.place.x, m.place.y, m.place.z);
+  return std::tuple(m.layout, m.pool_block, m.shared, m.first_index, m.index_count, m.vertex_offset,
+                    m.place.x, m.place.y, m.place.z);
 }
 
 // A renderer with a landscape of its own: hills, and boxes with a coarser level.
@@ -217,10 +218,10 @@ TEST_F(GpuCullingTest, shows_the_pictures_of_the_cpu_path_while_the_camera_moves
 
 TEST_F(GpuCullingTest, leaves_out_what_a_wall_hides_from_the_third_frame_on) {
   gpu_.create(RenderPath::kGpu, true);
-  gpu_.add_box({0, 0, -20}, {15, 15, 1}, {0.5F, 0.1F, 0.1F});   // the wall
-  gpu_.add_box({0, 0, -60}, {3, 3, 3}, {0.1F, 0.5F, 0.1F});     // behind it
-  gpu_.add_box({20, 0, -30}, {2, 2, 2}, {0.1F, 0.1F, 0.5F});    // beside it
-  gpu_.add_box({0, 0, 40}, {2, 2, 2}, {0.1F, 0.1F, 0.5F});      // behind the camera
+  gpu_.add_box({0, 0, -20}, {15, 15, 1}, {0.5F, 0.1F, 0.1F});  // the wall
+  gpu_.add_box({0, 0, -60}, {3, 3, 3}, {0.1F, 0.5F, 0.1F});    // behind it
+  gpu_.add_box({20, 0, -30}, {2, 2, 2}, {0.1F, 0.1F, 0.5F});   // beside it
+  gpu_.add_box({0, 0, 40}, {2, 2, 2}, {0.1F, 0.1F, 0.5F});     // behind the camera
   const FrameInput ahead = look(0.0, 0.0);
   for (int frame = 0; frame < 5; ++frame) {
     gpu_.draw(ahead);
@@ -277,7 +278,8 @@ TEST_F(GpuCullingTest, counts_what_a_finished_frame_drew) {
 
 TEST_F(GpuCullingTest, follows_changes_of_size_and_replays_its_frame) {
   landscape(true);
-  for (const core::Extent size : {core::Extent{1, 1}, core::Extent{64, 512}, core::Extent{97, 61}}) {
+  for (const core::Extent size :
+       {core::Extent{1, 1}, core::Extent{64, 512}, core::Extent{97, 61}}) {
     for (Side* side : {&cpu_, &gpu_}) {
       ASSERT_TRUE(side->renderer->resize(size));
       for (int frame = 0; frame < 3; ++frame)
@@ -298,6 +300,14 @@ TEST_F(GpuCullingTest, holds_more_draws_than_its_first_buffers_and_than_one_call
   gpu_.models.resize(CandidateList::kGroupCapacity + 100, gpu_.models.front());
   gpu_.draw(look(0, 0));
   EXPECT_EQ(gpu_.drawn().size(), CandidateList::kGroupCapacity + 100u);
+}
+
+TEST(RenderPathOption, has_names_and_says_which_are_allowed) {
+  for (const RenderPath path : {RenderPath::kAuto, RenderPath::kCpu, RenderPath::kGpu})
+    EXPECT_EQ(render_path_from(to_string(path)).value(), path);
+  const auto unknown = render_path_from("npu");
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().message, "render path 'npu' is unknown; allowed are auto, cpu, gpu");
 }
 
 TEST(RenderPathOption, takes_the_cpu_path_on_software_devices_unless_told) {
