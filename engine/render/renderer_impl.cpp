@@ -108,9 +108,7 @@ Result<void> RendererImpl::create() {
                       "the geometry budget must be between 1 byte and 1 TiB");
   }
   if (Result<void> made = create_device(); !made) return made;
-  pool_ =
-      std::make_unique<GeometryPool>(options_.geometry_budget_bytes,
-                                     [this](std::uint64_t bytes) { return add_pool_block(bytes); });
+  if (Result<void> made = create_geometry(); !made) return made;
   Result<UniqueSemaphore> timeline = make_timeline(*device_);
   if (!timeline) return tl::unexpected(timeline.error());
   timeline_ = std::move(*timeline);
@@ -126,6 +124,19 @@ Result<void> RendererImpl::create() {
   if (Result<void> made = create_culling(); !made) return made;
   if (Result<void> warmed = warm_up(); !warmed) return warmed;
   return options_.surface == nullptr ? create_targets(options_.size) : Result<void>{};
+}
+
+Result<void> RendererImpl::create_geometry() {
+  pool_ =
+      std::make_unique<GeometryPool>(options_.geometry_budget_bytes,
+                                     [this](std::uint64_t bytes) { return add_pool_block(bytes); });
+  // A heap that does not hold twice the budget is the small window of a device without more.
+  const bool writable =
+      device_->info.software || device_->writable_bytes() / 2 >= options_.geometry_budget_bytes;
+  if (options_.upload == Upload::kDirect || (options_.upload == Upload::kAuto && writable))
+    return {};
+  staged_ = std::make_unique<StagedGeometry>(*pool_);
+  return staged_->create(*device_);
 }
 
 Result<void> RendererImpl::create_culling() {
@@ -144,12 +155,14 @@ Result<void> RendererImpl::create_culling() {
 }
 
 Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
-  Result<Buffer> block = make_buffer(
-      *device_, bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
-      MemoryUse::kWrite);
+  const VkBufferUsageFlags copied = staged_ ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
+  Result<Buffer> block =
+      make_buffer(*device_, bytes,
+                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | copied,
+                  staged_ ? MemoryUse::kDevice : MemoryUse::kWrite);
   if (!block) return core::fail(ErrorCode::kOutOfMemory, block.error().message);
   pool_blocks_.push_back(std::move(*block));
-  return pool_blocks_.back().mapped;
+  return staged_ ? staged_->add_block(bytes) : pool_blocks_.back().mapped;
 }
 
 Result<void> RendererImpl::create_targets(core::Extent extent) {
@@ -227,8 +240,14 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
   VkCommandBufferSubmitInfo commands{};
   commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
   commands.commandBuffer = slot.commands();
-  const VkSemaphoreSubmitInfo wait =
-      semaphore_info(slot.acquired(), 0, VK_PIPELINE_STAGE_2_COPY_BIT);
+  std::vector<VkSemaphoreSubmitInfo> waits;
+  if (windowed) {
+    waits.push_back(semaphore_info(slot.acquired(), 0, VK_PIPELINE_STAGE_2_COPY_BIT));
+  }
+  if (staged_) {
+    waits.push_back(semaphore_info(staged_->timeline(), staged_->value(),
+                                   VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT));
+  }
   std::vector<VkSemaphoreSubmitInfo> signals{
       semaphore_info(timeline_.get(), frame_value_ + 1, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)};
   if (windowed) {
@@ -237,8 +256,8 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
   }
   VkSubmitInfo2 info{};
   info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  info.waitSemaphoreInfoCount = windowed ? 1 : 0;
-  info.pWaitSemaphoreInfos = &wait;
+  info.waitSemaphoreInfoCount = static_cast<std::uint32_t>(waits.size());
+  info.pWaitSemaphoreInfos = waits.data();
   info.commandBufferInfoCount = 1;
   info.pCommandBufferInfos = &commands;
   info.signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size());
@@ -252,6 +271,10 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
 
 Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   if (Result<void> begun = slot.begin(*device_); !begun) return begun;
+  if (staged_) {
+    const Result<void> copied = staged_->flush(*device_, pool_blocks_, slot.commands());
+    if (!copied) return copied;
+  }
   const ScenePass pass{list_,
                        {pool_blocks_, shared_.buffer()},
                        {culling_.get(), index_of(slot)},

@@ -14,6 +14,7 @@
 #include "engine/render/pipelines.hpp"
 #include "engine/render/scene_recorder.hpp"
 #include "engine/render/shared_index_lists.hpp"
+#include "engine/render/staged_geometry.hpp"
 #include "engine/render/swapchain.hpp"
 #include "engine/render/types.hpp"
 
@@ -31,7 +32,9 @@ class RendererImpl {
   // To be called once, before everything else; after a failure only destruction is allowed.
   core::Result<void> create();
 
-  core::GeometryMemory& geometry() { return *pool_; }
+  core::GeometryMemory& geometry() {
+    return staged_ ? static_cast<core::GeometryMemory&>(*staged_) : *pool_;
+  }
   core::Result<std::uint32_t> add_shared_indices(std::span<const std::uint16_t> indices) {
     return shared_.add(indices);
   }
@@ -51,6 +54,7 @@ class RendererImpl {
 
   core::Result<void> create_device();
   core::Result<void> create_targets(core::Extent extent);
+  core::Result<void> create_geometry();
   core::Result<void> create_culling();
   core::Result<void> warm_up();
   core::Result<void> warm_up_culling(FrameSlot& slot, Targets& small);
@@ -82,6 +86,7 @@ class RendererImpl {
   std::uint32_t pushed_from_ = 0;  // meshes of at least so many indices are pushed
   std::vector<Buffer> pool_blocks_;
   std::unique_ptr<GeometryPool> pool_;
+  std::unique_ptr<StagedGeometry> staged_;  // null where the CPU writes the blocks themselves
   SharedIndexLists shared_;
   Pipelines pipelines_;
   std::array<FrameSlot, kFramesInFlight> slots_;

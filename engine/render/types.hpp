@@ -24,6 +24,10 @@ enum class Submission : std::uint8_t { kAuto, kMultiDraw, kPushed };
 // leaves out what is hidden (gpu_culling.hpp). kAuto: the device, unless it is software.
 enum class RenderPath : std::uint8_t { kAuto, kCpu, kGpu };
 
+// How meshes come into the device's memory: written there by the CPU, or into memory of its own and
+// copied. kAuto: written, where the device has enough memory that the CPU can write.
+enum class Upload : std::uint8_t { kAuto, kDirect, kStaged };
+
 struct RendererOptions {
   std::string application_name = "psygen";
   std::string device_name;  // part of the device's name; empty: the best there is
@@ -34,6 +38,7 @@ struct RendererOptions {
   bool vsync = false;
   Submission submission = Submission::kAuto;  // kMultiDraw without VK_EXT_multi_draw is kPushed
   RenderPath path = RenderPath::kAuto;
+  Upload upload = Upload::kAuto;
   bool occlusion = true;  // on the GPU path: leave out what was hidden in the last frame and is
 };
 
