@@ -6,6 +6,7 @@
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/render/preset.hpp"
 #include "engine/render/render_path.hpp"
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
@@ -30,6 +31,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
   c.add_flag("--headless", options_.headless, "No window; needs no display");
   c.add_option("--seconds", options_.seconds, "Length of the flight; 0: that of the path")
       ->check(number_between(0, 86400));
+  c.add_flag("--loop", options_.loop, "Fly the path again and again, until --seconds are over");
   c.add_option("--frames", options_.frames, "End after so many frames; 0: no limit")
       ->check(number_between(0, 1e9));
   c.add_option("--fixed-step", options_.fixed_step_hz,
@@ -81,6 +83,16 @@ FlyCommand::FlyCommand(CLI::App& cli)
        "Leave out what lies behind ridges: on, off")
       ->check(CLI::IsMember({"on", "off"}))
       ->default_str("on");
+  c.add_option_function<std::string>(
+       "--preset",
+       [this](const std::string& text) { options_.preset = *render::preset_from(text); },
+       "Light and detail: low, medium, high, ultra; without it what suits the device")
+      ->check(valid_if(render::preset_from, "low|medium|high|ultra"));
+  c.add_option_function<std::string>(
+       "--view", [this](const std::string& text) { options_.view = *render::view_from(text); },
+       "What is shown: normal, levels, layers, bounds, wireframe, missing")
+      ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing"))
+      ->default_str("normal");
   c.add_option("--device", options_.device_name, "Part of the name of the Vulkan device");
   c.add_option_function<std::string>(
        "--render-path",

@@ -9,22 +9,22 @@ vec3 sky_light(vec3 d) {
   float low8 = low4 * low4;
   vec3 c = mix(frame.zenith_colour.rgb, frame.horizon_colour.rgb, low4);
   c = mix(c, frame.haze_colour.rgb, low8 * low8);
-  float toward = max(dot(d, frame.sun_direction.xyz), 0.0);
+  float toward = max(dot(d, frame.glow_direction.xyz), 0.0);
   float t2 = toward * toward;
   float t4 = t2 * t2;
   float t8 = t4 * t4;
-  return c + frame.sun_colour.rgb * (0.03 * t4 + 0.10 * t8 * t8 * t8);
+  return c + frame.glow_colour.rgb * (0.03 * t4 + 0.10 * t8 * t8 * t8);
 }
 
-// `light` from a surface at `p` (relative to the camera), after the air in between. The density
-// falls exponentially with height: the integral along the ray has a closed form.
+// `light` from a surface at `p` (relative to the camera), after the air in between, which takes
+// more of the blue: far ridges turn blue, and far snow yellow. The density falls exponentially with
+// height: the integral along the ray has a closed form.
 vec3 through_haze(vec3 light, vec3 p) {
   float distance2 = max(dot(p, p), 1e-6);
   float inverse = inversesqrt(distance2);
   float x = clamp(frame.zenith_colour.w * p.y, -20.0, 20.0);
   float mean = abs(x) < 1e-3 ? 1.0 - 0.5 * x : (1.0 - exp2(-1.442695 * x)) / x;
-  float depth = frame.sun_colour.w * mean * (distance2 * inverse);
-  float kept = exp2(-1.442695 * depth);
+  vec3 kept = exp2(frame.haze_extinction.rgb * (-1.442695 * mean * distance2 * inverse));
   return mix(sky_light(p * inverse), light, kept);
 }
 

@@ -2,12 +2,27 @@
 // fastest on software devices, where an indexed load is a loop over lanes) or in a buffer, indexed
 // by the first instance plus the number of the draw within a multi-draw.
 #ifdef PSYGEN_DRAW_PUSHED
-layout(push_constant, std430) uniform Pushed { DrawData pushed; };
+layout(push_constant, std430) uniform Pushed {
+  DrawData pushed;
+  uint pushed_cascade;
+};
 DrawData this_draw() { return pushed; }
 #else
+layout(push_constant, std430) uniform Pushed {
+  layout(offset = 32) uint pushed_cascade;
+};
 layout(set = 0, binding = PSYGEN_BINDING_DRAWS, std430) readonly buffer Draws { DrawData draws[]; };
 DrawData this_draw() { return draws[gl_BaseInstance + gl_DrawID]; }
 #endif
+
+// What takes a place relative to the camera to the picture, or into a cascade of shadows.
+mat4 clip_matrix() {
+#ifdef PSYGEN_SHADOW
+  return frame.shadow_from_camera[pushed_cascade];
+#else
+  return frame.clip_from_camera;
+#endif
+}
 
 // The octahedral map with its pole at +Y (vertex_layout.hpp); `e` in [-1, 1].
 vec3 octahedral_normal(vec2 e) {

@@ -1,13 +1,14 @@
 // Trees, rocks and every other model: unpacks core::ModelVertex, sways, lights and hazes.
-// Everything per vertex: the fragment shader only writes the interpolated colour.
+// On software devices everything per vertex: the fragment shader only writes the colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 #include "draw.glsl"
 #include "atmosphere.glsl"
+#include "lighting.glsl"
+#include "surface_out.glsl"
 
 layout(location = 0) in uvec4 packed;  // position, ambient, sway, normal, colour, material
-layout(location = 0) out vec3 colour;
 
 vec2 snorm16(uint v) {
   return max(vec2(int(v << 16) >> 16, int(v) >> 16) * (1.0 / 32767.0), -1.0);
@@ -35,14 +36,15 @@ void main() {
   p.x += sway * 0.12 * draw.scale.w * wave(time + xy.y * 0.3);
   p.z += sway * 0.09 * draw.scale.w * wave(time * 1.37 + xy.x * 0.4);
 
-  float facing = dot(n, frame.sun_direction.xyz);
-  float solid = max(facing, 0.0);
-  float wrapped = clamp(facing * 0.5 + 0.5, 0.0, 1.0);
-  float through = max(-dot(p, frame.sun_direction.xyz) * -inversesqrt(dot(p, p) + 1e-6), 0.0);
-  float leafy = wrapped * wrapped * 0.85 + 0.35 * through * through * (1.0 - 0.5 * wrapped);
-  float sun = mix(solid, leafy, leaf) * (0.35 + 0.65 * ambient);
-  vec3 light = albedo * (ambient_light(n) * ambient + sun * frame.sun_colour.rgb);
-
-  colour = shown(through_haze(light, p));
-  gl_Position = frame.clip_from_camera * vec4(p, 1.0);
+#if defined(PSYGEN_DRAW_COLOUR)
+  colour = colour_of_draw(draw.origin.w, n);
+#elif defined(PSYGEN_PIXEL_LIGHT)
+  place = p;
+  normal = n;
+  albedo_ambient = vec4(albedo, ambient);
+  leaf_ground = vec2(leaf, 0.0);
+#elif !defined(PSYGEN_SHADOW)
+  colour = shown(through_haze(model_light(albedo, n, p, ambient, leaf, 1.0), p));
+#endif
+  gl_Position = clip_matrix() * vec4(p, 1.0);
 }

@@ -18,6 +18,16 @@ using glm::vec4;
 #define PSYGEN_BINDING_CLOUDS 2
 #define PSYGEN_BINDING_FONT 3
 #define PSYGEN_BINDING_GLYPHS 4
+#define PSYGEN_BINDING_SHADOWS 5
+
+// Cascades of the sun's shadow that a frame can have.
+#define PSYGEN_MAX_CASCADES 3
+
+// The plane of water (water.vert): places around each ring, rings, vertices of one ring, metres.
+#define PSYGEN_WATER_SIDES 64
+#define PSYGEN_WATER_RINGS 28
+#define PSYGEN_WATER_STRIP (2 * (PSYGEN_WATER_SIDES + 1) + 2)
+#define PSYGEN_WATER_REACH 500000.0
 
 // Everything that is the same for a whole frame.
 struct FrameData {
@@ -25,37 +35,50 @@ struct FrameData {
   vec4 ray_right;  // direction of a pixel = ray_forward + ndc.x · ray_right + ndc.y · ray_down
   vec4 ray_down;
   vec4 ray_forward;
-  vec4 sun_direction;   // unit, towards the sun; w: seconds for wind and clouds
-  vec4 sun_colour;      // w: haze density at the camera's height, 1/m
-  vec4 zenith_colour;   // w: fall-off of the haze with height, 1/m
-  vec4 horizon_colour;  // w: height of the camera, m
-  vec4 ground_colour;   // light from below; w: strength of the ground pattern, 0 or 1
-  vec4 haze_colour;     // w: cloud cover, 0 to 1
-  vec4 ground_anchor;   // x, z: camera in the ground pattern, m; z, w: size of the picture
-  vec4 grass;           // palette, linear; w: height where sand ends, m
-  vec4 forest;          // w: height where dry meadow starts, m
-  vec4 dry;             // w: blend of the dry meadow, m
-  vec4 rock;            // w: slope (1 − normal.y) where rock starts
-  vec4 snow;            // w: slope where everything is rock
-  vec4 sand;            // w: blend of the sand, m
-  vec4 snow_line;       // x: height where snow starts, m; y: blend, m; z: slope that sheds snow
+  vec4 sun_direction;  // unit, towards the sun; w: seconds for wind and clouds
+  vec4 sun_colour;
+  vec4 zenith_colour;    // w: fall-off of the haze with height, 1/m
+  vec4 horizon_colour;   // w: height of the camera, m
+  vec4 ground_colour;    // light from below; w: strength of the ground pattern, 0 or 1
+  vec4 haze_colour;      // w: cloud cover, 0 to 1
+  vec4 ground_anchor;    // x, z: camera in the ground pattern, m; z, w: size of the picture
+  vec4 grass;            // palette, linear; w: height where sand ends, m
+  vec4 forest;           // w: height where dry meadow starts, m
+  vec4 dry;              // w: blend of the dry meadow, m
+  vec4 rock;             // w: slope (1 − normal.y) where rock starts
+  vec4 snow;             // w: slope where everything is rock
+  vec4 sand;             // w: blend of the sand, m
+  vec4 snow_line;        // x: height where snow starts, m; y: blend, m; z: slope that sheds snow
+  vec4 glow_colour;      // around the sun
+  vec4 glow_direction;   // of its brightest place, not below the horizon
+  vec4 cloud_colour;     // sun on clouds
+  vec4 haze_extinction;  // at the camera's height, 1/m, for red, green, blue
+  vec4 water;            // albedo of deep water; w: height of the surface over the camera, m
+  vec4 canopy;           // of far forests; w: slope that bears none
+  vec4 canopy_place;     // x: height where they start, y: end, m; z: 1 / blend, 1/m
+  vec4 edge;             // where the world ends: least x, least z, greatest x, greatest z
+  vec4 shadow;           // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
+  vec4 shadow_reach;     // distance from the camera that each cascade reaches, m
+  mat4 shadow_from_camera[PSYGEN_MAX_CASCADES];  // to texture and depth, nearest cascade first
 };
 
 // One terrain draw: x, z = origin + cell · grid; y = origin.y + range · height.
 // One model draw:   p = center + half_extent · position.
+// In the views that colour draws, a terrain's cover and a model's phase are its colour instead:
+// red · 65536 + green · 256 + blue.
 struct DrawData {
   vec4 origin;  // terrain: origin, w cell size in m; model: center, w phase of the wind, 0 to 1
-  vec4 scale;   // terrain: height range, skirt, morph, 0; model: half extent, w fade
+  vec4 scale;   // terrain: height range, skirt, morph, cover; model: half extent, w fade
 };
 
-// A corner of the overlay's quads.
+// A corner of the overlay's quads, or an end of a line.
 struct OverlayVertex {
-  vec4 place;   // pixels x, y; texture u, v
+  vec4 place;   // pixels x, y; texture u, v; of a line: metres, relative to the camera
   vec4 colour;  // as shown, not linear; a covers what is below
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 64 + 17 * 16);
+static_assert(sizeof(FrameData) == 64 + 27 * 16 + 3 * 64);
 static_assert(sizeof(DrawData) == 32);
 static_assert(sizeof(OverlayVertex) == 32);
 static_assert(offsetof(FrameData, ray_right) == 64);

@@ -25,7 +25,7 @@ void main() {
   float cover = smoothstep(edge - 0.06, edge + 0.22, amount) * smoothstep(0.015, 0.2, up);
   float thick = smoothstep(edge, edge + 0.45, amount);
   float behind = max(toward, 0.0);
-  vec3 bright = frame.sun_colour.rgb * (0.34 + 0.35 * behind * behind * behind * behind);
+  vec3 bright = frame.cloud_colour.rgb * (0.34 + 0.35 * behind * behind * behind * behind);
   vec3 cloud = bright * (1.0 - 0.5 * thick) * (0.75 + 0.4 * broad.g) +
                mix(frame.horizon_colour.rgb, frame.zenith_colour.rgb, 0.3) * 0.55;
   light += frame.sun_colour.rgb * 12.0 * disc;

@@ -1,50 +1,16 @@
 // Terrain: unpacks core::TerrainVertex, colours by height, slope and a slow pattern, lights and
-// hazes. Everything per vertex: the fragment shader only writes the interpolated colour.
+// hazes. On software devices everything per vertex: the fragment shader only writes the colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 #include "draw.glsl"
 #include "atmosphere.glsl"
+#include "lighting.glsl"
+#include "ground.glsl"
+#include "surface_out.glsl"
 
 // x: grid x, grid z, height; y: coarse height, normal; z: sun, ambient, cover
 layout(location = 0) in uvec3 packed;
-layout(location = 0) out vec3 colour;
-
-float lattice(uvec2 i) {
-  uint h = (i.x & 63u) * 0x9E3779B9u ^ (i.y & 63u) * 0x85EBCA6Bu;
-  h ^= h >> 15;
-  h *= 0x2C1B3C6Du;
-  return float(h >> 8) * (1.0 / 16777216.0);
-}
-
-// Smooth noise in [0, 1] over the plane, one lattice point per unit, period 64.
-float slow_noise(vec2 p) {
-  vec2 cell = floor(p);
-  vec2 f = p - cell;
-  f = f * f * (3.0 - 2.0 * f);
-  uvec2 i = uvec2(ivec2(cell));
-  float a = mix(lattice(i), lattice(i + uvec2(1, 0)), f.x);
-  float b = mix(lattice(i + uvec2(0, 1)), lattice(i + uvec2(1, 1)), f.x);
-  return mix(a, b, f.y);
-}
-
-vec3 ground_albedo(float height, vec3 n, vec2 plane, float grain) {
-  float pattern = 0.5;
-  if (frame.ground_colour.w > 0.0)
-    pattern = 0.65 * slow_noise(plane * (1.0 / 32.0)) + 0.35 * slow_noise(plane * (1.0 / 8.0));
-  float slope = 1.0 - n.y;
-  float uneven = (pattern - 0.5) * 2.0;
-  vec3 c = mix(frame.grass.rgb, frame.forest.rgb, smoothstep(0.35, 0.62, pattern + slope * 0.5));
-  float dry = smoothstep(0.0, 1.0, (height - frame.forest.w) / frame.dry.w + uneven);
-  c = mix(c, frame.dry.rgb, dry);
-  float sand = smoothstep(0.0, 1.0, (frame.grass.w - height) / frame.sand.w + 0.5 * uneven);
-  c = mix(c, frame.sand.rgb, sand);
-  float rock = smoothstep(frame.rock.w, frame.snow.w, slope + 0.06 * uneven);
-  c = mix(c, frame.rock.rgb, rock);
-  float snow = smoothstep(0.0, 1.0, (height - frame.snow_line.x) / frame.snow_line.y + uneven);
-  c = mix(c, frame.snow.rgb, snow * (1.0 - smoothstep(0.7 * frame.snow_line.z, frame.snow_line.z, slope)));
-  return c * (0.9 + 0.2 * grain);
-}
 
 void main() {
   DrawData draw = this_draw();
@@ -55,16 +21,26 @@ void main() {
   vec3 p = vec3(draw.origin.x + grid.x * draw.origin.w,
                 draw.origin.y + height * draw.scale.x,
                 draw.origin.z + grid.y * draw.origin.w);
+  p.xz = clamp(p.xz, frame.edge.xy, frame.edge.zw);
   ivec2 bits = ivec2(int(packed.y << 8) >> 24, int(packed.y) >> 24);
   vec3 n = octahedral_normal(max(vec2(bits) * (1.0 / 127.0), -1.0));
 
   float grain = float((fine * 0x9E3779B1u) >> 24) * (1.0 / 255.0);
-  vec3 albedo = ground_albedo(p.y + frame.horizon_colour.w, n, p.xz + frame.ground_anchor.xy, grain);
   vec2 visible = vec2(packed.z & 0xFFu, (packed.z >> 8) & 0xFFu) * (1.0 / 255.0);  // sun, sky
-  float sun = max(dot(n, frame.sun_direction.xyz), 0.0) * visible.x;
-  vec3 light = albedo * (ambient_light(n) * visible.y + sun * frame.sun_colour.rgb);
-
+#if defined(PSYGEN_DRAW_COLOUR)
+  colour = colour_of_draw(draw.scale.w, n);
+#elif !defined(PSYGEN_SHADOW)
+  vec3 albedo = ground_albedo(p.y + frame.horizon_colour.w, n, p.xz + frame.ground_anchor.xy, grain,
+                              draw.scale.w);
+#endif
   p.y -= skirt * draw.scale.y;
-  colour = shown(through_haze(light, p));
-  gl_Position = frame.clip_from_camera * vec4(p, 1.0);
+#if defined(PSYGEN_PIXEL_LIGHT)
+  place = p;
+  normal = n;
+  albedo_ambient = vec4(albedo, visible.y);
+  leaf_ground = vec2(visible.x, 1.0);
+#elif !defined(PSYGEN_DRAW_COLOUR) && !defined(PSYGEN_SHADOW)
+  colour = shown(through_haze(ground_light(albedo, n, visible.x, visible.y), p));
+#endif
+  gl_Position = clip_matrix() * vec4(p, 1.0);
 }

@@ -94,6 +94,7 @@ core::Result<void> App::open() {
   render_options.surface = window_.get();
   render_options.vsync = options_.vsync;
   render_options.path = options_.render_path;
+  render_options.preset = options_.preset;
   auto renderer = render::Renderer::create(render_options);
   if (!renderer) return tl::unexpected(renderer.error());
   renderer_ = std::move(*renderer);
@@ -109,9 +110,11 @@ core::Result<void> App::open() {
   bars.finish();
   if (!scene) return tl::unexpected(scene.error());
   scene_ = std::move(*scene);
+  scene_->state().input.size = picture_size();  // levels of detail depend on it
   const synthesis::CalibrationReport& costs = scene_->calibration();
   core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
                              costs.seconds, costs.fit_error_percent_p50));
+  scene_->state().input.view = options_.view;
   pose_ = home();
 
   std::vector<std::string> systems;
@@ -138,7 +141,7 @@ core::Result<void> App::prepare(const core::CameraPose& first) {
   Bars bars(options_.stop);
   const double start_s = core::monotonic_seconds();
   std::uint64_t meshes = 0;
-  scene_->state().input.size = picture_size();
+  scene_->state().input.size = picture_size();  // a window may have changed
   if (options_.scene.paradigm == scene::Paradigm::kDataAmplification) {
     auto amplified = scene_->amplify(first, std::ref(bars));
     if (!amplified) return tl::unexpected(amplified.error());

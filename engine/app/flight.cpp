@@ -9,6 +9,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/models/terrain.hpp"
+#include "engine/render/preset.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 
 namespace psygen::app {
@@ -34,7 +35,7 @@ bool App::wants_more(double flight_s, std::uint64_t frames) const {
   if (options_.frames > 0 && frames >= options_.frames) return false;
   if (options_.seconds > 0) return flight_s < options_.seconds;
   if (options_.frames > 0 || user_flies_) return true;
-  if (path_) return flight_s < path_->duration_seconds();
+  if (path_ && !options_.loop) return flight_s < path_->duration_seconds();
   return window_ != nullptr || flight_s < kDefaultSeconds;
 }
 
@@ -48,7 +49,9 @@ core::CameraPose App::next_pose(double flight_s, double dt_s) {
         models::ground_height_m(world.terrain, pose_.position.block, local.x, local.z);
     pose_.position.local.y = std::max(local.y, ground_m + kEyeHeightM);
   } else if (path_) {
-    pose_ = path_->pose_at(std::min(flight_s, path_->duration_seconds()), world);
+    const double end_s = path_->duration_seconds();
+    const bool again = options_.loop && end_s > 0;
+    pose_ = path_->pose_at(again ? std::fmod(flight_s, end_s) : std::min(flight_s, end_s), world);
   } else {
     pose_ = home();
     pose_.yaw += 2 * std::numbers::pi * flight_s / kDefaultSeconds;
@@ -67,6 +70,10 @@ void App::handle_window() {
   }
   if (window_->should_close() || input_.was_pressed(platform::Key::kEscape)) closed_ = true;
   if (input_.was_pressed(platform::Key::kF1)) overlay_ = !overlay_;
+  if (input_.was_pressed(platform::Key::kF2)) {
+    render::View& view = scene_->state().input.view;
+    view = render::next_view(view);
+  }
   if (input_.was_pressed(platform::Key::kF12)) save_screenshot();
   if (moves_camera(input_)) user_flies_ = true;  // from here on the path is left
 }

@@ -36,9 +36,11 @@ struct Options {
   core::Extent size{1280, 720};
   bool headless = false;
   bool validation = false;
-  bool vsync = true;        // windows only
-  std::string device_name;  // part of a name; empty: the best device
+  bool vsync = true;                     // windows only
+  std::string device_name;               // part of a name; empty: the best device
+  std::optional<render::Preset> preset;  // none: what suits the device
   render::RenderPath render_path = render::RenderPath::kAuto;
+  render::View view = render::View::kNormal;  // F2 goes on to the next
   double seconds = 0;        // 0: as long as the path; without one 27 s headless, else endless
   std::uint64_t frames = 0;  // 0: no limit
   // Frames a second that are held by a larger error of levels of detail; 0: the error is fixed.
@@ -46,6 +48,7 @@ struct Options {
   std::optional<double> target_hz;
   double fixed_step_hz = 0;        // 0: the flight follows the wall clock
   std::uint64_t images_every = 0;  // every so many frames a PNG; 0: none
+  bool loop = false;               // the path again and again
   double warmup_seconds = 1;       // left out of all figures
   bool prefill = true;             // fill the cache for the first pose before the first frame
   bool hash_world = true;          // hash.world of the summary (some 50 ms)

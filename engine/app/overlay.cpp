@@ -33,7 +33,7 @@ std::vector<std::string> Overlay::lines(const scene::State& state,
                   record.models_synthesised, state.settings.modelers),
       fmt::format("block {}, {}   {:.0f} m high   {}", at.block.x, at.block.z, at.local.y,
                   device.name),
-      "W A S D Q E fly   right button looks   F1 hides this   F12 picture   Esc ends",
+      "W A S D Q E fly   right button looks   F1 hides this   F2 views   F12 picture   Esc ends",
   };
 }
 

@@ -34,7 +34,7 @@ void CandidateList::add_level(const core::GeometryRange& range, std::uint32_t sh
 }
 
 template <class Draw>
-void CandidateList::add(const Draw& draw, bool choose) {
+void CandidateList::add(const Draw& draw, bool choose, bool coloured) {
   const core::Bounds box = bounds_of(draw);
   const auto first = static_cast<std::uint32_t>(levels_.size());
   add_level(draw.range, draw.shared_indices, 0.0F);
@@ -49,10 +49,11 @@ void CandidateList::add(const Draw& draw, bool choose) {
                          {box.max, 0.0F},
                          data_of(draw),
                          {first, static_cast<std::uint32_t>(levels_.size()) - first, name, 0}});
+  if (coloured) set_colour(candidates_.back().data, draw);
 }
 
 void CandidateList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-                          std::span<const IndexList> lists, bool choose) {
+                          std::span<const IndexList> lists, bool choose, bool coloured) {
   candidates_.clear();
   levels_.clear();
   groups_.clear();
@@ -61,9 +62,9 @@ void CandidateList::build(std::span<const TerrainDraw> terrain, std::span<const 
   name_count_ = 1;
   lists_ = lists;
   for (const TerrainDraw& draw : terrain)
-    add(draw, choose);
+    add(draw, choose, coloured);
   for (const MeshDraw& draw : models)
-    add(draw, choose);
+    add(draw, choose, coloured);
   lists_ = {};
   std::uint32_t first = 0;
   for (DrawGroup& group : groups_) {

@@ -27,10 +27,11 @@ class CandidateList {
   // What every device with indirect draws can take in one call.
   static constexpr std::uint32_t kGroupCapacity = 65535;
 
-  // Replaces the list: terrain first, then models. `coarser` levels are taken where `choose`.
+  // Replaces the list: terrain first, then models. `coarser` levels are taken where `choose`,
+  // data has the colour of each draw where `coloured`.
   // `lists` is indexed by shared_indices − 1.
   void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-             std::span<const IndexList> lists, bool choose);
+             std::span<const IndexList> lists, bool choose, bool coloured = false);
 
   std::span<const shaders::CullCandidate> candidates() const { return candidates_; }
   std::span<const shaders::CullLevel> levels() const { return levels_; }
@@ -42,7 +43,7 @@ class CandidateList {
 
  private:
   template <class Draw>
-  void add(const Draw& draw, bool choose);
+  void add(const Draw& draw, bool choose, bool coloured);
   void add_level(const core::GeometryRange& range, std::uint32_t shared_indices, float error_m);
   std::uint32_t group_for(const core::GeometryRange& range, bool shared);
 

@@ -12,6 +12,9 @@ namespace {
 constexpr std::uint32_t kFirstCode[] =
 #include "depth_pyramid_first_comp_spv.h"
     ;
+constexpr std::uint32_t kSamplesCode[] =
+#include "depth_pyramid_samples_comp_spv.h"
+    ;
 constexpr std::uint32_t kNextCode[] =
 #include "depth_pyramid_comp_spv.h"
     ;
@@ -56,19 +59,21 @@ Result<UniqueImageView> make_view(const Device& device, VkImage image, std::uint
 
 }  // namespace
 
-Result<void> DepthPyramid::create(const Device& device) {
+Result<void> DepthPyramid::create(const Device& device, VkSampleCountFlagBits samples) {
   const VkDescriptorType target = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   const VkDescriptorType from_depth[] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, target};
   const VkDescriptorType from_level[] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, target};
+  using Code = std::span<const std::uint32_t>;
+  const Code first = samples == VK_SAMPLE_COUNT_1_BIT ? Code(kFirstCode) : Code(kSamplesCode);
   Result<UniqueSampler> sampler = make_nearest_sampler(device);
   if (!sampler) return tl::unexpected(sampler.error());
   sampler_ = std::move(*sampler);
-  return first_.create(device, kFirstCode, from_depth, sizeof(glm::ivec2), 1).and_then([&] {
+  return first_.create(device, first, from_depth, sizeof(glm::ivec2), 1).and_then([&] {
     return next_.create(device, kNextCode, from_level, sizeof(glm::ivec2), kMaxLevels);
   });
 }
 
-Result<void> DepthPyramid::resize(const Device& device, core::Extent size, const Image& depth) {
+Result<void> DepthPyramid::resize(const Device& device, core::Extent size, const Image* depth) {
   views_.clear();
   size_ = size;
   const std::uint32_t levels = levels_for(size);
@@ -109,8 +114,9 @@ Result<void> DepthPyramid::resize(const Device& device, core::Extent size, const
   });
 }
 
-void DepthPyramid::write_sets(const Device& device, const Image& depth) const {
-  first_.write_image(device, 0, 0, sampler_.get(), depth.view.get(),
+void DepthPyramid::write_sets(const Device& device, const Image* depth) const {
+  if (depth == nullptr) return;
+  first_.write_image(device, 0, 0, sampler_.get(), depth->view.get(),
                      VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL);
   first_.write_image(device, 0, 1, VK_NULL_HANDLE, views_[0].get(), VK_IMAGE_LAYOUT_GENERAL);
   for (std::size_t level = 1; level < views_.size(); ++level) {

@@ -14,11 +14,12 @@ class DepthPyramid {
   // Most levels that a picture of any size has.
   static constexpr std::uint32_t kMaxLevels = 16;
 
-  // Once, before everything else.
-  core::Result<void> create(const Device& device);
-  // For pictures of this size with this depth, which has been made to be sampled. The device must
+  // Once, before everything else; for depth with so many samples per pixel.
+  core::Result<void> create(const Device& device, VkSampleCountFlagBits samples);
+  // For pictures of this size with this depth, which has been made to be sampled; null: nothing is
+  // recorded. The device must
   // be idle.
-  core::Result<void> resize(const Device& device, core::Extent size, const Image& depth);
+  core::Result<void> resize(const Device& device, core::Extent size, const Image* depth);
 
   std::uint32_t level_count() const { return static_cast<std::uint32_t>(views_.size()); }
   VkSampler sampler() const { return sampler_.get(); }
@@ -30,7 +31,7 @@ class DepthPyramid {
 
  private:
   core::Result<void> make_views(const Device& device);
-  void write_sets(const Device& device, const Image& depth) const;
+  void write_sets(const Device& device, const Image* depth) const;
 
   ComputePipeline first_, next_;  // from the depth; from the level below
   UniqueSampler sampler_;

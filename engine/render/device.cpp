@@ -55,6 +55,12 @@ bool offers_indirect_count(const Features& features) {
          features.base.features.drawIndirectFirstInstance;
 }
 
+bool offers_wireframe(VkPhysicalDevice physical) {
+  VkPhysicalDeviceFeatures features{};
+  vkGetPhysicalDeviceFeatures(physical, &features);
+  return features.fillModeNonSolid == VK_TRUE;
+}
+
 bool offers_multi_draw(VkPhysicalDevice physical) {
   if (!has_extension(physical, VK_EXT_MULTI_DRAW_EXTENSION_NAME)) return false;
   Features features;
@@ -160,6 +166,7 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
   candidate.info.unified_memory = is_unified(physical);
   candidate.info.multi_draw = offers_multi_draw(physical);
   candidate.info.gpu_path = offers_indirect_count(features) && can_compute(physical, *family);
+  candidate.info.wireframe = offers_wireframe(physical);
   return candidate;
 }
 
@@ -218,6 +225,7 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
     features.multi_draw.multiDraw = VK_TRUE;
     features.v13.pNext = &features.multi_draw;
   }
+  features.base.features.fillModeNonSolid = candidate.info.wireframe ? VK_TRUE : VK_FALSE;
   const float priority = 1.0F;
   VkDeviceQueueCreateInfo queue{};
   queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -246,7 +254,10 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
   properties.pNext = candidate.info.multi_draw ? &multi_draw : nullptr;
   vkGetPhysicalDeviceProperties2(self->physical, &properties);
-  self->max_image_side = properties.properties.limits.maxImageDimension2D;
+  const VkPhysicalDeviceLimits& limits = properties.properties.limits;
+  self->max_image_side = limits.maxImageDimension2D;
+  self->sampled_depth_counts = limits.sampledImageDepthSampleCounts;
+  self->sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;
   self->max_multi_draw = multi_draw.maxMultiDrawCount;
   if (properties.properties.limits.timestampComputeAndGraphics) {
     self->timestamp_period_ns = static_cast<double>(properties.properties.limits.timestampPeriod);
@@ -265,6 +276,13 @@ std::uint64_t Device::writable_bytes() const {
         std::max<std::uint64_t>(bytes, memory.memoryHeaps[memory.memoryTypes[i].heapIndex].size);
   }
   return bytes;
+}
+
+VkSampleCountFlagBits Device::samples_for(std::uint32_t wanted) const {
+  std::uint32_t samples = wanted;
+  while (samples > 1 && (sample_counts & samples) == 0)
+    samples /= 2;
+  return static_cast<VkSampleCountFlagBits>(samples);
 }
 
 Device::~Device() {

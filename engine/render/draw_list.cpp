@@ -9,7 +9,7 @@ namespace psygen::render {
 
 shaders::DrawData data_of(const TerrainDraw& draw) {
   return {.origin = {draw.origin.x, draw.origin.y + draw.height_min_m, draw.origin.z, draw.cell_m},
-          .scale = {draw.height_range_m, draw.skirt_m, draw.morph, 0.0F}};
+          .scale = {draw.height_range_m, draw.skirt_m, draw.morph, draw.cover}};
 }
 
 shaders::DrawData data_of(const MeshDraw& draw) {
@@ -18,6 +18,13 @@ shaders::DrawData data_of(const MeshDraw& draw) {
   // A phase that belongs to the mesh, not to the camera: its box is unlike its neighbour's.
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
   return {.origin = {center, phase - std::floor(phase)}, .scale = {extent, draw.fade}};
+}
+
+void set_colour(shaders::DrawData& data, const TerrainDraw& draw) {
+  data.scale.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
+}
+void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
+  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
 }
 
 template <class Draw>
@@ -43,6 +50,7 @@ void DrawList::append(const Draw& draw) {
   draws_.push_back({indices.first_index, indices.index_count,
                     static_cast<std::int32_t>(draw.range.first_vertex)});
   data_.push_back(data_of(draw));
+  if (coloured_) set_colour(data_.back(), draw);
   triangle_count_ += indices.index_count / 3;
 }
 
@@ -67,13 +75,14 @@ void DrawList::add(std::span<const Draw> input) {
 }
 
 void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-                     std::span<const IndexList> lists, std::uint32_t pushed_from) {
+                     std::span<const IndexList> lists, std::uint32_t pushed_from, bool coloured) {
   runs_.clear();
   draws_.clear();
   data_.clear();
   triangle_count_ = 0;
   lists_ = lists;
   pushed_from_ = pushed_from;
+  coloured_ = coloured;
   add(terrain);
   add(models);
   lists_ = {};

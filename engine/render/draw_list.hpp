@@ -23,6 +23,9 @@ struct IndexList {
 // What the shaders read of a draw.
 shaders::DrawData data_of(const TerrainDraw& draw);
 shaders::DrawData data_of(const MeshDraw& draw);
+// The draw's colour in its data, for the views that show it.
+void set_colour(shaders::DrawData& data, const TerrainDraw& draw);
+void set_colour(shaders::DrawData& data, const MeshDraw& draw);
 
 // Same layout as VkMultiDrawIndexedInfoEXT.
 struct IndexedDraw {
@@ -51,9 +54,11 @@ class DrawList {
   static constexpr std::size_t kWindow = 512;  // draws whose order may be changed
 
   // Replaces the list: terrain first, then models. `lists` is indexed by shared_indices − 1.
-  // Meshes of at least `pushed_from` indices are pushed.
+  // Meshes of at least `pushed_from` indices are pushed. `coloured`: their data has the colour of
+  // each draw (shared.h).
   void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-             std::span<const IndexList> lists, std::uint32_t pushed_from = UINT32_MAX);
+             std::span<const IndexList> lists, std::uint32_t pushed_from = UINT32_MAX,
+             bool coloured = false);
 
   std::span<const DrawRun> runs() const { return runs_; }
   std::span<const IndexedDraw> draws() const { return draws_; }
@@ -75,6 +80,7 @@ class DrawList {
   std::uint64_t triangle_count_ = 0;
   std::span<const IndexList> lists_;  // while build() runs
   std::uint32_t pushed_from_ = UINT32_MAX;
+  bool coloured_ = false;
 };
 
 }  // namespace psygen::render

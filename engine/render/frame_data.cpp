@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "engine/render/shadow_maps.hpp"
+
 namespace psygen::render {
 
 namespace {
@@ -41,11 +43,45 @@ void set_light(shaders::FrameData& out, const FrameInput& input) {
   const float length = glm::length(light.sun_direction);
   const glm::vec3 sun = length > 0 ? light.sun_direction / length : glm::vec3(0, 1, 0);
   out.sun_direction = {sun, light.time_seconds};
-  out.sun_colour = {light.sun_colour * e, light.haze_density * std::exp(-exponent)};
+  out.sun_colour = {light.sun_colour * e, 0.0F};
+  out.glow_colour = {light.glow_colour * e, 0.0F};
+  out.glow_direction = {glm::normalize(glm::vec3(sun.x, std::max(sun.y, 0.01F), sun.z)), 0.0F};
+  out.cloud_colour = {light.cloud_colour * e, 0.0F};
+  out.haze_extinction = {light.haze_tint * (light.haze_density * std::exp(-exponent)), 0.0F};
   out.zenith_colour = {light.zenith_colour * e, light.haze_height_falloff};
   out.horizon_colour = {light.horizon_colour * e, altitude};
   out.ground_colour = {light.ground_colour * e, input.block_size_m > 0 ? 1.0F : 0.0F};
   out.haze_colour = {light.haze_colour * e, light.cloud_cover};
+}
+
+// Water down to a height that no ground reaches, where there is none.
+constexpr float kNoWaterM = -1e9F;
+// What is left of red, green and blue under water.
+constexpr glm::vec3 kWaterExtinction{0.30F, 0.10F, 0.07F};
+
+// Under water everything is seen through water instead of air.
+void dive(shaders::FrameData& out) {
+  const glm::vec3 above = glm::vec3(out.horizon_colour) + glm::vec3(out.zenith_colour) +
+                          std::max(out.sun_direction.y, 0.0F) * glm::vec3(out.sun_colour);
+  const glm::vec3 light = 2.0F * glm::vec3(out.water) * above;
+  for (glm::vec4* colour : {&out.zenith_colour, &out.horizon_colour, &out.haze_colour})
+    *colour = {light, colour->w};
+  out.glow_colour = out.cloud_colour = glm::vec4(0.0F);
+  out.haze_extinction = {kWaterExtinction, 0.0F};
+  out.zenith_colour.w = 0.0F;  // as dense at every depth
+  out.haze_colour.w = 0.0F;    // no clouds
+}
+
+void set_water_and_far_things(shaders::FrameData& out, const FrameInput& input) {
+  const float altitude = static_cast<float>(input.pose.position.local.y);
+  const Water water = input.water.value_or(Water{kNoWaterM, glm::vec3(0.0F)});
+  out.water = {water.colour, water.level_m - altitude};
+  if (out.water.w > 0) dive(out);
+  const Canopy& canopy = input.canopy;
+  out.canopy = {canopy.colour, canopy.slope_max};
+  out.canopy_place = {canopy.lowest_m, canopy.highest_m, 1.0F / std::max(canopy.blend_m, 1e-3F),
+                      0.0F};
+  out.edge = {input.edge.least, input.edge.greatest};
 }
 
 void set_palette(shaders::FrameData& out, const TerrainPalette& palette) {
@@ -62,11 +98,14 @@ void set_palette(shaders::FrameData& out, const TerrainPalette& palette) {
 
 }  // namespace
 
-shaders::FrameData frame_data(const FrameInput& input, core::Extent size) {
+shaders::FrameData frame_data(const FrameInput& input, core::Extent size,
+                              const PresetTraits& traits) {
   shaders::FrameData out{};
   set_camera(out, input, size);
   set_light(out, input);
   set_palette(out, input.palette);
+  set_water_and_far_things(out, input);
+  set_shadows(input, traits, out);
   return out;
 }
 

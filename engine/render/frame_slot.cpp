@@ -78,12 +78,16 @@ Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,
                               const shaders::FrameData& frame,
                               std::span<const shaders::DrawData> draws,
                               std::span<const shaders::OverlayVertex> glyphs) {
-  if (draws.size_bytes() > draws_.bytes) {
-    Result<Buffer> larger = storage_buffer(device, std::bit_ceil(draws.size_bytes()));
+  const auto grow = [&](Buffer& buffer, std::size_t bytes) -> Result<void> {
+    if (bytes <= buffer.bytes) return {};
+    Result<Buffer> larger = storage_buffer(device, std::bit_ceil(bytes));
     if (!larger) return tl::unexpected(larger.error());
-    draws_ = std::move(*larger);
+    buffer = std::move(*larger);
     pipelines.write_set(device, set_, frame_, draws_, glyphs_);
-  }
+    return {};
+  };
+  if (Result<void> grown = grow(draws_, draws.size_bytes()); !grown) return grown;
+  if (Result<void> grown = grow(glyphs_, glyphs.size_bytes()); !grown) return grown;
   std::memcpy(frame_.mapped, &frame, sizeof(frame));
   if (!draws.empty()) std::memcpy(draws_.mapped, draws.data(), draws.size_bytes());
   if (!glyphs.empty()) std::memcpy(glyphs_.mapped, glyphs.data(), glyphs.size_bytes());

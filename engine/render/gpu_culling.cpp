@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "engine/render/preset.hpp"
+
 namespace psygen::render {
 
 using core::Result;
@@ -61,7 +63,8 @@ void to_host(const Device& device, VkCommandBuffer commands) {
 
 }  // namespace
 
-Result<void> GpuCulling::create(const Device& device, bool occlusion, std::size_t slots) {
+Result<void> GpuCulling::create(const Device& device, bool occlusion, VkSampleCountFlagBits samples,
+                                std::size_t slots) {
   occlusion_ = occlusion;
   std::array<VkDescriptorType, 10> types{};
   types.fill(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
@@ -69,12 +72,12 @@ Result<void> GpuCulling::create(const Device& device, bool occlusion, std::size_
   types[PSYGEN_CULL_PYRAMID] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   slots_.resize(slots);
   return pipeline_.create(device, kCode, types, kWordBytes, static_cast<std::uint32_t>(slots))
-      .and_then([&] { return pyramid_.create(device); })
+      .and_then([&] { return pyramid_.create(device, samples); })
       .and_then([&] { return grow_seen(device); });
 }
 
 Result<void> GpuCulling::resize(const Device& device, core::Extent size, const Image& depth) {
-  return pyramid_.resize(device, size, depth);
+  return pyramid_.resize(device, size, occlusion_ ? &depth : nullptr);
 }
 
 // Nothing is known of what was seen when the bits are made anew: all is tested in the second phase.
@@ -101,7 +104,7 @@ Result<void> GpuCulling::grow_seen(const Device& device) {
 void GpuCulling::set_frame(const ViewTest& test, const shaders::FrameData& frame,
                            const FrameInput& input, core::Extent size,
                            std::span<const IndexList> lists) {
-  list_.build(input.terrain, input.models, lists, input.choose);
+  list_.build(input.terrain, input.models, lists, input.choose, colours_draws(input.view));
   std::copy(test.planes.begin(), test.planes.end(), frame_.planes);
   frame_.clip_from_camera = frame.clip_from_camera;
   frame_.choice = {test.pixels_per_radian * test.pixels_per_radian,

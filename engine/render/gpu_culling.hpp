@@ -17,8 +17,9 @@ namespace psygen::render {
 
 class GpuCulling {
  public:
-  // `slots` frames in flight.
-  core::Result<void> create(const Device& device, bool occlusion, std::size_t slots);
+  // `slots` frames in flight, of pictures with so many samples per pixel.
+  core::Result<void> create(const Device& device, bool occlusion, VkSampleCountFlagBits samples,
+                            std::size_t slots);
   // For pictures of this size with this depth. The device must be idle.
   core::Result<void> resize(const Device& device, core::Extent size, const Image& depth);
 

@@ -80,7 +80,8 @@ Result<UniqueMemory> bind_image_memory(const Device& device, VkImage image) {
 }
 
 Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
-                         VkImageUsageFlags usage, VkImageAspectFlags aspect) {
+                         VkImageUsageFlags usage, VkImageAspectFlags aspect,
+                         const ImageShape& shape) {
   Image made;
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
@@ -88,8 +89,8 @@ Result<Image> make_image(const Device& device, core::Extent size, VkFormat forma
   info.format = format;
   info.extent = {size.width, size.height, 1};
   info.mipLevels = 1;
-  info.arrayLayers = 1;
-  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.arrayLayers = shape.layers;
+  info.samples = shape.samples;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = usage;
   VkImage image = VK_NULL_HANDLE;
@@ -104,14 +105,28 @@ Result<Image> make_image(const Device& device, core::Extent size, VkFormat forma
   VkImageViewCreateInfo view_info{};
   view_info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   view_info.image = image;
-  view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view_info.viewType = shape.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   view_info.format = format;
-  view_info.subresourceRange = {aspect, 0, 1, 0, 1};
+  view_info.subresourceRange = {aspect, 0, 1, 0, shape.layers};
   VkImageView view = VK_NULL_HANDLE;
   result = device.vk.vkCreateImageView(device.handle, &view_info, nullptr, &view);
   if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image view");
   made.view = UniqueImageView(device.vk, device.handle, view);
   return made;
+}
+
+Result<UniqueImageView> make_layer_view(const Device& device, const Image& image, VkFormat format,
+                                        VkImageAspectFlags aspect, std::uint32_t layer) {
+  VkImageViewCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  info.image = image.image.get();
+  info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  info.format = format;
+  info.subresourceRange = {aspect, 0, 1, layer, 1};
+  VkImageView view = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateImageView(device.handle, &info, nullptr, &view);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image view");
+  return UniqueImageView(device.vk, device.handle, view);
 }
 
 VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect) {

@@ -37,9 +37,19 @@ core::Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes,
 // Device-local memory for an image, bound to it.
 core::Result<UniqueMemory> bind_image_memory(const Device& device, VkImage image);
 
+struct ImageShape {
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+  bool array = false;  // the view is of an array, even with one layer
+  std::uint32_t layers = 1;
+};
 // A device-local 2-D image with one mip level.
 core::Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
-                               VkImageUsageFlags usage, VkImageAspectFlags aspect);
+                               VkImageUsageFlags usage, VkImageAspectFlags aspect,
+                               const ImageShape& shape = {});
+// A view of one layer of it.
+core::Result<UniqueImageView> make_layer_view(const Device& device, const Image& image,
+                                              VkFormat format, VkImageAspectFlags aspect,
+                                              std::uint32_t layer);
 
 // Fills an image made with TRANSFER_DST and SAMPLED and leaves it readable by shaders. Waits.
 core::Result<void> upload_image(const Device& device, const Image& image, core::Extent size,

@@ -3,8 +3,8 @@
 #include <array>
 #include <span>
 
-#include "engine/core/vertex_layout.hpp"
 #include "engine/render/cloud_texture.hpp"
+#include "engine/render/pipeline_build.hpp"
 #include "shaders/shared.h"
 
 namespace psygen::render {
@@ -12,154 +12,6 @@ namespace psygen::render {
 using core::Result;
 
 namespace {
-
-constexpr std::uint32_t kTerrainVert[] =
-#include "terrain_vert_spv.h"
-    ;
-constexpr std::uint32_t kTerrainPushedVert[] =
-#include "terrain_pushed_vert_spv.h"
-    ;
-constexpr std::uint32_t kModelVert[] =
-#include "model_vert_spv.h"
-    ;
-constexpr std::uint32_t kModelPushedVert[] =
-#include "model_pushed_vert_spv.h"
-    ;
-constexpr std::uint32_t kSurfaceFrag[] =
-#include "surface_frag_spv.h"
-    ;
-constexpr std::uint32_t kSkyVert[] =
-#include "sky_vert_spv.h"
-    ;
-constexpr std::uint32_t kSkyFrag[] =
-#include "sky_frag_spv.h"
-    ;
-constexpr std::uint32_t kOverlayVert[] =
-#include "overlay_vert_spv.h"
-    ;
-constexpr std::uint32_t kOverlayFrag[] =
-#include "overlay_frag_spv.h"
-    ;
-
-enum class Kind : std::uint8_t { kTerrain, kModel, kSky, kOverlay };
-
-Result<UniqueShaderModule> make_module(const Device& device, std::span<const std::uint32_t> code) {
-  VkShaderModuleCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  info.codeSize = code.size_bytes();
-  info.pCode = code.data();
-  VkShaderModule made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateShaderModule(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a shader");
-  return UniqueShaderModule(device.vk, device.handle, made);
-}
-
-VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, VkShaderModule shader) {
-  VkPipelineShaderStageCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage = stage;
-  info.module = shader;
-  info.pName = "main";
-  return info;
-}
-
-VkPipelineColorBlendAttachmentState blend_of(Kind kind) {
-  VkPipelineColorBlendAttachmentState blend{};
-  blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                         VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  if (kind != Kind::kOverlay) return blend;
-  blend.blendEnable = VK_TRUE;
-  blend.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
-  blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
-  blend.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
-  blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-  return blend;
-}
-
-Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layout,
-                                     VkFormat colour_format, Kind kind,
-                                     std::span<const std::uint32_t> vert,
-                                     std::span<const std::uint32_t> frag) {
-  Result<UniqueShaderModule> vert_module = make_module(device, vert);
-  if (!vert_module) return tl::unexpected(vert_module.error());
-  Result<UniqueShaderModule> frag_module = make_module(device, frag);
-  if (!frag_module) return tl::unexpected(frag_module.error());
-  const std::array stages{stage_of(VK_SHADER_STAGE_VERTEX_BIT, vert_module->get()),
-                          stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, frag_module->get())};
-
-  const bool meshes = kind == Kind::kTerrain || kind == Kind::kModel;
-  const bool terrain = kind == Kind::kTerrain;
-  const VkVertexInputBindingDescription binding{
-      0,
-      core::vertex_stride_bytes(terrain ? core::VertexLayout::kTerrain
-                                        : core::VertexLayout::kModel),
-      VK_VERTEX_INPUT_RATE_VERTEX};
-  // One fetch of whole words, unpacked in the shader: cheaper than four attributes.
-  const VkVertexInputAttributeDescription attribute{
-      0, 0, terrain ? VK_FORMAT_R32G32B32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0};
-  VkPipelineVertexInputStateCreateInfo input{};
-  input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-  input.vertexBindingDescriptionCount = meshes ? 1 : 0;
-  input.pVertexBindingDescriptions = &binding;
-  input.vertexAttributeDescriptionCount = meshes ? 1 : 0;
-  input.pVertexAttributeDescriptions = &attribute;
-
-  VkPipelineInputAssemblyStateCreateInfo assembly{};
-  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  VkPipelineViewportStateCreateInfo viewport{};
-  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-  viewport.viewportCount = 1;
-  viewport.scissorCount = 1;
-  VkPipelineRasterizationStateCreateInfo raster{};
-  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-  raster.cullMode = terrain ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;  // leaves have two sides
-  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  raster.lineWidth = 1.0F;
-  VkPipelineMultisampleStateCreateInfo samples{};
-  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineDepthStencilStateCreateInfo depth{};
-  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = kind != Kind::kOverlay;
-  depth.depthWriteEnable = meshes;
-  depth.depthCompareOp = meshes ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_GREATER_OR_EQUAL;
-  const VkPipelineColorBlendAttachmentState attachment = blend_of(kind);
-  VkPipelineColorBlendStateCreateInfo blend{};
-  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-  blend.attachmentCount = 1;
-  blend.pAttachments = &attachment;
-  const std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  VkPipelineDynamicStateCreateInfo dynamic{};
-  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-  dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
-  dynamic.pDynamicStates = dynamic_states.data();
-  VkPipelineRenderingCreateInfo rendering{};
-  rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-  rendering.colorAttachmentCount = 1;
-  rendering.pColorAttachmentFormats = &colour_format;
-  rendering.depthAttachmentFormat = kDepthFormat;
-
-  VkGraphicsPipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-  info.pNext = &rendering;
-  info.stageCount = static_cast<std::uint32_t>(stages.size());
-  info.pStages = stages.data();
-  info.pVertexInputState = &input;
-  info.pInputAssemblyState = &assembly;
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples;
-  info.pDepthStencilState = &depth;
-  info.pColorBlendState = &blend;
-  info.pDynamicState = &dynamic;
-  info.layout = layout;
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1,
-                                                              &info, nullptr, &pipeline);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a pipeline");
-  return UniquePipeline(device.vk, device.handle, pipeline);
-}
 
 Result<UniqueSampler> make_sampler(const Device& device, VkSamplerAddressMode mode) {
   VkSamplerCreateInfo info{};
@@ -189,9 +41,13 @@ Result<Image> make_texture(const Device& device, core::Extent size, VkFormat for
 
 }  // namespace
 
-Result<void> Pipelines::create(const Device& device, VkFormat colour_format, const Overlay& overlay,
+Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
+                               const PresetTraits& traits, const Overlay& overlay,
                                std::uint32_t sets) {
+  traits_ = traits;
+  samples_ = device.samples_for(traits.samples);
   return create_textures(device, overlay)
+      .and_then([&] { return shadows_.create(device, traits); })
       .and_then([&] { return create_layouts(device, sets); })
       .and_then([&] { return create_pipelines(device, colour_format); });
 }
@@ -226,7 +82,10 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_FONT, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                    1, VK_SHADER_STAGE_FRAGMENT_BIT, font_sampler_.address()},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_GLYPHS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                                   VK_SHADER_STAGE_VERTEX_BIT, nullptr}};
+                                   VK_SHADER_STAGE_VERTEX_BIT, nullptr},
+      VkDescriptorSetLayoutBinding{PSYGEN_BINDING_SHADOWS,
+                                   VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+                                   VK_SHADER_STAGE_FRAGMENT_BIT, shadows_.sampler()}};
   VkDescriptorSetLayoutCreateInfo set_info{};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set_info.bindingCount = static_cast<std::uint32_t>(bindings.size());
@@ -239,7 +98,7 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
 
   const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * sets},
-                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * sets}};
+                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 3 * sets}};
   VkDescriptorPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   pool_info.maxSets = sets;
@@ -250,7 +109,8 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
   if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor pool");
   descriptor_pool_ = UniqueDescriptorPool(device.vk, device.handle, pool);
 
-  const VkPushConstantRange push{VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(shaders::DrawData)};
+  const VkPushConstantRange push{VK_SHADER_STAGE_VERTEX_BIT, 0,
+                                 sizeof(shaders::DrawData) + sizeof(std::uint32_t)};
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
   info.setLayoutCount = 1;
@@ -264,26 +124,80 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
   return {};
 }
 
+Result<void> Pipelines::create_meshes(const Device& device, PipelineShape shape, MeshLook look,
+                                      MeshPipelines& out) {
+  for (const auto layout : {core::VertexLayout::kTerrain, core::VertexLayout::kModel}) {
+    const bool terrain = layout == core::VertexLayout::kTerrain;
+    shape.kind = terrain ? PipelineKind::kTerrain : PipelineKind::kModel;
+    for (const bool pushed : {false, true}) {
+      shape.vert = mesh_vertex_code(layout, look, pushed);
+      Result<UniquePipeline> made = make_pipeline(device, layout_.get(), shape);
+      if (!made) return tl::unexpected(made.error());
+      out[terrain ? 0 : 1][pushed ? 1 : 0] = std::move(*made);
+    }
+  }
+  return {};
+}
+
 Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_format) {
-  using Code = std::span<const std::uint32_t>;
-  const auto make = [&](UniquePipeline& place, Kind kind, Code vert, Code frag) -> Result<void> {
-    Result<UniquePipeline> made =
-        make_pipeline(device, layout_.get(), colour_format, kind, vert, frag);
+  const OtherCode& code = other_code();
+  const bool lit = traits_.pixel_light;
+  const auto on = [](bool yes) -> VkBool32 { return yes ? VK_TRUE : VK_FALSE; };
+  PipelineShape shape;
+  shape.colour_format = colour_format;
+  shape.samples = samples_;
+  const auto make = [&](UniquePipeline& place, PipelineKind kind, ShaderCode vert,
+                        ShaderCode frag) -> Result<void> {
+    shape.kind = kind;
+    shape.vert = vert;
+    shape.frag = frag;
+    Result<UniquePipeline> made = make_pipeline(device, layout_.get(), shape);
     if (!made) return tl::unexpected(made.error());
     place = std::move(*made);
     return {};
   };
-  const auto both = [&](UniquePipeline& buffered, UniquePipeline& pushed, Kind kind, Code vert,
-                        Code pushed_vert) {
-    return make(buffered, kind, vert, kSurfaceFrag).and_then([&] {
-      return make(pushed, kind, pushed_vert, kSurfaceFrag);
-    });
-  };
-  return both(terrain_, terrain_pushed_, Kind::kTerrain, kTerrainVert, kTerrainPushedVert)
+  return Result<void>{}
+      .and_then([&] {
+        PipelineShape meshes = shape;
+        meshes.frag = lit ? code.surface_lit_frag : code.surface_frag;
+        meshes.constants = {on(traits_.fine_grain), on(traits_.cascades > 0)};
+        return create_meshes(device, meshes, lit ? MeshLook::kLit : MeshLook::kColour, landscape_);
+      })
+      .and_then([&] { return create_views(device, shape); })
+      .and_then([&]() -> Result<void> {
+        if (traits_.cascades == 0) return {};
+        PipelineShape shadow = shape;
+        shadow.shadow = true;
+        return create_meshes(device, shadow, MeshLook::kShadow, shadow_);
+      })
+      .and_then([&] { return make(sky_, PipelineKind::kSky, code.sky_vert, code.sky_frag); })
       .and_then(
-          [&] { return both(model_, model_pushed_, Kind::kModel, kModelVert, kModelPushedVert); })
-      .and_then([&] { return make(sky_, Kind::kSky, kSkyVert, kSkyFrag); })
-      .and_then([&] { return make(overlay_, Kind::kOverlay, kOverlayVert, kOverlayFrag); });
+          [&] { return make(lines_, PipelineKind::kLines, code.line_vert, code.surface_frag); })
+      .and_then([&] {
+        return make(overlay_, PipelineKind::kOverlay, code.overlay_vert, code.overlay_frag);
+      })
+      .and_then([&] {
+        shape.constants = {on(traits_.waves), VK_FALSE};
+        return make(water_, PipelineKind::kWater, lit ? code.water_lit_vert : code.water_vert,
+                    lit ? code.water_frag : code.surface_frag);
+      });
+}
+
+// Those for understanding: draws in their own colour, and edges.
+Result<void> Pipelines::create_views(const Device& device, PipelineShape shape) {
+  shape.frag = other_code().surface_frag;
+  return create_meshes(device, shape, MeshLook::kDrawColour, coloured_)
+      .and_then([&]() -> Result<void> {
+        if (!device.info.wireframe) return {};
+        shape.wireframe = true;
+        return create_meshes(device, shape, MeshLook::kColour, wireframe_);
+      });
+}
+
+VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, View view) const {
+  const bool edges = view == View::kWireframe && wireframe_[0][0].get() != VK_NULL_HANDLE;
+  const MeshPipelines& all = edges ? wireframe_ : colours_draws(view) ? coloured_ : landscape_;
+  return all[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed ? 1 : 0].get();
 }
 
 Result<VkDescriptorSet> Pipelines::make_set(const Device& device) {
@@ -307,6 +221,8 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
                                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   const VkDescriptorImageInfo font_info{VK_NULL_HANDLE, font_.view.get(),
                                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const VkDescriptorImageInfo shadows_info{VK_NULL_HANDLE, shadows_.all_layers(),
+                                           VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL};
   const auto write = [&](std::uint32_t binding, VkDescriptorType type,
                          const VkDescriptorBufferInfo* buffer, const VkDescriptorImageInfo* image) {
     VkWriteDescriptorSet w{};
@@ -326,7 +242,8 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
       write(PSYGEN_BINDING_DRAWS, storage, &draws_info, nullptr),
       write(PSYGEN_BINDING_CLOUDS, texture, nullptr, &clouds_info),
       write(PSYGEN_BINDING_FONT, texture, nullptr, &font_info),
-      write(PSYGEN_BINDING_GLYPHS, storage, &glyphs_info, nullptr)};
+      write(PSYGEN_BINDING_GLYPHS, storage, &glyphs_info, nullptr),
+      write(PSYGEN_BINDING_SHADOWS, texture, nullptr, &shadows_info)};
   device.vk.vkUpdateDescriptorSets(device.handle, static_cast<std::uint32_t>(writes.size()),
                                    writes.data(), 0, nullptr);
 }

@@ -2,26 +2,31 @@
 // one thread at start-up. Private to engine/render.
 #pragma once
 
-#include "engine/core/vertex_layout.hpp"
-#include "engine/render/memory.hpp"
 #include "engine/render/overlay.hpp"
+#include "engine/render/pipeline_build.hpp"
+#include "engine/render/preset.hpp"
+#include "engine/render/shadow_maps.hpp"
 
 namespace psygen::render {
-
-inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
 class Pipelines {
  public:
   // `sets` descriptor sets can be made.
-  core::Result<void> create(const Device& device, VkFormat colour_format, const Overlay& overlay,
-                            std::uint32_t sets);
+  core::Result<void> create(const Device& device, VkFormat colour_format,
+                            const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets);
 
+  const PresetTraits& traits() const { return traits_; }
+  VkSampleCountFlagBits samples() const { return samples_; }
   VkPipelineLayout layout() const { return layout_.get(); }
   // `pushed`: the draw's data is in push constants, else in the buffer of draws.
-  VkPipeline mesh(core::VertexLayout layout, bool pushed) const {
-    if (layout == core::VertexLayout::kTerrain) return (pushed ? terrain_pushed_ : terrain_).get();
-    return (pushed ? model_pushed_ : model_).get();
+  VkPipeline mesh(core::VertexLayout layout, bool pushed, View view) const;
+  // Into a cascade; only where the preset has some.
+  VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed) const {
+    return shadow_[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed ? 1 : 0].get();
   }
+  VkPipeline water() const { return water_.get(); }
+  VkPipeline lines() const { return lines_.get(); }
+  const ShadowMaps& shadows() const { return shadows_; }
   VkPipeline sky() const { return sky_.get(); }
   VkPipeline overlay() const { return overlay_.get(); }
 
@@ -33,14 +38,23 @@ class Pipelines {
  private:
   core::Result<void> create_layouts(const Device& device, std::uint32_t sets);
   core::Result<void> create_textures(const Device& device, const Overlay& overlay);
+  // By layout (terrain, model) and by whether the data is pushed.
+  using MeshPipelines = std::array<std::array<UniquePipeline, 2>, 2>;
   core::Result<void> create_pipelines(const Device& device, VkFormat colour_format);
+  core::Result<void> create_views(const Device& device, PipelineShape shape);
+  core::Result<void> create_meshes(const Device& device, PipelineShape shape, MeshLook look,
+                                   MeshPipelines& out);
 
+  PresetTraits traits_;
+  VkSampleCountFlagBits samples_ = VK_SAMPLE_COUNT_1_BIT;
   UniqueSampler cloud_sampler_, font_sampler_;
+  ShadowMaps shadows_;
   Image clouds_, font_;
   UniqueSetLayout set_layout_;
   UniqueDescriptorPool descriptor_pool_;
   UniquePipelineLayout layout_;
-  UniquePipeline terrain_, terrain_pushed_, model_, model_pushed_, sky_, overlay_;
+  MeshPipelines landscape_, coloured_, wireframe_, shadow_;
+  UniquePipeline water_, sky_, lines_, overlay_;
 };
 
 }  // namespace psygen::render

@@ -113,8 +113,10 @@ Result<void> RendererImpl::create() {
   if (!timeline) return tl::unexpected(timeline.error());
   timeline_ = std::move(*timeline);
   if (Result<void> made = shared_.create(*device_); !made) return made;
-  if (Result<void> made = pipelines_.create(*device_, colour_format_, overlay_,
-                                            static_cast<std::uint32_t>(kFramesInFlight));
+  const Preset usual = device_->info.software ? Preset::kLow : Preset::kHigh;
+  if (Result<void> made =
+          pipelines_.create(*device_, colour_format_, traits_of(options_.preset.value_or(usual)),
+                            overlay_, static_cast<std::uint32_t>(kFramesInFlight));
       !made) {
     return made;
   }
@@ -151,7 +153,9 @@ Result<void> RendererImpl::create_culling() {
   if (options_.path == RenderPath::kCpu || (options_.path == RenderPath::kAuto && !suits))
     return {};
   culling_ = std::make_unique<GpuCulling>();
-  return culling_->create(*device_, options_.occlusion, kFramesInFlight);
+  const VkSampleCountFlagBits samples = pipelines_.samples();
+  const bool readable = (device_->sampled_depth_counts & samples) != 0;
+  return culling_->create(*device_, options_.occlusion && readable, samples, kFramesInFlight);
 }
 
 Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
@@ -175,7 +179,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
   wait_idle();
   targets_.reset();
   has_picture_ = false;
-  Result<Targets> made = make_targets(*device_, colour_format_, extent);
+  Result<Targets> made = make_targets(*device_, colour_format_, extent, pipelines_.samples());
   if (!made) return tl::unexpected(made.error());
   if (culling_) {
     if (Result<void> fits = culling_->resize(*device_, extent, made->depth); !fits) return fits;
@@ -185,7 +189,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
 }
 
 Result<void> RendererImpl::warm_up() {
-  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16});
+  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
   if (!small) return tl::unexpected(small.error());
   FrameSlot& slot = slots_[0];
   const FrameInput nothing;
@@ -213,7 +217,7 @@ Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
       .and_then([&] { return slot.begin(*device_); })
       .and_then([&] {
         record_scene(*device_, pipelines_, slot, small,
-                     {list_, {}, {culling_.get(), index_of(slot)}, 0});
+                     {.list = list_, .buffers = {}, .culled = {culling_.get(), index_of(slot)}});
         return slot.end(*device_);
       })
       .and_then([&] { return submit(slot, false); })
@@ -275,10 +279,15 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
     const Result<void> copied = staged_->flush(*device_, pool_blocks_, slot.commands());
     if (!copied) return copied;
   }
-  const ScenePass pass{list_,
-                       {pool_blocks_, shared_.buffer()},
-                       {culling_.get(), index_of(slot)},
-                       static_cast<std::uint32_t>(glyphs_.size())};
+  const ScenePass pass{
+      .list = list_,
+      .buffers = {pool_blocks_, shared_.buffer()},
+      .culled = {culling_.get(), index_of(slot)},
+      .glyph_vertex_count = static_cast<std::uint32_t>(glyphs_.size()) - line_vertices_,
+      .line_vertex_count = line_vertices_,
+      .view = view_,
+      .water = water_,
+      .shadows = frame_.shadow.y > 0};
   record_scene(*device_, pipelines_, slot, *targets_, pass);
   if (windowed) {
     record_copy_to_window(*device_, slot.commands(), *targets_, swapchain_.image(),
@@ -314,14 +323,20 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
 void RendererImpl::list_draws(const FrameInput& input) {
   const ViewTest test =
       view_test(frame_.clip_from_camera, input, static_cast<float>(targets_->extent.height));
+  const bool coloured = colours_draws(input.view);
+  std::uint32_t pushed_from = pushed_from_;
   if (culling_) {
     culling_->set_frame(test, frame_, input, targets_->extent, shared_.lists());
-  } else if (input.choose) {
+    // Cascades are drawn from a list of the CPU's, whose data is pushed.
+    if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
+    pushed_from = 0;
+  }
+  if (input.choose) {
     choose_draws(test, input.terrain, chosen_terrain_);
     choose_draws(test, input.models, chosen_models_);
-    list_.build(chosen_terrain_, chosen_models_, shared_.lists(), pushed_from_);
+    list_.build(chosen_terrain_, chosen_models_, shared_.lists(), pushed_from, coloured);
   } else {
-    list_.build(input.terrain, input.models, shared_.lists(), pushed_from_);
+    list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured);
   }
 }
 
@@ -331,6 +346,14 @@ Result<void> RendererImpl::write_frame(FrameSlot& slot) {
   written = culling_->write(*device_, index_of(slot));
   if (written) slot.read_draws_from(*device_, pipelines_, culling_->draw_data(index_of(slot)));
   return written;
+}
+
+void RendererImpl::add_lines(std::span<const Line> lines) {
+  line_vertices_ = static_cast<std::uint32_t>(2 * std::min(lines.size(), kMaxLines));
+  for (const Line& line : lines.first(line_vertices_ / 2)) {
+    glyphs_.push_back({{line.from, 1.0F}, {line.colour, 1.0F}});
+    glyphs_.push_back({{line.to, 1.0F}, {line.colour, 1.0F}});
+  }
 }
 
 Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot& slot) {
@@ -346,7 +369,10 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   checked.pose = last_pose_.value_or(core::CameraPose{});
   checked.projection = last_projection_.value_or(core::Projection{});
   overlay_.lay_out(input.overlay_lines, glyphs_);
-  frame_ = frame_data(checked, targets_->extent);
+  add_lines(input.lines);
+  view_ = input.view;
+  water_ = input.water.has_value();
+  frame_ = frame_data(checked, targets_->extent, pipelines_.traits());
   const GpuCulling::Counts counted =
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
   list_draws(checked);

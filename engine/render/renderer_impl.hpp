@@ -73,6 +73,7 @@ class RendererImpl {
   core::Result<void> submit(FrameSlot& slot, bool windowed);
   core::Result<bool> present();
   core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
+  void add_lines(std::span<const Line> lines);
   void remember_valid(const FrameInput& input);
   template <class T>
   core::Result<T> noted(core::Result<T> result);
@@ -107,7 +108,10 @@ class RendererImpl {
   std::vector<TerrainDraw> chosen_terrain_;  // where the renderer chooses
   std::vector<MeshDraw> chosen_models_;
   shaders::FrameData frame_{};
-  std::vector<shaders::OverlayVertex> glyphs_;
+  std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines
+  std::uint32_t line_vertices_ = 0;
+  View view_ = View::kNormal;
+  bool water_ = false;
   std::optional<double> gpu_ms_;
 };
 

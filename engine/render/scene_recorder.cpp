@@ -16,6 +16,10 @@ static_assert(offsetof(IndexedDraw, vertex_offset) ==
 
 namespace {
 
+bool has_samples(const Targets& targets) {
+  return targets.samples.image.get() != VK_NULL_HANDLE;
+}
+
 // A frame is drawn in one pass, or in two with depth read in between.
 enum class Part : std::uint8_t { kWhole, kFirst, kSecond };
 
@@ -43,10 +47,12 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
     depth.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     depth.srcAccessMask = VK_ACCESS_2_NONE;
   }
-  const std::array barriers{colour, depth};
+  VkImageMemoryBarrier2 samples = colour;
+  samples.image = targets.samples.image.get();
+  const std::array barriers{colour, depth, samples};
   VkDependencyInfo dependency{};
   dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size());
+  dependency.imageMemoryBarrierCount = has_samples(targets) ? 3 : 2;
   dependency.pImageMemoryBarriers = barriers.data();
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
   targets.colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -57,6 +63,17 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
   colour_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   colour_info.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  // the sky fills what nothing covers
   colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  if (has_samples(targets)) {
+    colour_info.imageView = targets.samples.view.get();
+    colour_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    colour_info.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+    colour_info.resolveImageView = targets.colour.view.get();
+    colour_info.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  }
+  if (part == Part::kFirst) {
+    colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    colour_info.resolveMode = VK_RESOLVE_MODE_NONE;
+  }
   VkRenderingAttachmentInfo depth_info{};
   depth_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   depth_info.imageView = targets.depth.view.get();
@@ -117,12 +134,14 @@ void draw_many(const Device& device, VkCommandBuffer commands, const DrawList& l
   }
 }
 
+// `pipeline_of(layout, pushed)`.
+template <class PipelineOf>
 void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
-                 const ScenePass& pass) {
+                 const ScenePass& pass, const PipelineOf& pipeline_of) {
   VkPipeline bound = VK_NULL_HANDLE;
   VkBuffer bound_vertices = VK_NULL_HANDLE, bound_indices = VK_NULL_HANDLE;
   for (const DrawRun& run : pass.list.runs()) {
-    const VkPipeline pipeline = pipelines.mesh(run.layout, run.pushed);
+    const VkPipeline pipeline = pipeline_of(run.layout, run.pushed);
     const VkBuffer vertices = pass.buffers.pool_blocks[run.pool_block].buffer.get();
     const VkBuffer indices = run.shared ? pass.buffers.shared_indices : vertices;
     if (pipeline != bound) bind_pipeline(device, commands, pipeline);
@@ -150,7 +169,7 @@ void draw_culled(const Device& device, const Pipelines& pipelines, VkCommandBuff
   VkPipeline bound = VK_NULL_HANDLE;
   for (std::size_t i = 0; i < culling.groups().size(); ++i) {
     const DrawGroup& group = culling.groups()[i];
-    const VkPipeline pipeline = pipelines.mesh(group.layout, false);
+    const VkPipeline pipeline = pipelines.mesh(group.layout, false, pass.view);
     const VkBuffer vertices = pass.buffers.pool_blocks[group.pool_block].buffer.get();
     const VkBuffer indices = group.shared ? pass.buffers.shared_indices : vertices;
     const VkDeviceSize zero = 0;
@@ -178,10 +197,35 @@ void draw_culled_passes(const Device& device, const Pipelines& pipelines, const 
   draw_culled(device, pipelines, commands, pass, 1);
 }
 
-void draw_sky_and_text(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
-                       std::uint32_t glyph_vertex_count) {
+void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
+                  const ScenePass& pass) {
+  const VkCommandBuffer commands = slot.commands();
+  pipelines.shadows().record(device, commands, [&](std::uint32_t cascade) {
+    bind_set(device, pipelines, slot);
+    device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT,
+                                 sizeof(shaders::DrawData), sizeof(cascade), &cascade);
+    draw_meshes(device, pipelines, commands, pass, [&](core::VertexLayout layout, bool pushed) {
+      return pipelines.mesh_shadow(layout, pushed);
+    });
+  });
+}
+
+void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                        bool water) {
+  if (water) {
+    bind_pipeline(device, commands, pipelines.water());
+    device.vk.vkCmdDraw(commands, PSYGEN_WATER_RINGS * PSYGEN_WATER_STRIP, 1, 0, 0);
+  }
   bind_pipeline(device, commands, pipelines.sky());
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+}
+
+void draw_lines_and_text(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                         std::uint32_t glyph_vertex_count, std::uint32_t line_vertex_count) {
+  if (line_vertex_count > 0) {
+    bind_pipeline(device, commands, pipelines.lines());
+    device.vk.vkCmdDraw(commands, line_vertex_count, 1, glyph_vertex_count, 0);
+  }
   if (glyph_vertex_count == 0) return;
   bind_pipeline(device, commands, pipelines.overlay());
   device.vk.vkCmdDraw(commands, glyph_vertex_count, 1, 0, 0);
@@ -202,9 +246,18 @@ void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& tar
 
 constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
+// Read by the depth pyramid where the device can.
+VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits samples) {
+  const bool readable = (device.sampled_depth_counts & samples) != 0;
+  VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if (readable) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+  return usage;
+}
+
 }  // namespace
 
-Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent) {
+Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
+                             VkSampleCountFlagBits samples) {
   Targets targets;
   targets.extent = extent;
   Result<Image> colour = make_image(
@@ -212,26 +265,34 @@ Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent
       VK_IMAGE_ASPECT_COLOR_BIT);
   if (!colour) return tl::unexpected(colour.error());
   targets.colour = std::move(*colour);
-  Result<Image> depth =
-      make_image(device, extent, kDepthFormat,
-                 VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                 VK_IMAGE_ASPECT_DEPTH_BIT);
+  Result<Image> depth = make_image(device, extent, kDepthFormat, depth_usage(device, samples),
+                                   VK_IMAGE_ASPECT_DEPTH_BIT, {.samples = samples});
   if (!depth) return tl::unexpected(depth.error());
   targets.depth = std::move(*depth);
+  if (samples == VK_SAMPLE_COUNT_1_BIT) return targets;
+  Result<Image> drawn = make_image(device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+                                   VK_IMAGE_ASPECT_COLOR_BIT, {.samples = samples});
+  if (!drawn) return tl::unexpected(drawn.error());
+  targets.samples = std::move(*drawn);
   return targets;
 }
 
 void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                   Targets& targets, const ScenePass& pass) {
   slot.write_timestamp(device, false);
+  if (pass.shadows) draw_shadows(device, pipelines, slot, pass);
+  const VkCommandBuffer commands = slot.commands();
   if (pass.culled.culling != nullptr) {
     draw_culled_passes(device, pipelines, slot, targets, pass);
   } else {
-    begin_pass(device, slot.commands(), targets);
+    begin_pass(device, commands, targets);
     bind_set(device, pipelines, slot);
-    draw_meshes(device, pipelines, slot.commands(), pass);
+    draw_meshes(device, pipelines, commands, pass, [&](core::VertexLayout layout, bool pushed) {
+      return pipelines.mesh(layout, pushed, pass.view);
+    });
   }
-  draw_sky_and_text(device, pipelines, slot.commands(), pass.glyph_vertex_count);
+  draw_water_and_sky(device, pipelines, commands, pass.water);
+  draw_lines_and_text(device, pipelines, commands, pass.glyph_vertex_count, pass.line_vertex_count);
   device.vk.vkCmdEndRendering(slot.commands());
   slot.write_timestamp(device, true);
   if (pass.culled.culling != nullptr) {
@@ -252,11 +313,12 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
                                sizeof(data), &data);
   for (const auto layout : {core::VertexLayout::kTerrain, core::VertexLayout::kModel}) {
     for (const bool pushed : {false, true}) {
-      bind_pipeline(device, commands, pipelines.mesh(layout, pushed));
+      bind_pipeline(device, commands, pipelines.mesh(layout, pushed, View::kNormal));
       device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
     }
   }
-  draw_sky_and_text(device, pipelines, commands, 3);
+  draw_water_and_sky(device, pipelines, commands, true);
+  draw_lines_and_text(device, pipelines, commands, 3, 0);
   device.vk.vkCmdEndRendering(commands);
 }
 

@@ -1,5 +1,6 @@
-// Records the one pass of a frame: meshes in the order of the draw list, the sky behind them, text
-// over them; and the copy of the picture out of the target. Private to engine/render.
+// Records a frame: the sun's shadows where the preset has them, then the one pass: meshes in the
+// order of the draw list, water, the sky behind them, lines and text over them; and the copy of the
+// picture out of the target. Private to engine/render.
 #pragma once
 
 #include <span>
@@ -12,12 +13,15 @@
 namespace psygen::render {
 
 // What is drawn into: colour that can be copied out, and depth that is forgotten after the pass.
+// With several samples per pixel these are drawn and `colour` gets their mean.
 struct Targets {
   Image colour, depth;
+  Image samples;  // empty with one sample per pixel
   core::Extent extent;
   VkImageLayout colour_layout = VK_IMAGE_LAYOUT_UNDEFINED;  // after the last recorded frame
 };
-core::Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent);
+core::Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
+                                   VkSampleCountFlagBits samples);
 
 // The buffers that a draw list refers to.
 struct SceneBuffers {
@@ -34,8 +38,12 @@ struct CulledDraws {
 struct ScenePass {
   const DrawList& list;
   SceneBuffers buffers;
-  CulledDraws culled;
-  std::uint32_t glyph_vertex_count = 0;
+  CulledDraws culled = {};
+  std::uint32_t glyph_vertex_count = 0;  // of the overlay's buffer; the ends of lines follow
+  std::uint32_t line_vertex_count = 0;
+  View view = View::kNormal;
+  bool water = false;
+  bool shadows = false;  // the cascades of the preset
 };
 
 // Between slot.begin() and slot.end(). Leaves the colour target as an attachment.

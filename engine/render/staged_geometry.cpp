@@ -177,8 +177,8 @@ Result<void> StagedGeometry::flush(const Device& device, std::span<const Buffer>
     const std::vector<Piece> pieces = fill(part);
     if (Result<void> sent = submit(device, blocks, part, pieces); !sent) return sent;
     for (const Piece& piece : pieces) {
-      taken.push_back(ownership_of(device, blocks[piece.block].buffer.get(), piece.offset,
-                                   piece.bytes));
+      taken.push_back(
+          ownership_of(device, blocks[piece.block].buffer.get(), piece.offset, piece.bytes));
       // Where the frame waits for the copies.
       taken.back().srcStageMask = VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT;
       taken.back().dstStageMask = VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT;

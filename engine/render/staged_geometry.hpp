@@ -1,5 +1,5 @@
-// Geometry memory for devices whose own memory the CPU cannot write: meshes are written to memory of
-// the CPU that mirrors the pool's blocks; what was committed is copied through a ring of staging
+// Geometry memory for devices whose own memory the CPU cannot write: meshes are written to memory
+// of the CPU that mirrors the pool's blocks; what was committed is copied through a ring of staging
 // memory into the device's blocks, on a queue for transfers where there is one, before the next
 // frame that could draw it. A frame that commits more than the ring holds waits for parts of it.
 // Main thread. Private to engine/render.
@@ -27,8 +27,8 @@ class StagedGeometry final : public core::GeometryMemory {
   // The mirror of the next block, which is written instead of it.
   std::byte* add_block(std::uint64_t bytes);
 
-  // Submits the copies of what was committed since the last call and records into `commands`, of the
-  // frame to come, what makes them readable there. The frame waits for `timeline()` to pass
+  // Submits the copies of what was committed since the last call and records into `commands`, of
+  // the frame to come, what makes them readable there. The frame waits for `timeline()` to pass
   // `value()` before it reads vertices and indices. `blocks` are the device's.
   core::Result<void> flush(const Device& device, std::span<const Buffer> blocks,
                            VkCommandBuffer commands);

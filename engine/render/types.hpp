@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
@@ -28,6 +29,19 @@ enum class RenderPath : std::uint8_t { kAuto, kCpu, kGpu };
 // copied. kAuto: written, where the device has enough memory that the CPU can write.
 enum class Upload : std::uint8_t { kAuto, kDirect, kStaged };
 
+// How much light and detail a picture has; what each changes is in preset.hpp and docs/presets.md.
+enum class Preset : std::uint8_t { kLow, kMedium, kHigh, kUltra };
+
+// What a picture shows: the landscape, or something about how it is made.
+enum class View : std::uint8_t {
+  kNormal,
+  kLevels,     // each draw in its `debug_colour`, which stands for its level
+  kLayers,     // the same, for layers of visibility
+  kBounds,     // the landscape with the frame's lines
+  kWireframe,  // edges of triangles; the landscape where the device cannot
+  kMissing,    // each draw in its `debug_colour`, which says how far it is from what is wanted
+};
+
 struct RendererOptions {
   std::string application_name = "psygen";
   std::string device_name;  // part of the device's name; empty: the best there is
@@ -40,6 +54,7 @@ struct RendererOptions {
   RenderPath path = RenderPath::kAuto;
   Upload upload = Upload::kAuto;
   bool occlusion = true;  // on the GPU path: leave out what was hidden in the last frame and is
+  std::optional<Preset> preset;  // none: kLow on software devices, kHigh on others
 };
 
 struct DeviceInfo {
@@ -50,6 +65,7 @@ struct DeviceInfo {
   bool unified_memory = false;  // geometry is written straight into the device's own memory
   bool multi_draw = false;      // many meshes in one call
   bool gpu_path = false;        // RenderPath::kGpu can be used
+  bool wireframe = false;       // View::kWireframe can be drawn
 };
 
 // Sun, sky and air. Colours are linear radiance before `exposure`.
@@ -60,11 +76,33 @@ struct Light {
   glm::vec3 horizon_colour{0.34F, 0.47F, 0.66F};
   glm::vec3 ground_colour{0.11F, 0.10F, 0.07F};  // light from below
   glm::vec3 haze_colour{0.50F, 0.58F, 0.69F};    // the sky just above (and below) the horizon
-  float haze_density = 0.0012F;        // at height 0, 1/m; 1/density is where 37 % is left
-  float haze_height_falloff = 0.004F;  // 1/m; 0: the same at every height
+  glm::vec3 glow_colour{2.35F, 2.00F, 1.55F};    // of the sky around the sun
+  glm::vec3 cloud_colour{2.35F, 2.00F, 1.55F};   // of the sun on clouds
+  float haze_density = 0.0012F;            // at height 0, 1/m; 1/density is where 37 % is left
+  glm::vec3 haze_tint{0.82F, 1.0F, 1.3F};  // how much more of blue than of red the air takes
+  float haze_height_falloff = 0.004F;      // 1/m; 0: the same at every height
   float exposure = 1.0F;
   float time_seconds = 0.0F;  // for wind and clouds
   float cloud_cover = 0.5F;   // 0 clear … 1 overcast
+};
+
+// A plane of water to the horizon.
+struct Water {
+  float level_m = 0.0F;                      // height in the world
+  glm::vec3 colour{0.010F, 0.045F, 0.050F};  // linear albedo of deep water
+};
+
+// What hides the ground where `TerrainDraw::cover` says so: forests too far to be drawn.
+struct Canopy {
+  glm::vec3 colour{0.022F, 0.040F, 0.012F};  // linear albedo, from above
+  float lowest_m = -1e6F, highest_m = 1e6F;  // where it can stand
+  float blend_m = 20.0F;
+  float slope_max = 0.30F;  // 1 − normal.y
+};
+
+// The rectangle that the world covers, relative to the camera; terrain beyond is moved onto it.
+struct WorldEdge {
+  glm::vec2 least{-1e30F}, greatest{1e30F};
 };
 
 // Linear albedo of the ground and where each kind of ground is. Heights in metres of the world.
@@ -101,6 +139,7 @@ struct MeshDraw {
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
   float fade = 1.0F;                        // 0 … 1, size while a mesh appears
+  std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
   std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
 };
 
@@ -115,13 +154,27 @@ struct TerrainDraw {
   float morph = 0.0F;                                // 0 fine heights … 1 coarse heights
   float side_m = 0.0F;  // of the square that the grid covers; 0: as large as a grid can be
   std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
+  float cover = 0.0F;                       // share of the ground that far forests hide (Canopy)
+  std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
 };
+
+// A line between two places relative to the camera.
+struct Line {
+  glm::vec3 from{0.0F}, to{0.0F};
+  glm::vec3 colour{1.0F};  // as shown
+};
+
+inline constexpr std::size_t kMaxLines = 1 << 16;
 
 struct FrameInput {
   core::CameraPose pose;
   core::Projection projection;
   Light light;
   TerrainPalette palette;
+  std::optional<Water> water;
+  Canopy canopy;
+  WorldEdge edge;
+  View view = View::kNormal;
   double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
@@ -129,6 +182,7 @@ struct FrameInput {
   // on either path, the coarsest level that is at most so many pixels off.
   bool choose = false;
   float max_error_pixels = 1.0F;
+  std::span<const Line> lines;                 // at most kMaxLines are drawn, in every view
   std::span<const std::string> overlay_lines;  // text in the top left; empty: none
 };
 

@@ -48,12 +48,12 @@ struct MeshEntity {
 
 class Chooser {
  public:
-  Chooser(const Settings& settings, const Clock& clock, const Camera& camera,
-          const visibility::Frustum& frustum, Synthesis& synthesis, Counters& counters)
+  Chooser(const Settings& settings, const Clock& clock, const Camera& camera, const View& view,
+          Synthesis& synthesis, Counters& counters)
       : settings_(settings),
         clock_(clock),
         camera_(camera),
-        frustum_(frustum),
+        view_(view),
         synthesis_(synthesis),
         counters_(counters) {}
 
@@ -66,10 +66,8 @@ class Chooser {
     const float distance_m =
         near ? node.visibility->distance_m
              : std::max(glm::length(center) - placed.radius_m, camera_.projection.near_m);
-    const bool in_view =
-        node.in_view &&
-        (near || visibility::intersects(
-                     frustum_, {center - placed.box_half_extent, center + placed.box_half_extent}));
+    const core::Bounds box{center - placed.box_half_extent, center + placed.box_half_extent};
+    const bool in_view = node.in_view && (near || is_in_view(box));
     demand.wanted_level = is_ground ? ground_level(row.detail, demand, node)
                                     : wanted_level(placed, row.detail, demand, distance_m, node);
     in_view ? note_in_view(demand, node.leaf) : note_out_of_view(demand);
@@ -86,6 +84,10 @@ class Chooser {
   }
 
  private:
+  bool is_in_view(const core::Bounds& box) const {
+    return visibility::intersects(view_.frustum, box) && !view_.horizon.hides(box);
+  }
+
   static std::uint8_t ground_level(const Detail& detail, const Demand& demand,
                                    const NodeView& node) {
     if (node.fine) return 0;
@@ -140,7 +142,7 @@ class Chooser {
       const RankGroup kept = wanted ? RankGroup::kDrawn : RankGroup::kPrefetch;
       synthesis_.cache->set_rank(row.mesh.handle, rank_of(kept, node, distance_m));
     }
-    if (demand.drawn_level == demand.wanted_level) {
+    if (demand.drawn_level == demand.wanted_level && !demand.stale) {
       demand.requested_level = kNoLevel;
       return;
     }
@@ -169,7 +171,8 @@ class Chooser {
     for (int distance = 0; distance < levels; ++distance) {
       for (const int level : {first + distance, first - distance}) {
         if (level < 0 || level >= levels || (demand.failed_levels >> level & 1) != 0) continue;
-        return level == demand.drawn_level ? kNoLevel : static_cast<std::uint8_t>(level);
+        const bool there = level == demand.drawn_level && !demand.stale;
+        return there ? kNoLevel : static_cast<std::uint8_t>(level);
       }
     }
     return kNoLevel;
@@ -203,7 +206,7 @@ class Chooser {
   const Settings& settings_;
   const Clock& clock_;
   const Camera& camera_;
-  const visibility::Frustum& frustum_;
+  const View& view_;
   Synthesis& synthesis_;
   Counters& counters_;
 };
@@ -322,7 +325,7 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
   synthesis.wants.clear();
   synthesis.ready.clear();
 
-  Chooser chooser(settings, clock, camera, view.frustum, synthesis, counters);
+  Chooser chooser(settings, clock, camera, view, synthesis, counters);
   NodeWalk walk(chooser, camera, facts.world.block_size_m(), entities);
   const float error_pixels = static_cast<float>(quality.error_pixels);
   const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
@@ -338,6 +341,7 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
   limits.seconds_ahead =
       wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead;
   limits.max_requests = wait ? UINT32_MAX : settings.plan_max_requests;
+  limits.max_new = wait || synthesis.settling ? UINT32_MAX : settings.plan_max_new;
   limits.seconds_here = wait ? 0.0 : settings.hole_budget_ms / 1000.0;
   const synthesis::PlanReport report =
       synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,

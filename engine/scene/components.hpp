@@ -88,9 +88,10 @@ struct Demand {
   std::uint8_t wanted_level = kNoLevel;     // kNoLevel: too small on screen to be drawn
   std::uint8_t requested_level = kNoLevel;
   std::uint8_t failed_levels =
-      0;  // bit l: level l cannot be synthesised and is not asked for again
+      0;               // bit l: level l cannot be synthesised and is not asked for again
+  bool stale = false;  // Mesh is of other parameters than Source: drawn until the new one is there
 };
-static_assert(sizeof(Demand) == 12);
+static_assert(sizeof(Demand) == 16);
 
 inline std::uint64_t owner_of(ecs::Entity entity) {
   return (std::uint64_t{entity.generation} << 32) | entity.index;

@@ -74,8 +74,8 @@ void land_everything(State& s) {
 
 void create_all_nodes(State& s) {
   do {
-    streaming_system(s.settings, s.camera, s.quality, s.facts, s.streaming, s.entities, s.synthesis,
-                     s.counters);
+    streaming_system(s.settings, s.camera, s.quality, s.facts, s.daylight, s.streaming, s.entities,
+                     s.synthesis, s.counters);
   } while (!s.streaming.missing.empty());
 }
 
@@ -87,8 +87,9 @@ void Scene::tick_without_drawing(const core::CameraPose& pose) {
   s.clock.real_s = core::monotonic_seconds() - s.clock.origin_s;
   s.counters = {};
   input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);
-  streaming_system(s.settings, s.camera, s.quality, s.facts, s.streaming, s.entities, s.synthesis,
-                   s.counters);
+  daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
+  streaming_system(s.settings, s.camera, s.quality, s.facts, s.daylight, s.streaming, s.entities,
+                   s.synthesis, s.counters);
   visibility_system(s.settings, s.camera, s.facts, s.streaming, s.synthesis,
                     VisibilityQuery(s.entities), s.view, s.counters);
   cache_system(s.settings, s.clock, s.camera, s.quality, s.facts, s.view, CacheQuery(s.entities),
@@ -139,6 +140,7 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
   State& s = state_;
   s.input.pose = pose;
   input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);
+  daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
   create_all_nodes(s);
   if (auto fits = check_region(); !fits) return tl::unexpected(fits.error());
   want_everything(s);

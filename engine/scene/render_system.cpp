@@ -1,19 +1,22 @@
 // Turns what is in view and resident into draw lists, nearest nodes first, counts what is missing,
 // and hands the lists to the renderer. Where nodes of the cut are not ready an ancestor is drawn
-// until all that replaces it is.
+// until all that replaces it is; where nothing is complete, the finest ground that closes the gap.
 #include <algorithm>
 
+#include "engine/scene/lighting.hpp"
 #include "engine/scene/missing.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/scene/views.hpp"
 
 namespace psygen::scene {
 namespace {
 
 class Drawing {
  public:
-  Drawing(const Clock& clock, const Camera& camera, const WorldFacts& facts, const View& view,
-          const RenderQuery& entities, DrawLists& draws, Counters& counters)
-      : clock_(clock),
+  Drawing(render::View shown, const Clock& clock, const Camera& camera, const WorldFacts& facts,
+          const View& view, const RenderQuery& entities, DrawLists& draws, Counters& counters)
+      : shown_(shown),
+        clock_(clock),
         camera_(camera),
         facts_(facts),
         view_(view),
@@ -24,11 +27,7 @@ class Drawing {
   // Entities of the nodes of the cut, in its order; null where there is none.
   void run(std::span<const ecs::Entity> entities) {
     const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
-    draws_.ready.assign(cut.size(), 0);
-    for (std::size_t i = 0; i < cut.size(); ++i) {
-      const Lacking* lacking = entities_.get<Lacking>(entities[i]);
-      draws_.ready[i] = lacking != nullptr && lacking->meshes == 0 ? 1 : 0;
-    }
+    find_ready(entities);
     visibility::drawn_nodes(view_.cut, draws_.ready, draws_.scratch, draws_.nodes);
     std::size_t next = 0;
     for (std::uint32_t i = 0; i < cut.size();) {
@@ -41,6 +40,23 @@ class Drawing {
   }
 
  private:
+  // Complete nodes; where no ancestor is complete bare ground is better than nothing.
+  void find_ready(std::span<const ecs::Entity> entities) {
+    const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
+    draws_.ready.assign(cut.size(), 0);
+    std::vector<std::uint8_t>& complete = draws_.scratch;  // the node or an ancestor
+    complete.assign(cut.size(), 0);
+    for (std::size_t i = 0; i < cut.size(); ++i) {
+      const bool above = cut[i].parent != visibility::kNoNode && complete[cut[i].parent] != 0;
+      const Lacking* lacking = entities_.get<Lacking>(entities[i]);
+      const bool itself = lacking != nullptr && lacking->meshes == 0;
+      const bool ground =
+          lacking != nullptr && entities_.get<Demand>(entities[i])->drawn_level != kNoLevel;
+      complete[i] = above || itself ? 1 : 0;
+      draws_.ready[i] = itself || (ground && !above) ? 1 : 0;
+    }
+  }
+
   void draw(std::uint32_t index, ecs::Entity entity) {
     if (!entities_.alive(entity)) return;  // counted by the visibility system
     const visibility::CutNode& node = view_.cut.nodes[index];
@@ -52,18 +68,27 @@ class Drawing {
     const glm::vec3 middle =
         corner + glm::vec3(node.side_m / 2, (at.low_m + at.high_m) / 2, node.side_m / 2);
     const bool hole = demand->drawn_level == kNoLevel;
-    count(middle, placed->radius_m, hole, !node.leaf && is_coarse(index));
-    if (!hole) add_ground(node, *placed, *demand, *mesh, corner);
-    add_models(*entities_.get<ecs::Children>(entity), corner);
+    const std::uint32_t coarser = node.leaf ? 0 : coarser_by(index);
+    count(middle, placed->radius_m, hole, coarser > 1);
+    const DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, coarser};
+    if (!hole) add_ground(node, facts, *placed, *demand, *mesh, corner);
+    add_models(*entities_.get<ecs::Children>(entity), facts, corner);
+    if (shown_ == render::View::kBounds) {
+      add_box({corner + glm::vec3(0, at.low_m, 0),
+               corner + glm::vec3(node.side_m, at.high_m, node.side_m)},
+              colour_of(shown_, facts), draws_.lines);
+    }
   }
 
-  // Drawn for something wanted more than one level finer.
-  bool is_coarse(std::uint32_t index) const {
+  // By how many levels the finest node in view that it is drawn for is finer.
+  std::uint32_t coarser_by(std::uint32_t index) const {
     const visibility::CutNode& node = view_.cut.nodes[index];
+    std::uint32_t finest = node.node.level;
     for (std::uint32_t i = index + 1; i < node.end; ++i) {
-      if (view_.in_view[i] != 0 && view_.cut.nodes[i].node.level + 1 < node.node.level) return true;
+      if (view_.in_view[i] != 0)
+        finest = std::min<std::uint32_t>(finest, view_.cut.nodes[i].node.level);
     }
-    return false;
+    return node.node.level - finest;
   }
 
   void count(glm::vec3 center, float radius_m, bool hole, bool coarse) {
@@ -74,8 +99,8 @@ class Drawing {
       counters_.missing_pixels_percent += covered_percent(camera_, center, radius_m);
   }
 
-  void add_ground(const visibility::CutNode& node, const Placed& placed, const Demand& demand,
-                  const Mesh& mesh, glm::vec3 corner) {
+  void add_ground(const visibility::CutNode& node, const DrawFacts& facts, const Placed& placed,
+                  const Demand& demand, const Mesh& mesh, glm::vec3 corner) {
     const NodeLevel& level = facts_.levels[node.node.level];
     render::TerrainDraw draw;
     draw.range = mesh.range;
@@ -86,6 +111,8 @@ class Drawing {
     draw.height_range_m = 2 * placed.box_half_extent.y;
     draw.skirt_m = level.skirt_m;
     draw.side_m = node.side_m;
+    if (node.node.level > 0 && !level.merged) draw.cover = facts_.cover_share;
+    draw.debug_colour = colour_of(shown_, facts);
     // A mesh finer than wanted looks like the wanted one; a coarser one has nothing to morph from.
     const bool finest = node.node.level == 0 && demand.drawn_level == 0 && level.mesh_level != 0;
     draw.morph = !finest     ? level.mesh_level != 0 && node.leaf && !node.fine ? node.morph : 0.0F
@@ -94,7 +121,9 @@ class Drawing {
     draws_.terrain.push_back(draw);
   }
 
-  void add_models(const ecs::Children& models, glm::vec3 corner) {
+  // `facts` are those of their node.
+  void add_models(const ecs::Children& models, DrawFacts facts, glm::vec3 corner) {
+    const bool single = facts.level == 0;
     entities_.each_of<const Placed, const Demand, const Mesh>(
         entities_.children(models),
         [&](std::span<const ecs::Entity>, std::span<const Placed> placed,
@@ -107,12 +136,19 @@ class Drawing {
             const bool coarse = !hole && demand.drawn_level > demand.wanted_level + 1;
             count(foot + placed[i].box_center, placed[i].radius_m, hole, coarse);
             if (hole) continue;
+            if (single) {
+              facts.level = demand.drawn_level;
+              facts.coarser =
+                  static_cast<std::uint32_t>(std::max(demand.drawn_level - demand.wanted_level, 0));
+            }
             draws_.models.push_back({meshes[i].range, meshes[i].shared_indices, foot,
-                                     placed[i].box_center, placed[i].box_half_extent, 1.0F});
+                                     placed[i].box_center, placed[i].box_half_extent, 1.0F,
+                                     colour_of(shown_, facts)});
           }
         });
   }
 
+  const render::View shown_;
   const Clock& clock_;
   const Camera& camera_;
   const WorldFacts& facts_;
@@ -129,10 +165,11 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
                    RenderQuery entities, DrawLists& draws, Output& output, Counters& counters) {
   draws.terrain.clear();
   draws.models.clear();
+  draws.lines.clear();
   draws.entities.clear();
   for (const visibility::CutNode& node : view.cut.nodes)
     draws.entities.push_back(streaming.grids[node.node.level].entity_of(node.node.coord));
-  Drawing(clock, camera, facts, view, entities, draws, counters).run(draws.entities);
+  Drawing(input.view, clock, camera, facts, view, entities, draws, counters).run(draws.entities);
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
   if (output.renderer == nullptr) return;
 
@@ -140,11 +177,17 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
   frame.pose = camera.pose;
   frame.projection = camera.projection;
   frame.light = facts.light;
+  if (facts.world.sky.day_length_s > 0) move_sun(facts.world, clock.now_s, frame.light);
   frame.light.time_seconds = static_cast<float>(clock.now_s);
   frame.palette = facts.palette;
+  frame.water = water_of(facts.world);
+  frame.view = input.view;
   frame.block_size_m = facts.world.block_size_m();
   frame.terrain = draws.terrain;
   frame.models = draws.models;
+  frame.lines = draws.lines;
+  frame.canopy = facts.canopy;
+  frame.edge = edge_of(facts.world, camera.pose.position);
   frame.overlay_lines = input.overlay_lines;
   const auto result = output.renderer->render(frame);
   if (result) {

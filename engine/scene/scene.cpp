@@ -101,6 +101,9 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
     merged = &facts.registry[*added];
   }
   facts.levels = node_levels(facts.world, facts.registry, settings, merged);
+  const world::FarCover cover = world::far_cover(facts.world, facts.registry);
+  facts.canopy = canopy_of(facts.world, cover.albedo);
+  facts.cover_share = cover.share;
   return {};
 }
 

@@ -37,6 +37,7 @@ struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
   std::vector<std::string> overlay_lines;
+  render::View view = render::View::kNormal;
   double frame_ms = 0;  // what the last frame took, without waiting for a display; 0: unknown
 };
 
@@ -73,11 +74,18 @@ struct WorldFacts {
   models::Registry registry;
   render::Light light;
   render::TerrainPalette palette;
+  render::Canopy canopy;                // of forests too far to be drawn
+  float cover_share = 0;                // of the ground that they hide
   std::vector<NodeLevel> levels;        // of the quadtree, finest first
   models::ModelIndex merged_model = 0;  // of meshes that stand for all models on a node
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
+};
+
+// Where the sun stands that the ground is lit by (world::set_sun).
+struct Daylight {
+  double azimuth_deg = 0, elevation_deg = 90;
 };
 
 struct Streaming {
@@ -141,6 +149,7 @@ struct DrawLists {
   std::vector<std::uint8_t> ready, scratch;  // per node of the cut
   std::vector<render::TerrainDraw> terrain;
   std::vector<render::MeshDraw> models;
+  std::vector<render::Line> lines;  // boxes of what is drawn, in the view of bounds
 };
 
 // Counts of one tick, reset by the tick.
@@ -200,6 +209,7 @@ struct State {
   Clock clock;
   Camera camera;
   Quality quality;
+  Daylight daylight;
   Streaming streaming;
   View view;
   std::unique_ptr<core::GeometryMemory> heap;  // the null device's memory; unused with a renderer

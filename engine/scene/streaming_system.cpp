@@ -70,15 +70,17 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
   entities.set_children(node, models.entities);
 }
 
-void create_node(const WorldFacts& facts, const visibility::NodeCoord& at,
+void create_node(const WorldFacts& facts, const Daylight& daylight, const visibility::NodeCoord& at,
                  std::vector<world::Placement>& scratch, Streaming& streaming,
                  ecs::World& entities) {
   const NodeLevel& level = facts.levels[at.level];
   const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundLines,
                                        Placed, Detail, Source, Demand, Mesh>(1);
+  models::Parameters ground = node_terrain(facts.world, at);
+  world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
   created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y};
   fill(created, 0, facts.registry, visibility::corner_block(at),
-       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), node_terrain(facts.world, at)},
+       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground},
        at.level == 0 ? 0 : level.mesh_level, level.mesh_level);
   const ecs::Entity node = created.entities[0];
   streaming.grids[at.level].entity_of(at.coord) = node;
@@ -169,8 +171,8 @@ void list_missing_nodes(const Window& window, const Camera& camera, const WorldF
 }  // namespace
 
 void streaming_system(const Settings& settings, const Camera& camera, const Quality& quality,
-                      const WorldFacts& facts, Streaming& streaming, ecs::World& entities,
-                      Synthesis& synthesis, Counters& counters) {
+                      const WorldFacts& facts, const Daylight& daylight, Streaming& streaming,
+                      ecs::World& entities, Synthesis& synthesis, Counters& counters) {
   split_distances(facts.levels, settings, camera.pixels_per_radian, quality.error_pixels,
                   streaming.distances);
   const core::BlockCoord centre = camera.pose.position.block;
@@ -187,7 +189,7 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
   const double start_s = core::monotonic_seconds();
   std::vector<world::Placement> scratch;
   while (!streaming.missing.empty()) {
-    create_node(facts, streaming.missing.back(), scratch, streaming, entities);
+    create_node(facts, daylight, streaming.missing.back(), scratch, streaming, entities);
     streaming.missing.pop_back();
     ++counters.nodes_created;
     if (settings.paradigm == Paradigm::kLazyEvaluation) continue;  // all of it, in every frame

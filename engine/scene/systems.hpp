@@ -14,10 +14,15 @@ void input_system(const Settings& settings, const Input& input, const Clock& clo
                   const WorldFacts& facts, const Synthesis& synthesis, Camera& camera,
                   Quality& quality);
 
+// Moves the sun of worlds that have a day; the ground whose shadows it changes is made anew.
+using DaylightQuery = ecs::Query<const Node, Source, Demand>;
+void daylight_system(const Clock& clock, const WorldFacts& facts, DaylightQuery nodes,
+                     Daylight& daylight);
+
 // Creates and destroys nodes with their models around the camera, in batches.
 void streaming_system(const Settings& settings, const Camera& camera, const Quality& quality,
-                      const WorldFacts& facts, Streaming& streaming, ecs::World& entities,
-                      Synthesis& synthesis, Counters& counters);
+                      const WorldFacts& facts, const Daylight& daylight, Streaming& streaming,
+                      ecs::World& entities, Synthesis& synthesis, Counters& counters);
 
 // Chooses the cut through the quadtree and runs Prioritized-Layered Projection over the nodes of
 // each level; what predicted cameras see gets a deadline.
@@ -38,14 +43,14 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
                       Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
-using UploadQuery = ecs::Query<Mesh, Demand, Node, GroundLines>;
+using UploadQuery = ecs::Query<const Source, Mesh, Demand, Node, GroundLines>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
-using RenderQuery = ecs::Query<const Node, const ecs::Children, const Placed, const Lacking,
-                               const Demand, const Mesh>;
+using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
+                               const Lacking, const Demand, const Mesh>;
 void render_system(const Input& input, const Clock& clock, const Camera& camera,
                    const WorldFacts& facts, const Streaming& streaming, const View& view,
                    RenderQuery entities, DrawLists& draws, Output& output, Counters& counters);

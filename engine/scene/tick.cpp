@@ -9,9 +9,11 @@
 namespace psygen::scene {
 
 void build_tick(State& s) {
-  s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.streaming, s.view,
-                 s.output, s.synthesis, s.draws, s.counters, s.totals, s.trace, s.record);
+  s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight,
+                 s.streaming, s.view, s.output, s.synthesis, s.draws, s.counters, s.totals, s.trace,
+                 s.record);
   s.tick.add("input", input_system);
+  s.tick.add("daylight", daylight_system);
   s.tick.add("streaming", streaming_system);
   s.tick.add("visibility", visibility_system);
   s.tick.add("cache", cache_system);

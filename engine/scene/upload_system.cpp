@@ -36,11 +36,13 @@ std::uint32_t shared_indices_of(const synthesis::MeshRecord& record, const World
   return name;
 }
 
-// Whether an entity has a use for a mesh of this level now; if so, notes that it has it.
-bool accept(Demand& demand, std::uint8_t level, double now_s, Counters& counters) {
-  const bool asked_for = level == demand.requested_level;
+// Whether an entity has a use for a mesh of this level now; if so, notes that it has it. `fresh`:
+// it is of the entity's present parameters.
+bool accept(Demand& demand, std::uint8_t level, bool fresh, double now_s, Counters& counters) {
+  const bool asked_for = level == demand.requested_level && fresh;
   if (!asked_for && demand.drawn_level != kNoLevel) return false;
   demand.drawn_level = level;
+  demand.stale = !fresh;
   if (asked_for) demand.requested_level = kNoLevel;
   if (demand.seen_s >= 0) {
     counters.time_to_visible_ms.push_back((static_cast<float>(now_s) - demand.seen_s) * 1000.0F);
@@ -111,7 +113,8 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
   Node* node = entities.get<Node>(owner);
   const int first_level = node != nullptr ? first_ground_level(facts, *node) : 0;
   const auto level = static_cast<std::uint8_t>(record.key.level - first_level);
-  if (!accept(*demand, level, now_s, counters)) {
+  const bool fresh = record.key.parameters_hash == entities.get<Source>(owner)->parameters_hash;
+  if (!accept(*demand, level, fresh, now_s, counters)) {
     synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());
     return;
   }

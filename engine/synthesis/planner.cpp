@@ -17,9 +17,21 @@ std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
   return it != by_slot_.end() && reclaimed_[*it].handle == handle ? *it : kNone;
 }
 
+// Keeps the `max_new` of new_ that would be served first.
+void Planner::leave_for_later(std::uint32_t max_new, Policy policy, PlanReport& report) {
+  const bool led_by_time = policy == Policy::kShortest || policy == Policy::kLongest;
+  if (led_by_time || new_.size() <= max_new) return;
+  const auto last = new_.begin() + static_cast<std::ptrdiff_t>(max_new);
+  std::nth_element(new_.begin(), last, new_.end(), [policy](const Item& a, const Item& b) {
+    return served_before(policy, a.order, b.order);
+  });
+  report.deferred += static_cast<std::uint32_t>(new_.size() - max_new);
+  new_.erase(last, new_.end());
+}
+
 // Fills items_ with the wants that need a request, in serving order, and marks what is kept.
 void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
-                       Policy policy, PlanReport& report) {
+                       const PlanLimits& limits, Policy policy, PlanReport& report) {
   by_slot_.resize(reclaimed_.size());
   std::iota(by_slot_.begin(), by_slot_.end(), 0u);
   std::sort(by_slot_.begin(), by_slot_.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -27,6 +39,7 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
   });
   kept_.assign(reclaimed_.size(), false);
   items_.clear();
+  new_.clear();
   for (std::uint32_t i = 0; i < wants.size(); ++i) {
     const Want& want = wants[i];
     PSYGEN_ASSERT(want.parameters != nullptr, "a want needs parameters");
@@ -46,13 +59,21 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
       }
       kept_[reclaimed] = true;
     }
-    const Work work = reclaimed == kNone
-                          ? cost.work(want.key.model, *want.parameters, want.key.level)
-                          : reclaimed_[reclaimed].work;
+    if (reclaimed == kNone) {
+      // First come, first served: what was requested before comes before what is new.
+      new_.push_back({{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, {}, kNone});
+      continue;
+    }
+    const Work& work = reclaimed_[reclaimed].work;
     const double predicted = cost.predict_from(want.key.model, want.key.level, work);
-    // First come, first served: what was requested before comes before what is new.
-    const std::uint64_t arrival = reclaimed == kNone ? reclaimed_.size() + i : reclaimed;
-    items_.push_back({{want.rank, want.deadline_s, predicted, arrival}, i, work, reclaimed});
+    items_.push_back({{want.rank, want.deadline_s, predicted, reclaimed}, i, work, reclaimed});
+  }
+  leave_for_later(limits.max_new, policy, report);
+  for (Item& item : new_) {
+    const Want& want = wants[item.want];
+    item.work = cost.work(want.key.model, *want.parameters, want.key.level);
+    item.order.predicted_seconds = cost.predict_from(want.key.model, want.key.level, item.work);
+    items_.push_back(item);
   }
   std::sort(items_.begin(), items_.end(), [policy](const Item& a, const Item& b) {
     return served_before(policy, a.order, b.order);
@@ -136,7 +157,7 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   PlanReport report;
   reclaimed_ = manager.reclaim();
   cache.begin_batch();
-  sort_out(wants, cache, cost, policy, report);
+  sort_out(wants, cache, cost, limits, policy, report);
   give_back_unwanted(cache, report);
 
   plan_.clear();
@@ -150,7 +171,7 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
     }
     add(items_[next], wants[items_[next].want], cache, report);
   }
-  report.deferred = static_cast<std::uint32_t>(items_.size() - next);
+  report.deferred += static_cast<std::uint32_t>(items_.size() - next);
   while (give_back_last(cache, report)) {
   }
   execute_holes(manager, limits.seconds_here, report);

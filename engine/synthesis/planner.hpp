@@ -33,6 +33,9 @@ struct PlanLimits {
   // For visible holes whose type may run on the main thread; they are executed before plan()
   // returns.
   double seconds_here = 0;
+  // New reservations in one plan. Where the policy is led by rank, no others are looked at: each
+  // costs some microseconds (sizes, prediction, room), and wants may come by the thousand.
+  std::uint32_t max_new = UINT32_MAX;
 };
 
 struct PlanReport {
@@ -65,7 +68,8 @@ class Planner {
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
   void sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
-                Policy policy, PlanReport& report);
+                const PlanLimits& limits, Policy policy, PlanReport& report);
+  void leave_for_later(std::uint32_t max_new, Policy policy, PlanReport& report);
   std::uint32_t reclaimed_position(MeshHandle handle) const;
   void give_back_unwanted(GeometryCache& cache, PlanReport& report);
   bool give_back_last(GeometryCache& cache, PlanReport& report);
@@ -81,6 +85,7 @@ class Planner {
   std::vector<std::uint32_t> by_slot_;  // positions in reclaimed_, sorted by slot
   std::vector<bool> kept_;              // of reclaimed_: wanted, and not given back
   std::vector<Item> items_;
+  std::vector<Item> new_;                  // those of them that need a reservation
   std::vector<std::uint32_t> last_first_;  // wanted ones of reclaimed_ in serving order
   std::vector<Request> plan_;
   bool separate_holes_ = false;

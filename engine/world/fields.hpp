@@ -1,5 +1,5 @@
-// The fields of sky and palette, once, for reading and for writing. `visit(name, field, limits)` is
-// called for each of them. Internal to world.
+// The fields of sky, water and palette, once, for reading and for writing. `visit(name, field,
+// limits)` is called for each of them. Internal to world.
 #pragma once
 
 #include "engine/world/table_reader.hpp"
@@ -25,6 +25,16 @@ void visit_sky(S& sky, const Visit& visit) {
   visit("haze_height_m", sky.haze_height_m, Limits{1, 1e7});
   visit("exposure", sky.exposure, Limits{0.01, 100});
   visit("cloud_cover", sky.cloud_cover, kShare);
+  visit("day_length_s", sky.day_length_s, Limits{0, 1e7});
+  visit("start_hour", sky.start_hour, Limits{0, 24});
+  visit("latitude_deg", sky.latitude_deg, Limits{-80, 80});
+}
+
+template <class W, class Visit>
+void visit_water(W& water, const Visit& visit) {
+  visit("level_m", water.level_m, kAnyHeight);
+  visit("colour", water.colour, kShare);
+  visit("shore_m", water.shore_m, Limits{0, 1000});
 }
 
 template <class P, class Visit>

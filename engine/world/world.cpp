@@ -1,18 +1,8 @@
 #include "engine/world/world.hpp"
 
-#include <cmath>
-#include <glm/trigonometric.hpp>
-
 #include "engine/models/terrain.hpp"
 
 namespace psygen::world {
-
-glm::vec3 Sky::sun_direction() const {
-  const double azimuth = glm::radians(sun_azimuth_deg), elevation = glm::radians(sun_elevation_deg);
-  return {static_cast<float>(std::sin(azimuth) * std::cos(elevation)),
-          static_cast<float>(std::sin(elevation)),
-          static_cast<float>(-std::cos(azimuth) * std::cos(elevation))};
-}
 
 double World::block_size_m() const {
   return models::terrain_block_size_m(terrain);

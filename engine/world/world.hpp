@@ -43,7 +43,13 @@ struct Scatter {
   friend bool operator==(const Scatter&, const Scatter&) = default;
 };
 
-// Sun, sky and air. Colours are linear radiance before `exposure`.
+// Where the sun stands: azimuth from −Z (north) over +X (east), elevation over the horizon.
+struct SunPlace {
+  double azimuth_deg = 0, elevation_deg = 0;
+  glm::vec3 direction() const;  // unit vector towards the sun
+};
+
+// Sun, sky and air. Colours are linear radiance before `exposure`, those of the sun's elevation.
 struct Sky {
   double sun_azimuth_deg = 128;  // from −Z (north) over +X (east)
   double sun_elevation_deg = 44;
@@ -52,15 +58,38 @@ struct Sky {
   glm::vec3 horizon_colour{0.50F, 0.62F, 0.78F};
   glm::vec3 ground_colour{0.16F, 0.15F, 0.11F};  // light from below
   glm::vec3 haze_colour{0.66F, 0.72F, 0.80F};
-  double visibility_m = 3260;  // at height 0: where 2 % of the contrast is left
-  double haze_height_m = 250;  // the haze thins out by a factor e in this height
+  double visibility_m = 32000;  // at height 0: where 2 % of the contrast is left
+  double haze_height_m = 1200;  // the haze thins out by a factor e in this height
   double exposure = 1;
   double cloud_cover = 0.5;  // 0 clear … 1 overcast
+  double day_length_s = 0;   // of 24 hours; 0: the sun stands still where the two angles say
+  double start_hour = 9;     // at the time 0; the sun is highest at 12
+  double latitude_deg = 42;  // how high the sun climbs
 
-  glm::vec3 sun_direction() const;  // unit vector towards the sun
+  SunPlace sun_at(double time_s) const;
+  glm::vec3 sun_direction() const {
+    return SunPlace{sun_azimuth_deg, sun_elevation_deg}.direction();
+  }
   // Extinction at height 0 in 1/m, by Koschmieder's law.
   double haze_density() const { return 3.912 / visibility_m; }
   friend bool operator==(const Sky&, const Sky&) = default;
+};
+
+// The same air with the sun elsewhere: every colour as the atmosphere changes it (atmosphere.hpp).
+// With the sun at the same elevation nothing changes.
+Sky with_sun(const Sky& sky, SunPlace sun);
+// At a moment of the day.
+inline Sky sky_at(const Sky& sky, double time_s) {
+  return with_sun(sky, sky.sun_at(time_s));
+}
+
+// A plane of water. Off while `level_m` is not set.
+struct Water {
+  double level_m = -1e7;  // height of the surface in metres of the world; below −10^6: no water
+  glm::vec3 colour{0.010F, 0.045F, 0.050F};  // of deep water: linear albedo
+  double shore_m = 1.5;                      // the beach reaches so far above the surface
+  bool exists() const { return level_m > -1e6; }
+  friend bool operator==(const Water&, const Water&) = default;
 };
 
 // Linear albedo of the ground and where each kind of ground is. Heights in metres of the world;
@@ -90,6 +119,7 @@ struct World {
   std::vector<models::Species> species;  // that the file defines; models of the registry
   std::vector<Scatter> scatter;
   Sky sky;
+  Water water;
   Palette palette;
 
   double block_size_m() const;  // metres along one side of a block

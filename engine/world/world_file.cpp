@@ -224,6 +224,19 @@ void read_fields(TableReader& root, std::string_view name, Problems& problems,
 
 namespace {
 
+// The sky of a file that gives no colours: what the sun makes of the air at the file's elevation.
+// Wrong values are told when the table is read.
+Sky usual_sky(TableReader& root) {
+  const Sky usual;
+  const Member* member = root.table("sky");
+  if (member == nullptr) return usual;
+  SunPlace sun{usual.sun_azimuth_deg, usual.sun_elevation_deg};
+  Problems told_later("");
+  TableReader reader(member->value, "sky", member->line, told_later);
+  reader.read("sun_elevation_deg", sun.elevation_deg, {-90, 90});
+  return with_sun(usual, sun);
+}
+
 // Makes the species of a world models of the registry; `grown` is null where it cannot grow.
 void register_species(TableReader& root, const World& world, const models::Registry& registry,
                       models::Registry* grown, Problems& problems) {
@@ -274,7 +287,9 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
   if (of_species.any())
     return tl::unexpected(problems.any() ? problems.first() : of_species.first());
   read_scatters(root, registry, world, problems);
+  world.sky = usual_sky(root);
   read_fields(root, "sky", problems, [&](const auto& visit) { visit_sky(world.sky, visit); });
+  read_fields(root, "water", problems, [&](const auto& visit) { visit_water(world.water, visit); });
   read_fields(root, "palette", problems,
               [&](const auto& visit) { visit_palette(world.palette, visit); });
   root.finish();

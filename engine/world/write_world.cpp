@@ -96,6 +96,8 @@ std::string write_world(const World& world, const models::Registry& registry) {
     write_scatter(out, scatter, registry[scatter.model]);
   fmt::format_to(out, "\n[sky]\n");
   visit_sky(world.sky, FieldWriter{out});
+  fmt::format_to(out, "\n[water]\n");
+  visit_water(world.water, FieldWriter{out});
   fmt::format_to(out, "\n[palette]\n");
   visit_palette(world.palette, FieldWriter{out});
   return text;

@@ -43,34 +43,6 @@ TEST_P(Golden, ASettledSceneLooksAsItDid) {
   EXPECT_THAT((*app)->renderer().validation_messages(), testing::IsEmpty());
 }
 
-// The picture of a settled scene at a place of the walk.
-std::optional<image::Image> settled_picture(Options options, double seconds) {
-  options.size = {480, 270};
-  auto app = App::create(options);
-  const auto path = world::load_camera_path(options.path_file);
-  if (!app || !path) return std::nullopt;
-  const core::CameraPose pose = path->pose_at(seconds, (*app)->scene().state().facts.world);
-  (*app)->scene().settle(pose);
-  if (!(*app)->frame(pose, 1.0 / 60.0)) return std::nullopt;
-  auto picture = (*app)->renderer().capture();
-  if (!picture) return std::nullopt;
-  return image::Image{picture->width, picture->height, std::move(picture->rgba)};
-}
-
-TEST(Occlusion, WhatIsLeftOutBehindRidgesWasNotToBeSeen) {
-  for (const double seconds : {1.0, 9.0, 18.0, 25.0}) {
-    Options options = short_flight();
-    options.scene.view_distance_m = 6000;
-    options.scene.max_error_pixels = 16;  // coarse ground hides as much as fine
-    const auto hidden = settled_picture(options, seconds);
-    options.scene.occlusion = false;
-    const auto all = settled_picture(options, seconds);
-    ASSERT_TRUE(hidden && all);
-    const image::ImageDifference difference = image::compare(*all, *hidden, 0);
-    EXPECT_EQ(difference.pixels_over, 0u) << "at " << seconds << " s";
-  }
-}
-
 // Both paths over the same frames: what was hidden in one may be seen in the next.
 TEST(RenderPath, TheGpuPathShowsWhatTheCpuPathShows) {
   std::array<std::unique_ptr<App>, 2> apps;

@@ -41,9 +41,9 @@ TEST(FrameData, the_ground_pattern_does_not_move_with_the_camera) {
 
 TEST(FrameData, haze_thins_with_the_height_of_the_camera) {
   FrameInput input;
-  const float low = frame_data(input, kSize).sun_colour.w;
+  const float low = frame_data(input, kSize).haze_extinction.y;
   input.pose.position.local.y = 500;
-  const float high = frame_data(input, kSize).sun_colour.w;
+  const float high = frame_data(input, kSize).haze_extinction.y;
   EXPECT_NEAR(high / low, std::exp(-500.0F * input.light.haze_height_falloff), 1e-4F);
 }
 

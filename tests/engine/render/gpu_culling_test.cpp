@@ -25,13 +25,14 @@ auto key(const DrawnMesh& m) {
 // A renderer with a landscape of its own: hills, and boxes with a coarser level.
 class Side {
  public:
-  void create(RenderPath path, bool occlusion) {
+  void create(RenderPath path, bool occlusion, Preset preset = Preset::kLow) {
     RendererOptions options;
     options.validation = true;
     options.size = kSize;
     options.geometry_budget_bytes = 8 << 20;
     options.path = path;
     options.occlusion = occlusion;
+    options.preset = preset;
     auto made = Renderer::create(options);
     ASSERT_TRUE(made) << made.error().message;
     renderer = std::move(*made);
@@ -257,6 +258,24 @@ TEST_F(GpuCullingTest, does_not_hide_what_looks_out_over_a_wall_by_a_pixel) {
   }
   EXPECT_EQ(gpu_.picture().rgba, cpu_.picture().rgba);
   EXPECT_LT(gpu_.drawn().size(), cpu_.drawn().size());
+}
+
+// Samples, shadows and the colours of a view, which have ways of their own through the GPU path.
+TEST_F(GpuCullingTest, shows_the_pictures_of_the_cpu_path_in_the_high_preset_and_in_views) {
+  cpu_.create(RenderPath::kCpu, true, Preset::kHigh);
+  gpu_.create(RenderPath::kGpu, true, Preset::kHigh);
+  for (Side* side : {&cpu_, &gpu_}) {
+    side->add_hills(2);
+    side->add_boxes(200);
+  }
+  for (int i = 0; i < 6; ++i) {
+    FrameInput input = look(0.1 * i, -0.05);
+    input.view = i < 4 ? View::kNormal : View::kLevels;
+    cpu_.draw(input);
+    gpu_.draw(input);
+    expect_same_pictures(gpu_.picture(), cpu_.picture());
+  }
+  EXPECT_LT(gpu_.drawn().size(), cpu_.drawn().size()) << "nothing was ever hidden";
 }
 
 TEST_F(GpuCullingTest, counts_what_a_finished_frame_drew) {

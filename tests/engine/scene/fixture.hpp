@@ -25,12 +25,26 @@ inline world::World paper_world(const models::Registry& registry) {
   return *world;
 }
 
-inline std::unique_ptr<Scene> make_scene(
-    const Settings& settings, models::Registry registry = models::make_standard_registry()) {
-  const world::World world = paper_world(registry);
+inline std::unique_ptr<Scene> make_scene(const world::World& world, const Settings& settings,
+                                         models::Registry registry) {
   auto scene = Scene::create(world, std::move(registry), settings, nullptr);
   EXPECT_TRUE(scene) << scene.error().message;
   return std::move(*scene);
+}
+
+// The paper's world with some things changed.
+template <class Change>
+std::unique_ptr<Scene> make_scene_of(const Settings& settings, const Change& change) {
+  models::Registry registry = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  change(world);
+  return make_scene(world, settings, std::move(registry));
+}
+
+inline std::unique_ptr<Scene> make_scene(
+    const Settings& settings, models::Registry registry = models::make_standard_registry()) {
+  const world::World world = paper_world(registry);
+  return make_scene(world, settings, std::move(registry));
 }
 
 inline core::CameraPose pose_at(std::int32_t block_x, std::int32_t block_z, double yaw = 0) {
@@ -60,16 +74,17 @@ inline void expect_consistent(Scene& scene) {
   const synthesis::GeometryCache& cache = *scene.state().synthesis.cache;
   std::size_t wrong = 0;
   std::as_const(scene.state().entities)
-      .each<const Demand, const Mesh>([&](std::span<const ecs::Entity>,
-                                          std::span<const Demand> demands,
-                                          std::span<const Mesh> meshes) {
-        for (std::size_t i = 0; i < demands.size(); ++i) {
-          if (demands[i].drawn_level == kNoLevel) continue;
-          const synthesis::MeshRecord* record = cache.get(meshes[i].handle);
-          wrong += record == nullptr || record->state != synthesis::MeshState::kReady ||
-                   record->range != meshes[i].range || record->key.level != demands[i].drawn_level;
-        }
-      });
+      .each<const Demand, const Mesh, const Source>(
+          [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
+              std::span<const Mesh> meshes, std::span<const Source> sources) {
+            for (std::size_t i = 0; i < demands.size(); ++i) {
+              if (demands[i].drawn_level == kNoLevel) continue;
+              const synthesis::MeshRecord* record = cache.get(meshes[i].handle);
+              wrong += record == nullptr || record->state != synthesis::MeshState::kReady ||
+                       record->range != meshes[i].range ||
+                       record->key.level != sources[i].first_level + demands[i].drawn_level;
+            }
+          });
   EXPECT_EQ(wrong, 0u);
   expect_within_budget(scene);
 }

@@ -140,6 +140,21 @@ TEST_F(PlannerTest, EnoughPredictedWorkEndsThePlanAndTheRestIsDeferred) {
   EXPECT_EQ(plan(wants_of({1, 2, 3})).published, 2u);
 }
 
+TEST_F(PlannerTest, OfManyNewWantsOnlyTheBestAreReservedInOnePlan) {
+  block_modeler();
+  limits.max_new = 3;
+  limits.seconds_ahead = 1e9;
+  const auto wants = wants_of({5, 1, 4, 2, 3});
+  const PlanReport first = plan(wants);
+  EXPECT_EQ(first.reserved, 3u);
+  EXPECT_EQ(first.deferred, 2u);
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{1, 2, 3}));
+  const PlanReport second = plan(wants);  // what is carried does not count
+  EXPECT_EQ(second.carried, 3u);
+  EXPECT_EQ(second.reserved, 2u);
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
+}
+
 TEST_F(PlannerTest, ABetterWantTakesTheRoomOfTheWorstUnclaimedReservation) {
   block_modeler();
   plan(wants_of({1, 2, 3, 4, 5}));  // the cache is full with what is in flight

@@ -1,0 +1,153 @@
+#include "engine/render/pipeline_build.hpp"
+
+#include <array>
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+
+Result<UniqueShaderModule> make_module(const Device& device, std::span<const std::uint32_t> code) {
+  VkShaderModuleCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  info.codeSize = code.size_bytes();
+  info.pCode = code.data();
+  VkShaderModule made = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateShaderModule(device.handle, &info, nullptr, &made);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a shader");
+  return UniqueShaderModule(device.vk, device.handle, made);
+}
+
+VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, VkShaderModule shader) {
+  VkPipelineShaderStageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage = stage;
+  info.module = shader;
+  info.pName = "main";
+  return info;
+}
+
+VkPipelineColorBlendAttachmentState blend_of(PipelineKind kind) {
+  VkPipelineColorBlendAttachmentState blend{};
+  blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                         VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+  if (kind != PipelineKind::kOverlay) return blend;
+  blend.blendEnable = VK_TRUE;
+  blend.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+  blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  blend.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
+  blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  return blend;
+}
+
+VkPrimitiveTopology topology_of(PipelineKind kind) {
+  switch (kind) {
+    case PipelineKind::kWater:
+      return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+    case PipelineKind::kLines:
+      return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+    default:
+      return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  }
+}
+
+// Numbers of the fragment shader's constants, in its order.
+constexpr std::array kConstants{VkSpecializationMapEntry{0, 0, sizeof(VkBool32)},
+                                VkSpecializationMapEntry{1, sizeof(VkBool32), sizeof(VkBool32)}};
+
+}  // namespace
+
+Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layout,
+                                     const PipelineShape& shape) {
+  Result<UniqueShaderModule> vert_module = make_module(device, shape.vert);
+  if (!vert_module) return tl::unexpected(vert_module.error());
+  Result<UniqueShaderModule> frag_module;
+  if (!shape.shadow) frag_module = make_module(device, shape.frag);
+  if (!frag_module) return tl::unexpected(frag_module.error());
+  std::array stages{stage_of(VK_SHADER_STAGE_VERTEX_BIT, vert_module->get()),
+                    stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, frag_module->get())};
+  const VkSpecializationInfo constants{kConstants.size(), kConstants.data(),
+                                       sizeof(shape.constants), shape.constants.data()};
+  stages[1].pSpecializationInfo = &constants;
+
+  const PipelineKind kind = shape.kind;
+  const bool meshes = kind == PipelineKind::kTerrain || kind == PipelineKind::kModel;
+  const bool terrain = kind == PipelineKind::kTerrain;
+  const bool writes_depth = meshes || kind == PipelineKind::kWater;
+  const VkVertexInputBindingDescription binding{
+      0,
+      core::vertex_stride_bytes(terrain ? core::VertexLayout::kTerrain
+                                        : core::VertexLayout::kModel),
+      VK_VERTEX_INPUT_RATE_VERTEX};
+  // One fetch of whole words, unpacked in the shader: cheaper than four attributes.
+  const VkVertexInputAttributeDescription attribute{
+      0, 0, terrain ? VK_FORMAT_R32G32B32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0};
+  VkPipelineVertexInputStateCreateInfo input{};
+  input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+  input.vertexBindingDescriptionCount = meshes ? 1 : 0;
+  input.pVertexBindingDescriptions = &binding;
+  input.vertexAttributeDescriptionCount = meshes ? 1 : 0;
+  input.pVertexAttributeDescriptions = &attribute;
+
+  VkPipelineInputAssemblyStateCreateInfo assembly{};
+  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+  assembly.topology = topology_of(kind);
+  VkPipelineViewportStateCreateInfo viewport{};
+  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+  viewport.viewportCount = 1;
+  viewport.scissorCount = 1;
+  VkPipelineRasterizationStateCreateInfo raster{};
+  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+  raster.polygonMode = shape.wireframe ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_FILL;
+  raster.cullMode = terrain ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;  // leaves have two sides
+  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+  raster.lineWidth = 1.0F;
+  VkPipelineMultisampleStateCreateInfo samples{};
+  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+  samples.rasterizationSamples = shape.shadow ? VK_SAMPLE_COUNT_1_BIT : shape.samples;
+  VkPipelineDepthStencilStateCreateInfo depth{};
+  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+  depth.depthTestEnable = kind != PipelineKind::kOverlay;
+  depth.depthWriteEnable = writes_depth;
+  depth.depthCompareOp = shape.shadow   ? VK_COMPARE_OP_LESS
+                         : writes_depth ? VK_COMPARE_OP_GREATER
+                                        : VK_COMPARE_OP_GREATER_OR_EQUAL;
+  const VkPipelineColorBlendAttachmentState attachment = blend_of(kind);
+  VkPipelineColorBlendStateCreateInfo blend{};
+  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+  blend.attachmentCount = shape.shadow ? 0 : 1;
+  blend.pAttachments = &attachment;
+  const std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  VkPipelineDynamicStateCreateInfo dynamic{};
+  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+  dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
+  dynamic.pDynamicStates = dynamic_states.data();
+  VkPipelineRenderingCreateInfo rendering{};
+  rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
+  rendering.colorAttachmentCount = shape.shadow ? 0 : 1;
+  rendering.pColorAttachmentFormats = &shape.colour_format;
+  rendering.depthAttachmentFormat = kDepthFormat;
+
+  VkGraphicsPipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  info.pNext = &rendering;
+  info.stageCount = shape.shadow ? 1 : static_cast<std::uint32_t>(stages.size());
+  info.pStages = stages.data();
+  info.pVertexInputState = &input;
+  info.pInputAssemblyState = &assembly;
+  info.pViewportState = &viewport;
+  info.pRasterizationState = &raster;
+  info.pMultisampleState = &samples;
+  info.pDepthStencilState = &depth;
+  info.pColorBlendState = &blend;
+  info.pDynamicState = &dynamic;
+  info.layout = layout;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1,
+                                                              &info, nullptr, &pipeline);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a pipeline");
+  return UniquePipeline(device.vk, device.handle, pipeline);
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,29 @@
+// Makes one graphics pipeline from a short description. Private to engine/render.
+#pragma once
+
+#include <array>
+
+#include "engine/core/vertex_layout.hpp"
+#include "engine/render/memory.hpp"
+#include "engine/render/shader_code.hpp"
+
+namespace psygen::render {
+
+inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
+enum class PipelineKind : std::uint8_t { kTerrain, kModel, kWater, kSky, kLines, kOverlay };
+
+struct PipelineShape {
+  PipelineKind kind = PipelineKind::kSky;
+  ShaderCode vert, frag;
+  VkFormat colour_format = VK_FORMAT_UNDEFINED;
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+  std::array<VkBool32, 2> constants{};  // of the fragment shader; those it lacks are ignored
+  bool wireframe = false;               // needs DeviceInfo::wireframe
+  bool shadow = false;                  // depth only, of a cascade; no fragment shader
+};
+
+core::Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layout,
+                                           const PipelineShape& shape);
+
+}  // namespace psygen::render

@@ -1,0 +1,58 @@
+#include "engine/render/preset.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace psygen::render {
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kPresets{"low", "medium", "high", "ultra"};
+constexpr std::array<std::string_view, 6> kViews{"normal", "levels",    "layers",
+                                                 "bounds", "wireframe", "missing"};
+
+template <class Value, std::size_t kCount>
+core::Result<Value> named(const std::array<std::string_view, kCount>& names, std::string_view name,
+                          std::string_view what) {
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (names[i] == name) return static_cast<Value>(i);
+  }
+  return core::fail(
+      core::ErrorCode::kInvalidArgument,
+      fmt::format("{} '{}' is unknown; allowed are {}", what, name, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+PresetTraits traits_of(Preset preset) {
+  switch (preset) {
+    case Preset::kMedium:
+      return {.pixel_light = true};
+    case Preset::kHigh:
+      return {true, true, true, 4, 2, 2048, {90.0F, 450.0F, 0.0F}};
+    case Preset::kUltra:
+      return {true, true, true, 8, 3, 4096, {70.0F, 300.0F, 1500.0F}};
+    case Preset::kLow:
+      break;
+  }
+  return {};
+}
+
+std::string_view to_string(Preset preset) {
+  return kPresets[static_cast<std::size_t>(preset)];
+}
+core::Result<Preset> preset_from(std::string_view name) {
+  return named<Preset>(kPresets, name, "preset");
+}
+
+std::string_view to_string(View view) {
+  return kViews[static_cast<std::size_t>(view)];
+}
+core::Result<View> view_from(std::string_view name) {
+  return named<View>(kViews, name, "view");
+}
+View next_view(View view) {
+  return static_cast<View>((static_cast<std::size_t>(view) + 1) % kViews.size());
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,112 @@
+#include "engine/render/shader_code.hpp"
+
+namespace psygen::render {
+
+namespace {
+
+constexpr std::uint32_t kTerrainVert[] =
+#include "terrain_vert_spv.h"
+    ;
+constexpr std::uint32_t kTerrainPushedVert[] =
+#include "terrain_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kTerrainLitVert[] =
+#include "terrain_lit_vert_spv.h"
+    ;
+constexpr std::uint32_t kTerrainLitPushedVert[] =
+#include "terrain_lit_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kTerrainColouredVert[] =
+#include "terrain_coloured_vert_spv.h"
+    ;
+constexpr std::uint32_t kTerrainColouredPushedVert[] =
+#include "terrain_coloured_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kTerrainShadowVert[] =
+#include "terrain_shadow_vert_spv.h"
+    ;
+constexpr std::uint32_t kTerrainShadowPushedVert[] =
+#include "terrain_shadow_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelVert[] =
+#include "model_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelPushedVert[] =
+#include "model_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelLitVert[] =
+#include "model_lit_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelLitPushedVert[] =
+#include "model_lit_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelColouredVert[] =
+#include "model_coloured_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelColouredPushedVert[] =
+#include "model_coloured_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelShadowVert[] =
+#include "model_shadow_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelShadowPushedVert[] =
+#include "model_shadow_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kSurfaceFrag[] =
+#include "surface_frag_spv.h"
+    ;
+constexpr std::uint32_t kSurfaceLitFrag[] =
+#include "surface_lit_frag_spv.h"
+    ;
+constexpr std::uint32_t kWaterVert[] =
+#include "water_vert_spv.h"
+    ;
+constexpr std::uint32_t kWaterLitVert[] =
+#include "water_lit_vert_spv.h"
+    ;
+constexpr std::uint32_t kWaterFrag[] =
+#include "water_frag_spv.h"
+    ;
+constexpr std::uint32_t kLineVert[] =
+#include "line_vert_spv.h"
+    ;
+constexpr std::uint32_t kSkyVert[] =
+#include "sky_vert_spv.h"
+    ;
+constexpr std::uint32_t kSkyFrag[] =
+#include "sky_frag_spv.h"
+    ;
+constexpr std::uint32_t kOverlayVert[] =
+#include "overlay_vert_spv.h"
+    ;
+constexpr std::uint32_t kOverlayFrag[] =
+#include "overlay_frag_spv.h"
+    ;
+
+// By layout, look and whether the data is pushed.
+constexpr ShaderCode kMeshes[2][4][2] = {
+    {{kTerrainVert, kTerrainPushedVert},
+     {kTerrainLitVert, kTerrainLitPushedVert},
+     {kTerrainColouredVert, kTerrainColouredPushedVert},
+     {kTerrainShadowVert, kTerrainShadowPushedVert}},
+    {{kModelVert, kModelPushedVert},
+     {kModelLitVert, kModelLitPushedVert},
+     {kModelColouredVert, kModelColouredPushedVert},
+     {kModelShadowVert, kModelShadowPushedVert}},
+};
+
+constexpr OtherCode kOthers{kSurfaceFrag, kSurfaceLitFrag, kWaterVert, kWaterLitVert, kWaterFrag,
+                            kLineVert,    kSkyVert,        kSkyFrag,   kOverlayVert,  kOverlayFrag};
+
+}  // namespace
+
+ShaderCode mesh_vertex_code(core::VertexLayout layout, MeshLook look, bool pushed) {
+  const std::size_t mesh = layout == core::VertexLayout::kTerrain ? 0 : 1;
+  return kMeshes[mesh][static_cast<std::size_t>(look)][pushed ? 1 : 0];
+}
+
+const OtherCode& other_code() {
+  return kOthers;
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,54 @@
+#include "engine/scene/views.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace psygen::scene {
+namespace {
+
+constexpr std::array<std::uint32_t, 8> kLevelColours = {0xD9433B, 0xE8873A, 0xE6C84A, 0x7DB84A,
+                                                        0x3FA796, 0x3E7CC0, 0x6A55B5, 0xB04FA0};
+constexpr std::uint32_t kAsWanted = 0x4E9A51, kOneCoarser = 0xE6C84A, kCoarse = 0xD9433B;
+constexpr std::uint32_t kGrey = 0x808080;
+
+// Yellow for the camera's node, darker to blue with every ring.
+std::uint32_t layer_colour(std::uint32_t layer) {
+  const std::uint32_t far = std::min(layer * 16, 240U);
+  const std::uint32_t red = 250 - far, green = 230 - far * 3 / 4, blue = 60 + far / 2;
+  return red << 16 | green << 8 | blue;
+}
+
+}  // namespace
+
+std::uint32_t colour_of(render::View view, const DrawFacts& facts) {
+  switch (view) {
+    case render::View::kLevels:
+    case render::View::kBounds:
+      return kLevelColours[facts.level % kLevelColours.size()];
+    case render::View::kLayers:
+      return layer_colour(facts.layer);
+    case render::View::kMissing:
+      return facts.coarser == 0 ? kAsWanted : facts.coarser == 1 ? kOneCoarser : kCoarse;
+    case render::View::kNormal:
+    case render::View::kWireframe:
+      break;
+  }
+  return kGrey;
+}
+
+void add_box(const core::Bounds& box, std::uint32_t colour, std::vector<render::Line>& lines) {
+  const glm::vec3 shown(static_cast<float>(colour >> 16 & 0xFF) / 255.0F,
+                        static_cast<float>(colour >> 8 & 0xFF) / 255.0F,
+                        static_cast<float>(colour & 0xFF) / 255.0F);
+  const auto corner = [&box](unsigned i) {
+    return glm::vec3((i & 1U) != 0 ? box.max.x : box.min.x, (i & 2U) != 0 ? box.max.y : box.min.y,
+                     (i & 4U) != 0 ? box.max.z : box.min.z);
+  };
+  for (unsigned from = 0; from < 8; ++from) {
+    for (const unsigned axis : {1U, 2U, 4U}) {
+      if ((from & axis) == 0) lines.push_back({corner(from), corner(from | axis), shown});
+    }
+  }
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,27 @@
+// The views for understanding: what colour a draw has when it shows how the picture is made, and
+// lines around what is drawn. Pure.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/core/coordinates.hpp"
+#include "engine/render/types.hpp"
+
+namespace psygen::scene {
+
+// What a view may say about one draw.
+struct DrawFacts {
+  std::uint32_t level = 0;  // of the node for ground and merged meshes, of detail for single models
+  std::uint32_t layer = 0;  // PLP layer of its node
+  std::uint32_t coarser = 0;  // by so many levels than what is wanted
+};
+
+// 0xRRGGBB. Levels: red, orange, yellow, green … from fine to coarse. Layers: bright to dark.
+// Missing: green as wanted, yellow a level coarser, red more.
+std::uint32_t colour_of(render::View view, const DrawFacts& facts);
+
+// The twelve edges of a box.
+void add_box(const core::Bounds& box, std::uint32_t colour, std::vector<render::Line>& lines);
+
+}  // namespace psygen::scene

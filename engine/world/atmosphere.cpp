@@ -1,0 +1,130 @@
+#include "engine/world/atmosphere.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <numbers>
+
+namespace psygen::world {
+namespace {
+
+using glm::dvec3;
+
+// Kilometres. Coefficients at sea level for red, green and blue, 1/km.
+constexpr double kEarth = 6360, kTop = 60;
+constexpr double kAirHeight = 8.0, kDustHeight = 1.2;
+constexpr dvec3 kAir{0.0058, 0.0135, 0.0331};
+constexpr double kDust = 0.004, kDustExtinction = 0.0044, kDustForward = 0.76;
+constexpr dvec3 kOzoneDepth{0.0098, 0.0282, 0.0013};  // straight up through all of it
+constexpr double kCloudHeight = 2.0;
+constexpr int kSteps = 24;
+// Light that was scattered more than once, as a share of what was scattered once.
+constexpr double kMoreScattering = 0.5;
+// Stars and the glow of the air, as a share of the radiance of a clear day; and how much of a loss
+// of light the eye does not make up for.
+constexpr double kNight = 2e-4;
+constexpr double kAdaptation = 0.36;
+// Light that the sky itself scatters again is as bright and much bluer: its share away from the
+// sun.
+constexpr dvec3 kSkyBlue{0.72, 1.0, 1.55};
+constexpr double kZenithFill = 0.55, kHorizonFill = 0.6, kHazeFill = 0.7;
+constexpr dvec3 kLuminance{0.2126, 0.7152, 0.0722};
+
+// Optical depth along a ray from a place where the depth straight up is `depth_up`, as a multiple
+// of it (Chapman's function for an exponential atmosphere, Schüler's approximation). `x`: distance
+// to the centre of the Earth over the scale height; `cosine` of the ray against the vertical.
+double air_mass(double x, double cosine) {
+  const double c = std::sqrt(std::numbers::pi / 2 * x);
+  const double up = c / ((c - 1) * std::abs(cosine) + 1);
+  if (cosine >= 0) return up;
+  const double lowest = x * std::sqrt(1 - cosine * cosine);
+  return 2 * std::sqrt(std::numbers::pi / 2 * lowest) * std::exp(std::min(x - lowest, 30.0)) - up;
+}
+
+// Share of the light that reaches height `h` from a body `cosine` off the vertical.
+dvec3 transmittance(double h, double cosine) {
+  const double r = kEarth + h;
+  const double air = std::exp(-h / kAirHeight) * kAirHeight * air_mass(r / kAirHeight, cosine);
+  const double dust = std::exp(-h / kDustHeight) * kDustHeight * air_mass(r / kDustHeight, cosine);
+  const double ozone = air_mass((kEarth + 25) / 6.0, std::max(cosine, 0.08));
+  const dvec3 depth = kAir * air + kDustExtinction * dust + kOzoneDepth * ozone;
+  // The Earth's edge over half a degree.
+  const double edge = -std::sqrt(std::max(0.0, 1 - kEarth * kEarth / (r * r)));
+  return glm::exp(-glm::min(depth, dvec3(60.0))) *
+         glm::smoothstep(edge - 0.006, edge + 0.006, cosine);
+}
+
+double air_phase(double cosine) {
+  return 3 / (16 * std::numbers::pi) * (1 + cosine * cosine);
+}
+double dust_phase(double cosine) {
+  const double g = kDustForward, d = 1 + g * g - 2 * g * cosine;
+  return (1 - g * g) / (4 * std::numbers::pi * d * std::sqrt(d));
+}
+
+// Radiance of the sky from direction `d` with the sun in direction `sun`, both unit, +Y up.
+dvec3 sky(dvec3 d, dvec3 sun) {
+  const double cosine = glm::dot(d, sun);
+  const double air = air_phase(cosine) + kMoreScattering / (4 * std::numbers::pi);
+  const double dust = dust_phase(cosine) + 0.3 * kMoreScattering / (4 * std::numbers::pi);
+  const double b = kEarth * d.y;
+  const double length = -b + std::sqrt(b * b + kTop * (2 * kEarth + kTop));
+  dvec3 light(0.0), depth(0.0);
+  double before = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = (i + 1.0) / kSteps, at = length * t * t * t;
+    const double middle = 0.5 * (before + at), step = at - before;
+    before = at;
+    const dvec3 p = dvec3(0, kEarth, 0) + d * middle;
+    const double r = glm::length(p), h = r - kEarth;
+    const double air_here = std::exp(-h / kAirHeight), dust_here = std::exp(-h / kDustHeight);
+    const dvec3 extinction = kAir * air_here + kDustExtinction * dust_here;
+    const dvec3 scattered = kAir * (air_here * air) + kDust * dust_here * dust;
+    light += scattered * glm::exp(-depth - 0.5 * step * extinction) * step *
+             transmittance(h, glm::dot(p, sun) / r);
+    depth += step * extinction;
+  }
+  return light;
+}
+
+dvec3 direction(double elevation, double azimuth) {
+  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+          std::cos(azimuth) * std::cos(elevation)};
+}
+
+}  // namespace
+
+Daylight daylight(double sun_elevation_deg) {
+  const double elevation = glm::radians(std::clamp(sun_elevation_deg, -90.0, 90.0));
+  const dvec3 sun = direction(elevation, 0);
+  const double aside = std::numbers::pi / 2;
+  const double near_sun = std::max(elevation, glm::radians(2.0)) + glm::radians(6.0);
+  const dvec3 night = kNight * dvec3(0.55, 0.75, 1.3);
+  const auto aside_of = [&](dvec3 d, double fill) {
+    const dvec3 once = sky(d, sun) + night;
+    return glm::mix(once, glm::dot(once, kLuminance) * kSkyBlue, fill);
+  };
+  const dvec3 zenith = aside_of({0, 1, 0}, kZenithFill);
+  const dvec3 horizon = aside_of(direction(glm::radians(14.0), aside), kHorizonFill);
+  const dvec3 haze = aside_of(direction(glm::radians(4.0), aside), kHazeFill);
+  const dvec3 glow =
+      glm::max(sky(direction(near_sun, 0), sun) - sky(direction(near_sun, aside), sun), dvec3(0.0));
+  const dvec3 direct = transmittance(0, sun.y);
+  // Light from below: what the ground reflects of sun and sky.
+  const dvec3 ground = std::max(sun.y, 0.0) * direct + std::numbers::pi * 0.5 * (zenith + horizon);
+  const double bright = std::pow(glm::dot(ground, kLuminance), -kAdaptation);
+  const auto seen = [bright](dvec3 light) { return glm::vec3(light * bright); };
+  return {.sun = seen(direct),
+          .zenith = seen(zenith),
+          .horizon = seen(horizon),
+          .haze = seen(haze),
+          .ground = seen(ground),
+          .glow = seen(glow),
+          .cloud = seen(transmittance(kCloudHeight, sun.y))};
+}
+
+}  // namespace psygen::world

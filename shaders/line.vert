@@ -1,0 +1,15 @@
+// Lines between places relative to the camera, two ends each, from the overlay's buffer.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame.glsl"
+
+layout(set = 0, binding = PSYGEN_BINDING_GLYPHS, std430) readonly buffer Ends {
+  OverlayVertex ends[];
+};
+layout(location = 0) out vec3 colour;
+
+void main() {
+  OverlayVertex end = ends[gl_VertexIndex];
+  colour = end.colour.rgb;
+  gl_Position = frame.clip_from_camera * vec4(end.place.xyz, 1.0);
+}

@@ -1,0 +1,83 @@
+// The ground is closed: wherever the true ground stands in the way, no sky is seen.
+#include "tests/engine/app/studio.hpp"
+
+namespace psygen::app {
+namespace {
+
+Options wide_view() {
+  Options options = short_flight();
+  options.validation = false;
+  options.scene.view_distance_m = 3000;
+  return options;
+}
+
+struct Place {
+  core::BlockCoord block;
+  double x, z, height_m, yaw, pitch;
+};
+
+TEST(Holes, LookingForwardAndDownFromAnyHeightTheGroundIsClosed) {
+  Studio studio("paper.toml", wide_view());
+  for (const Place& place :
+       {Place{{250, 250}, 3, 60, 2, 0.3, -0.05}, Place{{256, 200}, 63.9, 0.1, 6, 1.9, -0.3},
+        Place{{100, 301}, 31, 31, 25, 3.6, -0.15}, Place{{257, 256}, 10, 10, 90, 5.1, -0.5},
+        Place{{300, 130}, 1, 62, 300, 0.0, -1.2}, Place{{333, 333}, 40, 20, 700, 2.5, -0.7},
+        Place{{256, 256}, 32, 32, 2000, 4.2, -1.5}}) {
+    studio.settle(
+        studio.above(place.block, place.x, place.z, place.height_m, place.yaw, place.pitch));
+    EXPECT_EQ(studio.state().counters.holes, 0u);
+    EXPECT_EQ(studio.holes(), 0u) << "at " << place.height_m << " m";
+  }
+}
+
+// Blocks that no stride divides, coarse levels near the camera, steep ground.
+TEST(Holes, OddBlocksAndCoarseLevelsOfSteepGroundLeaveNoCracks) {
+  for (const char* terrain : {"feature_m = 300\nrelief_m = 300\n", "relief_m = 900\n"}) {
+    Options options = wide_view();
+    options.scene.max_error_pixels = 24;
+    std::string text = paper_text(0, 0, terrain);
+    text.insert(text.find("[terrain]"), "block_vertices = 59\ncell_m = 1.5\n");
+    Studio studio(text, options);
+    for (const Place& place :
+         {Place{{-250, 250}, 3, 60, 3, 0.3, -0.05}, Place{{100, -301}, 31, 31, 40, 3.6, -0.2},
+          Place{{7, 9}, 40, 20, 400, 2.5, -0.6}, Place{{0, 0}, 0, 0, 1500, 4.2, -1.0}}) {
+      studio.settle(
+          studio.above(place.block, place.x, place.z, place.height_m, place.yaw, place.pitch));
+      EXPECT_EQ(studio.holes(), 0u) << terrain << " at " << place.height_m << " m";
+    }
+  }
+}
+
+// While levels change, with what has come so far.
+TEST(Holes, WhileTheCameraClimbsAndFliesTheGroundStaysClosed) {
+  Studio studio("silver_combe.toml", wide_view());
+  core::CameraPose pose = studio.above({250, 250}, 20, 20, 4, 0.8, -0.25);
+  studio.settle(pose);
+  for (int i = 0; i < 24; ++i) {
+    pose.position.local += glm::dvec3(9, 3.0 * i, -7);
+    pose.position = core::normalised(pose.position, 63);
+    const double ground_m =
+        models::ground_height_m(studio.state().facts.world.terrain, pose.position.block,
+                                pose.position.local.x, pose.position.local.z);
+    pose.position.local.y = std::max(pose.position.local.y, ground_m + 4);
+    studio.draw(pose);
+    EXPECT_EQ(studio.holes(), 0u) << "frame " << i;
+  }
+}
+
+TEST(Holes, AreFoundWhereGroundOrSkirtsAreLeftOut) {
+  Studio studio("paper.toml", wide_view());
+  studio.settle(studio.above({250, 250}, 3, 60, 30, 0.3, -0.3));
+  EXPECT_EQ(studio.holes(), 0u);
+  std::vector<render::TerrainDraw>& draws = studio.state().draws.terrain;
+  const render::TerrainDraw nearest = draws.front();
+  draws.erase(draws.begin());
+  EXPECT_GT(studio.holes(), 1000u);
+  draws.insert(draws.begin(), nearest);
+  for (render::TerrainDraw& draw : draws)
+    draw.skirt_m = 0;
+  EXPECT_GT(studio.holes(), 0u);
+}
+
+}  // namespace
+}  // namespace psygen::app

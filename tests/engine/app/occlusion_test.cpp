@@ -1,0 +1,65 @@
+// What is left out behind ridges makes no difference to the picture: in any world, from any height.
+#include "engine/image/compare.hpp"
+#include "tests/engine/app/studio.hpp"
+
+namespace psygen::app {
+namespace {
+
+// Coarse ground hides as much as fine.
+Options coarse_view() {
+  Options options = short_flight();
+  options.validation = false;
+  options.scene.view_distance_m = 5000;
+  options.scene.max_error_pixels = 12;
+  return options;
+}
+
+// Pixels that differ with and without occlusion.
+std::uint64_t differing(Studio& studio, const core::CameraPose& pose, std::uint32_t& hidden) {
+  studio.state().settings.occlusion = true;
+  studio.settle(pose);
+  hidden += studio.state().counters.nodes_hidden;
+  const image::Image without = studio.picture();
+  studio.state().settings.occlusion = false;
+  studio.settle(pose);
+  EXPECT_EQ(studio.state().counters.nodes_hidden, 0u);
+  return image::compare(studio.picture(), without, 0).pixels_over;
+}
+
+TEST(Occlusion, MakesNoDifferenceOnTheWalk) {
+  const auto path = world::load_camera_path(short_flight().path_file);
+  ASSERT_TRUE(path);
+  Studio studio("paper.toml", coarse_view());
+  std::uint32_t hidden = 0;
+  for (const double seconds : {1.0, 5.0, 9.0, 13.5, 18.0, 22.0, 25.0}) {
+    const core::CameraPose pose = path->pose_at(seconds, studio.state().facts.world);
+    EXPECT_EQ(differing(studio, pose, hidden), 0u) << "at " << seconds << " s";
+  }
+  EXPECT_GT(hidden, 50u);
+}
+
+class OcclusionOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(OcclusionOf, MakesNoDifferenceToAnyPicture) {
+  Studio studio(GetParam(), coarse_view());
+  std::uint32_t hidden = 0;
+  int turn = 0;
+  for (const core::BlockCoord block : {core::BlockCoord{250, 250}, {140, 311}, {402, 199}}) {
+    for (const double height_m : {2.0, 12.0, 60.0, 250.0}) {
+      const core::CameraPose pose = studio.above(block, 13, 50, height_m, 0.9 * turn++, -0.06);
+      EXPECT_EQ(differing(studio, pose, hidden), 0u)
+          << height_m << " m above block " << block.x << ", " << block.z;
+    }
+  }
+  EXPECT_GT(hidden, 50u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, OcclusionOf,
+                         testing::Values("paper.toml", "silver_combe.toml", "five_species.toml"),
+                         [](const auto& test) {
+                           const std::string file = test.param;
+                           return file.substr(0, file.find('.'));
+                         });
+
+}  // namespace
+}  // namespace psygen::app

@@ -1,0 +1,118 @@
+// A headless application for tests of what is seen: settled pictures of any pose, and where the
+// ground leaves the sky to be seen. Worlds are given as text, so that tests can vary them.
+#pragma once
+
+#include <fstream>
+#include <glm/matrix.hpp>
+
+#include "engine/image/image.hpp"
+#include "engine/models/terrain.hpp"
+#include "tests/engine/app/fixture.hpp"
+
+namespace psygen::app {
+
+// The paper's world with so many blocks along each side, 0: endless.
+inline std::string paper_text(int blocks_x, int blocks_z, const std::string& terrain = {}) {
+  const auto number = [](int n) { return std::to_string(n); };
+  return "format = 1\n[world]\nname = \"studio\"\nseed = 2009\nblocks = [" + number(blocks_x) +
+         ", " + number(blocks_z) + "]\n[terrain]\noctaves = 9\n" + terrain +
+         "[[scatter]]\nmodel = \"tree\"\ncount = 23\niterations = [3, 5]\nbranches = [2, 4]\n" +
+         "[[scatter]]\nmodel = \"rock\"\ncount = 40\nsubdivisions = 2\n";
+}
+
+class Studio {
+ public:
+  // `world` is a file of game/worlds, or the text of one.
+  Studio(const std::string& world, Options options) {
+    options.path_file.clear();
+    options.world_file = std::filesystem::path(PSYGEN_SOURCE_DIR "/game/worlds") / world;
+    if (world.find('\n') != std::string::npos) {
+      const std::filesystem::path folder = fresh_folder();
+      std::filesystem::create_directories(folder);
+      options.world_file = folder / "world.toml";
+      std::ofstream(options.world_file) << world;
+    }
+    auto app = App::create(options);
+    EXPECT_TRUE(app) << app.error().message;
+    app_ = std::move(*app);
+  }
+
+  scene::Scene& scene() { return app_->scene(); }
+  scene::State& state() { return app_->scene().state(); }
+  std::uint32_t width() { return app_->renderer().size().width; }
+  std::uint32_t height() { return app_->renderer().size().height; }
+
+  // A pose so high above the ground at a place of a block.
+  core::CameraPose above(core::BlockCoord block, double x, double z, double height_m, double yaw,
+                         double pitch) {
+    core::CameraPose pose;
+    const double ground_m = models::ground_height_m(state().facts.world.terrain, block, x, z);
+    pose.position = {block, {x, ground_m + height_m, z}};
+    pose.yaw = yaw;
+    pose.pitch = pitch;
+    return pose;
+  }
+
+  // Everything is there, as if the camera had always been here.
+  void settle(const core::CameraPose& pose) {
+    scene().settle(pose);
+    draw(pose);
+  }
+  // The next frame of a flight, after everything that it asks for has come.
+  void fly(const core::CameraPose& pose) {
+    for (int i = 0; i < 40; ++i) {
+      draw(pose);
+      state().synthesis.manager->wait_all();
+      if (state().counters.requests == 0 && state().synthesis.finished.empty()) break;
+    }
+    draw(pose);
+  }
+  void draw(const core::CameraPose& pose) {
+    const auto drawn = app_->frame(pose, 1.0 / 60.0);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+  }
+  // What the last frame drew, with clouds and wind standing still.
+  image::Image picture();
+
+  // The same of lists of an earlier frame, from where the camera is now.
+  struct Lists {
+    core::WorldPosition eye;
+    std::vector<render::TerrainDraw> terrain;
+    std::vector<render::MeshDraw> models;
+  };
+  Lists lists();
+  image::Image picture_of(Lists terrain_of, const Lists& models_of);
+
+  // For each pixel, row by row: not 0 where the ground of the last frame (without what stands on
+  // it) leaves the sky to be seen. A sky of another colour changes nothing but the sky.
+  std::vector<std::uint8_t> sky() {
+    const image::Image dark = ground_under(0.0F), bright = ground_under(1e6F);
+    std::vector<std::uint8_t> sky(std::size_t{dark.width} * dark.height);
+    for (std::size_t i = 0; i < sky.size(); ++i)
+      sky[i] = std::abs(dark.rgba[4 * i] - bright.rgba[4 * i]) > 8 ? 1 : 0;
+    return sky;
+  }
+
+  // Metres; the direction has length 1.
+  glm::dvec3 direction_of(double column, double row) {
+    const scene::Camera& camera = state().camera;
+    const double up = std::tan(camera.projection.vertical_fov / 2);
+    const glm::dvec3 ray((2 * (column + 0.5) / width() - 1) * up * camera.projection.aspect,
+                         -(2 * (row + 0.5) / height() - 1) * up, -1.0);
+    return glm::normalize(glm::transpose(glm::dmat3(core::view_rotation(camera.pose))) * ray);
+  }
+
+  // The pixels through which the sky is seen though the true ground stands in the way, by more than
+  // the levels of detail may be off.
+  std::size_t holes();
+
+ private:
+  image::Image drawn_again(const render::Light& light, std::span<const render::TerrainDraw> terrain,
+                           std::span<const render::MeshDraw> models);
+  image::Image ground_under(float haze_colour);
+  bool is_hole(const glm::dvec3& direction);
+
+  std::unique_ptr<App> app_;
+};
+
+}  // namespace psygen::app

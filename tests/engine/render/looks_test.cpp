@@ -1,0 +1,186 @@
+// Presets and views on one small scene with water: stored pictures, and what they have in common.
+// To accept new pictures after looking at them: PSYGEN_GOLDEN_UPDATE=1 ctest --preset release -R
+// Looks
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "engine/image/compare.hpp"
+#include "engine/image/image_io.hpp"
+#include "engine/render/preset.hpp"
+#include "tests/engine/render/synthetic_scene.hpp"
+
+namespace psygen::render {
+namespace {
+
+constexpr core::Extent kSize{160, 120};
+constexpr int kSide = 65;
+
+class Looks : public testing::Test {
+ protected:
+  void open(Preset preset) {
+    RendererOptions options;
+    options.validation = true;
+    options.size = kSize;
+    options.geometry_budget_bytes = 8 << 20;
+    options.preset = preset;
+    auto made = Renderer::create(options);
+    ASSERT_TRUE(made) << made.error().message;
+    renderer_ = std::move(*made);
+    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(kSide));
+    const auto hills = synthetic::make_terrain(renderer_->geometry(), kSide, [](int x, int z) {
+      return 0.5F + 0.25F * std::sin(0.35F * static_cast<float>(x)) *
+                        std::cos(0.28F * static_cast<float>(z));
+    });
+    const auto box = synthetic::make_box(renderer_->geometry(), {0.4F, 0.1F, 0.05F});
+    ASSERT_TRUE(grid && hills && box);
+    terrain_.range = *hills;
+    terrain_.shared_indices = *grid;
+    terrain_.origin = {-320.0F, -90.0F, -600.0F};
+    terrain_.cell_m = 10.0F;
+    terrain_.height_range_m = 80.0F;
+    terrain_.debug_colour = 0x20C040;
+    box_.range = *box;
+    box_.origin = {8.0F, -42.0F, -110.0F};
+    box_.box_center = {0, 12, 0};
+    box_.box_half_extent = {6, 12, 6};
+    box_.debug_colour = 0xE03020;
+    input_ = synthetic::look(60.0, -0.3, kSize);
+    input_.terrain = {&terrain_, 1};
+    input_.models = {&box_, 1};
+    input_.light.haze_density = 0.0004F;
+    input_.block_size_m = 64;
+    input_.water = Water{3.0F, {0.01F, 0.045F, 0.05F}};
+  }
+  void TearDown() override {
+    if (!renderer_) return;
+    renderer_->wait_idle();
+    for (const std::string& message : renderer_->validation_messages())
+      ADD_FAILURE() << message;
+  }
+  image::Image draw() {
+    const auto drawn = renderer_->render(input_);
+    EXPECT_TRUE(drawn) << drawn.error().message;
+    auto picture = renderer_->capture();
+    EXPECT_TRUE(picture);
+    if (!picture) return {};
+    return {picture->width, picture->height, std::move(picture->rgba)};
+  }
+  // Compares with, or renews, the stored picture of this name.
+  static void expect_golden(const image::Image& image, std::string_view name) {
+    const auto stored = std::filesystem::path(PSYGEN_SOURCE_DIR "/tests/engine/render/golden") /
+                        (std::string(name) + ".png");
+    if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
+      std::filesystem::create_directories(stored.parent_path());
+      ASSERT_TRUE(image::write_png(stored, image));
+    }
+    const auto golden = image::read_image(stored);
+    ASSERT_TRUE(golden) << golden.error().message;
+    const auto difference = image::compare(*golden, image);
+    EXPECT_TRUE(image::matches_golden(difference)) << name << ": " << difference.share_over;
+  }
+
+  std::unique_ptr<Renderer> renderer_;
+  TerrainDraw terrain_;
+  MeshDraw box_;
+  FrameInput input_;
+};
+
+class LooksOfPresets : public Looks, public testing::WithParamInterface<Preset> {};
+
+TEST_P(LooksOfPresets, are_as_they_were_and_the_same_twice) {
+  open(GetParam());
+  const image::Image first = draw();
+  EXPECT_EQ(draw().rgba, first.rgba);
+  expect_golden(first, std::string("preset_") + std::string(to_string(GetParam())));
+}
+
+TEST_P(LooksOfPresets, survive_a_camera_under_water_and_a_sun_below_the_horizon) {
+  open(GetParam());
+  input_.water->level_m = 100.0F;
+  const image::Image drowned = draw();
+  EXPECT_GT(drowned.rgba[2], drowned.rgba[0]) << "it is bluer than red there";
+  input_.water.reset();
+  input_.light.sun_direction = {0.5F, -0.2F, 0.1F};
+  draw();
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, LooksOfPresets,
+                         testing::Values(Preset::kLow, Preset::kMedium, Preset::kHigh,
+                                         Preset::kUltra),
+                         [](const auto& test) { return std::string(to_string(test.param)); });
+
+class LooksOfViews : public Looks, public testing::WithParamInterface<View> {};
+
+TEST_P(LooksOfViews, are_as_they_were) {
+  open(Preset::kLow);
+  const Line line{{-20, -5, -50}, {20, 15, -50}, {1, 1, 0}};
+  if (GetParam() == View::kBounds) input_.lines = {&line, 1};
+  const image::Image normal = draw();
+  input_.view = GetParam();
+  const image::Image view = draw();
+  EXPECT_EQ(view.rgba == normal.rgba, GetParam() == View::kBounds);
+  expect_golden(view, std::string("view_") + std::string(to_string(GetParam())));
+}
+
+INSTANTIATE_TEST_SUITE_P(Views, LooksOfViews,
+                         testing::Values(View::kLevels, View::kLayers, View::kBounds,
+                                         View::kWireframe, View::kMissing),
+                         [](const auto& test) { return std::string(to_string(test.param)); });
+
+TEST_F(Looks, lines_are_seen_and_do_not_stay) {
+  open(Preset::kLow);
+  const image::Image without = draw();
+  const Line line{{-20, 5, -50}, {20, 5, -50}, {1, 1, 0}};
+  input_.lines = {&line, 1};
+  EXPECT_NE(draw().rgba, without.rgba);
+  input_.lines = {};
+  EXPECT_EQ(draw().rgba, without.rgba);
+}
+
+TEST_F(Looks, terrain_ends_at_the_edge_of_the_world) {
+  open(Preset::kLow);
+  input_.water.reset();
+  const image::Image whole = draw();
+  input_.edge.least = {-320.0F, -600.0F};
+  input_.edge.greatest = {320.0F, 40.0F};
+  EXPECT_EQ(draw().rgba, whole.rgba) << "an edge that nothing reaches over";
+  input_.edge.greatest.x = 0.0F;
+  EXPECT_NE(draw().rgba, whole.rgba);
+}
+
+TEST_F(Looks, far_forests_darken_the_ground_that_can_bear_them) {
+  open(Preset::kLow);
+  input_.water.reset();
+  input_.models = {};
+  const auto green = [](const image::Image& image) {
+    const std::size_t last_row = image.rgba.size() - 4 * kSize.width;
+    int sum = 0;
+    for (std::size_t i = last_row; i < image.rgba.size(); i += 4)
+      sum += image.rgba[i + 1];
+    return sum;
+  };
+  const image::Image bare = draw();
+  terrain_.cover = 1.0F;
+  const image::Image covered = draw();
+  EXPECT_LT(green(covered), green(bare) * 9 / 10);
+  input_.canopy.highest_m = -200.0F;
+  EXPECT_EQ(draw().rgba, bare.rgba);
+}
+
+TEST(Presets, have_names_that_are_read_back) {
+  for (const char* name : {"low", "medium", "high", "ultra"})
+    EXPECT_EQ(to_string(preset_from(name).value()), name);
+  EXPECT_FALSE(preset_from("best"));
+  View view = View::kNormal;
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(view_from(to_string(view)).value(), view);
+    view = next_view(view);
+  }
+  EXPECT_EQ(view, View::kNormal);
+  EXPECT_FALSE(view_from(""));
+}
+
+}  // namespace
+}  // namespace psygen::render

@@ -1,0 +1,305 @@
+// What must hold in every frame of a flight, however fast it is and however slow the modelers are.
+#include <algorithm>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <numbers>
+#include <thread>
+
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// A square of ground, metres from the corner of the block (0, 0).
+struct Square {
+  double x, z, side;
+  bool holds(double px, double pz) const {
+    return px >= x && px < x + side && pz >= z && pz < z + side;
+  }
+};
+
+std::vector<Square> drawn_ground(const State& s) {
+  std::vector<Square> squares;
+  const double block_m = s.facts.world.block_size_m();
+  const core::WorldPosition& eye = s.camera.pose.position;
+  for (const render::TerrainDraw& draw : s.draws.terrain) {
+    squares.push_back({std::round(eye.block.x * block_m + eye.local.x + double{draw.origin.x}),
+                       std::round(eye.block.z * block_m + eye.local.z + double{draw.origin.z}),
+                       block_m * double{draw.cell_m / s.facts.cell_m}});
+  }
+  return squares;
+}
+
+std::size_t overlaps(const std::vector<Square>& squares) {
+  std::size_t count = 0;
+  for (const Square& a : squares) {
+    for (const Square& b : squares) {
+      count += &a < &b && a.x < b.x + b.side && b.x < a.x + a.side && a.z < b.z + b.side &&
+               b.z < a.z + a.side;
+    }
+  }
+  return count;
+}
+
+bool is_drawn(const std::vector<Square>& squares, double x, double z) {
+  return std::ranges::any_of(squares, [&](const Square& s) { return s.holds(x, z); });
+}
+
+// Leaves in view that are not drawn at any level, though they were in the frame before.
+std::size_t vanished(const State& s, const std::vector<Square>& before,
+                     const std::vector<Square>& now) {
+  std::size_t count = 0;
+  const double block_m = s.facts.world.block_size_m();
+  const core::WorldPosition& eye = s.camera.pose.position;
+  for (std::size_t i = 0; i < s.view.cut.nodes.size(); ++i) {
+    const visibility::CutNode& node = s.view.cut.nodes[i];
+    if (!node.leaf || s.view.in_view[i] == 0) continue;
+    const double half = double{node.side_m} / 2;
+    const double x = eye.block.x * block_m + eye.local.x + double{node.corner_x_m} + half,
+                 z = eye.block.z * block_m + eye.local.z + double{node.corner_z_m} + half;
+    count += is_drawn(before, x, z) && !is_drawn(now, x, z);
+  }
+  return count;
+}
+
+// Lets modelers through one by one.
+class Gate {
+ public:
+  void pass() {
+    std::unique_lock lock(mutex_);
+    opened_.wait(lock, [this] { return open_ || passes_ > 0; });
+    if (!open_) --passes_;
+  }
+  void let_through(int passes) {
+    change([&] { passes_ += passes; });
+  }
+  void set_open(bool open) {
+    change([&] {
+      open_ = open;
+      passes_ = 0;
+    });
+  }
+
+ private:
+  template <class Change>
+  void change(const Change& change) {
+    {
+      const std::lock_guard lock(mutex_);
+      change();
+    }
+    opened_.notify_all();
+  }
+  std::mutex mutex_;
+  std::condition_variable opened_;
+  bool open_ = true;
+  int passes_ = 0;
+};
+
+// A model type whose synthesis in a modeler waits at a gate.
+class SlowType final : public models::ModelType {
+ public:
+  SlowType(std::string name, const models::ModelType& fast, Gate& gate)
+      : name_(std::move(name)), fast_(fast), gate_(gate) {}
+  std::string_view name() const override { return name_; }
+  std::string_view doc() const override { return "waits at a gate"; }
+  std::span<const models::ParameterSpec> parameters() const override { return fast_.parameters(); }
+  int level_count() const override { return fast_.level_count(); }
+  double level_error_m(const models::Parameters& p, int level) const override {
+    return fast_.level_error_m(p, level);
+  }
+  core::Bounds bounds(const models::Parameters& p) const override { return fast_.bounds(p); }
+  models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
+    return fast_.mesh_size(p, level);
+  }
+  double complexity(const models::Parameters& p, int level) const override {
+    return fast_.complexity(p, level);
+  }
+  double log2_cost(const models::Parameters& p) const override { return fast_.log2_cost(p); }
+  void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {
+    fast_.write_shared_indices(id, out);
+  }
+  core::Bounds synthesize(const models::Parameters& p, int level,
+                          const models::MeshView& out) const override {
+    if (std::this_thread::get_id() != main_thread_) gate_.pass();
+    return fast_.synthesize(p, level, out);
+  }
+
+ private:
+  std::string name_;
+  const models::ModelType& fast_;
+  Gate& gate_;
+  const std::thread::id main_thread_ = std::this_thread::get_id();
+};
+
+// The paper's world whose ground and trees wait at a gate.
+std::unique_ptr<Scene> slow_scene(const Settings& settings, Gate& gate) {
+  models::Registry registry = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  const auto slow = [&](models::ModelIndex model) {
+    const std::string name = "slow_" + std::string(registry[model].name());
+    const auto added = registry.add(std::make_unique<SlowType>(name, registry[model], gate));
+    EXPECT_TRUE(added);
+    return *added;
+  };
+  world.terrain_model = slow(world.terrain_model);
+  world.scatter[0].model = slow(world.scatter[0].model);
+  return make_scene(world, settings, std::move(registry));
+}
+
+Settings far_settings() {
+  Settings settings = small_settings();
+  settings.view_distance_m = 1000;
+  settings.max_error_pixels = 12;
+  settings.budget_bytes = 128ull << 20;
+  return settings;
+}
+
+// 180 frames with `passes(i)` meshes in frame i.
+template <class Pose, class Passes>
+void fly_starved(const Pose& pose_of, const Passes& passes) {
+  Gate gate;
+  Settings settings = far_settings();
+  settings.hole_budget_ms = 0;
+  settings.watchdog_seconds = 1e6;
+  const auto scene = slow_scene(settings, gate);
+  scene->settle(pose_of(0));
+  gate.set_open(false);
+  State& s = scene->state();
+  std::vector<Square> before;
+  std::size_t coarse = 0;
+  for (int i = 0; i < 180; ++i) {
+    gate.let_through(passes(i));
+    tick_at(*scene, pose_of(i));
+    const std::vector<Square> now = drawn_ground(s);
+    EXPECT_EQ(overlaps(now), 0u) << "frame " << i;
+    EXPECT_EQ(vanished(s, before, now), 0u) << "frame " << i;
+    EXPECT_GT(now.size(), 2u) << "frame " << i;
+    before = now;
+    const auto leaf = [&](std::uint32_t node) { return s.view.cut.nodes[node].leaf; };
+    coarse += !std::ranges::all_of(s.draws.nodes, leaf);
+  }
+  EXPECT_GT(coarse, 20u) << "ancestors have stood for what was missing";
+  gate.set_open(true);
+}
+
+constexpr auto kSome = [](int i) { return i % 3; };
+
+TEST(Steady, FlyingForwardWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
+  const auto pose_of = [](int i) {
+    core::CameraPose pose = pose_at(256, 256, 0.3 + 0.3 * std::sin(0.07 * i));
+    pose.position.local += glm::dvec3(0, 40 * std::sin(0.05 * i), -3.0 * i);
+    return pose;
+  };
+  fly_starved(pose_of, kSome);
+  fly_starved(pose_of, [](int) { return 0; });
+}
+
+TEST(Steady, FlyingBackwardWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
+  const auto pose_of = [](int i) {
+    core::CameraPose pose = pose_at(256, 256, 0.3);
+    // Forward first, so that there is something to merge.
+    pose.position.local += glm::dvec3(0, 20 + i * 0.5, i < 60 ? -8.0 * i : 10.0 * i - 1080);
+    return pose;
+  };
+  fly_starved(pose_of, kSome);
+  fly_starved(pose_of, [](int i) { return i < 60 ? 40 : 0; });
+}
+
+TEST(Steady, LookingAroundWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
+  const auto pose_of = [](int i) {
+    core::CameraPose pose = pose_at(256, 256, 0.04 * i);
+    pose.position.local.x += 4.0 * i;
+    return pose;
+  };
+  fly_starved(pose_of, kSome);
+}
+
+// Entities that can exist at most: all nodes of all windows with what stands on them.
+std::size_t most_entities(const State& s) {
+  std::size_t most = 0;
+  for (const NodeGrid& grid : s.streaming.grids)
+    most += std::size_t{grid.side()} * grid.side() *
+            (grid.level() == 0 ? 1 + s.facts.models_per_block : 2);
+  return most;
+}
+
+void expect_bounded(const Scene& scene) {
+  const State& s = scene.state();
+  expect_within_budget(scene);
+  EXPECT_LE(s.synthesis.manager->outstanding(), s.settings.plan_max_requests + 64u);
+  EXPECT_LE(s.entities.size(), most_entities(s));
+}
+
+// One second at 60 Hz, with modelers that keep up; then what is in view is there.
+template <class Pose>
+void fly_a_second(const Settings& settings, const Pose& pose_of) {
+  const auto scene = make_scene(settings);
+  scene->settle(pose_of(0));
+  for (int i = 1; i <= 60; ++i) {
+    tick_at(*scene, pose_of(i));
+    scene->state().synthesis.manager->wait_all();
+    expect_bounded(*scene);
+    EXPECT_EQ(overlaps(drawn_ground(scene->state())), 0u) << "frame " << i;
+  }
+  // A plan is what modelers do in a moment: on a slow machine it takes several.
+  const Counters& counters = scene->state().counters;
+  for (int i = 0; i < 3 || (i < 60 && counters.holes + counters.coarse > 0); ++i) {
+    tick_at(*scene, pose_of(60));
+    scene->state().synthesis.manager->wait_all();
+  }
+  EXPECT_EQ(counters.holes, 0u);
+  EXPECT_EQ(counters.coarse, 0u);
+  expect_consistent(*scene);
+}
+
+TEST(Steady, AfterASpinAt720DegreesASecondNothingIsMissing) {
+  fly_a_second(far_settings(),
+               [](int i) { return pose_at(256, 256, 4 * std::numbers::pi * i / 60.0); });
+}
+
+TEST(Steady, AfterAFlightAt500MetresASecondNothingIsMissing) {
+  fly_a_second(far_settings(), [](int i) {
+    core::CameraPose pose = pose_at(200, 200, 2.0);
+    pose.position.local.x += 500.0 / 60.0 * i;
+    return pose;
+  });
+}
+
+TEST(Steady, AfterTeleportsNothingIsMissing) {
+  fly_a_second(far_settings(), [](int i) {
+    const int jump = i / 15;
+    return pose_at(100 + 77 * jump, 400 - 61 * jump, 1.3 * jump);
+  });
+}
+
+TEST(Steady, AfterAFallFrom2000MetresNothingIsMissing) {
+  fly_a_second(far_settings(), [](int i) {
+    core::CameraPose pose = pose_at(256, 256, 0.6);
+    pose.position.local.y = 2000.0 - 32.3 * i;
+    pose.pitch = -0.6;
+    return pose;
+  });
+}
+
+TEST(Steady, TooLittleMemoryMakesNoHolesInTheGround) {
+  Settings settings = far_settings();
+  settings.budget_bytes = 6ull << 20;
+  const auto scene = make_scene(settings);
+  std::vector<Square> before;
+  for (int i = 0; i < 120; ++i) {
+    core::CameraPose pose = pose_at(200, 200, 0.05 * i);
+    pose.position.local.x += 8.0 * i;
+    tick_at(*scene, pose);
+    scene->state().synthesis.manager->wait_all();
+    expect_bounded(*scene);
+    const std::vector<Square> now = drawn_ground(scene->state());
+    EXPECT_EQ(overlaps(now), 0u) << "frame " << i;
+    EXPECT_EQ(vanished(scene->state(), before, now), 0u) << "frame " << i;
+    before = now;
+  }
+  expect_consistent(*scene);
+}
+
+}  // namespace
+}  // namespace psygen::scene

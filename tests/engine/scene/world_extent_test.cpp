@@ -1,0 +1,157 @@
+// Neither the size of the world nor the distance from its origin makes a difference.
+#include "engine/models/terrain.hpp"
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+Settings far_settings() {
+  Settings settings = small_settings();
+  settings.view_distance_m = 3000;
+  settings.max_error_pixels = 16;
+  return settings;
+}
+
+// Endless and nearly flat, so that every place looks like every other; nothing is random but
+// where models stand.
+std::unique_ptr<Scene> endless_scene() {
+  Settings settings = far_settings();
+  settings.occlusion = false;
+  return make_scene_of(settings, [](world::World& world) {
+    world.blocks_x = world.blocks_z = 0;
+    world.terrain.set_real(models::kTerrainReliefM, 0.01);
+    world.scatter.clear();
+  });
+}
+
+core::CameraPose endless_pose(core::BlockCoord block) {
+  core::CameraPose pose;
+  pose.position = {block, {20.25, 30.5, 40.125}};
+  pose.pitch = -0.25;
+  pose.yaw = 0.7;
+  return pose;
+}
+
+constexpr core::BlockCoord kPlaces[] = {{0, 0},
+                                        {1 << 30, -(1 << 30)},
+                                        {INT32_MAX, INT32_MIN},
+                                        {INT32_MIN, INT32_MAX},
+                                        {INT32_MAX - 15, 15}};
+
+TEST(Extent, EverywhereInAnEndlessWorldAsMuchExistsAndIsDrawn) {
+  std::size_t nodes = 0, entities = 0, draws = 0;
+  for (const core::BlockCoord block : kPlaces) {
+    SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
+    const auto scene = endless_scene();
+    // The same place in every node of 16 × 16 blocks.
+    const core::BlockCoord aligned{block.x & ~15, block.z & ~15};
+    scene->settle(endless_pose(aligned));
+    tick_at(*scene, endless_pose(aligned));
+    const State& s = scene->state();
+    EXPECT_EQ(s.counters.holes, 0u);
+    if (nodes == 0) {
+      nodes = s.view.cut.nodes.size();
+      entities = s.entities.size();
+      draws = s.draws.terrain.size();
+    }
+    EXPECT_EQ(s.view.cut.nodes.size(), nodes);
+    EXPECT_EQ(s.entities.size(), entities);
+    EXPECT_EQ(s.draws.terrain.size(), draws);
+    EXPECT_GT(draws, 20u);
+  }
+}
+
+// Steps from one block to another on the ring of 2^32.
+std::int64_t steps(std::int32_t from, std::int32_t to) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) -
+                                   static_cast<std::uint32_t>(from));
+}
+
+TEST(Extent, EverythingIsDrawnWhereItIsToTheMillimetre) {
+  for (const core::BlockCoord block : kPlaces) {
+    SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
+    Settings settings = far_settings();
+    settings.view_distance_m = 1500;
+    const auto scene =
+        make_scene_of(settings, [](world::World& world) { world.blocks_x = world.blocks_z = 0; });
+    const core::CameraPose pose = endless_pose(block);
+    scene->settle(pose);
+    tick_at(*scene, pose);
+    const State& s = scene->state();
+    // In units of 2^-10 mm everything is whole: blocks are 63 m wide.
+    constexpr std::int64_t kPerM = 1'024'000, kBlock = 63 * kPerM;
+    const auto eye_x = static_cast<std::int64_t>(20.25 * kPerM),
+               eye_z = static_cast<std::int64_t>(40.125 * kPerM);
+    std::size_t drawn = 0;
+    double worst_mm = 0;
+    for (std::size_t i = 0; i < s.draws.nodes.size(); ++i) {
+      const std::uint32_t index = s.draws.nodes[i];
+      if (s.view.in_view[index] == 0) continue;
+      const core::BlockCoord corner = visibility::corner_block(s.view.cut.nodes[index].node);
+      const double x = static_cast<double>(steps(block.x, corner.x) * kBlock - eye_x) / 1024,
+                   z = static_cast<double>(steps(block.z, corner.z) * kBlock - eye_z) / 1024;
+      const render::TerrainDraw& draw = s.draws.terrain[drawn++];
+      worst_mm = std::max({worst_mm, std::abs(1000 * double{draw.origin.x} - x),
+                           std::abs(1000 * double{draw.origin.z} - z)});
+    }
+    EXPECT_EQ(drawn, s.draws.terrain.size());
+    EXPECT_GT(drawn, 5u);
+    EXPECT_LT(worst_mm, 1.0);
+  }
+}
+
+TEST(Extent, WhenTheCameraMovesByAMillimetreNothingMovesFarther) {
+  for (const core::BlockCoord block : kPlaces) {
+    SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
+    const auto scene = make_scene_of(
+        far_settings(), [](world::World& world) { world.blocks_x = world.blocks_z = 0; });
+    core::CameraPose pose = endless_pose(block);
+    scene->settle(pose);
+    tick_at(*scene, pose);
+    const DrawLists before = scene->state().draws;
+    pose.position.local += glm::dvec3(0.001, 0, -0.001);
+    tick_at(*scene, pose);
+    const DrawLists& now = scene->state().draws;
+    ASSERT_EQ(now.terrain.size(), before.terrain.size());
+    ASSERT_EQ(now.models.size(), before.models.size());
+    float farthest_m = 0;
+    const auto moved = [&](const glm::vec3& from, const glm::vec3& to) {
+      const glm::vec3 by = glm::abs(to - from);
+      farthest_m = std::max({farthest_m, by.x, by.y, by.z});
+    };
+    for (std::size_t i = 0; i < now.terrain.size(); ++i) {
+      moved(before.terrain[i].origin, now.terrain[i].origin);
+      EXPECT_NEAR(now.terrain[i].morph, before.terrain[i].morph, 1e-3F);
+    }
+    for (std::size_t i = 0; i < now.models.size(); ++i)
+      moved(before.models[i].origin, now.models[i].origin);
+    EXPECT_LE(farthest_m, 0.00125F);  // a quarter of a millimetre is a step of floats at 3000 m
+  }
+}
+
+TEST(Extent, AWorldOfAMillionBlocksASideTakesNoMoreThanOneOf512) {
+  struct Size {
+    std::size_t entities, nodes, draws, models, meshes;
+    std::uint64_t bytes;
+    bool operator==(const Size&) const = default;
+  };
+  std::vector<Size> sizes;
+  for (const std::int64_t blocks : {std::int64_t{512}, std::int64_t{1} << 20}) {
+    const auto scene = make_scene_of(
+        far_settings(), [&](world::World& world) { world.blocks_x = world.blocks_z = blocks; });
+    core::CameraPose pose = pose_at(256, 256, 0.3);
+    scene->settle(pose);
+    tick_at(*scene, pose);
+    const State& s = scene->state();
+    const synthesis::CacheStats stats = s.synthesis.cache->stats();
+    sizes.push_back({s.entities.size(), s.view.cut.nodes.size(), s.draws.terrain.size(),
+                     s.draws.models.size(), stats.ready, stats.bytes});
+  }
+  EXPECT_EQ(sizes[1], sizes[0]) << sizes[0].entities << " and " << sizes[1].entities
+                                << " entities, " << sizes[0].bytes << " and " << sizes[1].bytes
+                                << " bytes";
+  EXPECT_GT(sizes[0].entities, 1000u);
+}
+
+}  // namespace
+}  // namespace psygen::scene
