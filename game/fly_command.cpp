@@ -7,6 +7,7 @@
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/render/render_path.hpp"
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
 #include "game/option_checks.hpp"
@@ -93,6 +94,12 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing"))
       ->default_str("normal");
   c.add_option("--device", options_.device_name, "Part of the name of the Vulkan device");
+  c.add_option_function<std::string>(
+       "--render-path",
+       [this](const std::string& text) { options_.render_path = *render::render_path_from(text); },
+       "Who decides what is drawn: cpu, gpu, or auto for what suits the device")
+      ->check(valid_if(render::render_path_from, "auto|cpu|gpu"))
+      ->default_str("auto");
   c.add_flag("--validation", options_.validation,
              "Vulkan validation; any message makes the run fail");
   c.add_flag("!--no-vsync", options_.vsync, "Do not wait for the display");

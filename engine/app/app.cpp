@@ -6,6 +6,7 @@
 #include "engine/core/log.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain.hpp"
+#include "engine/render/render_path.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 
@@ -92,11 +93,13 @@ core::Result<void> App::open() {
   render_options.geometry_budget_bytes = options_.scene.budget_bytes;
   render_options.surface = window_.get();
   render_options.vsync = options_.vsync;
+  render_options.path = options_.render_path;
   render_options.preset = options_.preset;
   auto renderer = render::Renderer::create(render_options);
   if (!renderer) return tl::unexpected(renderer.error());
   renderer_ = std::move(*renderer);
-  core::log_info(fmt::format("drawing with {}", renderer_->device().name));
+  core::log_info(fmt::format("drawing with {} on the {} path", renderer_->device().name,
+                             render::to_string(renderer_->path())));
 
   const double target_hz = options_.target_hz.value_or(options_.headless ? 0 : kWindowHz);
   options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;

@@ -36,9 +36,10 @@ struct Options {
   core::Extent size{1280, 720};
   bool headless = false;
   bool validation = false;
-  bool vsync = true;                          // windows only
-  std::string device_name;                    // part of a name; empty: the best device
-  std::optional<render::Preset> preset;       // none: what suits the device
+  bool vsync = true;                     // windows only
+  std::string device_name;               // part of a name; empty: the best device
+  std::optional<render::Preset> preset;  // none: what suits the device
+  render::RenderPath render_path = render::RenderPath::kAuto;
   render::View view = render::View::kNormal;  // F2 goes on to the next
   double seconds = 0;        // 0: as long as the path; without one 27 s headless, else endless
   std::uint64_t frames = 0;  // 0: no limit

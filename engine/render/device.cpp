@@ -49,6 +49,12 @@ struct Features {
   }
 };
 
+// What the GPU path needs: indirect draws whose number is in a buffer.
+bool offers_indirect_count(const Features& features) {
+  return features.v12.drawIndirectCount && features.base.features.multiDrawIndirect &&
+         features.base.features.drawIndirectFirstInstance;
+}
+
 bool offers_wireframe(VkPhysicalDevice physical) {
   VkPhysicalDeviceFeatures features{};
   vkGetPhysicalDeviceFeatures(physical, &features);
@@ -78,6 +84,29 @@ std::optional<std::uint32_t> find_queue_family(const Instance& instance, VkPhysi
     if (presents) return i;
   }
   return std::nullopt;
+}
+
+// A family that only copies, else the one that draws.
+std::uint32_t transfer_family_of(VkPhysicalDevice physical, std::uint32_t graphics) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const VkQueueFlags flags = families[i].queueFlags;
+    if ((flags & VK_QUEUE_TRANSFER_BIT) != 0 &&
+        (flags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)) == 0)
+      return i;
+  }
+  return graphics;
+}
+
+bool can_compute(VkPhysicalDevice physical, std::uint32_t family) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  return (families[family].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
 }
 
 bool is_unified(VkPhysicalDevice physical) {
@@ -136,6 +165,7 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
   candidate.info.software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   candidate.info.unified_memory = is_unified(physical);
   candidate.info.multi_draw = offers_multi_draw(physical);
+  candidate.info.gpu_path = offers_indirect_count(features) && can_compute(physical, *family);
   candidate.info.wireframe = offers_wireframe(physical);
   return candidate;
 }
@@ -174,14 +204,20 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   std::unique_ptr<Device> self(new Device());
   self->physical = candidate.physical;
   self->queue_family = candidate.queue_family;
+  self->transfer_family = transfer_family_of(self->physical, self->queue_family);
   self->info = candidate.info;
   vkGetPhysicalDeviceMemoryProperties(self->physical, &self->memory);
 
   Features features;
   features.v11.shaderDrawParameters = VK_TRUE;
   features.v12.timelineSemaphore = VK_TRUE;
+  const VkBool32 indirect = candidate.info.gpu_path ? VK_TRUE : VK_FALSE;
+  features.v12.drawIndirectCount = indirect;
+  features.base.features.multiDrawIndirect = indirect;
+  features.base.features.drawIndirectFirstInstance = indirect;
   features.v13.dynamicRendering = VK_TRUE;
   features.v13.synchronization2 = VK_TRUE;
+  features.v13.maintenance4 = VK_TRUE;  // every device of 1.3 has it; sizes of workgroups need it
   std::vector<const char*> extensions;
   if (windowed) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   if (candidate.info.multi_draw) {
@@ -196,17 +232,21 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   queue.queueFamilyIndex = self->queue_family;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
+  std::vector<VkDeviceQueueCreateInfo> queues{queue};
+  queue.queueFamilyIndex = self->transfer_family;
+  if (self->transfer_family != self->queue_family) queues.push_back(queue);
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   info.pNext = &features.base;
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
+  info.queueCreateInfoCount = static_cast<std::uint32_t>(queues.size());
+  info.pQueueCreateInfos = queues.data();
   info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   const VkResult result = vkCreateDevice(self->physical, &info, nullptr, &self->handle);
   if (result != VK_SUCCESS) return vulkan_failure(result, "creating the Vulkan device");
   volkLoadDeviceTable(&self->vk, self->handle);
   self->vk.vkGetDeviceQueue(self->handle, self->queue_family, 0, &self->queue);
+  self->vk.vkGetDeviceQueue(self->handle, self->transfer_family, 0, &self->transfer_queue);
 
   VkPhysicalDeviceMultiDrawPropertiesEXT multi_draw{};
   multi_draw.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_PROPERTIES_EXT;
@@ -216,12 +256,26 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   vkGetPhysicalDeviceProperties2(self->physical, &properties);
   const VkPhysicalDeviceLimits& limits = properties.properties.limits;
   self->max_image_side = limits.maxImageDimension2D;
+  self->sampled_depth_counts = limits.sampledImageDepthSampleCounts;
   self->sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;
   self->max_multi_draw = multi_draw.maxMultiDrawCount;
   if (properties.properties.limits.timestampComputeAndGraphics) {
     self->timestamp_period_ns = static_cast<double>(properties.properties.limits.timestampPeriod);
   }
   return self;
+}
+
+std::uint64_t Device::writable_bytes() const {
+  const VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT |
+                                       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                       VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  std::uint64_t bytes = 0;
+  for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+    if ((memory.memoryTypes[i].propertyFlags & wanted) != wanted) continue;
+    bytes =
+        std::max<std::uint64_t>(bytes, memory.memoryHeaps[memory.memoryTypes[i].heapIndex].size);
+  }
+  return bytes;
 }
 
 VkSampleCountFlagBits Device::samples_for(std::uint32_t wanted) const {

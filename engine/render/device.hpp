@@ -44,12 +44,18 @@ class Device {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
+  VkQueue transfer_queue = VK_NULL_HANDLE;  // `queue` where there is none for transfers alone
+  std::uint32_t transfer_family = 0;
   VkPhysicalDeviceMemoryProperties memory{};
-  std::uint32_t max_image_side = 0;                          // pixels
-  VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;  // of colour and depth
-  std::uint32_t max_multi_draw = 0;                          // 0: no VK_EXT_multi_draw
-  double timestamp_period_ns = 0;                            // 0: no timestamps on the queue
+  std::uint32_t max_image_side = 0;                                 // pixels
+  VkSampleCountFlags sampled_depth_counts = VK_SAMPLE_COUNT_1_BIT;  // of depth that shaders read
+  VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;         // of colour and depth
+  std::uint32_t max_multi_draw = 0;                                 // 0: no VK_EXT_multi_draw
+  double timestamp_period_ns = 0;                                   // 0: no timestamps on the queue
   DeviceInfo info;
+
+  // Bytes of the largest heap of its own memory that the CPU can write.
+  std::uint64_t writable_bytes() const;
 
  private:
   Device() = default;

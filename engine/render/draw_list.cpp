@@ -7,8 +7,6 @@
 
 namespace psygen::render {
 
-namespace {
-
 shaders::DrawData data_of(const TerrainDraw& draw) {
   return {.origin = {draw.origin.x, draw.origin.y + draw.height_min_m, draw.origin.z, draw.cell_m},
           .scale = {draw.height_range_m, draw.skirt_m, draw.morph, draw.cover}};
@@ -22,15 +20,12 @@ shaders::DrawData data_of(const MeshDraw& draw) {
   return {.origin = {center, phase - std::floor(phase)}, .scale = {extent, draw.fade}};
 }
 
-// Where the colour of a draw stands in the views that show it.
-float& colour_in(shaders::DrawData& data, const TerrainDraw&) {
-  return data.scale.w;
+void set_colour(shaders::DrawData& data, const TerrainDraw& draw) {
+  data.scale.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
 }
-float& colour_in(shaders::DrawData& data, const MeshDraw&) {
-  return data.origin.w;
+void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
+  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
 }
-
-}  // namespace
 
 template <class Draw>
 IndexList DrawList::indices_of(const Draw& draw) const {
@@ -55,7 +50,7 @@ void DrawList::append(const Draw& draw) {
   draws_.push_back({indices.first_index, indices.index_count,
                     static_cast<std::int32_t>(draw.range.first_vertex)});
   data_.push_back(data_of(draw));
-  if (coloured_) colour_in(data_.back(), draw) = static_cast<float>(draw.debug_colour & 0xFFFFFF);
+  if (coloured_) set_colour(data_.back(), draw);
   triangle_count_ += indices.index_count / 3;
 }
 

@@ -20,6 +20,13 @@ struct IndexList {
   std::uint32_t index_count = 0;
 };
 
+// What the shaders read of a draw.
+shaders::DrawData data_of(const TerrainDraw& draw);
+shaders::DrawData data_of(const MeshDraw& draw);
+// The draw's colour in its data, for the views that show it.
+void set_colour(shaders::DrawData& data, const TerrainDraw& draw);
+void set_colour(shaders::DrawData& data, const MeshDraw& draw);
+
 // Same layout as VkMultiDrawIndexedInfoEXT.
 struct IndexedDraw {
   std::uint32_t first_index = 0;

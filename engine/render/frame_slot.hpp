@@ -28,6 +28,11 @@ class FrameSlot {
   core::Result<void> end(const Device& device);
   VkCommandBuffer commands() const { return commands_; }
   VkDescriptorSet set() const { return set_; }
+  // Binds the data of draws that the device writes itself instead of the slot's own.
+  void read_draws_from(const Device& device, const Pipelines& pipelines,
+                       const Buffer& draws) const {
+    pipelines.write_set(device, set_, frame_, draws, glyphs_);
+  }
   VkSemaphore acquired() const { return acquired_.get(); }
 
   // Timestamps at the edges of the pass; device time of the last finished frame of this slot.

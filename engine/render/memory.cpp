@@ -53,16 +53,30 @@ Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes, VkBufferUs
   device.vk.vkGetBufferMemoryRequirements(device.handle, buffer, &needs);
   const VkMemoryPropertyFlags extra = use == MemoryUse::kWrite ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
                                                                : VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
-  Result<UniqueMemory> memory = allocate(device, needs, {kMapped | extra, kMapped});
+  const bool mapped_use = use != MemoryUse::kDevice;
+  Result<UniqueMemory> memory =
+      mapped_use ? allocate(device, needs, {kMapped | extra, kMapped})
+                 : allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
   if (!memory) return tl::unexpected(memory.error());
   made.memory = std::move(*memory);
   result = device.vk.vkBindBufferMemory(device.handle, buffer, made.memory.get(), 0);
   if (result != VK_SUCCESS) return vulkan_failure(result, "binding a buffer to its memory");
+  if (!mapped_use) return made;
   void* mapped = nullptr;
   result = device.vk.vkMapMemory(device.handle, made.memory.get(), 0, VK_WHOLE_SIZE, 0, &mapped);
   if (result != VK_SUCCESS) return vulkan_failure(result, "mapping device memory");
   made.mapped = static_cast<std::byte*>(mapped);
   return made;
+}
+
+Result<UniqueMemory> bind_image_memory(const Device& device, VkImage image) {
+  VkMemoryRequirements needs{};
+  device.vk.vkGetImageMemoryRequirements(device.handle, image, &needs);
+  Result<UniqueMemory> memory = allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
+  if (!memory) return memory;
+  const VkResult result = device.vk.vkBindImageMemory(device.handle, image, memory->get(), 0);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "binding an image to its memory");
+  return memory;
 }
 
 Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
@@ -84,13 +98,9 @@ Result<Image> make_image(const Device& device, core::Extent size, VkFormat forma
   if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image");
   made.image = UniqueImage(device.vk, device.handle, image);
 
-  VkMemoryRequirements needs{};
-  device.vk.vkGetImageMemoryRequirements(device.handle, image, &needs);
-  Result<UniqueMemory> memory = allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
+  Result<UniqueMemory> memory = bind_image_memory(device, image);
   if (!memory) return tl::unexpected(memory.error());
   made.memory = std::move(*memory);
-  result = device.vk.vkBindImageMemory(device.handle, image, made.memory.get(), 0);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "binding an image to its memory");
 
   VkImageViewCreateInfo view_info{};
   view_info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;

@@ -25,13 +25,17 @@ struct Image {
 };
 
 enum class MemoryUse : std::uint8_t {
-  kWrite,  // written by the CPU, read by the device: device-local where that is possible
-  kRead,   // read back by the CPU: cached where that is possible
+  kWrite,   // written by the CPU, read by the device: device-local where that is possible
+  kRead,    // read back by the CPU: cached where that is possible
+  kDevice,  // only the device's: not mapped
 };
 
-// A mapped, coherent buffer.
+// A buffer, mapped and coherent unless it is the device's.
 core::Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes,
                                  VkBufferUsageFlags usage, MemoryUse use);
+
+// Device-local memory for an image, bound to it.
+core::Result<UniqueMemory> bind_image_memory(const Device& device, VkImage image);
 
 struct ImageShape {
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;

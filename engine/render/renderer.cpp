@@ -44,6 +44,12 @@ std::vector<std::string> Renderer::validation_messages() const {
 Result<double> Renderer::replay_floor_ms(int repeats) {
   return impl_->replay_floor_ms(repeats);
 }
+Result<std::vector<DrawnMesh>> Renderer::drawn_meshes() {
+  return impl_->drawn_meshes();
+}
+RenderPath Renderer::path() const {
+  return impl_->path();
+}
 void Renderer::wait_idle() {
   impl_->wait_idle();
 }

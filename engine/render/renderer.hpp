@@ -21,7 +21,8 @@ class RendererImpl;
 class Renderer {
  public:
   // Fails with kNoDevice (no loader, no device, unknown name: the sentence lists the names there
-  // are), kOutOfMemory, or kInvalidArgument. All pipelines exist and have drawn once afterwards.
+  // are; or that has no GPU path where that is demanded), kOutOfMemory, or kInvalidArgument. All
+  // pipelines exist and have drawn once afterwards.
   static core::Result<std::unique_ptr<Renderer>> create(const RendererOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -54,6 +55,13 @@ class Renderer {
   // The floor: median wall time in ms of drawing the last frame's lists again, one at a time, with
   // nothing else running. No range of that frame may have been released since. `repeats` >= 1.
   core::Result<double> replay_floor_ms(int repeats);
+
+  // The meshes that the last frame drew, in any order; waits for it. For tests and views. Fails
+  // with kInvalidArgument before the first frame.
+  core::Result<std::vector<DrawnMesh>> drawn_meshes();
+
+  // What RendererOptions::path has come to: kCpu or kGpu.
+  RenderPath path() const;
 
   // Returns when the device has finished everything; released ranges are free afterwards.
   void wait_idle();

@@ -108,9 +108,7 @@ Result<void> RendererImpl::create() {
                       "the geometry budget must be between 1 byte and 1 TiB");
   }
   if (Result<void> made = create_device(); !made) return made;
-  pool_ =
-      std::make_unique<GeometryPool>(options_.geometry_budget_bytes,
-                                     [this](std::uint64_t bytes) { return add_pool_block(bytes); });
+  if (Result<void> made = create_geometry(); !made) return made;
   Result<UniqueSemaphore> timeline = make_timeline(*device_);
   if (!timeline) return tl::unexpected(timeline.error());
   timeline_ = std::move(*timeline);
@@ -125,17 +123,50 @@ Result<void> RendererImpl::create() {
   for (FrameSlot& slot : slots_) {
     if (Result<void> made = slot.create(*device_, pipelines_); !made) return made;
   }
+  if (Result<void> made = create_culling(); !made) return made;
   if (Result<void> warmed = warm_up(); !warmed) return warmed;
   return options_.surface == nullptr ? create_targets(options_.size) : Result<void>{};
 }
 
+Result<void> RendererImpl::create_geometry() {
+  pool_ =
+      std::make_unique<GeometryPool>(options_.geometry_budget_bytes,
+                                     [this](std::uint64_t bytes) { return add_pool_block(bytes); });
+  // A heap that does not hold twice the budget is the small window of a device without more.
+  const bool writable =
+      device_->info.software || device_->writable_bytes() / 2 >= options_.geometry_budget_bytes;
+  if (options_.upload == Upload::kDirect || (options_.upload == Upload::kAuto && writable))
+    return {};
+  staged_ = std::make_unique<StagedGeometry>(*pool_);
+  return staged_->create(*device_);
+}
+
+Result<void> RendererImpl::create_culling() {
+  const DeviceInfo& info = device_->info;
+  if (options_.path == RenderPath::kGpu && !info.gpu_path) {
+    return core::fail(
+        ErrorCode::kNoDevice,
+        fmt::format("'{}' has no indirect draws with a count, which the GPU path needs",
+                    info.name));
+  }
+  const bool suits = info.gpu_path && !info.software;
+  if (options_.path == RenderPath::kCpu || (options_.path == RenderPath::kAuto && !suits))
+    return {};
+  culling_ = std::make_unique<GpuCulling>();
+  const VkSampleCountFlagBits samples = pipelines_.samples();
+  const bool readable = (device_->sampled_depth_counts & samples) != 0;
+  return culling_->create(*device_, options_.occlusion && readable, samples, kFramesInFlight);
+}
+
 Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
-  Result<Buffer> block = make_buffer(
-      *device_, bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
-      MemoryUse::kWrite);
+  const VkBufferUsageFlags copied = staged_ ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
+  Result<Buffer> block =
+      make_buffer(*device_, bytes,
+                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | copied,
+                  staged_ ? MemoryUse::kDevice : MemoryUse::kWrite);
   if (!block) return core::fail(ErrorCode::kOutOfMemory, block.error().message);
   pool_blocks_.push_back(std::move(*block));
-  return pool_blocks_.back().mapped;
+  return staged_ ? staged_->add_block(bytes) : pool_blocks_.back().mapped;
 }
 
 Result<void> RendererImpl::create_targets(core::Extent extent) {
@@ -150,6 +181,9 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
   has_picture_ = false;
   Result<Targets> made = make_targets(*device_, colour_format_, extent, pipelines_.samples());
   if (!made) return tl::unexpected(made.error());
+  if (culling_) {
+    if (Result<void> fits = culling_->resize(*device_, extent, made->depth); !fits) return fits;
+  }
   targets_ = std::move(*made);
   return {};
 }
@@ -169,7 +203,25 @@ Result<void> RendererImpl::warm_up() {
   record_warm_up(*device_, pipelines_, slot, *small, shared_.buffer());
   if (Result<void> ended = slot.end(*device_); !ended) return ended;
   if (Result<void> submitted = submit(slot, false); !submitted) return submitted;
-  return wait_for(slot);
+  if (Result<void> waited = wait_for(slot); !waited) return waited;
+  return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
+}
+
+// An empty frame with every dispatch.
+Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
+  return culling_->resize(*device_, small.extent, small.depth)
+      .and_then([&] {
+        culling_->set_frame({}, {}, {}, small.extent, {});
+        return write_frame(slot);
+      })
+      .and_then([&] { return slot.begin(*device_); })
+      .and_then([&] {
+        record_scene(*device_, pipelines_, slot, small,
+                     {.list = list_, .buffers = {}, .culled = {culling_.get(), index_of(slot)}});
+        return slot.end(*device_);
+      })
+      .and_then([&] { return submit(slot, false); })
+      .and_then([&] { return wait_for(slot); });
 }
 
 Result<void> RendererImpl::wait_for(FrameSlot& slot) {
@@ -192,8 +244,14 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
   VkCommandBufferSubmitInfo commands{};
   commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
   commands.commandBuffer = slot.commands();
-  const VkSemaphoreSubmitInfo wait =
-      semaphore_info(slot.acquired(), 0, VK_PIPELINE_STAGE_2_COPY_BIT);
+  std::vector<VkSemaphoreSubmitInfo> waits;
+  if (windowed) {
+    waits.push_back(semaphore_info(slot.acquired(), 0, VK_PIPELINE_STAGE_2_COPY_BIT));
+  }
+  if (staged_) {
+    waits.push_back(semaphore_info(staged_->timeline(), staged_->value(),
+                                   VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT));
+  }
   std::vector<VkSemaphoreSubmitInfo> signals{
       semaphore_info(timeline_.get(), frame_value_ + 1, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)};
   if (windowed) {
@@ -202,8 +260,8 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
   }
   VkSubmitInfo2 info{};
   info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  info.waitSemaphoreInfoCount = windowed ? 1 : 0;
-  info.pWaitSemaphoreInfos = &wait;
+  info.waitSemaphoreInfoCount = static_cast<std::uint32_t>(waits.size());
+  info.pWaitSemaphoreInfos = waits.data();
   info.commandBufferInfoCount = 1;
   info.pCommandBufferInfos = &commands;
   info.signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size());
@@ -217,9 +275,14 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
 
 Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   if (Result<void> begun = slot.begin(*device_); !begun) return begun;
+  if (staged_) {
+    const Result<void> copied = staged_->flush(*device_, pool_blocks_, slot.commands());
+    if (!copied) return copied;
+  }
   const ScenePass pass{
       .list = list_,
       .buffers = {pool_blocks_, shared_.buffer()},
+      .culled = {culling_.get(), index_of(slot)},
       .glyph_vertex_count = static_cast<std::uint32_t>(glyphs_.size()) - line_vertices_,
       .line_vertex_count = line_vertices_,
       .view = view_,
@@ -256,6 +319,35 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   return noted(draw_frame(input, slots_[(frame_value_ + 1) % kFramesInFlight]));
 }
 
+// What is drawn: the lists as they are, what the CPU chooses of them, or what the device will.
+void RendererImpl::list_draws(const FrameInput& input) {
+  const ViewTest test =
+      view_test(frame_.clip_from_camera, input, static_cast<float>(targets_->extent.height));
+  const bool coloured = colours_draws(input.view);
+  std::uint32_t pushed_from = pushed_from_;
+  if (culling_) {
+    culling_->set_frame(test, frame_, input, targets_->extent, shared_.lists());
+    // Cascades are drawn from a list of the CPU's, whose data is pushed.
+    if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
+    pushed_from = 0;
+  }
+  if (input.choose) {
+    choose_draws(test, input.terrain, chosen_terrain_);
+    choose_draws(test, input.models, chosen_models_);
+    list_.build(chosen_terrain_, chosen_models_, shared_.lists(), pushed_from, coloured);
+  } else {
+    list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured);
+  }
+}
+
+Result<void> RendererImpl::write_frame(FrameSlot& slot) {
+  Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
+  if (!written || !culling_) return written;
+  written = culling_->write(*device_, index_of(slot));
+  if (written) slot.read_draws_from(*device_, pipelines_, culling_->draw_data(index_of(slot)));
+  return written;
+}
+
 void RendererImpl::add_lines(std::span<const Line> lines) {
   line_vertices_ = static_cast<std::uint32_t>(2 * std::min(lines.size(), kMaxLines));
   for (const Line& line : lines.first(line_vertices_ / 2)) {
@@ -276,17 +368,15 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   FrameInput checked = input;
   checked.pose = last_pose_.value_or(core::CameraPose{});
   checked.projection = last_projection_.value_or(core::Projection{});
-  list_.build(input.terrain, input.models, shared_.lists(), pushed_from_,
-              colours_draws(input.view));
   overlay_.lay_out(input.overlay_lines, glyphs_);
   add_lines(input.lines);
   view_ = input.view;
   water_ = input.water.has_value();
   frame_ = frame_data(checked, targets_->extent, pipelines_.traits());
-  if (Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
-      !written) {
-    return tl::unexpected(written.error());
-  }
+  const GpuCulling::Counts counted =
+      culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
+  list_draws(checked);
+  if (Result<void> written = write_frame(slot); !written) return tl::unexpected(written.error());
   double cpu_ms = ms_since(build_start);
 
   if (windowed) {
@@ -311,8 +401,8 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
     if (!presented) return tl::unexpected(presented.error());
     out.presented = *presented;
   }
-  out.draws = static_cast<std::uint32_t>(list_.draws().size());
-  out.triangles = list_.triangle_count();
+  out.draws = culling_ ? counted.draws : static_cast<std::uint32_t>(list_.draws().size());
+  out.triangles = culling_ ? counted.triangles : list_.triangle_count();
   out.cpu_ms = cpu_ms;
   out.wait_ms = waited_ms;
   out.gpu_ms = gpu_ms_;
@@ -364,13 +454,10 @@ Result<double> RendererImpl::replay_floor_ms(int repeats) {
   double last = core::monotonic_seconds();
   for (int i = 0; i < repeats + lead; ++i) {
     FrameSlot& slot = slots_[(frame_value_ + 1) % kFramesInFlight];
-    const Result<void> drawn =
-        noted(wait_for(slot)
-                  .and_then([&] {
-                    return slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
-                  })
-                  .and_then([&] { return record(slot, false); })
-                  .and_then([&] { return submit(slot, false); }));
+    const Result<void> drawn = noted(wait_for(slot)
+                                         .and_then([&] { return write_frame(slot); })
+                                         .and_then([&] { return record(slot, false); })
+                                         .and_then([&] { return submit(slot, false); }));
     if (!drawn) return tl::unexpected(drawn.error());
     const double now = core::monotonic_seconds();
     if (i >= lead) intervals.push_back((now - last) * 1e3);
@@ -380,6 +467,22 @@ Result<double> RendererImpl::replay_floor_ms(int repeats) {
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
   std::nth_element(intervals.begin(), middle, intervals.end());
   return *middle;
+}
+
+Result<std::vector<DrawnMesh>> RendererImpl::drawn_meshes() {
+  if (!has_list_ || lost_) {
+    return core::fail(ErrorCode::kInvalidArgument, "there is no frame whose meshes could be named");
+  }
+  if (culling_) return noted(culling_->read_drawn(*device_, frame_value_ % kFramesInFlight));
+  std::vector<DrawnMesh> drawn;
+  for (const DrawRun& run : list_.runs()) {
+    for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+      const IndexedDraw& draw = list_.draws()[i];
+      drawn.push_back({run.layout, run.pool_block, run.shared, draw.first_index, draw.index_count,
+                       draw.vertex_offset, glm::vec3(list_.data()[i].origin)});
+    }
+  }
+  return drawn;
 }
 
 void RendererImpl::wait_idle() {

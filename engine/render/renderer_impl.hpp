@@ -14,6 +14,7 @@
 #include "engine/render/pipelines.hpp"
 #include "engine/render/scene_recorder.hpp"
 #include "engine/render/shared_index_lists.hpp"
+#include "engine/render/staged_geometry.hpp"
 #include "engine/render/swapchain.hpp"
 #include "engine/render/types.hpp"
 
@@ -31,7 +32,9 @@ class RendererImpl {
   // To be called once, before everything else; after a failure only destruction is allowed.
   core::Result<void> create();
 
-  core::GeometryMemory& geometry() { return *pool_; }
+  core::GeometryMemory& geometry() {
+    return staged_ ? static_cast<core::GeometryMemory&>(*staged_) : *pool_;
+  }
   core::Result<std::uint32_t> add_shared_indices(std::span<const std::uint16_t> indices) {
     return shared_.add(indices);
   }
@@ -42,6 +45,8 @@ class RendererImpl {
   const DeviceInfo& info() const { return device_->info; }
   std::vector<std::string> messages() const { return instance_->messages(); }
   core::Result<double> replay_floor_ms(int repeats);
+  core::Result<std::vector<DrawnMesh>> drawn_meshes();
+  RenderPath path() const { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
   void wait_idle();
 
  private:
@@ -49,7 +54,15 @@ class RendererImpl {
 
   core::Result<void> create_device();
   core::Result<void> create_targets(core::Extent extent);
+  core::Result<void> create_geometry();
+  core::Result<void> create_culling();
   core::Result<void> warm_up();
+  core::Result<void> warm_up_culling(FrameSlot& slot, Targets& small);
+  core::Result<void> write_frame(FrameSlot& slot);
+  void list_draws(const FrameInput& input);
+  std::size_t index_of(const FrameSlot& slot) const {
+    return static_cast<std::size_t>(&slot - slots_.data());
+  }
   core::Result<std::byte*> add_pool_block(std::uint64_t bytes);
 
   core::Result<void> wait_for(FrameSlot& slot);
@@ -74,9 +87,11 @@ class RendererImpl {
   std::uint32_t pushed_from_ = 0;  // meshes of at least so many indices are pushed
   std::vector<Buffer> pool_blocks_;
   std::unique_ptr<GeometryPool> pool_;
+  std::unique_ptr<StagedGeometry> staged_;  // null where the CPU writes the blocks themselves
   SharedIndexLists shared_;
   Pipelines pipelines_;
   std::array<FrameSlot, kFramesInFlight> slots_;
+  std::unique_ptr<GpuCulling> culling_;  // null on the CPU path
   UniqueSemaphore timeline_;
   std::optional<Targets> targets_;
   Swapchain swapchain_;
@@ -89,7 +104,9 @@ class RendererImpl {
   bool lost_ = false;
   std::optional<core::CameraPose> last_pose_;
   std::optional<core::Projection> last_projection_;
-  DrawList list_;
+  DrawList list_;                            // on the CPU path
+  std::vector<TerrainDraw> chosen_terrain_;  // where the renderer chooses
+  std::vector<MeshDraw> chosen_models_;
   shaders::FrameData frame_{};
   std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines
   std::uint32_t line_vertices_ = 0;

@@ -20,7 +20,11 @@ bool has_samples(const Targets& targets) {
   return targets.samples.image.get() != VK_NULL_HANDLE;
 }
 
-void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets) {
+// A frame is drawn in one pass, or in two with depth read in between.
+enum class Part : std::uint8_t { kWhole, kFirst, kSecond };
+
+void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets,
+                Part part = Part::kWhole) {
   VkImageMemoryBarrier2 colour = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
   colour.srcStageMask =
       VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
@@ -37,6 +41,12 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
   depth.dstAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
                         VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
   depth.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  if (part == Part::kSecond) {
+    colour.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
+    depth.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    depth.srcAccessMask = VK_ACCESS_2_NONE;
+  }
   VkImageMemoryBarrier2 samples = colour;
   samples.image = targets.samples.image.get();
   const std::array barriers{colour, depth, samples};
@@ -60,12 +70,18 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
     colour_info.resolveImageView = targets.colour.view.get();
     colour_info.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   }
+  if (part == Part::kFirst) {
+    colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    colour_info.resolveMode = VK_RESOLVE_MODE_NONE;
+  }
   VkRenderingAttachmentInfo depth_info{};
   depth_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   depth_info.imageView = targets.depth.view.get();
   depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;  // to 0, infinitely far
   depth_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  if (part == Part::kFirst) depth_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  if (part == Part::kSecond) colour_info.loadOp = depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
   const VkRect2D area{{0, 0}, {targets.extent.width, targets.extent.height}};
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
@@ -147,6 +163,40 @@ void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuff
   }
 }
 
+void draw_culled(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                 const ScenePass& pass, std::uint32_t phase) {
+  const GpuCulling& culling = *pass.culled.culling;
+  VkPipeline bound = VK_NULL_HANDLE;
+  for (std::size_t i = 0; i < culling.groups().size(); ++i) {
+    const DrawGroup& group = culling.groups()[i];
+    const VkPipeline pipeline = pipelines.mesh(group.layout, false, pass.view);
+    const VkBuffer vertices = pass.buffers.pool_blocks[group.pool_block].buffer.get();
+    const VkBuffer indices = group.shared ? pass.buffers.shared_indices : vertices;
+    const VkDeviceSize zero = 0;
+    if (pipeline != bound) bind_pipeline(device, commands, pipeline);
+    bound = pipeline;
+    device.vk.vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
+    device.vk.vkCmdBindIndexBuffer(commands, indices, 0, VK_INDEX_TYPE_UINT16);
+    culling.draw_group(device, commands, pass.culled.slot, i, phase);
+  }
+}
+
+// Begins the last pass of the frame, with everything drawn but what comes after meshes.
+void draw_culled_passes(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
+                        Targets& targets, const ScenePass& pass) {
+  const auto [culling, index] = pass.culled;
+  const VkCommandBuffer commands = slot.commands();
+  culling->record_first(device, commands, index);
+  begin_pass(device, commands, targets, culling->two_passes() ? Part::kFirst : Part::kWhole);
+  bind_set(device, pipelines, slot);
+  draw_culled(device, pipelines, commands, pass, 0);
+  if (!culling->two_passes()) return;
+  device.vk.vkCmdEndRendering(commands);
+  culling->record_second(device, commands, index, targets.depth);
+  begin_pass(device, commands, targets, Part::kSecond);
+  draw_culled(device, pipelines, commands, pass, 1);
+}
+
 void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
                   const ScenePass& pass) {
   const VkCommandBuffer commands = slot.commands();
@@ -196,6 +246,14 @@ void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& tar
 
 constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
+// Read by the depth pyramid where the device can.
+VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits samples) {
+  const bool readable = (device.sampled_depth_counts & samples) != 0;
+  VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if (readable) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+  return usage;
+}
+
 }  // namespace
 
 Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
@@ -207,9 +265,8 @@ Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent
       VK_IMAGE_ASPECT_COLOR_BIT);
   if (!colour) return tl::unexpected(colour.error());
   targets.colour = std::move(*colour);
-  Result<Image> depth =
-      make_image(device, extent, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
-                 VK_IMAGE_ASPECT_DEPTH_BIT, {.samples = samples});
+  Result<Image> depth = make_image(device, extent, kDepthFormat, depth_usage(device, samples),
+                                   VK_IMAGE_ASPECT_DEPTH_BIT, {.samples = samples});
   if (!depth) return tl::unexpected(depth.error());
   targets.depth = std::move(*depth);
   if (samples == VK_SAMPLE_COUNT_1_BIT) return targets;
@@ -225,15 +282,22 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
   slot.write_timestamp(device, false);
   if (pass.shadows) draw_shadows(device, pipelines, slot, pass);
   const VkCommandBuffer commands = slot.commands();
-  begin_pass(device, commands, targets);
-  bind_set(device, pipelines, slot);
-  draw_meshes(device, pipelines, commands, pass, [&](core::VertexLayout layout, bool pushed) {
-    return pipelines.mesh(layout, pushed, pass.view);
-  });
+  if (pass.culled.culling != nullptr) {
+    draw_culled_passes(device, pipelines, slot, targets, pass);
+  } else {
+    begin_pass(device, commands, targets);
+    bind_set(device, pipelines, slot);
+    draw_meshes(device, pipelines, commands, pass, [&](core::VertexLayout layout, bool pushed) {
+      return pipelines.mesh(layout, pushed, pass.view);
+    });
+  }
   draw_water_and_sky(device, pipelines, commands, pass.water);
   draw_lines_and_text(device, pipelines, commands, pass.glyph_vertex_count, pass.line_vertex_count);
   device.vk.vkCmdEndRendering(slot.commands());
   slot.write_timestamp(device, true);
+  if (pass.culled.culling != nullptr) {
+    pass.culled.culling->record_counts(device, slot.commands(), pass.culled.slot);
+  }
 }
 
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,

@@ -7,6 +7,7 @@
 
 #include "engine/render/draw_list.hpp"
 #include "engine/render/frame_slot.hpp"
+#include "engine/render/gpu_culling.hpp"
 #include "engine/render/pipelines.hpp"
 
 namespace psygen::render {
@@ -28,9 +29,16 @@ struct SceneBuffers {
   VkBuffer shared_indices = VK_NULL_HANDLE;
 };
 
+// Draws that the device chooses itself, instead of a draw list.
+struct CulledDraws {
+  GpuCulling* culling = nullptr;  // null: the draw list is drawn
+  std::size_t slot = 0;
+};
+
 struct ScenePass {
   const DrawList& list;
   SceneBuffers buffers;
+  CulledDraws culled = {};
   std::uint32_t glyph_vertex_count = 0;  // of the overlay's buffer; the ends of lines follow
   std::uint32_t line_vertex_count = 0;
   View view = View::kNormal;

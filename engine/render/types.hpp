@@ -21,6 +21,14 @@ namespace psygen::render {
 // multi-draw on hardware; on software devices by the size of each mesh.
 enum class Submission : std::uint8_t { kAuto, kMultiDraw, kPushed };
 
+// Who tests what is in view and chooses levels of detail: the CPU, or the device, which then also
+// leaves out what is hidden (gpu_culling.hpp). kAuto: the device, unless it is software.
+enum class RenderPath : std::uint8_t { kAuto, kCpu, kGpu };
+
+// How meshes come into the device's memory: written there by the CPU, or into memory of its own and
+// copied. kAuto: written, where the device has enough memory that the CPU can write.
+enum class Upload : std::uint8_t { kAuto, kDirect, kStaged };
+
 // How much light and detail a picture has; what each changes is in preset.hpp and docs/presets.md.
 enum class Preset : std::uint8_t { kLow, kMedium, kHigh, kUltra };
 
@@ -43,7 +51,10 @@ struct RendererOptions {
   core::SurfaceProvider* surface = nullptr;  // null: headless; else it outlives the renderer
   bool vsync = false;
   Submission submission = Submission::kAuto;  // kMultiDraw without VK_EXT_multi_draw is kPushed
-  std::optional<Preset> preset;               // none: kLow on software devices, kHigh on others
+  RenderPath path = RenderPath::kAuto;
+  Upload upload = Upload::kAuto;
+  bool occlusion = true;  // on the GPU path: leave out what was hidden in the last frame and is
+  std::optional<Preset> preset;  // none: kLow on software devices, kHigh on others
 };
 
 struct DeviceInfo {
@@ -53,6 +64,7 @@ struct DeviceInfo {
   bool software = false;
   bool unified_memory = false;  // geometry is written straight into the device's own memory
   bool multi_draw = false;      // many meshes in one call
+  bool gpu_path = false;        // RenderPath::kGpu can be used
   bool wireframe = false;       // View::kWireframe can be drawn
 };
 
@@ -112,6 +124,13 @@ struct TerrainPalette {
 // Name of "no shared list": the mesh has indices of its own.
 inline constexpr std::uint32_t kNoSharedIndices = 0;
 
+// A coarser mesh for the same place and box.
+struct DrawLevel {
+  core::GeometryRange range;
+  std::uint32_t shared_indices = kNoSharedIndices;
+  float error_m = 0.0F;  // how far it is off; grows from level to level
+};
+
 // A tree, rock or any other mesh of core::VertexLayout::kModel.
 struct MeshDraw {
   core::GeometryRange range;
@@ -119,8 +138,9 @@ struct MeshDraw {
   glm::vec3 origin{0.0F};                           // the mesh's foot
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
-  float fade = 1.0F;                      // 0 … 1, size while a mesh appears
-  std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
+  float fade = 1.0F;                        // 0 … 1, size while a mesh appears
+  std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
+  std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
 };
 
 // A grid of core::VertexLayout::kTerrain.
@@ -132,8 +152,10 @@ struct TerrainDraw {
   float height_min_m = 0.0F, height_range_m = 1.0F;  // what unorm16 heights span
   float skirt_m = 0.0F;                              // how far skirt vertices hang down
   float morph = 0.0F;                                // 0 fine heights … 1 coarse heights
-  float cover = 0.0F;                     // share of the ground that far forests hide (Canopy)
-  std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
+  float side_m = 0.0F;  // of the square that the grid covers; 0: as large as a grid can be
+  std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
+  float cover = 0.0F;                       // share of the ground that far forests hide (Canopy)
+  std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
 };
 
 // A line between two places relative to the camera.
@@ -156,17 +178,31 @@ struct FrameInput {
   double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
-  std::span<const Line> lines;           // at most kMaxLines are drawn, in every view
+  // The lists hold what lies outside the picture too, with `coarser` levels: the renderer chooses,
+  // on either path, the coarsest level that is at most so many pixels off.
+  bool choose = false;
+  float max_error_pixels = 1.0F;
+  std::span<const Line> lines;                 // at most kMaxLines are drawn, in every view
   std::span<const std::string> overlay_lines;  // text in the top left; empty: none
 };
 
 struct FrameResult {
-  std::uint32_t draws = 0;
-  std::uint64_t triangles = 0;
+  std::uint32_t draws = 0;  // on the GPU path of the latest finished frame, 0 until there is one
+  std::uint64_t triangles = 0;   // the same
   double cpu_ms = 0;             // recording and submission
   double wait_ms = 0;            // for the frame before the last, and for a swapchain image
   std::optional<double> gpu_ms;  // latest finished frame; none until there is one
   bool presented = false;        // windowed: shown; headless: drawn
+};
+
+// A mesh as it was submitted.
+struct DrawnMesh {
+  core::VertexLayout layout = core::VertexLayout::kModel;
+  std::uint32_t pool_block = 0;
+  bool shared = false;  // indices from the shared lists, else from the pool block
+  std::uint32_t first_index = 0, index_count = 0;
+  std::int32_t vertex_offset = 0;
+  glm::vec3 place{0.0F};  // terrain: its corner; model: the middle of its box
 };
 
 // Rows from the top, 4 bytes a pixel (red, green, blue, alpha) as shown on a display.

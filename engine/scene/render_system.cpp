@@ -110,6 +110,7 @@ class Drawing {
     draw.height_min_m = placed.box_center.y - placed.box_half_extent.y;
     draw.height_range_m = 2 * placed.box_half_extent.y;
     draw.skirt_m = level.skirt_m;
+    draw.side_m = node.side_m;
     if (node.node.level > 0 && !level.merged) draw.cover = facts_.cover_share;
     draw.debug_colour = colour_of(shown_, facts);
     // A mesh finer than wanted looks like the wanted one; a coarser one has nothing to morph from.

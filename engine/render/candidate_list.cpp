@@ -1,0 +1,77 @@
+#include "engine/render/candidate_list.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "engine/core/assert.hpp"
+#include "engine/render/draw_choice.hpp"
+
+namespace psygen::render {
+
+std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool shared) {
+  const std::size_t key =
+      std::size_t{range.pool_block} << 2 | (shared ? 2u : 0u) |
+      static_cast<std::size_t>(range.layout == core::VertexLayout::kTerrain ? 1 : 0);
+  if (key >= open_.size()) open_.resize(key + 1);
+  if (open_[key] == 0 || groups_[open_[key] - 1].capacity == kGroupCapacity) {
+    groups_.push_back({range.layout, shared, range.pool_block, 0, 0});
+    open_[key] = static_cast<std::uint32_t>(groups_.size());
+  }
+  ++groups_[open_[key] - 1].capacity;
+  return open_[key] - 1;
+}
+
+void CandidateList::add_level(const core::GeometryRange& range, std::uint32_t shared_indices,
+                              float error_m) {
+  IndexList indices{range.first_index, range.index_count};
+  if (shared_indices != kNoSharedIndices) {
+    PSYGEN_ASSERT(shared_indices <= lists_.size(), "unknown shared index list");
+    indices = lists_[shared_indices - 1];
+  }
+  const std::uint32_t group = group_for(range, shared_indices != kNoSharedIndices);
+  levels_.push_back({{indices.first_index, indices.index_count, range.first_vertex, group},
+                     {error_m, 0.0F, 0.0F, 0.0F}});
+}
+
+template <class Draw>
+void CandidateList::add(const Draw& draw, bool choose, bool coloured) {
+  const core::Bounds box = bounds_of(draw);
+  const auto first = static_cast<std::uint32_t>(levels_.size());
+  add_level(draw.range, draw.shared_indices, 0.0F);
+  if (choose) {
+    for (const DrawLevel& level : draw.coarser)
+      add_level(level.range, level.shared_indices, level.error_m);
+  }
+  // Meshes without a name of their own share bit 0.
+  const std::uint32_t name = draw.range.id == core::kNoGeometry ? 0 : draw.range.id + 1;
+  name_count_ = std::max(name_count_, name + 1);
+  candidates_.push_back({{box.min, 0.0F},
+                         {box.max, 0.0F},
+                         data_of(draw),
+                         {first, static_cast<std::uint32_t>(levels_.size()) - first, name, 0}});
+  if (coloured) set_colour(candidates_.back().data, draw);
+}
+
+void CandidateList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
+                          std::span<const IndexList> lists, bool choose, bool coloured) {
+  candidates_.clear();
+  levels_.clear();
+  groups_.clear();
+  first_commands_.clear();
+  std::fill(open_.begin(), open_.end(), 0u);
+  name_count_ = 1;
+  lists_ = lists;
+  for (const TerrainDraw& draw : terrain)
+    add(draw, choose, coloured);
+  for (const MeshDraw& draw : models)
+    add(draw, choose, coloured);
+  lists_ = {};
+  std::uint32_t first = 0;
+  for (DrawGroup& group : groups_) {
+    group.first_command = first;
+    first_commands_.push_back(first);
+    first += group.capacity;
+  }
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,58 @@
+// What the culling shader reads, written once for GLSL and C++ as in shared.h. Metres, relative to
+// the camera.
+#ifndef PSYGEN_SHADERS_CULL_SHARED_H
+#define PSYGEN_SHADERS_CULL_SHARED_H
+
+#include "shared.h"
+
+#ifdef __cplusplus
+#include <glm/ext/vector_uint4.hpp>
+namespace psygen::shaders {
+using glm::uvec4;
+#endif
+
+#define PSYGEN_CULL_FRAME 0
+#define PSYGEN_CULL_CANDIDATES 1
+#define PSYGEN_CULL_LEVELS 2
+#define PSYGEN_CULL_GROUPS 3
+#define PSYGEN_CULL_COMMANDS 4
+#define PSYGEN_CULL_DRAWS 5
+#define PSYGEN_CULL_COUNTS 6
+#define PSYGEN_CULL_SEEN_BEFORE 7
+#define PSYGEN_CULL_SEEN_NOW 8
+#define PSYGEN_CULL_PYRAMID 9
+
+#define PSYGEN_CULL_THREADS 64
+
+// What one dispatch lets through of what is in view.
+#define PSYGEN_CULL_ALL 0         // everything
+#define PSYGEN_CULL_SEEN 1        // what was seen in the last frame
+#define PSYGEN_CULL_NEWLY_SEEN 2  // what the depth pyramid does not hide and SEEN left out
+
+struct CullFrame {
+  vec4 planes[5];  // of the view, inwards: normal, offset
+  mat4 clip_from_camera;
+  vec4 choice;    // x: (pixels per radian)²; y: (allowed error in pixels)²; z: near plane, m
+  uvec4 counts;   // candidates; groups; commands of a phase; levels of the pyramid
+  uvec4 picture;  // width, height in pixels
+};
+
+struct CullCandidate {
+  vec4 least;  // of its box
+  vec4 greatest;
+  DrawData data;
+  uvec4 levels;  // x: first in the list of levels; y: how many, finest first; z: name of its bit
+};
+
+struct CullLevel {
+  uvec4 draw;  // first index, index count, vertex offset (as bits), group
+  vec4 error;  // x: m
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(CullFrame) == 5 * 16 + 64 + 3 * 16);
+static_assert(sizeof(CullCandidate) == 80);
+static_assert(sizeof(CullLevel) == 32);
+}  // namespace psygen::shaders
+#endif
+#endif
