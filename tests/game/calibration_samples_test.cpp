@@ -21,8 +21,8 @@ world::World world_of(std::int64_t blocks_x, std::int64_t blocks_z) {
 }
 
 TEST(CalibrationSamples, BlocksExistAndTheHalvesHaveNoneInCommon) {
-  for (const auto& [x, z] : {std::pair<int, int>{512, 512}, {8, 4}, {1, 9}, {9, 1}, {2, 1}, {0, 3},
-                             {0, 0}}) {
+  for (const auto& [x, z] :
+       {std::pair<int, int>{512, 512}, {8, 4}, {1, 9}, {9, 1}, {2, 1}, {0, 3}, {0, 0}}) {
     const world::World world = world_of(x, z);
     const auto fitted = sample_blocks(world, 0, 64), held_out = sample_blocks(world, 1, 64);
     EXPECT_FALSE(fitted.empty());
