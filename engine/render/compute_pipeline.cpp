@@ -149,20 +149,4 @@ void ComputePipeline::dispatch(const Device& device, VkCommandBuffer commands, c
   device.vk.vkCmdDispatch(commands, groups_x, groups_y, 1);
 }
 
-void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 from,
-                    VkAccessFlags2 from_access, VkPipelineStageFlags2 to,
-                    VkAccessFlags2 to_access) {
-  VkMemoryBarrier2 barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  barrier.srcStageMask = from;
-  barrier.srcAccessMask = from_access;
-  barrier.dstStageMask = to;
-  barrier.dstAccessMask = to_access;
-  VkDependencyInfo dependency{};
-  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.memoryBarrierCount = 1;
-  dependency.pMemoryBarriers = &barrier;
-  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
-}
-
 }  // namespace psygen::render

@@ -42,8 +42,4 @@ class ComputePipeline {
   std::uint32_t push_bytes_ = 0;
 };
 
-// Everything before in `from` with its `from_access` happens before what follows in `to`.
-void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 from,
-                    VkAccessFlags2 from_access, VkPipelineStageFlags2 to, VkAccessFlags2 to_access);
-
 }  // namespace psygen::render

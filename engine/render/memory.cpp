@@ -148,6 +148,35 @@ void image_barrier(const Device& device, VkCommandBuffer commands,
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
+void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 from,
+                    VkAccessFlags2 from_access, VkPipelineStageFlags2 to,
+                    VkAccessFlags2 to_access) {
+  VkMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+  barrier.srcStageMask = from;
+  barrier.srcAccessMask = from_access;
+  barrier.dstStageMask = to;
+  barrier.dstAccessMask = to_access;
+  VkDependencyInfo dependency{};
+  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  dependency.memoryBarrierCount = 1;
+  dependency.pMemoryBarriers = &barrier;
+  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+Result<UniqueSemaphore> make_timeline(const Device& device) {
+  VkSemaphoreTypeCreateInfo type{};
+  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  VkSemaphoreCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+  info.pNext = &type;
+  VkSemaphore made = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateSemaphore(device.handle, &info, nullptr, &made);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a semaphore");
+  return UniqueSemaphore(device.vk, device.handle, made);
+}
+
 Result<OneTimeCommands> begin_once(const Device& device) {
   OneTimeCommands once;
   VkCommandPoolCreateInfo pool_info{};

@@ -59,6 +59,13 @@ core::Result<void> upload_image(const Device& device, const Image& image, core::
 template <class Record>
 core::Result<void> run_once(const Device& device, Record&& record);
 
+// Everything before in `from` with its `from_access` happens before what follows in `to`.
+void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 from,
+                    VkAccessFlags2 from_access, VkPipelineStageFlags2 to, VkAccessFlags2 to_access);
+
+// A semaphore that counts, from 0.
+core::Result<UniqueSemaphore> make_timeline(const Device& device);
+
 // Moves an image between layouts; one full barrier between the stages.
 void image_barrier(const Device& device, VkCommandBuffer commands,
                    const VkImageMemoryBarrier2& barrier);

@@ -25,19 +25,6 @@ bool is_empty(core::Extent extent) {
   return extent.width == 0 || extent.height == 0;
 }
 
-Result<UniqueSemaphore> make_timeline(const Device& device) {
-  VkSemaphoreTypeCreateInfo type{};
-  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
-  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-  VkSemaphoreCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-  info.pNext = &type;
-  VkSemaphore made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSemaphore(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a semaphore");
-  return UniqueSemaphore(device.vk, device.handle, made);
-}
-
 VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
                                      VkPipelineStageFlags2 stage) {
   VkSemaphoreSubmitInfo info{};

@@ -355,17 +355,8 @@ void record_copy_to_buffer(const Device& device, VkCommandBuffer commands, Targe
   copy.imageExtent = {targets.extent.width, targets.extent.height, 1};
   device.vk.vkCmdCopyImageToBuffer(commands, targets.colour.image.get(),
                                    VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &copy);
-  VkMemoryBarrier2 to_host{};
-  to_host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  to_host.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-  to_host.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  to_host.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
-  to_host.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
-  VkDependencyInfo dependency{};
-  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.memoryBarrierCount = 1;
-  dependency.pMemoryBarriers = &to_host;
-  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+  memory_barrier(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
 
 }  // namespace psygen::render

@@ -59,16 +59,9 @@ Result<void> StagedGeometry::create(const Device& device) {
   for (Part& part : parts_) {
     if (Result<void> made = create_part(device, part); !made) return made;
   }
-  VkSemaphoreTypeCreateInfo type{};
-  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
-  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-  VkSemaphoreCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-  info.pNext = &type;
-  VkSemaphore semaphore = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSemaphore(device.handle, &info, nullptr, &semaphore);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a semaphore");
-  timeline_ = UniqueSemaphore(device.vk, device.handle, semaphore);
+  Result<UniqueSemaphore> timeline = make_timeline(device);
+  if (!timeline) return tl::unexpected(timeline.error());
+  timeline_ = std::move(*timeline);
   return {};
 }
 

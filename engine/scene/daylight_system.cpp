@@ -5,12 +5,23 @@
 #include "engine/world/placement.hpp"
 
 namespace psygen::scene {
+namespace {
+
+bool is_same_step(const Daylight& a, const Daylight& b) {
+  models::Parameters of_a, of_b;
+  world::set_sun(of_a, a.azimuth_deg, a.elevation_deg);
+  world::set_sun(of_b, b.azimuth_deg, b.elevation_deg);
+  return of_a == of_b;
+}
+
+}  // namespace
 
 void daylight_system(const Clock& clock, const WorldFacts& facts, DaylightQuery nodes,
                      Daylight& daylight) {
   const world::Sky sky = world::sky_at(facts.world.sky, clock.now_s);
-  daylight = {sky.sun_azimuth_deg, sky.sun_elevation_deg};
-  if (facts.world.sky.day_length_s <= 0) return;
+  const Daylight now{sky.sun_azimuth_deg, sky.sun_elevation_deg};
+  if (is_same_step(now, daylight)) return;
+  daylight = now;
   const models::ModelType& terrain = facts.registry[facts.world.terrain_model];
   nodes.each<const Node, Source, Demand>([&](std::span<const ecs::Entity>, std::span<const Node>,
                                              std::span<Source> sources, std::span<Demand> demands) {
