@@ -116,7 +116,11 @@ core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double d
   record_frame(index, flight_s, frame_ms, (core::thread_cpu_seconds() - cpu_start_s) * 1000.0);
   overlay_figures_.add_frame(frame_ms);
   // The device's time counts where it is the longer one; waiting, for it or a display, does not.
-  state.input.frame_ms = std::max(frame_ms - state.record.wait_ms, state.record.gpu_ms);
+  // A software device's time is this machine's own.
+  const render::FrameResult& drawn = state.counters.frame;
+  state.input.frame_ms = renderer_->device().software
+                             ? frame_ms - drawn.display_ms
+                             : std::max(frame_ms - drawn.wait_ms, drawn.gpu_ms.value_or(0.0));
   return {};
 }
 

@@ -259,7 +259,7 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   self->sampled_depth_counts = limits.sampledImageDepthSampleCounts;
   self->sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;
   self->max_multi_draw = multi_draw.maxMultiDrawCount;
-  if (properties.properties.limits.timestampComputeAndGraphics) {
+  if (properties.properties.limits.timestampComputeAndGraphics && !self->info.software) {
     self->timestamp_period_ns = static_cast<double>(properties.properties.limits.timestampPeriod);
   }
   return self;

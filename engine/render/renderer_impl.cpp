@@ -164,14 +164,20 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
                                   side, extent.width, extent.height));
   }
   wait_idle();
-  targets_.reset();
+  targets_.clear();
   has_picture_ = false;
-  Result<Targets> made = make_targets(*device_, colour_format_, extent, pipelines_.samples());
-  if (!made) return tl::unexpected(made.error());
-  if (culling_) {
-    if (Result<void> fits = culling_->resize(*device_, extent, made->depth); !fits) return fits;
+  std::vector<Targets> targets;
+  for (std::size_t i = 0; i < (culling_ ? 1 : kFramesInFlight); ++i) {
+    Result<Targets> made = make_targets(*device_, colour_format_, extent, pipelines_.samples());
+    if (!made) return tl::unexpected(made.error());
+    made->host_ordered = !culling_;
+    targets.push_back(std::move(*made));
   }
-  targets_ = std::move(*made);
+  if (culling_) {
+    const Result<void> fits = culling_->resize(*device_, extent, targets[0].depth);
+    if (!fits) return fits;
+  }
+  targets_ = std::move(targets);
   return {};
 }
 
@@ -275,9 +281,9 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
       .view = view_,
       .water = water_,
       .shadows = frame_.shadow.y > 0};
-  record_scene(*device_, pipelines_, slot, *targets_, pass);
+  record_scene(*device_, pipelines_, slot, targets_of(slot), pass);
   if (windowed) {
-    record_copy_to_window(*device_, slot.commands(), *targets_, swapchain_.image(),
+    record_copy_to_window(*device_, slot.commands(), targets_of(slot), swapchain_.image(),
                           swapchain_.extent());
   }
   return slot.end(*device_);
@@ -299,21 +305,21 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
     if (!shown) return tl::unexpected(shown.error());
     if (!*shown) return FrameResult{};
   }
-  if (!targets_) {
+  if (targets_.empty()) {
     return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
   }
   remember_valid(input);
-  return noted(draw_frame(input, slots_[(frame_value_ + 1) % kFramesInFlight]));
+  return noted(draw_frame(input, slot_of(frame_value_ + 1)));
 }
 
 // What is drawn: the lists as they are, what the CPU chooses of them, or what the device will.
 void RendererImpl::list_draws(const FrameInput& input) {
   const ViewTest test =
-      view_test(frame_.clip_from_camera, input, static_cast<float>(targets_->extent.height));
+      view_test(frame_.clip_from_camera, input, static_cast<float>(size().height));
   const bool coloured = colours_draws(input.view);
   std::uint32_t pushed_from = pushed_from_;
   if (culling_) {
-    culling_->set_frame(test, frame_, input, targets_->extent, shared_.lists());
+    culling_->set_frame(test, frame_, input, size(), shared_.lists());
     // Cascades are drawn from a list of the CPU's, whose data is pushed.
     if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
     pushed_from = 0;
@@ -349,7 +355,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   const double wait_start = core::monotonic_seconds();
   if (Result<void> waited = wait_for(slot); !waited) return tl::unexpected(waited.error());
   if (const std::optional<double> gpu = slot.read_gpu_ms(*device_); gpu && has_list_) gpu_ms_ = gpu;
-  double waited_ms = ms_since(wait_start);
+  const double waited_ms = ms_since(wait_start);
 
   const double build_start = core::monotonic_seconds();
   FrameInput checked = input;
@@ -359,7 +365,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   add_lines(input.lines);
   view_ = input.view;
   water_ = input.water.has_value();
-  frame_ = frame_data(checked, targets_->extent, pipelines_.traits());
+  frame_ = frame_data(checked, size(), pipelines_.traits());
   const GpuCulling::Counts counted =
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
   list_draws(checked);
@@ -371,7 +377,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
     const Result<WindowState> acquired = acquire_window(slot);
     if (!acquired) return tl::unexpected(acquired.error());
     if (*acquired == WindowState::kNotNow) return out;
-    waited_ms += ms_since(acquire_start);
+    out.display_ms = ms_since(acquire_start);
   }
   const double record_start = core::monotonic_seconds();
   if (Result<void> recorded = record(slot, windowed); !recorded) {
@@ -391,7 +397,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   out.draws = culling_ ? counted.draws : static_cast<std::uint32_t>(list_.draws().size());
   out.triangles = culling_ ? counted.triangles : list_.triangle_count();
   out.cpu_ms = cpu_ms;
-  out.wait_ms = waited_ms;
+  out.wait_ms = waited_ms + out.display_ms;
   out.gpu_ms = gpu_ms_;
   return out;
 }
@@ -402,14 +408,15 @@ Result<Picture> RendererImpl::capture() {
                       "there is no picture before the first frame of this size");
   }
   Picture picture;
-  picture.width = targets_->extent.width;
-  picture.height = targets_->extent.height;
+  Targets& drawn = targets_of(slot_of(frame_value_));
+  picture.width = drawn.extent.width;
+  picture.height = drawn.extent.height;
   picture.rgba.resize(std::size_t{picture.width} * picture.height * 4);
   Result<Buffer> buffer = make_buffer(*device_, picture.rgba.size(),
                                       VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::kRead);
   if (!buffer) return tl::unexpected(buffer.error());
   const Result<void> copied = noted(run_once(*device_, [&](VkCommandBuffer commands) {
-    record_copy_to_buffer(*device_, commands, *targets_, buffer->buffer.get());
+    record_copy_to_buffer(*device_, commands, drawn, buffer->buffer.get());
   }));
   if (!copied) return tl::unexpected(copied.error());
   std::memcpy(picture.rgba.data(), buffer->mapped, picture.rgba.size());
@@ -425,7 +432,7 @@ Result<void> RendererImpl::resize(core::Extent size) {
     swapchain_stale_ = true;
     return {};
   }
-  if (targets_ && targets_->extent == size) return {};
+  if (this->size() == size) return {};
   return noted(create_targets(size));
 }
 
@@ -440,7 +447,7 @@ Result<double> RendererImpl::replay_floor_ms(int repeats) {
   std::vector<double> intervals;
   double last = core::monotonic_seconds();
   for (int i = 0; i < repeats + lead; ++i) {
-    FrameSlot& slot = slots_[(frame_value_ + 1) % kFramesInFlight];
+    FrameSlot& slot = slot_of(frame_value_ + 1);
     const Result<void> drawn = noted(wait_for(slot)
                                          .and_then([&] { return write_frame(slot); })
                                          .and_then([&] { return record(slot, false); })

@@ -41,7 +41,7 @@ class RendererImpl {
   core::Result<FrameResult> render(const FrameInput& input);
   core::Result<Picture> capture();
   core::Result<void> resize(core::Extent size);
-  core::Extent size() const { return targets_ ? targets_->extent : core::Extent{}; }
+  core::Extent size() const { return targets_.empty() ? core::Extent{} : targets_[0].extent; }
   const DeviceInfo& info() const { return device_->info; }
   std::vector<std::string> messages() const { return instance_->messages(); }
   core::Result<double> replay_floor_ms(int repeats);
@@ -63,6 +63,9 @@ class RendererImpl {
   std::size_t index_of(const FrameSlot& slot) const {
     return static_cast<std::size_t>(&slot - slots_.data());
   }
+  Targets& targets_of(const FrameSlot& slot) { return targets_[index_of(slot) % targets_.size()]; }
+  // The slot of the frame with this value of the timeline.
+  FrameSlot& slot_of(std::uint64_t value) { return slots_[value % kFramesInFlight]; }
   core::Result<std::byte*> add_pool_block(std::uint64_t bytes);
 
   core::Result<void> wait_for(FrameSlot& slot);
@@ -93,7 +96,7 @@ class RendererImpl {
   std::array<FrameSlot, kFramesInFlight> slots_;
   std::unique_ptr<GpuCulling> culling_;  // null on the CPU path
   UniqueSemaphore timeline_;
-  std::optional<Targets> targets_;
+  std::vector<Targets> targets_;  // one for each slot; one for all where the device culls
   Swapchain swapchain_;
   core::Extent seen_framebuffer_;  // the window's size when the swapchain was made
   bool swapchain_stale_ = true;

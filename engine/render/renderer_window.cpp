@@ -20,7 +20,7 @@ Result<bool> RendererImpl::prepare_window() {
   if (*made != SwapchainState::kReady) return false;
   seen_framebuffer_ = size;
   swapchain_stale_ = false;
-  if (targets_ && targets_->extent == swapchain_.extent()) return true;
+  if (this->size() == swapchain_.extent()) return true;
   if (Result<void> targets = create_targets(swapchain_.extent()); !targets) {
     swapchain_stale_ = true;
     return tl::unexpected(targets.error());

@@ -23,8 +23,11 @@ bool has_samples(const Targets& targets) {
 // A frame is drawn in one pass, or in two with depth read in between.
 enum class Part : std::uint8_t { kWhole, kFirst, kSecond };
 
-void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets,
-                Part part = Part::kWhole) {
+// Makes the targets attachments, after everything that used them before.
+void to_attachments(const Device& device, VkCommandBuffer commands, Targets& targets, Part part) {
+  if (part == Part::kWhole && targets.host_ordered &&
+      targets.colour_layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)
+    return;
   VkImageMemoryBarrier2 colour = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
   colour.srcStageMask =
       VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
@@ -56,7 +59,11 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
   dependency.pImageMemoryBarriers = barriers.data();
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
   targets.colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+}
 
+void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets,
+                Part part = Part::kWhole) {
+  to_attachments(device, commands, targets, part);
   VkRenderingAttachmentInfo colour_info{};
   colour_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   colour_info.imageView = targets.colour.view.get();

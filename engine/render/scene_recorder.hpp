@@ -19,6 +19,10 @@ struct Targets {
   Image samples;  // empty with one sample per pixel
   core::Extent extent;
   VkImageLayout colour_layout = VK_IMAGE_LAYOUT_UNDEFINED;  // after the last recorded frame
+  // The host waits for the last frame in here before it submits the next: no barrier is needed
+  // between them, and on lavapipe, where each waits for everything, one frame's triangles are set
+  // up while the last one's pixels are filled.
+  bool host_ordered = false;
 };
 core::Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
                                    VkSampleCountFlagBits samples);

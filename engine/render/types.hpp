@@ -188,11 +188,14 @@ struct FrameInput {
 
 struct FrameResult {
   std::uint32_t draws = 0;  // on the GPU path of the latest finished frame, 0 until there is one
-  std::uint64_t triangles = 0;   // the same
-  double cpu_ms = 0;             // recording and submission
-  double wait_ms = 0;            // for the frame before the last, and for a swapchain image
-  std::optional<double> gpu_ms;  // latest finished frame; none until there is one
-  bool presented = false;        // windowed: shown; headless: drawn
+  std::uint64_t triangles = 0;  // the same
+  double cpu_ms = 0;            // recording and submission
+  double wait_ms = 0;           // for the frame before the last, and for a swapchain image
+  double display_ms = 0;        // of these, for a swapchain image
+  // Latest finished frame; none until there is one, and on software devices, where the time is the
+  // host's own and asking for it would hold up the next frame.
+  std::optional<double> gpu_ms;
+  bool presented = false;  // windowed: shown; headless: drawn
 };
 
 // A mesh as it was submitted.

@@ -23,7 +23,7 @@ struct FrameRecord {
   double frame_ms = 0;     // wall time from this frame's start to the next one's
   double main_cpu_ms = 0;  // CPU time of the main thread in this frame
   double wait_ms = 0;      // of frame_ms: waiting for the GPU, a swapchain image or vsync
-  double gpu_ms = 0;       // by timestamps, of the newest frame that is known; 0 when unknown
+  double gpu_ms = 0;  // by timestamps, of the newest frame that is known; 0: unknown, or software
   std::array<float, kMaxSystems> system_ms{};  // in the order of FrameLog::systems()
 
   std::uint64_t triangles = 0;  // submitted

@@ -275,8 +275,12 @@ TEST_P(RendererTest, reports_device_time_once_a_frame_has_finished) {
   std::optional<double> gpu_ms;
   for (int i = 0; i < 4; ++i)
     gpu_ms = renderer_->render(input()).value().gpu_ms;
-  ASSERT_TRUE(gpu_ms);
-  EXPECT_GT(*gpu_ms, 0.0);
+  if (renderer_->device().software) {
+    EXPECT_FALSE(gpu_ms);  // it would hold up the next frame
+  } else {
+    ASSERT_TRUE(gpu_ms);
+    EXPECT_GT(*gpu_ms, 0.0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Submissions, RendererTest,
