@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <optional>
 
 #include "engine/core/assert.hpp"
@@ -22,7 +23,7 @@ using models::ParameterSpec;
 
 constexpr models::ParameterType kInteger = models::ParameterType::kInteger;
 constexpr models::ParameterSource kPlaced = models::ParameterSource::kPlaced;
-constexpr std::uint64_t kEdition = 1;  // of what this file makes of a world
+constexpr std::uint64_t kEdition = 2;  // of what this file makes of a world
 
 constexpr ParameterSpec kSchema[kMergedParameterCount] = {
     {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
@@ -32,6 +33,12 @@ constexpr ParameterSpec kSchema[kMergedParameterCount] = {
     {"node_level", kInteger, "", 1, 1, kMaxMergedLevel, 1, kMaxMergedLevel,
      "the node is 2^node_level blocks wide and long", kPlaced},
 };
+
+constexpr int kDetails = 2;
+// What the forms of the next node level are off, in parts of the height of what they stand for;
+// with every node level twice as much. Where a node is drawn first, at 1.5 times its side, that is
+// 8 pixels for a tree of 12 m in a block of 64 m.
+constexpr double kNextFormsError = 0.2;
 
 int level_of(const Parameters& p) {
   return static_cast<int>(
@@ -71,7 +78,7 @@ class MergedType final : public models::ModelType {
       first += scatter.count;
     }
     for (int level = 1; level <= kMaxMergedLevel; ++level)
-      plans_[static_cast<std::size_t>(level)] = plan_level(*world_, scatters_, level);
+      make_plans(level);
   }
 
   std::string_view name() const override { return "vegetation"; }
@@ -79,18 +86,23 @@ class MergedType final : public models::ModelType {
     return "all trees and rocks of a node's blocks, a few triangles each";
   }
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
-  int level_count() const override { return 1; }
-  double level_error_m(const Parameters&, int) const override { return 0; }
-  core::Bounds bounds(const Parameters& p) const override { return plan(p).box; }
-  MeshSize mesh_size(const Parameters& p, int) const override {
-    return {static_cast<std::uint32_t>(plan(p).vertices),
-            static_cast<std::uint32_t>(3 * plan(p).triangles), 0, core::VertexLayout::kModel};
+  int level_count() const override { return kDetails; }
+  double level_error_m(const Parameters& p, int level) const override {
+    const double relief_m = world_->terrain.real(models::kTerrainReliefM);
+    const double height_m = plan(p, 0).box.max.y - relief_m;
+    return level == 0 ? 0 : kNextFormsError * std::ldexp(height_m, level_of(p) - 1);
   }
-  double complexity(const Parameters& p, int) const override {
-    return work_of(*world_, scatters_, plan(p));
+  core::Bounds bounds(const Parameters& p) const override { return plan(p, 0).box; }
+  MeshSize mesh_size(const Parameters& p, int level) const override {
+    const LevelPlan& made = plan(p, level);
+    return {static_cast<std::uint32_t>(made.vertices),
+            static_cast<std::uint32_t>(3 * made.triangles), 0, core::VertexLayout::kModel};
+  }
+  double complexity(const Parameters& p, int level) const override {
+    return work_of(*world_, scatters_, plan(p, level));
   }
   double log2_cost(const Parameters& p) const override {
-    return std::log2(static_cast<double>(std::max<std::uint64_t>(plan(p).triangles, 1)));
+    return std::log2(static_cast<double>(std::max<std::uint64_t>(plan(p, 0).triangles, 1)));
   }
   core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
   std::uint64_t identity() const override { return identity_; }
@@ -102,8 +114,15 @@ class MergedType final : public models::ModelType {
   struct Making;    // one call of synthesize()
   struct Instance;  // that is added to the mesh
 
-  const LevelPlan& plan(const Parameters& p) const {
-    return plans_[static_cast<std::size_t>(level_of(p))];
+  void make_plans(int level) {
+    auto& [own, next] = plans_[static_cast<std::size_t>(level)];
+    own = plan_level(*world_, scatters_, level, level);
+    next = plan_level(*world_, scatters_, level, level + 1);
+    if (next.vertices == 0) next = own;  // all too small: better finer than nothing
+    own.box = next.box = {glm::min(own.box.min, next.box.min), glm::max(own.box.max, next.box.max)};
+  }
+  const LevelPlan& plan(const Parameters& p, int level) const {
+    return plans_[static_cast<std::size_t>(level_of(p))][static_cast<std::size_t>(level)];
   }
   void add_scatter(std::size_t s, const NodeBlock& block, Making& making) const;
   void make_from_like(const Instance& instance, const Parameters& p, Making& making) const;
@@ -112,7 +131,8 @@ class MergedType final : public models::ModelType {
   std::shared_ptr<const World> world_;
   std::uint64_t identity_;
   std::vector<FarScatter> scatters_;
-  std::array<LevelPlan, kMaxMergedLevel + 1> plans_;  // [0] is not used
+  // By node level, of which 0 is not used, and level of detail; boxes of one node level are equal.
+  std::array<std::array<LevelPlan, kDetails>, kMaxMergedLevel + 1> plans_;
 };
 
 struct MergedType::Making {
@@ -197,7 +217,7 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   }
   const glm::vec3 corner{static_cast<float>(block.in_node_m.x), 0,
                          static_cast<float>(block.in_node_m.y)};
-  making.writer.add(how.form, making.form, corner + *place, making.plan.level == 1);
+  making.writer.add(how.form, making.form, corner + *place, making.plan.form_level == 1);
 }
 
 // Instances of the whole node are numbered block by block; `together` numbers in a row are one
@@ -223,23 +243,23 @@ void MergedType::add_scatter(std::size_t s, const NodeBlock& block, Making& maki
   }
 }
 
-core::Bounds MergedType::synthesize(const Parameters& p, int, const MeshView& out) const {
-  const LevelPlan& level = plan(p);
-  PSYGEN_CHECK(out.vertices.size() == level.vertices * sizeof(core::ModelVertex) &&
-                   out.indices.size() == 3 * level.triangles,
+core::Bounds MergedType::synthesize(const Parameters& p, int level, const MeshView& out) const {
+  const LevelPlan& made = plan(p, level);
+  PSYGEN_CHECK(out.vertices.size() == made.vertices * sizeof(core::ModelVertex) &&
+                   out.indices.size() == 3 * made.triangles,
                "the destination has exactly the size of the mesh");
   const NodeWalk walk(*world_,
                       {static_cast<std::int32_t>(p.integer(kMergedBlockX)),
                        static_cast<std::int32_t>(p.integer(kMergedBlockZ))},
                       level_of(p));
-  Making making{level,
+  Making making{made,
                 core::combine(world_->seed, p.hash()),
                 walk.tile_side_m(),
-                FormWriter(level.box, out),
+                FormWriter(made.box, out),
                 std::nullopt,
                 {},
                 {}};
-  for (std::uint32_t i = 0; level.vertices > 0 && i < walk.block_count(); ++i) {
+  for (std::uint32_t i = 0; made.vertices > 0 && i < walk.block_count(); ++i) {
     if (walk.starts_tile(i)) making.ground.reset();
     const NodeBlock block = walk.block(i);
     if (!world_->contains(block.coord)) continue;

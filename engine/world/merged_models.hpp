@@ -22,7 +22,8 @@ enum MergedParameter : std::size_t {
 
 inline constexpr int kMaxMergedLevel = 5;
 
-// One level of detail: the node level is it. Positions are metres from the node's corner. Models
+// Two levels of detail: what belongs to the node level, and, coarser than anything single but the
+// smallest stones, the forms of the next one. Positions are metres from the node's corner. Models
 // that find no place leave degenerate triangles at the end of the mesh. Needs 1 MiB of stack. Makes
 // a few instances of every scatter at once (about 0.1 ms a scatter). The model types of `registry`
 // must outlive the result, which may become one of them; `world` must be one of this registry.

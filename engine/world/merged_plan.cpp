@@ -34,10 +34,10 @@ void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint3
     how.together = std::max(thinning, far.is_leafy() ? least : 1);
     const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMostTogether) : thinning;
     if (!far.empty() && least <= most) {
-      how.form = how.together > 1 ? Form::kSheet : far.form_at(plan.level);
+      how.form = how.together > 1 ? Form::kSheet : far.form_at(plan.form_level);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * plan.level);
       how.forms = (instances + how.together - 1) / how.together;
-      how.each_is_synthesised = plan.level <= 2 && how.together == 1 && far.is_cheap();
+      how.each_is_synthesised = plan.form_level <= 2 && how.together == 1 && far.is_cheap();
     }
     // Only worlds of thousands of scatters do not fit, however much is put together.
     if (thinning >= kMostThinning &&
@@ -68,15 +68,17 @@ core::Bounds box_of(const World& world, std::span<const FarScatter> scatters, do
 
 }  // namespace
 
-LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters, int level) {
-  const double side = std::ldexp(world.block_size_m(), level);
+LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters, int level,
+                     int form_level) {
+  const double side = std::ldexp(world.block_size_m(), form_level);
   LevelPlan plan;
   plan.level = level;
-  std::uint32_t thinning = level <= 3 ? 1 : 3U << (2 * (level - 4));
+  plan.form_level = form_level;
+  std::uint32_t thinning = form_level <= 3 ? 1 : 3U << (2 * (form_level - 4));
   plan_scatters(scatters, side, thinning, plan);
   while (plan.vertices > kMostVertices)
     plan_scatters(scatters, side, thinning *= 2, plan);
-  plan.box = box_of(world, scatters, side, plan);
+  plan.box = box_of(world, scatters, std::ldexp(world.block_size_m(), level), plan);
   return plan;
 }
 

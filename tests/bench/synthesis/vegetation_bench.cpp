@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kFiles[] = {"paper", "five_species", "silver_combe"};
 
-// Nodes after nodes of one level. Arguments: world, node level.
+// Nodes after nodes of one level. Arguments: world, node level, level of detail.
 void vegetation(benchmark::State& state) {
   models::Registry registry = models::make_standard_registry();
   const std::string file =
@@ -22,26 +22,27 @@ void vegetation(benchmark::State& state) {
   if (!loaded) return state.SkipWithError(loaded.error().message.c_str());
   const auto type = make_merged_type(std::make_shared<const World>(*std::move(loaded)), registry);
   const int level = static_cast<int>(state.range(1));
-  const models::MeshSize size = type->mesh_size(merged_parameters({0, 0}, level), 0);
+  const int detail = static_cast<int>(state.range(2));
+  const models::MeshSize size = type->mesh_size(merged_parameters({0, 0}, level), detail);
   std::vector<std::byte> vertices(size.vertex_count * sizeof(core::ModelVertex));
   std::vector<std::uint16_t> indices(size.index_count);
   std::int32_t node = 0;
   for (auto _ : state) {
     const models::Parameters p = merged_parameters({node & 7, node >> 3 & 7}, level);
-    benchmark::DoNotOptimize(type->synthesize(p, 0, {vertices, indices}));
+    benchmark::DoNotOptimize(type->synthesize(p, detail, {vertices, indices}));
     ++node;
   }
   state.SetLabel(kFiles[state.range(0)]);
   state.counters["vertices"] = size.vertex_count;
   state.counters["triangles"] = size.triangle_count();
-  state.counters["complexity"] = type->complexity(merged_parameters({0, 0}, level), 0);
+  state.counters["complexity"] = type->complexity(merged_parameters({0, 0}, level), detail);
   models::bench::report_triangles(
       state, static_cast<double>(size.triangle_count()) * static_cast<double>(state.iterations()));
   models::bench::report_seconds_each(state, 1);
 }
 BENCHMARK(vegetation)
-    ->ArgsProduct({{0, 1, 2}, {1, 2, 3, 4, 5}})
-    ->ArgNames({"world", "level"})
+    ->ArgsProduct({{0, 1, 2}, {1, 2, 3, 4, 5}, {0, 1}})
+    ->ArgNames({"world", "level", "detail"})
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace

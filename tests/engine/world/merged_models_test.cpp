@@ -43,8 +43,8 @@ struct Scenery {
     world = std::make_shared<const World>(*std::move(parsed));
     type = make_merged_type(world, registry);
   }
-  Mesh mesh(core::BlockCoord node, int level) const {
-    return synthesize(*type, merged_parameters(node, level), 0);
+  Mesh mesh(core::BlockCoord node, int level, int detail = 0) const {
+    return synthesize(*type, merged_parameters(node, level), detail);
   }
   glm::vec3 corner_m(core::BlockCoord block, core::BlockCoord node, int level) const {
     const auto steps = [level](std::int32_t b, std::int32_t n) {
@@ -171,9 +171,10 @@ Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level, co
 TEST(MergedModels, KeepTheirPromisesAtEveryNodeLevelOfEveryWorld) {
   for (const char* file : kWorldFiles) {
     const Scenery scenery(text_of(file));
-    for (int level = 1; level <= kMaxMergedLevel; ++level) {
+    for (int i = 0; i < 2 * kMaxMergedLevel; ++i) {
+      const int level = 1 + i / 2, detail = i % 2;
       const models::Parameters p = merged_parameters({2, 1}, level);
-      const Mesh mesh = scenery.mesh({2, 1}, level);
+      const Mesh mesh = scenery.mesh({2, 1}, level, detail);
       EXPECT_LE(mesh.size.vertex_count, 65'536U) << file;
       EXPECT_GT(mesh.size.vertex_count, 0U) << file;
       const core::Bounds box = scenery.type->bounds(p);
@@ -187,11 +188,39 @@ TEST(MergedModels, KeepTheirPromisesAtEveryNodeLevelOfEveryWorld) {
         ASSERT_TRUE(glm::all(glm::greaterThanEqual(place, mesh.box.min - slack)) &&
                     glm::all(glm::lessThanEqual(place, mesh.box.max + slack)));
         ASSERT_LE(v.material, kLeaf);
-        ASSERT_TRUE(level == 1 || v.sway == 0);
+        ASSERT_TRUE((level == 1 && detail == 0) || v.sway == 0);
       }
-      EXPECT_GT(scenery.type->complexity(p, 0), 0);
+      EXPECT_GT(scenery.type->complexity(p, detail), 0);
+      if (detail > 0) continue;
       EXPECT_NEAR(scenery.type->log2_cost(p), std::log2(mesh.size.triangle_count()), 1e-9);
     }
+  }
+}
+
+TEST(MergedModels, AreAtMostTwoFifthsAsManyTrianglesInTheCoarserLevelOfDetail) {
+  const Scenery scenery(text_of("paper.toml"));
+  for (int level = 1; level <= kMaxMergedLevel; ++level) {
+    const models::Parameters p = merged_parameters({2, 1}, level);
+    const auto triangles = [&](int detail) {
+      return scenery.type->mesh_size(p, detail).triangle_count();
+    };
+    EXPECT_LE(5 * triangles(1), 2 * triangles(0)) << level;
+    EXPECT_GT(triangles(1), 0U) << level;
+    EXPECT_GT(scenery.type->level_error_m(p, 1), scenery.type->level_error_m(p, 0)) << level;
+  }
+}
+
+// What is left out for its size would leave nothing.
+TEST(MergedModels, AreNeverEmptyInTheCoarserLevelOfDetailOnly) {
+  const Scenery scenery(replaced(
+      text_of("paper.toml"),
+      "[[scatter]]\nmodel = \"tree\"\ncount = 23\niterations = [3, 5]\nbranches = [2, 4]\n", ""));
+  EXPECT_GT(scenery.type->mesh_size(merged_parameters({2, 1}, 1), 0).triangle_count(), 0U);
+  for (int level = 1; level <= kMaxMergedLevel; ++level) {
+    const models::Parameters p = merged_parameters({2, 1}, level);
+    EXPECT_EQ(scenery.type->mesh_size(p, 0).triangle_count() > 0,
+              scenery.type->mesh_size(p, 1).triangle_count() > 0)
+        << level;
   }
 }
 
