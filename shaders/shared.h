@@ -56,9 +56,10 @@ struct FrameData {
   vec4 water;            // albedo of deep water; w: height of the surface over the camera, m
   vec4 canopy;           // of far forests; w: slope that bears none
   vec4 canopy_place;     // x: height where they start, y: end, m; z: 1 / blend, 1/m
-  vec4 edge;             // where the world ends: least x, least z, greatest x, greatest z
-  vec4 shadow;           // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
-  vec4 shadow_reach;     // distance from the camera that each cascade reaches, m
+  vec4 morph;  // of draws whose own is negative; x: distance where it begins, m; y: 1 / length, 1/m
+  vec4 edge;   // where the world ends: least x, least z, greatest x, greatest z
+  vec4 shadow;        // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
+  vec4 shadow_reach;  // distance from the camera that each cascade reaches, m
   mat4 shadow_from_camera[PSYGEN_MAX_CASCADES];  // to texture and depth, nearest cascade first
 };
 
@@ -68,7 +69,8 @@ struct FrameData {
 // red · 65536 + green · 256 + blue.
 struct DrawData {
   vec4 origin;  // terrain: origin, w cell size in m; model: center, w phase of the wind, 0 to 1
-  vec4 scale;   // terrain: height range, skirt, morph, cover; model: half extent, w fade
+  vec4 scale;  // terrain: height range, skirt, morph or < 0 (FrameData), cover; model: half extent,
+               // w fade
 };
 
 // A corner of the overlay's quads, or an end of a line.
@@ -78,7 +80,7 @@ struct OverlayVertex {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 64 + 27 * 16 + 3 * 64);
+static_assert(sizeof(FrameData) == 64 + 28 * 16 + 3 * 64);
 static_assert(sizeof(DrawData) == 32);
 static_assert(sizeof(OverlayVertex) == 32);
 static_assert(offsetof(FrameData, ray_right) == 64);

@@ -17,10 +17,13 @@ void main() {
   vec2 grid = vec2(packed.x & 0x7Fu, (packed.x >> 8) & 0xFFu);
   float skirt = float((packed.x >> 7) & 1u);
   uint fine = packed.x >> 16;
-  float height = mix(float(fine), float(packed.y & 0xFFFFu), draw.scale.z) * (1.0 / 65535.0);
-  vec3 p = vec3(draw.origin.x + grid.x * draw.origin.w,
-                draw.origin.y + height * draw.scale.x,
+  vec3 p = vec3(draw.origin.x + grid.x * draw.origin.w, 0.0,
                 draw.origin.z + grid.y * draw.origin.w);
+  float morph = draw.scale.z;
+  if (morph < 0.0)
+    morph = clamp((sqrt(dot(p.xz, p.xz)) - frame.morph.x) * frame.morph.y, 0.0, 1.0);
+  float height = mix(float(fine), float(packed.y & 0xFFFFu), morph) * (1.0 / 65535.0);
+  p.y = draw.origin.y + height * draw.scale.x;
   p.xz = clamp(p.xz, frame.edge.xy, frame.edge.zw);
   ivec2 bits = ivec2(int(packed.y << 8) >> 24, int(packed.y) >> 24);
   vec3 n = octahedral_normal(max(vec2(bits) * (1.0 / 127.0), -1.0));

@@ -28,6 +28,11 @@ struct GeometryRange {
 };
 inline constexpr std::uint32_t kNoGeometry = UINT32_MAX;
 
+// Indices [first, first + count) of a list.
+struct IndexPart {
+  std::uint32_t first = 0, count = 0;
+};
+
 struct GeometryReservation {
   GeometryRange range;
   std::span<std::byte> vertices;     // vertex_count · stride bytes, 16-byte aligned

@@ -21,14 +21,9 @@ std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool sh
   return open_[key] - 1;
 }
 
-void CandidateList::add_level(const core::GeometryRange& range, std::uint32_t shared_indices,
-                              float error_m) {
-  IndexList indices{range.first_index, range.index_count};
-  if (shared_indices != kNoSharedIndices) {
-    PSYGEN_ASSERT(shared_indices <= lists_.size(), "unknown shared index list");
-    indices = lists_[shared_indices - 1];
-  }
-  const std::uint32_t group = group_for(range, shared_indices != kNoSharedIndices);
+void CandidateList::add_level(const core::GeometryRange& range, const IndexList& indices,
+                              bool shared, float error_m) {
+  const std::uint32_t group = group_for(range, shared);
   levels_.push_back({{indices.first_index, indices.index_count, range.first_vertex, group},
                      {error_m, 0.0F, 0.0F, 0.0F}});
 }
@@ -37,10 +32,11 @@ template <class Draw>
 void CandidateList::add(const Draw& draw, bool choose, bool coloured) {
   const core::Bounds box = bounds_of(draw);
   const auto first = static_cast<std::uint32_t>(levels_.size());
-  add_level(draw.range, draw.shared_indices, 0.0F);
+  add_level(draw.range, indices_of(draw, lists_), draw.shared_indices != kNoSharedIndices, 0.0F);
   if (choose) {
     for (const DrawLevel& level : draw.coarser)
-      add_level(level.range, level.shared_indices, level.error_m);
+      add_level(level.range, indices_of(level.range, level.shared_indices, lists_),
+                level.shared_indices != kNoSharedIndices, level.error_m);
   }
   // Meshes without a name of their own share bit 0.
   const std::uint32_t name = draw.range.id == core::kNoGeometry ? 0 : draw.range.id + 1;

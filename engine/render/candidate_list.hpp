@@ -44,7 +44,8 @@ class CandidateList {
  private:
   template <class Draw>
   void add(const Draw& draw, bool choose, bool coloured);
-  void add_level(const core::GeometryRange& range, std::uint32_t shared_indices, float error_m);
+  void add_level(const core::GeometryRange& range, const IndexList& indices, bool shared,
+                 float error_m);
   std::uint32_t group_for(const core::GeometryRange& range, bool shared);
 
   std::vector<shaders::CullCandidate> candidates_;

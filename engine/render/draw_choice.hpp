@@ -45,6 +45,7 @@ void choose_draws(const ViewTest& test, std::span<const Draw> draws, std::vector
     if (level == 0) continue;
     chosen.back().range = draw.coarser[level - 1].range;
     chosen.back().shared_indices = draw.coarser[level - 1].shared_indices;
+    if constexpr (requires { draw.part; }) chosen.back().part = {};
   }
 }
 

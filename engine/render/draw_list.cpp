@@ -27,18 +27,25 @@ void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
   data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
 }
 
-template <class Draw>
-IndexList DrawList::indices_of(const Draw& draw) const {
-  if (draw.shared_indices == kNoSharedIndices) {
-    return {draw.range.first_index, draw.range.index_count};
-  }
-  PSYGEN_ASSERT(draw.shared_indices <= lists_.size(), "unknown shared index list");
-  return lists_[draw.shared_indices - 1];
+IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
+                     std::span<const IndexList> lists) {
+  if (shared_indices == kNoSharedIndices) return {range.first_index, range.index_count};
+  PSYGEN_ASSERT(shared_indices <= lists.size(), "unknown shared index list");
+  return lists[shared_indices - 1];
+}
+IndexList indices_of(const TerrainDraw& draw, std::span<const IndexList> lists) {
+  const IndexList all = indices_of(draw.range, draw.shared_indices, lists);
+  if (draw.part.count == 0) return all;
+  PSYGEN_ASSERT(draw.part.first + draw.part.count <= all.index_count, "a part is in its list");
+  return {all.first_index + draw.part.first, draw.part.count};
+}
+IndexList indices_of(const MeshDraw& draw, std::span<const IndexList> lists) {
+  return indices_of(draw.range, draw.shared_indices, lists);
 }
 
 template <class Draw>
 void DrawList::append(const Draw& draw) {
-  const IndexList indices = indices_of(draw);
+  const IndexList indices = indices_of(draw, lists_);
   const DrawRun run{draw.range.layout,
                     draw.shared_indices != kNoSharedIndices,
                     indices.index_count >= pushed_from_,
@@ -58,7 +65,7 @@ template <class Draw>
 void DrawList::add(std::span<const Draw> input) {
   // What must differ between two runs, as a number to sort by.
   const auto key = [&](const Draw& draw) {
-    const std::uint64_t pushed = indices_of(draw).index_count >= pushed_from_ ? 0 : 2;
+    const std::uint64_t pushed = indices_of(draw, lists_).index_count >= pushed_from_ ? 0 : 2;
     return pushed << 31 | std::uint64_t{draw.range.pool_block} * 2 |
            (draw.shared_indices != kNoSharedIndices ? 1u : 0u);
   };

@@ -20,6 +20,13 @@ struct IndexList {
   std::uint32_t index_count = 0;
 };
 
+// The indices of a draw; `lists` is indexed by shared_indices − 1.
+IndexList indices_of(const TerrainDraw& draw, std::span<const IndexList> lists);
+IndexList indices_of(const MeshDraw& draw, std::span<const IndexList> lists);
+// Those of a mesh with a list of its own or a shared one.
+IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
+                     std::span<const IndexList> lists);
+
 // What the shaders read of a draw.
 shaders::DrawData data_of(const TerrainDraw& draw);
 shaders::DrawData data_of(const MeshDraw& draw);
@@ -68,8 +75,6 @@ class DrawList {
  private:
   template <class Draw>
   void add(std::span<const Draw> input);
-  template <class Draw>
-  IndexList indices_of(const Draw& draw) const;
   template <class Draw>
   void append(const Draw& draw);
 

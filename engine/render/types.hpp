@@ -151,8 +151,9 @@ struct TerrainDraw {
   float cell_m = 1.0F;                               // between two grid lines
   float height_min_m = 0.0F, height_range_m = 1.0F;  // what unorm16 heights span
   float skirt_m = 0.0F;                              // how far skirt vertices hang down
-  float morph = 0.0F;                                // 0 fine heights … 1 coarse heights
-  float side_m = 0.0F;  // of the square that the grid covers; 0: as large as a grid can be
+  float morph = 0.0F;    // 0 fine heights … 1 coarse heights; < 0: FrameInput::morph
+  core::IndexPart part;  // of the shared list; of 0 indices: all of it
+  float side_m = 0.0F;   // of the square that the grid covers; 0: as large as a grid can be
   std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
   float cover = 0.0F;                       // share of the ground that far forests hide (Canopy)
   std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
@@ -166,6 +167,11 @@ struct Line {
 
 inline constexpr std::size_t kMaxLines = 1 << 16;
 
+// Ground whose morph follows from the distance of each vertex, seen from above.
+struct Morph {
+  float from_m = 0, to_m = 0;  // where it begins, and where it has the coarse heights
+};
+
 struct FrameInput {
   core::CameraPose pose;
   core::Projection projection;
@@ -175,6 +181,7 @@ struct FrameInput {
   Canopy canopy;
   WorldEdge edge;
   View view = View::kNormal;
+  Morph morph;
   double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only

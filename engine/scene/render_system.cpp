@@ -3,6 +3,7 @@
 // until all that replaces it is; where nothing is complete, the finest ground that closes the gap.
 #include <algorithm>
 
+#include "engine/scene/ground_draws.hpp"
 #include "engine/scene/lighting.hpp"
 #include "engine/scene/missing.hpp"
 #include "engine/scene/systems.hpp"
@@ -14,12 +15,14 @@ namespace {
 class Drawing {
  public:
   Drawing(render::View shown, const Clock& clock, const Camera& camera, const WorldFacts& facts,
-          const View& view, const RenderQuery& entities, DrawLists& draws, Counters& counters)
+          const View& view, float fine_m, const RenderQuery& entities, DrawLists& draws,
+          Counters& counters)
       : shown_(shown),
         clock_(clock),
         camera_(camera),
         facts_(facts),
         view_(view),
+        fine_m_(fine_m),
         entities_(entities),
         draws_(draws),
         counters_(counters) {}
@@ -71,7 +74,7 @@ class Drawing {
     const std::uint32_t coarser = node.leaf ? 0 : coarser_by(index);
     count(middle, placed->radius_m, hole, coarser > 1);
     const DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, coarser};
-    if (!hole) add_ground(node, facts, *placed, *demand, *mesh, corner);
+    if (!hole) add_ground(node, at, facts, *placed, *demand, *mesh, corner);
     add_models(*entities_.get<ecs::Children>(entity), facts, corner);
     if (shown_ == render::View::kBounds) {
       add_box({corner + glm::vec3(0, at.low_m, 0),
@@ -99,8 +102,8 @@ class Drawing {
       counters_.missing_pixels_percent += covered_percent(camera_, center, radius_m);
   }
 
-  void add_ground(const visibility::CutNode& node, const DrawFacts& facts, const Placed& placed,
-                  const Demand& demand, const Mesh& mesh, glm::vec3 corner) {
+  void add_ground(const visibility::CutNode& node, const Node& at, const DrawFacts& facts,
+                  const Placed& placed, const Demand& demand, const Mesh& mesh, glm::vec3 corner) {
     const NodeLevel& level = facts_.levels[node.node.level];
     render::TerrainDraw draw;
     draw.range = mesh.range;
@@ -113,11 +116,10 @@ class Drawing {
     draw.side_m = node.side_m;
     if (node.node.level > 0 && !level.merged) draw.cover = facts_.cover_share;
     draw.debug_colour = colour_of(shown_, facts);
-    // A mesh finer than wanted looks like the wanted one; a coarser one has nothing to morph from.
-    const bool finest = node.node.level == 0 && demand.drawn_level == 0 && level.mesh_level != 0;
-    draw.morph = !finest     ? level.mesh_level != 0 && node.leaf && !node.fine ? node.morph : 0.0F
-                 : node.fine ? node.morph
-                             : 1.0F;
+    if (facts_.tiles && node.node.level == 0 && demand.drawn_level == 0)
+      return add_tiles(*facts_.tiles, view_, at.low_m, at.high_m, fine_m_, draw, draws_.terrain);
+    // A mesh coarser than wanted has nothing to morph from.
+    draw.morph = level.mesh_level != 0 && node.leaf && !node.fine ? node.morph : 0.0F;
     draws_.terrain.push_back(draw);
   }
 
@@ -153,6 +155,7 @@ class Drawing {
   const Camera& camera_;
   const WorldFacts& facts_;
   const View& view_;
+  const float fine_m_;  // blocks nearer than this have their finest ground
   const RenderQuery& entities_;
   DrawLists& draws_;
   Counters& counters_;
@@ -169,7 +172,9 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
   draws.entities.clear();
   for (const visibility::CutNode& node : view.cut.nodes)
     draws.entities.push_back(streaming.grids[node.node.level].entity_of(node.node.coord));
-  Drawing(input.view, clock, camera, facts, view, entities, draws, counters).run(draws.entities);
+  const render::Morph morph = morph_of(streaming);
+  Drawing(input.view, clock, camera, facts, view, morph.to_m, entities, draws, counters)
+      .run(draws.entities);
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
   if (output.renderer == nullptr) return;
 
@@ -187,6 +192,7 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
   frame.models = draws.models;
   frame.lines = draws.lines;
   frame.canopy = facts.canopy;
+  frame.morph = morph;
   frame.edge = edge_of(facts.world, camera.pose.position);
   frame.overlay_lines = input.overlay_lines;
   const auto result = output.renderer->render(frame);

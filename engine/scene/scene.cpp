@@ -101,6 +101,8 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
     merged = &facts.registry[*added];
   }
   facts.levels = node_levels(facts.world, facts.registry, settings, merged);
+  if (facts.levels[0].mesh_level != 0)
+    facts.tiles.emplace(static_cast<int>(facts.world.terrain.integer(models::kTerrainSize)));
   const world::FarCover cover = world::far_cover(facts.world, facts.registry);
   facts.canopy = canopy_of(facts.world, cover.albedo);
   facts.cover_share = cover.share;

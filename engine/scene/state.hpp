@@ -11,6 +11,7 @@
 #include "ecs/ecs.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/models/terrain_tiles.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/governor.hpp"
@@ -74,10 +75,11 @@ struct WorldFacts {
   models::Registry registry;
   render::Light light;
   render::TerrainPalette palette;
-  render::Canopy canopy;                // of forests too far to be drawn
-  float cover_share = 0;                // of the ground that they hide
-  std::vector<NodeLevel> levels;        // of the quadtree, finest first
-  models::ModelIndex merged_model = 0;  // of meshes that stand for all models on a node
+  render::Canopy canopy;                      // of forests too far to be drawn
+  float cover_share = 0;                      // of the ground that they hide
+  std::vector<NodeLevel> levels;              // of the quadtree, finest first
+  models::ModelIndex merged_model = 0;        // of meshes that stand for all models on a node
+  std::optional<models::TerrainTiles> tiles;  // of blocks' finest meshes; none without levels
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up

@@ -14,17 +14,33 @@ namespace {
 // The largest error of a node over the usual one.
 constexpr double kPossibleError = 2.5;
 
+// In place of the list of a block's finest ground: that of its tiles. No type names a list so.
+constexpr std::uint32_t kTiles = UINT32_MAX;
+
+std::vector<std::uint16_t> index_list(const synthesis::MeshRecord& record, const WorldFacts& facts,
+                                      bool tiled) {
+  std::vector<std::uint16_t> list(tiled ? facts.tiles->index_count() : record.size.index_count);
+  if (tiled) {
+    facts.tiles->write_indices(list);
+  } else {
+    facts.registry[record.key.model].write_shared_indices(record.size.shared_indices, list);
+  }
+  return list;
+}
+
 std::uint32_t shared_indices_of(const synthesis::MeshRecord& record, const WorldFacts& facts,
                                 Output& output) {
   if (record.size.shared_indices == 0) return render::kNoSharedIndices;
-  const std::uint64_t key = (std::uint64_t{record.key.model} << 32) | record.size.shared_indices;
+  const bool tiled =
+      facts.tiles && record.key.model == facts.world.terrain_model && record.key.level == 0;
+  const std::uint64_t key =
+      (std::uint64_t{record.key.model} << 32) | (tiled ? kTiles : record.size.shared_indices);
   SharedIndices& shared = output.shared_indices;
   const auto known = shared.find(key);
   if (known != shared.end()) return known->second;
   std::uint32_t name = static_cast<std::uint32_t>(shared.size()) + 1;
   if (output.renderer != nullptr) {
-    std::vector<std::uint16_t> list(record.size.index_count);
-    facts.registry[record.key.model].write_shared_indices(record.size.shared_indices, list);
+    const std::vector<std::uint16_t> list = index_list(record, facts, tiled);
     const auto uploaded = output.renderer->upload_shared_indices(list);
     if (!uploaded) {
       core::log_error(fmt::format("index list not uploaded: {}", uploaded.error().message));

@@ -74,9 +74,14 @@ TEST(Holes, AreFoundWhereGroundOrSkirtsAreLeftOut) {
   draws.erase(draws.begin());
   EXPECT_GT(studio.holes(), 1000u);
   draws.insert(draws.begin(), nearest);
+  // Without morphing the borders of two levels do not meet, and skirts hide most of what is between
+  // them.
+  for (render::TerrainDraw& draw : draws)
+    draw.morph = 0;
+  const std::size_t with_skirts = studio.holes();
   for (render::TerrainDraw& draw : draws)
     draw.skirt_m = 0;
-  EXPECT_GT(studio.holes(), 0u);
+  EXPECT_GT(studio.holes(), with_skirts);
 }
 
 }  // namespace

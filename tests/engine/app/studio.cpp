@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/ground_draws.hpp"
+
 namespace psygen::app {
 namespace {
 
@@ -21,6 +23,7 @@ image::Image Studio::drawn_again(const render::Light& light,
   frame.projection = s.camera.projection;
   frame.light = light;
   frame.palette = s.facts.palette;
+  frame.morph = scene::morph_of(s.streaming);
   frame.block_size_m = s.facts.world.block_size_m();
   frame.terrain = terrain;
   frame.models = models;

@@ -19,11 +19,15 @@ struct Square {
   }
 };
 
+// Tiles of one block count as the block.
 std::vector<Square> drawn_ground(const State& s) {
   std::vector<Square> squares;
   const double block_m = s.facts.world.block_size_m();
   const core::WorldPosition& eye = s.camera.pose.position;
+  std::uint32_t last_tiled = core::kNoGeometry;
   for (const render::TerrainDraw& draw : s.draws.terrain) {
+    if (draw.part.count != 0 && draw.range.id == last_tiled) continue;
+    last_tiled = draw.part.count != 0 ? draw.range.id : core::kNoGeometry;
     squares.push_back({std::round(eye.block.x * block_m + eye.local.x + double{draw.origin.x}),
                        std::round(eye.block.z * block_m + eye.local.z + double{draw.origin.z}),
                        block_m * double{draw.cell_m / s.facts.cell_m}});

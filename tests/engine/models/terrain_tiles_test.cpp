@@ -1,0 +1,152 @@
+#include "engine/models/terrain_tiles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "engine/models/terrain_grid.hpp"
+
+namespace psygen::models {
+namespace {
+
+using Form = TerrainTiles::Form;
+using Triangle = std::array<std::uint16_t, 3>;
+
+constexpr int kSizes[] = {4, 5, 8, 17, 33, 64, 65, 128};
+constexpr Form kForms[] = {Form::kFine, Form::kRimmed, Form::kCoarse};
+
+// With the smallest index first, in the same direction.
+Triangle canonical(Triangle t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
+}
+
+std::vector<Triangle> triangles_of(std::span<const std::uint16_t> indices) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < indices.size(); i += 3)
+    triangles.push_back(canonical({indices[i], indices[i + 1], indices[i + 2]}));
+  return triangles;
+}
+
+std::vector<std::uint16_t> list_of(const TerrainTiles& tiles) {
+  std::vector<std::uint16_t> list(tiles.index_count());
+  tiles.write_indices(list);
+  return list;
+}
+
+std::vector<Triangle> tile_of(const TerrainTiles& tiles, int column, int row, Form form) {
+  const std::vector<std::uint16_t> list = list_of(tiles);
+  const core::IndexPart part = tiles.tile(column, row, form);
+  return triangles_of(std::span(list).subspan(part.first, part.count));
+}
+
+std::set<Triangle> all_of(const TerrainTiles& tiles, Form form) {
+  std::set<Triangle> all;
+  for (int row = 0; row < tiles.per_side(); ++row) {
+    for (int column = 0; column < tiles.per_side(); ++column) {
+      for (const Triangle& t : tile_of(tiles, column, row, form))
+        EXPECT_TRUE(all.insert(t).second) << "a triangle is in two tiles";
+    }
+  }
+  return all;
+}
+
+std::set<Triangle> surface_of(int size, int level) {
+  const TerrainGrid grid(size, level);
+  std::vector<std::uint16_t> indices(std::size_t{grid.triangles()} * 3);
+  grid.write_indices(indices);
+  indices.resize(std::size_t{grid.surface_triangles()} * 3);
+  const auto at_level_0 = [&](std::uint16_t v) {
+    return static_cast<std::uint16_t>(v / grid.n * grid.stride * size + v % grid.n * grid.stride);
+  };
+  std::transform(indices.begin(), indices.end(), indices.begin(), at_level_0);
+  const std::vector<Triangle> triangles = triangles_of(indices);
+  return {triangles.begin(), triangles.end()};
+}
+
+// Twice the area seen from above, positive for the direction that the engine draws.
+int doubled_area(const Triangle& t, int size) {
+  const auto x = [size](std::uint16_t v) { return v % size; };
+  const auto z = [size](std::uint16_t v) { return v / size; };
+  return (z(t[1]) - z(t[0])) * (x(t[2]) - x(t[0])) - (x(t[1]) - x(t[0])) * (z(t[2]) - z(t[0]));
+}
+
+TEST(TerrainTiles, AreTogetherTheSurfacesOfTheirTwoLevels) {
+  for (const int size : kSizes) {
+    const TerrainTiles tiles(size);
+    EXPECT_EQ(all_of(tiles, Form::kFine), surface_of(size, 0)) << size;
+    EXPECT_EQ(all_of(tiles, Form::kCoarse), surface_of(size, 1)) << size;
+  }
+}
+
+TEST(TerrainTiles, CoverEveryTileOnceInEveryForm) {
+  for (const int size : kSizes) {
+    const TerrainTiles tiles(size);
+    EXPECT_EQ(tiles.first_cell(0), 0);
+    EXPECT_EQ(tiles.first_cell(tiles.per_side()), size - 1);
+    for (const Form form : kForms) {
+      for (int row = 0; row < tiles.per_side(); ++row) {
+        for (int column = 0; column < tiles.per_side(); ++column) {
+          int area = 0;
+          for (const Triangle& t : tile_of(tiles, column, row, form)) {
+            EXPECT_GT(doubled_area(t, size), 0) << size;
+            area += doubled_area(t, size);
+          }
+          const int wide = tiles.first_cell(column + 1) - tiles.first_cell(column);
+          const int deep = tiles.first_cell(row + 1) - tiles.first_cell(row);
+          EXPECT_GT(wide * deep, 0);
+          EXPECT_EQ(area, 2 * wide * deep) << size;
+        }
+      }
+    }
+  }
+}
+
+// Sides that only one triangle of a tile has, so those of its border.
+std::set<std::pair<std::uint16_t, std::uint16_t>> border_of(const std::vector<Triangle>& tile) {
+  std::set<std::pair<std::uint16_t, std::uint16_t>> sides;
+  for (const Triangle& t : tile) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::pair side{t[k], t[(k + 1) % 3]};
+      if (sides.erase({side.second, side.first}) == 0) sides.insert(side);
+    }
+  }
+  return sides;
+}
+
+TEST(TerrainTiles, WithARimShareEverySideOfTheirBorderWithFineOnes) {
+  for (const int size : kSizes) {
+    const TerrainTiles tiles(size);
+    for (int row = 0; row < tiles.per_side(); ++row) {
+      for (int column = 0; column < tiles.per_side(); ++column) {
+        const auto rimmed = tile_of(tiles, column, row, Form::kRimmed);
+        EXPECT_EQ(border_of(rimmed), border_of(tile_of(tiles, column, row, Form::kFine))) << size;
+      }
+    }
+  }
+}
+
+TEST(TerrainTiles, HaveTheSkirtsOfTheWholeMeshAtTheEnd) {
+  const TerrainTiles tiles(64);
+  const TerrainGrid grid(64, 0);
+  std::vector<std::uint16_t> whole(std::size_t{grid.triangles()} * 3);
+  grid.write_indices(whole);
+  const std::vector<std::uint16_t> list = list_of(tiles);
+  ASSERT_EQ(tiles.skirts().count, 6 * grid.border_vertices());
+  EXPECT_TRUE(std::equal(whole.end() - tiles.skirts().count, whole.end(),
+                         list.end() - tiles.skirts().count, list.end()));
+}
+
+TEST(TerrainTiles, OfThePaperAreThreeToASide) {
+  const TerrainTiles tiles(64);
+  EXPECT_EQ(tiles.per_side(), 3);
+  EXPECT_EQ(tiles.tile(1, 1, Form::kFine).count, 882U * 3);
+  EXPECT_EQ(tiles.tile(1, 1, Form::kRimmed).count, 154U * 3);
+  EXPECT_EQ(tiles.tile(1, 1, Form::kCoarse).count, 98U * 3);
+}
+
+}  // namespace
+}  // namespace psygen::models
