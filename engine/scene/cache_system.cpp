@@ -33,7 +33,7 @@ struct NodeView {
   bool covered = false;  // an ancestor can be drawn instead
   bool leaf = false;
   bool fine = false;
-  float error_pixels = 0;
+  float error_factor = 1;  // on that of the picture
 };
 
 // A row of the columns of a mesh entity.
@@ -48,9 +48,10 @@ struct MeshEntity {
 
 class Chooser {
  public:
-  Chooser(const Settings& settings, const Clock& clock, const Camera& camera, const View& view,
-          Synthesis& synthesis, Counters& counters)
+  Chooser(const Settings& settings, const Clock& clock, const Camera& camera,
+          const Quality& quality, const View& view, Synthesis& synthesis, Counters& counters)
       : settings_(settings),
+        quality_(quality),
         clock_(clock),
         camera_(camera),
         view_(view),
@@ -105,8 +106,11 @@ class Chooser {
     const std::span<const float> errors(detail.error_m.data(), detail.level_count);
     const bool keep = demand.drawn_level != kNoLevel && !synthesis_.settling;
     const int current = keep ? demand.drawn_level : -1;
-    return static_cast<std::uint8_t>(visibility::choose_level(
-        errors, distance_m, camera_.pixels_per_radian, node.error_pixels, current));
+    const double error_pixels =
+        node.level == 0 ? quality_.model_error_pixels : quality_.error_pixels;
+    return static_cast<std::uint8_t>(
+        visibility::choose_level(errors, distance_m, camera_.pixels_per_radian,
+                                 node.error_factor * static_cast<float>(error_pixels), current));
   }
 
   void note_in_view(Demand& demand, bool leaf) {
@@ -204,6 +208,7 @@ class Chooser {
   }
 
   const Settings& settings_;
+  const Quality& quality_;
   const Clock& clock_;
   const Camera& camera_;
   const View& view_;
@@ -217,15 +222,14 @@ class NodeWalk {
   NodeWalk(Chooser& chooser, const Camera& camera, double block_size_m, const CacheQuery& entities)
       : chooser_(chooser), camera_(camera), block_size_m_(block_size_m), entities_(entities) {}
 
-  void consider(std::span<const ChosenNode> nodes, bool only_leaves, float error_pixels) {
+  void consider(std::span<const ChosenNode> nodes, bool only_leaves) {
     for (const ChosenNode& node : nodes) {
       if (only_leaves && !(node.leaf && node.in_view)) continue;
       consider(std::span(&node.entity, 1), {.wanted = true,
                                             .in_view = node.in_view,
                                             .covered = node.covered,
                                             .leaf = node.leaf,
-                                            .fine = node.fine,
-                                            .error_pixels = error_pixels});
+                                            .fine = node.fine});
     }
   }
 
@@ -325,17 +329,16 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
   synthesis.wants.clear();
   synthesis.ready.clear();
 
-  Chooser chooser(settings, clock, camera, view, synthesis, counters);
+  Chooser chooser(settings, clock, camera, quality, view, synthesis, counters);
   NodeWalk walk(chooser, camera, facts.world.block_size_m(), entities);
-  const float error_pixels = static_cast<float>(quality.error_pixels);
   const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
-  walk.consider(view.chosen, wait, error_pixels);
+  walk.consider(view.chosen, wait);
   if (settings.paradigm == Paradigm::kParallelLazyAmplification) {
-    walk.consider(view.expected, NodeView{.error_pixels = error_pixels});
+    walk.consider(view.expected, NodeView{});
     std::vector<ecs::Entity> around;  // those whose turn it is
     for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns)
       around.push_back(view.around[i]);
-    walk.consider(around, NodeView{.error_pixels = error_pixels * kAroundErrorFactor});
+    walk.consider(around, NodeView{.error_factor = kAroundErrorFactor});
   }
   synthesis::PlanLimits limits;
   limits.seconds_ahead =

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "engine/scene/systems.hpp"
@@ -31,8 +32,9 @@ void input_system(const Settings& settings, const Input& input, const Clock& clo
   }
 
   quality.governor.observe(input.frame_ms);
-  quality.error_pixels =
-      settings.max_error_pixels * synthesis.coarsening * quality.governor.error_factor();
+  const double unhurried = settings.max_error_pixels * synthesis.coarsening;
+  quality.error_pixels = unhurried * quality.governor.error_factor();
+  quality.model_error_pixels = unhurried * std::sqrt(quality.governor.error_factor());
 }
 
 }  // namespace psygen::scene

@@ -46,6 +46,9 @@ struct Input {
 struct Quality {
   Governor governor;
   double error_pixels = 0;  // that levels of detail may have
+  // The same for single models. Of what the governor adds they take the root: they are near, where
+  // one looks, and few of a frame's triangles.
+  double model_error_pixels = 0;
 };
 
 struct Clock {
