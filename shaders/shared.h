@@ -29,11 +29,11 @@ using glm::vec4;
 #define PSYGEN_WATER_STRIP (2 * (PSYGEN_WATER_SIDES + 1) + 2)
 #define PSYGEN_WATER_REACH 500000.0
 
-// The dome of the sky of software devices (sky_dome.vert): columns around, rows from the lowest to
-// the highest point and those of them below the horizon, vertices of one column.
+// The dome of the sky of software devices (sky_dome.vert): columns around, rows from the horizon to
+// the highest point, vertices of one column; sides of the pyramid below it (sky_below.vert).
 #define PSYGEN_DOME_COLUMNS 24
-#define PSYGEN_DOME_ROWS 18
-#define PSYGEN_DOME_ROWS_BELOW 4
+#define PSYGEN_DOME_ROWS 14
+#define PSYGEN_BELOW_SIDES 6
 #define PSYGEN_DOME_STRIP (2 * PSYGEN_DOME_ROWS + 2)
 
 // What is drawn anew around the sun over that dome: half a side of the square, and the cosine of

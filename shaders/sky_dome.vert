@@ -16,12 +16,10 @@ layout(location = 4) flat out vec3 shade_z;
 
 const float kTurn = 6.2831853;
 
-// From below (-1) to above (1); sines of elevations.
+// Sine of an elevation.
 float height_of(int row) {
-  int above = row - PSYGEN_DOME_ROWS_BELOW;
-  int rows = above < 0 ? PSYGEN_DOME_ROWS_BELOW : PSYGEN_DOME_ROWS - 1 - PSYGEN_DOME_ROWS_BELOW;
-  float t = float(above) / float(rows);
-  return sin(0.25 * kTurn * t * (0.25 + 0.75 * abs(t)));
+  float t = float(row) * (1.0 / float(PSYGEN_DOME_ROWS - 1));
+  return sin(0.25 * kTurn * t * (0.25 + 0.75 * t));
 }
 
 vec3 shown_cloud(float sun) { return shown(frame.cloud_colour.rgb * sun + cloud_ambient()); }

@@ -196,6 +196,11 @@ Result<void> Pipelines::create_sky(const Device& device, PipelineShape shape) {
   if (!sky) return tl::unexpected(sky.error());
   sky_ = std::move(*sky);
   if (!dome) return {};
+  shape.vert = code.sky_below_vert;
+  shape.frag = code.sky_frag;
+  Result<UniquePipeline> below = make_pipeline(device, layout_.get(), shape);
+  if (!below) return tl::unexpected(below.error());
+  sky_below_ = std::move(*below);
   shape.kind = PipelineKind::kSun;
   shape.vert = code.sun_vert;
   shape.frag = code.sky_frag;

@@ -27,8 +27,10 @@ class Pipelines {
   VkPipeline water() const { return water_.get(); }
   VkPipeline lines() const { return lines_.get(); }
   const ShadowMaps& shadows() const { return shadows_; }
-  // Over the whole picture; where light is found per vertex a dome, and then the sun.
+  // Over the whole picture; where light is found per vertex what is below the
+  // horizon, then a dome, then the sun.
   VkPipeline sky() const { return sky_.get(); }
+  VkPipeline sky_below() const { return sky_below_.get(); }
   VkPipeline sun() const { return sun_.get(); }
   VkPipeline overlay() const { return overlay_.get(); }
 
@@ -57,7 +59,7 @@ class Pipelines {
   UniqueDescriptorPool descriptor_pool_;
   UniquePipelineLayout layout_;
   MeshPipelines landscape_, coloured_, wireframe_, shadow_;
-  UniquePipeline water_, sky_, sun_, lines_, overlay_;
+  UniquePipeline water_, sky_, sky_below_, sun_, lines_, overlay_;
 };
 
 }  // namespace psygen::render

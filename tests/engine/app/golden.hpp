@@ -11,11 +11,11 @@
 
 namespace psygen::app {
 
-// Fails where `image` is not the picture NAME.png of tests/engine/app/golden, which is then written to
-// the test's folder to be looked at.
+// Fails where `image` is not the picture NAME.png of tests/engine/app/golden, which is then written
+// to the test's folder to be looked at.
 inline void expect_golden(const std::string& name, const image::Image& image) {
-  const auto stored = std::filesystem::path(PSYGEN_SOURCE_DIR "/tests/engine/app/golden") /
-                      (name + ".png");
+  const auto stored =
+      std::filesystem::path(PSYGEN_SOURCE_DIR "/tests/engine/app/golden") / (name + ".png");
   if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
     ASSERT_TRUE(image::write_png(stored, image));
   }

@@ -1,5 +1,5 @@
-// Every change of level of a node, as pictures: the camera goes away from one place, and what covers it
-// takes the shape of the next coarser node and is replaced by it.
+// Every change of level of a node, as pictures: the camera goes away from one place, and what
+// covers it takes the shape of the next coarser node and is replaced by it.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -30,7 +30,8 @@ class GoldenLevels : public testing::TestWithParam<unsigned> {
   // Looks at the node of a level at kPlace from so far away (from its border).
   core::CameraPose away(unsigned level, double distance_m) {
     const world::World& world = state().facts.world;
-    const double block_m = world.block_size_m(), side_m = std::ldexp(block_m, static_cast<int>(level));
+    const double block_m = world.block_size_m(),
+                 side_m = std::ldexp(block_m, static_cast<int>(level));
     core::CameraPose pose;
     pose.position = core::normalised({kPlace, {side_m / 2, 0, -distance_m}}, block_m);
     const core::WorldPosition& at = pose.position;
@@ -45,7 +46,8 @@ class GoldenLevels : public testing::TestWithParam<unsigned> {
 
   // The node of a level at kPlace in the cut of the last frame.
   const visibility::CutNode* node(unsigned level) {
-    const visibility::NodeCoord wanted = visibility::node_of(kPlace, static_cast<std::uint8_t>(level));
+    const visibility::NodeCoord wanted =
+        visibility::node_of(kPlace, static_cast<std::uint8_t>(level));
     const auto& nodes = state().view.cut.nodes;
     const auto found = std::ranges::find(nodes, wanted, &visibility::CutNode::node);
     return found == nodes.end() ? nullptr : &*found;
