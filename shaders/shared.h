@@ -29,6 +29,18 @@ using glm::vec4;
 #define PSYGEN_WATER_STRIP (2 * (PSYGEN_WATER_SIDES + 1) + 2)
 #define PSYGEN_WATER_REACH 500000.0
 
+// The dome of the sky of software devices (sky_dome.vert): columns around, rows from the horizon to
+// the highest point, vertices of one column; sides of the pyramid below it (sky_below.vert).
+#define PSYGEN_DOME_COLUMNS 24
+#define PSYGEN_DOME_ROWS 14
+#define PSYGEN_BELOW_SIDES 6
+#define PSYGEN_DOME_STRIP (2 * PSYGEN_DOME_ROWS + 2)
+
+// What is drawn anew around the sun over that dome: half a side of the square, and the cosine of
+// the angle where it ends.
+#define PSYGEN_SUN_REACH 0.035
+#define PSYGEN_SUN_EDGE 0.99942
+
 // Everything that is the same for a whole frame.
 struct FrameData {
   mat4 clip_from_camera;  // camera-relative world to clip space, reversed infinite depth

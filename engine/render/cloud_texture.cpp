@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 
 #include "engine/core/hash.hpp"
 
@@ -32,14 +33,13 @@ float noise(std::uint32_t x, std::uint32_t y, std::uint32_t cells, std::uint32_t
   return std::lerp(top, bottom, fy);
 }
 
-std::byte to_byte(float unit) {
-  return static_cast<std::byte>(
-      static_cast<std::uint8_t>(std::lround(std::clamp(unit, 0.0F, 1.0F) * 255.0F)));
+std::uint16_t to_half(float unit) {
+  return glm::packHalf1x16(std::clamp(unit, 0.0F, 1.0F));
 }
 
 }  // namespace
 
-std::vector<std::byte> make_cloud_texture() {
+std::vector<std::uint16_t> make_cloud_texture() {
   std::vector<float> density(std::size_t{kSize} * kSize);
   for (std::uint32_t y = 0; y < kSize; ++y) {
     for (std::uint32_t x = 0; x < kSize; ++x) {
@@ -52,13 +52,13 @@ std::vector<std::byte> make_cloud_texture() {
   }
   const auto [low, high] = std::minmax_element(density.begin(), density.end());
   const float base = *low, span = *high - *low;
-  std::vector<std::byte> texels(density.size() * 2);
+  std::vector<std::uint16_t> texels(density.size() * 2);
   for (std::uint32_t y = 0; y < kSize; ++y) {
     for (std::uint32_t x = 0; x < kSize; ++x) {
       const float here = density[y * kSize + x];
       const float aside = density[(y + 5) % kSize * kSize + (x + 5) % kSize];
-      texels[(y * kSize + x) * 2] = to_byte((here - base) / span);
-      texels[(y * kSize + x) * 2 + 1] = to_byte(0.5F + 2.0F * (here - aside) / span);
+      texels[(y * kSize + x) * 2] = to_half((here - base) / span);
+      texels[(y * kSize + x) * 2 + 1] = to_half(0.5F + 2.0F * (here - aside) / span);
     }
   }
   return texels;

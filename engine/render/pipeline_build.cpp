@@ -32,7 +32,7 @@ VkPipelineColorBlendAttachmentState blend_of(PipelineKind kind) {
   VkPipelineColorBlendAttachmentState blend{};
   blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                          VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  if (kind != PipelineKind::kOverlay) return blend;
+  if (kind != PipelineKind::kOverlay && kind != PipelineKind::kSun) return blend;
   blend.blendEnable = VK_TRUE;
   blend.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
   blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
@@ -44,6 +44,8 @@ VkPipelineColorBlendAttachmentState blend_of(PipelineKind kind) {
 VkPrimitiveTopology topology_of(PipelineKind kind) {
   switch (kind) {
     case PipelineKind::kWater:
+    case PipelineKind::kDome:
+    case PipelineKind::kSun:
       return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
     case PipelineKind::kLines:
       return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;

@@ -11,7 +11,16 @@ namespace psygen::render {
 
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
-enum class PipelineKind : std::uint8_t { kTerrain, kModel, kWater, kSky, kLines, kOverlay };
+enum class PipelineKind : std::uint8_t {
+  kTerrain,
+  kModel,
+  kWater,
+  kSky,
+  kDome,
+  kSun,
+  kLines,
+  kOverlay
+};
 
 struct PipelineShape {
   PipelineKind kind = PipelineKind::kSky;

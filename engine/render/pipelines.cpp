@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "engine/render/cloud_texture.hpp"
 #include "engine/render/pipeline_build.hpp"
@@ -59,8 +60,10 @@ Result<void> Pipelines::create_textures(const Device& device, const Overlay& ove
   Result<UniqueSampler> font = make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   if (!font) return tl::unexpected(font.error());
   font_sampler_ = std::move(*font);
-  Result<Image> cloud_image = make_texture(device, {kCloudTextureSize, kCloudTextureSize},
-                                           VK_FORMAT_R8G8_UNORM, make_cloud_texture());
+  const std::vector<std::uint16_t> texels = make_cloud_texture();
+  Result<Image> cloud_image =
+      make_texture(device, {kCloudTextureSize, kCloudTextureSize}, VK_FORMAT_R16G16_SFLOAT,
+                   std::as_bytes(std::span(texels)));
   if (!cloud_image) return tl::unexpected(cloud_image.error());
   clouds_ = std::move(*cloud_image);
   Result<Image> font_image =
@@ -170,7 +173,7 @@ Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_f
         shadow.shadow = true;
         return create_meshes(device, shadow, MeshLook::kShadow, shadow_);
       })
-      .and_then([&] { return make(sky_, PipelineKind::kSky, code.sky_vert, code.sky_frag); })
+      .and_then([&] { return create_sky(device, shape); })
       .and_then(
           [&] { return make(lines_, PipelineKind::kLines, code.line_vert, code.surface_frag); })
       .and_then([&] {
@@ -181,6 +184,31 @@ Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_f
         return make(water_, PipelineKind::kWater, lit ? code.water_lit_vert : code.water_vert,
                     lit ? code.water_frag : code.surface_frag);
       });
+}
+
+Result<void> Pipelines::create_sky(const Device& device, PipelineShape shape) {
+  const OtherCode& code = other_code();
+  const bool dome = !traits_.pixel_light;
+  shape.kind = dome ? PipelineKind::kDome : PipelineKind::kSky;
+  shape.vert = dome ? code.sky_dome_vert : code.sky_vert;
+  shape.frag = dome ? code.sky_dome_frag : code.sky_frag;
+  Result<UniquePipeline> sky = make_pipeline(device, layout_.get(), shape);
+  if (!sky) return tl::unexpected(sky.error());
+  sky_ = std::move(*sky);
+  if (!dome) return {};
+  shape.vert = code.sky_below_vert;
+  shape.frag = code.sky_frag;
+  Result<UniquePipeline> below = make_pipeline(device, layout_.get(), shape);
+  if (!below) return tl::unexpected(below.error());
+  sky_below_ = std::move(*below);
+  shape.kind = PipelineKind::kSun;
+  shape.vert = code.sun_vert;
+  shape.frag = code.sky_frag;
+  shape.constants = {VK_TRUE, VK_FALSE};
+  Result<UniquePipeline> sun = make_pipeline(device, layout_.get(), shape);
+  if (!sun) return tl::unexpected(sun.error());
+  sun_ = std::move(*sun);
+  return {};
 }
 
 // Those for understanding: draws in their own colour, and edges.

@@ -27,7 +27,11 @@ class Pipelines {
   VkPipeline water() const { return water_.get(); }
   VkPipeline lines() const { return lines_.get(); }
   const ShadowMaps& shadows() const { return shadows_; }
+  // Over the whole picture; where light is found per vertex what is below the
+  // horizon, then a dome, then the sun.
   VkPipeline sky() const { return sky_.get(); }
+  VkPipeline sky_below() const { return sky_below_.get(); }
+  VkPipeline sun() const { return sun_.get(); }
   VkPipeline overlay() const { return overlay_.get(); }
 
   // A set that reads the given buffers and the textures.
@@ -41,6 +45,7 @@ class Pipelines {
   // By layout (terrain, model) and by whether the data is pushed.
   using MeshPipelines = std::array<std::array<UniquePipeline, 2>, 2>;
   core::Result<void> create_pipelines(const Device& device, VkFormat colour_format);
+  core::Result<void> create_sky(const Device& device, PipelineShape shape);
   core::Result<void> create_views(const Device& device, PipelineShape shape);
   core::Result<void> create_meshes(const Device& device, PipelineShape shape, MeshLook look,
                                    MeshPipelines& out);
@@ -54,7 +59,7 @@ class Pipelines {
   UniqueDescriptorPool descriptor_pool_;
   UniquePipelineLayout layout_;
   MeshPipelines landscape_, coloured_, wireframe_, shadow_;
-  UniquePipeline water_, sky_, lines_, overlay_;
+  UniquePipeline water_, sky_, sky_below_, sun_, lines_, overlay_;
 };
 
 }  // namespace psygen::render

@@ -223,8 +223,16 @@ void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkComm
     bind_pipeline(device, commands, pipelines.water());
     device.vk.vkCmdDraw(commands, PSYGEN_WATER_RINGS * PSYGEN_WATER_STRIP, 1, 0, 0);
   }
+  if (pipelines.sun() == VK_NULL_HANDLE) {
+    bind_pipeline(device, commands, pipelines.sky());
+    return device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  }
+  bind_pipeline(device, commands, pipelines.sky_below());
+  device.vk.vkCmdDraw(commands, 2 * PSYGEN_BELOW_SIDES + 1, 1, 0, 0);
   bind_pipeline(device, commands, pipelines.sky());
-  device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  device.vk.vkCmdDraw(commands, PSYGEN_DOME_COLUMNS * PSYGEN_DOME_STRIP, 1, 0, 0);
+  bind_pipeline(device, commands, pipelines.sun());
+  device.vk.vkCmdDraw(commands, 4, 1, 0, 0);
 }
 
 void draw_lines_and_text(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,

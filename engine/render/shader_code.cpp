@@ -76,6 +76,18 @@ constexpr std::uint32_t kSkyVert[] =
 constexpr std::uint32_t kSkyFrag[] =
 #include "sky_frag_spv.h"
     ;
+constexpr std::uint32_t kSkyDomeVert[] =
+#include "sky_dome_vert_spv.h"
+    ;
+constexpr std::uint32_t kSkyDomeFrag[] =
+#include "sky_dome_frag_spv.h"
+    ;
+constexpr std::uint32_t kSkyBelowVert[] =
+#include "sky_below_vert_spv.h"
+    ;
+constexpr std::uint32_t kSunVert[] =
+#include "sun_vert_spv.h"
+    ;
 constexpr std::uint32_t kOverlayVert[] =
 #include "overlay_vert_spv.h"
     ;
@@ -95,8 +107,10 @@ constexpr ShaderCode kMeshes[2][4][2] = {
      {kModelShadowVert, kModelShadowPushedVert}},
 };
 
-constexpr OtherCode kOthers{kSurfaceFrag, kSurfaceLitFrag, kWaterVert, kWaterLitVert, kWaterFrag,
-                            kLineVert,    kSkyVert,        kSkyFrag,   kOverlayVert,  kOverlayFrag};
+constexpr OtherCode kOthers{kSurfaceFrag, kSurfaceLitFrag, kWaterVert,    kWaterLitVert,
+                            kWaterFrag,   kLineVert,       kSkyVert,      kSkyFrag,
+                            kSkyDomeVert, kSkyDomeFrag,    kSkyBelowVert, kSunVert,
+                            kOverlayVert, kOverlayFrag};
 
 }  // namespace
 

@@ -18,7 +18,8 @@ ShaderCode mesh_vertex_code(core::VertexLayout layout, MeshLook look, bool pushe
 
 struct OtherCode {
   ShaderCode surface_frag, surface_lit_frag, water_vert, water_lit_vert, water_frag, line_vert,
-      sky_vert, sky_frag, overlay_vert, overlay_frag;
+      sky_vert, sky_frag, sky_dome_vert, sky_dome_frag, sky_below_vert, sun_vert, overlay_vert,
+      overlay_frag;
 };
 const OtherCode& other_code();
 

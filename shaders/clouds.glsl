@@ -1,0 +1,30 @@
+// Clouds on a plane above, gone towards the horizon so that the haze of the land meets the sky.
+
+// Where direction `d` (unit) meets them in their texture.
+vec2 cloud_place(vec3 d) {
+  float drift = frame.sun_direction.w * 0.002;
+  return d.xz * (0.27 / (max(d.y, 0.0) + 0.12)) + vec2(drift, 0.3 * drift);
+}
+
+// The share of them that is left at height `up` of a unit direction.
+float cloud_presence(float up) { return 0.88 * smoothstep(0.015, 0.2, up); }
+
+// x: what a texel covers of the sky behind, 0 to 1; y: how much of the sun's light it returns.
+vec2 cloud_at(vec2 texel) {
+  float over = texel.r - (1.0 - frame.haze_colour.w);
+  float cover = clamp((over + 0.06) * (1.0 / 0.28), 0.0, 1.0);
+  float thick = clamp(over * (1.0 / 0.45), 0.0, 1.0);
+  cover = cover * cover * (3.0 - 2.0 * cover);
+  thick = thick * thick * (1.5 - thick);  // to one half
+  return vec2(cover, (1.0 - thick) * (0.75 + 0.4 * texel.g));
+}
+
+// The share of the sun's light that the brightest cloud returns in a direction whose cosine with the
+// sun's is `toward`.
+float cloud_sun(float toward) {
+  float behind2 = max(toward, 0.0) * max(toward, 0.0);
+  return 0.34 + 0.35 * behind2 * behind2;
+}
+vec3 cloud_ambient() {
+  return mix(frame.horizon_colour.rgb, frame.zenith_colour.rgb, 0.3) * 0.55;
+}
