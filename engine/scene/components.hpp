@@ -21,6 +21,7 @@ namespace psygen::scene {
 
 inline constexpr std::uint8_t kNoLevel = 0xFF;
 inline constexpr std::size_t kMaxLevels = 8;
+inline constexpr std::uint8_t kNotRanked = 0xFF;
 
 // A node of the quadtree. The models on it are its children (ecs::Children): a block's trees and
 // rocks, or the one mesh that stands for all of them.
@@ -90,6 +91,7 @@ struct Demand {
   std::uint8_t failed_levels =
       0;               // bit l: level l cannot be synthesised and is not asked for again
   bool stale = false;  // Mesh is of other parameters than Source: drawn until the new one is there
+  std::uint8_t ranked = kNotRanked;  // group of the rank that the cache has for Mesh
 };
 static_assert(sizeof(Demand) == 16);
 

@@ -34,6 +34,7 @@ core::Result<void> check(const Settings& settings) {
   if (!(settings.max_error_factor >= 1 && settings.max_error_factor <= 100)) {
     return refuse("the error may grow by a factor between 1 and 100");
   }
+  if (settings.streaming_ticks < 1) return refuse("nodes are created over at least one tick");
   if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
   if (settings.budget_bytes < Scene::kMinBudgetBytes) {
     return core::fail(core::ErrorCode::kOverBudget,

@@ -34,8 +34,9 @@ struct Settings {
   double hole_budget_ms = 2.0;       // per tick, of the main thread, for what is missing in view
   double plan_seconds_ahead = 0.05;  // synthesis time per modeler in one plan
   std::uint32_t plan_max_requests = 4096;
-  std::uint32_t plan_max_new = 256;                 // of them, reserved in one tick
-  double streaming_budget_ms = 2.0;                 // per tick, for creating blocks
+  std::uint32_t plan_max_new = 256;   // of them, reserved in one tick
+  double streaming_budget_ms = 2.0;   // per tick, for creating nodes
+  std::uint32_t streaming_ticks = 8;  // over which the nodes that the window lacks are spread
   std::uint64_t upload_budget_bytes = 16ull << 20;  // per tick
 };
 

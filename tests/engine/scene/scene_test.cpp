@@ -1,5 +1,6 @@
 #include "engine/scene/scene.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -108,6 +109,24 @@ TEST(Scene, FlyingKeepsNodesAroundTheCameraAndNothingElse) {
   tick_at(*fresh, scene->state().input.pose);
   EXPECT_EQ(nodes_of(*scene), nodes_of(*fresh));
   EXPECT_EQ(scene->state().entities.size(), fresh->state().entities.size());
+}
+
+TEST(Scene, NewGroundIsSpreadOverTicksAndAllOfItComes) {
+  Settings settings = small_settings();
+  settings.streaming_ticks = 4;
+  const auto scene = make_scene(settings);
+  scene->settle(pose_at(256, 256));
+  const State& state = scene->state();
+  tick_at(*scene, pose_at(300, 256));
+  std::size_t missing = state.streaming.missing.size();
+  EXPECT_GT(missing, 20u);
+  EXPECT_EQ(state.counters.nodes_created, (missing + state.counters.nodes_created) / 4);
+  for (int tick = 0; tick < 60 && missing > 0; ++tick) {
+    tick_at(*scene, pose_at(300, 256));
+    EXPECT_LE(state.counters.nodes_created, std::max<std::size_t>(3, missing / 4));
+    missing = state.streaming.missing.size();
+  }
+  EXPECT_EQ(missing, 0u);
 }
 
 TEST(Scene, AtTheEdgeOfTheWorldThereIsNothingBeyond) {
