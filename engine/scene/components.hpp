@@ -28,14 +28,15 @@ inline constexpr std::uint8_t kNotRanked = 0xFF;
 struct Node {
   visibility::NodeCoord at;
   float low_m = 0, high_m = 0;  // of its ground; all that is possible until a mesh is there
+  float solidity = 0;           // share of the light that it stops; 0 where PLP does not ask
 };
-static_assert(sizeof(Node) == 20);
+static_assert(sizeof(Node) == 24);
 
 // What the visibility system found out about a node in this tick.
 struct Visibility {
   float distance_m = 0;     // from the camera to the nearest point of the node's box
   float deadline_s = 0;     // seconds until it is expected in view; 0 in view; +inf not expected
-  std::uint16_t layer = 0;  // PLP layer; the paper's priority is −(layer + 1)
+  std::uint16_t layer = 0;  // PLP key in layers; the paper's priority is −(layer + 1)
   std::uint16_t in_view = 0;
 };
 static_assert(sizeof(Visibility) == 12);

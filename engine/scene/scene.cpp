@@ -9,6 +9,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/scene/lighting.hpp"
+#include "engine/scene/node_solidity.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/world/merged_models.hpp"
 
@@ -175,6 +176,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(facts.world));
   facts.cell_m = static_cast<float>(facts.world.cell_m());
   facts.models_reach_m = models_reach(facts.world, facts.registry);
+  facts.standing = standing_on_block(facts.world, facts.registry);
 
   if (auto ok = find_levels(settings, facts); !ok) return tl::unexpected(ok.error());
   for (std::size_t k = 0; k < facts.levels.size(); ++k) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/clock.hpp"
+#include "engine/scene/node_solidity.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/world/merged_models.hpp"
 
@@ -72,15 +73,17 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
   entities.set_children(node, models.entities);
 }
 
-void create_node(const WorldFacts& facts, const Daylight& daylight, const visibility::NodeCoord& at,
-                 std::vector<world::Placement>& scratch, Streaming& streaming,
-                 ecs::World& entities) {
+void create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
+                 const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
+                 Streaming& streaming, ecs::World& entities) {
   const NodeLevel& level = facts.levels[at.level];
   const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundLines,
                                        Placed, Detail, Source, Demand, Mesh>(1);
   models::Parameters ground = node_terrain(facts.world, at);
   world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
-  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y};
+  const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
+  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y,
+                               solid ? node_solidity(facts.world, facts.standing, at) : 0.0F};
   fill(created, 0, facts.registry, visibility::corner_block(at),
        {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground},
        at.level == 0 ? 0 : level.mesh_level, level.mesh_level);
@@ -218,7 +221,7 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
   const double start_s = core::monotonic_seconds();
   std::vector<world::Placement> scratch;
   while (!streaming.missing.empty() && counters.nodes_created < count) {
-    create_node(facts, daylight, streaming.missing.back(), scratch, streaming, entities);
+    create_node(settings, facts, daylight, streaming.missing.back(), scratch, streaming, entities);
     streaming.missing.pop_back();
     ++counters.nodes_created;
     if (settings.paradigm == Paradigm::kLazyEvaluation) continue;

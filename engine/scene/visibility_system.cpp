@@ -50,6 +50,7 @@ void find_bounds(const Camera& camera, const WorldFacts& facts, const Streaming&
     const NodeLevel& level = facts.levels[grid.level()];
     std::vector<core::Bounds>& bounds = view.levels[grid.level()].bounds;
     bounds.clear();
+    view.levels[grid.level()].solidity.assign(std::size_t{grid.side()} * grid.side(), 0.0F);
     const glm::vec3 first = corner_of(facts, camera, grid.node_at(0, 0));
     const auto size = static_cast<float>(level.size_m);
     for (std::uint32_t row = 0; row < grid.side(); ++row) {
@@ -62,20 +63,24 @@ void find_bounds(const Camera& camera, const WorldFacts& facts, const Streaming&
   }
   nodes.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> rows) {
     for (const Node& node : rows) {
-      const NodeGrid& grid = streaming.grids[node.at.level];
-      view.levels[node.at.level].bounds[grid.window_index(node.at.coord)] =
+      const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
+      view.levels[node.at.level].solidity[cell] = node.solidity;
+      view.levels[node.at.level].bounds[cell] =
           node_bounds(facts, corner_of(facts, camera, node.at), facts.levels[node.at.level].size_m,
                       node.low_m, node.high_m);
     }
   });
 }
 
-void project_layers(const NodeGrid& grid, const visibility::Frustum& frustum, LevelView& level) {
+void project_layers(const Settings& settings, const NodeGrid& grid,
+                    const visibility::Frustum& frustum, LevelView& level) {
   visibility::PlpInput input;
   input.width = input.depth = grid.side();
   input.start_x = input.start_z = grid.radius();
   input.bounds = level.bounds;
   input.frustum = &frustum;
+  input.mode = settings.plp_mode;
+  input.solidity = level.solidity;
   visibility::run_plp(input, level.plp);
   level.deadlines.assign(level.bounds.size(), std::numeric_limits<float>::infinity());
   level.chosen.assign(level.bounds.size(), 0);
@@ -226,7 +231,8 @@ void write_visibility(const View& view, const Streaming& streaming, const Visibi
       const std::size_t cell = streaming.grids[at.level].window_index(at.coord);
       Visibility& visibility = visibilities[i];
       visibility.distance_m = distance_to(level.bounds[cell]);
-      visibility.layer = level.plp.layer[cell];
+      visibility.layer = static_cast<std::uint16_t>(
+          std::min<std::uint32_t>(level.plp.key[cell] / visibility::kKeysPerLayer, UINT16_MAX));
       visibility.in_view = level.chosen[cell] == kInView ? 1 : 0;
       visibility.deadline_s = visibility.in_view != 0 ? 0.0F : level.deadlines[cell];
     }
@@ -272,7 +278,7 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
   find_bounds(camera, facts, streaming, nodes, view);
   view.frustum = frustum_of(camera.pose, camera.projection);
   for (const NodeGrid& grid : streaming.grids)
-    project_layers(grid, view.frustum, view.levels[grid.level()]);
+    project_layers(settings, grid, view.frustum, view.levels[grid.level()]);
   expect(camera, facts, streaming, nodes, view);
   choose_cut(settings, camera, facts, streaming, synthesis.settling, view);
   find_hidden(settings, camera, facts, streaming, nodes, view, counters);

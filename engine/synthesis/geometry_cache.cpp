@@ -122,9 +122,22 @@ void GeometryCache::complete(MeshHandle handle, const core::Bounds& tight) {
   r->prefetched = !is_visible(r->rank.group());
   if (r->prefetched) ++stats_.prefetched;
   ++stats_.ready;
+  stats_.triangles += r->size.triangle_count();
+  drawn_.resize(records_.size());
+  drawn_[handle.slot] = 0;
   evictable_[handle.slot] = eviction_order(r->rank);
   candidates_valid_ = false;
   enforce_budget();
+}
+
+void GeometryCache::note_drawn(std::span<const MeshHandle> handles) {
+  for (const MeshHandle handle : handles) {
+    if (handle.slot >= drawn_.size() || drawn_[handle.slot] != 0) continue;
+    const MeshRecord* r = get(handle);
+    if (r == nullptr || r->state != MeshState::kReady) continue;
+    drawn_[handle.slot] = 1;
+    stats_.triangles_drawn += r->size.triangle_count();
+  }
 }
 
 void GeometryCache::fail(MeshHandle handle, std::string reason, bool still_writing) {

@@ -74,9 +74,10 @@ int run(const std::string& path_file, const std::string& world_file, double hz, 
   const auto world = world::load_world(world_file, registry);
   const auto path = world::load_camera_path(path_file);
   if (!world || !path || hz <= 0 || flights < 1) {
-    fmt::print(stderr, "{}\n", !world  ? world.error().message
-                               : !path ? path.error().message
-                                       : "HZ and FLIGHTS must be above 0");
+    fmt::print(stderr, "{}\n",
+               !world  ? world.error().message
+               : !path ? path.error().message
+                       : "HZ and FLIGHTS must be above 0");
     return 2;
   }
   std::vector<std::string> names;
@@ -109,8 +110,7 @@ int main(int argc, char** argv) {
   const auto argument = [&](int i, const std::string& otherwise) {
     return argc > i ? std::string(argv[i]) : otherwise;
   };
-  return psygen::scene::run(argument(1, kGame + "paths/walk27.toml"),
-                            argument(2, kGame + "worlds/paper.toml"),
-                            std::atof(argument(3, "30").c_str()),
-                            std::atoi(argument(4, "5").c_str()));
+  return psygen::scene::run(
+      argument(1, kGame + "paths/walk27.toml"), argument(2, kGame + "worlds/paper.toml"),
+      std::atof(argument(3, "30").c_str()), std::atoi(argument(4, "5").c_str()));
 }

@@ -71,6 +71,23 @@ TEST(Scene, DrawListsAndEveryByteOfGeometryAreTheSameForAnyNumberOfModelers) {
   }
 }
 
+TEST(Scene, BothModesOfPlpAreDeterministicAndSettleToTheSamePicture) {
+  std::multiset<DrawKey> first;
+  for (const auto mode : {visibility::PlpMode::kLayers, visibility::PlpMode::kSolidity,
+                          visibility::PlpMode::kSolidity}) {
+    Settings settings = small_settings();
+    settings.plp_mode = mode;
+    const auto scene = make_scene(settings);
+    scene->settle(pose_at(100, 400, 0.7));
+    tick_at(*scene, pose_at(100, 400, 0.7));
+    if (first.empty()) first = draw_keys(*scene);
+    EXPECT_EQ(draw_keys(*scene), first);
+    const synthesis::CacheStats stats = scene->state().synthesis.cache->stats();
+    EXPECT_GT(stats.triangles_drawn, 0u);
+    EXPECT_LT(stats.triangles_drawn, stats.triangles);
+  }
+}
+
 TEST(Scene, WhatASettledSceneDrawsDoesNotDependOnWhatWasDrawnBefore) {
   const auto direct = make_scene(small_settings());
   direct->settle(pose_at(256, 256));
