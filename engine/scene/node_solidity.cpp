@@ -34,8 +34,8 @@ double relief_m(const world::World& world, const visibility::NodeCoord& node) {
       {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {0.5, 0.5}}};
   std::array<double, kPlaces.size()> heights_m{};
   std::ranges::transform(kPlaces, heights_m.begin(), [&](const auto& place) {
-    return models::ground_height_m(world.terrain, visibility::corner_block(node),
-                                   place[0] * side_m, place[1] * side_m);
+    return models::ground_height_m(world.terrain, visibility::corner_block(node), place[0] * side_m,
+                                   place[1] * side_m);
   });
   const auto [low, high] = std::ranges::minmax(heights_m);
   return kReliefFactor * (high - low);
@@ -47,8 +47,7 @@ std::vector<visibility::Standing> standing_on_block(const world::World& world,
                                                     const models::Registry& registry) {
   std::vector<visibility::Standing> standing;
   for (const world::Scatter& scatter : world.scatter) {
-    const core::Bounds box =
-        registry[scatter.model].bounds(middle_parameters(registry, scatter));
+    const core::Bounds box = registry[scatter.model].bounds(middle_parameters(registry, scatter));
     const glm::vec3 size = box.max - box.min;
     standing.push_back({static_cast<float>(scatter.count), (size.x + size.z) / 2,
                         std::max(box.max.y, 0.0F), kModelDensity});

@@ -1,5 +1,5 @@
-// How much light a node stops, estimated from parameters before anything of it is generated: heights
-// of its ground at a few places, and the models that are scattered over it. For PLP's mode
+// How much light a node stops, estimated from parameters before anything of it is generated:
+// heights of its ground at a few places, and the models that are scattered over it. For PLP's mode
 // `solidity` (engine/visibility/plp.hpp), which puts off what lies behind. Pure.
 #pragma once
 

@@ -17,6 +17,8 @@ namespace {
 constexpr double kRelistedChange = 0.05;
 // Created in one tick at least, if as many are missing and time allows.
 constexpr std::size_t kFewestCreated = 3;
+// If more than this are missing the camera has leapt: as many as time allows.
+constexpr std::size_t kLeapt = 256;
 
 Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box) {
   Placed placed;
@@ -214,7 +216,8 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
     list_missing_nodes(window, camera, facts, entities, streaming);
   }
   // All of it for lazy evaluation, in every frame, and before the first frame.
-  const bool all = settings.paradigm == Paradigm::kLazyEvaluation || synthesis.settling;
+  const bool all = settings.paradigm == Paradigm::kLazyEvaluation || synthesis.settling ||
+                   streaming.missing.size() > kLeapt;
   const std::size_t count =
       all ? streaming.missing.size()
           : std::max(kFewestCreated, streaming.missing.size() / settings.streaming_ticks);
