@@ -63,6 +63,12 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->check(CLI::IsMember({"fifo", "plp", "shortest", "longest", "deadline"}))
       ->default_str("deadline");
   c.add_option_function<std::string>(
+       "--plp",
+       [this](const std::string& text) { options_.scene.plp_mode = *scene::plp_mode_from(text); },
+       "Order of nodes: layers around the camera, or what little solidity hides first")
+      ->check(valid_if(scene::plp_mode_from, "layers|solidity"))
+      ->default_str("layers");
+  c.add_option_function<std::string>(
        "--lod", [this](const std::string& text) { options_.scene.levels_of_detail = text == "on"; },
        "Levels of detail: on, or off for full detail everywhere")
       ->check(CLI::IsMember({"on", "off"}))
@@ -90,8 +96,8 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->check(valid_if(render::preset_from, "low|medium|high|ultra"));
   c.add_option_function<std::string>(
        "--view", [this](const std::string& text) { options_.view = *render::view_from(text); },
-       "What is shown: normal, levels, layers, bounds, wireframe, missing")
-      ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing"))
+       "What is shown: normal, levels, layers, bounds, wireframe, missing, cache")
+      ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing|cache"))
       ->default_str("normal");
   c.add_option("--device", options_.device_name, "Part of the name of the Vulkan device");
   c.add_option_function<std::string>(

@@ -76,6 +76,10 @@ telemetry::RunFacts App::run_facts() {
       cache.prefetched > 0 ? telemetry::Figure(100.0 * static_cast<double>(cache.prefetch_hits) /
                                                static_cast<double>(cache.prefetched))
                            : telemetry::Figure::missing("nothing was synthesised ahead of time");
+  facts.share_drawn = cache.triangles > 0
+                          ? telemetry::Figure(static_cast<double>(cache.triangles_drawn) /
+                                              static_cast<double>(cache.triangles))
+                          : telemetry::Figure::missing("nothing was synthesised");
   state.synthesis.manager->wait_all();  // nothing else runs while the floor is measured
   facts.floor_ratio = floor_ratio(*log_, *renderer_);
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();

@@ -8,8 +8,8 @@ namespace psygen::render {
 namespace {
 
 constexpr std::array<std::string_view, 4> kPresets{"low", "medium", "high", "ultra"};
-constexpr std::array<std::string_view, 6> kViews{"normal", "levels",    "layers",
-                                                 "bounds", "wireframe", "missing"};
+constexpr std::array<std::string_view, 7> kViews{"normal",    "levels",  "layers", "bounds",
+                                                 "wireframe", "missing", "cache"};
 
 template <class Value, std::size_t kCount>
 core::Result<Value> named(const std::array<std::string_view, kCount>& names, std::string_view name,

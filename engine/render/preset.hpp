@@ -30,7 +30,8 @@ View next_view(View view);  // after the last comes kNormal
 
 // Whether draws have their own colour instead of the landscape's.
 constexpr bool colours_draws(View view) {
-  return view == View::kLevels || view == View::kLayers || view == View::kMissing;
+  return view == View::kLevels || view == View::kLayers || view == View::kMissing ||
+         view == View::kCache;
 }
 
 }  // namespace psygen::render

@@ -40,6 +40,7 @@ enum class View : std::uint8_t {
   kBounds,     // the landscape with the frame's lines
   kWireframe,  // edges of triangles; the landscape where the device cannot
   kMissing,    // each draw in its `debug_colour`, which says how far it is from what is wanted
+  kCache,      // the same, for what it takes of the geometry cache
 };
 
 struct RendererOptions {

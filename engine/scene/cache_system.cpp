@@ -20,6 +20,9 @@ using synthesis::RankGroup;
 // Nodes out of view are looked at once in so many ticks, and their models kept this much coarser.
 constexpr std::size_t kAroundTurns = 8;
 constexpr float kAroundErrorFactor = 2.0F;
+// The rank of what is drawn is told to the cache anew when its group changes, otherwise once in so
+// many ticks, or in every tick where little room is left: nothing else makes ranks matter.
+constexpr std::uint32_t kRankTurns = 32;
 // So long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
 
@@ -46,6 +49,12 @@ struct MeshEntity {
   Demand& demand;
 };
 
+bool is_roomy(const synthesis::GeometryCache& cache) {
+  constexpr double kRoomyShare = 0.8;
+  return static_cast<double>(cache.stats().bytes) <
+         kRoomyShare * static_cast<double>(cache.budget_bytes());
+}
+
 class Chooser {
  public:
   Chooser(const Settings& settings, const Clock& clock, const Camera& camera,
@@ -56,7 +65,8 @@ class Chooser {
         camera_(camera),
         view_(view),
         synthesis_(synthesis),
-        counters_(counters) {}
+        counters_(counters),
+        rank_turns_(is_roomy(*synthesis.cache) ? kRankTurns : 1) {}
 
   // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
   bool consider(const MeshEntity& row, const NodeView& node, bool is_ground) {
@@ -74,9 +84,7 @@ class Chooser {
     in_view ? note_in_view(demand, node.leaf) : note_out_of_view(demand);
     if (demand.wanted_level == kNoLevel) {
       // Too small to be drawn: the first to go when room is needed.
-      if (demand.drawn_level != kNoLevel) {
-        synthesis_.cache->set_rank(row.mesh.handle, Rank::unwanted());
-      }
+      if (demand.drawn_level != kNoLevel) keep(row, RankGroup::kUnwanted, node, distance_m);
       return true;
     }
     provide(row, node, in_view, distance_m);
@@ -138,13 +146,23 @@ class Chooser {
     return Rank::by_layer(RankGroup::kPrefetch, visibility.layer, distance_m);
   }
 
+  // Tells the cache how important the drawn mesh is, where that is due.
+  void keep(const MeshEntity& row, RankGroup group, const NodeView& node, float distance_m) {
+    const bool turn = (row.entity.index + clock_.tick) % rank_turns_ == 0;
+    std::uint8_t& ranked = row.demand.ranked;
+    if (ranked == static_cast<std::uint8_t>(group) && !turn) return;
+    ranked = static_cast<std::uint8_t>(group);
+    synthesis_.cache->set_rank(row.mesh.handle, group == RankGroup::kUnwanted
+                                                    ? Rank::unwanted()
+                                                    : rank_of(group, node, distance_m));
+  }
+
   // Keeps what is drawn, and sees to it that the wanted level comes.
   void provide(const MeshEntity& row, const NodeView& node, bool in_view, float distance_m) {
     Demand& demand = row.demand;
     const bool wanted = in_view || (node.wanted && !node.in_view);
     if (demand.drawn_level != kNoLevel) {
-      const RankGroup kept = wanted ? RankGroup::kDrawn : RankGroup::kPrefetch;
-      synthesis_.cache->set_rank(row.mesh.handle, rank_of(kept, node, distance_m));
+      keep(row, wanted ? RankGroup::kDrawn : RankGroup::kPrefetch, node, distance_m);
     }
     if (demand.drawn_level == demand.wanted_level && !demand.stale) {
       demand.requested_level = kNoLevel;
@@ -214,6 +232,7 @@ class Chooser {
   const View& view_;
   Synthesis& synthesis_;
   Counters& counters_;
+  const std::uint32_t rank_turns_;
 };
 
 // Looks at nodes and their models.
@@ -303,8 +322,6 @@ void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
 void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& report,
                      Synthesis& synthesis, Totals& totals) {
   constexpr float kUp = 1.15F, kDown = 0.99F, kCoarsest = 64.0F;
-  const bool roomy = static_cast<double>(synthesis.cache->stats().bytes) <
-                     0.8 * static_cast<double>(synthesis.cache->budget_bytes());
   if (report.refused > 0) {
     synthesis.coarsening = std::min(synthesis.coarsening * kUp, kCoarsest);
     if (!totals.warned_budget) {
@@ -315,7 +332,7 @@ void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& repo
               : "the geometry budget is too small for this view at full detail; some of it is "
                 "missing");
     }
-  } else if (roomy) {
+  } else if (is_roomy(*synthesis.cache)) {
     synthesis.coarsening = std::max(synthesis.coarsening * kDown, 1.0F);
   }
 }
@@ -345,6 +362,7 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
       wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead;
   limits.max_requests = wait ? UINT32_MAX : settings.plan_max_requests;
   limits.max_new = wait || synthesis.settling ? UINT32_MAX : settings.plan_max_new;
+  limits.new_share = wait || synthesis.settling ? 1.0 : 1.0 / settings.streaming_ticks;
   limits.seconds_here = wait ? 0.0 : settings.hole_budget_ms / 1000.0;
   const synthesis::PlanReport report =
       synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,

@@ -21,20 +21,22 @@ namespace psygen::scene {
 
 inline constexpr std::uint8_t kNoLevel = 0xFF;
 inline constexpr std::size_t kMaxLevels = 8;
+inline constexpr std::uint8_t kNotRanked = 0xFF;
 
 // A node of the quadtree. The models on it are its children (ecs::Children): a block's trees and
 // rocks, or the one mesh that stands for all of them.
 struct Node {
   visibility::NodeCoord at;
   float low_m = 0, high_m = 0;  // of its ground; all that is possible until a mesh is there
+  float solidity = 0;           // share of the light that it stops; 0 where PLP does not ask
 };
-static_assert(sizeof(Node) == 20);
+static_assert(sizeof(Node) == 24);
 
 // What the visibility system found out about a node in this tick.
 struct Visibility {
   float distance_m = 0;     // from the camera to the nearest point of the node's box
   float deadline_s = 0;     // seconds until it is expected in view; 0 in view; +inf not expected
-  std::uint16_t layer = 0;  // PLP layer; the paper's priority is −(layer + 1)
+  std::uint16_t layer = 0;  // PLP key in layers; the paper's priority is −(layer + 1)
   std::uint16_t in_view = 0;
 };
 static_assert(sizeof(Visibility) == 12);
@@ -90,6 +92,7 @@ struct Demand {
   std::uint8_t failed_levels =
       0;               // bit l: level l cannot be synthesised and is not asked for again
   bool stale = false;  // Mesh is of other parameters than Source: drawn until the new one is there
+  std::uint8_t ranked = kNotRanked;  // group of the rank that the cache has for Mesh
 };
 static_assert(sizeof(Demand) == 16);
 

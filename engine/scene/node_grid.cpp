@@ -7,6 +7,7 @@ namespace psygen::scene {
 NodeGrid::NodeGrid(std::uint8_t level, std::uint32_t radius)
     : level_(level),
       radius_(radius),
+      max_radius_(radius),
       mask_(std::bit_ceil(2 * radius + 1) - 1),
       centre_{{}, level},
       cells_(std::size_t{mask_ + 1} * (mask_ + 1)) {}

@@ -1,6 +1,7 @@
 // The window of nodes of one level around the camera that may exist as entities: a square of side ×
-// side nodes in a table addressed modulo a power of two, so that moving the window touches only
-// what enters and leaves, and node coordinates may wrap. Holds handles, not data. Main thread.
+// side nodes, as large as is needed at the moment, in a table addressed modulo a power of two, so
+// that moving the window touches only what enters and leaves, and node coordinates may wrap. Holds
+// handles, not data. Main thread.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +14,15 @@ namespace psygen::scene {
 
 class NodeGrid {
  public:
-  // A window of 2·radius + 1 nodes of `level` a side.
+  // A window of 2·radius + 1 nodes of `level` a side, which is the largest that it can have.
   explicit NodeGrid(std::uint8_t level = 0, std::uint32_t radius = 0);
 
   std::uint8_t level() const { return level_; }
   std::uint32_t radius() const { return radius_; }
   std::uint32_t side() const { return 2 * radius_ + 1; }
+  // Requires that nothing outside the new window has an entity. At most max_radius().
+  void set_radius(std::uint32_t radius) { radius_ = radius; }
+  std::uint32_t max_radius() const { return max_radius_; }
   visibility::NodeCoord centre() const { return centre_; }
   void set_centre(core::BlockCoord block) { centre_ = visibility::node_of(block, level_); }
 
@@ -37,7 +41,7 @@ class NodeGrid {
   std::size_t cell_of(core::BlockCoord coord) const;
 
   std::uint8_t level_;
-  std::uint32_t radius_;
+  std::uint32_t radius_, max_radius_;
   std::uint32_t mask_;
   visibility::NodeCoord centre_;
   std::vector<ecs::Entity> cells_;

@@ -73,7 +73,8 @@ class Drawing {
     const bool hole = demand->drawn_level == kNoLevel;
     const std::uint32_t coarser = node.leaf ? 0 : coarser_by(index);
     count(middle, placed->radius_m, hole, coarser > 1);
-    const DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, coarser};
+    DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
+    if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
     if (!hole) add_ground(node, at, facts, *placed, *demand, *mesh, corner);
     add_models(*entities_.get<ecs::Children>(entity), facts, corner);
     if (shown_ == render::View::kBounds) {
@@ -81,6 +82,20 @@ class Drawing {
                corner + glm::vec3(node.side_m, at.high_m, node.side_m)},
               colour_of(shown_, facts), draws_.lines);
     }
+  }
+
+  // Of the meshes that the node and its models draw.
+  float bytes_per_m2(ecs::Entity node, float side_m) const {
+    std::uint64_t bytes = 0;
+    const auto add = [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
+                         std::span<const Mesh> meshes) {
+      for (std::size_t i = 0; i < meshes.size(); ++i)
+        bytes += demands[i].drawn_level != kNoLevel ? meshes[i].range.bytes : 0;
+    };
+    entities_.each_of<const Demand, const Mesh>(std::span(&node, 1), add);
+    entities_.each_of<const Demand, const Mesh>(
+        entities_.children(*entities_.get<ecs::Children>(node)), add);
+    return static_cast<float>(bytes) / (side_m * side_m);
   }
 
   // By how many levels the finest node in view that it is drawn for is finer.
@@ -116,6 +131,7 @@ class Drawing {
     draw.side_m = node.side_m;
     if (node.node.level > 0 && !level.merged) draw.cover = facts_.cover_share;
     draw.debug_colour = colour_of(shown_, facts);
+    draws_.meshes.push_back(mesh.handle);
     if (facts_.tiles && node.node.level == 0 && demand.drawn_level == 0)
       return add_tiles(*facts_.tiles, view_, at.low_m, at.high_m, fine_m_, draw, draws_.terrain);
     // A mesh coarser than wanted has nothing to morph from.
@@ -146,6 +162,7 @@ class Drawing {
             draws_.models.push_back({meshes[i].range, meshes[i].shared_indices, foot,
                                      placed[i].box_center, placed[i].box_half_extent, 1.0F,
                                      colour_of(shown_, facts)});
+            draws_.meshes.push_back(meshes[i].handle);
           }
         });
   }
@@ -168,6 +185,7 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
                    RenderQuery entities, DrawLists& draws, Output& output, Counters& counters) {
   draws.terrain.clear();
   draws.models.clear();
+  draws.meshes.clear();
   draws.lines.clear();
   draws.entities.clear();
   for (const visibility::CutNode& node : view.cut.nodes)

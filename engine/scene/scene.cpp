@@ -9,6 +9,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/scene/lighting.hpp"
+#include "engine/scene/node_solidity.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/world/merged_models.hpp"
 
@@ -34,6 +35,7 @@ core::Result<void> check(const Settings& settings) {
   if (!(settings.max_error_factor >= 1 && settings.max_error_factor <= 100)) {
     return refuse("the error may grow by a factor between 1 and 100");
   }
+  if (settings.streaming_ticks < 1) return refuse("nodes are created over at least one tick");
   if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
   if (settings.budget_bytes < Scene::kMinBudgetBytes) {
     return core::fail(core::ErrorCode::kOverBudget,
@@ -176,6 +178,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(facts.world));
   facts.cell_m = static_cast<float>(facts.world.cell_m());
   facts.models_reach_m = models_reach(facts.world, facts.registry);
+  facts.standing = standing_on_block(facts.world, facts.registry);
 
   if (auto ok = find_levels(settings, facts); !ok) return tl::unexpected(ok.error());
   for (std::size_t k = 0; k < facts.levels.size(); ++k) {

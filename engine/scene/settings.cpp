@@ -24,4 +24,15 @@ core::Result<Paradigm> paradigm_from(std::string_view name) {
                     fmt::format("paradigm '{}' is unknown; allowed are pla, amplify, lazy", name));
 }
 
+std::string_view to_string(visibility::PlpMode mode) {
+  return mode == visibility::PlpMode::kSolidity ? "solidity" : "layers";
+}
+
+core::Result<visibility::PlpMode> plp_mode_from(std::string_view name) {
+  if (name == "layers") return visibility::PlpMode::kLayers;
+  if (name == "solidity") return visibility::PlpMode::kSolidity;
+  return core::fail(core::ErrorCode::kInvalidArgument,
+                    fmt::format("PLP mode '{}' is unknown; allowed are layers, solidity", name));
+}
+
 }  // namespace psygen::scene

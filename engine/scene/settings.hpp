@@ -6,6 +6,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/synthesis/policy.hpp"
+#include "engine/visibility/plp.hpp"
 
 namespace psygen::scene {
 
@@ -18,9 +19,14 @@ enum class Paradigm : std::uint8_t {
 std::string_view to_string(Paradigm paradigm);  // "pla", "amplify", "lazy"
 core::Result<Paradigm> paradigm_from(std::string_view name);
 
+// The modes of Prioritized-Layered Projection: "layers", "solidity".
+std::string_view to_string(visibility::PlpMode mode);
+core::Result<visibility::PlpMode> plp_mode_from(std::string_view name);
+
 struct Settings {
   Paradigm paradigm = Paradigm::kParallelLazyAmplification;
   synthesis::Policy policy = synthesis::Policy::kDeadline;
+  visibility::PlpMode plp_mode = visibility::PlpMode::kLayers;
   std::uint32_t modelers = 0;                 // 0: cores − 1, at least 1
   std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
   double view_distance_m = 16'000;            // nothing farther away exists
@@ -34,8 +40,9 @@ struct Settings {
   double hole_budget_ms = 2.0;       // per tick, of the main thread, for what is missing in view
   double plan_seconds_ahead = 0.05;  // synthesis time per modeler in one plan
   std::uint32_t plan_max_requests = 4096;
-  std::uint32_t plan_max_new = 256;                 // of them, reserved in one tick
-  double streaming_budget_ms = 2.0;                 // per tick, for creating blocks
+  std::uint32_t plan_max_new = 256;   // of them, reserved in one tick
+  double streaming_budget_ms = 2.0;   // per tick, for creating nodes
+  std::uint32_t streaming_ticks = 8;  // over which the nodes that the window lacks are spread
   std::uint64_t upload_budget_bytes = 16ull << 20;  // per tick
 };
 

@@ -28,6 +28,7 @@
 #include "engine/visibility/camera_predictor.hpp"
 #include "engine/visibility/frustum.hpp"
 #include "engine/visibility/plp.hpp"
+#include "engine/visibility/solidity.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 
@@ -78,11 +79,12 @@ struct WorldFacts {
   models::Registry registry;
   render::Light light;
   render::TerrainPalette palette;
-  render::Canopy canopy;                      // of forests too far to be drawn
-  float cover_share = 0;                      // of the ground that they hide
-  std::vector<NodeLevel> levels;              // of the quadtree, finest first
-  models::ModelIndex merged_model = 0;        // of meshes that stand for all models on a node
-  std::optional<models::TerrainTiles> tiles;  // of blocks' finest meshes; none without levels
+  render::Canopy canopy;                       // of forests too far to be drawn
+  float cover_share = 0;                       // of the ground that they hide
+  std::vector<visibility::Standing> standing;  // on a block
+  std::vector<NodeLevel> levels;               // of the quadtree, finest first
+  models::ModelIndex merged_model = 0;         // of meshes that stand for all models on a node
+  std::optional<models::TerrainTiles> tiles;   // of blocks' finest meshes; none without levels
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
@@ -104,6 +106,7 @@ struct Streaming {
 struct LevelView {
   visibility::PlpResult plp;
   std::vector<core::Bounds> bounds;  // relative to the camera
+  std::vector<float> solidity;       // where PLP asks for it
   std::vector<float> deadlines;      // seconds until it is expected in view; +inf: it is not
   std::vector<std::uint8_t> chosen;  // not 0: its entity is in View::chosen
 };
@@ -154,7 +157,8 @@ struct DrawLists {
   std::vector<std::uint8_t> ready, scratch;  // per node of the cut
   std::vector<render::TerrainDraw> terrain;
   std::vector<render::MeshDraw> models;
-  std::vector<render::Line> lines;  // boxes of what is drawn, in the view of bounds
+  std::vector<synthesis::MeshHandle> meshes;  // of both
+  std::vector<render::Line> lines;            // boxes of what is drawn, in the view of bounds
 };
 
 // Counts of one tick, reset by the tick.

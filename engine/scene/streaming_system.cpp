@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/clock.hpp"
+#include "engine/scene/node_solidity.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/world/merged_models.hpp"
 
@@ -14,6 +15,10 @@ namespace {
 
 // The window is looked at again when distances have changed by this share.
 constexpr double kRelistedChange = 0.05;
+// Created in one tick at least, if as many are missing and time allows.
+constexpr std::size_t kFewestCreated = 3;
+// If more than this are missing the camera has leapt: as many as time allows.
+constexpr std::size_t kLeapt = 256;
 
 Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box) {
   Placed placed;
@@ -70,15 +75,17 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
   entities.set_children(node, models.entities);
 }
 
-void create_node(const WorldFacts& facts, const Daylight& daylight, const visibility::NodeCoord& at,
-                 std::vector<world::Placement>& scratch, Streaming& streaming,
-                 ecs::World& entities) {
+void create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
+                 const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
+                 Streaming& streaming, ecs::World& entities) {
   const NodeLevel& level = facts.levels[at.level];
   const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundLines,
                                        Placed, Detail, Source, Demand, Mesh>(1);
   models::Parameters ground = node_terrain(facts.world, at);
   world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
-  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y};
+  const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
+  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y,
+                               solid ? node_solidity(facts.world, facts.standing, at) : 0.0F};
   fill(created, 0, facts.registry, visibility::corner_block(at),
        {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground},
        at.level == 0 ? 0 : level.mesh_level, level.mesh_level);
@@ -95,6 +102,25 @@ double distance_m(const Camera& camera, const WorldFacts& facts, const visibilit
   const double size_m = facts.levels[at.level].size_m;
   const auto outside = [size_m](double low) { return std::max({low, -(low + size_m), 0.0}); };
   return std::hypot(outside(corner.x), outside(corner.z));
+}
+
+// How far windows must reach so that all nodes that may exist, or be wanted, lie in them.
+std::uint32_t needed_radius(const WorldFacts& facts, const Settings& settings,
+                            const Streaming& streaming, const NodeGrid& grid) {
+  const double reach_m =
+      existing_distance_m(facts.levels, settings, grid.level(), streaming.distances);
+  // A parent that begins there may reach one more node beyond, and the camera stands somewhere in
+  // its own node.
+  const auto radius =
+      static_cast<std::uint32_t>(std::ceil(reach_m / facts.levels[grid.level()].size_m)) + 2;
+  return std::min(radius, grid.max_radius());
+}
+
+bool windows_too_small(const WorldFacts& facts, const Settings& settings,
+                       const Streaming& streaming) {
+  return std::ranges::any_of(streaming.grids, [&](const NodeGrid& grid) {
+    return grid.radius() < needed_radius(facts, settings, streaming, grid);
+  });
 }
 
 // Which nodes exist at the camera's place.
@@ -178,21 +204,30 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
   const core::BlockCoord centre = camera.pose.position.block;
   const double reach = streaming.distances.back().split_m;
   if (centre != streaming.grids[0].centre().coord ||
-      std::abs(reach - streaming.listed_split_m) > kRelistedChange * reach) {
-    for (NodeGrid& grid : streaming.grids)
+      std::abs(reach - streaming.listed_split_m) > kRelistedChange * reach ||
+      windows_too_small(facts, settings, streaming)) {
+    for (NodeGrid& grid : streaming.grids) {
       grid.set_centre(centre);
+      grid.set_radius(needed_radius(facts, settings, streaming, grid));
+    }
     streaming.listed_split_m = reach;
     const Window window(settings, camera, facts, streaming);
     destroy_leaving_nodes(window, streaming, entities, *synthesis.cache, counters);
     list_missing_nodes(window, camera, facts, entities, streaming);
   }
+  // All of it for lazy evaluation, in every frame, and before the first frame.
+  const bool all = settings.paradigm == Paradigm::kLazyEvaluation || synthesis.settling ||
+                   streaming.missing.size() > kLeapt;
+  const std::size_t count =
+      all ? streaming.missing.size()
+          : std::max(kFewestCreated, streaming.missing.size() / settings.streaming_ticks);
   const double start_s = core::monotonic_seconds();
   std::vector<world::Placement> scratch;
-  while (!streaming.missing.empty()) {
-    create_node(facts, daylight, streaming.missing.back(), scratch, streaming, entities);
+  while (!streaming.missing.empty() && counters.nodes_created < count) {
+    create_node(settings, facts, daylight, streaming.missing.back(), scratch, streaming, entities);
     streaming.missing.pop_back();
     ++counters.nodes_created;
-    if (settings.paradigm == Paradigm::kLazyEvaluation) continue;  // all of it, in every frame
+    if (settings.paradigm == Paradigm::kLazyEvaluation) continue;
     if ((core::monotonic_seconds() - start_s) * 1000.0 > settings.streaming_budget_ms) break;
   }
 }

@@ -56,7 +56,7 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
                    RenderQuery entities, DrawLists& draws, Output& output, Counters& counters);
 
 // Writes down what the tick did.
-void telemetry_system(const Clock& clock, const Counters& counters, const Synthesis& synthesis,
-                      Totals& totals, telemetry::FrameRecord& record);
+void telemetry_system(const Clock& clock, const Counters& counters, const DrawLists& draws,
+                      Synthesis& synthesis, Totals& totals, telemetry::FrameRecord& record);
 
 }  // namespace psygen::scene

@@ -2,8 +2,9 @@
 
 namespace psygen::scene {
 
-void telemetry_system(const Clock& clock, const Counters& counters, const Synthesis& synthesis,
-                      Totals& totals, telemetry::FrameRecord& record) {
+void telemetry_system(const Clock& clock, const Counters& counters, const DrawLists& draws,
+                      Synthesis& synthesis, Totals& totals, telemetry::FrameRecord& record) {
+  synthesis.cache->note_drawn(draws.meshes);
   const synthesis::CacheStats cache = synthesis.cache->stats();
   const auto since = [](std::uint64_t now, std::uint64_t before) {
     return static_cast<std::uint32_t>(now - before);

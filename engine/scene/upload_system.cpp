@@ -59,6 +59,7 @@ bool accept(Demand& demand, std::uint8_t level, bool fresh, double now_s, Counte
   if (!asked_for && demand.drawn_level != kNoLevel) return false;
   demand.drawn_level = level;
   demand.stale = !fresh;
+  demand.ranked = kNotRanked;
   if (asked_for) demand.requested_level = kNoLevel;
   if (demand.seen_s >= 0) {
     counters.time_to_visible_ms.push_back((static_cast<float>(now_s) - demand.seen_s) * 1000.0F);

@@ -18,6 +18,15 @@ std::uint32_t layer_colour(std::uint32_t layer) {
   return red << 16 | green << 8 | blue;
 }
 
+std::uint32_t cache_colour(float bytes_per_m2) {
+  constexpr std::array<std::uint32_t, 7> kSteps = {0x25306B, 0x2F62A8, 0x2F9C9C, 0x4FA84A,
+                                                   0xD8C545, 0xE6873A, 0xD1382E};
+  std::size_t step = 0;
+  for (float upper = 1.0F / 16; step + 1 < kSteps.size() && bytes_per_m2 >= upper; upper *= 4)
+    ++step;
+  return kSteps[step];
+}
+
 }  // namespace
 
 std::uint32_t colour_of(render::View view, const DrawFacts& facts) {
@@ -29,6 +38,8 @@ std::uint32_t colour_of(render::View view, const DrawFacts& facts) {
       return layer_colour(facts.layer);
     case render::View::kMissing:
       return facts.coarser == 0 ? kAsWanted : facts.coarser == 1 ? kOneCoarser : kCoarse;
+    case render::View::kCache:
+      return cache_colour(facts.bytes_per_m2);
     case render::View::kNormal:
     case render::View::kWireframe:
       break;

@@ -14,11 +14,14 @@ namespace psygen::scene {
 struct DrawFacts {
   std::uint32_t level = 0;  // of the node for ground and merged meshes, of detail for single models
   std::uint32_t layer = 0;  // PLP layer of its node
+  float bytes_per_m2 = 0;   // of the ground of its node, of all meshes drawn there
   std::uint32_t coarser = 0;  // by so many levels than what is wanted
 };
 
 // 0xRRGGBB. Levels: red, orange, yellow, green … from fine to coarse. Layers: bright to dark.
 // Missing: green as wanted, yellow a level coarser, red more.
+// Cache: dark blue below 1/16 byte per square metre, over green to red from 64 on, each step a
+// factor of four.
 std::uint32_t colour_of(render::View view, const DrawFacts& facts);
 
 // The twelve edges of a box.

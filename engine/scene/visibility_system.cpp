@@ -50,6 +50,7 @@ void find_bounds(const Camera& camera, const WorldFacts& facts, const Streaming&
     const NodeLevel& level = facts.levels[grid.level()];
     std::vector<core::Bounds>& bounds = view.levels[grid.level()].bounds;
     bounds.clear();
+    view.levels[grid.level()].solidity.assign(std::size_t{grid.side()} * grid.side(), 0.0F);
     const glm::vec3 first = corner_of(facts, camera, grid.node_at(0, 0));
     const auto size = static_cast<float>(level.size_m);
     for (std::uint32_t row = 0; row < grid.side(); ++row) {
@@ -62,46 +63,78 @@ void find_bounds(const Camera& camera, const WorldFacts& facts, const Streaming&
   }
   nodes.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> rows) {
     for (const Node& node : rows) {
-      const NodeGrid& grid = streaming.grids[node.at.level];
-      view.levels[node.at.level].bounds[grid.window_index(node.at.coord)] =
+      const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
+      view.levels[node.at.level].solidity[cell] = node.solidity;
+      view.levels[node.at.level].bounds[cell] =
           node_bounds(facts, corner_of(facts, camera, node.at), facts.levels[node.at.level].size_m,
                       node.low_m, node.high_m);
     }
   });
 }
 
-void project_layers(const NodeGrid& grid, const visibility::Frustum& frustum, LevelView& level) {
+void project_layers(const Settings& settings, const NodeGrid& grid,
+                    const visibility::Frustum& frustum, LevelView& level) {
   visibility::PlpInput input;
   input.width = input.depth = grid.side();
   input.start_x = input.start_z = grid.radius();
   input.bounds = level.bounds;
   input.frustum = &frustum;
+  input.mode = settings.plp_mode;
+  input.solidity = level.solidity;
   visibility::run_plp(input, level.plp);
   level.deadlines.assign(level.bounds.size(), std::numeric_limits<float>::infinity());
   level.chosen.assign(level.bounds.size(), 0);
 }
 
-// Lowers the deadline of every node that the predicted camera sees and that is fine enough only
-// for a camera so near.
-void expect(const Camera& camera, const Camera::Prediction& prediction, const WorldFacts& facts,
-            const Streaming& streaming, View& view) {
-  const core::WorldPosition& to = prediction.pose.position;
-  const glm::vec3 moved(core::offset_m(to.block, camera.pose.position, facts.world.block_size_m()) +
-                        to.local);
-  const visibility::Frustum frustum = frustum_of(prediction.pose, camera.projection);
-  for (std::size_t k = 0; k < view.levels.size(); ++k) {
-    LevelView& level = view.levels[k];
-    const bool top = k + 1 == view.levels.size();
-    const auto reach_m =
-        static_cast<float>(top ? std::numeric_limits<double>::infinity()
-                               : streaming.distances[k + 1].merge_m + 2 * facts.levels[k].size_m);
-    for (std::size_t cell = 0; cell < level.bounds.size(); ++cell) {
-      if (level.deadlines[cell] <= prediction.tau_s) continue;
-      const core::Bounds box{level.bounds[cell].min - moved, level.bounds[cell].max - moved};
-      if (distance_to(box) < reach_m && visibility::intersects(frustum, box))
-        level.deadlines[cell] = prediction.tau_s;
-    }
+// Squared, of the nearest point of a box.
+float distance_squared_to(const core::Bounds& box) {
+  const glm::vec3 nearest = glm::clamp(glm::vec3(0.0F), box.min, box.max);
+  return glm::dot(nearest, nearest);
+}
+
+// What a predicted camera sees.
+struct Outlook {
+  float tau_s = 0;
+  glm::vec3 moved{0.0F};  // from where the camera is
+  visibility::Frustum frustum;
+};
+
+// Until when a node is expected in view by cameras that are so near to it that it is fine enough
+// only for them: the first of the outlooks.
+float deadline_of(const core::Bounds& bounds, float reach_m, std::span<const Outlook> outlooks) {
+  for (const Outlook& outlook : outlooks) {
+    const core::Bounds box{bounds.min - outlook.moved, bounds.max - outlook.moved};
+    if (distance_squared_to(box) < reach_m * reach_m &&
+        visibility::intersects(outlook.frustum, box))
+      return outlook.tau_s;
   }
+  return std::numeric_limits<float>::infinity();
+}
+
+// The deadlines of all nodes that there are.
+void expect(const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
+            const VisibilityQuery& query, View& view) {
+  std::vector<Outlook> outlooks;  // soonest first
+  for (const Camera::Prediction& prediction : camera.predictions) {
+    const core::WorldPosition& to = prediction.pose.position;
+    outlooks.push_back(
+        {prediction.tau_s,
+         glm::vec3(core::offset_m(to.block, camera.pose.position, facts.world.block_size_m()) +
+                   to.local),
+         frustum_of(prediction.pose, camera.projection)});
+  }
+  std::vector<float> reaches_m;
+  for (std::size_t k = 0; k + 1 < view.levels.size(); ++k)
+    reaches_m.push_back(
+        static_cast<float>(streaming.distances[k + 1].merge_m + 2 * facts.levels[k].size_m));
+  reaches_m.push_back(std::numeric_limits<float>::infinity());
+  query.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> nodes) {
+    for (const Node& node : nodes) {
+      LevelView& level = view.levels[node.at.level];
+      const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
+      level.deadlines[cell] = deadline_of(level.bounds[cell], reaches_m[node.at.level], outlooks);
+    }
+  });
 }
 
 void choose_cut(const Settings& settings, const Camera& camera, const WorldFacts& facts,
@@ -198,7 +231,8 @@ void write_visibility(const View& view, const Streaming& streaming, const Visibi
       const std::size_t cell = streaming.grids[at.level].window_index(at.coord);
       Visibility& visibility = visibilities[i];
       visibility.distance_m = distance_to(level.bounds[cell]);
-      visibility.layer = level.plp.layer[cell];
+      visibility.layer = static_cast<std::uint16_t>(
+          std::min<std::uint32_t>(level.plp.key[cell] / visibility::kKeysPerLayer, UINT16_MAX));
       visibility.in_view = level.chosen[cell] == kInView ? 1 : 0;
       visibility.deadline_s = visibility.in_view != 0 ? 0.0F : level.deadlines[cell];
     }
@@ -244,9 +278,8 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
   find_bounds(camera, facts, streaming, nodes, view);
   view.frustum = frustum_of(camera.pose, camera.projection);
   for (const NodeGrid& grid : streaming.grids)
-    project_layers(grid, view.frustum, view.levels[grid.level()]);
-  for (const Camera::Prediction& prediction : camera.predictions)
-    expect(camera, prediction, facts, streaming, view);
+    project_layers(settings, grid, view.frustum, view.levels[grid.level()]);
+  expect(camera, facts, streaming, nodes, view);
   choose_cut(settings, camera, facts, streaming, synthesis.settling, view);
   find_hidden(settings, camera, facts, streaming, nodes, view, counters);
   list_chosen(camera, streaming, nodes, view, counters);

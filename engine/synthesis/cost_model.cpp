@@ -44,14 +44,16 @@ const CostFit& CostModel::fit(models::ModelIndex model, int level) const {
       std::clamp(level, 0, static_cast<int>(levels.size()) - 1))];
 }
 
-Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters,
-                     int level) const {
+Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters, int level,
+                     models::MeshSize* size) const {
   Work work;
   if (model >= registry_.size()) return work;
   try {  // types of users may throw; nothing of ours does
     const double x = registry_[model].complexity(parameters, level);
     if (std::isfinite(x) && x > 0) work.operations = x;
-    work.triangles = registry_[model].mesh_size(parameters, level).triangle_count();
+    const models::MeshSize asked = registry_[model].mesh_size(parameters, level);
+    if (size != nullptr) *size = asked;
+    work.triangles = asked.triangle_count();
     work.full_triangles =
         level == 0 ? work.triangles : registry_[model].mesh_size(parameters, 0).triangle_count();
   } catch (...) {

@@ -51,7 +51,8 @@ std::string_view GeometryCache::failure_reason(MeshHandle handle) const {
 }
 
 core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
-                                                      const models::Parameters& parameters) {
+                                                      const models::Parameters& parameters,
+                                                      const models::MeshSize* known) {
   using core::ErrorCode;
   if (key.model >= registry_.size()) {
     return core::fail(ErrorCode::kSynthesisFailed, fmt::format("no model type {}", key.model));
@@ -63,7 +64,7 @@ core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
                                   type.level_count() - 1));
   }
   try {  // types of users may throw; nothing of ours does
-    const models::MeshSize size = type.mesh_size(parameters, key.level);
+    const models::MeshSize size = known != nullptr ? *known : type.mesh_size(parameters, key.level);
     if (size.vertex_count <= kMaxVertices && size.index_count <= kMaxIndices) return size;
     return core::fail(
         ErrorCode::kSynthesisFailed,
@@ -80,12 +81,13 @@ core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
 
 core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
                                                 const models::Parameters& parameters,
-                                                std::uint64_t owner, Rank rank) {
+                                                std::uint64_t owner, Rank rank,
+                                                const models::MeshSize* known) {
   if (const MeshHandle there = find(key)) {
     if (records_[there.slot].state != MeshState::kFailed) return there;
     return core::fail(core::ErrorCode::kSynthesisFailed, reasons_.at(there.slot));
   }
-  const core::Result<models::MeshSize> size = size_of(key, parameters);
+  const core::Result<models::MeshSize> size = size_of(key, parameters, known);
   if (!size) {
     remember_failure(take_slot(key, owner, rank), size.error().message);
     return tl::unexpected<core::Error>(size.error());
@@ -120,9 +122,22 @@ void GeometryCache::complete(MeshHandle handle, const core::Bounds& tight) {
   r->prefetched = !is_visible(r->rank.group());
   if (r->prefetched) ++stats_.prefetched;
   ++stats_.ready;
+  stats_.triangles += r->size.triangle_count();
+  drawn_.resize(records_.size());
+  drawn_[handle.slot] = 0;
   evictable_[handle.slot] = eviction_order(r->rank);
   candidates_valid_ = false;
   enforce_budget();
+}
+
+void GeometryCache::note_drawn(std::span<const MeshHandle> handles) {
+  for (const MeshHandle handle : handles) {
+    if (handle.slot >= drawn_.size() || drawn_[handle.slot] != 0) continue;
+    const MeshRecord* r = get(handle);
+    if (r == nullptr || r->state != MeshState::kReady) continue;
+    drawn_[handle.slot] = 1;
+    stats_.triangles_drawn += r->size.triangle_count();
+  }
 }
 
 void GeometryCache::fail(MeshHandle handle, std::string reason, bool still_writing) {

@@ -57,11 +57,13 @@ struct CacheStats {
   std::uint64_t peak_bytes = 0;
   std::uint64_t hits = 0, misses = 0;  // of look_up()
   std::uint64_t evictions = 0;
-  std::uint64_t regenerations = 0;  // reservations of meshes evicted before (see EvictedKeys)
-  std::uint64_t prefetched = 0;     // meshes that became ready before they were visible
-  std::uint64_t prefetch_hits = 0;  // those of them that became visible afterwards
-  std::uint64_t refusals = 0;       // reservations refused because of the budget
-  std::uint64_t out_of_memory = 0;  // reservations that the memory itself refused
+  std::uint64_t regenerations = 0;    // reservations of meshes evicted before (see EvictedKeys)
+  std::uint64_t prefetched = 0;       // meshes that became ready before they were visible
+  std::uint64_t prefetch_hits = 0;    // those of them that became visible afterwards
+  std::uint64_t triangles = 0;        // of all meshes that became ready
+  std::uint64_t triangles_drawn = 0;  // of those of them that were ever drawn
+  std::uint64_t refusals = 0;         // reservations refused because of the budget
+  std::uint64_t out_of_memory = 0;    // reservations that the memory itself refused
   std::uint64_t failures = 0;
   std::uint32_t ready = 0, requested = 0, failed = 0;  // meshes now
 };
@@ -119,8 +121,10 @@ class GeometryCache {
   //   kOutOfMemory      the memory refused although the budget had room; the limit is lowered
   //   kSynthesisFailed  this key failed before (the reason is in the message), or its size cannot
   //                     be had; never retried until forget_failures()
+  // `known`: what the type says about the size, where the caller has asked it already.
   core::Result<MeshHandle> reserve(const MeshKey& key, const models::Parameters& parameters,
-                                   std::uint64_t owner, Rank rank);
+                                   std::uint64_t owner, Rank rank,
+                                   const models::MeshSize* known = nullptr);
 
   // The destination is written: the mesh is ready (or gone, if it was released meanwhile).
   void complete(MeshHandle handle, const core::Bounds& tight);
@@ -138,6 +142,8 @@ class GeometryCache {
   // Stale handles are ignored by all of these and by the four above.
   void set_rank(MeshHandle handle, Rank rank);
   void set_ranks(std::span<const RankUpdate> updates);
+  // These meshes are drawn now. For the statistics: a mesh counts once.
+  void note_drawn(std::span<const MeshHandle> handles);
   // Somebody (else) wants a mesh that is there: takes over its owner and rank, undoes a release.
   void adopt(MeshHandle handle, std::uint64_t owner, Rank rank);
 
@@ -156,7 +162,8 @@ class GeometryCache {
     Slot slot;
   };
   MeshRecord* live(MeshHandle handle);
-  core::Result<models::MeshSize> size_of(const MeshKey& key, const models::Parameters& parameters);
+  core::Result<models::MeshSize> size_of(const MeshKey& key, const models::Parameters& parameters,
+                                         const models::MeshSize* known);
   core::Result<core::GeometryReservation> reserve_memory(const models::MeshSize& size, Rank rank);
   bool make_room(std::uint64_t need, Rank rank);
   bool evict(std::uint64_t bytes, const Rank* request);
@@ -179,6 +186,7 @@ class GeometryCache {
   bool out_of_memory_in_batch_ = false;
 
   std::vector<MeshRecord> records_;
+  std::vector<std::uint8_t> drawn_;       // per slot: 1 once it was drawn
   std::vector<std::uint64_t> evictable_;  // per slot: eviction_order() if ready, else 0
   std::vector<Slot> free_slots_;
   KeyIndex index_;

@@ -8,6 +8,9 @@
 #include "engine/core/clock.hpp"
 
 namespace psygen::synthesis {
+namespace {
+constexpr std::size_t kFewestNew = 48;  // invisible ones that a plan takes whatever the share
+}
 
 // Where the unclaimed request of this mesh is in reclaimed_, or kNone.
 std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
@@ -17,16 +20,25 @@ std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
   return it != by_slot_.end() && reclaimed_[*it].handle == handle ? *it : kNone;
 }
 
-// Keeps the `max_new` of new_ that would be served first.
-void Planner::leave_for_later(std::uint32_t max_new, Policy policy, PlanReport& report) {
-  const bool led_by_time = policy == Policy::kShortest || policy == Policy::kLongest;
-  if (led_by_time || new_.size() <= max_new) return;
-  const auto last = new_.begin() + static_cast<std::ptrdiff_t>(max_new);
+// Keeps the `count` of new_ that would be served first.
+void Planner::keep_first(std::size_t count, Policy policy, PlanReport& report) {
+  if (new_.size() <= count) return;
+  const auto last = new_.begin() + static_cast<std::ptrdiff_t>(count);
   std::nth_element(new_.begin(), last, new_.end(), [policy](const Item& a, const Item& b) {
     return served_before(policy, a.order, b.order);
   });
-  report.deferred += static_cast<std::uint32_t>(new_.size() - max_new);
+  report.deferred += static_cast<std::uint32_t>(new_.size() - count);
   new_.erase(last, new_.end());
+}
+
+void Planner::leave_for_later(const PlanLimits& limits, Policy policy, PlanReport& report) {
+  if (policy == Policy::kShortest || policy == Policy::kLongest) return;  // led by time
+  const auto visible = static_cast<std::size_t>(std::ranges::count_if(
+      new_, [](const Item& item) { return is_visible(item.order.rank.group()); }));
+  const auto share =
+      static_cast<std::size_t>(limits.new_share * static_cast<double>(new_.size() - visible));
+  keep_first(std::min<std::size_t>(limits.max_new, visible + std::max(share, kFewestNew)), policy,
+             report);
 }
 
 // Fills items_ with the wants that need a request, in serving order, and marks what is kept.
@@ -61,17 +73,25 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
     }
     if (reclaimed == kNone) {
       // First come, first served: what was requested before comes before what is new.
-      new_.push_back({{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, {}, kNone});
+      new_.push_back(
+          {{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, {}, kNone, kNone});
       continue;
     }
     const Work& work = reclaimed_[reclaimed].work;
     const double predicted = cost.predict_from(want.key.model, want.key.level, work);
-    items_.push_back({{want.rank, want.deadline_s, predicted, reclaimed}, i, work, reclaimed});
+    items_.push_back(
+        {{want.rank, want.deadline_s, predicted, reclaimed}, i, work, reclaimed, kNone});
   }
-  leave_for_later(limits.max_new, policy, report);
+  leave_for_later(limits, policy, report);
+  sizes_.clear();
   for (Item& item : new_) {
     const Want& want = wants[item.want];
-    item.work = cost.work(want.key.model, *want.parameters, want.key.level);
+    models::MeshSize size;
+    item.work = cost.work(want.key.model, *want.parameters, want.key.level, &size);
+    if (size.vertex_count > 0) {
+      item.size = static_cast<std::uint32_t>(sizes_.size());
+      sizes_.push_back(size);
+    }
     item.order.predicted_seconds = cost.predict_from(want.key.model, want.key.level, item.work);
     items_.push_back(item);
   }
@@ -119,10 +139,11 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     return;
   }
   if (cache.find(want.key)) return;  // a second want of the same mesh
-  auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank);
+  const models::MeshSize* size = item.size != kNone ? &sizes_[item.size] : nullptr;
+  auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, size);
   while (!handle && handle.error().code == core::ErrorCode::kOverBudget &&
          give_back_last(cache, report)) {
-    handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank);
+    handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, size);
   }
   if (!handle) {
     const bool failed = handle.error().code == core::ErrorCode::kSynthesisFailed;

@@ -36,6 +36,9 @@ struct PlanLimits {
   // New reservations in one plan. Where the policy is led by rank, no others are looked at: each
   // costs some microseconds (sizes, prediction, room), and wants may come by the thousand.
   std::uint32_t max_new = UINT32_MAX;
+  // Of those that are not visible at most this share in one plan, but a few dozen: what comes in a
+  // flood, as when new ground comes near, is spread over some ticks. In (0, 1].
+  double new_share = 1;
 };
 
 struct PlanReport {
@@ -64,12 +67,14 @@ class Planner {
     std::uint32_t want;
     Work work;
     std::uint32_t reclaimed;  // position in reclaimed_, or kNone
+    std::uint32_t size;       // position in sizes_, or kNone
   };
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
   void sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
                 const PlanLimits& limits, Policy policy, PlanReport& report);
-  void leave_for_later(std::uint32_t max_new, Policy policy, PlanReport& report);
+  void leave_for_later(const PlanLimits& limits, Policy policy, PlanReport& report);
+  void keep_first(std::size_t count, Policy policy, PlanReport& report);
   std::uint32_t reclaimed_position(MeshHandle handle) const;
   void give_back_unwanted(GeometryCache& cache, PlanReport& report);
   bool give_back_last(GeometryCache& cache, PlanReport& report);
@@ -86,6 +91,7 @@ class Planner {
   std::vector<bool> kept_;              // of reclaimed_: wanted, and not given back
   std::vector<Item> items_;
   std::vector<Item> new_;                  // those of them that need a reservation
+  std::vector<models::MeshSize> sizes_;    // of new_, as far as their types tell
   std::vector<std::uint32_t> last_first_;  // wanted ones of reclaimed_ in serving order
   std::vector<Request> plan_;
   bool separate_holes_ = false;

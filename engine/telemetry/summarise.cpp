@@ -59,6 +59,7 @@ void summarise_missing(Summary& s, Frames frames, const FrameLog& log, double wa
   const auto pixels = column(frames, [](const auto& r) { return r.missing_pixels_percent; });
   s.missing.frames = total(frames, [](const auto& r) { return r.holes > 0 ? 1 : 0; });
   s.missing.nodes_p99 = percentile(nodes, 0.99);
+  s.missing.pixels_p99_percent = percentile(pixels, 0.99);
   s.missing.pixels_max_percent = largest(pixels);
   const std::vector<double> waits = log.time_to_visible_ms().values_since(warmup_s);
   constexpr std::array kTwo{0.5, 0.99};
@@ -118,6 +119,7 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   summarise_missing(s, frames, log, warmup_s);
   summarise_cache(s, frames, log, facts);
   summarise_synthesis(s, frames, log, warmup_s);
+  s.synthesis.share_drawn = facts.share_drawn;
   s.draw.floor_ratio = facts.floor_ratio;
   s.memory.peak_rss_bytes = facts.peak_rss_bytes;
   s.hash.world = facts.world_hash;

@@ -51,6 +51,7 @@ struct RunFacts {
   Count cache_peak_bytes;  // where missing: the largest cache_bytes of the log
   Figure
       prefetch_hit_percent;  // of the models synthesised ahead of time, those that came into view
+  Figure share_drawn;        // of all triangles synthesised, those of meshes that were ever drawn
   Figure floor_ratio;        // median frame ÷ the same draw lists replayed with nothing else
   Count peak_rss_bytes;
   Count world_hash;
@@ -83,7 +84,7 @@ struct Summary {
   struct {
     Count frames;      // frames with at least one hole
     Figure nodes_p99;  // holes and coarse nodes of a frame
-    Figure pixels_max_percent;
+    Figure pixels_p99_percent, pixels_max_percent;
     struct {
       Figure p50, p99, max;
     } time_to_visible_ms;
@@ -97,6 +98,7 @@ struct Summary {
   struct {
     Count models, triangles, bytes;
     Figure seconds;               // busy time of all modelers together
+    Figure share_drawn;           // of all triangles of the whole run, those ever drawn, in [0, 1]
     Figure triangles_per_second;  // per busy second of one modeler
     struct {
       Figure p50, p95;

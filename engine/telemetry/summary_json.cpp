@@ -81,6 +81,7 @@ Json missing_json(const Summary& s, Writer& w) {
   return {
       {"frames", w.count("missing.frames", s.missing.frames)},
       {"nodes_p99", w.figure("missing.nodes_p99", s.missing.nodes_p99)},
+      {"pixels_p99_percent", w.figure("missing.pixels_p99_percent", s.missing.pixels_p99_percent)},
       {"pixels_max_percent", w.figure("missing.pixels_max_percent", s.missing.pixels_max_percent)},
       {"time_to_visible_ms",
        {{"p50", w.figure(path + ".p50", wait.p50)},
@@ -107,6 +108,7 @@ Json synthesis_json(const Summary& s, Writer& w) {
           {"triangles", w.count("synthesis.triangles", synthesis.triangles)},
           {"bytes", w.count("synthesis.bytes", synthesis.bytes)},
           {"seconds", w.figure("synthesis.seconds", synthesis.seconds)},
+          {"share_drawn", w.figure("synthesis.share_drawn", synthesis.share_drawn)},
           {"triangles_per_second",
            w.figure("synthesis.triangles_per_second", synthesis.triangles_per_second)},
           {"cost_error_percent",

@@ -21,6 +21,10 @@ std::string percent(double value) {
   return three_digits(value) + " %";
 }
 
+std::string share(double value) {
+  return percent(100 * value);
+}
+
 // Lines of a title, a label and a text.
 class Table {
  public:
@@ -84,7 +88,9 @@ void add_streaming(Table& table, const Summary& s) {
   const auto& wait = s.missing.time_to_visible_ms;
   table.section("missing");
   table.row("frames with holes", or_dash(s.missing.frames, whole));
-  table.row("pixels, worst", or_dash(s.missing.pixels_max_percent, percent));
+  table.row("pixels",
+            fmt::format("p99 {}, worst {}", or_dash(s.missing.pixels_p99_percent, percent),
+                        or_dash(s.missing.pixels_max_percent, percent)));
   table.row("time to visible", fmt::format("p50 {}, p99 {}", or_dash(wait.p50, milliseconds),
                                            or_dash(wait.p99, milliseconds)));
   table.section("cache");
@@ -99,6 +105,7 @@ void add_streaming(Table& table, const Summary& s) {
             fmt::format("{} models, {} triangles, {}", or_dash(s.synthesis.models, count_text),
                         or_dash(s.synthesis.triangles, count_text),
                         or_dash(s.synthesis.bytes, bytes_text)));
+  table.row("ever drawn", or_dash(s.synthesis.share_drawn, share) + " of all triangles");
   table.row("speed",
             or_dash(s.synthesis.triangles_per_second, count_text) + " triangles per busy second");
   table.row("cost error",

@@ -16,6 +16,7 @@ inline Settings small_settings() {
   settings.budget_bytes = 64ull << 20;
   settings.modelers = 1;
   settings.streaming_budget_ms = 1e9;  // tests do not depend on the machine's speed
+  settings.streaming_ticks = 1;
   return settings;
 }
 

@@ -19,6 +19,19 @@ TEST(NodeGrid, TheWindowIsCentredOnTheCamera) {
   EXPECT_FALSE(grid.contains({10, 0}));
 }
 
+TEST(NodeGrid, ASmallerWindowKeepsTheEntitiesThatLieInIt) {
+  NodeGrid grid(0, 3);
+  grid.set_centre({5, 5});
+  grid.entity_of({6, 4}) = {42, 1};
+  grid.set_radius(1);
+  EXPECT_EQ(grid.side(), 3u);
+  EXPECT_EQ(grid.max_radius(), 3u);
+  EXPECT_EQ(grid.node_at(0, 0).coord, (core::BlockCoord{4, 4}));
+  EXPECT_EQ(grid.window_index({6, 4}), 2u);
+  EXPECT_FALSE(grid.contains({7, 5}));
+  EXPECT_EQ(grid.entity_of({6, 4}), (ecs::Entity{42, 1}));
+}
+
 TEST(NodeGrid, OfACoarserLevelItIsCentredOnTheNodeOfTheBlock) {
   NodeGrid grid(3, 1);
   grid.set_centre({17, -1});

@@ -1,5 +1,6 @@
 #include "engine/scene/scene.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -70,6 +71,23 @@ TEST(Scene, DrawListsAndEveryByteOfGeometryAreTheSameForAnyNumberOfModelers) {
   }
 }
 
+TEST(Scene, BothModesOfPlpAreDeterministicAndSettleToTheSamePicture) {
+  std::multiset<DrawKey> first;
+  for (const auto mode : {visibility::PlpMode::kLayers, visibility::PlpMode::kSolidity,
+                          visibility::PlpMode::kSolidity}) {
+    Settings settings = small_settings();
+    settings.plp_mode = mode;
+    const auto scene = make_scene(settings);
+    scene->settle(pose_at(100, 400, 0.7));
+    tick_at(*scene, pose_at(100, 400, 0.7));
+    if (first.empty()) first = draw_keys(*scene);
+    EXPECT_EQ(draw_keys(*scene), first);
+    const synthesis::CacheStats stats = scene->state().synthesis.cache->stats();
+    EXPECT_GT(stats.triangles_drawn, 0u);
+    EXPECT_LT(stats.triangles_drawn, stats.triangles);
+  }
+}
+
 TEST(Scene, WhatASettledSceneDrawsDoesNotDependOnWhatWasDrawnBefore) {
   const auto direct = make_scene(small_settings());
   direct->settle(pose_at(256, 256));
@@ -108,6 +126,24 @@ TEST(Scene, FlyingKeepsNodesAroundTheCameraAndNothingElse) {
   tick_at(*fresh, scene->state().input.pose);
   EXPECT_EQ(nodes_of(*scene), nodes_of(*fresh));
   EXPECT_EQ(scene->state().entities.size(), fresh->state().entities.size());
+}
+
+TEST(Scene, NewGroundIsSpreadOverTicksAndAllOfItComes) {
+  Settings settings = small_settings();
+  settings.streaming_ticks = 4;
+  const auto scene = make_scene(settings);
+  scene->settle(pose_at(256, 256));
+  const State& state = scene->state();
+  tick_at(*scene, pose_at(300, 256));
+  std::size_t missing = state.streaming.missing.size();
+  EXPECT_GT(missing, 20u);
+  EXPECT_EQ(state.counters.nodes_created, (missing + state.counters.nodes_created) / 4);
+  for (int tick = 0; tick < 60 && missing > 0; ++tick) {
+    tick_at(*scene, pose_at(300, 256));
+    EXPECT_LE(state.counters.nodes_created, std::max<std::size_t>(3, missing / 4));
+    missing = state.streaming.missing.size();
+  }
+  EXPECT_EQ(missing, 0u);
 }
 
 TEST(Scene, AtTheEdgeOfTheWorldThereIsNothingBeyond) {

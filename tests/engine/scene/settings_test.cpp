@@ -23,5 +23,11 @@ TEST(Settings, AnUnknownParadigmIsRefusedAndTheKnownOnesAreNamed) {
   }
 }
 
+TEST(Settings, ModesOfPlpHaveNamesAndNothingElseIsOne) {
+  for (const auto mode : {visibility::PlpMode::kLayers, visibility::PlpMode::kSolidity})
+    EXPECT_EQ(*plp_mode_from(to_string(mode)), mode);
+  EXPECT_FALSE(plp_mode_from("nonsense"));
+}
+
 }  // namespace
 }  // namespace psygen::scene

@@ -47,5 +47,14 @@ TEST(Views, ABoxHasTwelveEdgesAlongTheAxes) {
   EXPECT_EQ(length, 4 * (1 + 2 + 3));
 }
 
+TEST(Views, TheCacheIsShownInSevenStepsOfBytesPerArea) {
+  std::set<std::uint32_t> colours;
+  for (float bytes = 1.0F / 32; bytes < 1000; bytes *= 2)
+    colours.insert(colour_of(View::kCache, {.bytes_per_m2 = bytes}));
+  EXPECT_EQ(colours.size(), 7u);
+  EXPECT_EQ(colour_of(View::kCache, {.bytes_per_m2 = 64}),
+            colour_of(View::kCache, {.bytes_per_m2 = 1e9F}));
+}
+
 }  // namespace
 }  // namespace psygen::scene

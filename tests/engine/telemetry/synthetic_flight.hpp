@@ -87,6 +87,7 @@ inline RunFacts synthetic_facts() {
       "pla", "deadline", 1, 1280, 720, true, Figure::missing("the flight follows the clock")};
   facts.cache_budget_bytes = 512ULL << 20;
   facts.prefetch_hit_percent = 81.5;
+  facts.share_drawn = 0.625;
   facts.peak_rss_bytes = 740ULL << 20;
   facts.world_hash = 0x0123456789ABCDEFULL;
   return facts;

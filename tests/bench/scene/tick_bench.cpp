@@ -1,0 +1,116 @@
+// What the systems of a tick cost without drawing, along a flight on the null device: the same
+// flight several times, of each tick the median of the times, so that what other programs do to one
+// tick does not count. After each tick the modelers finish what they were given, as they do during
+// a frame that is drawn. Prints a table.
+//
+//   psygen_bench_scene [PATH [WORLD [HZ [FLIGHTS]]]]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.hpp"
+#include "engine/world/camera_path.hpp"
+
+namespace psygen::scene {
+namespace {
+
+const std::string kGame = PSYGEN_SOURCE_DIR "/game/";
+
+// Value `share` of the way up.
+double percentile(std::vector<double> values, double share) {
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(at));
+  return values[at];
+}
+
+// By system, by tick.
+std::vector<std::vector<double>> fly(const world::World& world, const world::CameraPath& path,
+                                     double hz, std::vector<std::string>& names) {
+  Settings settings;
+  settings.modelers = 1;
+  auto made = Scene::create(world, models::make_standard_registry(), settings, nullptr);
+  if (!made) return {};
+  Scene& scene = **made;
+  State& state = scene.state();
+  scene.settle(path.pose_at(0, world));
+  names.clear();
+  for (const ecs::SystemInfo& system : state.tick.systems())
+    names.push_back(system.name);
+  std::vector<std::vector<double>> times(names.size());
+  const auto ticks = static_cast<int>(path.duration_seconds() * hz);
+  for (int i = 0; i < ticks; ++i) {
+    state.clock.now_s = i / hz;
+    state.input.pose = path.pose_at(state.clock.now_s, world);
+    tick(state);
+    for (std::size_t k = 0; k < names.size(); ++k)
+      times[k].push_back(static_cast<double>(state.record.system_ms[k]));
+    state.synthesis.manager->wait_all();
+  }
+  return times;
+}
+
+// Of each tick the median over the flights.
+std::vector<double> typical(const std::vector<std::vector<double>>& flights) {
+  std::vector<double> result(flights.front().size()), tick;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    tick.clear();
+    for (const std::vector<double>& flight : flights)
+      tick.push_back(flight[i]);
+    result[i] = percentile(tick, 0.5);
+  }
+  return result;
+}
+
+void print(const std::string& name, const std::vector<double>& ms) {
+  fmt::print("{:<16} {:9.3f} {:9.3f} {:9.3f} {:9.3f}\n", name, percentile(ms, 0.5),
+             percentile(ms, 0.95), percentile(ms, 0.99), percentile(ms, 1.0));
+}
+
+int run(const std::string& path_file, const std::string& world_file, double hz, int flights) {
+  const models::Registry registry = models::make_standard_registry();
+  const auto world = world::load_world(world_file, registry);
+  const auto path = world::load_camera_path(path_file);
+  if (!world || !path || hz <= 0 || flights < 1) {
+    fmt::print(stderr, "{}\n",
+               !world  ? world.error().message
+               : !path ? path.error().message
+                       : "HZ and FLIGHTS must be above 0");
+    return 2;
+  }
+  std::vector<std::string> names;
+  std::vector<std::vector<std::vector<double>>> systems;  // by system, by flight, by tick
+  std::vector<std::vector<double>> sums;
+  for (int flight = 0; flight < flights; ++flight) {
+    auto times = fly(*world, *path, hz, names);
+    if (times.empty()) return 1;
+    systems.resize(names.size());
+    std::vector<double> sum(times.front().size(), 0.0);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += names[k] == "render" ? 0.0 : times[k][i];
+      systems[k].push_back(std::move(times[k]));
+    }
+    sums.push_back(std::move(sum));
+  }
+  fmt::print("{:<16} {:>9} {:>9} {:>9} {:>9}\n", "system, ms", "p50", "p95", "p99", "max");
+  for (std::size_t k = 0; k < names.size(); ++k)
+    print(names[k], typical(systems[k]));
+  print("all but render", typical(sums));
+  return 0;
+}
+
+}  // namespace
+}  // namespace psygen::scene
+
+int main(int argc, char** argv) {
+  using psygen::scene::kGame;
+  const auto argument = [&](int i, const std::string& otherwise) {
+    return argc > i ? std::string(argv[i]) : otherwise;
+  };
+  return psygen::scene::run(
+      argument(1, kGame + "paths/walk27.toml"), argument(2, kGame + "worlds/paper.toml"),
+      std::atof(argument(3, "30").c_str()), std::atoi(argument(4, "5").c_str()));
+}
