@@ -71,7 +71,7 @@ MeshSize tree_mesh_size(const TreePlan& plan, int level) {
         count_tree(plan, depth, paths_of(plan, level), last_bark_depth(plan, level));
     for (std::size_t g = 0; g < count.group_count; ++g) {
       const TreeGroup& group = count.groups[g];
-      const TubePlan tube = tube_plan(plan, level, group.depth, group.tip);
+      const TubePlan& tube = tube_plan(plan, level, group.depth, group.tip);
       vertices += group.count * tube.vertices();
       triangles += group.count * tube.triangles();
     }

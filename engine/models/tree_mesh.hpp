@@ -92,7 +92,7 @@ struct TubePlan {
   constexpr std::uint32_t triangles() const { return sides * 2 * segments - (pointed ? sides : 0); }
 };
 inline constexpr std::uint32_t kMaxSides = 8, kMaxSegments = 6;
-TubePlan tube_plan(const TreePlan& plan, int level, int depth, bool tip);
+const TubePlan& tube_plan(const TreePlan& plan, int level, int depth, bool tip);
 
 // Which paths a level follows, and the depth of the last branches that it draws.
 std::uint32_t paths_of(const TreePlan& plan, int level);
