@@ -80,6 +80,10 @@ class ModelType {
 
   // Levels of detail: 0 is full detail, level_count() − 1 the coarsest.
   virtual int level_count() const = 0;
+  // How many of them these parameters need, at least one and at most level_count(): from there on
+  // every level is the mesh of the one before. Only these are listed, so that no mesh is held under
+  // several keys.
+  virtual int level_count_of(const Parameters&) const { return level_count(); }
   // Largest distance in metres between the surface of this level and that of level 0 (an estimate
   // from the parameters). Grows with the level; 0 at level 0.
   virtual double level_error_m(const Parameters& p, int level) const = 0;

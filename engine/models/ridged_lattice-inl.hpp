@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/models/mix32.hpp"
 #include "engine/models/ridged_kernel.hpp"
 #include "engine/models/simd_hash-inl.hpp"
 
@@ -195,7 +196,7 @@ struct GradientRow {
   void fill(const ColumnOctave& column, std::uint32_t row_key, float gradient_length) {
     const FloatTag d;
     const UintTag du;
-    const auto row_hash = hn::Set(du, mix32(row_key));
+    const auto row_hash = hn::Set(du, models::mix32(row_key));
     const Float length = hn::Set(d, gradient_length);
     for (std::size_t i = 0; i < column.key_count; i += hn::Lanes(d)) {
       const Gradient g = gradient(hn::Load(du, column.key + i), row_hash, length);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "engine/models/mix32.hpp"
 #include "engine/models/tree_plan.hpp"
 
 namespace psygen::models {
@@ -14,11 +15,6 @@ inline constexpr std::uint32_t kNumberStep = 0x85EBCA6BU;  // between the number
 enum : std::uint32_t { kDrawNumber = 4, kBarkNumber = 5, kTintNumber = 6, kHullNumber = 16 };
 inline constexpr std::uint32_t kSprayNumber = 0x40000000U;
 
-constexpr std::uint32_t mix32(std::uint32_t h) {
-  h = (h ^ (h >> 16)) * 0x7FEB352DU;
-  h = (h ^ (h >> 15)) * 0x846CA68BU;
-  return h ^ (h >> 16);
-}
 // A branch's key is mix32() of this.
 constexpr std::uint32_t unmixed_child_key(std::uint32_t parent, std::size_t kind,
                                           std::uint32_t rank) {

@@ -151,7 +151,8 @@ Accuracy accuracy_of(const models::Registry& registry, const CostModel& cost,
     for (int level = 0; level < registry[model].level_count(); ++level) {
       std::vector<double> percents;
       for (const CostSample& sample : samples) {
-        if (sample.model != model) continue;
+        if (sample.model != model || level >= registry[model].level_count_of(sample.parameters))
+          continue;
         const auto measured = cost.measure(sample, level, options, deadline_s, report);
         if (!measured) continue;
         const double predicted = cost.predict_from(model, level, measured->work);
