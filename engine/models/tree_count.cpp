@@ -11,7 +11,7 @@ struct Generation {
   alignas(64) Words draw;
   alignas(64) Words key;
   alignas(64) Words budget;
-  alignas(64) Words stars;  // of whole trees, where the kind has one rule
+  alignas(64) Words stars;                         // of whole trees, where the kind has one rule
   std::array<std::uint32_t, kMaxKinds + 1> first;  // of each kind
   Generation() {}
   std::uint32_t count(std::size_t kind) const { return first[kind + 1] - first[kind]; }
@@ -55,10 +55,9 @@ class Counter {
   void count_children(const Generation& parents, std::size_t kind, std::uint32_t p, int remaining,
                       ChildTotals& totals) const {
     if (limited_) {
-      for_children(plan_, kind, parents.draw[p], parents.budget[p], remaining,
-                   [&](std::size_t c, std::uint32_t, std::uint32_t, std::uint32_t) {
-                     ++totals[c];
-                   });
+      for_children(
+          plan_, kind, parents.draw[p], parents.budget[p], remaining,
+          [&](std::size_t c, std::uint32_t, std::uint32_t, std::uint32_t) { ++totals[c]; });
       return;
     }
     const Children children = children_of(plan_, kind, parents.draw[p]);

@@ -33,8 +33,9 @@ struct Parents {
 // `row_of(r)` and `keys` look numbers up at the parents' slots.
 template <class RowOf>
 HWY_INLINE Parents parents_by(VU key, const RowOf& row_of) {
-  const auto three = [&](std::size_t r)
-                         HWY_ATTR { return Vec3{row_of(r), row_of(r + 1), row_of(r + 2)}; };
+  const auto three = [&](std::size_t r) HWY_ATTR {
+    return Vec3{row_of(r), row_of(r + 1), row_of(r + 2)};
+  };
   return {key, three(kBase), three(kDirection), three(kBend), row_of(kLength), row_of(kRadius)};
 }
 // Siblings are neighbours, so that the parents of neighbouring branches mostly fit one vector.
@@ -47,10 +48,10 @@ HWY_INLINE Parents parents_of(const TreeSkeleton& s, std::size_t i) {
     const VU lanes = slots - u1(first);
     const auto words = hn::IndicesFromVec(du, lanes);
     const auto numbers = hn::IndicesFromVec(d, lanes);
-    return parents_by(hn::TableLookupLanes(hn::LoadU(du, &s.key[first]), words), [&](std::size_t r)
-                          HWY_ATTR {
-                            return hn::TableLookupLanes(hn::LoadU(d, &s.rows[r][first]), numbers);
-                          });
+    return parents_by(hn::TableLookupLanes(hn::LoadU(du, &s.key[first]), words),
+                      [&](std::size_t r) HWY_ATTR {
+                        return hn::TableLookupLanes(hn::LoadU(d, &s.rows[r][first]), numbers);
+                      });
   }
   const auto at = hn::BitCast(DI(), slots);
   return parents_by(hn::GatherIndex(du, s.key.data(), at), [&](std::size_t r) HWY_ATTR {
@@ -109,8 +110,7 @@ void shape_group(const TreePlan& plan, const TreeGroup& group, TreeSkeleton& s) 
       const VF y = (end.y - f1(plan.envelope_y)) * f1(plan.limit_up);
       length = length / hn::Max(f1(1.0F), x * x + y * y + z * z);
     }
-    const VF radius =
-        parent.radius * (f1(1.0F) - t * f1(1.0F - plan.taper)) * f1(k.radius);
+    const VF radius = parent.radius * (f1(1.0F) - t * f1(1.0F - plan.taper)) * f1(k.radius);
     hn::Store(base.x, d, &s.rows[kBase][i]);
     hn::Store(base.y, d, &s.rows[kBase + 1][i]);
     hn::Store(base.z, d, &s.rows[kBase + 2][i]);
@@ -306,14 +306,13 @@ ChildTotals all_children(const TreePlan& plan, TreeSkeleton& s, std::size_t firs
     for (std::size_t c = 0; c < grammar.kinds; ++c)
       totals[c] += only->count[c] * parents.count;
     if (only->star != kNoKind)
-      totals[only->star] +=
-          count_stars(plan, *only, &s.draw[from], parents.count, &s.stars[from]);
+      totals[only->star] += count_stars(plan, *only, &s.draw[from], parents.count, &s.stars[from]);
   }
   return totals;
 }
 
 void link_paths(const PathChild* children, std::uint32_t count,
-                     std::array<std::uint32_t, kMaxKinds> to, TreeSkeleton& s) {
+                std::array<std::uint32_t, kMaxKinds> to, TreeSkeleton& s) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const PathChild& child = children[i];
     const std::uint32_t slot = to[child.kind]++;

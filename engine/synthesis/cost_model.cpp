@@ -44,14 +44,17 @@ const CostFit& CostModel::fit(models::ModelIndex model, int level) const {
       std::clamp(level, 0, static_cast<int>(levels.size()) - 1))];
 }
 
-Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters,
-                     int level) const {
+Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters, int level,
+                     std::optional<models::MeshSize>* size) const {
   Work work;
+  if (size != nullptr) size->reset();
   if (model >= registry_.size()) return work;
   try {  // types of users may throw; nothing of ours does
     const double x = registry_[model].complexity(parameters, level);
     if (std::isfinite(x) && x > 0) work.operations = x;
-    work.triangles = registry_[model].mesh_size(parameters, level).triangle_count();
+    const models::MeshSize mesh = registry_[model].mesh_size(parameters, level);
+    work.triangles = mesh.triangle_count();
+    if (size != nullptr) *size = mesh;
     work.full_triangles =
         level == 0 ? work.triangles : registry_[model].mesh_size(parameters, 0).triangle_count();
   } catch (...) {

@@ -70,8 +70,10 @@ class CostModel {
                               const std::function<void(double)>& progress = {});
 
   // What synthesising it has to do. Where the formula fails (throws, NaN, not positive) one
-  // operation, where the size is unknown no triangle.
-  Work work(models::ModelIndex model, const models::Parameters& parameters, int level) const;
+  // operation, where the size is unknown no triangle. `size`, if given, is set to the size of the
+  // mesh, so that nobody need count it again; to nothing where the type does not tell it.
+  Work work(models::ModelIndex model, const models::Parameters& parameters, int level,
+            std::optional<models::MeshSize>* size = nullptr) const;
   // Seconds of one core. Finite and positive for any model and level.
   double predict(models::ModelIndex model, const models::Parameters& parameters, int level) const;
   double predict_from(models::ModelIndex model, int level, const Work& work) const;

@@ -50,8 +50,9 @@ std::string_view GeometryCache::failure_reason(MeshHandle handle) const {
   return reasons_.at(handle.slot);
 }
 
-core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
-                                                      const models::Parameters& parameters) {
+core::Result<models::MeshSize> GeometryCache::size_of(
+    const MeshKey& key, const models::Parameters& parameters,
+    const std::optional<models::MeshSize>& known) {
   using core::ErrorCode;
   if (key.model >= registry_.size()) {
     return core::fail(ErrorCode::kSynthesisFailed, fmt::format("no model type {}", key.model));
@@ -63,7 +64,7 @@ core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
                                   type.level_count() - 1));
   }
   try {  // types of users may throw; nothing of ours does
-    const models::MeshSize size = type.mesh_size(parameters, key.level);
+    const models::MeshSize size = known ? *known : type.mesh_size(parameters, key.level);
     if (size.vertex_count <= kMaxVertices && size.index_count <= kMaxIndices) return size;
     return core::fail(
         ErrorCode::kSynthesisFailed,
@@ -80,12 +81,13 @@ core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
 
 core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
                                                 const models::Parameters& parameters,
-                                                std::uint64_t owner, Rank rank) {
+                                                std::uint64_t owner, Rank rank,
+                                                const std::optional<models::MeshSize>& known) {
   if (const MeshHandle there = find(key)) {
     if (records_[there.slot].state != MeshState::kFailed) return there;
     return core::fail(core::ErrorCode::kSynthesisFailed, reasons_.at(there.slot));
   }
-  const core::Result<models::MeshSize> size = size_of(key, parameters);
+  const core::Result<models::MeshSize> size = size_of(key, parameters, known);
   if (!size) {
     remember_failure(take_slot(key, owner, rank), size.error().message);
     return tl::unexpected<core::Error>(size.error());

@@ -61,17 +61,17 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
     }
     if (reclaimed == kNone) {
       // First come, first served: what was requested before comes before what is new.
-      new_.push_back({{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, {}, kNone});
+      new_.push_back({{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, {}, {}, kNone});
       continue;
     }
     const Work& work = reclaimed_[reclaimed].work;
     const double predicted = cost.predict_from(want.key.model, want.key.level, work);
-    items_.push_back({{want.rank, want.deadline_s, predicted, reclaimed}, i, work, reclaimed});
+    items_.push_back({{want.rank, want.deadline_s, predicted, reclaimed}, i, work, {}, reclaimed});
   }
   leave_for_later(limits.max_new, policy, report);
   for (Item& item : new_) {
     const Want& want = wants[item.want];
-    item.work = cost.work(want.key.model, *want.parameters, want.key.level);
+    item.work = cost.work(want.key.model, *want.parameters, want.key.level, &item.size);
     item.order.predicted_seconds = cost.predict_from(want.key.model, want.key.level, item.work);
     items_.push_back(item);
   }
@@ -119,10 +119,10 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     return;
   }
   if (cache.find(want.key)) return;  // a second want of the same mesh
-  auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank);
+  auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
   while (!handle && handle.error().code == core::ErrorCode::kOverBudget &&
          give_back_last(cache, report)) {
-    handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank);
+    handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
   }
   if (!handle) {
     const bool failed = handle.error().code == core::ErrorCode::kSynthesisFailed;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -63,7 +64,8 @@ class Planner {
     ScheduleKey order;
     std::uint32_t want;
     Work work;
-    std::uint32_t reclaimed;  // position in reclaimed_, or kNone
+    std::optional<models::MeshSize> size;  // of new ones, if their type told it
+    std::uint32_t reclaimed;               // position in reclaimed_, or kNone
   };
   static constexpr std::uint32_t kNone = UINT32_MAX;
 

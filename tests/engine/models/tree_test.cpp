@@ -194,7 +194,9 @@ TEST(Tree, DrawsFromTwoLessToTwoMoreBranchesEquallyOften) {
   const TreePlan plan = plan_of_tree(with(*type, 1, 4, 4));
   std::map<std::uint32_t, int> seen;
   for (std::uint32_t i = 0; i < 50000; ++i)
-    ++seen[children_of(plan, 0, number_of(mix32(unmixed_child_key(i, 1, 1)), plan.salt, kDrawNumber)).total()];
+    ++seen[children_of(plan, 0,
+                       number_of(mix32(unmixed_child_key(i, 1, 1)), plan.salt, kDrawNumber))
+               .total()];
   ASSERT_EQ(seen.size(), 5U);
   for (const auto& [children, times] : seen) {
     EXPECT_TRUE(children >= 2 && children <= 6);
