@@ -132,6 +132,8 @@ void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const Cr
 // All of them: what synthesize() and mesh_size() of every tree do.
 core::Bounds synthesize_tree(const TreePlan& plan, int level, const MeshView& out);
 MeshSize tree_mesh_size(const TreePlan& plan, int level);
+// Branches that are grown for it, and what each group of them takes by itself.
+double tree_steps(const TreePlan& plan, int level);
 
 // Metres that the trunk reaches below the foot, so that it meets sloping ground.
 inline float sink_m(const TreePlan& plan) {

@@ -30,7 +30,8 @@ struct CalibrationOptions {
   double seconds_limit = 0.4;
   // Short syntheses are repeated until one measurement is at least this long.
   double seconds_per_measurement = 20e-6;
-  int rounds = 3;                           // measurements per sample and level; the least counts
+  int rounds = 3;  // measurements per sample and level; the least counts
+  int sweeps = 1;  // times that all samples of a level are gone through; again the least counts
   std::function<double()> wall_clock = {};  // default: core::monotonic_seconds
   std::function<double()> cpu_clock = {};   // default: core::thread_cpu_seconds
 };

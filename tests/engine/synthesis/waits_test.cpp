@@ -28,8 +28,8 @@ struct Counted {
 Counted count_waits(unsigned modelers, const std::function<void()>& during = {}) {
   constexpr std::uint32_t kRequests = 3000;
   std::atomic<std::uint64_t> gaps{0}, waits{0};
-  const models::Registry registry = testing::registry_of(std::make_unique<testing::ScriptedModel>(
-      "watched", [&](const models::Parameters&, int) {
+  const models::Registry registry = testing::registry_of(
+      std::make_unique<testing::ScriptedModel>("watched", [&](const models::Parameters&, int) {
         static thread_local const void* last_plan = nullptr;
         static thread_local std::uint64_t before = 0;
         if (last_plan == &gaps) {
