@@ -68,7 +68,8 @@ int CalibrateCommand::run() const {
   synthesis::CalibrationOptions options;
   options.seconds_limit = 600;
   options.seconds_per_measurement = 50e-6;
-  options.rounds = 7;
+  options.rounds = 3;
+  options.sweeps = 5;  // what else runs on the machine comes and goes
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "calibrating", 3.0);
   Calibration found;
   synthesis::CostModel cost(registry);

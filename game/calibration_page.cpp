@@ -40,9 +40,9 @@ std::string seconds_text(double seconds) {
 }
 
 std::string fit_text(const synthesis::CostFit& fit) {
-  return fmt::format("{} + {}·operations + {}·triangles + {}·full triangles",
-                     seconds_text(fit.fixed_s), seconds_text(fit.per_operation_s),
-                     seconds_text(fit.per_triangle_s), seconds_text(fit.per_full_triangle_s));
+  return fmt::format("{} + {}·operations + {}·triangles + {}·steps", seconds_text(fit.fixed_s),
+                     seconds_text(fit.per_operation_s), seconds_text(fit.per_triangle_s),
+                     seconds_text(fit.per_step_s));
 }
 
 Json error_json(const synthesis::CostError& error) {
@@ -64,7 +64,7 @@ std::string worst_text(const Calibration& found, const models::Registry& registr
                      error_text(found.held_out.worst->error));
 }
 
-// [log2 of 1 + full triangles, factor] of each knot.
+// [log2 of 1 + steps, factor] of each knot.
 Json correction_json(const synthesis::CostFit& fit) {
   auto knots = Json::array();
   for (std::size_t k = 0; k < fit.knot_count; ++k)
@@ -148,7 +148,7 @@ std::string calibration_json(const Calibration& found, const models::Registry& r
          {"fixed_seconds", level.fit.fixed_s},
          {"seconds_per_operation", level.fit.per_operation_s},
          {"seconds_per_triangle", level.fit.per_triangle_s},
-         {"seconds_per_full_triangle", level.fit.per_full_triangle_s},
+         {"seconds_per_step", level.fit.per_step_s},
          {"correction", correction_json(level.fit)},
          {"samples", level.samples},
          {"error_percent_p50", level.samples > 0 ? Json(level.fit_error_percent) : Json(nullptr)}});

@@ -73,7 +73,7 @@ void BlockSynthesizer::synthesise(core::BlockCoord block, Totals& totals,
 bool BlockSynthesizer::make_levels(const world::Placement& placement, core::BlockCoord block,
                                    Totals& totals,
                                    const std::function<void(const BlockMesh&)>& visit) {
-  const int coarsest = registry_[placement.model].level_count() - 1;
+  const int coarsest = registry_[placement.model].level_count_of(placement.parameters) - 1;
   const int first = level_ == kAllLevels ? 0 : std::min(level_, coarsest);
   const int last = level_ == kAllLevels ? coarsest : first;
   const std::uint64_t failed = totals.failed;

@@ -80,6 +80,10 @@ class ModelType {
 
   // Levels of detail: 0 is full detail, level_count() − 1 the coarsest.
   virtual int level_count() const = 0;
+  // How many of them these parameters need, at least one and at most level_count(): from there on
+  // every level is the mesh of the one before. Only these are listed, so that no mesh is held under
+  // several keys.
+  virtual int level_count_of(const Parameters&) const { return level_count(); }
   // Largest distance in metres between the surface of this level and that of level 0 (an estimate
   // from the parameters). Grows with the level; 0 at level 0.
   virtual double level_error_m(const Parameters& p, int level) const = 0;
@@ -93,6 +97,10 @@ class ModelType {
   // Operations by the asymptotic formula, scaled so that level 0 is the paper's formula; time = c ·
   // this.
   virtual double complexity(const Parameters& p, int level) const = 0;
+  // What a level is grown from, in steps of about equal time (for trees: branches), counted for
+  // this very seed: beside the triangles of the level what its time is predicted from. 0: as many
+  // as level 0 has triangles. Without synthesis.
+  virtual double steps(const Parameters&, int) const { return 0; }
   // Upper bound of the triangles of level 0 over all seeds, as log2, computed without overflow for
   // any parameters inside or outside their hard ranges. Used to refuse hostile values.
   virtual double log2_cost(const Parameters& p) const = 0;

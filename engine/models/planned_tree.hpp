@@ -25,6 +25,7 @@ class PlannedTree : public ModelType {
   MeshSize mesh_size(const Parameters& p, int level) const final {
     return tree_mesh_size(plan(p), level);
   }
+  double steps(const Parameters& p, int level) const final { return tree_steps(plan(p), level); }
   core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const final {
     return synthesize_tree(plan(p), level, out);
   }

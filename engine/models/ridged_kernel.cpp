@@ -143,7 +143,7 @@ struct Workspace {
                     axis.even && axis.distance * octave.step <= kCell && axis.distance <= kCell &&
                         octave.step <= kCell,
                     octave.key_x);
-    std::fill(c.upper, c.upper + 2 * width, 0.0F);
+    clear_vectors(c.upper, 2 * width);
   }
 };
 

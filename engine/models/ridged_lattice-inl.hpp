@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/models/mix32.hpp"
 #include "engine/models/ridged_kernel.hpp"
 #include "engine/models/simd_hash-inl.hpp"
 
@@ -53,6 +54,19 @@ struct Axis {
     return static_cast<std::uint64_t>(at[i]) - static_cast<std::uint64_t>(at[i - 1]);
   }
 
+  // 0, `of`, 2 · `of`, …: with the bits of a lane's number, for few sets multiply 64 bits, and
+  // loading what single numbers have just been written to stalls.
+  template <class D>
+  static HWY_INLINE hn::Vec<D> multiples(D d, std::uint64_t of) {
+    const auto lane = hn::Iota(d, 0);
+    auto sum = hn::Zero(d);
+    for (std::uint64_t bit = 1; bit < hn::MaxLanes(d); bit *= 2) {
+      const auto mask = hn::TestBit(lane, hn::Set(d, bit));
+      sum = hn::Add(sum, hn::IfThenElseZero(mask, hn::Set(d, bit * of)));
+    }
+    return sum;
+  }
+
   // Positions on a lattice of `step` from `origin`, padded.
   void place(std::uint64_t step, std::uint64_t origin, std::uint64_t* HWY_RESTRICT position) const {
     const std::size_t count = at.size();
@@ -64,11 +78,9 @@ struct Axis {
     }
     const hn::CappedTag<std::uint64_t, kPad / 2> d;  // no more lanes than floats
     const std::size_t lanes = hn::Lanes(d);
-    HWY_ALIGN std::uint64_t first[kPad / 2];
-    for (std::size_t i = 0; i < lanes; ++i)
-      first[i] = static_cast<std::uint64_t>(at[0]) * step + origin + i * distance * step;
     const auto advance = hn::Set(d, lanes * distance * step);
-    auto now = hn::Load(d, first);
+    auto now = hn::Add(hn::Set(d, static_cast<std::uint64_t>(at[0]) * step + origin),
+                       multiples(d, distance * step));
     for (std::size_t i = 0; i < padded(count); i += lanes) {
       hn::Store(now, d, position + i);
       now = hn::Add(now, advance);
@@ -98,6 +110,13 @@ void locate(const std::uint64_t* HWY_RESTRICT position, std::size_t count,
   }
 }
 
+// Whole vectors of zeros.
+HWY_INLINE void clear_vectors(float* to, std::size_t count) {
+  const FloatTag d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d))
+    hn::Store(hn::Zero(d), d, to + i);
+}
+
 // One octave on the columns of a call, each array `stride` elements.
 struct ColumnOctave {
   std::size_t stride;
@@ -119,8 +138,8 @@ struct ColumnOctave {
   std::uint32_t lattice_row;  // the lower of the two
 
   void clear() const {
-    std::fill(lower, lower + 2 * stride, 0.0F);
-    std::fill(rise, rise + 2 * stride, 0.0F);
+    clear_vectors(lower, 2 * stride);
+    clear_vectors(rise, 2 * stride);
   }
 
   // From the cells of the columns; `contiguous` where each is that of the column before or the
@@ -177,7 +196,7 @@ struct GradientRow {
   void fill(const ColumnOctave& column, std::uint32_t row_key, float gradient_length) {
     const FloatTag d;
     const UintTag du;
-    const auto row_hash = hn::Set(du, mix32(row_key));
+    const auto row_hash = hn::Set(du, models::mix32(row_key));
     const Float length = hn::Set(d, gradient_length);
     for (std::size_t i = 0; i < column.key_count; i += hn::Lanes(d)) {
       const Gradient g = gradient(hn::Load(du, column.key + i), row_hash, length);

@@ -103,6 +103,7 @@ class RockType final : public ModelType {
   }
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
   int level_count() const override { return kMaxSubdivisions + 1; }
+  int level_count_of(const Parameters& p) const override { return subdivisions_at(p, 0) + 1; }
   bool may_run_on_main_thread() const override { return true; }
   double level_error_m(const Parameters& p, int level) const override;
   core::Bounds bounds(const Parameters& p) const override;

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/core/coordinates.hpp"
+#include "engine/models/mix32.hpp"
 #include "engine/models/rock_topology.hpp"
 
 namespace psygen::models {
@@ -17,16 +18,11 @@ struct RockRandom {
   RockRandom(std::uint64_t key, std::uint32_t index) {
     for (std::uint32_t i = 0; i < 4; ++i) {
       const auto word = static_cast<std::uint32_t>(key >> (32 * (i / 2)));
-      const std::uint32_t half = mix(word + kStep * index) >> (16 * (i % 2)) & 0xFFFFU;
+      const std::uint32_t half = mix32(word + kStep * index) >> (16 * (i % 2)) & 0xFFFFU;
       f[i] = static_cast<float>(static_cast<std::int32_t>(half)) * (1.0F / 32768.0F) - 1.0F;
     }
   }
   static constexpr std::uint32_t kStep = 0x9E3779B9U;
-  static constexpr std::uint32_t mix(std::uint32_t h) {  // docs/models.md, "mix32"
-    h = (h ^ (h >> 16)) * 0x7FEB352DU;
-    h = (h ^ (h >> 15)) * 0x846CA68BU;
-    return h ^ (h >> 16);
-  }
 };
 
 // A rock as docs/models.md, "Rock" has it; the item of vertex v is 2 + v.

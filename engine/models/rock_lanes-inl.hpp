@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/models/octahedral-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
@@ -143,16 +145,12 @@ HWY_INLINE Uint<D> pair(D, Uint<D> low, Uint<D> high) {
 // Octahedral normal around +Y, snorm16 twice (packing.hpp). `scale` is 1 / (|x| + |y| + |z|).
 template <class D>
 HWY_INLINE Uint<D> octahedral(D d, const Vectors<D>& n, hn::Vec<D> scale) {
-  const auto zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-  const auto x = hn::Mul(hn::Add(n.x, zero), scale);  // −0 becomes 0
-  const auto z = hn::Mul(hn::Add(n.z, zero), scale);
-  const auto folded_x = hn::CopySignToAbs(hn::Sub(one, hn::Abs(z)), x);
-  const auto folded_z = hn::CopySignToAbs(hn::Sub(one, hn::Abs(x)), z);
-  const auto above = hn::Ge(n.y, zero);
+  const auto zero = hn::Zero(d);  // to which −0 is added to become 0
+  const auto p = fold_octahedral(d, hn::Mul(hn::Add(n.x, zero), scale), n.y,
+                                 hn::Mul(hn::Add(n.z, zero), scale), 1.0F);
   // Within [−1, 1] but for a rounding that cannot reach the next integer.
   const auto to_snorm = hn::Set(d, 32767.0F);
-  return pair(d, rounded(d, hn::Mul(hn::IfThenElse(above, x, folded_x), to_snorm)),
-              rounded(d, hn::Mul(hn::IfThenElse(above, z, folded_z), to_snorm)));
+  return pair(d, rounded(d, hn::Mul(p.x, to_snorm)), rounded(d, hn::Mul(p.z, to_snorm)));
 }
 template <class D>
 HWY_INLINE hn::Vec<D> octahedral_scale(D d, const Vectors<D>& n) {

@@ -1,4 +1,4 @@
-// The 32-bit hash of docs/models.md in vectors and scalars. Included once per instruction set, by
+// The 32-bit hash of mix32.hpp in lanes. Included once per instruction set, by
 // kernels between foreach_target.h and their own namespaces; hence its include guard.
 #if defined(PSYGEN_MODELS_SIMD_HASH_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_SIMD_HASH_INL
@@ -14,19 +14,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// Bijective mixing of 32 bits in two rounds (constants: Wellons 2018, "Prospecting for hash
-// functions", public domain).
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_INLINE V mix32(D d, V h) {
   namespace hn = hwy::HWY_NAMESPACE;
   h = hn::Mul(hn::Xor(h, hn::ShiftRight<16>(h)), hn::Set(d, 0x7FEB352DU));
   h = hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(d, 0x846CA68BU));
   return hn::Xor(h, hn::ShiftRight<16>(h));
-}
-HWY_INLINE std::uint32_t mix32(std::uint32_t h) {
-  h = (h ^ (h >> 16)) * 0x7FEB352DU;
-  h = (h ^ (h >> 15)) * 0x846CA68BU;
-  return h ^ (h >> 16);
 }
 
 }  // namespace psygen::models::HWY_NAMESPACE

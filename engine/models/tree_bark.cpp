@@ -33,11 +33,18 @@ struct BarkLanes {
   BarkLanes() {}
 };
 
+// Where the rings of one branch are, up to a whole vector.
+struct RingPlaces {
+  alignas(32) float t[8] = {}, flare[8] = {};
+  std::uint32_t count = 0;
+};
+static_assert(kMaxSegments + 1 <= 8);
+
 // What the branches of one depth have in common.
 struct BarkJob {
   const TreePlan& plan;
   const TreeCrown& crown;
-  TubePlan tube;
+  const TubePlan& tube;
   const Circle& circle;
   const std::uint32_t* colours;  // eight, of which the noise chooses, twice
   float sway_start, sway_end;
@@ -224,6 +231,26 @@ void add_branches(const TreeSkeleton& s, const TreeGroup& group, BarkLanes& out)
   out.count += group.count;
 }
 
+// The rings of every branch of a group.
+void add_rings(const TreeSkeleton& s, const TreeGroup& group, const RingPlaces& places,
+               BarkLanes& out) {
+  const HWY_CAPPED(float, 8) d;
+  const HWY_CAPPED(std::uint32_t, 8) du;
+  for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+    for (std::uint32_t r = 0; r < places.count; r += static_cast<std::uint32_t>(hn::Lanes(d))) {
+      const std::size_t to = out.count + r;
+      hn::StoreU(hn::Set(du, s.key[i]), du, &out.key[to]);
+#pragma GCC unroll 11
+      for (std::size_t row = 0; row < kTreeRows; ++row)
+        hn::StoreU(hn::Set(d, s.rows[row][i]), d, &out.rows[row][to]);
+      hn::StoreU(hn::Load(d, places.t + r), d, &out.t[to]);
+      hn::StoreU(hn::Load(d, places.flare + r), d, &out.flare[to]);
+      hn::StoreU(hn::Iota(du, r), du, &out.ring[to]);
+    }
+    out.count += places.count;
+  }
+}
+
 // Copies of the last lane behind it.
 void fill_up(bool rings, BarkLanes& out) {
   const DF d;
@@ -268,6 +295,7 @@ HWY_EXPORT(mesh_branches);
 HWY_EXPORT(mesh_rings);
 HWY_EXPORT(repeat_pattern);
 HWY_EXPORT(add_branches);
+HWY_EXPORT(add_rings);
 HWY_EXPORT(fill_up);
 
 // Unit circle with `sides` corners, for the numbers of sides that the plans use.
@@ -322,22 +350,36 @@ void write_cone(const TreePlan& plan, const glm::vec3& from, float radius, std::
 
 }  // namespace
 
-TubePlan tube_plan(const TreePlan& plan, int level, int depth, bool tip) {
-  static constexpr TubePlan kPlans[4][4] = {
+namespace {
+
+// Of leafy and of bare trees, each level and depth, inside and at tips.
+using TubePlans = std::array<std::array<std::array<TubePlan, 2>, 4>, kTreeLevels>;
+constexpr std::array<TubePlans, 2> kTubePlans = [] {
+  constexpr TubePlan kPlans[4][4] = {
       {{8, 6}, {5, 3}, {4, 2}, {3, 1}},
       {{6, 3}, {4, 2}, {3, 1}, {0, 0}},
       {{4, 2}, {3, 1}, {0, 0}, {0, 0}},
       {{3, 1}, {0, 0}, {0, 0}, {0, 0}},
   };
-  TubePlan tube{3, 1};
-  if (plan.foliage.near != nullptr) {
-    tube = level < 4 ? kPlans[level][std::min(depth, 3)] : TubePlan{};
-  } else if (level < 2) {
-    const TubePlan& wanted = kPlans[level][std::min(depth, 3)];
-    if (wanted.sides > 0) tube = wanted;
+  std::array<TubePlans, 2> plans;
+  for (std::size_t level = 0; level < kTreeLevels; ++level) {
+    for (std::size_t depth = 0; depth < 4; ++depth) {
+      const TubePlan leafy = level < 4 ? kPlans[level][depth] : TubePlan{};
+      const TubePlan bare = level < 2 && leafy.sides > 0 ? leafy : TubePlan{3, 1};
+      for (const bool tip : {false, true}) {
+        plans[0][level][depth][tip] = {leafy.sides, leafy.segments, tip && leafy.sides > 0};
+        plans[1][level][depth][tip] = {bare.sides, bare.segments, tip};
+      }
+    }
   }
-  tube.pointed = tip && tube.sides > 0;
-  return tube;
+  return plans;
+}();
+
+}  // namespace
+
+const TubePlan& tube_plan(const TreePlan& plan, int level, int depth, bool tip) {
+  const TubePlans& plans = kTubePlans[plan.foliage.near != nullptr ? 0 : 1];
+  return plans[static_cast<std::size_t>(level)][static_cast<std::size_t>(std::min(depth, 3))][tip];
 }
 
 namespace {
@@ -359,30 +401,23 @@ Colours bark_colours(const TreePlan& plan) {
 }
 
 // Where rings are: on the trunk closer together at its foot, where it also widens.
-void set_rings(const BarkJob& job, std::size_t at, BarkLanes& out) {
+RingPlaces places_of_rings(const BarkJob& job) {
   static constexpr float kSix[] = {0.0F, 0.06F, 0.16F, 0.34F, 0.55F, 0.78F, 1.0F};
   static constexpr float kThree[] = {0.0F, 0.14F, 0.5F, 1.0F};
   static constexpr float kTwo[] = {0.0F, 0.2F, 1.0F};
   const std::uint32_t segments = job.tube.segments;
   const float* table = segments == 6 ? kSix : segments == 3 ? kThree : kTwo;
   const float coarse = segments >= 3 ? 1.0F : 0.3F * static_cast<float>(segments);
+  RingPlaces places;
+  places.count = segments + 1;
   for (std::uint32_t r = 0; r <= segments; ++r) {
     const float even = static_cast<float>(r) / static_cast<float>(segments);
     const float t = job.trunk && segments > 1 ? table[r] : even;
     const float near_foot = std::max(1.0F - 3.0F * t, 0.0F);
-    out.t[at + r] = t;
-    out.flare[at + r] = job.trunk ? job.plan.flare * near_foot * near_foot * coarse : 0.0F;
-    out.ring[at + r] = r;
+    places.t[r] = t;
+    places.flare[r] = job.trunk ? job.plan.flare * near_foot * near_foot * coarse : 0.0F;
   }
-}
-
-void add_rings(const BarkJob& job, const TreeSkeleton& s, std::uint32_t node, BarkLanes& out) {
-  const std::uint32_t rings = job.tube.segments + 1;
-  for (std::size_t r = 0; r < kTreeRows; ++r)
-    std::fill_n(&out.rows[r][out.count], rings, s.rows[r][node]);
-  std::fill_n(&out.key[out.count], rings, s.key[node]);
-  set_rings(job, out.count, out);
-  out.count += rings;
+  return places;
 }
 
 // The tubes of one depth that are not pointed, or all that are.
@@ -395,16 +430,15 @@ void mesh_depth(const BarkJob& job, const TreeSkeleton& s, std::size_t first, st
   const std::uint32_t start = out.vertex_count();
   std::byte* to = out.append_vertices(tubes * job.tube.vertices());
   const bool by_rings = !job.tip && tubes < kTreeLanes;
+  const RingPlaces places = by_rings ? places_of_rings(job) : RingPlaces();
   lanes.count = 0;
   for (std::size_t g = first; g < last; ++g) {
     const TreeGroup& group = s.groups[g];
     if (group.tip != job.tip) continue;
-    if (by_rings) {
-      for (std::uint32_t i = 0; i < group.count; ++i)
-        add_rings(job, s, group.first + i, lanes);
-    } else {
+    if (by_rings)
+      HWY_DYNAMIC_DISPATCH(add_rings)(s, group, places, lanes);
+    else
       HWY_DYNAMIC_DISPATCH(add_branches)(s, group, lanes);
-    }
   }
   HWY_DYNAMIC_DISPATCH(fill_up)(by_rings, lanes);
   if (by_rings)
@@ -425,7 +459,7 @@ void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
     while (last < skeleton.group_count && skeleton.groups[last].depth == depth)
       ++last;
     for (const bool tip : {false, true}) {
-      const TubePlan tube = tube_plan(plan, level, depth, tip);
+      const TubePlan& tube = tube_plan(plan, level, depth, tip);
       if (tube.sides == 0) continue;
       const BarkJob job{plan,
                         crown,

@@ -12,6 +12,8 @@
 
 #include <cstring>
 
+#include "engine/models/octahedral-inl.hpp"
+#include "engine/models/simd_hash-inl.hpp"
 #include "engine/models/tree_random.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -75,9 +77,7 @@ HWY_INLINE Vec3 set3(const float (&v)[3]) {
 }
 
 HWY_INLINE VU mix(VU h) {
-  h = (h ^ hn::ShiftRight<16>(h)) * u1(0x7FEB352DU);
-  h = (h ^ hn::ShiftRight<15>(h)) * u1(0x846CA68BU);
-  return h ^ hn::ShiftRight<16>(h);
+  return mix32(DU(), h);
 }
 HWY_INLINE VU number(VU key, std::uint32_t salt, std::uint32_t i) {
   return mix(key ^ u1(salt + i * kNumberStep));
@@ -151,14 +151,8 @@ HWY_INLINE void frame_around(Vec3 d, Vec3& u, Vec3& v) {
 // Octahedral pair of a direction (engine/core/vertex_layout.hpp) as one word.
 HWY_INLINE VU octahedral(Vec3 n) {
   const VF scale = f1(32767.0F) / (hn::Abs(n.x) + hn::Abs(n.y) + hn::Abs(n.z));
-  const VF x = n.x * scale, z = n.z * scale;
-  const VF one = f1(32767.0F);
-  const VF fold_x = hn::CopySign(one - hn::Abs(z), n.x),
-           fold_z = hn::CopySign(one - hn::Abs(x), n.z);
-  const auto below = n.y < f1(0.0F);
-  const VU px = rounded_bits(hn::IfThenElse(below, fold_x, x));
-  const VU pz = rounded_bits(hn::IfThenElse(below, fold_z, z));
-  return (px & u1(0xFFFFU)) | hn::ShiftLeft<16>(pz);
+  const auto pair = fold_octahedral(DF(), n.x * scale, n.y, n.z * scale, 32767.0F);
+  return (rounded_bits(pair.x) & u1(0xFFFFU)) | hn::ShiftLeft<16>(rounded_bits(pair.z));
 }
 
 // Baked ambient visibility in or below the crown, in (0, 1], from a position relative to its

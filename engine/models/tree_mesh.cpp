@@ -71,7 +71,7 @@ MeshSize tree_mesh_size(const TreePlan& plan, int level) {
         count_tree(plan, depth, paths_of(plan, level), last_bark_depth(plan, level));
     for (std::size_t g = 0; g < count.group_count; ++g) {
       const TreeGroup& group = count.groups[g];
-      const TubePlan tube = tube_plan(plan, level, group.depth, group.tip);
+      const TubePlan& tube = tube_plan(plan, level, group.depth, group.tip);
       vertices += group.count * tube.vertices();
       triangles += group.count * tube.triangles();
     }
@@ -87,6 +87,27 @@ MeshSize tree_mesh_size(const TreePlan& plan, int level) {
     }
   }
   return {vertices, triangles * 3, 0, core::VertexLayout::kModel};
+}
+
+double tree_steps(const TreePlan& plan, int level) {
+  // In branches: a group of however few branches, and hashing one to see where the tree ends.
+  constexpr double kPerGroup = 12, kPerCounted = 0.06;
+  const auto grown = [](const TreeCount& count) {
+    return count.nodes + kPerGroup * static_cast<double>(count.group_count);
+  };
+  const std::uint32_t paths = paths_of(plan, level);
+  if (paths == kWholeTree) return grown(count_tree(plan, plan.iterations));
+  int depth = plan.iterations;
+  double steps = 0;
+  if (!plan.always_complete) {
+    const TreeCount whole = count_tree(plan, plan.iterations);
+    depth = whole.depth;
+    steps = kPerCounted * whole.nodes;
+  }
+  steps += grown(count_tree(plan, depth, kCrownPaths));
+  const bool is_hull = plan.foliage.near != nullptr && level >= 4;
+  if (!is_hull && paths != kCrownPaths) steps += grown(count_tree(plan, depth, paths));
+  return steps;
 }
 
 namespace {

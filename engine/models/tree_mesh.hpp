@@ -92,7 +92,7 @@ struct TubePlan {
   constexpr std::uint32_t triangles() const { return sides * 2 * segments - (pointed ? sides : 0); }
 };
 inline constexpr std::uint32_t kMaxSides = 8, kMaxSegments = 6;
-TubePlan tube_plan(const TreePlan& plan, int level, int depth, bool tip);
+const TubePlan& tube_plan(const TreePlan& plan, int level, int depth, bool tip);
 
 // Which paths a level follows, and the depth of the last branches that it draws.
 std::uint32_t paths_of(const TreePlan& plan, int level);
@@ -132,6 +132,8 @@ void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const Cr
 // All of them: what synthesize() and mesh_size() of every tree do.
 core::Bounds synthesize_tree(const TreePlan& plan, int level, const MeshView& out);
 MeshSize tree_mesh_size(const TreePlan& plan, int level);
+// Branches that are grown for it, and what each group of them takes by itself.
+double tree_steps(const TreePlan& plan, int level);
 
 // Metres that the trunk reaches below the foot, so that it meets sloping ground.
 inline float sink_m(const TreePlan& plan) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "engine/models/mix32.hpp"
 #include "engine/models/tree_plan.hpp"
 
 namespace psygen::models {
@@ -14,13 +15,10 @@ inline constexpr std::uint32_t kNumberStep = 0x85EBCA6BU;  // between the number
 enum : std::uint32_t { kDrawNumber = 4, kBarkNumber = 5, kTintNumber = 6, kHullNumber = 16 };
 inline constexpr std::uint32_t kSprayNumber = 0x40000000U;
 
-constexpr std::uint32_t mix32(std::uint32_t h) {
-  h = (h ^ (h >> 16)) * 0x7FEB352DU;
-  h = (h ^ (h >> 15)) * 0x846CA68BU;
-  return h ^ (h >> 16);
-}
-constexpr std::uint32_t child_key(std::uint32_t parent, std::size_t kind, std::uint32_t rank) {
-  return mix32(parent + kChildStep * (static_cast<std::uint32_t>(kind) * kMaxChildren + rank + 1));
+// A branch's key is mix32() of this.
+constexpr std::uint32_t unmixed_child_key(std::uint32_t parent, std::size_t kind,
+                                          std::uint32_t rank) {
+  return parent + kChildStep * (static_cast<std::uint32_t>(kind) * kMaxChildren + rank + 1);
 }
 constexpr std::uint32_t number_of(std::uint32_t key, std::uint32_t salt, std::uint32_t number) {
   return mix32(key ^ (salt + number * kNumberStep));
@@ -47,6 +45,16 @@ inline std::uint32_t star_count(const TreePlan& plan, const GrammarRule& rule, s
   const auto range = static_cast<std::uint32_t>(2 * spread + 1);
   const int drawn = plan.branches - spread + static_cast<int>(((draw >> 16) * range) >> 16);
   return static_cast<std::uint32_t>(std::max(std::max(drawn, 1) - static_cast<int>(rule.fixed), 0));
+}
+// star_count() of nodes with these draws, and the sum of all; writes perhaps a few more.
+std::uint32_t count_stars(const TreePlan& plan, const GrammarRule& rule, const std::uint32_t* draws,
+                          std::uint32_t count, std::uint32_t* stars);
+// Mixes `keys` in place and finds the draws of those branches; both perhaps of a few more.
+void draw_numbers(std::uint32_t salt, std::uint32_t count, std::uint32_t* keys,
+                  std::uint32_t* draws);
+// The rule of a kind that has just one; else null.
+inline const GrammarRule* only_rule(const Grammar& g, std::size_t kind) {
+  return g.first_rule[kind] + 1 == g.first_rule[kind + 1] ? &g.rules[g.first_rule[kind]] : nullptr;
 }
 // The children of a node of a kind that grows, from its draw.
 inline Children children_of(const TreePlan& plan, std::size_t kind, std::uint32_t draw) {

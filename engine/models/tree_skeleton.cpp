@@ -24,8 +24,42 @@ HWY_BEFORE_NAMESPACE();
 namespace psygen::models {
 namespace HWY_NAMESPACE {
 
-// From slots that hold their parents (their key, place, radius and so on), their rank and share, to
-// branches of `kind`.
+// The parents of the branches in the lanes.
+struct Parents {
+  VU key;
+  Vec3 base, direction, bend;
+  VF length, radius;
+};
+// `row_of(r)` and `keys` look numbers up at the parents' slots.
+template <class RowOf>
+HWY_INLINE Parents parents_by(VU key, const RowOf& row_of) {
+  const auto three = [&](std::size_t r) HWY_ATTR {
+    return Vec3{row_of(r), row_of(r + 1), row_of(r + 2)};
+  };
+  return {key, three(kBase), three(kDirection), three(kBend), row_of(kLength), row_of(kRadius)};
+}
+// Siblings are neighbours, so that the parents of neighbouring branches mostly fit one vector.
+HWY_INLINE Parents parents_of(const TreeSkeleton& s, std::size_t i) {
+  const DF d;
+  const DU du;
+  const std::uint32_t first = s.parent[i];
+  const VU slots = hn::Load(du, &s.parent[i]);
+  if (HWY_LIKELY(s.parent[i + hn::Lanes(d) - 1] - first < hn::Lanes(d))) {
+    const VU lanes = slots - u1(first);
+    const auto words = hn::IndicesFromVec(du, lanes);
+    const auto numbers = hn::IndicesFromVec(d, lanes);
+    return parents_by(hn::TableLookupLanes(hn::LoadU(du, &s.key[first]), words),
+                      [&](std::size_t r) HWY_ATTR {
+                        return hn::TableLookupLanes(hn::LoadU(d, &s.rows[r][first]), numbers);
+                      });
+  }
+  const auto at = hn::BitCast(DI(), slots);
+  return parents_by(hn::GatherIndex(du, s.key.data(), at), [&](std::size_t r) HWY_ATTR {
+    return hn::GatherIndex(d, s.rows[r].data(), at);
+  });
+}
+
+// From slots that hold their parents, ranks and shares to branches of `kind`.
 void shape_group(const TreePlan& plan, const TreeGroup& group, TreeSkeleton& s) {
   const DF d;
   const DU du;
@@ -33,31 +67,28 @@ void shape_group(const TreePlan& plan, const TreeGroup& group, TreeSkeleton& s) 
   const bool limited = plan.limit_across > 0.0F;
   const VU kind_step = u1(kChildStep * (static_cast<std::uint32_t>(group.kind) * kMaxChildren + 1));
   for (std::size_t i = group.first; i < group.first + group.count; i += hn::Lanes(d)) {
-    const VU parent = hn::Load(du, &s.key[i]);
+    const Parents parent = parents_of(s, i);
     const VU rank = hn::Load(du, &s.rank[i]);
-    const VU key = mix(parent + kind_step + rank * u1(kChildStep));
+    const VU key = mix(parent.key + kind_step + rank * u1(kChildStep));
     const VU h0 = number(key, plan.salt, 0), h1 = number(key, plan.salt, 1);
     const VU h2 = number(key, plan.salt, 2), h3 = number(key, plan.salt, 3);
     hn::Store(key, du, &s.key[i]);
     hn::Store(number(key, plan.salt, kDrawNumber), du, &s.draw[i]);
 
-    Vec3 dir =
-        load3(&s.rows[kDirection][i], &s.rows[kDirection + 1][i], &s.rows[kDirection + 2][i]);
-    const Vec3 bend = load3(&s.rows[kBend][i], &s.rows[kBend + 1][i], &s.rows[kBend + 2][i]);
-    const VF parent_length = hn::Load(d, &s.rows[kLength][i]);
+    Vec3 dir = parent.direction;
+    const Vec3 bend = parent.bend;
     VF t = f1(k.along_high), a = f1(0.0F);
     if (!k.leader) {
       a = (as_float(rank) + f1(0.7F) * low_part(h0)) * hn::Load(d, &s.share[i]);
       t = t - a * f1(k.along_high - k.along_low);
     }
-    Vec3 base = load3(&s.rows[kBase][i], &s.rows[kBase + 1][i], &s.rows[kBase + 2][i]);
-    base = base + parent_length * (t * dir + (t * t) * bend);
+    const Vec3 base = parent.base + parent.length * (t * dir + (t * t) * bend);
     const Vec3 tangent = unit(dir + (f1(2.0F) * t) * bend);
     dir = tangent;
     if (!k.leader) {
       const VF jitter = f1(1.0F) + f1(k.angle_variation) * (f1(2.0F) * high_part(h0) - f1(1.0F));
       const VF tilt = (f1(k.angle_high) + a * f1(k.angle_low - k.angle_high)) * jitter;
-      const VF azimuth = low_part(parent) + f1(k.whorl) * as_float(rank) +
+      const VF azimuth = low_part(parent.key) + f1(k.whorl) * as_float(rank) +
                          f1(0.3F * k.angle_variation) * (low_part(h1) - f1(0.5F));
       Vec3 u, v;
       frame_around(tangent, u, v);
@@ -71,7 +102,7 @@ void shape_group(const TreePlan& plan, const TreeGroup& group, TreeSkeleton& s) 
     const Vec3 bent{crooked * (low_part(h2) - half),
                     crooked * (high_part(h2) - half) + f1(k.bend_up),
                     crooked * (low_part(h3) - half)};
-    VF length = parent_length * (f1(0.85F) + f1(0.3F) * high_part(h1)) *
+    VF length = parent.length * (f1(0.85F) + f1(0.3F) * high_part(h1)) *
                 (f1(k.length_high) + (f1(1.0F) - t) * f1(k.length_foot - k.length_high));
     if (limited) {
       const Vec3 end = base + length * (dir + bent);
@@ -79,8 +110,7 @@ void shape_group(const TreePlan& plan, const TreeGroup& group, TreeSkeleton& s) 
       const VF y = (end.y - f1(plan.envelope_y)) * f1(plan.limit_up);
       length = length / hn::Max(f1(1.0F), x * x + y * y + z * z);
     }
-    const VF radius =
-        hn::Load(d, &s.rows[kRadius][i]) * (f1(1.0F) - t * f1(1.0F - plan.taper)) * f1(k.radius);
+    const VF radius = parent.radius * (f1(1.0F) - t * f1(1.0F - plan.taper)) * f1(k.radius);
     hn::Store(base.x, d, &s.rows[kBase][i]);
     hn::Store(base.y, d, &s.rows[kBase + 1][i]);
     hn::Store(base.z, d, &s.rows[kBase + 2][i]);
@@ -95,69 +125,99 @@ void shape_group(const TreePlan& plan, const TreeGroup& group, TreeSkeleton& s) 
   }
 }
 
-// Writes a parent into `count` slots from `to`, and perhaps into a few more.
-HWY_INLINE void hand_down(TreeSkeleton& s, std::size_t parent, std::size_t to,
-                          std::uint32_t count) {
-  const hn::CappedTag<float, 4> d;
-  const hn::CappedTag<std::uint32_t, 4> du;
-  const auto key = hn::Set(du, s.key[parent]);
+// Makes `parent` that of `count` slots from `to`, and perhaps of a few more.
+HWY_INLINE void link(TreeSkeleton& s, std::uint32_t parent, std::size_t to, std::uint32_t count) {
+  const hn::CappedTag<float, 8> d;
+  const hn::CappedTag<std::uint32_t, 8> du;
+  const auto slot = hn::Set(du, parent);
   const auto share = hn::Set(d, kInverse[count]);
   const auto iota = hn::Iota(du, 0);
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  for (std::uint32_t c = 0; c < count; c += lanes) {
-    hn::StoreU(key, du, &s.key[to + c]);
+  std::uint32_t c = 0;
+  do {  // for no slots as well: how many there are is not to be foreseen
+    hn::StoreU(slot, du, &s.parent[to + c]);
     hn::StoreU(share, d, &s.share[to + c]);
     hn::StoreU(iota + hn::Set(du, c), du, &s.rank[to + c]);
-#pragma GCC unroll 11
-    for (std::size_t r = 0; r < kTreeRows; ++r)
-      hn::StoreU(hn::Set(d, s.rows[r][parent]), d, &s.rows[r][to + c]);
-  }
+    c += lanes;
+  } while (HWY_UNLIKELY(c < count));
 }
 
-// Every parent of a group into one slot.
-HWY_INLINE void hand_down_singly(const TreeGroup& parents, TreeSkeleton& s, std::size_t to) {
-  const DF d;
+// Every parent of a group gets one slot.
+HWY_INLINE void link_singly(const TreeGroup& parents, TreeSkeleton& s, std::size_t to) {
   const DU du;
-  for (std::size_t i = 0; i < parents.count; i += hn::Lanes(d)) {
-    hn::StoreU(hn::Load(du, &s.key[parents.first + i]), du, &s.key[to + i]);
-    hn::StoreU(f1(1.0F), d, &s.share[to + i]);
+  for (std::uint32_t i = 0; i < parents.count; i += static_cast<std::uint32_t>(hn::Lanes(du))) {
+    hn::StoreU(hn::Iota(du, parents.first + i), du, &s.parent[to + i]);
+    hn::StoreU(f1(1.0F), DF(), &s.share[to + i]);
     hn::StoreU(u1(0), du, &s.rank[to + i]);
-    for (std::size_t r = 0; r < kTreeRows; ++r)
-      hn::StoreU(hn::Load(d, &s.rows[r][parents.first + i]), d, &s.rows[r][to + i]);
   }
 }
 
-// Fills the slots of `group` from the parents in groups [first, last).
-void hand_down_all(const TreePlan& plan, const TreeGroup& group, std::size_t first,
-                   std::size_t last, TreeSkeleton& s) {
+// Links the slots of `group` to the parents in groups [first, last).
+void link_group(const TreePlan& plan, const TreeGroup& group, std::size_t first, std::size_t last,
+                TreeSkeleton& s) {
   std::size_t to = group.first;
   for (std::size_t g = first; g < last; ++g) {
     const TreeGroup& parents = s.groups[g];
-    const Grammar& grammar = *plan.grammar;
-    const std::size_t rules =
-        grammar.first_rule[parents.kind + 1U] - grammar.first_rule[parents.kind];
-    if (rules == 0) continue;
-    const GrammarRule& only = grammar.rules[grammar.first_rule[parents.kind]];
-    if (rules == 1 && only.star != group.kind) {
-      const std::uint32_t count = only.count[group.kind];
-      std::uint32_t* const child = &s.child[group.kind][parents.first];
-      for (std::uint32_t p = 0; p < parents.count; ++p)
-        child[p] = static_cast<std::uint32_t>(to) + p * count;
-      if (count == 1) {
-        hand_down_singly(parents, s, to);
-        to += parents.count;
-      } else if (count > 1) {
-        for (std::uint32_t p = 0; p < parents.count; ++p, to += count)
-          hand_down(s, parents.first + p, to, count);
-      }
+    const GrammarRule* const only = only_rule(*plan.grammar, parents.kind);
+    if (!plan.grammar->grows(parents.kind)) continue;
+    TreeSkeleton::Words& child = s.child[group.kind];
+    if (only != nullptr && only->star != group.kind && only->count[group.kind] == 1) {
+      const DU du;
+      for (std::uint32_t i = 0; i < parents.count; i += static_cast<std::uint32_t>(hn::Lanes(du)))
+        hn::StoreU(hn::Iota(du, static_cast<std::uint32_t>(to) + i), du, &child[parents.first + i]);
+      link_singly(parents, s, to);
+      to += parents.count;
       continue;
     }
     for (std::uint32_t p = parents.first; p < parents.first + parents.count; ++p) {
-      const std::uint32_t count = children_of(plan, parents.kind, s.draw[p]).of_kind(group.kind);
-      s.child[group.kind][p] = static_cast<std::uint32_t>(to);
-      hand_down(s, p, to, count);
+      const std::uint32_t count =
+          only == nullptr ? children_of(plan, parents.kind, s.draw[p]).of_kind(group.kind)
+                          : only->count[group.kind] + (only->star == group.kind ? s.stars[p] : 0U);
+      child[p] = static_cast<std::uint32_t>(to);
+      link(s, p, to, count);
       to += count;
     }
+  }
+}
+
+// The slots behind a group's last one, up to a whole vector, have its parent.
+void fill_up_parents(const TreeGroup& group, TreeSkeleton& s) {
+  const DU du;
+  const std::size_t end = group.first + group.count, rest = end % hn::Lanes(du);
+  if (rest == 0) return;
+  std::uint32_t* const last = &s.parent[end - rest];
+  hn::Store(hn::IfThenElse(hn::FirstN(du, rest), hn::Load(du, last), u1(s.parent[end - 1])), du,
+            last);
+}
+
+std::uint32_t count_stars(const TreePlan& plan, const GrammarRule& rule, const std::uint32_t* draws,
+                          std::uint32_t count, std::uint32_t* stars) {
+  const DU du;
+  const DI di;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(du));
+  const int spread = plan.grammar->spread;
+  const VU range = u1(static_cast<std::uint32_t>(2 * spread + 1));
+  const auto lowest = hn::Set(di, plan.branches - spread), one = hn::Set(di, 1);
+  const auto fixed = hn::Set(di, static_cast<std::int32_t>(rule.fixed));
+  VU sum = u1(0);
+  for (std::uint32_t i = 0; i < count; i += lanes) {
+    const VU step = hn::ShiftRight<16>(hn::ShiftRight<16>(hn::LoadU(du, draws + i)) * range);
+    const auto drawn = hn::Max(lowest + hn::BitCast(di, step), one);
+    VU star = hn::BitCast(du, hn::Max(drawn - fixed, hn::Zero(di)));
+    if (count - i < lanes) star = hn::IfThenElseZero(hn::FirstN(du, count - i), star);
+    hn::StoreU(star, du, stars + i);
+    sum = sum + star;
+  }
+  return hn::GetLane(hn::SumOfLanes(du, sum));
+}
+
+void draw_numbers(std::uint32_t salt, std::uint32_t count, std::uint32_t* keys,
+                  std::uint32_t* draws) {
+  const DU du;
+  for (std::uint32_t i = 0; i < count; i += static_cast<std::uint32_t>(hn::Lanes(du))) {
+    const VU key = mix(hn::LoadU(du, keys + i));
+    hn::StoreU(key, du, keys + i);
+    hn::StoreU(number(key, salt, kDrawNumber), du, draws + i);
   }
 }
 
@@ -170,7 +230,10 @@ namespace psygen::models {
 namespace {
 
 HWY_EXPORT(shape_group);
-HWY_EXPORT(hand_down_all);
+HWY_EXPORT(link_group);
+HWY_EXPORT(fill_up_parents);
+HWY_EXPORT(count_stars);
+HWY_EXPORT(draw_numbers);
 
 void plant(const TreePlan& plan, TreeSkeleton& s) {
   const std::uint32_t h[4] = {number_of(plan.key, plan.salt, 0), number_of(plan.key, plan.salt, 1),
@@ -196,12 +259,6 @@ void plant(const TreePlan& plan, TreeSkeleton& s) {
   s.groups[0] = {0, 1, plan.axiom, 0, false};
   s.group_count = 1;
   s.depth = 0;
-}
-
-void copy_parent(TreeSkeleton& s, std::uint32_t from, std::uint32_t to) {
-  for (auto& row : s.rows)
-    row[to] = row[from];
-  s.key[to] = s.key[from];
 }
 
 // A child that is on a path.
@@ -235,12 +292,10 @@ ChildTotals all_children(const TreePlan& plan, TreeSkeleton& s, std::size_t firs
   const Grammar& grammar = *plan.grammar;
   for (std::size_t g = first; g < last; ++g) {
     const TreeGroup& parents = s.groups[g];
+    if (!grammar.grows(parents.kind)) continue;
     const std::uint32_t from = parents.first, to = from + parents.count;
-    const std::size_t rules =
-        grammar.first_rule[parents.kind + 1U] - grammar.first_rule[parents.kind];
-    if (rules == 0) continue;
-    const GrammarRule& only = grammar.rules[grammar.first_rule[parents.kind]];
-    if (rules > 1) {
+    const GrammarRule* const only = only_rule(grammar, parents.kind);
+    if (only == nullptr) {
       for (std::uint32_t p = from; p < to; ++p) {
         const Children children = children_of(plan, parents.kind, s.draw[p]);
         for (std::size_t c = 0; c < grammar.kinds; ++c)
@@ -249,22 +304,19 @@ ChildTotals all_children(const TreePlan& plan, TreeSkeleton& s, std::size_t firs
       continue;
     }
     for (std::size_t c = 0; c < grammar.kinds; ++c)
-      totals[c] += only.count[c] * parents.count;
-    if (only.star == kNoKind) continue;
-    std::uint32_t stars = 0;
-    for (std::uint32_t p = from; p < to; ++p)
-      stars += star_count(plan, only, s.draw[p]);
-    totals[only.star] += stars;
+      totals[c] += only->count[c] * parents.count;
+    if (only->star != kNoKind)
+      totals[only->star] += count_stars(plan, *only, &s.draw[from], parents.count, &s.stars[from]);
   }
   return totals;
 }
 
-void hand_down_paths(const PathChild* children, std::uint32_t count,
-                     std::array<std::uint32_t, kMaxKinds> to, TreeSkeleton& s) {
+void link_paths(const PathChild* children, std::uint32_t count,
+                std::array<std::uint32_t, kMaxKinds> to, TreeSkeleton& s) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const PathChild& child = children[i];
     const std::uint32_t slot = to[child.kind]++;
-    copy_parent(s, child.parent, slot);
+    s.parent[slot] = child.parent;
     s.rank[slot] = child.rank;
     s.share[slot] = 1.0F / static_cast<float>(child.siblings);
     s.budget[slot] = child.share;
@@ -272,6 +324,16 @@ void hand_down_paths(const PathChild* children, std::uint32_t count,
 }
 
 }  // namespace
+
+std::uint32_t count_stars(const TreePlan& plan, const GrammarRule& rule, const std::uint32_t* draws,
+                          std::uint32_t count, std::uint32_t* stars) {
+  return HWY_DYNAMIC_DISPATCH(count_stars)(plan, rule, draws, count, stars);
+}
+
+void draw_numbers(std::uint32_t salt, std::uint32_t count, std::uint32_t* keys,
+                  std::uint32_t* draws) {
+  HWY_DYNAMIC_DISPATCH(draw_numbers)(salt, count, keys, draws);
+}
 
 void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkeleton& s) {
   plant(plan, s);
@@ -305,10 +367,11 @@ void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkel
                                    static_cast<std::uint8_t>(d), false};
       slot += (totals[c] + kTreeLanes - 1) / kTreeLanes * kTreeLanes;
     }
-    if (limited) hand_down_paths(paths, path_count, to, s);
+    if (limited) link_paths(paths, path_count, to, s);
     for (std::size_t g = last; g < s.group_count; ++g) {
       const TreeGroup group = s.groups[g];
-      if (!limited) HWY_DYNAMIC_DISPATCH(hand_down_all)(plan, group, first, last, s);
+      if (!limited) HWY_DYNAMIC_DISPATCH(link_group)(plan, group, first, last, s);
+      HWY_DYNAMIC_DISPATCH(fill_up_parents)(group, s);
     }
     for (std::size_t g = last; g < s.group_count; ++g)
       HWY_DYNAMIC_DISPATCH(shape_group)(plan, s.groups[g], s);

@@ -54,7 +54,7 @@ enum TreeRow : std::size_t {
 
 // Branch i runs from base along base + length · (t · direction + t² · bend), t in [0, 1].
 // Groups are in order of depth, then kind; branches in order of their parents, then their rank
-// among siblings of their kind. About 450 KiB, meant for the stack; what lies between groups is not
+// among siblings of their kind. About 470 KiB, meant for the stack; what lies between groups is not
 // meant to be read.
 struct TreeSkeleton {
   using Row = std::array<float, kMaxTreeSlots>;
@@ -62,10 +62,13 @@ struct TreeSkeleton {
   alignas(64) Row rows[kTreeRows];
   alignas(64) Words key;
   alignas(64) Words draw;
+  alignas(64) Words parent;  // its slot
   alignas(64) Words rank;    // among siblings of the kind
   alignas(64) Row share;     // 1 / number of siblings of the kind
   alignas(64) Words budget;  // paths
-  Words child[kMaxKinds];    // the first child of each kind; of the whole tree only
+  // Of the whole tree only: the first child of each kind, and how many there are of the kind that
+  // fills up, where the grammar has one rule for the branch.
+  Words child[kMaxKinds], stars;
   std::array<TreeGroup, kMaxTreeGroups> groups;
   std::size_t group_count;
   int depth;

@@ -166,12 +166,20 @@ template <const SprayForm& kForm, std::size_t kCorner>
 HWY_INLINE void write_corner(Vec3 p, Vec3 along, Vec3 across, Vec3 face, VU light, Pair look,
                              std::size_t part, std::uint32_t* block, Extent& extent) {
   if constexpr (kForm.along[kCorner] != 0.0F) p = p + f1(kForm.along[kCorner]) * along;
-  if constexpr (kForm.across[kCorner] != 0.0F) p = p + f1(kForm.across[kCorner]) * across;
+  // Left and right corners share the product.
+  if constexpr (kForm.across[kCorner] > 0.0F) p = p + f1(kForm.across[kCorner]) * across;
+  if constexpr (kForm.across[kCorner] < 0.0F) p = p - f1(-kForm.across[kCorner]) * across;
   if constexpr (kForm.droop[kCorner] != 0.0F) p = p - f1(kForm.droop[kCorner]) * face;
   const VU xy = xy_word(rounded_bits(p.x), rounded_bits(p.y));
   const VU zl = z_word(rounded_bits(p.z), light);
   extent.add(xy, zl);
   store_in_block(vertices_of(xy, zl, look), part, block + 64 * kCorner);
+}
+
+// Corners 1, 9, 2, 8, …: a corner of the left side after that of the right side like it, so that
+// what they share need not be kept for long.
+constexpr std::size_t corner_at(std::size_t i, std::size_t corners) {
+  return i % 2 == 0 ? 1 + i / 2 : corners - 1 - i / 2;
 }
 
 template <const SprayForm& kForm, std::size_t... kCorners>
@@ -186,7 +194,8 @@ HWY_INLINE void write_corners(const Chunk& c, std::size_t i, std::uint32_t* bloc
   const std::size_t part = i % kSprayBlock;
   write_corner<kForm, 0>(foot, along, across, face, hn::Load(d, c.light_inner + i), inner, part,
                          block, extent);
-  (write_corner<kForm, kCorners + 1>(foot, along, across, face, light, outer, part, block, extent),
+  (write_corner<kForm, corner_at(kCorners, kForm.vertices)>(foot, along, across, face, light, outer,
+                                                            part, block, extent),
    ...);
 }
 

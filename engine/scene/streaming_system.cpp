@@ -30,11 +30,11 @@ Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds&
   return placed;
 }
 
-// Levels `first` … `last` of a model type, at most as many as it has.
+// Levels `first` … `last` of a model type, at most as many as differ.
 Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first,
                  int last) {
   Detail detail;
-  for (int level = first; level <= std::min(last, type.level_count() - 1); ++level) {
+  for (int level = first; level <= std::min(last, type.level_count_of(parameters) - 1); ++level) {
     if (detail.level_count == kMaxLevels) break;
     detail.error_m[detail.level_count++] =
         static_cast<float>(type.level_error_m(parameters, level));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/core/clock.hpp"
 
@@ -56,6 +57,43 @@ CurvePoint point_at(const CostModel& cost, CostSample sample, const models::Mode
     point.predicted_s += cost.predict_from(sample.model, 0, m->work) / runs;
   }
   return point;
+}
+
+// How many levels the samples of a type have; all where there are none.
+int needed_levels(const models::ModelType& type, models::ModelIndex model,
+                  std::span<const CostSample> samples) {
+  int most = 0;
+  for (const CostSample& sample : samples)
+    if (sample.model == model) most = std::max(most, type.level_count_of(sample.parameters));
+  return most == 0 ? type.level_count() : most;
+}
+
+// Of the predictions for a level of the samples of one type that have it, in percent.
+std::vector<double> errors_of(const models::ModelType& type, const CostModel& cost,
+                              models::ModelIndex model, int level,
+                              std::span<const CostSample> samples,
+                              const CalibrationOptions& options, double deadline_s,
+                              CalibrationReport& report) {
+  std::vector<const CostSample*> chosen;
+  for (const CostSample& sample : samples) {
+    if (sample.model == model && level < type.level_count_of(sample.parameters))
+      chosen.push_back(&sample);
+  }
+  std::vector<std::optional<Measurement>> measured(chosen.size());
+  for (int sweep = 0; sweep < std::max(options.sweeps, 1); ++sweep) {
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      if (sweep > 0 && !measured[i]) continue;  // it failed
+      const auto now = cost.measure(*chosen[i], level, options, deadline_s, report);
+      if (now && (!measured[i] || now->seconds < measured[i]->seconds)) measured[i] = now;
+    }
+  }
+  std::vector<double> percents;
+  for (const auto& m : measured) {
+    if (!m) continue;
+    const double predicted = cost.predict_from(model, level, m->work);
+    percents.push_back(std::abs(predicted - m->seconds) / m->seconds * 100);
+  }
+  return percents;
 }
 
 CostError error_of(std::vector<double>& percents) {
@@ -148,15 +186,10 @@ Accuracy accuracy_of(const models::Registry& registry, const CostModel& cost,
   for (std::size_t m = 0; m < registry.size(); ++m) {
     const auto model = static_cast<models::ModelIndex>(m);
     std::vector<double> of_type;
-    for (int level = 0; level < registry[model].level_count(); ++level) {
-      std::vector<double> percents;
-      for (const CostSample& sample : samples) {
-        if (sample.model != model) continue;
-        const auto measured = cost.measure(sample, level, options, deadline_s, report);
-        if (!measured) continue;
-        const double predicted = cost.predict_from(model, level, measured->work);
-        percents.push_back(std::abs(predicted - measured->seconds) / measured->seconds * 100);
-      }
+    const models::ModelType& type = registry[model];
+    for (int level = 0; level < needed_levels(type, model, samples); ++level) {
+      std::vector<double> percents =
+          errors_of(type, cost, model, level, samples, options, deadline_s, report);
       of_type.insert(of_type.end(), percents.begin(), percents.end());
       accuracy.levels.push_back({model, level, error_of(percents)});
     }

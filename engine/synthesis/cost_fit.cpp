@@ -24,7 +24,7 @@ using Coefficients = std::array<double, kTerms>;
 
 Row row_of(const Measurement& m) {
   return {1 / m.seconds, m.work.operations / m.seconds, m.work.triangles / m.seconds,
-          m.work.full_triangles / m.seconds};
+          m.work.steps / m.seconds};
 }
 
 double residual(const Row& row, const Coefficients& c) {
@@ -102,7 +102,7 @@ Solution robust_solution(std::span<const Row> rows, unsigned subset) {
 }
 
 double log2_size(const Work& work) {
-  return std::log2(1 + std::max(work.full_triangles, 0.0));
+  return std::log2(1 + std::max(work.steps, 0.0));
 }
 
 double median(std::vector<double> values) {
@@ -179,7 +179,7 @@ CostFit fit_cost(std::span<const Measurement> measurements) {
   fit.fixed_s = best.coefficients[0];
   fit.per_operation_s = best.coefficients[1];
   fit.per_triangle_s = best.coefficients[2];
-  fit.per_full_triangle_s = best.coefficients[3];
+  fit.per_step_s = best.coefficients[3];
   CostFit bent = fit;
   add_correction(bent, measurements);
   const bool better =

@@ -1,9 +1,9 @@
 // What a synthesis has to do, and the curve through what doing it took: a line, seconds = fixed +
-// per_operation · operations + per_triangle · triangles + per_full_triangle · full_triangles with
-// no coefficient below zero, times a correction over full_triangles that bends it where work does
-// not grow in proportion. Operations are the type's asymptotic formula (paper, section 5.2); sizes
-// of meshes are exact, and know what the random numbers of a seed make of the parameters: that of
-// the level, and that of full detail, because coarse levels come from the same skeleton. Pure.
+// per_operation · operations + per_triangle · triangles + per_step · steps with no coefficient
+// below zero, times a correction over steps that bends it where work does not grow in proportion.
+// Operations are the type's asymptotic formula (paper, section 5.2); triangles and steps are exact,
+// and know what the random numbers of a seed make of the parameters: the size of the level, and
+// what it is grown from (ModelType::steps). Pure.
 #pragma once
 
 #include <array>
@@ -14,27 +14,27 @@ namespace psygen::synthesis {
 
 struct Work {
   double operations = 1;
-  double triangles = 0;       // of the level
-  double full_triangles = 0;  // of level 0
+  double triangles = 0;  // of the level
+  double steps = 0;      // as the type counts them, or else the triangles of level 0
   friend bool operator==(const Work&, const Work&) = default;
 };
 
 struct CostFit {
   static constexpr std::size_t kMaxKnots = 8;
   struct Knot {
-    double log2_size = 0;  // of 1 + full_triangles
+    double log2_size = 0;  // of 1 + steps
     double factor = 1;
   };
   double fixed_s = 0;
   double per_operation_s = 0;
   double per_triangle_s = 0;
-  double per_full_triangle_s = 0;
+  double per_step_s = 0;
   std::size_t knot_count = 0;           // 0: the line as it is
   std::array<Knot, kMaxKnots> knots{};  // ascending; linear between them and on
 
   double line_seconds(const Work& work) const {
     return fixed_s + per_operation_s * work.operations + per_triangle_s * work.triangles +
-           per_full_triangle_s * work.full_triangles;
+           per_step_s * work.steps;
   }
   double correction(const Work& work) const;
   double seconds(const Work& work) const { return line_seconds(work) * correction(work); }

@@ -45,17 +45,20 @@ const CostFit& CostModel::fit(models::ModelIndex model, int level) const {
 }
 
 Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters, int level,
-                     models::MeshSize* size) const {
+                     std::optional<models::MeshSize>* size) const {
   Work work;
+  if (size != nullptr) size->reset();
   if (model >= registry_.size()) return work;
   try {  // types of users may throw; nothing of ours does
     const double x = registry_[model].complexity(parameters, level);
     if (std::isfinite(x) && x > 0) work.operations = x;
-    const models::MeshSize asked = registry_[model].mesh_size(parameters, level);
-    if (size != nullptr) *size = asked;
-    work.triangles = asked.triangle_count();
-    work.full_triangles =
-        level == 0 ? work.triangles : registry_[model].mesh_size(parameters, 0).triangle_count();
+    const models::MeshSize mesh = registry_[model].mesh_size(parameters, level);
+    work.triangles = mesh.triangle_count();
+    if (size != nullptr) *size = mesh;
+    work.steps = registry_[model].steps(parameters, level);
+    if (!std::isfinite(work.steps) || work.steps <= 0)
+      work.steps =
+          level == 0 ? work.triangles : registry_[model].mesh_size(parameters, 0).triangle_count();
   } catch (...) {
   }
   return work;
@@ -82,7 +85,7 @@ void CostModel::observe(models::ModelIndex model, int level, const Work& work,
                                      1 / kLargestSurprise, kLargestSurprise);
   const double factor = std::pow(surprise, kLearningRate);
   for (double* term :
-       {&line.fixed_s, &line.per_operation_s, &line.per_triangle_s, &line.per_full_triangle_s})
+       {&line.fixed_s, &line.per_operation_s, &line.per_triangle_s, &line.per_step_s})
     *term *= factor;
   const auto error = static_cast<float>(std::abs(predicted_seconds - seconds) / seconds * 100);
   if (recent_errors_.size() < kErrorWindow) {
@@ -152,6 +155,7 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
       cheapest_first.begin(), cheapest_first.end(),
       [](const Candidate& a, const Candidate& b) { return a.work.operations < b.work.operations; });
   std::vector<Measurement> measured;
+  std::vector<const CostSample*> taken;
   std::vector<double> ratios;
   const auto set = [&](const CostFit& line) {  // also the best guess for what is not measured yet
     for (int finer = level; finer >= 0; --finer)
@@ -164,10 +168,17 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
     const auto m = measure(*sample, level, options, deadline_s, report);
     if (!m) continue;
     measured.push_back(*m);
+    taken.push_back(sample);
     ratios.push_back(m->seconds / m->work.operations);
     if (std::has_single_bit(ratios.size())) set_guess();  // sorting after each would be quadratic
   }
   if (!ratios.empty()) set_guess();
+  for (int sweep = 1; sweep < options.sweeps; ++sweep) {
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      const auto again = measure(*taken[i], level, options, deadline_s, report);
+      if (again) measured[i].seconds = std::min(measured[i].seconds, again->seconds);
+    }
+  }
   if (measured.size() >= kMinForTerms) set(fit_cost(measured));
   LevelCalibration result{model, level, fit(model, level), 0,
                           static_cast<std::uint32_t>(measured.size())};

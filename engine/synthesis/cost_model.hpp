@@ -30,7 +30,8 @@ struct CalibrationOptions {
   double seconds_limit = 0.4;
   // Short syntheses are repeated until one measurement is at least this long.
   double seconds_per_measurement = 20e-6;
-  int rounds = 3;                           // measurements per sample and level; the least counts
+  int rounds = 3;  // measurements per sample and level; the least counts
+  int sweeps = 1;  // times that all samples of a level are gone through; again the least counts
   std::function<double()> wall_clock = {};  // default: core::monotonic_seconds
   std::function<double()> cpu_clock = {};   // default: core::thread_cpu_seconds
 };
@@ -70,10 +71,10 @@ class CostModel {
                               const std::function<void(double)>& progress = {});
 
   // What synthesising it has to do. Where the formula fails (throws, NaN, not positive) one
-  // operation, where the size is unknown no triangle. `size` (may be null) gets the mesh's size, as
-  // far as the type tells it.
+  // operation, where the size is unknown no triangle. `size`, if given, is set to the size of the
+  // mesh, so that nobody need count it again; to nothing where the type does not tell it.
   Work work(models::ModelIndex model, const models::Parameters& parameters, int level,
-            models::MeshSize* size = nullptr) const;
+            std::optional<models::MeshSize>* size = nullptr) const;
   // Seconds of one core. Finite and positive for any model and level.
   double predict(models::ModelIndex model, const models::Parameters& parameters, int level) const;
   double predict_from(models::ModelIndex model, int level, const Work& work) const;

@@ -50,9 +50,9 @@ std::string_view GeometryCache::failure_reason(MeshHandle handle) const {
   return reasons_.at(handle.slot);
 }
 
-core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
-                                                      const models::Parameters& parameters,
-                                                      const models::MeshSize* known) {
+core::Result<models::MeshSize> GeometryCache::size_of(
+    const MeshKey& key, const models::Parameters& parameters,
+    const std::optional<models::MeshSize>& known) {
   using core::ErrorCode;
   if (key.model >= registry_.size()) {
     return core::fail(ErrorCode::kSynthesisFailed, fmt::format("no model type {}", key.model));
@@ -64,7 +64,7 @@ core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
                                   type.level_count() - 1));
   }
   try {  // types of users may throw; nothing of ours does
-    const models::MeshSize size = known != nullptr ? *known : type.mesh_size(parameters, key.level);
+    const models::MeshSize size = known ? *known : type.mesh_size(parameters, key.level);
     if (size.vertex_count <= kMaxVertices && size.index_count <= kMaxIndices) return size;
     return core::fail(
         ErrorCode::kSynthesisFailed,
@@ -82,7 +82,7 @@ core::Result<models::MeshSize> GeometryCache::size_of(const MeshKey& key,
 core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
                                                 const models::Parameters& parameters,
                                                 std::uint64_t owner, Rank rank,
-                                                const models::MeshSize* known) {
+                                                const std::optional<models::MeshSize>& known) {
   if (const MeshHandle there = find(key)) {
     if (records_[there.slot].state != MeshState::kFailed) return there;
     return core::fail(core::ErrorCode::kSynthesisFailed, reasons_.at(there.slot));

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -121,10 +122,10 @@ class GeometryCache {
   //   kOutOfMemory      the memory refused although the budget had room; the limit is lowered
   //   kSynthesisFailed  this key failed before (the reason is in the message), or its size cannot
   //                     be had; never retried until forget_failures()
-  // `known`: what the type says about the size, where the caller has asked it already.
+  // `size`: what the type says, where the caller has asked already.
   core::Result<MeshHandle> reserve(const MeshKey& key, const models::Parameters& parameters,
                                    std::uint64_t owner, Rank rank,
-                                   const models::MeshSize* known = nullptr);
+                                   const std::optional<models::MeshSize>& size = {});
 
   // The destination is written: the mesh is ready (or gone, if it was released meanwhile).
   void complete(MeshHandle handle, const core::Bounds& tight);
@@ -163,7 +164,7 @@ class GeometryCache {
   };
   MeshRecord* live(MeshHandle handle);
   core::Result<models::MeshSize> size_of(const MeshKey& key, const models::Parameters& parameters,
-                                         const models::MeshSize* known);
+                                         const std::optional<models::MeshSize>& known);
   core::Result<core::GeometryReservation> reserve_memory(const models::MeshSize& size, Rank rank);
   bool make_room(std::uint64_t need, Rank rank);
   bool evict(std::uint64_t bytes, const Rank* request);

@@ -73,25 +73,17 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
     }
     if (reclaimed == kNone) {
       // First come, first served: what was requested before comes before what is new.
-      new_.push_back(
-          {{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, {}, kNone, kNone});
+      new_.push_back({{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, {}, {}, kNone});
       continue;
     }
     const Work& work = reclaimed_[reclaimed].work;
     const double predicted = cost.predict_from(want.key.model, want.key.level, work);
-    items_.push_back(
-        {{want.rank, want.deadline_s, predicted, reclaimed}, i, work, reclaimed, kNone});
+    items_.push_back({{want.rank, want.deadline_s, predicted, reclaimed}, i, work, {}, reclaimed});
   }
   leave_for_later(limits, policy, report);
-  sizes_.clear();
   for (Item& item : new_) {
     const Want& want = wants[item.want];
-    models::MeshSize size;
-    item.work = cost.work(want.key.model, *want.parameters, want.key.level, &size);
-    if (size.vertex_count > 0) {
-      item.size = static_cast<std::uint32_t>(sizes_.size());
-      sizes_.push_back(size);
-    }
+    item.work = cost.work(want.key.model, *want.parameters, want.key.level, &item.size);
     item.order.predicted_seconds = cost.predict_from(want.key.model, want.key.level, item.work);
     items_.push_back(item);
   }
@@ -139,11 +131,10 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     return;
   }
   if (cache.find(want.key)) return;  // a second want of the same mesh
-  const models::MeshSize* size = item.size != kNone ? &sizes_[item.size] : nullptr;
-  auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, size);
+  auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
   while (!handle && handle.error().code == core::ErrorCode::kOverBudget &&
          give_back_last(cache, report)) {
-    handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, size);
+    handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
   }
   if (!handle) {
     const bool failed = handle.error().code == core::ErrorCode::kSynthesisFailed;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -66,8 +67,8 @@ class Planner {
     ScheduleKey order;
     std::uint32_t want;
     Work work;
-    std::uint32_t reclaimed;  // position in reclaimed_, or kNone
-    std::uint32_t size;       // position in sizes_, or kNone
+    std::optional<models::MeshSize> size;  // of new ones, if their type told it
+    std::uint32_t reclaimed;               // position in reclaimed_, or kNone
   };
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
@@ -91,7 +92,6 @@ class Planner {
   std::vector<bool> kept_;              // of reclaimed_: wanted, and not given back
   std::vector<Item> items_;
   std::vector<Item> new_;                  // those of them that need a reservation
-  std::vector<models::MeshSize> sizes_;    // of new_, as far as their types tell
   std::vector<std::uint32_t> last_first_;  // wanted ones of reclaimed_ in serving order
   std::vector<Request> plan_;
   bool separate_holes_ = false;

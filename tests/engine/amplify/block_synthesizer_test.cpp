@@ -54,7 +54,8 @@ TEST(BlockSynthesizer, ALevelIsTheCoarsestOfTypesThatHaveFewer) {
   const world::World world = parsed(kSmallWorld);
   Totals totals;
   BlockSynthesizer(world, registry(), 99).synthesise({2, 1}, totals, [](const BlockMesh& mesh) {
-    EXPECT_EQ(mesh.level, registry()[mesh.placement.model].level_count() - 1);
+    EXPECT_EQ(mesh.level,
+              registry()[mesh.placement.model].level_count_of(mesh.placement.parameters) - 1);
   });
   EXPECT_EQ(totals.hash.count(), 9u);
   EXPECT_LT(totals.triangles, totals_of(world, {2, 1}).triangles / 50);

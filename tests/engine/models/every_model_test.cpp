@@ -112,6 +112,29 @@ TEST(EveryModel, CostsAndErrorsAreOrderedByLevel) {
   });
 }
 
+TEST(EveryModel, ListsNoLevelThatIsTheOneBeforeOnceMore) {
+  const Registry registry = make_standard_registry();
+  const ModelType& rock = registry[1];
+  Parameters rough = default_parameters(rock);
+  for (int n = 0; n < rock.level_count(); ++n) {
+    rough.set_integer(kRockSubdivisions, n);
+    ASSERT_EQ(rock.level_count_of(rough), n + 1);
+  }
+  for_random_models(8, [](const ModelType& type, const Parameters& p, int level) {
+    const int needed = type.level_count_of(p);
+    ASSERT_GE(needed, 1);
+    ASSERT_LE(needed, type.level_count());
+    if (level == 0) return;
+    const Mesh mesh = synthesize(type, p, level), before = synthesize(type, p, level - 1);
+    if (level >= needed) {
+      ASSERT_EQ(mesh.vertex_bytes, before.vertex_bytes) << type.name() << " level " << level;
+      ASSERT_EQ(type.level_error_m(p, level), type.level_error_m(p, level - 1));
+    } else if (type.name() == "rock") {
+      ASSERT_LT(mesh.size.index_count, before.size.index_count) << "level " << level;
+    }
+  });
+}
+
 TEST(EveryModel, HasTheSameBytesOnEveryThreadInAnyOrder) {
   struct Job {
     ModelIndex type;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <memory>
 #include <thread>
 
 #include "engine/models/packing.hpp"
@@ -194,7 +195,9 @@ TEST(Tree, DrawsFromTwoLessToTwoMoreBranchesEquallyOften) {
   const TreePlan plan = plan_of_tree(with(*type, 1, 4, 4));
   std::map<std::uint32_t, int> seen;
   for (std::uint32_t i = 0; i < 50000; ++i)
-    ++seen[children_of(plan, 0, number_of(child_key(i, 1, 1), plan.salt, kDrawNumber)).total()];
+    ++seen[children_of(plan, 0,
+                       number_of(mix32(unmixed_child_key(i, 1, 1)), plan.salt, kDrawNumber))
+               .total()];
   ASSERT_EQ(seen.size(), 5U);
   for (const auto& [children, times] : seen) {
     EXPECT_TRUE(children >= 2 && children <= 6);
@@ -239,6 +242,32 @@ TEST(Tree, FollowsPathsWhoseBranchesAreThoseOfTheWholeTree) {
       for (std::size_t r = 0; r < kTreeRows; ++r)
         EXPECT_EQ(some->rows[r][i], whole->rows[r][k]);
     });
+  }
+}
+
+TEST(Tree, CountsAsStepsTheBranchesThatItGrowsAndTheirGroups) {
+  const auto type = make_tree_type();
+  const auto grown = [](const TreePlan& plan, int depth, std::uint32_t paths) {
+    const auto s = std::make_unique<TreeSkeleton>();
+    grow_tree(plan, depth, paths, *s);
+    double steps = 0;
+    for (std::size_t g = 0; g < s->group_count; ++g)
+      steps += s->groups[g].count + 12.0;
+    return steps;
+  };
+  for (int trial = 0; trial < 60; ++trial) {
+    Parameters p = default_parameters(*type);
+    p.set_integer(kTreeSeed, trial);
+    p.set_integer(kTreeIterations, 3 + trial % 3);
+    p.set_integer(kTreeBranches, 2 + trial / 3 % 3);
+    const TreePlan plan = plan_of_tree(p);
+    const double whole = grown(plan, plan.iterations, kWholeTree);
+    ASSERT_EQ(type->steps(p, 0), whole);
+    ASSERT_EQ(type->steps(p, 1), whole);
+    const double crown = grown(plan, tree_depth(plan), 16);
+    ASSERT_GE(type->steps(p, 5), crown);
+    ASSERT_LE(type->steps(p, 5), crown + (plan.always_complete ? 0.0 : 0.06 * kMaxTreeNodes));
+    ASSERT_GT(type->steps(p, 2), type->steps(p, 3)) << "the paths of bark are grown as well";
   }
 }
 

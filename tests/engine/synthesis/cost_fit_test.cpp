@@ -10,13 +10,12 @@
 namespace psygen::synthesis {
 namespace {
 
-CostFit line(double fixed_s, double per_operation_s, double per_triangle_s,
-             double per_full_triangle_s) {
+CostFit line(double fixed_s, double per_operation_s, double per_triangle_s, double per_step_s) {
   CostFit fit;
   fit.fixed_s = fixed_s;
   fit.per_operation_s = per_operation_s;
   fit.per_triangle_s = per_triangle_s;
-  fit.per_full_triangle_s = per_full_triangle_s;
+  fit.per_step_s = per_step_s;
   return fit;
 }
 
@@ -36,8 +35,7 @@ void expect_near(const CostFit& fit, const CostFit& truth, double relative) {
   EXPECT_NEAR(fit.fixed_s, truth.fixed_s, relative * truth.fixed_s + 1e-15);
   EXPECT_NEAR(fit.per_operation_s, truth.per_operation_s, relative * truth.per_operation_s + 1e-15);
   EXPECT_NEAR(fit.per_triangle_s, truth.per_triangle_s, relative * truth.per_triangle_s + 1e-15);
-  EXPECT_NEAR(fit.per_full_triangle_s, truth.per_full_triangle_s,
-              relative * truth.per_full_triangle_s + 1e-15);
+  EXPECT_NEAR(fit.per_step_s, truth.per_step_s, relative * truth.per_step_s + 1e-15);
 }
 
 TEST(CostFit, FindsEveryLineThatThereCanBe) {

@@ -179,6 +179,32 @@ TEST(CostModel, NonsenseIsNotObserved) {
   EXPECT_EQ(cost.error().count, 0u);
 }
 
+// Counts its own steps, where `steps` is any number.
+class SteppingModel : public FakeModel {
+ public:
+  explicit SteppingModel(double steps) : steps_(steps) {}
+  double steps(const models::Parameters&, int level) const override { return steps_ + level; }
+
+ private:
+  double steps_;
+};
+
+TEST(CostModel, TakesTheStepsOfATypeOrTheTrianglesOfItsFullDetail) {
+  const models::Parameters p = parameters_of(1, 80);
+  const auto steps_of = [&p](double steps, int level) {
+    const models::Registry registry = registry_of(std::make_unique<SteppingModel>(steps));
+    std::optional<models::MeshSize> size;
+    const Work work = CostModel(registry).work(0, p, level, &size);
+    EXPECT_TRUE(size && *size == registry[0].mesh_size(p, level));
+    EXPECT_EQ(work.triangles, registry[0].mesh_size(p, level).triangle_count());
+    return work.steps;
+  };
+  EXPECT_EQ(steps_of(500, 1), 501);
+  EXPECT_EQ(steps_of(-1, 0), 80) << "as many as triangles";
+  EXPECT_EQ(steps_of(-1, 1), 80);
+  EXPECT_EQ(steps_of(std::nan(""), 2), 80);
+}
+
 TEST(CostModel, QuantilesInterpolateLinearly) {
   std::vector<double> values{4, 1, 3, 2};
   EXPECT_DOUBLE_EQ(quantile(values, 0.0), 1);

@@ -269,5 +269,42 @@ TEST_F(PlannerTest, AHoleThatIsPredictedToTakeTooLongIsLeftToTheModelers) {
   EXPECT_EQ(report.published, 1u);
 }
 
+// Counts how often it is asked for its size: for trees that is hashing every branch.
+class AskedModel : public testing::FakeModel {
+ public:
+  explicit AskedModel(int& asked) : asked_(asked) {}
+  models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
+    ++asked_;
+    return FakeModel::mesh_size(p, level);
+  }
+
+ private:
+  int& asked_;
+};
+
+TEST(PlannerSizes, ANewRequestAsksItsTypeForEachSizeOnce) {
+  int asked = 0;
+  const models::Registry registry = registry_of(std::make_unique<AskedModel>(asked));
+  core::HeapGeometryMemory memory(1 << 20);
+  GeometryCache cache(memory, registry, 2 * kMeshBytes);
+  const CostModel cost(registry);
+  SynthesisManager manager(registry, {.modelers = 1, .watchdog_seconds = 0});
+  Planner planner;
+  const models::Parameters p = parameters_of(1, 80), q = parameters_of(2, 80),
+                           r = parameters_of(3, 80), s = parameters_of(4, 80);
+  const std::vector<Want> full{{key_of(1, p), &p, 1, hole(1)}, {key_of(2, q), &q, 2, hole(2)}};
+  planner.plan(full, cache, cost, manager, PlanLimits{1e9, 4096, 16}, Policy::kDeadline);
+  EXPECT_EQ(asked, 2) << "full detail";
+  EXPECT_TRUE(manager.wait_all());
+  asked = 0;
+  const std::vector<Want> coarse{{key_of(3, r, 0, 2), &r, 3, hole(3)}};
+  planner.plan(coarse, cache, cost, manager, PlanLimits{1e9, 4096, 16}, Policy::kDeadline);
+  EXPECT_EQ(asked, 2) << "a coarse level's own size and that of full detail";
+  asked = 0;
+  const std::vector<Want> refused{{key_of(4, s), &s, 4, prefetch(9)}};
+  planner.plan(refused, cache, cost, manager, PlanLimits{1e9, 4096, 16}, Policy::kDeadline);
+  EXPECT_EQ(asked, 1) << "also where there is no room";
+}
+
 }  // namespace
 }  // namespace psygen::synthesis

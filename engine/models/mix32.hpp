@@ -1,0 +1,16 @@
+// The 32-bit hash of docs/models.md, "mix32"; in lanes: simd_hash-inl.hpp.
+#pragma once
+
+#include <cstdint>
+
+namespace psygen::models {
+
+// Bijective mixing of 32 bits in two rounds (constants: Wellons 2018, "Prospecting for hash
+// functions", public domain).
+constexpr std::uint32_t mix32(std::uint32_t h) {
+  h = (h ^ (h >> 16)) * 0x7FEB352DU;
+  h = (h ^ (h >> 15)) * 0x846CA68BU;
+  return h ^ (h >> 16);
+}
+
+}  // namespace psygen::models
