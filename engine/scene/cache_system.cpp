@@ -362,7 +362,7 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
       wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead;
   limits.max_requests = wait ? UINT32_MAX : settings.plan_max_requests;
   limits.max_new = wait || synthesis.settling ? UINT32_MAX : settings.plan_max_new;
-  limits.new_share = wait || synthesis.settling ? 1.0 : 1.0 / settings.streaming_ticks;
+  limits.new_share = wait || synthesis.settling ? 1.0 : 1.0 / synthesis.spread_ticks;
   limits.seconds_here = wait ? 0.0 : settings.hole_budget_ms / 1000.0;
   const synthesis::PlanReport report =
       synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,

@@ -42,7 +42,7 @@ struct Settings {
   std::uint32_t plan_max_requests = 4096;
   std::uint32_t plan_max_new = 256;   // of them, reserved in one tick
   double streaming_budget_ms = 2.0;   // per tick, for creating nodes
-  std::uint32_t streaming_ticks = 8;  // over which the nodes that the window lacks are spread
+  std::uint32_t streaming_ticks = 8;  // over which new nodes and their meshes are spread at most
   std::uint64_t upload_budget_bytes = 16ull << 20;  // per tick
 };
 

@@ -99,6 +99,7 @@ struct Streaming {
   std::vector<NodeGrid> grids;                        // one for each level
   std::vector<visibility::LevelDistances> distances;  // where nodes are split in this tick
   std::vector<visibility::NodeCoord> missing;         // most important last
+  std::uint32_t ticks_since_listed = 0;               // the window, for what it lacks
   double listed_split_m = 0;  // of the coarsest level, when the window was last looked at
 };
 
@@ -146,9 +147,10 @@ struct Synthesis {
     ecs::Entity entity;
     synthesis::MeshHandle handle;
   };
-  std::vector<Ready> ready;  // found in the cache in this tick
-  bool settling = false;     // levels follow from the pose alone: not from what came first, or when
-  float coarsening = 1;      // ≥ 1: how much the wanted error grows under memory pressure
+  std::vector<Ready> ready;        // found in the cache in this tick
+  std::uint32_t spread_ticks = 1;  // over which what is new is asked for
+  bool settling = false;  // levels follow from the pose alone: not from what came first, or when
+  float coarsening = 1;   // ≥ 1: how much the wanted error grows under memory pressure
 };
 
 struct DrawLists {

@@ -211,16 +211,21 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
       grid.set_radius(needed_radius(facts, settings, streaming, grid));
     }
     streaming.listed_split_m = reach;
+    // What is new is there, and asked for, by the middle of the time until more of it is.
+    synthesis.spread_ticks =
+        std::clamp(streaming.ticks_since_listed / 2, 1U, settings.streaming_ticks);
+    streaming.ticks_since_listed = 0;
     const Window window(settings, camera, facts, streaming);
     destroy_leaving_nodes(window, streaming, entities, *synthesis.cache, counters);
     list_missing_nodes(window, camera, facts, entities, streaming);
   }
+  ++streaming.ticks_since_listed;
   // All of it for lazy evaluation, in every frame, and before the first frame.
   const bool all = settings.paradigm == Paradigm::kLazyEvaluation || synthesis.settling ||
                    streaming.missing.size() > kLeapt;
   const std::size_t count =
       all ? streaming.missing.size()
-          : std::max(kFewestCreated, streaming.missing.size() / settings.streaming_ticks);
+          : std::max(kFewestCreated, streaming.missing.size() / synthesis.spread_ticks);
   const double start_s = core::monotonic_seconds();
   std::vector<world::Placement> scratch;
   while (!streaming.missing.empty() && counters.nodes_created < count) {
