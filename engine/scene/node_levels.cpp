@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kMinSplitRatio = 1.5, kMaxSplitRatio = 3.0;
 constexpr double kMergeFactor = 1.1;
-// Children exist before their parent is split by so much of its distance.
+// Children exist before their parent is split by so much of its distance, and nodes of the coarsest
+// level before they can be seen.
 constexpr double kAheadFactor = 1.1;
 // The error of a level of the terrain type is the sum of what its octaves could lose at worst. The
 // largest in a block of the paper's world is about 0.7 of it; in a coarser node, whose finest level
@@ -110,7 +111,7 @@ double existing_distance_m(std::span<const NodeLevel> levels, const Settings& se
                            std::span<const visibility::LevelDistances> distances) {
   // The camera moves within its block before the window is looked at again.
   const double step_m = std::numbers::sqrt2 / 2 * levels[0].size_m;
-  if (level + 1 >= levels.size()) return settings.view_distance_m + step_m;
+  if (level + 1 >= levels.size()) return kAheadFactor * settings.view_distance_m + step_m;
   const double split_m = distances[level + 1].merge_m * kAheadFactor;
   return std::min(split_m, settings.view_distance_m) + step_m;
 }

@@ -42,7 +42,7 @@ void split_distances(std::span<const NodeLevel> levels, const Settings& settings
 
 // Nodes of a level that lie in a parent nearer than this to the middle of the camera's block exist
 // as entities: farther than anything is split, so that they are ready when it is. Of the coarsest
-// level all up to this distance exist.
+// level all up to this distance exist, which is beyond what is seen.
 double existing_distance_m(std::span<const NodeLevel> levels, const Settings& settings,
                            std::size_t level,
                            std::span<const visibility::LevelDistances> distances);
