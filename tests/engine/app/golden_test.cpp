@@ -1,6 +1,8 @@
 // Settled scenes in every preset and every view.
 #include "tests/engine/app/golden.hpp"
 
+#include <ostream>
+
 #include "engine/render/preset.hpp"
 
 namespace psygen::app {
@@ -12,6 +14,11 @@ struct Look {
   render::Preset preset = render::Preset::kLow;
   render::View view = render::View::kNormal;
 };
+
+// In names of tests, instead of its bytes.
+void PrintTo(const Look& look, std::ostream* out) {
+  *out << look.name;
+}
 
 class Golden : public testing::TestWithParam<Look> {};
 
@@ -45,7 +52,8 @@ INSTANTIATE_TEST_SUITE_P(Looks, Golden,
                                          Look{"layers", 20, Preset::kLow, View::kLayers},
                                          Look{"bounds", 20, Preset::kLow, View::kBounds},
                                          Look{"wireframe", 20, Preset::kLow, View::kWireframe},
-                                         Look{"missing", 20, Preset::kLow, View::kMissing}),
+                                         Look{"missing", 20, Preset::kLow, View::kMissing},
+                                         Look{"cache", 20, Preset::kLow, View::kCache}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
