@@ -29,7 +29,7 @@ using glm::vec4;
 #define PSYGEN_WATER_STRIP (2 * (PSYGEN_WATER_SIDES + 1) + 2)
 #define PSYGEN_WATER_REACH 500000.0
 
-// The dome of the sky of software devices (sky_dome.vert): columns around, rows from the horizon to
+// The dome of the sky of preset low (sky_dome.vert): columns around, rows from the horizon to
 // the highest point, vertices of one column; sides of the pyramid below it (sky_below.vert).
 #define PSYGEN_DOME_COLUMNS 24
 #define PSYGEN_DOME_ROWS 14

@@ -1,4 +1,4 @@
-// The sky as a dome for software devices: its light as shown at each corner, finer where it bends,
+// The sky as a dome for preset low: its light as shown at each corner, finer where it bends,
 // near the horizon and around the sun's azimuth. A strip of PSYGEN_DOME_ROWS pairs for each column,
 // and two more vertices that join it to the next. Depth 0, infinitely far.
 #version 460

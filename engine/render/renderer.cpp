@@ -50,6 +50,9 @@ Result<std::vector<DrawnMesh>> Renderer::drawn_meshes() {
 RenderPath Renderer::path() const {
   return impl_->path();
 }
+bool Renderer::casts_shadows() const {
+  return impl_->casts_shadows();
+}
 void Renderer::wait_idle() {
   impl_->wait_idle();
 }

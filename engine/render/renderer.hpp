@@ -62,6 +62,8 @@ class Renderer {
 
   // What RendererOptions::path has come to: kCpu or kGpu.
   RenderPath path() const;
+  // Whether what is drawn casts shadows into cascades: then draws out of the picture matter too.
+  bool casts_shadows() const;
 
   // Returns when the device has finished everything; released ranges are free afterwards.
   void wait_idle();

@@ -47,6 +47,7 @@ class RendererImpl {
   core::Result<double> replay_floor_ms(int repeats);
   core::Result<std::vector<DrawnMesh>> drawn_meshes();
   RenderPath path() const { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
+  bool casts_shadows() const { return pipelines_.traits().cascades > 0; }
   void wait_idle();
 
  private:

@@ -23,6 +23,9 @@ constexpr float kAroundErrorFactor = 2.0F;
 // The rank of what is drawn is told to the cache anew when its group changes, otherwise once in so
 // many ticks, or in every tick where little room is left: nothing else makes ranks matter.
 constexpr std::uint32_t kRankTurns = 32;
+// New meshes out of view that are reserved in a tick at least, if so many are wanted, while new
+// nodes come.
+constexpr std::uint32_t kFewestHidden = 48;
 // So long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
 
@@ -37,6 +40,7 @@ struct NodeView {
   bool leaf = false;
   bool fine = false;
   float error_factor = 1;  // on that of the picture
+  bool around = false;     // looked at in turns anyway
 };
 
 // A row of the columns of a mesh entity.
@@ -51,8 +55,8 @@ struct MeshEntity {
 
 bool is_roomy(const synthesis::GeometryCache& cache) {
   constexpr double kRoomyShare = 0.8;
-  return static_cast<double>(cache.stats().bytes) <
-         kRoomyShare * static_cast<double>(cache.budget_bytes());
+  const synthesis::CacheStats& stats = cache.stats();
+  return static_cast<double>(stats.bytes) < kRoomyShare * static_cast<double>(stats.limit_bytes);
 }
 
 class Chooser {
@@ -148,7 +152,7 @@ class Chooser {
 
   // Tells the cache how important the drawn mesh is, where that is due.
   void keep(const MeshEntity& row, RankGroup group, const NodeView& node, float distance_m) {
-    const bool turn = (row.entity.index + clock_.tick) % rank_turns_ == 0;
+    const bool turn = node.around || (row.entity.index + clock_.tick) % rank_turns_ == 0;
     std::uint8_t& ranked = row.demand.ranked;
     if (ranked == static_cast<std::uint8_t>(group) && !turn) return;
     ranked = static_cast<std::uint8_t>(group);
@@ -355,14 +359,16 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
     std::vector<ecs::Entity> around;  // those whose turn it is
     for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns)
       around.push_back(view.around[i]);
-    walk.consider(around, NodeView{.error_factor = kAroundErrorFactor});
+    walk.consider(around, NodeView{.error_factor = kAroundErrorFactor, .around = true});
   }
   synthesis::PlanLimits limits;
   limits.seconds_ahead =
       wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead;
   limits.max_requests = wait ? UINT32_MAX : settings.plan_max_requests;
   limits.max_new = wait || synthesis.settling ? UINT32_MAX : settings.plan_max_new;
-  limits.new_share = wait || synthesis.settling ? 1.0 : 1.0 / synthesis.spread_ticks;
+  limits.max_new_hidden = limits.max_new;
+  if (!wait && !synthesis.settling)
+    limits.max_new_hidden = std::max(settings.plan_max_new / synthesis.spread_ticks, kFewestHidden);
   limits.seconds_here = wait ? 0.0 : settings.hole_budget_ms / 1000.0;
   const synthesis::PlanReport report =
       synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,

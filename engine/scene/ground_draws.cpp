@@ -46,13 +46,14 @@ render::Morph morph_of(const Streaming& streaming) {
 }
 
 void add_tiles(const models::TerrainTiles& tiles, const View& view, float low_m, float high_m,
-               float fine_m, render::TerrainDraw draw, std::vector<render::TerrainDraw>& draws) {
+               float fine_m, bool all, render::TerrainDraw draw,
+               std::vector<render::TerrainDraw>& draws) {
   const Tiling tiling{tiles, draw.origin, draw.cell_m, low_m, high_m, fine_m};
   draw.morph = kMorphByDistance;
   for (int row = 0; row < tiles.per_side(); ++row) {
     for (int column = 0; column < tiles.per_side(); ++column) {
       const core::Bounds box = tiling.box(column, row);
-      if (!visibility::intersects(view.frustum, box) || view.horizon.hides(box)) continue;
+      if (!all && (!visibility::intersects(view.frustum, box) || view.horizon.hides(box))) continue;
       draw.part = tiles.tile(column, row, tiling.form(column, row));
       draws.push_back(draw);
     }

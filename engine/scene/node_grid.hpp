@@ -20,7 +20,8 @@ class NodeGrid {
   std::uint8_t level() const { return level_; }
   std::uint32_t radius() const { return radius_; }
   std::uint32_t side() const { return 2 * radius_ + 1; }
-  // Requires that nothing outside the new window has an entity. At most max_radius().
+  // At most max_radius(). Nodes outside the new window are to be destroyed before anything asks for
+  // their place in it.
   void set_radius(std::uint32_t radius) { radius_ = radius; }
   std::uint32_t max_radius() const { return max_radius_; }
   visibility::NodeCoord centre() const { return centre_; }

@@ -15,14 +15,15 @@ namespace {
 class Drawing {
  public:
   Drawing(render::View shown, const Clock& clock, const Camera& camera, const WorldFacts& facts,
-          const View& view, float fine_m, const RenderQuery& entities, DrawLists& draws,
-          Counters& counters)
+          const View& view, float fine_m, bool shadows, const RenderQuery& entities,
+          DrawLists& draws, Counters& counters)
       : shown_(shown),
         clock_(clock),
         camera_(camera),
         facts_(facts),
         view_(view),
         fine_m_(fine_m),
+        shadows_(shadows),
         entities_(entities),
         draws_(draws),
         counters_(counters) {}
@@ -133,7 +134,8 @@ class Drawing {
     draw.debug_colour = colour_of(shown_, facts);
     draws_.meshes.push_back(mesh.handle);
     if (facts_.tiles && node.node.level == 0 && demand.drawn_level == 0)
-      return add_tiles(*facts_.tiles, view_, at.low_m, at.high_m, fine_m_, draw, draws_.terrain);
+      return add_tiles(*facts_.tiles, view_, at.low_m, at.high_m, fine_m_, shadows_, draw,
+                       draws_.terrain);
     // A mesh coarser than wanted has nothing to morph from.
     draw.morph = level.mesh_level != 0 && node.leaf && !node.fine ? node.morph : 0.0F;
     draws_.terrain.push_back(draw);
@@ -173,6 +175,7 @@ class Drawing {
   const WorldFacts& facts_;
   const View& view_;
   const float fine_m_;  // blocks nearer than this have their finest ground
+  const bool shadows_;  // of what is drawn, in the picture or not
   const RenderQuery& entities_;
   DrawLists& draws_;
   Counters& counters_;
@@ -191,7 +194,8 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
   for (const visibility::CutNode& node : view.cut.nodes)
     draws.entities.push_back(streaming.grids[node.node.level].entity_of(node.node.coord));
   const render::Morph morph = morph_of(streaming);
-  Drawing(input.view, clock, camera, facts, view, morph.to_m, entities, draws, counters)
+  const bool shadows = output.renderer != nullptr && output.renderer->casts_shadows();
+  Drawing(input.view, clock, camera, facts, view, morph.to_m, shadows, entities, draws, counters)
       .run(draws.entities);
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
   if (output.renderer == nullptr) return;

@@ -29,7 +29,7 @@ struct Settings {
   visibility::PlpMode plp_mode = visibility::PlpMode::kLayers;
   std::uint32_t modelers = 0;                 // 0: cores − 1, at least 1
   std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
-  double view_distance_m = 16'000;            // nothing farther away exists
+  double view_distance_m = 16'000;            // nothing farther away is drawn
   double max_error_pixels = 4.0;              // of the level of detail that is chosen
   double target_frame_ms = 0;                 // held by a larger error; 0: the error is fixed
   double max_error_factor = 4;                // so much larger at most

@@ -100,6 +100,8 @@ struct Streaming {
   std::vector<visibility::LevelDistances> distances;  // where nodes are split in this tick
   std::vector<visibility::NodeCoord> missing;         // most important last
   std::uint32_t ticks_since_listed = 0;               // the window, for what it lacks
+  std::uint32_t spread_ticks = 1;                     // over which what it lacked is created
+  std::size_t per_tick = 0;                           // so many nodes in each of them
   double listed_split_m = 0;  // of the coarsest level, when the window was last looked at
 };
 
@@ -148,7 +150,7 @@ struct Synthesis {
     synthesis::MeshHandle handle;
   };
   std::vector<Ready> ready;        // found in the cache in this tick
-  std::uint32_t spread_ticks = 1;  // over which what is new is asked for
+  std::uint32_t spread_ticks = 1;  // over which new nodes are created now
   bool settling = false;  // levels follow from the pose alone: not from what came first, or when
   float coarsening = 1;   // ≥ 1: how much the wanted error grows under memory pressure
 };

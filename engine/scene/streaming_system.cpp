@@ -194,6 +194,16 @@ void list_missing_nodes(const Window& window, const Camera& camera, const WorldF
   }
 }
 
+// What is new is there by the middle of the time until more of it is, if that goes on as before.
+void spread_missing(const Settings& settings, Streaming& streaming) {
+  const bool leapt = streaming.missing.size() > kLeapt;
+  streaming.spread_ticks =
+      leapt ? 1 : std::clamp(streaming.ticks_since_listed / 2, 1U, settings.streaming_ticks);
+  streaming.ticks_since_listed = 0;
+  const std::size_t ticks = streaming.spread_ticks;
+  streaming.per_tick = std::max(kFewestCreated, (streaming.missing.size() + ticks - 1) / ticks);
+}
+
 }  // namespace
 
 void streaming_system(const Settings& settings, const Camera& camera, const Quality& quality,
@@ -211,30 +221,25 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
       grid.set_radius(needed_radius(facts, settings, streaming, grid));
     }
     streaming.listed_split_m = reach;
-    // What is new is there, and asked for, by the middle of the time until more of it is.
-    synthesis.spread_ticks =
-        std::clamp(streaming.ticks_since_listed / 2, 1U, settings.streaming_ticks);
-    streaming.ticks_since_listed = 0;
     const Window window(settings, camera, facts, streaming);
     destroy_leaving_nodes(window, streaming, entities, *synthesis.cache, counters);
     list_missing_nodes(window, camera, facts, entities, streaming);
+    spread_missing(settings, streaming);
   }
   ++streaming.ticks_since_listed;
   // All of it for lazy evaluation, in every frame, and before the first frame.
-  const bool all = settings.paradigm == Paradigm::kLazyEvaluation || synthesis.settling ||
-                   streaming.missing.size() > kLeapt;
-  const std::size_t count =
-      all ? streaming.missing.size()
-          : std::max(kFewestCreated, streaming.missing.size() / synthesis.spread_ticks);
+  const bool all = settings.paradigm == Paradigm::kLazyEvaluation || synthesis.settling;
+  const std::size_t count = all ? streaming.missing.size() : streaming.per_tick;
   const double start_s = core::monotonic_seconds();
   std::vector<world::Placement> scratch;
-  while (!streaming.missing.empty() && counters.nodes_created < count) {
+  for (std::size_t created = 0; created < count && !streaming.missing.empty(); ++created) {
     create_node(settings, facts, daylight, streaming.missing.back(), scratch, streaming, entities);
     streaming.missing.pop_back();
     ++counters.nodes_created;
     if (settings.paradigm == Paradigm::kLazyEvaluation) continue;
     if ((core::monotonic_seconds() - start_s) * 1000.0 > settings.streaming_budget_ms) break;
   }
+  synthesis.spread_ticks = streaming.missing.empty() ? 1 : streaming.spread_ticks;
 }
 
 }  // namespace psygen::scene

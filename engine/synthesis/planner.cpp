@@ -8,10 +8,6 @@
 #include "engine/core/clock.hpp"
 
 namespace psygen::synthesis {
-namespace {
-constexpr std::size_t kFewestNew = 48;  // invisible ones that a plan takes whatever the share
-}
-
 // Where the unclaimed request of this mesh is in reclaimed_, or kNone.
 std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
   const auto it = std::lower_bound(
@@ -20,25 +16,26 @@ std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
   return it != by_slot_.end() && reclaimed_[*it].handle == handle ? *it : kNone;
 }
 
-// Keeps the `count` of new_ that would be served first.
-void Planner::keep_first(std::size_t count, Policy policy, PlanReport& report) {
-  if (new_.size() <= count) return;
-  const auto last = new_.begin() + static_cast<std::ptrdiff_t>(count);
-  std::nth_element(new_.begin(), last, new_.end(), [policy](const Item& a, const Item& b) {
+// Keeps the `count` of new_[first …] that would be served first.
+void Planner::keep_first(std::size_t first, std::size_t count, Policy policy, PlanReport& report) {
+  if (new_.size() - first <= count) return;
+  const auto begin = new_.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto last = begin + static_cast<std::ptrdiff_t>(count);
+  std::nth_element(begin, last, new_.end(), [policy](const Item& a, const Item& b) {
     return served_before(policy, a.order, b.order);
   });
-  report.deferred += static_cast<std::uint32_t>(new_.size() - count);
+  report.deferred += static_cast<std::uint32_t>(new_.end() - last);
   new_.erase(last, new_.end());
 }
 
 void Planner::leave_for_later(const PlanLimits& limits, Policy policy, PlanReport& report) {
   if (policy == Policy::kShortest || policy == Policy::kLongest) return;  // led by time
-  const auto visible = static_cast<std::size_t>(std::ranges::count_if(
-      new_, [](const Item& item) { return is_visible(item.order.rank.group()); }));
-  const auto share =
-      static_cast<std::size_t>(limits.new_share * static_cast<double>(new_.size() - visible));
-  keep_first(std::min<std::size_t>(limits.max_new, visible + std::max(share, kFewestNew)), policy,
+  const auto hidden = std::partition(new_.begin(), new_.end(), [](const Item& item) {
+    return is_visible(item.order.rank.group());
+  });
+  keep_first(static_cast<std::size_t>(hidden - new_.begin()), limits.max_new_hidden, policy,
              report);
+  keep_first(0, limits.max_new, policy, report);
 }
 
 // Fills items_ with the wants that need a request, in serving order, and marks what is kept.

@@ -37,9 +37,9 @@ struct PlanLimits {
   // New reservations in one plan. Where the policy is led by rank, no others are looked at: each
   // costs some microseconds (sizes, prediction, room), and wants may come by the thousand.
   std::uint32_t max_new = UINT32_MAX;
-  // Of those that are not visible at most this share in one plan, but a few dozen: what comes in a
-  // flood, as when new ground comes near, is spread over some ticks. In (0, 1].
-  double new_share = 1;
+  // Of these, what is not visible: what comes in a flood, as when new ground comes near, can be
+  // spread over some ticks without putting off what is seen.
+  std::uint32_t max_new_hidden = UINT32_MAX;
 };
 
 struct PlanReport {
@@ -75,7 +75,7 @@ class Planner {
   void sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
                 const PlanLimits& limits, Policy policy, PlanReport& report);
   void leave_for_later(const PlanLimits& limits, Policy policy, PlanReport& report);
-  void keep_first(std::size_t count, Policy policy, PlanReport& report);
+  void keep_first(std::size_t first, std::size_t count, Policy policy, PlanReport& report);
   std::uint32_t reclaimed_position(MeshHandle handle) const;
   void give_back_unwanted(GeometryCache& cache, PlanReport& report);
   bool give_back_last(GeometryCache& cache, PlanReport& report);

@@ -87,6 +87,9 @@ class MergedType final : public models::ModelType {
   }
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
   int level_count() const override { return kDetails; }
+  int level_count_of(const Parameters& p) const override {
+    return plan(p, 0).form_level == plan(p, 1).form_level ? 1 : kDetails;
+  }
   double level_error_m(const Parameters& p, int level) const override {
     const double relief_m = world_->terrain.real(models::kTerrainReliefM);
     const double height_m = plan(p, 0).box.max.y - relief_m;

@@ -174,7 +174,7 @@ TEST(Presets, have_names_that_are_read_back) {
     EXPECT_EQ(to_string(preset_from(name).value()), name);
   EXPECT_FALSE(preset_from("best"));
   View view = View::kNormal;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 7; ++i) {
     EXPECT_EQ(view_from(to_string(view)).value(), view);
     view = next_view(view);
   }

@@ -1,4 +1,4 @@
-// The sky of software devices, a dome of few corners, against that which is found for each pixel.
+// The sky of preset low, a dome of few corners, against that which is found for each pixel.
 #include <gtest/gtest.h>
 
 #include <algorithm>
