@@ -150,8 +150,10 @@ TEST(Scene, AmplifyingCreatesAllNodesBeforeTheFirstFrame) {
   Settings settings = small_settings();
   settings.paradigm = Paradigm::kDataAmplification;
   settings.streaming_budget_ms = 0;
+  settings.budget_bytes = 1ull << 30;
   const auto scene = make_scene(settings);
-  ASSERT_TRUE(scene->amplify(pose_at(256, 256)));
+  const auto made = scene->amplify(pose_at(256, 256));
+  ASSERT_TRUE(made) << made.error().message;
   EXPECT_TRUE(scene->state().streaming.missing.empty());
   EXPECT_GT(nodes_of(*scene).size(), 20u);
 }
