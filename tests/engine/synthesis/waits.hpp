@@ -9,8 +9,6 @@
 
 namespace psygen::synthesis::testing {
 
-// False where a sanitizer has replaced the same functions: nothing is counted.
-bool waits_are_counted();
 std::uint64_t waits_of_this_thread();
 
 }  // namespace psygen::synthesis::testing
