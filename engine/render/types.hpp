@@ -152,7 +152,7 @@ struct TerrainDraw {
   float cell_m = 1.0F;                               // between two grid lines
   float height_min_m = 0.0F, height_range_m = 1.0F;  // what unorm16 heights span
   float skirt_m = 0.0F;                              // how far skirt vertices hang down
-  float morph = 0.0F;    // 0 fine heights … 1 coarse heights; < 0: FrameInput::morph
+  float morph = 0.0F;    // 0 fine heights … 1 coarse heights; kMorphByDistance: FrameInput::morph
   core::IndexPart part;  // of the shared list; of 0 indices: all of it
   float side_m = 0.0F;   // of the square that the grid covers; 0: as large as a grid can be
   std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
@@ -166,6 +166,7 @@ struct Line {
   glm::vec3 colour{1.0F};  // as shown
 };
 
+inline constexpr float kMorphByDistance = -1.0F;
 inline constexpr std::size_t kMaxLines = 1 << 16;
 
 // Ground whose morph follows from the distance of each vertex, seen from above.

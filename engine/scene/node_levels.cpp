@@ -125,8 +125,15 @@ std::uint32_t window_radius(std::span<const NodeLevel> levels, const Settings& s
     farthest[k] = {split_m, kMergeFactor * split_m, split_m};
     below_m = farthest[k].merge_m + std::numbers::sqrt2 * levels[k].size_m;
   }
-  const double reach_m = existing_distance_m(levels, settings, level, farthest);
-  // A parent that begins there may reach one more node beyond.
+  return window_radius(levels, settings, level, farthest);
+}
+
+std::uint32_t window_radius(std::span<const NodeLevel> levels, const Settings& settings,
+                            std::size_t level,
+                            std::span<const visibility::LevelDistances> distances) {
+  const double reach_m = existing_distance_m(levels, settings, level, distances);
+  // A parent that begins there may reach one more node beyond, and the camera stands somewhere in
+  // its own node.
   return static_cast<std::uint32_t>(std::ceil(reach_m / levels[level].size_m)) + 2;
 }
 

@@ -50,5 +50,9 @@ double existing_distance_m(std::span<const NodeLevel> levels, const Settings& se
 // Nodes to each side of the camera's that can exist at most.
 std::uint32_t window_radius(std::span<const NodeLevel> levels, const Settings& settings,
                             std::size_t level);
+// The same where nodes are split at these distances.
+std::uint32_t window_radius(std::span<const NodeLevel> levels, const Settings& settings,
+                            std::size_t level,
+                            std::span<const visibility::LevelDistances> distances);
 
 }  // namespace psygen::scene

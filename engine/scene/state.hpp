@@ -100,8 +100,7 @@ struct Streaming {
   std::vector<visibility::LevelDistances> distances;  // where nodes are split in this tick
   std::vector<visibility::NodeCoord> missing;         // most important last
   std::uint32_t ticks_since_listed = 0;               // the window, for what it lacks
-  std::uint32_t spread_ticks = 1;                     // over which what it lacked is created
-  std::size_t per_tick = 0;                           // so many nodes in each of them
+  std::size_t per_tick = 0;                           // of what it lacked, nodes created in a tick
   double listed_split_m = 0;  // of the coarsest level, when the window was last looked at
 };
 

@@ -107,13 +107,8 @@ double distance_m(const Camera& camera, const WorldFacts& facts, const visibilit
 // How far windows must reach so that all nodes that may exist, or be wanted, lie in them.
 std::uint32_t needed_radius(const WorldFacts& facts, const Settings& settings,
                             const Streaming& streaming, const NodeGrid& grid) {
-  const double reach_m =
-      existing_distance_m(facts.levels, settings, grid.level(), streaming.distances);
-  // A parent that begins there may reach one more node beyond, and the camera stands somewhere in
-  // its own node.
-  const auto radius =
-      static_cast<std::uint32_t>(std::ceil(reach_m / facts.levels[grid.level()].size_m)) + 2;
-  return std::min(radius, grid.max_radius());
+  return std::min(window_radius(facts.levels, settings, grid.level(), streaming.distances),
+                  grid.max_radius());
 }
 
 bool windows_too_small(const WorldFacts& facts, const Settings& settings,
@@ -195,13 +190,14 @@ void list_missing_nodes(const Window& window, const Camera& camera, const WorldF
 }
 
 // What is new is there by the middle of the time until more of it is, if that goes on as before.
-void spread_missing(const Settings& settings, Streaming& streaming) {
+// Returns over how many ticks it is created.
+std::uint32_t spread_missing(const Settings& settings, Streaming& streaming) {
   const bool leapt = streaming.missing.size() > kLeapt;
-  streaming.spread_ticks =
+  const std::uint32_t ticks =
       leapt ? 1 : std::clamp(streaming.ticks_since_listed / 2, 1U, settings.streaming_ticks);
   streaming.ticks_since_listed = 0;
-  const std::size_t ticks = streaming.spread_ticks;
   streaming.per_tick = std::max(kFewestCreated, (streaming.missing.size() + ticks - 1) / ticks);
+  return ticks;
 }
 
 }  // namespace
@@ -224,7 +220,7 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
     const Window window(settings, camera, facts, streaming);
     destroy_leaving_nodes(window, streaming, entities, *synthesis.cache, counters);
     list_missing_nodes(window, camera, facts, entities, streaming);
-    spread_missing(settings, streaming);
+    synthesis.spread_ticks = spread_missing(settings, streaming);
   }
   ++streaming.ticks_since_listed;
   // All of it for lazy evaluation, in every frame, and before the first frame.
@@ -239,7 +235,7 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
     if (settings.paradigm == Paradigm::kLazyEvaluation) continue;
     if ((core::monotonic_seconds() - start_s) * 1000.0 > settings.streaming_budget_ms) break;
   }
-  synthesis.spread_ticks = streaming.missing.empty() ? 1 : streaming.spread_ticks;
+  if (streaming.missing.empty()) synthesis.spread_ticks = 1;
 }
 
 }  // namespace psygen::scene

@@ -32,9 +32,10 @@ glm::vec3 corner_of(const WorldFacts& facts, const Camera& camera,
                                   facts.world.block_size_m()));
 }
 
-float distance_to(const core::Bounds& box) {
+// Squared, of the nearest point of a box.
+float distance_squared_to(const core::Bounds& box) {
   const glm::vec3 nearest = glm::clamp(glm::vec3(0.0F), box.min, box.max);
-  return glm::length(nearest);
+  return glm::dot(nearest, nearest);
 }
 
 visibility::Frustum frustum_of(const core::CameraPose& pose, const core::Projection& projection) {
@@ -43,14 +44,16 @@ visibility::Frustum frustum_of(const core::CameraPose& pose, const core::Project
 
 // The boxes of all cells of all windows: as far as the ground could reach at most where there is no
 // node, or none with a mesh.
-void find_bounds(const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                 const VisibilityQuery& nodes, View& view) {
+void find_bounds(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                 const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
+  const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
   view.levels.resize(facts.levels.size());
   for (const NodeGrid& grid : streaming.grids) {
     const NodeLevel& level = facts.levels[grid.level()];
     std::vector<core::Bounds>& bounds = view.levels[grid.level()].bounds;
     bounds.clear();
-    view.levels[grid.level()].solidity.assign(std::size_t{grid.side()} * grid.side(), 0.0F);
+    if (solid)
+      view.levels[grid.level()].solidity.assign(std::size_t{grid.side()} * grid.side(), 0.0F);
     const glm::vec3 first = corner_of(facts, camera, grid.node_at(0, 0));
     const auto size = static_cast<float>(level.size_m);
     for (std::uint32_t row = 0; row < grid.side(); ++row) {
@@ -64,7 +67,7 @@ void find_bounds(const Camera& camera, const WorldFacts& facts, const Streaming&
   nodes.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> rows) {
     for (const Node& node : rows) {
       const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
-      view.levels[node.at.level].solidity[cell] = node.solidity;
+      if (solid) view.levels[node.at.level].solidity[cell] = node.solidity;
       view.levels[node.at.level].bounds[cell] =
           node_bounds(facts, corner_of(facts, camera, node.at), facts.levels[node.at.level].size_m,
                       node.low_m, node.high_m);
@@ -84,12 +87,6 @@ void project_layers(const Settings& settings, const NodeGrid& grid,
   visibility::run_plp(input, level.plp);
   level.deadlines.assign(level.bounds.size(), std::numeric_limits<float>::infinity());
   level.chosen.assign(level.bounds.size(), 0);
-}
-
-// Squared, of the nearest point of a box.
-float distance_squared_to(const core::Bounds& box) {
-  const glm::vec3 nearest = glm::clamp(glm::vec3(0.0F), box.min, box.max);
-  return glm::dot(nearest, nearest);
 }
 
 // What a predicted camera sees.
@@ -230,7 +227,7 @@ void write_visibility(const View& view, const Streaming& streaming, const Visibi
       const LevelView& level = view.levels[at.level];
       const std::size_t cell = streaming.grids[at.level].window_index(at.coord);
       Visibility& visibility = visibilities[i];
-      visibility.distance_m = distance_to(level.bounds[cell]);
+      visibility.distance_m = std::sqrt(distance_squared_to(level.bounds[cell]));
       visibility.layer = static_cast<std::uint16_t>(
           std::min<std::uint32_t>(level.plp.key[cell] / visibility::kKeysPerLayer, UINT16_MAX));
       visibility.in_view = level.chosen[cell] == kInView ? 1 : 0;
@@ -275,7 +272,7 @@ void list_others(const Streaming& streaming, const VisibilityQuery& nodes, View&
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                        const Streaming& streaming, const Synthesis& synthesis,
                        VisibilityQuery nodes, View& view, Counters& counters) {
-  find_bounds(camera, facts, streaming, nodes, view);
+  find_bounds(settings, camera, facts, streaming, nodes, view);
   view.frustum = frustum_of(camera.pose, camera.projection);
   for (const NodeGrid& grid : streaming.grids)
     project_layers(settings, grid, view.frustum, view.levels[grid.level()]);

@@ -25,9 +25,11 @@ TEST(Paradigms, AnAmplifiedRegionNeedsNoSynthesisAfterwards) {
   settings.paradigm = Paradigm::kDataAmplification;
   settings.view_distance_m = 64;
   settings.budget_bytes = 512ull << 20;
+  settings.streaming_budget_ms = 0;  // all nodes come, however little time a tick has for them
   const auto scene = make_scene(settings);
   const auto meshes = scene->amplify(pose_at(256, 256));
   ASSERT_TRUE(meshes) << meshes.error().message;
+  EXPECT_TRUE(scene->state().streaming.missing.empty());
   EXPECT_GT(*meshes, 1000u);
   for (int i = 0; i < 4; ++i) {
     tick_at(*scene, pose_at(256, 256, 1.6 * i));

@@ -145,19 +145,6 @@ TEST(Scene, NewGroundIsSpreadOverTicksAndAllOfItComes) {
   EXPECT_TRUE(state.streaming.missing.empty());
 }
 
-// However little time a tick has for creating nodes.
-TEST(Scene, AmplifyingCreatesAllNodesBeforeTheFirstFrame) {
-  Settings settings = small_settings();
-  settings.paradigm = Paradigm::kDataAmplification;
-  settings.streaming_budget_ms = 0;
-  settings.budget_bytes = 1ull << 30;
-  const auto scene = make_scene(settings);
-  const auto made = scene->amplify(pose_at(256, 256));
-  ASSERT_TRUE(made) << made.error().message;
-  EXPECT_TRUE(scene->state().streaming.missing.empty());
-  EXPECT_GT(nodes_of(*scene).size(), 20u);
-}
-
 TEST(Scene, AtTheEdgeOfTheWorldThereIsNothingBeyond) {
   const auto scene = make_scene(small_settings());
   scene->settle(pose_at(0, 0));
