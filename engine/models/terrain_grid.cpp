@@ -63,20 +63,45 @@ std::uint32_t TerrainGrid::border_vertex(std::uint32_t k) const {
   }
 }
 
+int TerrainGrid::tile_step() const {
+  return stride == 1 ? terrain_strides(size)[1] : 1;
+}
+int TerrainGrid::tiles_per_side() const {
+  return std::min((n - 1) / tile_step(), kMostTilesPerSide);
+}
+int TerrainGrid::tile_line(int i) const {
+  return (n - 1) / tile_step() * i / tiles_per_side() * tile_step();
+}
+
+core::IndexPart TerrainGrid::tile(int column, int row) const {
+  PSYGEN_ASSERT(column >= 0 && column < tiles_per_side() && row >= 0 && row < tiles_per_side(),
+                "the grid has such a tile");
+  const int above = tile_line(row), deep = tile_line(row + 1) - above;
+  const int left = tile_line(column), wide = tile_line(column + 1) - left;
+  return {static_cast<std::uint32_t>(6 * (above * (n - 1) + deep * left)),
+          static_cast<std::uint32_t>(6 * deep * wide)};
+}
+
+core::IndexPart TerrainGrid::skirt(int side) const {
+  PSYGEN_ASSERT(side >= 0 && side < 4, "there are four sides");
+  const auto along = static_cast<std::uint32_t>(6 * (n - 1));
+  return {3 * surface_triangles() + static_cast<std::uint32_t>(side) * along, along};
+}
+
 void TerrainGrid::write_indices(std::span<std::uint16_t> out) const {
   PSYGEN_CHECK(out.size() == triangles() * 3, "the span has exactly the size of the list");
-  constexpr std::uint32_t kStrip = 16;
-  const auto cells = static_cast<std::uint32_t>(n - 1);
   const auto width = static_cast<std::uint32_t>(n);
   std::size_t at = 0;
   const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     for (const std::uint32_t v : {a, b, c})
       out[at++] = static_cast<std::uint16_t>(v);
   };
-  for (std::uint32_t x0 = 0; x0 < cells; x0 += kStrip) {
-    for (std::uint32_t z = 0; z < cells; ++z) {
-      for (std::uint32_t x = x0; x < std::min(x0 + kStrip, cells); ++x) {
-        const std::uint32_t v = z * width + x;
+  const int tiles = tiles_per_side() * tiles_per_side();
+  for (int tile = 0; tile < tiles; ++tile) {
+    const int column = tile % tiles_per_side(), row = tile / tiles_per_side();
+    for (int z = tile_line(row); z < tile_line(row + 1); ++z) {
+      for (int x = tile_line(column); x < tile_line(column + 1); ++x) {
+        const auto v = static_cast<std::uint32_t>(z * n + x);
         triangle(v, v + width, v + 1);
         triangle(v + 1, v + width, v + width + 1);
       }

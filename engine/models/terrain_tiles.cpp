@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "engine/core/assert.hpp"
-#include "engine/models/terrain_grid.hpp"
 
 namespace psygen::models {
 
@@ -51,28 +50,21 @@ class Writer {
 
 }  // namespace
 
-TerrainTiles::TerrainTiles(int size)
-    : size_(size),
-      stride_(TerrainGrid(size, 1).stride),
-      per_side_(std::min((size - 1) / stride_, kMostPerSide)),
-      skirt_indices_(TerrainGrid(size, 0).border_vertices() * 6) {
-  const int coarse = (size_ - 1) / stride_;
-  for (int i = 0; i <= per_side_; ++i)
-    first_cell_[static_cast<std::size_t>(i)] = coarse * i / per_side_ * stride_;
+TerrainTiles::TerrainTiles(int size) : grid_(size, 0), stride_(TerrainGrid(size, 1).stride) {
+  const int side = grid_.tiles_per_side();
   std::uint32_t first = 0, at = 0;
   for (const Form form : {Form::kFine, Form::kRimmed, Form::kCoarse}) {
-    for (int row = 0; row < per_side_; ++row) {
-      for (int column = 0; column < per_side_; ++column) {
-        firsts_[at++] = first;
-        first += index_count_of(rect_of(column, row), form);
-      }
+    for (int tile = 0; tile < side * side; ++tile) {
+      firsts_[at++] = first;
+      first += index_count_of(rect_of(tile % side, tile / side), form);
     }
   }
   firsts_[at] = first;
 }
 
 TerrainTiles::Rect TerrainTiles::rect_of(int column, int row) const {
-  return {first_cell(column), first_cell(row), first_cell(column + 1), first_cell(row + 1)};
+  return {grid_.tile_line(column), grid_.tile_line(row), grid_.tile_line(column + 1),
+          grid_.tile_line(row + 1)};
 }
 
 std::uint32_t TerrainTiles::index_count_of(const Rect& rect, Form form) const {
@@ -84,38 +76,44 @@ std::uint32_t TerrainTiles::index_count_of(const Rect& rect, Form form) const {
 }
 
 core::IndexPart TerrainTiles::tile(int column, int row, Form form) const {
-  PSYGEN_ASSERT(column >= 0 && column < per_side_ && row >= 0 && row < per_side_,
+  const int side = grid_.tiles_per_side();
+  PSYGEN_ASSERT(column >= 0 && column < side && row >= 0 && row < side,
                 "the block has such a tile");
-  const std::uint32_t at = static_cast<std::uint32_t>(form) * tiles() +
-                           static_cast<std::uint32_t>(row * per_side_ + column);
-  return {tile_first(at), tile_first(at + 1) - tile_first(at)};
+  const std::uint32_t at =
+      static_cast<std::uint32_t>(form) * tiles() + static_cast<std::uint32_t>(row * side + column);
+  return {firsts_[at], firsts_[at + 1] - firsts_[at]};
+}
+
+core::IndexPart TerrainTiles::skirt(int side) const {
+  const core::IndexPart part = grid_.skirt(side);
+  return {firsts_[kForms * tiles()] + part.first - 3 * grid_.surface_triangles(), part.count};
 }
 
 void TerrainTiles::write_indices(std::span<std::uint16_t> out) const {
   PSYGEN_CHECK(out.size() == index_count(), "the span has exactly the size of the list");
-  for (const Form form : {Form::kFine, Form::kRimmed, Form::kCoarse}) {
-    const int step = form == Form::kFine ? 1 : stride_;
+  std::vector<std::uint16_t> fine(std::size_t{grid_.triangles()} * 3);
+  grid_.write_indices(fine);
+  const auto surface = fine.begin() + 3 * grid_.surface_triangles();
+  std::copy(fine.begin(), surface, out.begin());
+  std::copy(surface, fine.end(), out.begin() + skirt(0).first);
+  const int side = grid_.tiles_per_side();
+  for (const Form form : {Form::kRimmed, Form::kCoarse}) {
     const bool rim = form == Form::kRimmed;
-    for (int row = 0; row < per_side_; ++row) {
-      for (int column = 0; column < per_side_; ++column) {
-        const Rect r = rect_of(column, row);
-        const core::IndexPart part = tile(column, row, form);
-        Writer writer(size_, out.subspan(part.first, part.count));
-        for (int z = r.z0; z < r.z1; z += step) {
-          for (int x = r.x0; x < r.x1; x += step) {
-            const Writer::Place near{x, z}, down{x, z + step}, right{x + step, z},
-                far{x + step, z + step};
-            writer.half_cell(near, down, rim && x == r.x0, right, rim && z == r.z0, step);
-            writer.half_cell(far, right, rim && far.x == r.x1, down, rim && far.z == r.z1, step);
-          }
+    for (int tile_at = 0; tile_at < side * side; ++tile_at) {
+      const int column = tile_at % side, row = tile_at / side;
+      const Rect r = rect_of(column, row);
+      const core::IndexPart part = tile(column, row, form);
+      Writer writer(grid_.size, out.subspan(part.first, part.count));
+      for (int z = r.z0; z < r.z1; z += stride_) {
+        for (int x = r.x0; x < r.x1; x += stride_) {
+          const Writer::Place near{x, z}, down{x, z + stride_}, right{x + stride_, z},
+              far{x + stride_, z + stride_};
+          writer.half_cell(near, down, rim && x == r.x0, right, rim && z == r.z0, stride_);
+          writer.half_cell(far, right, rim && far.x == r.x1, down, rim && far.z == r.z1, stride_);
         }
       }
     }
   }
-  const TerrainGrid grid(size_, 0);
-  std::vector<std::uint16_t> whole(std::size_t{grid.triangles()} * 3);
-  grid.write_indices(whole);
-  std::copy_n(whole.end() - skirt_indices_, skirt_indices_, out.begin() + skirts().first);
 }
 
 }  // namespace psygen::models

@@ -1,7 +1,7 @@
-// The finest mesh of a block in squares of cells ("tiles"), so that near the camera a part of a
-// block is drawn finely and the rest of it with the cells of the next coarser level. One index list
-// over the vertices of level 0, of which parts are drawn. Which ones is the caller's choice; the
-// vertices are terrain.cpp's.
+// The finest mesh of a block in tiles (terrain_grid.hpp) of two kinds, so that near the camera a
+// part of a block is drawn finely and the rest of it with the cells of the next coarser level. One
+// index list over the vertices of level 0, of which parts are drawn. Which ones is the caller's
+// choice; the vertices are terrain.cpp's.
 #pragma once
 
 #include <array>
@@ -9,21 +9,17 @@
 #include <span>
 
 #include "engine/core/geometry_memory.hpp"
+#include "engine/models/terrain_grid.hpp"
 
 namespace psygen::models {
 
 class TerrainTiles {
  public:
-  static constexpr int kMostPerSide = 3;
-
   // Of blocks with `size` vertices a side, kMinTerrainSize … kMaxTerrainSize.
   explicit TerrainTiles(int size);
 
-  // Tiles along each side of the block: 3, or as many as the coarser level has cells.
-  int per_side() const { return per_side_; }
-  // Where column or row i begins, in cells from the block's corner; of per_side(), where the block
-  // ends.
-  int first_cell(int i) const { return first_cell_[static_cast<std::size_t>(i)]; }
+  // Of the vertices, and of the tiles in their fine form.
+  const TerrainGrid& grid() const { return grid_; }
 
   enum class Form : std::uint8_t {
     kFine,    // every cell
@@ -32,10 +28,10 @@ class TerrainTiles {
     kCoarse,  // cells of the coarser level
   };
   core::IndexPart tile(int column, int row, Form form) const;
-  // All four skirts of the block, as in TerrainGrid.
-  core::IndexPart skirts() const { return {tile_first(tiles() * kForms), skirt_indices_}; }
+  // The skirt of a side, as in TerrainGrid.
+  core::IndexPart skirt(int side) const;
 
-  std::uint32_t index_count() const { return skirts().first + skirt_indices_; }
+  std::uint32_t index_count() const { return skirt(3).first + skirt(3).count; }
   // Writes index_count() indices, counter-clockwise seen from above; cells of either size are cut
   // from (x, z + 1) to (x + 1, z).
   void write_indices(std::span<std::uint16_t> out) const;
@@ -44,16 +40,16 @@ class TerrainTiles {
   static constexpr std::uint32_t kForms = 3;
   struct Rect;  // of cells
 
-  std::uint32_t tiles() const { return static_cast<std::uint32_t>(per_side_ * per_side_); }
+  std::uint32_t tiles() const {
+    return static_cast<std::uint32_t>(grid_.tiles_per_side() * grid_.tiles_per_side());
+  }
   Rect rect_of(int column, int row) const;
   std::uint32_t index_count_of(const Rect& rect, Form form) const;
-  std::uint32_t tile_first(std::uint32_t tile_form) const { return firsts_[tile_form]; }
 
-  int size_, stride_;  // vertices a side; cells along the side of one of the coarser level
-  int per_side_;
-  std::array<int, kMostPerSide + 1> first_cell_{};
-  std::array<std::uint32_t, kForms * kMostPerSide * kMostPerSide + 1> firsts_{};
-  std::uint32_t skirt_indices_;
+  TerrainGrid grid_;
+  int stride_;  // cells along the side of one of the coarser level
+  // Where each tile in each form begins; then where the skirts do.
+  std::array<std::uint32_t, kForms * kMostTilesPerSide * kMostTilesPerSide + 1> firsts_{};
 };
 
 }  // namespace psygen::models

@@ -26,6 +26,8 @@ constexpr std::uint32_t kRankTurns = 32;
 // New meshes out of view that are reserved in a tick at least, if so many are wanted, while new
 // nodes come.
 constexpr std::uint32_t kFewestHidden = 48;
+// How far the wind moves a vertex at most (shaders/model.vert).
+constexpr float kSwayM = 0.15F;
 // So long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
 
@@ -76,13 +78,12 @@ class Chooser {
   bool consider(const MeshEntity& row, const NodeView& node, bool is_ground) {
     const Placed& placed = row.placed;
     Demand& demand = row.demand;
-    const glm::vec3 center = node.corner + placed.position + placed.box_center;
+    const glm::vec3 foot = node.corner + placed.position;
     const bool near = is_ground || node.level > 0;  // as near as the node itself
-    const float distance_m =
-        near ? node.visibility->distance_m
-             : std::max(glm::length(center) - placed.radius_m, camera_.projection.near_m);
-    const core::Bounds box{center - placed.box_half_extent, center + placed.box_half_extent};
-    const bool in_view = node.in_view && (near || is_in_view(box));
+    const float distance_m = near ? node.visibility->distance_m
+                                  : std::max(glm::length(foot + placed.middle) - placed.radius_m,
+                                             camera_.projection.near_m);
+    const bool in_view = node.in_view && (near || is_in_view(box_of(row, foot)));
     demand.wanted_level = is_ground ? ground_level(row.detail, demand, node)
                                     : wanted_level(placed, row.detail, demand, distance_m, node);
     in_view ? note_in_view(demand, node.leaf) : note_out_of_view(demand);
@@ -97,6 +98,15 @@ class Chooser {
   }
 
  private:
+  // Around what is drawn, or all that could be. Relative to the camera.
+  static core::Bounds box_of(const MeshEntity& row, const glm::vec3& foot) {
+    const Placed& placed = row.placed;
+    if (row.demand.drawn_level != kNoLevel)
+      return {foot + row.mesh.tight.min - kSwayM, foot + row.mesh.tight.max + kSwayM};
+    const glm::vec3 center = foot + placed.box_center;
+    return {center - placed.box_half_extent, center + placed.box_half_extent};
+  }
+
   bool is_in_view(const core::Bounds& box) const {
     return visibility::intersects(view_.frustum, box) && !view_.horizon.hides(box);
   }

@@ -53,9 +53,11 @@ struct Placed {
   glm::vec3 position{0.0F};
   glm::vec3 box_center{0.0F};
   glm::vec3 box_half_extent{0.0F};
+  // The sphere around nearly everything of its mesh, from its foot: how near it is, how large.
+  glm::vec3 middle{0.0F};
   float radius_m = 0;
 };
-static_assert(sizeof(Placed) == 48);
+static_assert(sizeof(Placed) == 60);
 
 // Geometric error in metres of each level of detail.
 struct Detail {
@@ -79,8 +81,9 @@ struct Mesh {
   core::GeometryRange range;
   synthesis::MeshHandle handle;
   std::uint32_t shared_indices = 0;  // the renderer's name of the index list, if it is shared
+  core::Bounds tight;                // of its vertices, from the foot
 };
-static_assert(sizeof(Mesh) == 44);
+static_assert(sizeof(Mesh) == 68);
 
 // What is wanted for an entity and what has been done about it. Changes every tick.
 struct Demand {

@@ -3,7 +3,6 @@
 #include <array>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 
 namespace psygen::scene {
 namespace {
@@ -24,11 +23,39 @@ class FineTiles {
   }
 
  private:
-  static constexpr std::size_t kWide = models::TerrainTiles::kMostPerSide + 2;
+  static constexpr std::size_t kWide = models::kMostTilesPerSide + 2;
   static std::size_t place(int column, int row) {
     return static_cast<std::size_t>(row + 1) * kWide + static_cast<std::size_t>(column + 1);
   }
   std::array<bool, kWide * kWide> fine_{};
+};
+
+// Parts of one index list as draws, one for those that follow each other.
+class Parts {
+ public:
+  Parts(const render::TerrainDraw& draw, std::vector<render::TerrainDraw>& draws)
+      : draw_(draw), draws_(draws) {
+    draw_.part = {};
+  }
+  ~Parts() { flush(); }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  void add(core::IndexPart part) {
+    if (part.first != draw_.part.first + draw_.part.count) {
+      flush();
+      draw_.part = {part.first, 0};
+    }
+    draw_.part.count += part.count;
+  }
+
+ private:
+  void flush() {
+    if (draw_.part.count > 0) draws_.push_back(draw_);
+  }
+
+  render::TerrainDraw draw_;
+  std::vector<render::TerrainDraw>& draws_;
 };
 
 // Seen from above.
@@ -37,34 +64,84 @@ float distance_m(const core::Bounds& box) {
   return glm::length(glm::vec2(nearest.x, nearest.z));
 }
 
+bool can_be_seen(const core::Bounds& box, const View& view) {
+  return visibility::intersects(view.frustum, box) && !view.horizon.hides(box);
+}
+
+std::uint32_t bit(int tile) {
+  return 1U << static_cast<unsigned>(tile);
+}
+
+// The skirts that show their outside: with them a gap beside a tile that is drawn is closed.
+template <class Grid>
+void add_skirts(const NodeTiles& tiles, std::uint32_t in_view, const Grid& grid, Parts& parts) {
+  const int side = tiles.grid.tiles_per_side();
+  const core::Bounds first = tiles.box(0, 0), last = tiles.box(side - 1, side - 1);
+  const std::array faces{first.min.z > 0, last.max.x < 0, last.max.z<0, first.min.x> 0};
+  for (int i = 0; i < 4; ++i) {
+    std::uint32_t along = 0;
+    for (int k = 0; k < side; ++k)
+      along |=
+          bit(i % 2 == 0 ? (i == 0 ? 0 : side - 1) * side + k : k * side + (i == 1 ? side - 1 : 0));
+    if (faces[static_cast<std::size_t>(i)] && (along & in_view) != 0) parts.add(grid.skirt(i));
+  }
+}
+
 }  // namespace
 
 render::Morph morph_of(const Streaming& streaming) {
-  const visibility::LevelDistances& blocks = streaming.distances[0];
-  return {static_cast<float>(blocks.morph_m), static_cast<float>(blocks.split_m)};
+  const visibility::LevelDistances& fine = streaming.distances[0];
+  return {static_cast<float>(fine.morph_m), static_cast<float>(fine.split_m)};
 }
 
-void add_tiles(const models::TerrainTiles& tiles, const View& view, float low_m, float high_m,
-               float fine_m, bool all, render::TerrainDraw draw,
-               std::vector<render::TerrainDraw>& draws) {
-  draw.morph = render::kMorphByDistance;
-  const int side = tiles.per_side();
-  const auto box_of = [&](int column, int row) {
-    const auto line = [&](int i) { return static_cast<float>(tiles.first_cell(i)) * draw.cell_m; };
-    return core::Bounds{draw.origin + glm::vec3(line(column), low_m, line(row)),
-                        draw.origin + glm::vec3(line(column + 1), high_m, line(row + 1))};
-  };
-  FineTiles fine;
+core::Bounds NodeTiles::box(int column, int row, glm::vec2 reach_m) const {
+  const float step_m = cell_m * static_cast<float>(grid.stride);
+  const auto line = [&](int i) { return static_cast<float>(grid.tile_line(i)) * step_m; };
+  const auto tile = static_cast<std::size_t>(row * grid.tiles_per_side() + column);
+  return {corner + glm::vec3(line(column) - reach_m.x, low_m, line(row) - reach_m.x),
+          corner + glm::vec3(line(column + 1) + reach_m.x, relief.top_m[tile] + reach_m.y,
+                             line(row + 1) + reach_m.x)};
+}
+
+std::uint32_t tiles_in_view(const NodeTiles& tiles, const View& view) {
+  const int side = tiles.grid.tiles_per_side();
+  std::uint32_t in_view = 0;
   for (int i = 0; i < side * side; ++i)
-    fine.set(i % side, i / side, distance_m(box_of(i % side, i / side)) < fine_m);
-  for (int i = 0; i < side * side; ++i) {
-    const core::Bounds box = box_of(i % side, i / side);
-    if (!all && (!visibility::intersects(view.frustum, box) || view.horizon.hides(box))) continue;
-    draw.part = tiles.tile(i % side, i / side, fine.form(i % side, i / side));
-    draws.push_back(draw);
+    in_view |= can_be_seen(tiles.box(i % side, i / side), view) ? bit(i) : 0;
+  return in_view;
+}
+
+bool models_in_view(const NodeTiles& tiles, std::uint32_t in_view, glm::vec2 reach_m,
+                    const View& view) {
+  if (in_view != 0) return true;
+  const int side = tiles.grid.tiles_per_side();
+  for (int i = 0; i < side * side; ++i)
+    if (can_be_seen(tiles.box(i % side, i / side, reach_m), view)) return true;
+  return false;
+}
+
+void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::TerrainTiles* fine,
+               float fine_m, render::TerrainDraw draw, std::vector<render::TerrainDraw>& draws) {
+  const int side = tiles.grid.tiles_per_side(), count = side * side;
+  if (fine == nullptr) {
+    Parts parts(draw, draws);
+    for (int i = 0; i < count; ++i)
+      if ((in_view & bit(i)) != 0) parts.add(tiles.grid.tile(i % side, i / side));
+    return add_skirts(tiles, in_view, tiles.grid, parts);
   }
-  draw.part = tiles.skirts();
-  draws.push_back(draw);
+  draw.morph = render::kMorphByDistance;
+  FineTiles near;
+  for (int i = 0; i < count; ++i)
+    near.set(i % side, i / side, distance_m(tiles.box(i % side, i / side)) < fine_m);
+  Parts parts(draw, draws);
+  for (const Form form : {Form::kFine, Form::kRimmed, Form::kCoarse}) {
+    for (int i = 0; i < count; ++i) {
+      const int column = i % side, row = i / side;
+      if ((in_view & bit(i)) != 0 && near.form(column, row) == form)
+        parts.add(fine->tile(column, row, form));
+    }
+  }
+  add_skirts(tiles, in_view, *fine, parts);
 }
 
 }  // namespace psygen::scene

@@ -1,7 +1,10 @@
-// How the finest ground of a block is drawn: its near tiles in all their cells, the others in those
-// of the next level. Nothing pops: by where a tile changes, all its vertices have morphed.
+// What is drawn of the ground of a node: those of its tiles that are in view and not behind the
+// horizon, and the skirts that face the camera. Of a block's finest ground the near tiles are drawn
+// in all their cells, the others in those of the next level. Nothing pops: by where a tile changes,
+// all its vertices have morphed.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <vector>
 
 #include "engine/scene/state.hpp"
@@ -11,12 +14,26 @@ namespace psygen::scene {
 // Over which distances a block's finest ground takes the shape of the next level.
 render::Morph morph_of(const Streaming& streaming);
 
-// Adds a draw for each tile of a block that is in view and not behind the horizon (or `all`, where
-// they cast shadows into the picture), and one for its skirts. `draw` is that of the whole block;
-// its ground lies between `low_m` and `high_m` (relative to draw.origin); nearer than `fine_m`,
-// seen from above, tiles are fine.
-void add_tiles(const models::TerrainTiles& tiles, const View& view, float low_m, float high_m,
-               float fine_m, bool all, render::TerrainDraw draw,
-               std::vector<render::TerrainDraw>& draws);
+// The tiles of a node, as boxes relative to the camera.
+struct NodeTiles {
+  const models::TerrainGrid& grid;  // of the node's mesh
+  const GroundRelief& relief;       // of the same
+  glm::vec3 corner{0.0F};           // of the node, at height 0
+  float cell_m = 1, low_m = 0;      // of the grid at its finest; below all ground and its skirts
+
+  // With room to the sides and above.
+  core::Bounds box(int column, int row, glm::vec2 reach_m = glm::vec2(0.0F)) const;
+};
+
+// Bit row · side + column is set for tiles that can be seen.
+std::uint32_t tiles_in_view(const NodeTiles& tiles, const View& view);
+// Whether anything that stands on them and reaches so far to the sides and up can.
+bool models_in_view(const NodeTiles& tiles, std::uint32_t in_view, glm::vec2 reach_m,
+                    const View& view);
+
+// Adds draws for these tiles. `draw` is that of the whole node. `fine`: it has the index list of
+// tiles in two kinds; those nearer than `fine_m`, seen from above, are fine.
+void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::TerrainTiles* fine,
+               float fine_m, render::TerrainDraw draw, std::vector<render::TerrainDraw>& draws);
 
 }  // namespace psygen::scene

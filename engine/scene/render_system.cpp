@@ -44,7 +44,8 @@ class Drawing {
   }
 
  private:
-  // Complete nodes; where no ancestor is complete bare ground is better than nothing.
+  // Complete nodes, which stand for what has landed below them in this tick (find_drawn of the
+  // visibility system); where no ancestor is complete bare ground is better than nothing.
   void find_ready(std::span<const ecs::Entity> entities) {
     const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
     draws_.ready.assign(cut.size(), 0);
@@ -57,15 +58,16 @@ class Drawing {
       const bool ground =
           lacking != nullptr && entities_.get<Demand>(entities[i])->drawn_level != kNoLevel;
       complete[i] = above || itself ? 1 : 0;
-      draws_.ready[i] = itself || (ground && !above) ? 1 : 0;
+      const bool landed = view_.ready[i] == 0;
+      draws_.ready[i] = (itself && !(landed && above)) || (ground && !above) ? 1 : 0;
     }
   }
 
   void draw(std::uint32_t index, ecs::Entity entity) {
     if (!entities_.alive(entity)) return;  // counted by the visibility system
     const visibility::CutNode& node = view_.cut.nodes[index];
-    const auto [placed, demand, mesh] = std::tuple(
-        entities_.get<Placed>(entity), entities_.get<Demand>(entity), entities_.get<Mesh>(entity));
+    const auto [placed, demand] =
+        std::tuple(entities_.get<Placed>(entity), entities_.get<Demand>(entity));
     const Node& at = *entities_.get<Node>(entity);
     const glm::vec3 corner(core::offset_m(visibility::corner_block(node.node),
                                           camera_.pose.position, facts_.world.block_size_m()));
@@ -76,8 +78,9 @@ class Drawing {
     count(middle, placed->radius_m, hole, coarser > 1);
     DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
-    if (!hole) add_ground(node, at, facts, *placed, *demand, *mesh, corner);
-    add_models(*entities_.get<ecs::Children>(entity), facts, corner);
+    const bool seen = hole || add_ground(node, entity, facts, corner);
+    if (seen || node.node.level == 0)
+      add_models(*entities_.get<ecs::Children>(entity), facts, corner);
     if (shown_ == render::View::kBounds) {
       add_box({corner + glm::vec3(0, at.low_m, 0),
                corner + glm::vec3(node.side_m, at.high_m, node.side_m)},
@@ -118,27 +121,35 @@ class Drawing {
       counters_.missing_pixels_percent += covered_percent(camera_, center, radius_m);
   }
 
-  void add_ground(const visibility::CutNode& node, const Node& at, const DrawFacts& facts,
-                  const Placed& placed, const Demand& demand, const Mesh& mesh, glm::vec3 corner) {
+  // Returns whether models on it can be seen.
+  bool add_ground(const visibility::CutNode& node, ecs::Entity entity, const DrawFacts& facts,
+                  glm::vec3 corner) {
+    const auto [placed, demand, mesh, relief] =
+        std::tuple(entities_.get<Placed>(entity), entities_.get<Demand>(entity),
+                   entities_.get<Mesh>(entity), entities_.get<GroundRelief>(entity));
     const NodeLevel& level = facts_.levels[node.node.level];
     render::TerrainDraw draw;
-    draw.range = mesh.range;
-    draw.shared_indices = mesh.shared_indices;
+    draw.range = mesh->range;
+    draw.shared_indices = mesh->shared_indices;
     draw.origin = corner;
     draw.cell_m = facts_.cell_m * static_cast<float>(1U << node.node.level);
-    draw.height_min_m = placed.box_center.y - placed.box_half_extent.y;
-    draw.height_range_m = 2 * placed.box_half_extent.y;
+    draw.height_min_m = placed->box_center.y - placed->box_half_extent.y;
+    draw.height_range_m = 2 * placed->box_half_extent.y;
     draw.skirt_m = level.skirt_m;
     draw.side_m = node.side_m;
     if (node.node.level > 0 && !level.merged) draw.cover = facts_.cover_share;
     draw.debug_colour = colour_of(shown_, facts);
-    draws_.meshes.push_back(mesh.handle);
-    if (facts_.tiles && node.node.level == 0 && demand.drawn_level == 0)
-      return add_tiles(*facts_.tiles, view_, at.low_m, at.high_m, fine_m_, shadows_, draw,
-                       draws_.terrain);
     // A mesh coarser than wanted has nothing to morph from.
     draw.morph = level.mesh_level != 0 && node.leaf && !node.fine ? node.morph : 0.0F;
-    draws_.terrain.push_back(draw);
+    draws_.meshes.push_back(mesh->handle);
+    const std::size_t mesh_level =
+        (node.node.level > 0 ? level.mesh_level : 0U) + demand->drawn_level;
+    const NodeTiles tiles{facts_.grids[mesh_level], *relief, corner, draw.cell_m,
+                          entities_.get<Node>(entity)->low_m - level.skirt_m};
+    const bool fine = facts_.tiles && mesh_level == 0;
+    const std::uint32_t in_view = shadows_ ? ~0U : tiles_in_view(tiles, view_);
+    add_tiles(tiles, in_view, fine ? &*facts_.tiles : nullptr, fine_m_, draw, draws_.terrain);
+    return models_in_view(tiles, in_view, facts_.models_reach_m, view_);
   }
 
   // `facts` are those of their node.
@@ -154,7 +165,7 @@ class Drawing {
             const glm::vec3 foot = corner + placed[i].position;
             const bool hole = demand.drawn_level == kNoLevel;
             const bool coarse = !hole && demand.drawn_level > demand.wanted_level + 1;
-            count(foot + placed[i].box_center, placed[i].radius_m, hole, coarse);
+            count(foot + placed[i].middle, placed[i].radius_m, hole, coarse);
             if (hole) continue;
             if (single) {
               facts.level = demand.drawn_level;

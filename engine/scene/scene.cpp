@@ -11,6 +11,7 @@
 #include "engine/scene/lighting.hpp"
 #include "engine/scene/node_solidity.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/scene/usual_boxes.hpp"
 #include "engine/world/merged_models.hpp"
 
 namespace psygen::scene {
@@ -103,14 +104,17 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
     merged = &facts.registry[*added];
   }
   facts.levels = node_levels(facts.world, facts.registry, settings, merged);
-  if (facts.levels[0].mesh_level != 0)
-    facts.tiles.emplace(static_cast<int>(facts.world.terrain.integer(models::kTerrainSize)));
+  const auto size = static_cast<int>(facts.world.terrain.integer(models::kTerrainSize));
+  for (int level = 0; level < models::kTerrainLevels; ++level)
+    facts.grids.emplace_back(size, level);
+  if (facts.levels[0].mesh_level != 0) facts.tiles.emplace(size);
   const world::FarCover cover = world::far_cover(facts.world, facts.registry);
   facts.canopy = canopy_of(facts.world, cover.albedo);
   facts.cover_share = cover.share;
   return {};
 }
 
+// Of the models of a block, and of all that nodes draw.
 std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
   std::vector<world::Placement> placements;
   const core::BlockCoord block{};
@@ -195,7 +199,9 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   synthesis.cache =
       std::make_unique<synthesis::GeometryCache>(*s.memory, facts.registry, settings.budget_bytes);
   synthesis.cost = std::make_unique<synthesis::CostModel>(facts.registry);
-  scene->calibration_ = synthesis.cost->calibrate(cost_samples(facts), {}, [&](double fraction) {
+  const std::vector<synthesis::CostSample> samples = cost_samples(facts);
+  facts.usual_boxes = usual_boxes(facts.registry, samples);
+  scene->calibration_ = synthesis.cost->calibrate(samples, {}, [&](double fraction) {
     if (progress) (void)progress("calibrating", fraction);
   });
   synthesis.planner = std::make_unique<synthesis::Planner>();

@@ -15,7 +15,7 @@
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/governor.hpp"
-#include "engine/scene/ground_lines.hpp"
+#include "engine/scene/ground_relief.hpp"
 #include "engine/scene/node_grid.hpp"
 #include "engine/scene/node_levels.hpp"
 #include "engine/scene/settings.hpp"
@@ -84,7 +84,11 @@ struct WorldFacts {
   std::vector<visibility::Standing> standing;  // on a block
   std::vector<NodeLevel> levels;               // of the quadtree, finest first
   models::ModelIndex merged_model = 0;         // of meshes that stand for all models on a node
+  std::vector<models::TerrainGrid> grids;      // of each level of the terrain type
   std::optional<models::TerrainTiles> tiles;   // of blocks' finest meshes; none without levels
+  // Of each model type: where in its box, of −1 … 1 along each axis, meshes of the type usually
+  // lie. Boxes hold all that parameters could lead to, which may be far more.
+  std::vector<core::Bounds> usual_boxes;
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
@@ -130,6 +134,9 @@ struct View {
   std::vector<visibility::NodeCoord> roots;
   visibility::Horizon horizon;        // of the ground that is ready
   std::vector<std::uint8_t> in_view;  // per node of the cut, and not behind the horizon
+  std::vector<std::uint8_t> ready;    // per node of the cut: nothing was lacking before this tick
+  std::vector<std::uint32_t> drawn;   // of the cut: what is drawn if nothing is evicted
+  std::vector<std::uint8_t> scratch;
   std::vector<LevelView> levels;
   std::vector<ChosenNode> chosen;     // of the cut, ancestors first, front to back
   std::vector<ecs::Entity> expected;  // nodes expected in view, soonest first

@@ -20,13 +20,16 @@ constexpr std::size_t kFewestCreated = 3;
 // If more than this are missing the camera has leapt: as many as time allows.
 constexpr std::size_t kLeapt = 256;
 
-Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box) {
+// `usual`: in what part of the box its mesh lies (WorldFacts).
+Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box,
+                 const core::Bounds& usual) {
   Placed placed;
   placed.block = block;
   placed.position = position;
   placed.box_center = box.center();
   placed.box_half_extent = box.half_extent();
-  placed.radius_m = glm::length(placed.box_half_extent);
+  placed.middle = placed.box_center + placed.box_half_extent * usual.center();
+  placed.radius_m = glm::length(placed.box_half_extent * usual.half_extent());
   return placed;
 }
 
@@ -44,12 +47,12 @@ Detail detail_of(const models::ModelType& type, const models::Parameters& parame
 
 // Fills row `i` of the shared columns of nodes and models; of the type only these levels are used.
 template <class Created>
-void fill(const Created& created, std::size_t i, const models::Registry& registry,
-          core::BlockCoord block, const world::Placement& placement, int first_level = 0,
-          int last_level = INT_MAX) {
-  const models::ModelType& type = registry[placement.model];
+void fill(const Created& created, std::size_t i, const WorldFacts& facts, core::BlockCoord block,
+          const world::Placement& placement, int first_level = 0, int last_level = INT_MAX) {
+  const models::ModelType& type = facts.registry[placement.model];
   created.template column<Placed>()[i] =
-      placed_at(block, placement.position, type.bounds(placement.parameters));
+      placed_at(block, placement.position, type.bounds(placement.parameters),
+                facts.usual_boxes[placement.model]);
   created.template column<Detail>()[i] =
       detail_of(type, placement.parameters, first_level, last_level);
   created.template column<Source>()[i] = {
@@ -71,7 +74,7 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
   }
   const auto models = entities.create<Placed, Detail, Source, Demand, Mesh>(scratch.size());
   for (std::size_t i = 0; i < scratch.size(); ++i)
-    fill(models, i, facts.registry, block, scratch[i]);
+    fill(models, i, facts, block, scratch[i]);
   entities.set_children(node, models.entities);
 }
 
@@ -79,14 +82,14 @@ void create_node(const Settings& settings, const WorldFacts& facts, const Daylig
                  const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
                  Streaming& streaming, ecs::World& entities) {
   const NodeLevel& level = facts.levels[at.level];
-  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundLines,
+  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundRelief,
                                        Placed, Detail, Source, Demand, Mesh>(1);
   models::Parameters ground = node_terrain(facts.world, at);
   world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
   const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
   created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y,
                                solid ? node_solidity(facts.world, facts.standing, at) : 0.0F};
-  fill(created, 0, facts.registry, visibility::corner_block(at),
+  fill(created, 0, facts, visibility::corner_block(at),
        {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground},
        at.level == 0 ? 0 : level.mesh_level, level.mesh_level);
   const ecs::Entity node = created.entities[0];

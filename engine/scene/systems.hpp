@@ -26,7 +26,7 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
 
 // Chooses the cut through the quadtree and runs Prioritized-Layered Projection over the nodes of
 // each level; what predicted cameras see gets a deadline.
-using VisibilityQuery = ecs::Query<const Node, const Lacking, const GroundLines, Visibility>;
+using VisibilityQuery = ecs::Query<const Node, const Lacking, const GroundRelief, Visibility>;
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                        const Streaming& streaming, const Synthesis& synthesis,
                        VisibilityQuery nodes, View& view, Counters& counters);
@@ -43,14 +43,14 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
                       Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
-using UploadQuery = ecs::Query<const Source, Mesh, Demand, Node, GroundLines>;
+using UploadQuery = ecs::Query<const Source, Mesh, Demand, Node, GroundRelief>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
 using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
-                               const Lacking, const Demand, const Mesh>;
+                               const Lacking, const Demand, const Mesh, const GroundRelief>;
 void render_system(const Input& input, const Clock& clock, const Camera& camera,
                    const WorldFacts& facts, const Streaming& streaming, const View& view,
                    RenderQuery entities, DrawLists& draws, Output& output, Counters& counters);

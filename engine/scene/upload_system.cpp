@@ -99,21 +99,25 @@ std::size_t count_within_budget(const Synthesis& synthesis, std::uint64_t budget
 }
 
 // From now on the ground of a node is known: as far as the mesh is off, it may be higher or lower.
-void note_ground(Node& node, GroundLines& lines, const synthesis::MeshRecord& record,
+void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& record,
                  const WorldFacts& facts, const core::GeometryMemory& memory) {
   const NodeLevel& level = facts.levels[node.at.level];
   const bool finest = node.at.level == 0 && record.key.level == 0;
-  const auto off_m = static_cast<float>(kPossibleError * level.ground_error_m);
-  const float possible_m = finest ? 0.0F : off_m;
+  const float possible_m =
+      finest ? 0.0F : static_cast<float>(kPossibleError * level.ground_error_m);
   node.low_m = std::max(level.bounds.min.y, record.tight.min.y - possible_m);
   node.high_m = std::min(level.bounds.max.y, record.tight.max.y + possible_m);
   const std::span<const std::byte> bytes = memory.vertex_bytes(record.range);
-  if (bytes.empty()) return;
-  // The finest ground may give way to the next: both must lie above the lines.
-  lines = ground_lines({reinterpret_cast<const core::TerrainVertex*>(bytes.data()),
-                        bytes.size() / sizeof(core::TerrainVertex)},
-                       level.bounds.min.y, level.bounds.max.y - level.bounds.min.y,
-                       node.at.level == 0 ? off_m : 0.0F);
+  if (bytes.empty()) {
+    relief.points = 0;
+    return relief.top_m.fill(node.high_m);
+  }
+  // The coarse ground of a block may give way to its finest, in the tick for which the lines hold.
+  relief = ground_relief({reinterpret_cast<const core::TerrainVertex*>(bytes.data()),
+                          bytes.size() / sizeof(core::TerrainVertex)},
+                         facts.grids[record.key.level], level.bounds.min.y,
+                         level.bounds.max.y - level.bounds.min.y,
+                         node.at.level == 0 ? possible_m : 0.0F);
 }
 
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.
@@ -139,9 +143,9 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     synthesis.cache->set_rank(entities.get<Mesh>(owner)->handle, synthesis::Rank::unwanted());
   }
   if (node != nullptr) {
-    note_ground(*node, *entities.get<GroundLines>(owner), record, facts, *synthesis.memory);
+    note_ground(*node, *entities.get<GroundRelief>(owner), record, facts, *synthesis.memory);
   }
-  landings.push_back({owner, {record.range, handle, shared_indices}});
+  landings.push_back({owner, {record.range, handle, shared_indices, record.tight}});
 }
 
 }  // namespace

@@ -160,8 +160,20 @@ void count_missing_node(const Camera& camera, const core::Bounds& box, Counters&
       covered_percent(camera, box.center(), glm::length(box.half_extent()));
 }
 
+// What of the cut was ready before this tick, and so will be drawn: what lands in this tick
+// replaces it in the next, so that the ground that hides others is the ground that is drawn.
+void find_drawn(const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
+  view.ready.assign(view.cut.nodes.size(), 0);
+  for (std::size_t i = 0; i < view.cut.nodes.size(); ++i) {
+    const visibility::NodeCoord& at = view.cut.nodes[i].node;
+    const Lacking* lacking = nodes.get<Lacking>(streaming.grids[at.level].entity_of(at.coord));
+    view.ready[i] = lacking != nullptr && lacking->meshes == 0 ? 1 : 0;
+  }
+  visibility::drawn_nodes(view.cut, view.ready, view.scratch, view.drawn);
+}
+
 // Which nodes of the cut are in view: in the frustum, and not behind the ground of others that are
-// ready to be drawn. Front to back, so that each is held against what lies before it.
+// drawn. Front to back, so that each is held against what lies before it.
 void find_hidden(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                  const Streaming& streaming, const VisibilityQuery& nodes, View& view,
                  Counters& counters) {
@@ -173,6 +185,7 @@ void find_hidden(const Settings& settings, const Camera& camera, const WorldFact
       settings.occlusion &&
       local.y > models::ground_height_m(facts.world.terrain, camera.pose.position.block, local.x,
                                         local.z);
+  std::size_t next = 0;  // of view.drawn
   for (std::uint32_t i = 0; i < cut.size();) {
     const visibility::NodeCoord& at = cut[i].node;
     const NodeGrid& grid = streaming.grids[at.level];
@@ -182,11 +195,12 @@ void find_hidden(const Settings& settings, const Camera& camera, const WorldFact
     const bool hidden = in_frustum && view.horizon.hides(box);
     counters.nodes_hidden += hidden ? 1 : 0;
     view.in_view[i] = in_frustum && !hidden ? 1 : 0;
-    const ecs::Entity entity = grid.entity_of(at.coord);
-    if (hides && cut[i].leaf && view.in_view[i] != 0 && nodes.alive(entity)) {
-      const GroundLines& lines = *nodes.get<GroundLines>(entity);
-      if (lines.lower_by_m >= 0 && nodes.get<Lacking>(entity)->meshes == 0)
-        add_lines(lines, corner_of(facts, camera, at), cut[i].side_m, view.horizon);
+    while (next < view.drawn.size() && view.drawn[next] < i)
+      ++next;
+    const bool drawn = next < view.drawn.size() && view.drawn[next] == i;
+    if (hides && drawn && view.in_view[i] != 0) {
+      const auto* relief = nodes.get<GroundRelief>(grid.entity_of(at.coord));
+      add_lines(*relief, corner_of(facts, camera, at), cut[i].side_m, view.horizon);
     }
     i = view.in_view[i] != 0 ? i + 1 : cut[i].end;
   }
@@ -278,6 +292,7 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
     project_layers(settings, grid, view.frustum, view.levels[grid.level()]);
   expect(camera, facts, streaming, nodes, view);
   choose_cut(settings, camera, facts, streaming, synthesis.settling, view);
+  find_drawn(streaming, nodes, view);
   find_hidden(settings, camera, facts, streaming, nodes, view, counters);
   list_chosen(camera, streaming, nodes, view, counters);
   write_visibility(view, streaming, nodes);

@@ -5,8 +5,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "engine/core/assert.hpp"
-
 namespace psygen::visibility {
 namespace {
 
@@ -40,9 +38,9 @@ struct Horizon::Point {
   glm::dvec2 ground;  // x, z
   double height, distance, tangent, bins;
 
-  Point(const glm::vec3& p, float lower_by_m)
+  explicit Point(const glm::vec3& p)
       : ground(p.x, p.z),
-        height(static_cast<double>(p.y) - static_cast<double>(lower_by_m)),
+        height(static_cast<double>(p.y)),
         distance(glm::length(ground)),
         tangent(height / distance),
         bins(has_direction() ? bins_of(ground.x, ground.y) : 0) {}
@@ -91,11 +89,24 @@ Horizon::Horizon() {
 void Horizon::reset() {
   tangent_.fill(kNothing);
   distance_m_.fill(0);
+  for (auto& band : within_)
+    band.fill(kNothing);
   left_.fill({0, kNothing, 0});
   right_.fill({1, kNothing, 0});
 }
 
+// The nearest band that reaches at least so far; kBands where none does.
+std::size_t Horizon::first_band_beyond(float distance_m) {
+  std::size_t band = 0;
+  for (float reach_m = kFirstBandM; band < kBands && reach_m < distance_m; reach_m *= 2)
+    ++band;
+  return band;
+}
+
 void Horizon::raise(std::size_t bin, float tangent, float distance_m) {
+  for (std::size_t band = first_band_beyond(distance_m);
+       band < kBands && within_[band][bin] < tangent; ++band)
+    within_[band][bin] = tangent;
   if (tangent <= tangent_[bin]) return;
   tangent_[bin] = tangent;
   distance_m_[bin] = distance_m;
@@ -146,10 +157,9 @@ void Horizon::follow(const Point& from, const Point& to, bool forward, Piece& pi
   piece.include(to.tangent, to.distance);
 }
 
-void Horizon::add(std::span<const glm::vec3> line, float lower_by_m) {
-  PSYGEN_ASSERT(lower_by_m >= 0, "surfaces are lowered");
+void Horizon::add(std::span<const glm::vec3> line) {
   if (line.size() < 2) return;
-  Point from(line[0], lower_by_m);
+  Point from(line[0]);
   Piece piece(from);
   int way = 0;  // around the camera: 1 forward, −1 backward, 0 nowhere
   const auto finish = [&] {
@@ -157,7 +167,7 @@ void Horizon::add(std::span<const glm::vec3> line, float lower_by_m) {
     piece = Piece(from);
   };
   for (const glm::vec3& point : line.subspan(1)) {
-    const Point to(point, lower_by_m);
+    const Point to(point);
     const double turn = cross(from.ground, to.ground);
     int to_way = turn > 0 ? 1 : turn < 0 ? -1 : 0;
     if (!from.has_direction() || !to.has_direction()) to_way = 0;
@@ -170,19 +180,25 @@ void Horizon::add(std::span<const glm::vec3> line, float lower_by_m) {
   finish();
 }
 
-// For bins first … last. `near` is how far the box's near sides are away along both axes, 0 for
-// none; along a direction in the bin it begins no nearer than at `begin`.
-bool Horizon::hides_in(std::size_t first, std::size_t last, const glm::vec2& near, float far_m,
-                       float top_m) const {
+// What is asked for. `near` is how far the box's near sides are away along both axes, 0 for none.
+struct Horizon::Box {
+  glm::vec2 near;
+  float far_m, top_m;
+  const float* within;  // the last band before the box; null: there is none
+};
+
+// For bins first … last. Along a direction in a bin the box begins no nearer than at `begin`.
+bool Horizon::hides_in(std::size_t first, std::size_t last, const Box& box) const {
   constexpr std::size_t kBlock = 16;
   for (std::size_t block = first; block <= last; block += kBlock) {
     const std::size_t end = std::min(block + kBlock, last + 1);
     int seen = 0;
     for (std::size_t bin = block; bin < end; ++bin) {
-      const float begin = std::max(near.x * inverse_x_[bin], near.y * inverse_z_[bin]);
-      const float at = top_m > 0 ? begin : far_m;  // where the top is highest, seen from here
-      seen |= static_cast<int>(!(top_m < tangent_[bin] * at)) |
-              static_cast<int>(!(distance_m_[bin] <= begin));
+      const float begin = std::max(box.near.x * inverse_x_[bin], box.near.y * inverse_z_[bin]);
+      const float at = box.top_m > 0 ? begin : box.far_m;  // where the top is highest, from here
+      const float before = distance_m_[bin] <= begin ? tangent_[bin] : kNothing;
+      const float tangent = box.within != nullptr ? std::max(before, box.within[bin]) : before;
+      seen |= static_cast<int>(!(box.top_m < tangent * at));
     }
     if (seen != 0) return false;
   }
@@ -219,9 +235,10 @@ bool Horizon::hides(const core::Bounds& box) const {
                                     : 0.0F);
   const float far_m = glm::length(glm::vec2(std::max(std::abs(box.min.x), std::abs(box.max.x)),
                                             std::max(std::abs(box.min.z), std::abs(box.max.z))));
-  if (last < wrap + kBins) return hides_in(first - wrap, last - wrap, near, far_m, box.max.y);
-  return hides_in(first - wrap, kBins - 1, near, far_m, box.max.y) &&
-         hides_in(0, last - wrap - kBins, near, far_m, box.max.y);
+  const std::size_t beyond = first_band_beyond(std::nextafter(glm::length(near), INFINITY));
+  const Box asked{near, far_m, box.max.y, beyond > 0 ? within_[beyond - 1].data() : nullptr};
+  if (last < wrap + kBins) return hides_in(first - wrap, last - wrap, asked);
+  return hides_in(first - wrap, kBins - 1, asked) && hides_in(0, last - wrap - kBins, asked);
 }
 
 float Horizon::elevation(float x, float z) const {

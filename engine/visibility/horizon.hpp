@@ -1,15 +1,16 @@
 // The horizon that the ground makes around the camera, to find what lies hidden behind ridges: for
-// each of kBins directions the highest elevation up to which ground is known to stand, and how far
-// away it stands. Conservative: hides() is true only for boxes of which nothing can be seen; of
-// others it may say so or not. Everything is relative to the camera. Knows no entities. Adding
-// costs a few divisions per point and bin, asking a few operations per bin that the box reaches
-// into. Nothing is allocated after construction; one thread at a time while adding.
+// each of kBins directions the highest elevation up to which ground is known to stand within each
+// of some distances, and how far away the highest of all stands. Conservative: hides() is true only
+// for boxes of which nothing can be seen; of others it may say so or not. Everything is relative to
+// the camera. Knows no entities. Adding costs a few divisions per point and bin, asking a few
+// operations per bin that the box reaches into. Nothing is allocated after construction; one thread
+// at a time while adding.
 //
 // Use: reset() for each camera position; then, for the leaves of a cut from front to back
 // (quadtree.hpp), first ask hides() with a leaf's box, then add() lines of its surface if it is
 // drawn. The order is not needed for correctness, as distances are compared; but a line that is
-// added late hides nothing in what was asked before, and of two lines in one direction the higher
-// one is kept though it may be the farther one.
+// added late hides nothing in what was asked before. Afterwards anything can be asked for: where a
+// higher line stands farther away, the nearer ones still hide what lies twice as far as they do.
 #pragma once
 
 #include <array>
@@ -31,13 +32,11 @@ class Horizon {
   // Forgets all ground.
   void reset();
 
-  // Points of a line that lies in the drawn surface: neighbouring points are joined by edges of the
-  // mesh, or by lines that are nowhere more than `lower_by_m` >= 0 above it (the error of a coarser
-  // level than is drawn; 0 for the mesh's own edges). Ground is solid below. Requires a camera
-  // above the drawn surface, and a surface without holes between the camera and the line (skirts
-  // close cracks); otherwise add nothing. Lines of neighbouring nodes whose ends meet, to a
-  // thousandth of a bin, are taken as one.
-  void add(std::span<const glm::vec3> line, float lower_by_m);
+  // Points of a line that lies in the drawn surface or below it, straight from point to point.
+  // Ground is solid below. Requires a camera above the drawn surface, and a surface without holes
+  // between the camera and the line (skirts close cracks); otherwise add nothing. Lines of
+  // neighbouring nodes whose ends meet, to a thousandth of a bin, are taken as one.
+  void add(std::span<const glm::vec3> line);
 
   // Whether all of a box with finite corners lies below the horizon and behind it. Never for boxes
   // above, below or around the camera.
@@ -58,11 +57,18 @@ class Horizon {
   void follow(const Point& from, const Point& to, bool forward, Piece& piece);
   void place(const Piece& piece, double other_end);
   void raise(std::size_t bin, float tangent, float distance_m);
-  bool hides_in(std::size_t first, std::size_t last, const glm::vec2& near, float far_m,
-                float top_m) const;
+  struct Box;
+  bool hides_in(std::size_t first, std::size_t last, const Box& box) const;
+
+  // Within 16 m and each power of two times as much; farther ground is in no band.
+  static constexpr std::size_t kBands = 10;
+  static constexpr float kFirstBandM = 16;
+  static std::size_t first_band_beyond(float distance_m);
 
   std::array<float, kBins> tangent_, distance_m_;  // of the highest ground that covers the bin
-  std::array<Part, kBins> left_, right_;           // the highest that covers a part of it
+  // The highest that is no farther; growing. Rows do not all begin in the same set of a cache.
+  std::array<std::array<float, kBins + 16>, kBands> within_;
+  std::array<Part, kBins> left_, right_;  // the highest that covers a part of it
   // The smallest 1 / |x| and 1 / |z| of unit vectors in the bin; unit vectors along left borders.
   std::array<float, kBins> inverse_x_, inverse_z_;
   std::array<glm::dvec2, kBins> border_;

@@ -162,7 +162,7 @@ void horizon_is_built_and_asked(benchmark::State& state) {
         ++hidden;
       } else if (added < lines) {
         ++added;
-        horizon.add(leaves.lines[i], 0.1F);
+        horizon.add(leaves.lines[i]);
       }
     }
     benchmark::DoNotOptimize(hidden);

@@ -45,8 +45,8 @@ std::vector<Triangle> tile_of(const TerrainTiles& tiles, int column, int row, Fo
 
 std::set<Triangle> all_of(const TerrainTiles& tiles, Form form) {
   std::set<Triangle> all;
-  for (int row = 0; row < tiles.per_side(); ++row) {
-    for (int column = 0; column < tiles.per_side(); ++column) {
+  for (int row = 0; row < tiles.grid().tiles_per_side(); ++row) {
+    for (int column = 0; column < tiles.grid().tiles_per_side(); ++column) {
       for (const Triangle& t : tile_of(tiles, column, row, form))
         EXPECT_TRUE(all.insert(t).second) << "a triangle is in two tiles";
     }
@@ -85,18 +85,18 @@ TEST(TerrainTiles, AreTogetherTheSurfacesOfTheirTwoLevels) {
 TEST(TerrainTiles, CoverEveryTileOnceInEveryForm) {
   for (const int size : kSizes) {
     const TerrainTiles tiles(size);
-    EXPECT_EQ(tiles.first_cell(0), 0);
-    EXPECT_EQ(tiles.first_cell(tiles.per_side()), size - 1);
+    EXPECT_EQ(tiles.grid().tile_line(0), 0);
+    EXPECT_EQ(tiles.grid().tile_line(tiles.grid().tiles_per_side()), size - 1);
     for (const Form form : kForms) {
-      for (int row = 0; row < tiles.per_side(); ++row) {
-        for (int column = 0; column < tiles.per_side(); ++column) {
+      for (int row = 0; row < tiles.grid().tiles_per_side(); ++row) {
+        for (int column = 0; column < tiles.grid().tiles_per_side(); ++column) {
           int area = 0;
           for (const Triangle& t : tile_of(tiles, column, row, form)) {
             EXPECT_GT(doubled_area(t, size), 0) << size;
             area += doubled_area(t, size);
           }
-          const int wide = tiles.first_cell(column + 1) - tiles.first_cell(column);
-          const int deep = tiles.first_cell(row + 1) - tiles.first_cell(row);
+          const int wide = tiles.grid().tile_line(column + 1) - tiles.grid().tile_line(column);
+          const int deep = tiles.grid().tile_line(row + 1) - tiles.grid().tile_line(row);
           EXPECT_GT(wide * deep, 0);
           EXPECT_EQ(area, 2 * wide * deep) << size;
         }
@@ -120,8 +120,8 @@ std::set<std::pair<std::uint16_t, std::uint16_t>> border_of(const std::vector<Tr
 TEST(TerrainTiles, WithARimShareEverySideOfTheirBorderWithFineOnes) {
   for (const int size : kSizes) {
     const TerrainTiles tiles(size);
-    for (int row = 0; row < tiles.per_side(); ++row) {
-      for (int column = 0; column < tiles.per_side(); ++column) {
+    for (int row = 0; row < tiles.grid().tiles_per_side(); ++row) {
+      for (int column = 0; column < tiles.grid().tiles_per_side(); ++column) {
         const auto rimmed = tile_of(tiles, column, row, Form::kRimmed);
         EXPECT_EQ(border_of(rimmed), border_of(tile_of(tiles, column, row, Form::kFine))) << size;
       }
@@ -130,19 +130,25 @@ TEST(TerrainTiles, WithARimShareEverySideOfTheirBorderWithFineOnes) {
 }
 
 TEST(TerrainTiles, HaveTheSkirtsOfTheWholeMeshAtTheEnd) {
-  const TerrainTiles tiles(64);
-  const TerrainGrid grid(64, 0);
-  std::vector<std::uint16_t> whole(std::size_t{grid.triangles()} * 3);
-  grid.write_indices(whole);
-  const std::vector<std::uint16_t> list = list_of(tiles);
-  ASSERT_EQ(tiles.skirts().count, 6 * grid.border_vertices());
-  EXPECT_TRUE(std::equal(whole.end() - tiles.skirts().count, whole.end(),
-                         list.end() - tiles.skirts().count, list.end()));
+  for (const int size : kSizes) {
+    const TerrainTiles tiles(size);
+    const TerrainGrid& grid = tiles.grid();
+    std::vector<std::uint16_t> whole(std::size_t{grid.triangles()} * 3);
+    grid.write_indices(whole);
+    const std::vector<std::uint16_t> list = list_of(tiles);
+    for (int side = 0; side < 4; ++side) {
+      const core::IndexPart part = tiles.skirt(side), same = grid.skirt(side);
+      ASSERT_EQ(part.count, same.count);
+      EXPECT_TRUE(std::equal(list.begin() + part.first, list.begin() + part.first + part.count,
+                             whole.begin() + same.first));
+    }
+    EXPECT_EQ(tiles.skirt(3).first + tiles.skirt(3).count, list.size());
+  }
 }
 
 TEST(TerrainTiles, OfThePaperAreThreeToASide) {
   const TerrainTiles tiles(64);
-  EXPECT_EQ(tiles.per_side(), 3);
+  EXPECT_EQ(tiles.grid().tiles_per_side(), 3);
   EXPECT_EQ(tiles.tile(1, 1, Form::kFine).count, 882U * 3);
   EXPECT_EQ(tiles.tile(1, 1, Form::kRimmed).count, 154U * 3);
   EXPECT_EQ(tiles.tile(1, 1, Form::kCoarse).count, 98U * 3);

@@ -19,18 +19,17 @@ struct Square {
   }
 };
 
-// Tiles of one block count as the block.
+// Of the nodes that are drawn, though of some of them no tile may be in view.
 std::vector<Square> drawn_ground(const State& s) {
   std::vector<Square> squares;
   const double block_m = s.facts.world.block_size_m();
   const core::WorldPosition& eye = s.camera.pose.position;
-  std::uint32_t last_tiled = core::kNoGeometry;
-  for (const render::TerrainDraw& draw : s.draws.terrain) {
-    if (draw.part.count != 0 && draw.range.id == last_tiled) continue;
-    last_tiled = draw.part.count != 0 ? draw.range.id : core::kNoGeometry;
-    squares.push_back({std::round(eye.block.x * block_m + eye.local.x + double{draw.origin.x}),
-                       std::round(eye.block.z * block_m + eye.local.z + double{draw.origin.z}),
-                       block_m * double{draw.cell_m / s.facts.cell_m}});
+  for (const std::uint32_t index : s.draws.nodes) {
+    const visibility::CutNode& node = s.view.cut.nodes[index];
+    if (s.view.in_view[index] == 0) continue;
+    squares.push_back({std::round(eye.block.x * block_m + eye.local.x + double{node.corner_x_m}),
+                       std::round(eye.block.z * block_m + eye.local.z + double{node.corner_z_m}),
+                       double{node.side_m}});
   }
   return squares;
 }

@@ -91,8 +91,8 @@ TEST(Extent, EverythingIsDrawnWhereItIsToTheMillimetre) {
       const double x = static_cast<double>(steps(block.x, corner.x) * kBlock - eye_x) / 1024,
                    z = static_cast<double>(steps(block.z, corner.z) * kBlock - eye_z) / 1024;
       ++nodes;
-      // Of a block's finest ground there are several draws.
-      const std::uint32_t mesh = s.draws.terrain[drawn].range.id;
+      // Of a node's ground there are some draws, or none if all of it is behind a ridge.
+      const std::uint32_t mesh = s.entities.get<Mesh>(s.draws.entities[index])->range.id;
       for (; drawn < s.draws.terrain.size() && s.draws.terrain[drawn].range.id == mesh; ++drawn) {
         const render::TerrainDraw& draw = s.draws.terrain[drawn];
         worst_mm = std::max({worst_mm, std::abs(1000 * double{draw.origin.x} - x),

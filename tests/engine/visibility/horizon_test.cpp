@@ -166,7 +166,7 @@ TEST(Horizon, NothingThatARayReachesIsEverHiddenAndMostOfTheRestIs) {
     const Heightfield field(random, i % 3 == 0 ? 80 : random.next_real(0.5, 20));
     Horizon horizon;
     for (const auto& line : field.lines(i % 2 == 0 ? 6 : 39))
-      horizon.add(line, 0);
+      horizon.add(line);
     const Found found = compare(field, horizon, 300, random);
     all.hidden += found.hidden;
     all.really_hidden += found.really_hidden;
@@ -185,7 +185,7 @@ TEST(Horizon, LinesInAnyOrderAndDirectionHideNothingThatIsSeen) {
       auto& line = lines[static_cast<std::size_t>(
           random.next_integer(0, static_cast<std::int64_t>(lines.size()) - 1))];
       if (random.next_unit() < 0.5) std::ranges::reverse(line);
-      horizon.add(line, 0);
+      horizon.add(line);
     }
     compare(field, horizon, 200, random);
   }
@@ -206,7 +206,7 @@ core::Bounds box_at(float x, float z, float top, float side = 20) {
 TEST(Horizon, ARidgeHidesWhatIsLowerBehindItAndNothingElse) {
   for (const float sign : {1.0F, -1.0F}) {
     Horizon horizon;
-    horizon.add(ridge(sign * 100, 10), 0);
+    horizon.add(ridge(sign * 100, 10));
     EXPECT_TRUE(horizon.hides(box_at(0, sign * 200, 18)));
     EXPECT_TRUE(horizon.hides(box_at(-150, sign * 200, 18)));
     EXPECT_FALSE(horizon.hides(box_at(0, sign * 200, 20)));    // higher
@@ -220,40 +220,53 @@ TEST(Horizon, ARidgeHidesWhatIsLowerBehindItAndNothingElse) {
 
 TEST(Horizon, WorksBelowTheCameraToo) {
   Horizon horizon;
-  horizon.add(ridge(100, -20), 0);  // −0.2
+  horizon.add(ridge(100, -20));  // −0.2
   EXPECT_TRUE(horizon.hides(box_at(0, 200, -50)));
   EXPECT_TRUE(horizon.hides(box_at(0, 200, -44)));  // its far edge at 210 m: −0.2095
   EXPECT_FALSE(horizon.hides(box_at(0, 200, -41)));
 }
 
-TEST(Horizon, LowersASurfaceByItsError) {
-  Horizon exact, coarse;
-  exact.add(ridge(100, 10), 0);
-  coarse.add(ridge(100, 10), 2);
-  EXPECT_TRUE(exact.hides(box_at(0, 210, 18)));
-  EXPECT_FALSE(coarse.hides(box_at(0, 210, 18)));
-  EXPECT_TRUE(coarse.hides(box_at(0, 210, 15.5F)));
+TEST(Horizon, ANearRidgeStillHidesWhatLiesBeforeAFarHigherOne) {
+  for (const bool far_first : {false, true}) {
+    Horizon horizon;
+    if (far_first) horizon.add(ridge(800, 200, -4000, 4000));
+    horizon.add(ridge(100, 10));
+    if (!far_first) horizon.add(ridge(800, 200, -4000, 4000));
+    EXPECT_TRUE(horizon.hides(box_at(0, 300, 25)));    // behind the near one, below its line
+    EXPECT_FALSE(horizon.hides(box_at(0, 300, 35)));   // above it, before the far one
+    EXPECT_FALSE(horizon.hides(box_at(0, 95, -20)));   // before both
+    EXPECT_TRUE(horizon.hides(box_at(0, 2000, 300)));  // behind the far one
+    EXPECT_FALSE(horizon.hides(box_at(0, 2000, 520)));
+  }
+}
+
+TEST(Horizon, WhatIsBeyondTheLastBandIsHeldAgainstTheHighestGround) {
+  Horizon horizon;
+  horizon.add(ridge(20'000, 500, -50'000, 50'000));
+  EXPECT_TRUE(horizon.hides(box_at(0, 30'000, 600, 500)));
+  EXPECT_FALSE(horizon.hides(box_at(0, 30'000, 800, 500)));
+  EXPECT_FALSE(horizon.hides(box_at(0, 19'000, 100, 500)));
 }
 
 TEST(Horizon, HasNoGapsWhereTheLinesOfNodesMeet) {
   Horizon horizon;
   for (float x = -500; x < 500; x += 37)
-    horizon.add(ridge(100, 10, x, std::min(x + 37, 500.0F)), 0);
+    horizon.add(ridge(100, 10, x, std::min(x + 37, 500.0F)));
   EXPECT_TRUE(horizon.hides({{-300, -10, 200}, {300, 15, 240}}));
   Horizon holed;
   for (float x = -500; x < 500; x += 37)
-    if (x != -500 + 37 * 13) holed.add(ridge(100, 10, x, std::min(x + 37, 500.0F)), 0);
+    if (x != -500 + 37 * 13) holed.add(ridge(100, 10, x, std::min(x + 37, 500.0F)));
   EXPECT_FALSE(holed.hides({{-300, -10, 200}, {300, 15, 240}}));
 }
 
 TEST(Horizon, ALineThatCoversABinInPartRaisesNothing) {
   Horizon horizon;
   const float nearly = 1.0F / 300;
-  horizon.add(std::vector<glm::vec3>{{100, 50, 0.01F}, {100, 50, 100 * nearly}}, 0);
+  horizon.add(std::vector<glm::vec3>{{100, 50, 0.01F}, {100, 50, 100 * nearly}});
   EXPECT_EQ(horizon.elevation(100, 0.05F), kNothing);
-  horizon.add(std::vector<glm::vec3>{{100, 50, 100 * nearly}, {100, 50, 1}}, 0);
+  horizon.add(std::vector<glm::vec3>{{100, 50, 100 * nearly}, {100, 50, 1}});
   EXPECT_EQ(horizon.elevation(100, 0.05F), kNothing);  // its first hundredth of a metre is open
-  horizon.add(std::vector<glm::vec3>{{100, 40, -5}, {100, 40, 0.5F}}, 0);
+  horizon.add(std::vector<glm::vec3>{{100, 40, -5}, {100, 40, 0.5F}});
   EXPECT_NEAR(horizon.elevation(100, 0.05F), 0.4F, 1e-3F);  // both parts together
 }
 
@@ -266,8 +279,8 @@ std::vector<glm::vec3> line_in_bins(double from, double to, float height) {
 TEST(Horizon, TwoPartsOfABinThatMeetCoverItUpToTheLowerOne) {
   for (const bool higher_first : {false, true}) {
     Horizon horizon;
-    horizon.add(line_in_bins(9.5, 10.6, higher_first ? 50 : 30), 0);
-    horizon.add(line_in_bins(10.4, 11.5, higher_first ? 30 : 50), 0);
+    horizon.add(line_in_bins(9.5, 10.6, higher_first ? 50 : 30));
+    horizon.add(line_in_bins(10.4, 11.5, higher_first ? 30 : 50));
     EXPECT_NEAR(horizon.elevation(100, 100 * 10.5F / 245.5F), 0.3F, 1e-3F);
     EXPECT_EQ(horizon.elevation(100, 100 * 9.5F / 246.5F), kNothing);
     EXPECT_EQ(horizon.elevation(100, 100 * 11.5F / 244.5F), kNothing);
@@ -280,8 +293,8 @@ TEST(Horizon, TwoPartsOfABinHideWhatIsBehindBoth) {
     for (glm::vec3& point : far_left ? left : right)
       point *= 3;  // 300 m away
     Horizon horizon;
-    horizon.add(left, 0);
-    horizon.add(right, 0);
+    horizon.add(left);
+    horizon.add(right);
     EXPECT_FALSE(horizon.hides({{200, -9, 8.3F}, {201, 0, 8.5F}}));
     EXPECT_TRUE(horizon.hides({{400, -9, 16.6F}, {401, 0, 17}}));
   }
@@ -289,10 +302,10 @@ TEST(Horizon, TwoPartsOfABinHideWhatIsBehindBoth) {
 
 TEST(Horizon, TwoPartsOfABinWithAGapBetweenThemDoNotCoverIt) {
   Horizon horizon;
-  horizon.add(line_in_bins(9.5, 10.4, 50), 0);
-  horizon.add(line_in_bins(10.6, 11.5, 50), 0);
+  horizon.add(line_in_bins(9.5, 10.4, 50));
+  horizon.add(line_in_bins(10.6, 11.5, 50));
   EXPECT_EQ(horizon.elevation(100, 100 * 10.2F / 245.8F), kNothing);
-  horizon.add(line_in_bins(9.5, 10.7, 20), 0);  // lower, but it closes the gap
+  horizon.add(line_in_bins(9.5, 10.7, 20));  // lower, but it closes the gap
   EXPECT_NEAR(horizon.elevation(100, 100 * 10.2F / 245.8F), 0.2F, 1e-3F);
 }
 
@@ -305,7 +318,7 @@ TEST(Horizon, AClosedLineHidesAllAroundAcrossTheSeamOfTheBins) {
   for (const bool reversed : {false, true}) {
     if (reversed) std::ranges::reverse(ring);
     Horizon horizon;
-    horizon.add(ring, 0);
+    horizon.add(ring);
     for (int i = 0; i < 360; ++i) {
       const auto turn = static_cast<float>(i) * 0.017453F;
       EXPECT_TRUE(horizon.hides(box_at(300 * std::cos(turn), 300 * std::sin(turn), 20))) << i;
@@ -318,10 +331,10 @@ TEST(Horizon, AClosedLineHidesAllAroundAcrossTheSeamOfTheBins) {
 TEST(Horizon, TakesLinesThroughTheCameraAndPointsThatAreNoNumbers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Horizon horizon;
-  horizon.add(std::vector<glm::vec3>{{-50, -2, 0}, {0, -2, 0}, {50, -2, 0}, {50, -2, 0}}, 0);
-  horizon.add(std::vector<glm::vec3>{{-50, 2, 1}, {nan, 2, 1}, {50, nan, 1}, {60, 3, 9}}, 0);
-  horizon.add({}, 0);
-  horizon.add(std::vector<glm::vec3>{{5, 5, 5}}, 0);
+  horizon.add(std::vector<glm::vec3>{{-50, -2, 0}, {0, -2, 0}, {50, -2, 0}, {50, -2, 0}});
+  horizon.add(std::vector<glm::vec3>{{-50, 2, 1}, {nan, 2, 1}, {50, nan, 1}, {60, 3, 9}});
+  horizon.add({});
+  horizon.add(std::vector<glm::vec3>{{5, 5, 5}});
   for (int i = 0; i < 64; ++i) {
     const auto turn = static_cast<float>(i) * 0.1F;
     EXPECT_FALSE(horizon.hides(box_at(300 * std::cos(turn), 300 * std::sin(turn), 20)));
