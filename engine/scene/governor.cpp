@@ -7,10 +7,11 @@ namespace psygen::scene {
 namespace {
 
 constexpr double kSmoothing = 0.1;  // share of the newest frame
-// Largest steps of a frame; at 60 Hz the error doubles in a second and halves in four at most.
+// Steps of a frame whose time is off by kFullStepAt: at 60 Hz the error doubles in a second and
+// halves in four. Frames that take far too long are answered by up to kMostSteps of them.
 constexpr double kStepUp = 0.012, kStepDown = 0.003;
-// The whole step is taken when the frame time is off by this share.
 constexpr double kFullStepAt = 0.25;
+constexpr double kMostSteps = 3;
 
 }  // namespace
 
@@ -22,7 +23,7 @@ void Governor::observe(double frame_ms) {
   const double over = smoothed_ms_ / target_ms - 1;
   const double under = settings_.rest_share - smoothed_ms_ / target_ms;
   if (over > 0) {
-    factor_ *= 1 + kStepUp * std::min(over / kFullStepAt, 1.0);
+    factor_ *= 1 + kStepUp * std::min(over / kFullStepAt, kMostSteps);
   } else if (under > 0) {
     factor_ *= 1 - kStepDown * std::min(under / kFullStepAt, 1.0);
   }

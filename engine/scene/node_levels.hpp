@@ -34,7 +34,7 @@ models::Parameters node_terrain(const world::World& world, const visibility::Nod
 // Whether any block of the node exists.
 bool contains(const world::World& world, const visibility::NodeCoord& node);
 
-// Replaces `distances`, one for each level: where an error covers `error_pixels`, but at 1.5 … 3
+// Replaces `distances`, one for each level: where an error covers `error_pixels`, but at 0.9 … 3
 // sides of the node. Blocks take their finest mesh as near as their error says, at most at 3 sides.
 void split_distances(std::span<const NodeLevel> levels, const Settings& settings,
                      double pixels_per_radian, double error_pixels,

@@ -133,16 +133,20 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
       "settings are in range");
   // More than the roundings of distances, so that the proof holds for computed numbers.
   constexpr double kSlack = 1 + 1e-9;
-  double merge_below = 0, reach_below = 0;
+  double merge_below = 0;  // of the level below
+  double reach_below = 0,
+         reach_two_below = 0;  // beside a split node of that level, and of the next
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double side = side_of(static_cast<std::uint8_t>(k), settings.block_size_m);
     const double by_error =
         level_errors_m[k] * settings.pixels_per_radian / settings.max_error_pixels;
-    const double split = std::max({by_error, settings.min_ratio * side, reach_below});
-    // Where all three are 0 the level is never split and morphs nowhere.
+    const double split =
+        std::max({by_error, settings.min_ratio * side, merge_below * kSlack, reach_two_below});
+    // Where all are 0 the level is never split and morphs nowhere.
     levels[k] = {split, split * settings.merge_factor,
                  std::max(split * settings.morph_share, merge_below)};
     merge_below = levels[k].merge_m;
+    reach_two_below = reach_below;
     reach_below = (merge_below + std::numbers::sqrt2 * side) * kSlack;
   }
 }

@@ -1,7 +1,7 @@
 // The cut through the quadtree of blocks: which node of which level stands for each piece of
 // ground. A node of level k covers 2^k × 2^k blocks; node (x, z) begins at block (x << k, z << k).
 // Distances alone decide, so that a level is known before anything is generated. Restricted: leaves
-// that touch differ by one level at most (proof at split_distances). Knows no entities and no
+// that touch differ by two levels at most (proof at split_distances). Knows no entities and no
 // meshes. Linear in the nodes of the cut, whose number grows with the logarithm of the view
 // distance; allocates only while results grow. Values only; usable from any thread.
 #pragma once
@@ -79,12 +79,13 @@ struct SplitSettings {
 // block's coarser mesh.
 //
 // split(k) = max(error(k) · pixels per radian / max error in pixels, min_ratio · side(k),
-//                merge(k − 1) + diagonal(k − 1)).
+//                merge(k − 1), merge(k − 2) + diagonal(k − 2)).
 //
 // The last term makes the cut restricted. Let P of level p be split, so d(P) < merge(p), and let B
-// of level b > p touch it. Distances are horizontal distances to squares, or hypot of these and a
-// clearance that does not grow with the level, hence d(B) <= d(P) + diagonal(p) < split(p + 1) <=
-// split(b): B is split as well. It also keeps split nodes within split nodes, and lets a node that
+// of level b > p + 1 touch it. Distances are horizontal distances to squares, or hypot of these and
+// a clearance that does not grow with the level, hence d(B) <= d(P) + diagonal(p) < split(p + 2) <=
+// split(b): B is split as well. So what touches a leaf, whose parent is split, is no leaf of more
+// than two levels above it. merge(k − 1) keeps split nodes within split nodes, and lets a node that
 // has just replaced its children (at merge(k)) begin without morph: morph(k + 1) >= merge(k).
 void split_distances(std::span<const double> level_errors_m, const SplitSettings& settings,
                      std::span<LevelDistances> levels);

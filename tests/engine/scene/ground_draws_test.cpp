@@ -69,8 +69,8 @@ TEST(GroundDraws, TilesInFrontAreInViewAndThoseBesideTheFrustumAreNot) {
   const std::uint32_t seen = tiles_in_view(right.tiles(), right.view);
   EXPECT_NE(seen, 0U);
   EXPECT_NE(seen, kAll);
-  EXPECT_NE(seen & 1U, 0U);          // far and left
-  EXPECT_EQ(seen & (1U << 8), 0U);   // near and right
+  EXPECT_NE(seen & 1U, 0U);         // far and left
+  EXPECT_EQ(seen & (1U << 8), 0U);  // near and right
 }
 
 TEST(GroundDraws, TilesBehindARidgeAreHiddenOnlyIfTheyAreLower) {

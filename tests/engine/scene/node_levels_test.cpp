@@ -82,7 +82,7 @@ struct Wish {
 constexpr Wish kWishes[] = {{32, 4, 200},   {130, 0.5, 700},  {1000, 4, 1120},
                             {4000, 16, 90}, {16000, 4, 1120}, {65536, 1, 2200}};
 
-TEST(NodeLevels, NodesAreSplitAtOneAndAHalfToThreeSidesUnlessFinerOnesNeedMore) {
+TEST(NodeLevels, NodesAreSplitAtNearlyOneToThreeSidesUnlessFinerOnesNeedMore) {
   for (const Wish& wish : kWishes) {
     Settings settings;
     settings.view_distance_m = wish.view_m;
@@ -91,7 +91,7 @@ TEST(NodeLevels, NodesAreSplitAtOneAndAHalfToThreeSidesUnlessFinerOnesNeedMore) 
     split_distances(levels, settings, wish.pixels_per_radian, wish.error_pixels, distances);
     ASSERT_EQ(distances.size(), levels.size());
     for (std::size_t k = 1; k < levels.size(); ++k) {
-      EXPECT_GE(distances[k].split_m, 1.5 * levels[k].size_m);
+      EXPECT_GE(distances[k].split_m, 0.9 * levels[k].size_m);
       EXPECT_GE(distances[k].split_m, distances[k - 1].merge_m);
       EXPECT_GE(distances[k].merge_m, distances[k].split_m);
       EXPECT_LE(distances[k].morph_m, distances[k].split_m);

@@ -76,7 +76,7 @@ void expect_restricted(const BlockLevels& blocks) {
     for (const auto& [dx, dz] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}}) {
       const auto other = blocks.find({place.first + dx, place.second + dz});
       if (other == blocks.end()) continue;
-      ASSERT_LE(std::abs(other->second - level), 1) << place.first << ' ' << place.second;
+      ASSERT_LE(std::abs(other->second - level), 2) << place.first << ' ' << place.second;
     }
   }
 }
@@ -116,25 +116,35 @@ TEST(NodeCoord, NeighboursAcrossTheSeamAreCanonical) {
   EXPECT_EQ(corner_block(next).x, INT32_MIN);
 }
 
-TEST(SplitDistances, FollowTheErrorTheRatioAndTheLevelBelow) {
-  std::vector<LevelDistances> levels(3);
+TEST(SplitDistances, FollowTheErrorTheRatioAndTheLevelsBelow) {
+  std::vector<LevelDistances> levels(4);
   const SplitSettings settings{.block_size_m = 64,
                                .pixels_per_radian = 1000,
                                .max_error_pixels = 2,
                                .min_ratio = 1.5,
                                .merge_factor = 1.25,
                                .morph_share = 0.5};
-  split_distances(std::vector{0.1, 2.0, 2.0}, settings, levels);
+  split_distances(std::vector{0.1, 2.0, 2.0, 2.0}, settings, levels);
   EXPECT_DOUBLE_EQ(levels[0].split_m, 96);  // the ratio; the error would give 50
   EXPECT_DOUBLE_EQ(levels[0].merge_m, 120);
   EXPECT_DOUBLE_EQ(levels[0].morph_m, 48);
   EXPECT_DOUBLE_EQ(levels[1].split_m, 1000);
   EXPECT_DOUBLE_EQ(levels[1].morph_m, 500);
-  EXPECT_NEAR(levels[2].split_m, 1250 + 128 * std::sqrt(2.0), 1e-3);  // 1000 by its error
-  EXPECT_DOUBLE_EQ(levels[2].morph_m, 1250);                          // not before merge_m below
+  EXPECT_NEAR(levels[2].split_m, 1250, 1e-3);  // merge_m below; 1000 by its error
+  EXPECT_DOUBLE_EQ(levels[2].morph_m, 1250);   // not before merge_m below
+  EXPECT_NEAR(levels[3].split_m, 1250 * 1.25, 1e-3);
 }
 
-TEST(Cut, LeavesTileTheRootsExactlyAndDifferByOneLevelAtMost) {
+TEST(SplitDistances, ReachBeyondWhatTouchesNodesTwoLevelsBelow) {
+  std::vector<LevelDistances> levels(3);
+  const SplitSettings settings{.block_size_m = 64, .min_ratio = 0.1, .merge_factor = 1};
+  split_distances(std::vector{0.01, 0.01, 0.01}, settings, levels);
+  EXPECT_DOUBLE_EQ(levels[0].split_m, 10);
+  EXPECT_DOUBLE_EQ(levels[1].split_m, 12.8);
+  EXPECT_NEAR(levels[2].split_m, 10 + 64 * std::sqrt(2.0), 1e-3);
+}
+
+TEST(Cut, LeavesTileTheRootsExactlyAndDifferByTwoLevelsAtMost) {
   core::RandomStream random = stream(1);
   std::set<int> levels_seen;
   for (int i = 0; i < 12; ++i) {
