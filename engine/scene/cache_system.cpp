@@ -64,8 +64,10 @@ bool is_roomy(const synthesis::GeometryCache& cache) {
 class Chooser {
  public:
   Chooser(const Settings& settings, const Clock& clock, const Camera& camera,
-          const Quality& quality, const View& view, Synthesis& synthesis, Counters& counters)
+          const Quality& quality, const WorldFacts& facts, const View& view, Synthesis& synthesis,
+          Counters& counters)
       : settings_(settings),
+        facts_(facts),
         quality_(quality),
         clock_(clock),
         camera_(camera),
@@ -99,9 +101,9 @@ class Chooser {
 
  private:
   // Around what is drawn, or all that could be. Relative to the camera.
-  static core::Bounds box_of(const MeshEntity& row, const glm::vec3& foot) {
+  core::Bounds box_of(const MeshEntity& row, const glm::vec3& foot) const {
     const Placed& placed = row.placed;
-    if (row.demand.drawn_level != kNoLevel)
+    if (row.demand.drawn_level != kNoLevel && !facts_.shadows)
       return {foot + row.mesh.tight.min - kSwayM, foot + row.mesh.tight.max + kSwayM};
     const glm::vec3 center = foot + placed.box_center;
     return {center - placed.box_half_extent, center + placed.box_half_extent};
@@ -240,6 +242,7 @@ class Chooser {
   }
 
   const Settings& settings_;
+  const WorldFacts& facts_;
   const Quality& quality_;
   const Clock& clock_;
   const Camera& camera_;
@@ -360,7 +363,7 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
   synthesis.wants.clear();
   synthesis.ready.clear();
 
-  Chooser chooser(settings, clock, camera, quality, view, synthesis, counters);
+  Chooser chooser(settings, clock, camera, quality, facts, view, synthesis, counters);
   NodeWalk walk(chooser, camera, facts.world.block_size_m(), entities);
   const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
   walk.consider(view.chosen, wait);

@@ -83,7 +83,8 @@ void add_skirts(const NodeTiles& tiles, std::uint32_t in_view, const Grid& grid,
     for (int k = 0; k < side; ++k)
       along |=
           bit(i % 2 == 0 ? (i == 0 ? 0 : side - 1) * side + k : k * side + (i == 1 ? side - 1 : 0));
-    if (faces[static_cast<std::size_t>(i)] && (along & in_view) != 0) parts.add(grid.skirt(i));
+    const bool faces_camera = faces[static_cast<std::size_t>(i)] && (along & in_view) != 0;
+    if (faces_camera || in_view == kAllTiles) parts.add(grid.skirt(i));
   }
 }
 

@@ -25,7 +25,9 @@ struct NodeTiles {
   core::Bounds box(int column, int row, glm::vec2 reach_m = glm::vec2(0.0F)) const;
 };
 
-// Bit row · side + column is set for tiles that can be seen.
+// Bit row · side + column is set for tiles that can be seen. All of them, and all skirts, where
+// what is not in the picture matters too: it may cast a shadow, or the world's edge moves it.
+inline constexpr std::uint32_t kAllTiles = UINT32_MAX;
 std::uint32_t tiles_in_view(const NodeTiles& tiles, const View& view);
 // Whether anything that stands on them and reaches so far to the sides and up can.
 bool models_in_view(const NodeTiles& tiles, std::uint32_t in_view, glm::vec2 reach_m,

@@ -59,6 +59,15 @@ bool contains(const world::World& world, const visibility::NodeCoord& node) {
   return inside(corner.x, world.blocks_x) && inside(corner.z, world.blocks_z);
 }
 
+bool overhangs(const world::World& world, const visibility::NodeCoord& node) {
+  const core::BlockCoord corner = visibility::corner_block(node);
+  const std::int64_t side = std::int64_t{1} << node.level;
+  const auto beyond = [side](std::int64_t first, std::int64_t count) {
+    return count != 0 && (first < 0 || first + side > count);
+  };
+  return beyond(corner.x, world.blocks_x) || beyond(corner.z, world.blocks_z);
+}
+
 std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
                                    const Settings& settings, const models::ModelType* merged) {
   const models::ModelType& terrain = registry[world.terrain_model];

@@ -33,6 +33,8 @@ models::Parameters node_terrain(const world::World& world, const visibility::Nod
 
 // Whether any block of the node exists.
 bool contains(const world::World& world, const visibility::NodeCoord& node);
+// Whether any of its blocks does not.
+bool overhangs(const world::World& world, const visibility::NodeCoord& node);
 
 // Replaces `distances`, one for each level: where an error covers `error_pixels`, but at 0.9 … 3
 // sides of the node. Blocks take their finest mesh as near as their error says, at most at 3 sides.

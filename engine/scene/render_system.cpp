@@ -15,15 +15,14 @@ namespace {
 class Drawing {
  public:
   Drawing(render::View shown, const Clock& clock, const Camera& camera, const WorldFacts& facts,
-          const View& view, float fine_m, bool shadows, const RenderQuery& entities,
-          DrawLists& draws, Counters& counters)
+          const View& view, float fine_m, const RenderQuery& entities, DrawLists& draws,
+          Counters& counters)
       : shown_(shown),
         clock_(clock),
         camera_(camera),
         facts_(facts),
         view_(view),
         fine_m_(fine_m),
-        shadows_(shadows),
         entities_(entities),
         draws_(draws),
         counters_(counters) {}
@@ -44,22 +43,19 @@ class Drawing {
   }
 
  private:
-  // Complete nodes, which stand for what has landed below them in this tick (find_drawn of the
-  // visibility system); where no ancestor is complete bare ground is better than nothing.
+  // What the visibility system found, as its ground is what hides others: without what was evicted
+  // since, and what has become complete since only where nothing above it is drawn.
   void find_ready(std::span<const ecs::Entity> entities) {
     const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
     draws_.ready.assign(cut.size(), 0);
-    std::vector<std::uint8_t>& complete = draws_.scratch;  // the node or an ancestor
-    complete.assign(cut.size(), 0);
+    std::vector<std::uint8_t>& covered = draws_.scratch;  // by the node or an ancestor
+    covered.assign(cut.size(), 0);
     for (std::size_t i = 0; i < cut.size(); ++i) {
-      const bool above = cut[i].parent != visibility::kNoNode && complete[cut[i].parent] != 0;
-      const Lacking* lacking = entities_.get<Lacking>(entities[i]);
-      const bool itself = lacking != nullptr && lacking->meshes == 0;
-      const bool ground =
-          lacking != nullptr && entities_.get<Demand>(entities[i])->drawn_level != kNoLevel;
-      complete[i] = above || itself ? 1 : 0;
-      const bool landed = view_.ready[i] == 0;
-      draws_.ready[i] = (itself && !(landed && above)) || (ground && !above) ? 1 : 0;
+      const bool above = cut[i].parent != visibility::kNoNode && covered[cut[i].parent] != 0;
+      const Demand* demand = entities_.get<Demand>(entities[i]);
+      const bool ground = demand != nullptr && demand->drawn_level != kNoLevel;
+      draws_.ready[i] = ground && (view_.ready[i] != 0 || !above) ? 1 : 0;
+      covered[i] = above || draws_.ready[i] != 0 ? 1 : 0;
     }
   }
 
@@ -78,7 +74,7 @@ class Drawing {
     count(middle, placed->radius_m, hole, coarser > 1);
     DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
-    const bool seen = hole || add_ground(node, entity, facts, corner);
+    const bool seen = hole || add_ground(node, entity, at, facts, corner);
     if (seen || node.node.level == 0)
       add_models(*entities_.get<ecs::Children>(entity), facts, corner);
     if (shown_ == render::View::kBounds) {
@@ -122,8 +118,8 @@ class Drawing {
   }
 
   // Returns whether models on it can be seen.
-  bool add_ground(const visibility::CutNode& node, ecs::Entity entity, const DrawFacts& facts,
-                  glm::vec3 corner) {
+  bool add_ground(const visibility::CutNode& node, ecs::Entity entity, const Node& at,
+                  const DrawFacts& facts, glm::vec3 corner) {
     const auto [placed, demand, mesh, relief] =
         std::tuple(entities_.get<Placed>(entity), entities_.get<Demand>(entity),
                    entities_.get<Mesh>(entity), entities_.get<GroundRelief>(entity));
@@ -145,11 +141,15 @@ class Drawing {
     const std::size_t mesh_level =
         (node.node.level > 0 ? level.mesh_level : 0U) + demand->drawn_level;
     const NodeTiles tiles{facts_.grids[mesh_level], *relief, corner, draw.cell_m,
-                          entities_.get<Node>(entity)->low_m - level.skirt_m};
+                          at.low_m - level.skirt_m};
     const bool fine = facts_.tiles && mesh_level == 0;
-    const std::uint32_t in_view = shadows_ ? ~0U : tiles_in_view(tiles, view_);
+    const bool all = facts_.shadows || overhangs(facts_.world, node.node);
+    const std::uint32_t in_view = all ? kAllTiles : tiles_in_view(tiles, view_);
     add_tiles(tiles, in_view, fine ? &*facts_.tiles : nullptr, fine_m_, draw, draws_.terrain);
-    return models_in_view(tiles, in_view, facts_.models_reach_m, view_);
+    // Models stand on the finest ground, which may be higher than this.
+    const float higher_m = at.high_m - *std::ranges::max_element(relief->top_m);
+    return models_in_view(tiles, in_view,
+                          facts_.models_reach_m + glm::vec2(0.0F, std::max(higher_m, 0.0F)), view_);
   }
 
   // `facts` are those of their node.
@@ -186,7 +186,6 @@ class Drawing {
   const WorldFacts& facts_;
   const View& view_;
   const float fine_m_;  // blocks nearer than this have their finest ground
-  const bool shadows_;  // of what is drawn, in the picture or not
   const RenderQuery& entities_;
   DrawLists& draws_;
   Counters& counters_;
@@ -205,8 +204,7 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
   for (const visibility::CutNode& node : view.cut.nodes)
     draws.entities.push_back(streaming.grids[node.node.level].entity_of(node.node.coord));
   const render::Morph morph = morph_of(streaming);
-  const bool shadows = output.renderer != nullptr && output.renderer->casts_shadows();
-  Drawing(input.view, clock, camera, facts, view, morph.to_m, shadows, entities, draws, counters)
+  Drawing(input.view, clock, camera, facts, view, morph.to_m, entities, draws, counters)
       .run(draws.entities);
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
   if (output.renderer == nullptr) return;

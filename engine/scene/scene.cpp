@@ -135,6 +135,16 @@ std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
   return samples;
 }
 
+// Without ground and what is merged, of which it is known how near they are.
+std::vector<synthesis::CostSample> single_models(const WorldFacts& facts,
+                                                 std::vector<synthesis::CostSample> samples) {
+  std::erase_if(samples, [&](const synthesis::CostSample& sample) {
+    return sample.model == facts.world.terrain_model ||
+           (facts.merged_model != 0 && sample.model == facts.merged_model);
+  });
+  return samples;
+}
+
 Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
                    const models::Registry& registry, const ecs::Schedule& tick) {
   Tracing tracing;
@@ -190,6 +200,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
                                    window_radius(facts.levels, settings, k));
   }
   s.output.renderer = renderer;
+  facts.shadows = renderer != nullptr && renderer->casts_shadows();
   if (renderer == nullptr) {
     s.heap = std::make_unique<core::HeapGeometryMemory>(settings.budget_bytes);
   }
@@ -200,7 +211,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
       std::make_unique<synthesis::GeometryCache>(*s.memory, facts.registry, settings.budget_bytes);
   synthesis.cost = std::make_unique<synthesis::CostModel>(facts.registry);
   const std::vector<synthesis::CostSample> samples = cost_samples(facts);
-  facts.usual_boxes = usual_boxes(facts.registry, samples);
+  facts.usual_boxes = usual_boxes(facts.registry, single_models(facts, samples));
   scene->calibration_ = synthesis.cost->calibrate(samples, {}, [&](double fraction) {
     if (progress) (void)progress("calibrating", fraction);
   });

@@ -83,7 +83,7 @@ struct WorldFacts {
   float cover_share = 0;                       // of the ground that they hide
   std::vector<visibility::Standing> standing;  // on a block
   std::vector<NodeLevel> levels;               // of the quadtree, finest first
-  models::ModelIndex merged_model = 0;         // of meshes that stand for all models on a node
+  models::ModelIndex merged_model = 0;         // of meshes for all models on a node; 0: none
   std::vector<models::TerrainGrid> grids;      // of each level of the terrain type
   std::optional<models::TerrainTiles> tiles;   // of blocks' finest meshes; none without levels
   // Of each model type: where in its box, of −1 … 1 along each axis, meshes of the type usually
@@ -92,6 +92,7 @@ struct WorldFacts {
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
+  bool shadows = false;  // what is drawn casts some into the picture, though it may be out of view
 };
 
 // Where the sun stands that the ground is lit by (world::set_sun).
@@ -132,10 +133,10 @@ struct View {
   visibility::Frustum frustum;
   visibility::Cut cut;  // what should be drawn
   std::vector<visibility::NodeCoord> roots;
-  visibility::Horizon horizon;        // of the ground that is ready
+  visibility::Horizon horizon;        // of the ground that is drawn
   std::vector<std::uint8_t> in_view;  // per node of the cut, and not behind the horizon
-  std::vector<std::uint8_t> ready;    // per node of the cut: nothing was lacking before this tick
-  std::vector<std::uint32_t> drawn;   // of the cut: what is drawn if nothing is evicted
+  std::vector<std::uint8_t> ready;    // per node of the cut: it could be drawn before this tick
+  std::vector<std::uint32_t> drawn;   // of the cut: what is drawn of these
   std::vector<std::uint8_t> scratch;
   std::vector<LevelView> levels;
   std::vector<ChosenNode> chosen;     // of the cut, ancestors first, front to back

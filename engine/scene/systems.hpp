@@ -26,7 +26,8 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
 
 // Chooses the cut through the quadtree and runs Prioritized-Layered Projection over the nodes of
 // each level; what predicted cameras see gets a deadline.
-using VisibilityQuery = ecs::Query<const Node, const Lacking, const GroundRelief, Visibility>;
+using VisibilityQuery =
+    ecs::Query<const Node, const Lacking, const Demand, const GroundRelief, Visibility>;
 void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                        const Streaming& streaming, const Synthesis& synthesis,
                        VisibilityQuery nodes, View& view, Counters& counters);

@@ -9,6 +9,8 @@
 namespace psygen::scene {
 namespace {
 
+// Enough of a type to know how large they are.
+constexpr std::size_t kSamples = 8;
 constexpr core::Bounds kWhole{glm::vec3(-1.0F), glm::vec3(1.0F)};
 
 std::optional<core::Bounds> tight_box(const models::ModelType& type,
@@ -27,7 +29,9 @@ std::optional<core::Bounds> tight_box(const models::ModelType& type,
 std::vector<core::Bounds> usual_boxes(const models::Registry& registry,
                                       std::span<const synthesis::CostSample> samples) {
   std::vector<std::optional<core::Bounds>> found(registry.size());
+  std::vector<std::size_t> taken(registry.size(), 0);
   for (const synthesis::CostSample& sample : samples) {
+    if (taken[sample.model]++ >= kSamples) continue;
     const models::ModelType& type = registry[sample.model];
     const core::Bounds whole = type.bounds(sample.parameters);
     const core::Bounds tight = tight_box(type, sample.parameters).value_or(whole);

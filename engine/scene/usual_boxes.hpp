@@ -12,8 +12,9 @@
 
 namespace psygen::scene {
 
-// For each type the box around the coarsest meshes of its samples, in units of −1 … 1 along each
-// axis of ModelType::bounds(); the whole box of types without samples, and of those that fail.
+// For each type the box around the coarsest meshes of its first few samples, in units of −1 … 1
+// along each axis of ModelType::bounds(); the whole box of types without samples, and of those that
+// fail.
 std::vector<core::Bounds> usual_boxes(const models::Registry& registry,
                                       std::span<const synthesis::CostSample> samples);
 

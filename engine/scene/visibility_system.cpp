@@ -160,16 +160,32 @@ void count_missing_node(const Camera& camera, const core::Bounds& box, Counters&
       covered_percent(camera, box.center(), glm::length(box.half_extent()));
 }
 
-// What of the cut was ready before this tick, and so will be drawn: what lands in this tick
-// replaces it in the next, so that the ground that hides others is the ground that is drawn.
+// What of the cut could be drawn before this tick, and what of it is therefore drawn now, unless a
+// mesh is evicted or a hole is filled (find_ready of the render system): complete nodes; where no
+// ancestor is complete bare ground is better than nothing.
 void find_drawn(const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
-  view.ready.assign(view.cut.nodes.size(), 0);
-  for (std::size_t i = 0; i < view.cut.nodes.size(); ++i) {
-    const visibility::NodeCoord& at = view.cut.nodes[i].node;
-    const Lacking* lacking = nodes.get<Lacking>(streaming.grids[at.level].entity_of(at.coord));
-    view.ready[i] = lacking != nullptr && lacking->meshes == 0 ? 1 : 0;
+  const std::vector<visibility::CutNode>& cut = view.cut.nodes;
+  view.ready.assign(cut.size(), 0);
+  std::vector<std::uint8_t>& complete = view.scratch;  // the node or an ancestor
+  complete.assign(cut.size(), 0);
+  for (std::size_t i = 0; i < cut.size(); ++i) {
+    const bool above = cut[i].parent != visibility::kNoNode && complete[cut[i].parent] != 0;
+    const ecs::Entity entity = streaming.grids[cut[i].node.level].entity_of(cut[i].node.coord);
+    const Lacking* lacking = nodes.get<Lacking>(entity);
+    const bool itself = lacking != nullptr && lacking->meshes == 0;
+    const bool ground = lacking != nullptr && nodes.get<Demand>(entity)->drawn_level != kNoLevel;
+    complete[i] = above || itself ? 1 : 0;
+    view.ready[i] = itself || (ground && !above) ? 1 : 0;
   }
   visibility::drawn_nodes(view.cut, view.ready, view.scratch, view.drawn);
+}
+
+// Whether the lines of a drawn node say what can be hidden: none of them lies beyond the world, and
+// none may lie above the camera, as in coarse ground that stands for finer ground below it.
+bool hides_others(const WorldFacts& facts, const visibility::CutNode& node) {
+  const bool around = node.corner_x_m <= 0 && node.corner_x_m + node.side_m >= 0 &&
+                      node.corner_z_m <= 0 && node.corner_z_m + node.side_m >= 0;
+  return !(around && !node.leaf) && !overhangs(facts.world, node.node);
 }
 
 // Which nodes of the cut are in view: in the frustum, and not behind the ground of others that are
@@ -198,9 +214,9 @@ void find_hidden(const Settings& settings, const Camera& camera, const WorldFact
     while (next < view.drawn.size() && view.drawn[next] < i)
       ++next;
     const bool drawn = next < view.drawn.size() && view.drawn[next] == i;
-    if (hides && drawn && view.in_view[i] != 0) {
-      const auto* relief = nodes.get<GroundRelief>(grid.entity_of(at.coord));
-      add_lines(*relief, corner_of(facts, camera, at), cut[i].side_m, view.horizon);
+    if (hides && drawn && view.in_view[i] != 0 && hides_others(facts, cut[i])) {
+      const auto& relief = *nodes.get<GroundRelief>(grid.entity_of(at.coord));
+      add_lines(relief, corner_of(facts, camera, at), cut[i].side_m, view.horizon);
     }
     i = view.in_view[i] != 0 ? i + 1 : cut[i].end;
   }

@@ -128,26 +128,25 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
                      std::span<LevelDistances> levels) {
   PSYGEN_ASSERT(level_errors_m.size() == levels.size() && levels.size() <= kMaxNodeLevel + 1U,
                 "there is one error for each level");
-  PSYGEN_ASSERT(
-      settings.merge_factor >= 1 && settings.max_error_pixels > 0 && settings.morph_share <= 1,
-      "settings are in range");
+  PSYGEN_ASSERT(settings.merge_factor >= 1 && settings.max_error_pixels > 0 &&
+                    settings.morph_share > 0 && settings.morph_share <= 1,
+                "settings are in range");
   // More than the roundings of distances, so that the proof holds for computed numbers.
   constexpr double kSlack = 1 + 1e-9;
-  double merge_below = 0;  // of the level below
-  double reach_below = 0,
-         reach_two_below = 0;  // beside a split node of that level, and of the next
+  double merge_below = 0;      // so far that morphing begins beyond the level below
+  double reach_below = 0;      // beyond what touches split nodes of that level
+  double reach_two_below = 0;  // the same of the next
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double side = side_of(static_cast<std::uint8_t>(k), settings.block_size_m);
     const double by_error =
         level_errors_m[k] * settings.pixels_per_radian / settings.max_error_pixels;
     const double split =
-        std::max({by_error, settings.min_ratio * side, merge_below * kSlack, reach_two_below});
+        std::max({by_error, settings.min_ratio * side, merge_below, reach_two_below});
     // Where all are 0 the level is never split and morphs nowhere.
-    levels[k] = {split, split * settings.merge_factor,
-                 std::max(split * settings.morph_share, merge_below)};
-    merge_below = levels[k].merge_m;
+    levels[k] = {split, split * settings.merge_factor, split * settings.morph_share};
+    merge_below = levels[k].merge_m / settings.morph_share * kSlack;
     reach_two_below = reach_below;
-    reach_below = (merge_below + std::numbers::sqrt2 * side) * kSlack;
+    reach_below = (levels[k].merge_m + std::numbers::sqrt2 * side) * kSlack;
   }
 }
 

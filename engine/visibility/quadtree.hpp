@@ -70,7 +70,7 @@ struct SplitSettings {
   double max_error_pixels = 1;  // what an error in metres may cover
   double min_ratio = 1;  // a node is split nearer than so many of its sides, whatever its error
   double merge_factor = 1.1;  // merge_m / split_m, >= 1
-  double morph_share = 0.7;   // of split_m, where morphing begins at the earliest
+  double morph_share = 0.7;   // of split_m, where morphing begins; above 0, at most 1
 };
 
 // One LevelDistances for each level; level_errors_m[k] is by how much the mesh of a node of level k
@@ -79,14 +79,15 @@ struct SplitSettings {
 // block's coarser mesh.
 //
 // split(k) = max(error(k) · pixels per radian / max error in pixels, min_ratio · side(k),
-//                merge(k − 1), merge(k − 2) + diagonal(k − 2)).
+//                merge(k − 1) / morph_share, merge(k − 2) + diagonal(k − 2)).
 //
 // The last term makes the cut restricted. Let P of level p be split, so d(P) < merge(p), and let B
 // of level b > p + 1 touch it. Distances are horizontal distances to squares, or hypot of these and
 // a clearance that does not grow with the level, hence d(B) <= d(P) + diagonal(p) < split(p + 2) <=
 // split(b): B is split as well. So what touches a leaf, whose parent is split, is no leaf of more
-// than two levels above it. merge(k − 1) keeps split nodes within split nodes, and lets a node that
-// has just replaced its children (at merge(k)) begin without morph: morph(k + 1) >= merge(k).
+// than two levels above it. merge(k − 1) keeps split nodes within split nodes; divided by
+// morph_share it lets a node that has just replaced its children (at merge(k)) begin without morph,
+// and leaves room for morphing: merge(k) <= morph(k + 1) = morph_share · split(k + 1).
 void split_distances(std::span<const double> level_errors_m, const SplitSettings& settings,
                      std::span<LevelDistances> levels);
 

@@ -94,7 +94,8 @@ TEST(NodeLevels, NodesAreSplitAtNearlyOneToThreeSidesUnlessFinerOnesNeedMore) {
       EXPECT_GE(distances[k].split_m, 0.9 * levels[k].size_m);
       EXPECT_GE(distances[k].split_m, distances[k - 1].merge_m);
       EXPECT_GE(distances[k].merge_m, distances[k].split_m);
-      EXPECT_LE(distances[k].morph_m, distances[k].split_m);
+      EXPECT_LE(distances[k].morph_m, 0.75 * distances[k].split_m) << "room for morphing";
+      EXPECT_GE(distances[k].morph_m, distances[k - 1].merge_m);
       EXPECT_LE(distances[k].split_m, 4.0 * levels[k].size_m);
     }
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <thread>
 
+#include "engine/scene/ground_draws.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
@@ -19,19 +20,55 @@ struct Square {
   }
 };
 
-// Of the nodes that are drawn, though of some of them no tile may be in view.
+// Whether the ground of a node of the cut is there: in the list of draws, or resident with no tile
+// that can be seen.
+bool has_ground(const State& s, std::uint32_t index) {
+  const ecs::Entity entity = s.draws.entities[index];
+  const Demand* demand = s.entities.get<Demand>(entity);
+  if (demand == nullptr || demand->drawn_level == kNoLevel) return false;
+  const Mesh& mesh = *s.entities.get<Mesh>(entity);
+  const auto is_its = [&](const render::TerrainDraw& draw) {
+    return draw.range.id == mesh.range.id;
+  };
+  if (std::ranges::any_of(s.draws.terrain, is_its)) return true;
+  const visibility::CutNode& node = s.view.cut.nodes[index];
+  const int level =
+      (node.node.level > 0 ? s.facts.levels[node.node.level].mesh_level : 0) + demand->drawn_level;
+  const glm::vec3 corner(core::offset_m(visibility::corner_block(node.node), s.camera.pose.position,
+                                        s.facts.world.block_size_m()));
+  const NodeTiles tiles{s.facts.grids[static_cast<std::size_t>(level)],
+                        *s.entities.get<GroundRelief>(entity), corner,
+                        s.facts.cell_m * static_cast<float>(1U << node.node.level),
+                        s.entities.get<Node>(entity)->low_m};
+  return tiles_in_view(tiles, s.view) == 0;
+}
+
+// Of the nodes that are drawn.
 std::vector<Square> drawn_ground(const State& s) {
   std::vector<Square> squares;
   const double block_m = s.facts.world.block_size_m();
   const core::WorldPosition& eye = s.camera.pose.position;
   for (const std::uint32_t index : s.draws.nodes) {
     const visibility::CutNode& node = s.view.cut.nodes[index];
-    if (s.view.in_view[index] == 0) continue;
+    if (s.view.in_view[index] == 0 || !has_ground(s, index)) continue;
     squares.push_back({std::round(eye.block.x * block_m + eye.local.x + double{node.corner_x_m}),
                        std::round(eye.block.z * block_m + eye.local.z + double{node.corner_z_m}),
                        double{node.side_m}});
   }
   return squares;
+}
+
+// Nodes whose ground hides others, but is not what is drawn there; without what was evicted in this
+// tick.
+std::size_t hiding_but_not_drawn(const State& s) {
+  std::size_t count = 0;
+  for (const std::uint32_t index : s.view.drawn) {
+    const Demand* demand = s.entities.get<Demand>(s.draws.entities[index]);
+    const bool resident = demand != nullptr && demand->drawn_level != kNoLevel;
+    count += resident && s.view.in_view[index] != 0 &&
+             std::ranges::find(s.draws.nodes, index) == s.draws.nodes.end();
+  }
+  return count;
 }
 
 std::size_t overlaps(const std::vector<Square>& squares) {
@@ -177,6 +214,7 @@ void fly_starved(const Pose& pose_of, const Passes& passes) {
     const std::vector<Square> now = drawn_ground(s);
     EXPECT_EQ(overlaps(now), 0u) << "frame " << i;
     EXPECT_EQ(vanished(s, before, now), 0u) << "frame " << i;
+    EXPECT_EQ(hiding_but_not_drawn(s), 0u) << "frame " << i;
     EXPECT_GT(now.size(), 2u) << "frame " << i;
     before = now;
     const auto leaf = [&](std::uint32_t node) { return s.view.cut.nodes[node].leaf; };

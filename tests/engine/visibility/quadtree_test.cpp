@@ -130,9 +130,9 @@ TEST(SplitDistances, FollowTheErrorTheRatioAndTheLevelsBelow) {
   EXPECT_DOUBLE_EQ(levels[0].morph_m, 48);
   EXPECT_DOUBLE_EQ(levels[1].split_m, 1000);
   EXPECT_DOUBLE_EQ(levels[1].morph_m, 500);
-  EXPECT_NEAR(levels[2].split_m, 1250, 1e-3);  // merge_m below; 1000 by its error
-  EXPECT_DOUBLE_EQ(levels[2].morph_m, 1250);   // not before merge_m below
-  EXPECT_NEAR(levels[3].split_m, 1250 * 1.25, 1e-3);
+  EXPECT_NEAR(levels[2].split_m, 2500, 1e-3);  // 1000 by its error
+  EXPECT_NEAR(levels[2].morph_m, 1250, 1e-3);  // not before merge_m below, and with room
+  EXPECT_NEAR(levels[3].split_m, 6250, 1e-3);
 }
 
 TEST(SplitDistances, ReachBeyondWhatTouchesNodesTwoLevelsBelow) {
@@ -140,7 +140,7 @@ TEST(SplitDistances, ReachBeyondWhatTouchesNodesTwoLevelsBelow) {
   const SplitSettings settings{.block_size_m = 64, .min_ratio = 0.1, .merge_factor = 1};
   split_distances(std::vector{0.01, 0.01, 0.01}, settings, levels);
   EXPECT_DOUBLE_EQ(levels[0].split_m, 10);
-  EXPECT_DOUBLE_EQ(levels[1].split_m, 12.8);
+  EXPECT_NEAR(levels[1].split_m, 10 / 0.7, 1e-3);
   EXPECT_NEAR(levels[2].split_m, 10 + 64 * std::sqrt(2.0), 1e-3);
 }
 
