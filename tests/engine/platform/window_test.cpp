@@ -10,10 +10,10 @@
 namespace psygen::platform {
 namespace {
 
-// Polls until `condition(input)` holds; false when it does not within some hundred events.
+// Polls until `condition(input)` holds; false when it does not within so many waits for events.
 template <class Condition>
-bool eventually(Window& window, const Condition& condition) {
-  for (int i = 0; i < 300; ++i) {
+bool eventually(Window& window, const Condition& condition, int waits = 300) {
+  for (int i = 0; i < waits; ++i) {
     if (condition(window.poll())) return true;
     window.wait_events(0.05);
   }
@@ -76,8 +76,15 @@ TEST_F(WindowOnADisplay, HasNoPixelsWhileItIsMinimised) {
 TEST_F(WindowOnADisplay, ClosesWhenThePersonAsksForIt) {
   EXPECT_FALSE(window_->should_close());
   take_focus();
-  ASSERT_TRUE(display_->xdotool({"key", "alt+F4"}));
-  EXPECT_TRUE(eventually(*window_, [&](const InputState&) { return window_->should_close(); }));
+  // The first key of a new display changes its keyboard, for which the window manager binds its own
+  // keys anew: it may miss that press.
+  bool closes = false;
+  for (int press = 0; press < 10 && !closes; ++press) {
+    ASSERT_TRUE(display_->xdotool({"key", "alt+F4"}));
+    closes = eventually(
+        *window_, [&](const InputState&) { return window_->should_close(); }, 30);
+  }
+  EXPECT_TRUE(closes);
 }
 
 TEST_F(WindowOnADisplay, TellsWhichKeysAreHeldAndWhichWentDown) {
