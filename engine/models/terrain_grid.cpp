@@ -31,20 +31,25 @@ std::array<int, kTerrainLevels> terrain_strides(int size) {
   return strides;
 }
 
-TerrainGrid::TerrainGrid(int size_at_level_0, int level_stride, int vertices)
-    : size(size_at_level_0), stride(level_stride), n(vertices) {}
+TerrainGrid::TerrainGrid(int size_at_level_0, int level_stride, int tile_step)
+    : size(size_at_level_0), stride(level_stride), n((size - 1) / stride + 1) {
+  const int steps = (n - 1) / tile_step;
+  tiles_ = std::min(steps, kMostTilesPerSide);
+  for (int i = 0; i <= tiles_; ++i)
+    tile_lines_[static_cast<std::size_t>(i)] = steps * i / tiles_ * tile_step;
+}
 
 TerrainGrid::TerrainGrid(int size_at_level_0, int level)
-    : size(size_at_level_0),
-      stride(terrain_strides(size_at_level_0)[static_cast<std::size_t>(level)]),
-      n((size_at_level_0 - 1) / stride + 1) {}
+    : TerrainGrid(size_at_level_0,
+                  terrain_strides(size_at_level_0)[static_cast<std::size_t>(level)],
+                  level == 0 ? terrain_strides(size_at_level_0)[1] : 1) {}
 
 TerrainGrid TerrainGrid::of_index_list(std::uint32_t id) {
   const int size = static_cast<int>((id >> 8) & 0xFFFFU);
   const int stride = static_cast<int>(id & 0xFFU);
   PSYGEN_CHECK(id >> 24 == 1 && size >= 2 && stride >= 1 && (size - 1) % stride == 0,
                "the index list is one that mesh_size() named");
-  return {size, stride, (size - 1) / stride + 1};
+  return {size, stride, stride == 1 ? terrain_strides(size)[1] : 1};
 }
 
 std::uint32_t TerrainGrid::border_vertex(std::uint32_t k) const {
@@ -61,16 +66,6 @@ std::uint32_t TerrainGrid::border_vertex(std::uint32_t k) const {
     default:
       return (last - along) * width;
   }
-}
-
-int TerrainGrid::tile_step() const {
-  return stride == 1 ? terrain_strides(size)[1] : 1;
-}
-int TerrainGrid::tiles_per_side() const {
-  return std::min((n - 1) / tile_step(), kMostTilesPerSide);
-}
-int TerrainGrid::tile_line(int i) const {
-  return (n - 1) / tile_step() * i / tiles_per_side() * tile_step();
 }
 
 core::IndexPart TerrainGrid::tile(int column, int row) const {

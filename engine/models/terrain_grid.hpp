@@ -40,9 +40,9 @@ struct TerrainGrid {
 
   // Squares of cells ("tiles"), of which a part can be drawn: 3 along each side, or as many as
   // there are cells. At level 0 they are divided as the cells of level 1 are.
-  int tiles_per_side() const;
+  int tiles_per_side() const { return tiles_; }
   // The vertex of a side where column or row i of the tiles begins; of tiles_per_side(), its last.
-  int tile_line(int i) const;
+  int tile_line(int i) const { return tile_lines_[static_cast<std::size_t>(i)]; }
 
   // Names the index list of this (size, stride); never 0 and never a rock's.
   std::uint32_t index_list() const {
@@ -59,8 +59,11 @@ struct TerrainGrid {
   core::IndexPart skirt(int side) const;
 
  private:
-  int tile_step() const;  // vertices from one possible tile line to the next
-  TerrainGrid(int size_at_level_0, int level_stride, int vertices);
+  // `tile_step`: vertices from one possible tile line to the next.
+  TerrainGrid(int size_at_level_0, int level_stride, int tile_step);
+
+  int tiles_;
+  std::array<int, kMostTilesPerSide + 1> tile_lines_{};
 };
 
 }  // namespace psygen::models

@@ -77,14 +77,21 @@ template <class Grid>
 void add_skirts(const NodeTiles& tiles, std::uint32_t in_view, const Grid& grid, Parts& parts) {
   const int side = tiles.grid.tiles_per_side();
   const core::Bounds first = tiles.box(0, 0), last = tiles.box(side - 1, side - 1);
-  const std::array faces{first.min.z > 0, last.max.x < 0, last.max.z<0, first.min.x> 0};
+  struct Side {
+    bool faces_camera;
+    int tile, step;  // of the tiles along it: the first, from one to the next
+  };
+  const bool north = first.min.z > 0.0F, east = last.max.x < 0.0F;
+  const bool south = last.max.z<0.0F, west = first.min.x> 0.0F;
+  const std::array sides{Side{north, 0, 1}, Side{east, side - 1, side},
+                         Side{south, side * (side - 1), 1}, Side{west, 0, side}};
   for (int i = 0; i < 4; ++i) {
+    const Side& at = sides[static_cast<std::size_t>(i)];
     std::uint32_t along = 0;
     for (int k = 0; k < side; ++k)
-      along |=
-          bit(i % 2 == 0 ? (i == 0 ? 0 : side - 1) * side + k : k * side + (i == 1 ? side - 1 : 0));
-    const bool faces_camera = faces[static_cast<std::size_t>(i)] && (along & in_view) != 0;
-    if (faces_camera || in_view == kAllTiles) parts.add(grid.skirt(i));
+      along |= bit(at.tile + k * at.step);
+    if (in_view == kAllTiles || (at.faces_camera && (along & in_view) != 0))
+      parts.add(grid.skirt(i));
   }
 }
 

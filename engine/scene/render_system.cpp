@@ -74,8 +74,7 @@ class Drawing {
     count(middle, placed->radius_m, hole, coarser > 1);
     DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
-    const bool seen = hole || add_ground(node, entity, at, facts, corner);
-    if (seen || node.node.level == 0)
+    if (hole || add_ground(node, entity, at, facts, corner))
       add_models(*entities_.get<ecs::Children>(entity), facts, corner);
     if (shown_ == render::View::kBounds) {
       add_box({corner + glm::vec3(0, at.low_m, 0),
@@ -117,7 +116,7 @@ class Drawing {
       counters_.missing_pixels_percent += covered_percent(camera_, center, radius_m);
   }
 
-  // Returns whether models on it can be seen.
+  // Returns whether models on it may be seen; those of blocks are looked at one by one.
   bool add_ground(const visibility::CutNode& node, ecs::Entity entity, const Node& at,
                   const DrawFacts& facts, glm::vec3 corner) {
     const auto [placed, demand, mesh, relief] =
@@ -146,6 +145,7 @@ class Drawing {
     const bool all = facts_.shadows || overhangs(facts_.world, node.node);
     const std::uint32_t in_view = all ? kAllTiles : tiles_in_view(tiles, view_);
     add_tiles(tiles, in_view, fine ? &*facts_.tiles : nullptr, fine_m_, draw, draws_.terrain);
+    if (!level.merged) return true;
     // Models stand on the finest ground, which may be higher than this.
     const float higher_m = at.high_m - *std::ranges::max_element(relief->top_m);
     return models_in_view(tiles, in_view,

@@ -51,7 +51,7 @@ void upload_system(const Settings& settings, const Clock& clock, const WorldFact
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
 using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
-                               const Lacking, const Demand, const Mesh, const GroundRelief>;
+                               const Demand, const Mesh, const GroundRelief>;
 void render_system(const Input& input, const Clock& clock, const Camera& camera,
                    const WorldFacts& facts, const Streaming& streaming, const View& view,
                    RenderQuery entities, DrawLists& draws, Output& output, Counters& counters);

@@ -1,6 +1,7 @@
 #include "engine/visibility/horizon.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -95,17 +96,17 @@ void Horizon::reset() {
   right_.fill({1, kNothing, 0});
 }
 
-// The nearest band that reaches at least so far; kBands where none does.
-std::size_t Horizon::first_band_beyond(float distance_m) {
-  std::size_t band = 0;
-  for (float reach_m = kFirstBandM; band < kBands && reach_m < distance_m; reach_m *= 2)
-    ++band;
-  return band;
+// How many bands reach no farther than that.
+std::size_t Horizon::bands_within(float distance_m) {
+  static_assert(kFirstBandM == 16);
+  constexpr int kBias = 127 + 4 - 1;  // of a float's exponent at 16 m, less one
+  const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(distance_m) >> 23);
+  return static_cast<std::size_t>(std::clamp(exponent - kBias, 0, static_cast<int>(kBands)));
 }
 
 void Horizon::raise(std::size_t bin, float tangent, float distance_m) {
-  for (std::size_t band = first_band_beyond(distance_m);
-       band < kBands && within_[band][bin] < tangent; ++band)
+  for (std::size_t band = bands_within(std::nextafter(distance_m, 0.0F)) + 1;
+       band <= kBands && within_[band][bin] < tangent; ++band)
     within_[band][bin] = tangent;
   if (tangent <= tangent_[bin]) return;
   tangent_[bin] = tangent;
@@ -184,7 +185,7 @@ void Horizon::add(std::span<const glm::vec3> line) {
 struct Horizon::Box {
   glm::vec2 near;
   float far_m, top_m;
-  const float* within;  // the last band before the box; null: there is none
+  const float* within;  // the last band before the box
 };
 
 // For bins first … last. Along a direction in a bin the box begins no nearer than at `begin`.
@@ -235,8 +236,7 @@ bool Horizon::hides(const core::Bounds& box) const {
                                     : 0.0F);
   const float far_m = glm::length(glm::vec2(std::max(std::abs(box.min.x), std::abs(box.max.x)),
                                             std::max(std::abs(box.min.z), std::abs(box.max.z))));
-  const std::size_t beyond = first_band_beyond(std::nextafter(glm::length(near), INFINITY));
-  const Box asked{near, far_m, box.max.y, beyond > 0 ? within_[beyond - 1].data() : nullptr};
+  const Box asked{near, far_m, box.max.y, within_[bands_within(glm::length(near))].data()};
   if (last < wrap + kBins) return hides_in(first - wrap, last - wrap, asked);
   return hides_in(first - wrap, kBins - 1, asked) && hides_in(0, last - wrap - kBins, asked);
 }

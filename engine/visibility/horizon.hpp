@@ -63,11 +63,12 @@ class Horizon {
   // Within 16 m and each power of two times as much; farther ground is in no band.
   static constexpr std::size_t kBands = 10;
   static constexpr float kFirstBandM = 16;
-  static std::size_t first_band_beyond(float distance_m);
+  static std::size_t bands_within(float distance_m);
 
   std::array<float, kBins> tangent_, distance_m_;  // of the highest ground that covers the bin
-  // The highest that is no farther; growing. Rows do not all begin in the same set of a cache.
-  std::array<std::array<float, kBins + 16>, kBands> within_;
+  // The highest that is no farther than each band, growing; before them a row of no ground. Rows
+  // do not all begin in the same set of a cache.
+  std::array<std::array<float, kBins + 16>, kBands + 1> within_;
   std::array<Part, kBins> left_, right_;  // the highest that covers a part of it
   // The smallest 1 / |x| and 1 / |z| of unit vectors in the bin; unit vectors along left borders.
   std::array<float, kBins> inverse_x_, inverse_z_;

@@ -74,6 +74,32 @@ int doubled_area(const Triangle& t, int size) {
   return (z(t[1]) - z(t[0])) * (x(t[2]) - x(t[0])) - (x(t[1]) - x(t[0])) * (z(t[2]) - z(t[0]));
 }
 
+TEST(TerrainGrid, TilesOfEveryLevelAreTheCellsBetweenTheirLines) {
+  for (const int size : kSizes) {
+    for (int level = 0; level < kTerrainLevels; ++level) {
+      const TerrainGrid grid(size, level);
+      std::vector<std::uint16_t> list(std::size_t{grid.triangles()} * 3);
+      grid.write_indices(list);
+      const int side = grid.tiles_per_side();
+      EXPECT_EQ(grid.tile_line(0), 0);
+      EXPECT_EQ(grid.tile_line(side), grid.n - 1);
+      for (int tile = 0; tile < side * side; ++tile) {
+        const int column = tile % side, row = tile / side;
+        const core::IndexPart part = grid.tile(column, row);
+        const int cells = (grid.tile_line(column + 1) - grid.tile_line(column)) *
+                          (grid.tile_line(row + 1) - grid.tile_line(row));
+        EXPECT_EQ(part.count, static_cast<std::uint32_t>(6 * cells));
+        for (std::uint32_t i = part.first; i < part.first + part.count; ++i) {
+          EXPECT_GE(list[i] % grid.n, grid.tile_line(column));
+          EXPECT_LE(list[i] % grid.n, grid.tile_line(column + 1));
+          EXPECT_GE(list[i] / grid.n, grid.tile_line(row));
+          EXPECT_LE(list[i] / grid.n, grid.tile_line(row + 1));
+        }
+      }
+    }
+  }
+}
+
 TEST(TerrainTiles, AreTogetherTheSurfacesOfTheirTwoLevels) {
   for (const int size : kSizes) {
     const TerrainTiles tiles(size);

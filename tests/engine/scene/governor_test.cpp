@@ -44,6 +44,17 @@ TEST(Governor, FramesThatTakeTooLongGetCoarserUntilTheyAreInTheBand) {
   EXPECT_GE(frame_ms, 16.7 * 0.80);
 }
 
+TEST(Governor, FramesThatTakeFarTooLongAreAnsweredFaster) {
+  Governor slightly({.target_ms = 16, .max_factor = 100}),
+      far({.target_ms = 16, .max_factor = 100});
+  for (int i = 0; i < 40; ++i) {
+    slightly.observe(20);
+    far.observe(32);
+  }
+  EXPECT_NEAR(slightly.error_factor(), std::pow(1.012, 40), 0.01);
+  EXPECT_NEAR(far.error_factor(), std::pow(1 + 3 * 0.012, 40), 0.05);
+}
+
 TEST(Governor, ComesToRestInsteadOfOscillating) {
   Governor governor({.target_ms = 16.7});
   Load load(4, 40, 40);

@@ -82,6 +82,18 @@ struct Wish {
 constexpr Wish kWishes[] = {{32, 4, 200},   {130, 0.5, 700},  {1000, 4, 1120},
                             {4000, 16, 90}, {16000, 4, 1120}, {65536, 1, 2200}};
 
+TEST(NodeLevels, ANodeOverhangsWhereSomeOfItsBlocksDoNotExist) {
+  const world::World small = world_of(3, 5), strip = world_of(0, 4), endless = world_of(0, 0);
+  EXPECT_FALSE(overhangs(small, {{2, 4}, 0}));
+  EXPECT_FALSE(overhangs(small, {{0, 1}, 1}));
+  EXPECT_TRUE(overhangs(small, {{1, 0}, 1}));
+  EXPECT_TRUE(overhangs(small, {{0, 2}, 1}));
+  EXPECT_TRUE(overhangs(small, {{-1, 0}, 0}));
+  EXPECT_FALSE(overhangs(strip, {{-9, 0}, 2}));
+  EXPECT_TRUE(overhangs(strip, {{-9, 0}, 3}));
+  EXPECT_FALSE(overhangs(endless, {{-9, 7}, 5}));
+}
+
 TEST(NodeLevels, NodesAreSplitAtNearlyOneToThreeSidesUnlessFinerOnesNeedMore) {
   for (const Wish& wish : kWishes) {
     Settings settings;

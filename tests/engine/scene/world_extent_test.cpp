@@ -101,6 +101,7 @@ TEST(Extent, EverythingIsDrawnWhereItIsToTheMillimetre) {
     }
     EXPECT_EQ(drawn, s.draws.terrain.size());
     EXPECT_GT(nodes, 5u);
+    EXPECT_GT(drawn, 5u);
     EXPECT_LT(worst_mm, 1.0);
   }
 }
