@@ -100,10 +100,11 @@ class Chooser {
   }
 
  private:
-  // Around what is drawn, or all that could be. Relative to the camera.
+  // Around what is or was drawn, or all that could be. Relative to the camera. What a mesh taught
+  // outlasts it: otherwise one that is out of view would be a hole again as soon as it is evicted.
   core::Bounds box_of(const MeshEntity& row, const glm::vec3& foot) const {
     const Placed& placed = row.placed;
-    if (row.demand.drawn_level != kNoLevel && !facts_.shadows)
+    if (row.mesh.tight != core::Bounds{} && !facts_.shadows)
       return {foot + row.mesh.tight.min - kSwayM, foot + row.mesh.tight.max + kSwayM};
     const glm::vec3 center = foot + placed.box_center;
     return {center - placed.box_half_extent, center + placed.box_half_extent};
@@ -154,7 +155,7 @@ class Chooser {
     const Visibility& visibility = *node.visibility;
     // Where nothing can be drawn coarse nodes come first: they fill most with least.
     if (group == RankGroup::kVisibleHole)
-      return Rank::by_layer(group, visibility::kMaxNodeLevel - node.level, distance_m);
+      return Rank::hole(visibility::kMaxNodeLevel - node.level, visibility.layer, distance_m);
     if (synthesis::is_visible(group)) return Rank::by_layer(group, visibility.layer, distance_m);
     if (std::isfinite(visibility.deadline_s)) {
       return Rank::by_deadline(visibility.deadline_s, distance_m);
@@ -177,19 +178,22 @@ class Chooser {
   void provide(const MeshEntity& row, const NodeView& node, bool in_view, float distance_m) {
     Demand& demand = row.demand;
     const bool wanted = in_view || (node.wanted && !node.in_view);
-    if (demand.drawn_level != kNoLevel) {
-      keep(row, wanted ? RankGroup::kDrawn : RankGroup::kPrefetch, node, distance_m);
+    const bool nothing = demand.drawn_level == kNoLevel;
+    const bool too_fine = !nothing && demand.drawn_level < demand.wanted_level;
+    if (!nothing) {
+      const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;
+      keep(row, wanted ? drawn : RankGroup::kPrefetch, node, distance_m);
     }
     if (demand.drawn_level == demand.wanted_level && !demand.stale) {
       demand.requested_level = kNoLevel;
       return;
     }
-    const bool nothing = demand.drawn_level == kNoLevel;
     const bool hole = nothing && in_view && !node.covered;
     const std::uint8_t level = level_to_request(row, hole);
     if (level == kNoLevel) return;
+    const RankGroup replaced = too_fine ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
     const RankGroup group = hole     ? RankGroup::kVisibleHole
-                            : wanted ? RankGroup::kVisibleCoarse
+                            : wanted ? replaced
                                      : RankGroup::kPrefetch;
     request(row, level, rank_of(group, node, distance_m), node.visibility->deadline_s);
   }

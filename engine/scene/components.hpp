@@ -81,7 +81,7 @@ struct Mesh {
   core::GeometryRange range;
   synthesis::MeshHandle handle;
   std::uint32_t shared_indices = 0;  // the renderer's name of the index list, if it is shared
-  core::Bounds tight;                // of its vertices, from the foot
+  core::Bounds tight;                // of its vertices, from the foot; known from then on
 };
 static_assert(sizeof(Mesh) == 68);
 

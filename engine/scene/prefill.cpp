@@ -13,7 +13,8 @@ namespace {
 
 // A tick looks at each node around the camera once in 8 turns; so long must nothing be missing.
 constexpr int kQuietTicks = 9;
-// After so many ticks in which nothing became ready, what is still wanted cannot be had.
+// After so many ticks in which nothing became ready, or only in place of something else, what is
+// still wanted cannot be had.
 constexpr int kIdleTicks = 40;
 
 struct RegionSize {
@@ -110,8 +111,9 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
     const float coarsening = s.synthesis.coarsening;
     tick_without_drawing(pose);
     synthesised += s.counters.models_synthesised;
-    const bool moved = s.counters.models_synthesised > 0 || s.counters.failed > 0 ||
-                       s.counters.nodes_created > 0 || s.synthesis.coarsening != coarsening;
+    const bool grew = s.counters.models_synthesised > 0 && s.counters.refused == 0;
+    const bool moved = grew || s.counters.failed > 0 || s.counters.nodes_created > 0 ||
+                       s.synthesis.coarsening != coarsening;
     idle = moved ? 0 : idle + 1;
     const bool complete = s.streaming.missing.empty() && s.synthesis.finished.empty();
     quiet = complete && s.counters.requests == 0 ? quiet + 1 : 0;

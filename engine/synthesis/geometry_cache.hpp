@@ -1,7 +1,7 @@
 // The cache: owner of every mesh and of the one hard byte budget (paper, section 5.1: Cache). Space
 // is reserved before synthesis, to the byte, so that resident meshes, reservations in flight and
 // ranges that the GPU still reads never exceed the budget together. Under pressure it evicts the
-// worst rank first, and refuses rather than let two meshes evict each other in turn (rank.hpp).
+// worst rank first, and refuses rather than let two meshes evict each other without end (rank.hpp).
 //
 // Main thread only; modelers see nothing but the destination of a reservation. Not a scheduler
 // (planner.hpp) and not an allocator (core::GeometryMemory). Look-ups O(1); evicting costs one

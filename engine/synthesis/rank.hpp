@@ -3,8 +3,9 @@
 // evicts the largest rank first; the planner requests the smallest first.
 //
 // Two laws make eviction safe. What is visible is taken only when nothing invisible is left,
-// because the visible groups come first. And a request takes only what may_evict() allows, which is
-// a strict order: two meshes can never evict each other in turn.
+// because the visible groups come first. And a request takes only what may_evict() allows: what is
+// strictly worse, or what is drawn finer than it need be and can come back smaller. So evictions in
+// turn end, and room is never held by detail that nobody wants.
 #pragma once
 
 #include <algorithm>
@@ -17,11 +18,12 @@ namespace psygen::synthesis {
 
 enum class RankGroup : std::uint8_t {
   kVisibleHole = 0,    // in view, drawn at no level
-  kVisibleCoarse = 1,  // in view, drawn, but coarser than wanted
-  kDrawn = 2,          // in view and drawn now
-  kPredicted = 3,      // will be in view, by deadline
-  kPrefetch = 4,       // around the camera, by PLP layer
-  kUnwanted = 5,       // nobody asks for it; kept while there is room
+  kVisibleFine = 1,    // in view, drawn finer than wanted: its replacement makes room
+  kVisibleCoarse = 2,  // in view, drawn, but coarser than wanted
+  kDrawn = 3,          // in view and drawn now
+  kPredicted = 4,      // will be in view, by deadline
+  kPrefetch = 5,       // around the camera, by PLP layer
+  kUnwanted = 6,       // nobody asks for it; kept while there is room
 };
 constexpr bool is_visible(RankGroup group) {
   return group <= RankGroup::kDrawn;
@@ -30,6 +32,7 @@ constexpr bool is_visible(RankGroup group) {
 class Rank {
  public:
   static constexpr std::uint32_t kMaxMajor = (1u << 24) - 1;
+  static constexpr std::uint32_t kLayerBits = 16, kMaxLayer = (1u << kLayerBits) - 1;
 
   constexpr Rank() = default;
   // `major` is clamped to 24 bits; `distance_m` >= 0 keeps about 1.5 % of precision, so that small
@@ -38,9 +41,15 @@ class Rank {
       : bits_((std::uint64_t{static_cast<std::uint8_t>(group)} << 56) |
               (std::uint64_t{std::min(major, kMaxMajor)} << 32) | ordered(distance_m)) {}
 
-  // In view or prefetched: by PLP layer, then distance.
+  // In view or prefetched: by PLP layer, then distance. What is in view has at most 16 bits of
+  // layer.
   static Rank by_layer(RankGroup group, std::uint32_t layer, float distance_m) {
-    return {group, layer, distance_m};
+    return {group, is_visible(group) ? std::min(layer, kMaxLayer) : layer, distance_m};
+  }
+  // In view and drawn at no level: by `turn` (small is urgent, up to 255), then as by_layer().
+  static Rank hole(std::uint32_t turn, std::uint32_t layer, float distance_m) {
+    return {RankGroup::kVisibleHole,
+            (std::min(turn, 255u) << kLayerBits) | std::min(layer, kMaxLayer), distance_m};
   }
   // Predicted visible in `deadline_s` seconds (0 … about 4 hours, kept in milliseconds).
   static Rank by_deadline(float deadline_s, float distance_m) {
@@ -70,21 +79,25 @@ class Rank {
 static_assert(sizeof(Rank) == 8);
 
 // Where a ready mesh stands in the order of eviction, larger goes first: all visible groups are
-// one, in which only layer and distance count.
+// one, of which those that are too fine go first; then layer and distance count.
 constexpr std::uint64_t eviction_order(Rank rank) {
-  constexpr std::uint64_t kKeyMask = (std::uint64_t{1} << 56) - 1;
-  constexpr std::uint64_t kDrawn = std::uint64_t{static_cast<std::uint8_t>(RankGroup::kDrawn)}
-                                   << 56;
-  return is_visible(rank.group()) ? (kDrawn | (rank.bits() & kKeyMask)) : rank.bits();
+  if (!is_visible(rank.group())) return rank.bits();
+  constexpr std::uint64_t kKeyMask = (std::uint64_t{1} << (32 + Rank::kLayerBits)) - 1;
+  const std::uint64_t fine = rank.group() == RankGroup::kVisibleFine ? 1 : 0;
+  return (std::uint64_t{static_cast<std::uint8_t>(RankGroup::kDrawn)} << 56) | (fine << 55) |
+         (rank.bits() & kKeyMask);
 }
 
 // Whether a request of rank `request` may take the place of a ready mesh of rank `victim`. An
-// invisible one only if strictly worse; a visible one only for a hole that is strictly nearer by
-// layer and distance; refining what is drawn never costs anything that is visible.
+// invisible one only if strictly worse. One that is too fine only for a hole, or for what replaces
+// one that is too fine. Another visible one only for a hole that is strictly nearer by layer and
+// distance. Refining what is drawn never costs anything that is visible.
 constexpr bool may_evict(Rank request, Rank victim) {
   if (!is_visible(victim.group())) return victim > request;
-  return request.group() == RankGroup::kVisibleHole &&
-         eviction_order(victim) > eviction_order(request);
+  const bool hole = request.group() == RankGroup::kVisibleHole;
+  if (victim.group() == RankGroup::kVisibleFine)
+    return hole || request.group() == RankGroup::kVisibleFine;
+  return hole && eviction_order(victim) > eviction_order(request);
 }
 
 }  // namespace psygen::synthesis

@@ -13,7 +13,7 @@
 namespace psygen::synthesis {
 namespace {
 
-constexpr std::string_view kHeader = "psygen requests 1";
+constexpr std::string_view kHeader = "psygen requests 2";
 
 // The next word of a line, which it leaves.
 std::string_view take_word(std::string_view& line) {

@@ -17,7 +17,7 @@ inline constexpr double kNoDeadline = 1e9;
 inline constexpr std::size_t kMaxStreamRequests = 10'000'000;
 inline constexpr std::size_t kMaxStreamBytes = 96 * kMaxStreamRequests;
 
-// Text: a line "psygen requests 1", then one line for each: arrival in seconds, seconds of one
+// Text: a line "psygen requests 2", then one line for each: arrival in seconds, seconds of one
 // core, deadline in seconds or "-", and the rank's bits in hexadecimal. Ordered by arrival.
 std::string stream_text(std::vector<SimulatedJob> jobs);
 // Fails with kParse, naming `file` and the line. Times must be finite and not negative.

@@ -208,6 +208,52 @@ TEST(Scene, ABudgetThatIsTooSmallGivesCoarserLevelsWithoutThrashing) {
   EXPECT_LT(scene->state().synthesis.cache->stats().evictions - evictions, 500u);
 }
 
+// Of what is drawn in view.
+std::uint64_t visible_bytes(const Scene& scene) {
+  std::uint64_t bytes = 0;
+  for (const synthesis::MeshRecord& record : scene.state().synthesis.cache->records()) {
+    const bool ready = record.state == synthesis::MeshState::kReady;
+    if (ready && synthesis::is_visible(record.rank.group())) bytes += record.range.bytes;
+  }
+  return bytes;
+}
+
+// Meshes in view that are drawn finer than wanted.
+std::size_t too_fine(const Scene& scene) {
+  const State& s = scene.state();
+  std::size_t count = 0;
+  s.entities.each<const Demand>([&](std::span<const ecs::Entity>, std::span<const Demand> demands) {
+    for (const Demand& demand : demands) {
+      const bool drawn = demand.drawn_level != kNoLevel && demand.in_view_tick + 1 == s.clock.tick;
+      count += drawn && demand.drawn_level < demand.wanted_level ? 1 : 0;
+    }
+  });
+  return count;
+}
+
+TEST(Scene, DetailThatIsNotWantedAnyMoreDoesNotHoldTheRoomOfWhatIs) {
+  Settings settings = small_settings();
+  settings.max_error_pixels = 0.5;
+  const auto scene = make_scene(settings);
+  scene->settle(pose_at(256, 256));
+  tick_at(*scene, pose_at(256, 256));
+  // Room for the nearest of what is drawn and for nothing else, and then much less detail is
+  // wanted.
+  scene->state().synthesis.cache->set_budget(visible_bytes(*scene) / 4);
+  const std::uint64_t room = visible_bytes(*scene);
+  EXPECT_GT(room, 1ull << 20);
+  scene->state().synthesis.cache->set_budget(room);
+  scene->state().synthesis.coarsening = 64;
+  for (int i = 0; i < 60; ++i) {
+    tick_at(*scene, pose_at(256, 256));
+    scene->state().synthesis.manager->wait_all();
+    EXPECT_LE(scene->state().memory->used_bytes(), room);
+  }
+  EXPECT_EQ(scene->state().counters.holes, 0u);
+  EXPECT_EQ(scene->state().counters.refused, 0u);
+  EXPECT_EQ(too_fine(*scene), 0u);
+}
+
 TEST(Scene, ComingBackUnderPressureNeverDrawsWhatWasEvicted) {
   Settings settings = small_settings();
   settings.budget_bytes = 6ull << 20;

@@ -17,7 +17,7 @@ using testing::parameters_of;
 using testing::registry_of;
 
 Rank random_rank(core::RandomStream& random) {
-  const auto group = static_cast<RankGroup>(random.next_integer(0, 5));
+  const auto group = static_cast<RankGroup>(random.next_integer(0, 6));
   return Rank::by_layer(group, static_cast<std::uint32_t>(random.next_integer(0, 4)),
                         static_cast<float>(random.next_integer(0, 5)) * 16);
 }

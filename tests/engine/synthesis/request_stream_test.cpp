@@ -43,9 +43,9 @@ TEST(RequestStream, IsReadAsItWasWritten) {
 }
 
 TEST(RequestStream, WhatIsNoStreamIsRefusedWithItsLine) {
-  const std::string head = "psygen requests 1\n";
+  const std::string head = "psygen requests 2\n";
   const std::pair<std::string, std::string> cases[] = {{"", "a:1"},
-                                                       {"psygen requests 2\n", "a:1"},
+                                                       {"psygen requests 1\n", "a:1"},
                                                        {head, "a:1"},
                                                        {head + "0 1 - 0\n0 1 -\n", "a:3"},
                                                        {head + "0 1 - 0 0\n", "a:2"},
