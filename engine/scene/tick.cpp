@@ -45,6 +45,7 @@ void tick(State& state) {
   state.output.error.reset();
   state.clock.real_s = core::monotonic_seconds() - state.clock.origin_s;
   state.record = {};
+  state.synthesis.manager->lower_priority();
   state.tick.run();
   const auto systems = state.tick.systems();
   for (std::size_t i = 0; i < systems.size(); ++i)

@@ -31,13 +31,17 @@ Completion completion_of(const Request& request, std::uint32_t modeler) {
 
 void Modeler::run(Workshop& workshop) {
   name_this_thread(fmt::format("modeler-{}", number_));
-  if (workshop.lowest_priority) lower_priority_of_this_thread();
+  bool lowered = false;
   double cpu_mark = core::thread_cpu_seconds();
   while (!workshop.stop.load(std::memory_order_acquire)) {
     const std::uint32_t epoch = workshop.board.epoch();
     std::uint64_t retries = 0;
     const bool claimed = workshop.board.claim(*reader_, current_, retries);
     if (retries > 0) add(counters_.retries, retries);
+    if (!lowered && workshop.lowest_priority.load(std::memory_order_relaxed)) {
+      lower_priority_of_this_thread();
+      lowered = true;
+    }
     if (claimed) {
       if (!execute(workshop, cpu_mark)) break;
     } else {

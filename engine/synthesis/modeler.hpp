@@ -24,10 +24,11 @@ inline constexpr std::uint32_t kMainThreadModeler = UINT32_MAX;
 struct Workshop {
   const models::Registry* registry = nullptr;
   std::function<double()> clock;  // called from all threads
-  bool lowest_priority = true;
   bool hash_content = false;
   PlanBoard board;
   std::atomic<bool> stop{false};
+  // Modelers give up their priority before the next request; a thread cannot get it back.
+  std::atomic<bool> lowest_priority{false};
   // Only for a main thread that waits for completions: a modeler locks only while `waiting`, and
   // only when it has found nothing more to do. Never between two requests.
   std::atomic<bool> waiting{false};

@@ -42,7 +42,6 @@ SynthesisManager::SynthesisManager(const models::Registry& registry,
       replacements_left_(options.max_replacements) {
   workshop_->registry = &registry;
   workshop_->clock = options.clock ? options.clock : core::monotonic_seconds;
-  workshop_->lowest_priority = options.lowest_priority;
   workshop_->hash_content = options.hash_content;
   for (unsigned i = 0; i < modeler_count_for(options.modelers); ++i) {
     if (!start_modeler()) break;

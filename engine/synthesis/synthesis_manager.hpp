@@ -20,7 +20,6 @@ namespace psygen::synthesis {
 
 struct SynthesisOptions {
   unsigned modelers = 0;               // 0: number of cores − 1, at least 1
-  bool lowest_priority = true;         // nice 19 per thread, where the system can
   bool hash_content = false;           // fill Completion::content_hash
   double watchdog_seconds = 10;        // a request that runs longer is given up; 0: never
   unsigned max_replacements = 8;       // modelers started in place of hung ones, altogether
@@ -72,6 +71,10 @@ class SynthesisManager {
   // like any other. For the few small meshes whose absence is seen: modelers at the lowest priority
   // may not get a processor for a while.
   void execute_here(const Request& request);
+  // From now on modelers take only what other threads leave of the processors: nice 19 per thread,
+  // where the system can. For when frames begin; before, whoever waits for meshes has nothing else
+  // to do.
+  void lower_priority() { workshop_->lowest_priority.store(true, std::memory_order_relaxed); }
   // Closes the plan; returns what nobody claimed, in order. Everything else was or will be
   // collected.
   std::vector<Request> reclaim();

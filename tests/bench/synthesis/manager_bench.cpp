@@ -21,8 +21,7 @@ std::vector<Request> trivial_plan(std::uint32_t count) {
 void requests_through_manager(benchmark::State& state) {
   constexpr std::uint32_t kCount = 20'000;
   const models::Registry registry = trivial_registry();
-  SynthesisManager manager(
-      registry, {.modelers = static_cast<unsigned>(state.range(0)), .lowest_priority = false});
+  SynthesisManager manager(registry, {.modelers = static_cast<unsigned>(state.range(0))});
   const std::vector<Request> plan = trivial_plan(kCount);
   std::vector<Completion> done;
   for (auto _ : state) {
@@ -41,8 +40,7 @@ void trees_through_manager(benchmark::State& state) {
   constexpr std::uint32_t kCount = 512;
   const models::Registry registry = models::make_standard_registry();
   const auto tree = static_cast<models::ModelIndex>(registry.find("tree"));
-  SynthesisManager manager(
-      registry, {.modelers = static_cast<unsigned>(state.range(0)), .lowest_priority = false});
+  SynthesisManager manager(registry, {.modelers = static_cast<unsigned>(state.range(0))});
   std::vector<HeapDestination> destinations;
   std::vector<Request> plan(kCount);
   for (std::uint32_t i = 0; i < kCount; ++i) {

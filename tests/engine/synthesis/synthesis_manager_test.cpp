@@ -1,6 +1,9 @@
 #include "engine/synthesis/synthesis_manager.hpp"
 
 #include <gtest/gtest.h>
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
 
 #include <algorithm>
 #include <map>
@@ -147,6 +150,25 @@ TEST(SynthesisManager, RequestsAreClaimedInTheOrderOfThePlan) {
   run(registry, 1, {jobs.make(5), jobs.make(3), jobs.make(9)});
   EXPECT_EQ(order, (std::vector<std::int64_t>{5, 3, 9}));
 }
+
+#ifdef __linux__
+TEST(SynthesisManager, ModelersGiveUpTheirPriorityWhenTheyAreToldTo) {
+  std::vector<int> nice;  // of the modeler, in each request
+  const models::Registry registry =
+      registry_of(std::make_unique<ScriptedModel>("nice", [&](const models::Parameters&, int) {
+        nice.push_back(getpriority(PRIO_PROCESS, 0));
+      }));
+  Jobs jobs(registry);
+  SynthesisManager manager(registry, with(1));
+  manager.publish(jobs.make_many(0, 1));
+  EXPECT_TRUE(manager.wait_all());
+  manager.lower_priority();
+  manager.publish(jobs.make_many(1, 2));
+  EXPECT_TRUE(manager.wait_all());
+  const int mine = getpriority(PRIO_PROCESS, 0);
+  EXPECT_EQ(nice, (std::vector<int>{mine, 19, 19}));
+}
+#endif
 
 TEST(SynthesisManager, UnderConstantReplanningEveryRequestIsDoneOnceOrReclaimedOnce) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
