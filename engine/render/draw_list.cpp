@@ -33,14 +33,21 @@ IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indi
   PSYGEN_ASSERT(shared_indices <= lists.size(), "unknown shared index list");
   return lists[shared_indices - 1];
 }
-IndexList indices_of(const TerrainDraw& draw, std::span<const IndexList> lists) {
+namespace {
+template <class Draw>
+IndexList part_of(const Draw& draw, std::span<const IndexList> lists) {
   const IndexList all = indices_of(draw.range, draw.shared_indices, lists);
   if (draw.part.count == 0) return all;
   PSYGEN_ASSERT(draw.part.first + draw.part.count <= all.index_count, "a part is in its list");
   return {all.first_index + draw.part.first, draw.part.count};
 }
+}  // namespace
+
+IndexList indices_of(const TerrainDraw& draw, std::span<const IndexList> lists) {
+  return part_of(draw, lists);
+}
 IndexList indices_of(const MeshDraw& draw, std::span<const IndexList> lists) {
-  return indices_of(draw.range, draw.shared_indices, lists);
+  return part_of(draw, lists);
 }
 
 template <class Draw>

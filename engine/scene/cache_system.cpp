@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/core/log.hpp"
+#include "engine/scene/seen.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/visibility/level_choice.hpp"
 
@@ -26,8 +27,6 @@ constexpr std::uint32_t kRankTurns = 32;
 // New meshes out of view that are reserved in a tick at least, if so many are wanted, while new
 // nodes come.
 constexpr std::uint32_t kFewestHidden = 48;
-// How far the wind moves a vertex at most (shaders/model.vert).
-constexpr float kSwayM = 0.15F;
 // So long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
 
@@ -85,7 +84,7 @@ class Chooser {
     const float distance_m = near ? node.visibility->distance_m
                                   : std::max(glm::length(foot + placed.middle) - placed.radius_m,
                                              camera_.projection.near_m);
-    const bool in_view = node.in_view && (near || is_in_view(box_of(row, foot)));
+    const bool in_view = node.in_view && (near || can_be_seen(box_of(row, foot), view_));
     demand.wanted_level = is_ground ? ground_level(row.detail, demand, node)
                                     : wanted_level(placed, row.detail, demand, distance_m, node);
     in_view ? note_in_view(demand, node.leaf) : note_out_of_view(demand);
@@ -108,10 +107,6 @@ class Chooser {
       return {foot + row.mesh.tight.min - kSwayM, foot + row.mesh.tight.max + kSwayM};
     const glm::vec3 center = foot + placed.box_center;
     return {center - placed.box_half_extent, center + placed.box_half_extent};
-  }
-
-  bool is_in_view(const core::Bounds& box) const {
-    return visibility::intersects(view_.frustum, box) && !view_.horizon.hides(box);
   }
 
   static std::uint8_t ground_level(const Detail& detail, const Demand& demand,

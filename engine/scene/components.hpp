@@ -85,6 +85,14 @@ struct Mesh {
 };
 static_assert(sizeof(Mesh) == 68);
 
+// The Mesh of everything that stands on a node in runs of triangles, each with the box around them.
+struct MeshParts {
+  static constexpr std::size_t kMost = 16;
+  std::uint32_t count = 0;                          // 0: not known, it can only be drawn as a whole
+  std::uint32_t indices_each = 0, index_count = 0;  // of each part but the last; of all
+  std::array<core::Bounds, kMost> boxes{};          // from the foot
+};
+
 // What is wanted for an entity and what has been done about it. Changes every tick.
 struct Demand {
   float seen_s = -1;  // since when it is in view without a mesh; −1: it is not

@@ -1,6 +1,7 @@
 // Holds a frame time by the error that levels of detail may have: more when frames take too long,
 // less, slowly, when there is time to spare. What it steers acts late (meshes must be synthesised
-// first), so that it takes small steps and rests inside a band. Pure; no clock of its own.
+// first), so that it takes small steps and rests inside a band. Only at the start, until a frame is
+// fast enough for the first time, it takes large ones. Pure; no clock of its own.
 #pragma once
 
 namespace psygen::scene {
@@ -24,6 +25,7 @@ class Governor {
 
  private:
   GovernorSettings settings_;
+  bool met_ = false;  // the target, by any frame so far
   double smoothed_ms_ = 0;
   double factor_ = 1;
 };

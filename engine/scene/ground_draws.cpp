@@ -4,6 +4,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "engine/scene/draw_parts.hpp"
+#include "engine/scene/seen.hpp"
+
 namespace psygen::scene {
 namespace {
 
@@ -30,42 +33,12 @@ class FineTiles {
   std::array<bool, kWide * kWide> fine_{};
 };
 
-// Parts of one index list as draws, one for those that follow each other.
-class Parts {
- public:
-  Parts(const render::TerrainDraw& draw, std::vector<render::TerrainDraw>& draws)
-      : draw_(draw), draws_(draws) {
-    draw_.part = {};
-  }
-  ~Parts() { flush(); }
-  Parts(const Parts&) = delete;
-  Parts& operator=(const Parts&) = delete;
-
-  void add(core::IndexPart part) {
-    if (part.first != draw_.part.first + draw_.part.count) {
-      flush();
-      draw_.part = {part.first, 0};
-    }
-    draw_.part.count += part.count;
-  }
-
- private:
-  void flush() {
-    if (draw_.part.count > 0) draws_.push_back(draw_);
-  }
-
-  render::TerrainDraw draw_;
-  std::vector<render::TerrainDraw>& draws_;
-};
+using Parts = DrawParts<render::TerrainDraw>;
 
 // Seen from above.
 float distance_m(const core::Bounds& box) {
   const glm::vec3 nearest = glm::clamp(glm::vec3(0.0F), box.min, box.max);
   return glm::length(glm::vec2(nearest.x, nearest.z));
-}
-
-bool can_be_seen(const core::Bounds& box, const View& view) {
-  return visibility::intersects(view.frustum, box) && !view.horizon.hides(box);
 }
 
 std::uint32_t bit(int tile) {
@@ -102,13 +75,12 @@ render::Morph morph_of(const Streaming& streaming) {
   return {static_cast<float>(fine.morph_m), static_cast<float>(fine.split_m)};
 }
 
-core::Bounds NodeTiles::box(int column, int row, glm::vec2 reach_m) const {
+core::Bounds NodeTiles::box(int column, int row) const {
   const float step_m = cell_m * static_cast<float>(grid.stride);
   const auto line = [&](int i) { return static_cast<float>(grid.tile_line(i)) * step_m; };
   const auto tile = static_cast<std::size_t>(row * grid.tiles_per_side() + column);
-  return {corner + glm::vec3(line(column) - reach_m.x, low_m, line(row) - reach_m.x),
-          corner + glm::vec3(line(column + 1) + reach_m.x, relief.top_m[tile] + reach_m.y,
-                             line(row + 1) + reach_m.x)};
+  return {corner + glm::vec3(line(column), low_m, line(row)),
+          corner + glm::vec3(line(column + 1), relief.top_m[tile], line(row + 1))};
 }
 
 std::uint32_t tiles_in_view(const NodeTiles& tiles, const View& view) {
@@ -117,15 +89,6 @@ std::uint32_t tiles_in_view(const NodeTiles& tiles, const View& view) {
   for (int i = 0; i < side * side; ++i)
     in_view |= can_be_seen(tiles.box(i % side, i / side), view) ? bit(i) : 0;
   return in_view;
-}
-
-bool models_in_view(const NodeTiles& tiles, std::uint32_t in_view, glm::vec2 reach_m,
-                    const View& view) {
-  if (in_view != 0) return true;
-  const int side = tiles.grid.tiles_per_side();
-  for (int i = 0; i < side * side; ++i)
-    if (can_be_seen(tiles.box(i % side, i / side, reach_m), view)) return true;
-  return false;
 }
 
 void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::TerrainTiles* fine,

@@ -4,7 +4,6 @@
 // all its vertices have morphed.
 #pragma once
 
-#include <glm/vec2.hpp>
 #include <vector>
 
 #include "engine/scene/state.hpp"
@@ -21,17 +20,13 @@ struct NodeTiles {
   glm::vec3 corner{0.0F};           // of the node, at height 0
   float cell_m = 1, low_m = 0;      // of the grid at its finest; below all ground and its skirts
 
-  // With room to the sides and above.
-  core::Bounds box(int column, int row, glm::vec2 reach_m = glm::vec2(0.0F)) const;
+  core::Bounds box(int column, int row) const;
 };
 
 // Bit row · side + column is set for tiles that can be seen. All of them, and all skirts, where
 // what is not in the picture matters too: it may cast a shadow, or the world's edge moves it.
 inline constexpr std::uint32_t kAllTiles = UINT32_MAX;
 std::uint32_t tiles_in_view(const NodeTiles& tiles, const View& view);
-// Whether anything that stands on them and reaches so far to the sides and up can.
-bool models_in_view(const NodeTiles& tiles, std::uint32_t in_view, glm::vec2 reach_m,
-                    const View& view);
 
 // Adds draws for these tiles. `draw` is that of the whole node. `fine`: it has the index list of
 // tiles in two kinds; those nearer than `fine_m`, seen from above, are fine.

@@ -11,7 +11,7 @@
 namespace psygen::scene {
 namespace {
 
-constexpr double kMinSplitRatio = 0.9, kMaxSplitRatio = 3.0;
+constexpr double kMinSplitRatio = 0.6, kMaxSplitRatio = 3.0;
 constexpr double kMergeFactor = 1.1;
 // Children exist before their parent is split by so much of its distance, and nodes of the coarsest
 // level before they can be seen.

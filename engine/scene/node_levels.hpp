@@ -36,7 +36,7 @@ bool contains(const world::World& world, const visibility::NodeCoord& node);
 // Whether any of its blocks does not.
 bool overhangs(const world::World& world, const visibility::NodeCoord& node);
 
-// Replaces `distances`, one for each level: where an error covers `error_pixels`, but at 0.9 … 3
+// Replaces `distances`, one for each level: where an error covers `error_pixels`, but at 0.6 … 3
 // sides of the node. Blocks take their finest mesh as near as their error says, at most at 3 sides.
 void split_distances(std::span<const NodeLevel> levels, const Settings& settings,
                      double pixels_per_radian, double error_pixels,

@@ -5,6 +5,7 @@
 
 #include "engine/scene/ground_draws.hpp"
 #include "engine/scene/lighting.hpp"
+#include "engine/scene/mesh_parts.hpp"
 #include "engine/scene/missing.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/scene/views.hpp"
@@ -74,8 +75,8 @@ class Drawing {
     count(middle, placed->radius_m, hole, coarser > 1);
     DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
-    if (hole || add_ground(node, entity, at, facts, corner))
-      add_models(*entities_.get<ecs::Children>(entity), facts, corner);
+    if (!hole) add_ground(node, entity, at, facts, corner);
+    add_models(*entities_.get<ecs::Children>(entity), facts, corner);
     if (shown_ == render::View::kBounds) {
       add_box({corner + glm::vec3(0, at.low_m, 0),
                corner + glm::vec3(node.side_m, at.high_m, node.side_m)},
@@ -116,8 +117,7 @@ class Drawing {
       counters_.missing_pixels_percent += covered_percent(camera_, center, radius_m);
   }
 
-  // Returns whether models on it may be seen; those of blocks are looked at one by one.
-  bool add_ground(const visibility::CutNode& node, ecs::Entity entity, const Node& at,
+  void add_ground(const visibility::CutNode& node, ecs::Entity entity, const Node& at,
                   const DrawFacts& facts, glm::vec3 corner) {
     const auto [placed, demand, mesh, relief] =
         std::tuple(entities_.get<Placed>(entity), entities_.get<Demand>(entity),
@@ -145,19 +145,14 @@ class Drawing {
     const bool all = facts_.shadows || overhangs(facts_.world, node.node);
     const std::uint32_t in_view = all ? kAllTiles : tiles_in_view(tiles, view_);
     add_tiles(tiles, in_view, fine ? &*facts_.tiles : nullptr, fine_m_, draw, draws_.terrain);
-    if (!level.merged) return true;
-    // Models stand on the finest ground, which may be higher than this.
-    const float higher_m = at.high_m - *std::ranges::max_element(relief->top_m);
-    return models_in_view(tiles, in_view,
-                          facts_.models_reach_m + glm::vec2(0.0F, std::max(higher_m, 0.0F)), view_);
   }
 
   // `facts` are those of their node.
-  void add_models(const ecs::Children& models, DrawFacts facts, glm::vec3 corner) {
+  void add_models(const ecs::Children& children, DrawFacts facts, glm::vec3 corner) {
     const bool single = facts.level == 0;
     entities_.each_of<const Placed, const Demand, const Mesh>(
-        entities_.children(models),
-        [&](std::span<const ecs::Entity>, std::span<const Placed> placed,
+        entities_.children(children),
+        [&](std::span<const ecs::Entity> models, std::span<const Placed> placed,
             std::span<const Demand> demands, std::span<const Mesh> meshes) {
           for (std::size_t i = 0; i < placed.size(); ++i) {
             const Demand& demand = demands[i];
@@ -172,12 +167,27 @@ class Drawing {
               facts.coarser =
                   static_cast<std::uint32_t>(std::max(demand.drawn_level - demand.wanted_level, 0));
             }
-            draws_.models.push_back({meshes[i].range, meshes[i].shared_indices, foot,
-                                     placed[i].box_center, placed[i].box_half_extent, 1.0F,
-                                     colour_of(shown_, facts)});
+            render::MeshDraw draw;
+            draw.range = meshes[i].range;
+            draw.shared_indices = meshes[i].shared_indices;
+            draw.origin = foot;
+            draw.box_center = placed[i].box_center;
+            draw.box_half_extent = placed[i].box_half_extent;
+            draw.debug_colour = colour_of(shown_, facts);
+            add_model(models[i], draw);
             draws_.meshes.push_back(meshes[i].handle);
           }
         });
+  }
+
+  // Of one that stands for many, only what can be seen, unless what cannot may cast a shadow.
+  void add_model(ecs::Entity entity, const render::MeshDraw& draw) {
+    const MeshParts* parts = facts_.shadows ? nullptr : entities_.get<MeshParts>(entity);
+    if (parts != nullptr && parts->count > 0) {
+      add_parts(*parts, view_, draw, draws_.models);
+    } else {
+      draws_.models.push_back(draw);
+    }
   }
 
   const render::View shown_;

@@ -60,22 +60,28 @@ void fill(const Created& created, std::size_t i, const WorldFacts& facts, core::
       placement.model, static_cast<std::uint16_t>(first_level)};
 }
 
+template <class... Also>
+void create_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
+                   std::span<const world::Placement> placements, ecs::World& entities) {
+  const auto models =
+      entities.create<Placed, Detail, Source, Demand, Mesh, Also...>(placements.size());
+  for (std::size_t i = 0; i < placements.size(); ++i)
+    fill(models, i, facts, block, placements[i]);
+  entities.set_children(node, models.entities);
+}
+
 // The models of a block, or the one mesh of all models on a coarser node.
 void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
                    std::vector<world::Placement>& scratch, ecs::World& entities) {
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
     world::place_models(facts.world, facts.registry, block, scratch);
+    create_models(facts, block, node, scratch, entities);
   } else if (facts.levels[at.level].merged) {
     scratch.assign(1, {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
                        world::merged_parameters(at.coord, at.level)});
-  } else {
-    return;
+    create_models<MeshParts>(facts, block, node, scratch, entities);
   }
-  const auto models = entities.create<Placed, Detail, Source, Demand, Mesh>(scratch.size());
-  for (std::size_t i = 0; i < scratch.size(); ++i)
-    fill(models, i, facts, block, scratch[i]);
-  entities.set_children(node, models.entities);
 }
 
 void create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,

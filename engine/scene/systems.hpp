@@ -44,14 +44,15 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
                       Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
-using UploadQuery = ecs::Query<const Source, Mesh, Demand, Node, GroundRelief>;
+using UploadQuery =
+    ecs::Query<const Source, const Placed, Mesh, MeshParts, Demand, Node, GroundRelief>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
 using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
-                               const Demand, const Mesh, const GroundRelief>;
+                               const Demand, const Mesh, const MeshParts, const GroundRelief>;
 void render_system(const Input& input, const Clock& clock, const Camera& camera,
                    const WorldFacts& facts, const Streaming& streaming, const View& view,
                    RenderQuery entities, DrawLists& draws, Output& output, Counters& counters);

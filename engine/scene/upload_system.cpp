@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/core/log.hpp"
+#include "engine/scene/mesh_parts.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/synthesis/landing.hpp"
 
@@ -120,6 +121,19 @@ void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& 
                          node.at.level == 0 ? possible_m : 0.0F);
 }
 
+// Where the parts of a mesh for everything on a node lie.
+void note_parts(MeshParts& parts, const Placed& placed, const synthesis::MeshRecord& record,
+                const core::GeometryMemory& memory) {
+  parts = {};
+  const std::span<const std::byte> bytes = memory.vertex_bytes(record.range);
+  if (bytes.empty()) return;
+  parts = mesh_parts(
+      {reinterpret_cast<const core::ModelVertex*>(bytes.data()),
+       bytes.size() / sizeof(core::ModelVertex)},
+      memory.indices(record.range),
+      {placed.box_center - placed.box_half_extent, placed.box_center + placed.box_half_extent});
+}
+
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.
 void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::MeshRecord& record,
            std::uint32_t shared_indices, const WorldFacts& facts, double now_s,
@@ -145,6 +159,8 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
   if (node != nullptr) {
     note_ground(*node, *entities.get<GroundRelief>(owner), record, facts, *synthesis.memory);
   }
+  if (MeshParts* parts = entities.get<MeshParts>(owner))
+    note_parts(*parts, *entities.get<Placed>(owner), record, *synthesis.memory);
   landings.push_back({owner, {record.range, handle, shared_indices, record.tight}});
 }
 

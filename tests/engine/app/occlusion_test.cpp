@@ -31,7 +31,7 @@ TEST(Occlusion, MakesNoDifferenceOnTheWalk) {
   ASSERT_TRUE(path);
   Studio studio("paper.toml", coarse_view());
   std::uint32_t hidden = 0;
-  for (const double seconds : {1.0, 5.0, 9.0, 13.5, 18.0, 22.0, 25.0}) {
+  for (const double seconds : {1.0, 3.0, 5.0, 9.0, 11.0, 13.5, 16.0, 18.0, 20.0, 22.0, 25.0}) {
     const core::CameraPose pose = path->pose_at(seconds, studio.state().facts.world);
     EXPECT_EQ(differing(studio, pose, hidden), 0u) << "at " << seconds << " s";
   }

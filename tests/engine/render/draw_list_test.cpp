@@ -89,6 +89,26 @@ TEST(DrawList, shrinks_a_fading_mesh_towards_its_foot) {
   EXPECT_EQ(glm::vec3(list.data()[0].scale), glm::vec3(1, 2, 1));
 }
 
+TEST(DrawList, draws_the_part_that_is_asked_for_of_own_and_of_shared_indices) {
+  MeshDraw own = model(0, 0, 0);
+  own.range.first_index = 300;
+  own.range.index_count = 90;
+  own.part = {30, 12};
+  TerrainDraw shared;
+  shared.range.layout = core::VertexLayout::kTerrain;
+  shared.shared_indices = 1;
+  shared.part = {6, 9};
+  const IndexList lists[] = {{1000, 60}};
+  DrawList list;
+  list.build(std::span(&shared, 1), std::span(&own, 1), lists);
+  ASSERT_EQ(list.draws().size(), 2u);
+  EXPECT_EQ(list.draws()[0].first_index, 1006u);
+  EXPECT_EQ(list.draws()[0].index_count, 9u);
+  EXPECT_EQ(list.draws()[1].first_index, 330u);
+  EXPECT_EQ(list.draws()[1].index_count, 12u);
+  EXPECT_EQ(list.triangle_count(), 7u);
+}
+
 TEST(DrawList, is_empty_again_when_built_from_nothing) {
   const std::vector<MeshDraw> models{model(0, 1, 0)};
   DrawList list;

@@ -44,15 +44,31 @@ TEST(Governor, FramesThatTakeTooLongGetCoarserUntilTheyAreInTheBand) {
   EXPECT_GE(frame_ms, 16.7 * 0.80);
 }
 
+// How much each of the last `frames` of this length adds to the error, on average.
+double answer_to(Governor& governor, double frame_ms, int frames) {
+  const double before = governor.error_factor();
+  for (int i = 0; i < frames; ++i)
+    governor.observe(frame_ms);
+  return std::pow(governor.error_factor() / before, 1.0 / frames) - 1;
+}
+
 TEST(Governor, FramesThatTakeFarTooLongAreAnsweredFaster) {
-  Governor slightly({.target_ms = 16, .max_factor = 100}),
-      far({.target_ms = 16, .max_factor = 100});
-  for (int i = 0; i < 40; ++i) {
-    slightly.observe(20);
-    far.observe(32);
+  for (const auto& [frame_ms, step] : {std::pair(20.0, 0.012), std::pair(32.0, 3 * 0.012)}) {
+    Governor governor({.target_ms = 16, .max_factor = 1e9});
+    governor.observe(15);  // the start is over
+    answer_to(governor, frame_ms, 60);
+    EXPECT_NEAR(answer_to(governor, frame_ms, 40), step, 1e-4);
   }
-  EXPECT_NEAR(slightly.error_factor(), std::pow(1.012, 40), 0.01);
-  EXPECT_NEAR(far.error_factor(), std::pow(1 + 3 * 0.012, 40), 0.05);
+}
+
+TEST(Governor, UntilAFrameIsFastEnoughForTheFirstTimeItTakesLargeSteps) {
+  Governor governor({.target_ms = 16, .max_factor = 100});
+  EXPECT_NEAR(answer_to(governor, 20, 5), 4 * 0.012, 1e-9);
+  EXPECT_NEAR(answer_to(governor, 32, 5), 4 * 3 * 0.012, 1e-9);
+  const double factor = governor.error_factor();
+  governor.observe(15);  // nothing of the frames before is left
+  EXPECT_EQ(governor.error_factor(), factor);
+  EXPECT_LT(answer_to(governor, 20, 40), 0.012);
 }
 
 TEST(Governor, ComesToRestInsteadOfOscillating) {

@@ -94,7 +94,7 @@ TEST(NodeLevels, ANodeOverhangsWhereSomeOfItsBlocksDoNotExist) {
   EXPECT_FALSE(overhangs(endless, {{-9, 7}, 5}));
 }
 
-TEST(NodeLevels, NodesAreSplitAtNearlyOneToThreeSidesUnlessFinerOnesNeedMore) {
+TEST(NodeLevels, NodesAreSplitWhereTheirErrorIsSeenUnlessFinerOnesNeedMore) {
   for (const Wish& wish : kWishes) {
     Settings settings;
     settings.view_distance_m = wish.view_m;
@@ -103,7 +103,9 @@ TEST(NodeLevels, NodesAreSplitAtNearlyOneToThreeSidesUnlessFinerOnesNeedMore) {
     split_distances(levels, settings, wish.pixels_per_radian, wish.error_pixels, distances);
     ASSERT_EQ(distances.size(), levels.size());
     for (std::size_t k = 1; k < levels.size(); ++k) {
-      EXPECT_GE(distances[k].split_m, 0.9 * levels[k].size_m);
+      const double seen_m = levels[k].error_m * wish.pixels_per_radian / wish.error_pixels;
+      EXPECT_GE(distances[k].split_m, std::min(seen_m, 3.0 * levels[k].size_m));
+      EXPECT_GE(distances[k].split_m, 0.6 * levels[k].size_m);
       EXPECT_GE(distances[k].split_m, distances[k - 1].merge_m);
       EXPECT_GE(distances[k].merge_m, distances[k].split_m);
       EXPECT_LE(distances[k].morph_m, 0.75 * distances[k].split_m) << "room for morphing";

@@ -1,0 +1,38 @@
+// Parts of one index list as draws, one for those that follow each other.
+#pragma once
+
+#include <vector>
+
+#include "engine/core/geometry_memory.hpp"
+
+namespace psygen::scene {
+
+// `Draw`: render::TerrainDraw or render::MeshDraw. What was added is drawn when this is destroyed.
+template <class Draw>
+class DrawParts {
+ public:
+  DrawParts(const Draw& draw, std::vector<Draw>& draws) : draw_(draw), draws_(draws) {
+    draw_.part = {};
+  }
+  ~DrawParts() { flush(); }
+  DrawParts(const DrawParts&) = delete;
+  DrawParts& operator=(const DrawParts&) = delete;
+
+  void add(core::IndexPart part) {
+    if (part.first != draw_.part.first + draw_.part.count) {
+      flush();
+      draw_.part = {part.first, 0};
+    }
+    draw_.part.count += part.count;
+  }
+
+ private:
+  void flush() {
+    if (draw_.part.count > 0) draws_.push_back(draw_);
+  }
+
+  Draw draw_;
+  std::vector<Draw>& draws_;
+};
+
+}  // namespace psygen::scene

@@ -1,0 +1,67 @@
+#include "engine/scene/mesh_parts.hpp"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <limits>
+
+#include "engine/scene/draw_parts.hpp"
+#include "engine/scene/seen.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// Triangles up to the last that has three corners.
+std::size_t used_triangles(std::span<const std::uint16_t> indices) {
+  std::size_t count = indices.size() / 3;
+  const auto empty = [&](std::size_t t) {
+    const std::uint16_t a = indices[3 * t], b = indices[3 * t + 1], c = indices[3 * t + 2];
+    return a == b || b == c || c == a;
+  };
+  while (count > 0 && empty(count - 1))
+    --count;
+  return count;
+}
+
+core::Bounds box_of(std::span<const core::ModelVertex> vertices,
+                    std::span<const std::uint16_t> indices, const core::Bounds& box) {
+  constexpr float kHuge = std::numeric_limits<float>::max();
+  glm::vec3 low(kHuge), high(-kHuge);
+  for (const std::uint16_t index : indices) {
+    const core::ModelVertex& v = vertices[index];
+    const glm::vec3 place(v.position[0], v.position[1], v.position[2]);
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+  const glm::vec3 scale = box.half_extent() / 32767.0F;
+  return {box.center() + low * scale, box.center() + high * scale};
+}
+
+}  // namespace
+
+MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
+                     std::span<const std::uint16_t> indices, const core::Bounds& box) {
+  MeshParts parts;
+  const std::size_t triangles = used_triangles(indices);
+  parts.index_count = static_cast<std::uint32_t>(3 * triangles);
+  const std::size_t each = (triangles + MeshParts::kMost - 1) / MeshParts::kMost;
+  parts.indices_each = static_cast<std::uint32_t>(3 * each);
+  for (std::size_t first = 0; first < triangles; first += each) {
+    const std::size_t count = std::min(each, triangles - first);
+    parts.boxes[parts.count++] = box_of(vertices, indices.subspan(3 * first, 3 * count), box);
+  }
+  return parts;
+}
+
+void add_parts(const MeshParts& parts, const View& view, const render::MeshDraw& draw,
+               std::vector<render::MeshDraw>& draws) {
+  DrawParts run(draw, draws);
+  for (std::uint32_t i = 0; i < parts.count; ++i) {
+    const core::Bounds& box = parts.boxes[i];
+    const core::Bounds seen{draw.origin + box.min - kSwayM, draw.origin + box.max + kSwayM};
+    if (!can_be_seen(seen, view)) continue;
+    const std::uint32_t first = i * parts.indices_each;
+    run.add({first, std::min(parts.indices_each, parts.index_count - first)});
+  }
+}
+
+}  // namespace psygen::scene
