@@ -59,8 +59,8 @@ TEST(MeshParts, EveryTriangleIsInOnePartAndTheBoxesAreTight) {
     EXPECT_LT((parts.count - 1) * parts.indices_each, parts.index_count);
     for (std::uint32_t i = 0; i < parts.count; ++i) {
       const float first = static_cast<float>(i * parts.indices_each / 3);
-      const float end = std::min(first + static_cast<float>(parts.indices_each / 3),
-                                 static_cast<float>(count));
+      const float end =
+          std::min(first + static_cast<float>(parts.indices_each / 3), static_cast<float>(count));
       EXPECT_NEAR(parts.boxes[i].min.x, first, 0.01F * static_cast<float>(count));
       EXPECT_NEAR(parts.boxes[i].max.x, end, 0.01F * static_cast<float>(count));
       EXPECT_NEAR(parts.boxes[i].max.y, 1, 1e-3F);
