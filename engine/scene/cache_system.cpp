@@ -73,7 +73,7 @@ class Chooser {
         view_(view),
         synthesis_(synthesis),
         counters_(counters),
-        rank_turns_(is_roomy(*synthesis.cache) ? kRankTurns : 1) {}
+        roomy_(is_roomy(*synthesis.cache)) {}
 
   // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
   bool consider(const MeshEntity& row, const NodeView& node, bool is_ground) {
@@ -93,7 +93,7 @@ class Chooser {
       if (demand.drawn_level != kNoLevel) keep(row, RankGroup::kUnwanted, node, distance_m);
       return true;
     }
-    provide(row, node, in_view, distance_m);
+    provide(row, node, in_view, is_ground, distance_m);
     const unsigned all_levels = (1U << row.detail.level_count) - 1;
     return demand.drawn_level != kNoLevel || demand.failed_levels == all_levels;
   }
@@ -160,7 +160,8 @@ class Chooser {
 
   // Tells the cache how important the drawn mesh is, where that is due.
   void keep(const MeshEntity& row, RankGroup group, const NodeView& node, float distance_m) {
-    const bool turn = node.around || (row.entity.index + clock_.tick) % rank_turns_ == 0;
+    const bool turn =
+        node.around || (row.entity.index + clock_.tick) % (roomy_ ? kRankTurns : 1) == 0;
     std::uint8_t& ranked = row.demand.ranked;
     if (ranked == static_cast<std::uint8_t>(group) && !turn) return;
     ranked = static_cast<std::uint8_t>(group);
@@ -169,28 +170,32 @@ class Chooser {
                                                     : rank_of(group, node, distance_m));
   }
 
-  // Keeps what is drawn, and sees to it that the wanted level comes.
-  void provide(const MeshEntity& row, const NodeView& node, bool in_view, float distance_m) {
+  // Keeps what is drawn, and sees to it that the wanted level comes. Ground never gives way for
+  // being too fine: it would open the picture.
+  void provide(const MeshEntity& row, const NodeView& node, bool in_view, bool is_ground,
+               float distance_m) {
     Demand& demand = row.demand;
     const bool wanted = in_view || (node.wanted && !node.in_view);
     const bool nothing = demand.drawn_level == kNoLevel;
-    const bool too_fine = !nothing && demand.drawn_level < demand.wanted_level;
+    const bool hole = nothing && in_view && !node.covered;
+    const bool there = demand.drawn_level == demand.wanted_level && !demand.stale;
+    const std::uint8_t level = there ? kNoLevel : level_to_request(row, hole);
+    const bool too_fine = !is_ground && !nothing && level != kNoLevel && level > demand.drawn_level;
     if (!nothing) {
       const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;
       keep(row, wanted ? drawn : RankGroup::kPrefetch, node, distance_m);
     }
-    if (demand.drawn_level == demand.wanted_level && !demand.stale) {
-      demand.requested_level = kNoLevel;
-      return;
-    }
-    const bool hole = nothing && in_view && !node.covered;
-    const std::uint8_t level = level_to_request(row, hole);
+    if (there) demand.requested_level = kNoLevel;
     if (level == kNoLevel) return;
-    const RankGroup replaced = too_fine ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
+    // What frees room is urgent only where room is short.
+    const RankGroup replaced =
+        too_fine && !roomy_ ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
     const RankGroup group = hole     ? RankGroup::kVisibleHole
                             : wanted ? replaced
                                      : RankGroup::kPrefetch;
-    request(row, level, rank_of(group, node, distance_m), node.visibility->deadline_s);
+    const Rank rank = rank_of(group, node, distance_m);
+    request(row, level, rank, wanted ? rank_of(RankGroup::kDrawn, node, distance_m) : rank,
+            node.visibility->deadline_s);
   }
 
   // The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
@@ -201,7 +206,8 @@ class Chooser {
     const bool coarse_first = hole && settings_.levels_of_detail &&
                               settings_.paradigm == Paradigm::kParallelLazyAmplification;
     // A modeler that holds the coarsest one may not get a processor for a while: then the next one.
-    const bool stuck = !synthesis_.settling && demand.seen_s >= 0 &&
+    // Not where it waits for room.
+    const bool stuck = !synthesis_.settling && synthesis_.coarsening <= 1 && demand.seen_s >= 0 &&
                        clock_.real_s - double{demand.seen_s} > kHolePatienceSeconds;
     const int coarsest = stuck && levels > 1 ? levels - 2 : levels - 1;
     const int first = coarse_first ? coarsest : demand.wanted_level;
@@ -215,7 +221,9 @@ class Chooser {
     return kNoLevel;
   }
 
-  void request(const MeshEntity& row, std::uint8_t level, Rank rank, float deadline_s) {
+  // `landed` is the rank of the mesh if it is in the cache already.
+  void request(const MeshEntity& row, std::uint8_t level, Rank rank, Rank landed,
+               float deadline_s) {
     const Source& source = row.source;
     Demand& demand = row.demand;
     const auto type_level = static_cast<std::uint16_t>(source.first_level + level);
@@ -229,7 +237,7 @@ class Chooser {
     if (record != nullptr && record->state == synthesis::MeshState::kReady) {
       synthesis_.ready.push_back({row.entity, handle});
       // The entity that asked for it may have been destroyed; evictions are reported to the owner.
-      synthesis_.cache->adopt(handle, owner_of(row.entity), rank);
+      synthesis_.cache->adopt(handle, owner_of(row.entity), landed);
       return;
     }
     if (record != nullptr && record->state == synthesis::MeshState::kFailed) {
@@ -248,7 +256,7 @@ class Chooser {
   const View& view_;
   Synthesis& synthesis_;
   Counters& counters_;
-  const std::uint32_t rank_turns_;
+  const bool roomy_;
 };
 
 // Looks at nodes and their models.

@@ -88,10 +88,12 @@ static_assert(sizeof(Mesh) == 68);
 // The Mesh of everything that stands on a node in runs of triangles, each with the box around them.
 struct MeshParts {
   static constexpr std::size_t kMost = 16;
-  std::uint32_t count = 0;                          // 0: not known, it can only be drawn as a whole
-  std::uint32_t indices_each = 0, index_count = 0;  // of each part but the last; of all
-  std::array<core::Bounds, kMost> boxes{};          // from the foot
+  std::uint32_t count = 0;
+  std::uint32_t indices_each = 0;  // of all parts but the last; 0: not known, drawn as a whole
+  std::uint32_t index_count = 0;   // of all parts
+  std::array<core::Bounds, kMost> boxes{};  // from the foot
 };
+static_assert(sizeof(MeshParts) == 396);
 
 // What is wanted for an entity and what has been done about it. Changes every tick.
 struct Demand {

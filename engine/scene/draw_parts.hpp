@@ -1,4 +1,6 @@
-// Parts of one index list as draws, one for those that follow each other.
+// Parts of one index list as draws, one for those that follow each other: tiles of ground and runs
+// of a merged mesh are drawn with as few draws as what is seen of them allows. Knows nothing of
+// what is in view.
 #pragma once
 
 #include <vector>

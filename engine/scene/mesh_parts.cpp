@@ -43,7 +43,8 @@ MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
   MeshParts parts;
   const std::size_t triangles = used_triangles(indices);
   parts.index_count = static_cast<std::uint32_t>(3 * triangles);
-  const std::size_t each = (triangles + MeshParts::kMost - 1) / MeshParts::kMost;
+  const std::size_t each =
+      std::max<std::size_t>((triangles + MeshParts::kMost - 1) / MeshParts::kMost, 1);
   parts.indices_each = static_cast<std::uint32_t>(3 * each);
   for (std::size_t first = 0; first < triangles; first += each) {
     const std::size_t count = std::min(each, triangles - first);
@@ -52,8 +53,9 @@ MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
   return parts;
 }
 
-void add_parts(const MeshParts& parts, const View& view, const render::MeshDraw& draw,
+bool add_parts(const MeshParts& parts, const View& view, const render::MeshDraw& draw,
                std::vector<render::MeshDraw>& draws) {
+  bool any = false;
   DrawParts run(draw, draws);
   for (std::uint32_t i = 0; i < parts.count; ++i) {
     const core::Bounds& box = parts.boxes[i];
@@ -61,7 +63,9 @@ void add_parts(const MeshParts& parts, const View& view, const render::MeshDraw&
     if (!can_be_seen(seen, view)) continue;
     const std::uint32_t first = i * parts.indices_each;
     run.add({first, std::min(parts.indices_each, parts.index_count - first)});
+    any = true;
   }
+  return any;
 }
 
 }  // namespace psygen::scene

@@ -13,9 +13,9 @@ namespace {
 
 // A tick looks at each node around the camera once in 8 turns; so long must nothing be missing.
 constexpr int kQuietTicks = 9;
-// After so many ticks in which nothing became ready, or only in place of something else, what is
-// still wanted cannot be had.
-constexpr int kIdleTicks = 40;
+// After so many ticks in which nothing became ready, or so many altogether in which there was no
+// room for something, what is still wanted cannot be had.
+constexpr int kIdleTicks = 40, kRefusedTicks = 300;
 
 struct RegionSize {
   std::uint64_t meshes = 0, bytes = 0;
@@ -105,15 +105,15 @@ void Scene::tick_without_drawing(const core::CameraPose& pose) {
 std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progress) {
   State& s = state_;
   std::uint64_t synthesised = 0;
-  int quiet = 0, idle = 0;
+  int quiet = 0, idle = 0, refused = 0;
   s.synthesis.settling = true;
-  while (quiet < kQuietTicks && idle < kIdleTicks) {
+  while (quiet < kQuietTicks && idle < kIdleTicks && refused < kRefusedTicks) {
     const float coarsening = s.synthesis.coarsening;
     tick_without_drawing(pose);
     synthesised += s.counters.models_synthesised;
-    const bool grew = s.counters.models_synthesised > 0 && s.counters.refused == 0;
-    const bool moved = grew || s.counters.failed > 0 || s.counters.nodes_created > 0 ||
-                       s.synthesis.coarsening != coarsening;
+    const bool moved = s.counters.models_synthesised > 0 || s.counters.failed > 0 ||
+                       s.counters.nodes_created > 0 || s.synthesis.coarsening != coarsening;
+    refused += s.counters.refused > 0 ? 1 : 0;
     idle = moved ? 0 : idle + 1;
     const bool complete = s.streaming.missing.empty() && s.synthesis.finished.empty();
     quiet = complete && s.counters.requests == 0 ? quiet + 1 : 0;

@@ -160,34 +160,37 @@ class Drawing {
             const glm::vec3 foot = corner + placed[i].position;
             const bool hole = demand.drawn_level == kNoLevel;
             const bool coarse = !hole && demand.drawn_level > demand.wanted_level + 1;
-            count(foot + placed[i].middle, placed[i].radius_m, hole, coarse);
-            if (hole) continue;
-            if (single) {
+            if (single && !hole) {
               facts.level = demand.drawn_level;
               facts.coarser =
                   static_cast<std::uint32_t>(std::max(demand.drawn_level - demand.wanted_level, 0));
             }
-            render::MeshDraw draw;
-            draw.range = meshes[i].range;
-            draw.shared_indices = meshes[i].shared_indices;
-            draw.origin = foot;
-            draw.box_center = placed[i].box_center;
-            draw.box_half_extent = placed[i].box_half_extent;
-            draw.debug_colour = colour_of(shown_, facts);
-            add_model(models[i], draw);
-            draws_.meshes.push_back(meshes[i].handle);
+            const bool seen =
+                hole || add_model(models[i], foot, placed[i], meshes[i], colour_of(shown_, facts));
+            if (seen) count(foot + placed[i].middle, placed[i].radius_m, hole, coarse);
           }
         });
   }
 
-  // Of one that stands for many, only what can be seen, unless what cannot may cast a shadow.
-  void add_model(ecs::Entity entity, const render::MeshDraw& draw) {
+  // Of one that stands for many only what can be seen, unless what cannot may cast a shadow.
+  // Returns whether anything can.
+  bool add_model(ecs::Entity entity, glm::vec3 foot, const Placed& placed, const Mesh& mesh,
+                 std::uint32_t debug_colour) {
+    render::MeshDraw draw;
+    draw.range = mesh.range;
+    draw.shared_indices = mesh.shared_indices;
+    draw.origin = foot;
+    draw.box_center = placed.box_center;
+    draw.box_half_extent = placed.box_half_extent;
+    draw.debug_colour = debug_colour;
     const MeshParts* parts = facts_.shadows ? nullptr : entities_.get<MeshParts>(entity);
-    if (parts != nullptr && parts->count > 0) {
-      add_parts(*parts, view_, draw, draws_.models);
-    } else {
+    if (parts == nullptr || parts->indices_each == 0) {
       draws_.models.push_back(draw);
+    } else if (!add_parts(*parts, view_, draw, draws_.models)) {
+      return false;
     }
+    draws_.meshes.push_back(mesh.handle);
+    return true;
   }
 
   const render::View shown_;

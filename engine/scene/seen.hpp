@@ -1,4 +1,6 @@
-// Whether anything in a box may be seen in this tick. Pure.
+// The test that decides what is drawn of what could be: whether anything in a box may be seen in
+// this tick. Errs on the side of drawing. Pure; main thread, after the visibility system has found
+// what the drawn ground hides.
 #pragma once
 
 #include "engine/scene/state.hpp"

@@ -19,7 +19,7 @@ namespace psygen::synthesis {
 enum class RankGroup : std::uint8_t {
   kVisibleHole = 0,    // in view, drawn at no level
   kVisibleFine = 1,    // in view, drawn finer than wanted: its replacement makes room
-  kVisibleCoarse = 2,  // in view, drawn, but coarser than wanted
+  kVisibleCoarse = 2,  // in view, drawn by a coarser mesh than wanted, an ancestor's or an old one
   kDrawn = 3,          // in view and drawn now
   kPredicted = 4,      // will be in view, by deadline
   kPrefetch = 5,       // around the camera, by PLP layer

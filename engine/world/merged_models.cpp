@@ -36,8 +36,7 @@ constexpr ParameterSpec kSchema[kMergedParameterCount] = {
 
 constexpr int kDetails = 2;
 // What the forms of the next node level are off, in parts of the height of what they stand for;
-// with every node level twice as much. At 1.5 times a node's side that is 8 pixels for a tree of
-// 12 m in a block of 64 m.
+// with every node level twice as much.
 constexpr double kNextFormsError = 0.2;
 
 int level_of(const Parameters& p) {
