@@ -24,6 +24,9 @@ static_assert(sizeof(BlockCoord) == 8);
 struct Bounds {
   glm::vec3 min{0.0F};
   glm::vec3 max{0.0F};
+  static Bounds around(const glm::vec3& center, const glm::vec3& half_extent) {
+    return {center - half_extent, center + half_extent};
+  }
   glm::vec3 center() const { return (min + max) * 0.5F; }
   glm::vec3 half_extent() const { return (max - min) * 0.5F; }
   friend bool operator==(const Bounds&, const Bounds&) = default;

@@ -32,11 +32,12 @@ template <class Draw>
 void CandidateList::add(const Draw& draw, bool choose, bool coloured) {
   const core::Bounds box = bounds_of(draw);
   const auto first = static_cast<std::uint32_t>(levels_.size());
-  add_level(draw.range, indices_of(draw, lists_), draw.shared_indices != kNoSharedIndices, 0.0F);
+  add_level(draw.range, indices_of(draw.range, draw.shared_indices, draw.part, lists_),
+            draw.shared_indices != kNoSharedIndices, 0.0F);
   if (choose) {
     PSYGEN_ASSERT(draw.part.count == 0 || draw.coarser.empty(), "coarser levels have no parts");
     for (const DrawLevel& level : draw.coarser)
-      add_level(level.range, indices_of(level.range, level.shared_indices, lists_),
+      add_level(level.range, indices_of(level.range, level.shared_indices, {}, lists_),
                 level.shared_indices != kNoSharedIndices, level.error_m);
   }
   // Meshes without a name of their own share bit 0.

@@ -8,9 +8,8 @@ namespace psygen::render {
 
 namespace {
 
-constexpr float kLargestGrid = 127.0F;             // cells (core::TerrainVertex)
-constexpr float kSwayXM = 0.12F, kSwayZM = 0.09F;  // of the wind, model.vert
-constexpr float kSlackShare = 1e-6F;               // of a box's coordinates, for rounding
+constexpr float kLargestGrid = 127.0F;  // cells (core::TerrainVertex)
+constexpr float kSlackShare = 1e-6F;    // of a box's coordinates, for rounding
 
 }  // namespace
 
@@ -63,7 +62,7 @@ core::Bounds bounds_of(const TerrainDraw& draw) {
 
 core::Bounds bounds_of(const MeshDraw& draw) {
   const glm::vec3 center = draw.origin + draw.box_center * draw.fade;
-  const glm::vec3 extent = (draw.box_half_extent + glm::vec3(kSwayXM, 0.0F, kSwayZM)) * draw.fade;
+  const glm::vec3 extent = (draw.box_half_extent + kSwayM) * draw.fade;
   return {center - extent, center + extent};
 }
 

@@ -28,31 +28,19 @@ void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
 }
 
 IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
-                     std::span<const IndexList> lists) {
-  if (shared_indices == kNoSharedIndices) return {range.first_index, range.index_count};
+                     core::IndexPart part, std::span<const IndexList> lists) {
   PSYGEN_ASSERT(shared_indices <= lists.size(), "unknown shared index list");
-  return lists[shared_indices - 1];
-}
-namespace {
-template <class Draw>
-IndexList part_of(const Draw& draw, std::span<const IndexList> lists) {
-  const IndexList all = indices_of(draw.range, draw.shared_indices, lists);
-  if (draw.part.count == 0) return all;
-  PSYGEN_ASSERT(draw.part.first + draw.part.count <= all.index_count, "a part is in its list");
-  return {all.first_index + draw.part.first, draw.part.count};
-}
-}  // namespace
-
-IndexList indices_of(const TerrainDraw& draw, std::span<const IndexList> lists) {
-  return part_of(draw, lists);
-}
-IndexList indices_of(const MeshDraw& draw, std::span<const IndexList> lists) {
-  return part_of(draw, lists);
+  const IndexList all = shared_indices == kNoSharedIndices
+                            ? IndexList{range.first_index, range.index_count}
+                            : lists[shared_indices - 1];
+  if (part.count == 0) return all;
+  PSYGEN_ASSERT(part.first + part.count <= all.index_count, "a part is in its list");
+  return {all.first_index + part.first, part.count};
 }
 
 template <class Draw>
 void DrawList::append(const Draw& draw) {
-  const IndexList indices = indices_of(draw, lists_);
+  const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
   const DrawRun run{draw.range.layout,
                     draw.shared_indices != kNoSharedIndices,
                     indices.index_count >= pushed_from_,
@@ -72,7 +60,8 @@ template <class Draw>
 void DrawList::add(std::span<const Draw> input) {
   // What must differ between two runs, as a number to sort by.
   const auto key = [&](const Draw& draw) {
-    const std::uint64_t pushed = indices_of(draw, lists_).index_count >= pushed_from_ ? 0 : 2;
+    const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
+    const std::uint64_t pushed = indices.index_count >= pushed_from_ ? 0 : 2;
     return pushed << 31 | std::uint64_t{draw.range.pool_block} * 2 |
            (draw.shared_indices != kNoSharedIndices ? 1u : 0u);
   };

@@ -20,12 +20,10 @@ struct IndexList {
   std::uint32_t index_count = 0;
 };
 
-// The indices of a draw; `lists` is indexed by shared_indices − 1.
-IndexList indices_of(const TerrainDraw& draw, std::span<const IndexList> lists);
-IndexList indices_of(const MeshDraw& draw, std::span<const IndexList> lists);
-// Those of a mesh with a list of its own or a shared one.
+// The indices of a mesh with a list of its own or a shared one, or a part of them; `lists` is
+// indexed by shared_indices − 1.
 IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
-                     std::span<const IndexList> lists);
+                     core::IndexPart part, std::span<const IndexList> lists);
 
 // What the shaders read of a draw.
 shaders::DrawData data_of(const TerrainDraw& draw);

@@ -132,6 +132,9 @@ struct DrawLevel {
   float error_m = 0.0F;  // how far it is off; grows from level to level
 };
 
+// How far the wind moves a vertex of a mesh at most, either way, metres (shaders/model.vert).
+inline constexpr glm::vec3 kSwayM{0.12F, 0.0F, 0.09F};
+
 // A tree, rock or any other mesh of core::VertexLayout::kModel.
 struct MeshDraw {
   core::GeometryRange range;

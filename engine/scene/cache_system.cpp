@@ -84,7 +84,7 @@ class Chooser {
     const float distance_m = near ? node.visibility->distance_m
                                   : std::max(glm::length(foot + placed.middle) - placed.radius_m,
                                              camera_.projection.near_m);
-    const bool in_view = node.in_view && (near || can_be_seen(box_of(row, foot), view_));
+    const bool in_view = node.in_view && (near || mesh_can_be_seen(box_of(row), foot, view_));
     demand.wanted_level = is_ground ? ground_level(row.detail, demand, node)
                                     : wanted_level(placed, row.detail, demand, distance_m, node);
     in_view ? note_in_view(demand, node.leaf) : note_out_of_view(demand);
@@ -99,14 +99,11 @@ class Chooser {
   }
 
  private:
-  // Around what is or was drawn, or all that could be. Relative to the camera. What a mesh taught
-  // outlasts it: otherwise one that is out of view would be a hole again as soon as it is evicted.
-  core::Bounds box_of(const MeshEntity& row, const glm::vec3& foot) const {
-    const Placed& placed = row.placed;
-    if (row.mesh.tight != core::Bounds{} && !facts_.shadows)
-      return {foot + row.mesh.tight.min - kSwayM, foot + row.mesh.tight.max + kSwayM};
-    const glm::vec3 center = foot + placed.box_center;
-    return {center - placed.box_half_extent, center + placed.box_half_extent};
+  // Around what is or was drawn, or all that could be; from the foot. What a mesh taught outlasts
+  // it: otherwise one that is out of view would be a hole again as soon as it is evicted.
+  core::Bounds box_of(const MeshEntity& row) const {
+    if (row.mesh.tight != core::Bounds{} && !facts_.shadows) return row.mesh.tight;
+    return core::Bounds::around(row.placed.box_center, row.placed.box_half_extent);
   }
 
   static std::uint8_t ground_level(const Detail& detail, const Demand& demand,
@@ -187,15 +184,13 @@ class Chooser {
     }
     if (there) demand.requested_level = kNoLevel;
     if (level == kNoLevel) return;
-    // What frees room is urgent only where room is short.
-    const RankGroup replaced =
-        too_fine && !roomy_ ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
-    const RankGroup group = hole     ? RankGroup::kVisibleHole
-                            : wanted ? replaced
-                                     : RankGroup::kPrefetch;
-    const Rank rank = rank_of(group, node, distance_m);
-    request(row, level, rank, wanted ? rank_of(RankGroup::kDrawn, node, distance_m) : rank,
-            node.visibility->deadline_s);
+    RankGroup group = RankGroup::kPrefetch;
+    if (hole) {
+      group = RankGroup::kVisibleHole;
+    } else if (wanted) {  // what frees room is urgent only where room is short
+      group = too_fine && !roomy_ ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
+    }
+    request(row, level, group, node, distance_m);
   }
 
   // The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
@@ -221,9 +216,8 @@ class Chooser {
     return kNoLevel;
   }
 
-  // `landed` is the rank of the mesh if it is in the cache already.
-  void request(const MeshEntity& row, std::uint8_t level, Rank rank, Rank landed,
-               float deadline_s) {
+  void request(const MeshEntity& row, std::uint8_t level, RankGroup group, const NodeView& node,
+               float distance_m) {
     const Source& source = row.source;
     Demand& demand = row.demand;
     const auto type_level = static_cast<std::uint16_t>(source.first_level + level);
@@ -237,7 +231,8 @@ class Chooser {
     if (record != nullptr && record->state == synthesis::MeshState::kReady) {
       synthesis_.ready.push_back({row.entity, handle});
       // The entity that asked for it may have been destroyed; evictions are reported to the owner.
-      synthesis_.cache->adopt(handle, owner_of(row.entity), landed);
+      const RankGroup landed = synthesis::is_visible(group) ? RankGroup::kDrawn : group;
+      synthesis_.cache->adopt(handle, owner_of(row.entity), rank_of(landed, node, distance_m));
       return;
     }
     if (record != nullptr && record->state == synthesis::MeshState::kFailed) {
@@ -245,7 +240,8 @@ class Chooser {
       return;
     }
     if (settings_.paradigm == Paradigm::kDataAmplification) return;
-    synthesis_.wants.push_back({key, &source.parameters, owner_of(row.entity), rank, deadline_s});
+    synthesis_.wants.push_back({key, &source.parameters, owner_of(row.entity),
+                                rank_of(group, node, distance_m), node.visibility->deadline_s});
   }
 
   const Settings& settings_;

@@ -1,8 +1,8 @@
 #include "engine/scene/mesh_parts.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <glm/common.hpp>
-#include <limits>
 
 #include "engine/scene/draw_parts.hpp"
 #include "engine/scene/seen.hpp"
@@ -24,16 +24,15 @@ std::size_t used_triangles(std::span<const std::uint16_t> indices) {
 
 core::Bounds box_of(std::span<const core::ModelVertex> vertices,
                     std::span<const std::uint16_t> indices, const core::Bounds& box) {
-  constexpr float kHuge = std::numeric_limits<float>::max();
-  glm::vec3 low(kHuge), high(-kHuge);
+  glm::ivec3 low(INT16_MAX), high(INT16_MIN);
   for (const std::uint16_t index : indices) {
     const core::ModelVertex& v = vertices[index];
-    const glm::vec3 place(v.position[0], v.position[1], v.position[2]);
+    const glm::ivec3 place(v.position[0], v.position[1], v.position[2]);
     low = glm::min(low, place);
     high = glm::max(high, place);
   }
   const glm::vec3 scale = box.half_extent() / 32767.0F;
-  return {box.center() + low * scale, box.center() + high * scale};
+  return {box.center() + glm::vec3(low) * scale, box.center() + glm::vec3(high) * scale};
 }
 
 }  // namespace
@@ -58,9 +57,7 @@ bool add_parts(const MeshParts& parts, const View& view, const render::MeshDraw&
   bool any = false;
   DrawParts run(draw, draws);
   for (std::uint32_t i = 0; i < parts.count; ++i) {
-    const core::Bounds& box = parts.boxes[i];
-    const core::Bounds seen{draw.origin + box.min - kSwayM, draw.origin + box.max + kSwayM};
-    if (!can_be_seen(seen, view)) continue;
+    if (!mesh_can_be_seen(parts.boxes[i], draw.origin, view)) continue;
     const std::uint32_t first = i * parts.indices_each;
     run.add({first, std::min(parts.indices_each, parts.index_count - first)});
     any = true;

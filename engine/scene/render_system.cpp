@@ -165,16 +165,17 @@ class Drawing {
               facts.coarser =
                   static_cast<std::uint32_t>(std::max(demand.drawn_level - demand.wanted_level, 0));
             }
+            const MeshParts* parts =
+                single || facts_.shadows ? nullptr : entities_.get<MeshParts>(models[i]);
             const bool seen =
-                hole || add_model(models[i], foot, placed[i], meshes[i], colour_of(shown_, facts));
+                hole || add_model(parts, foot, placed[i], meshes[i], colour_of(shown_, facts));
             if (seen) count(foot + placed[i].middle, placed[i].radius_m, hole, coarse);
           }
         });
   }
 
-  // Of one that stands for many only what can be seen, unless what cannot may cast a shadow.
-  // Returns whether anything can.
-  bool add_model(ecs::Entity entity, glm::vec3 foot, const Placed& placed, const Mesh& mesh,
+  // Where its parts are known only those that can be seen. Returns whether any can.
+  bool add_model(const MeshParts* parts, glm::vec3 foot, const Placed& placed, const Mesh& mesh,
                  std::uint32_t debug_colour) {
     render::MeshDraw draw;
     draw.range = mesh.range;
@@ -183,7 +184,6 @@ class Drawing {
     draw.box_center = placed.box_center;
     draw.box_half_extent = placed.box_half_extent;
     draw.debug_colour = debug_colour;
-    const MeshParts* parts = facts_.shadows ? nullptr : entities_.get<MeshParts>(entity);
     if (parts == nullptr || parts->indices_each == 0) {
       draws_.models.push_back(draw);
     } else if (!add_parts(*parts, view_, draw, draws_.models)) {

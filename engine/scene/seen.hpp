@@ -7,12 +7,14 @@
 
 namespace psygen::scene {
 
-// How far the wind moves a vertex at most (shaders/model.vert).
-inline constexpr float kSwayM = 0.15F;
-
 // `box` is relative to the camera. False only if it lies beside the picture or behind the ground.
 inline bool can_be_seen(const core::Bounds& box, const View& view) {
   return visibility::intersects(view.frustum, box) && !view.horizon.hides(box);
+}
+
+// The same for a mesh that stands at `foot` and may sway in the wind; `box` is relative to it.
+inline bool mesh_can_be_seen(const core::Bounds& box, glm::vec3 foot, const View& view) {
+  return can_be_seen({foot + box.min - render::kSwayM, foot + box.max + render::kSwayM}, view);
 }
 
 }  // namespace psygen::scene

@@ -60,9 +60,10 @@ void fill(const Created& created, std::size_t i, const WorldFacts& facts, core::
       placement.model, static_cast<std::uint16_t>(first_level)};
 }
 
+// With the components of every mesh entity and `Also`.
 template <class... Also>
-void create_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
-                   std::span<const world::Placement> placements, ecs::World& entities) {
+void create_children(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
+                     std::span<const world::Placement> placements, ecs::World& entities) {
   const auto models =
       entities.create<Placed, Detail, Source, Demand, Mesh, Also...>(placements.size());
   for (std::size_t i = 0; i < placements.size(); ++i)
@@ -76,11 +77,11 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
     world::place_models(facts.world, facts.registry, block, scratch);
-    create_models(facts, block, node, scratch, entities);
+    create_children(facts, block, node, scratch, entities);
   } else if (facts.levels[at.level].merged) {
     scratch.assign(1, {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
                        world::merged_parameters(at.coord, at.level)});
-    create_models<MeshParts>(facts, block, node, scratch, entities);
+    create_children<MeshParts>(facts, block, node, scratch, entities);
   }
 }
 

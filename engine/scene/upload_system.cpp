@@ -127,11 +127,10 @@ void note_parts(MeshParts& parts, const Placed& placed, const synthesis::MeshRec
   parts = {};
   const std::span<const std::byte> bytes = memory.vertex_bytes(record.range);
   if (bytes.empty()) return;
-  parts = mesh_parts(
-      {reinterpret_cast<const core::ModelVertex*>(bytes.data()),
-       bytes.size() / sizeof(core::ModelVertex)},
-      memory.indices(record.range),
-      {placed.box_center - placed.box_half_extent, placed.box_center + placed.box_half_extent});
+  parts = mesh_parts({reinterpret_cast<const core::ModelVertex*>(bytes.data()),
+                      bytes.size() / sizeof(core::ModelVertex)},
+                     memory.indices(record.range),
+                     core::Bounds::around(placed.box_center, placed.box_half_extent));
 }
 
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.

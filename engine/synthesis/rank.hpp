@@ -18,8 +18,8 @@ namespace psygen::synthesis {
 
 enum class RankGroup : std::uint8_t {
   kVisibleHole = 0,    // in view, drawn at no level
-  kVisibleFine = 1,    // in view, drawn finer than wanted: its replacement makes room
-  kVisibleCoarse = 2,  // in view, drawn by a coarser mesh than wanted, an ancestor's or an old one
+  kVisibleFine = 1,    // in view, drawn finer than wanted; of a request: what frees that room
+  kVisibleCoarse = 2,  // in view, drawn, but not by the mesh that is wanted
   kDrawn = 3,          // in view and drawn now
   kPredicted = 4,      // will be in view, by deadline
   kPrefetch = 5,       // around the camera, by PLP layer

@@ -44,6 +44,19 @@ TEST(CandidateList, gathers_levels_of_the_same_buffers_in_groups_with_room_for_a
   EXPECT_EQ(list.name_count(), 6u);
 }
 
+TEST(CandidateList, takes_parts_of_a_mesh_as_candidates_of_one_name) {
+  std::vector<MeshDraw> models{model(4, 0, 0), model(4, 0, 0)};
+  models[0].range.index_count = models[1].range.index_count = 30;
+  models[0].part = {0, 6};
+  models[1].part = {12, 9};
+  CandidateList list;
+  list.build({}, models, {}, true);
+  ASSERT_EQ(list.candidates().size(), 2u);
+  EXPECT_EQ(list.levels()[0].draw, glm::uvec4(400, 6, 40, 0));
+  EXPECT_EQ(list.levels()[1].draw, glm::uvec4(412, 9, 40, 0));
+  EXPECT_EQ(list.candidates()[0].levels.z, list.candidates()[1].levels.z);
+}
+
 TEST(CandidateList, leaves_out_coarser_levels_where_nobody_chooses) {
   std::vector<MeshDraw> models{model(1, 0, 0)};
   const std::vector<DrawLevel> coarser(3);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 
+#include "engine/scene/mesh_parts.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
@@ -280,6 +282,68 @@ TEST(Scene, SettlingEndsAlsoWhenTheBudgetCannotHoldTheView) {
   tick_at(*scene, pose_at(256, 256));
   EXPECT_GT(scene->state().counters.holes, 0u);
   expect_consistent(*scene);
+}
+
+TEST(Scene, SettlingEndsUnderAnyBudget) {
+  for (const bool levels : {true, false}) {
+    for (const std::uint64_t mib : {4u, 5u, 6u, 9u, 12u, 24u}) {
+      Settings settings = small_settings();
+      settings.levels_of_detail = levels;
+      settings.max_error_pixels = 0.5;
+      settings.budget_bytes = mib << 20;
+      const auto scene = make_scene(settings);
+      scene->settle(pose_at(256, 256));
+      EXPECT_LT(scene->state().clock.tick, 1500u) << mib << " MiB, levels " << levels;
+      expect_consistent(*scene);
+      expect_within_budget(*scene);
+    }
+  }
+}
+
+// What each entity knows of its mesh in parts is that of the mesh it draws; returns the levels that
+// these entities draw.
+std::map<std::uint64_t, int> check_parts(Scene& scene) {
+  std::map<std::uint64_t, int> drawn;
+  const State& s = scene.state();
+  s.entities.each<const MeshParts, const Demand, const Mesh, const Placed>(
+      [&](std::span<const ecs::Entity> entities, std::span<const MeshParts> parts,
+          std::span<const Demand> demands, std::span<const Mesh> meshes,
+          std::span<const Placed> placed) {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+          if (demands[i].drawn_level == kNoLevel) continue;
+          drawn[owner_of(entities[i])] = demands[i].drawn_level;
+          const std::span<const std::byte> bytes = s.memory->vertex_bytes(meshes[i].range);
+          const MeshParts now =
+              mesh_parts({reinterpret_cast<const core::ModelVertex*>(bytes.data()),
+                          bytes.size() / sizeof(core::ModelVertex)},
+                         s.memory->indices(meshes[i].range),
+                         core::Bounds::around(placed[i].box_center, placed[i].box_half_extent));
+          EXPECT_EQ(parts[i].index_count, now.index_count);
+          EXPECT_LE(now.index_count, meshes[i].range.index_count);
+          EXPECT_EQ(parts[i].boxes, now.boxes);
+        }
+      });
+  return drawn;
+}
+
+TEST(Scene, MergedMeshesKnowThePartsOfTheLevelThatIsDrawn) {
+  Settings settings = small_settings();
+  settings.view_distance_m = 2000;
+  settings.max_error_pixels = 2;
+  const auto scene = make_scene(settings);
+  scene->settle(pose_at(256, 256));
+  const auto before = check_parts(*scene);
+  EXPECT_GT(std::ranges::count(before, 0, &std::pair<const std::uint64_t, int>::second), 20);
+  scene->state().settings.max_error_pixels = 8;  // a coarser level replaces the finer one
+  scene->settle(pose_at(256, 256));
+  const auto after = check_parts(*scene);
+  EXPECT_GT(std::ranges::count_if(after,
+                                  [&](const auto& now) {
+                                    const auto then = before.find(now.first);
+                                    return now.second == 1 && then != before.end() &&
+                                           then->second == 0;
+                                  }),
+            5);
 }
 
 TEST(Scene, HalvingTheBudgetWhileFlyingIsMet) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/core/hash.hpp"
@@ -61,31 +64,118 @@ std::vector<Rank> many_ranks() {
 TEST(Rank, ARequestMayEvictOnlyWhatIsStrictlyWorse) {
   for (const Rank request : many_ranks()) {
     for (const Rank victim : many_ranks()) {
-      if (!may_evict(request, victim) || victim.group() == RankGroup::kVisibleFine) continue;
-      EXPECT_GT(victim, request);
+      if (!may_evict(request, victim)) continue;
+      if (victim.group() == RankGroup::kVisibleFine) {
+        EXPECT_LE(request.group(), RankGroup::kVisibleFine) << "a hole, or what replaces it";
+      } else {
+        EXPECT_GT(victim, request);
+      }
     }
   }
 }
 
-// The layer and distance of a visible mesh, in another group; a hole takes the most urgent turn.
-Rank as(RankGroup group, Rank rank) {
-  const std::uint64_t key = rank.bits() & ((std::uint64_t{1} << 48) - 1);
-  return {group, static_cast<std::uint32_t>(key >> 32),
-          std::bit_cast<float>(static_cast<std::uint32_t>(key))};
-}
-
-TEST(Rank, TwoMeshesCannotGoOnEvictingEachOther) {
-  // Once evicted a visible mesh is a hole, and what a request is granted is drawn no finer than
-  // wanted: only what was too fine can be taken by what is farther, and only once.
-  using enum RankGroup;
+TEST(Rank, TwoMeshesCanNeverEvictEachOtherInTurn) {
+  // Once evicted, a visible mesh is a hole with the same layer and distance.
   for (const Rank request : many_ranks()) {
     for (const Rank victim : many_ranks()) {
       if (!is_visible(request.group()) || !is_visible(victim.group())) continue;
       if (!may_evict(request, victim)) continue;
-      const bool back = may_evict(as(kVisibleHole, victim), as(kDrawn, request));
-      EXPECT_TRUE(!back || victim.group() == kVisibleFine);
-      EXPECT_FALSE(back && may_evict(as(kVisibleHole, request), as(kDrawn, victim)));
+      const std::uint64_t key = victim.bits() & ((std::uint64_t{1} << 56) - 1);
+      const Rank back(RankGroup::kVisibleHole, static_cast<std::uint32_t>(key >> 32),
+                      std::bit_cast<float>(static_cast<std::uint32_t>(key)));
+      // What was too fine comes back smaller, once: see the next test.
+      if (victim.group() == RankGroup::kVisibleFine) continue;
+      EXPECT_FALSE(may_evict(back, request));
     }
+  }
+}
+
+// Meshes in view, most of them finer than wanted, in a cache that is too small even for coarse ones
+// of all: each that is drawn at no level, or too fine, requests a coarse mesh whenever its turn is.
+class CrowdedCache {
+ public:
+  explicit CrowdedCache(std::uint64_t seed) : random_(seed, 0, 0, 0, core::Purpose::kParameters) {
+    while (used_ + kFineBytes <= kBudgetBytes) {
+      meshes_.push_back({distance(), kFineBytes});
+      used_ += kFineBytes;
+    }
+    for (int i = 0; i < 40; ++i)
+      meshes_.push_back({distance(), 0});
+  }
+
+  // Lets everybody ask once, in another order than before; returns how many were evicted.
+  int round() {
+    int evicted = 0;
+    for (std::size_t i = meshes_.size(); i > 1; --i)
+      std::swap(meshes_[i - 1], meshes_[random_.next_u64() % i]);
+    for (Mesh& mesh : meshes_)
+      evicted += mesh.bytes == kCoarseBytes ? 0 : serve(mesh);
+    return evicted;
+  }
+  int too_fine() const {
+    return static_cast<int>(std::ranges::count(meshes_, kFineBytes, &Mesh::bytes));
+  }
+  // Whether what is drawn at no level is farther than all that is drawn.
+  bool nearest_are_drawn() const {
+    float farthest_drawn = 0, nearest_hole = 1e9F;
+    for (const Mesh& mesh : meshes_) {
+      if (mesh.bytes > 0) farthest_drawn = std::max(farthest_drawn, mesh.distance_m);
+      if (mesh.bytes == 0) nearest_hole = std::min(nearest_hole, mesh.distance_m);
+    }
+    return farthest_drawn <= nearest_hole;
+  }
+
+ private:
+  static constexpr int kFineBytes = 100, kCoarseBytes = 10, kBudgetBytes = 300;
+  struct Mesh {
+    float distance_m;
+    int bytes;
+  };
+
+  float distance() { return std::exp2(static_cast<float>(random_.next_integer(0, 400)) / 50.0F); }
+  static Rank rank_of(const Mesh& mesh) {
+    const auto layer = static_cast<std::uint32_t>(mesh.distance_m / 20);
+    if (mesh.bytes == 0)
+      return Rank::hole(static_cast<std::uint32_t>(mesh.distance_m) % 7, layer, mesh.distance_m);
+    return Rank::by_layer(mesh.bytes == kFineBytes ? RankGroup::kVisibleFine : RankGroup::kDrawn,
+                          layer, mesh.distance_m);
+  }
+  // As the cache does it: the worst of what is drawn, if the request may evict that.
+  int serve(Mesh& mesh) {
+    const Rank request = rank_of(mesh);
+    int evicted = 0;
+    while (used_ + kCoarseBytes > kBudgetBytes) {
+      Mesh* worst = nullptr;
+      for (Mesh& other : meshes_) {
+        if (other.bytes > 0 &&
+            (worst == nullptr || eviction_order(rank_of(other)) > eviction_order(rank_of(*worst))))
+          worst = &other;
+      }
+      if (worst == nullptr || !may_evict(request, rank_of(*worst))) return evicted;
+      used_ -= std::exchange(worst->bytes, 0);
+      ++evicted;
+    }
+    used_ += kCoarseBytes - std::exchange(mesh.bytes, kCoarseBytes);
+    return evicted;
+  }
+
+  core::RandomStream random_;
+  std::vector<Mesh> meshes_;
+  int used_ = 0;
+};
+
+TEST(Rank, EvictionsInTurnEndWithTheNearestDrawnAndNothingTooFine) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CrowdedCache cache(seed);
+    EXPECT_GT(cache.too_fine(), 0);
+    int rounds = 0, evicted = 0, of_round = 1;
+    // Quiet when a whole round in which all may ask changes nothing.
+    for (; of_round > 0 && rounds < 100; ++rounds)
+      evicted += of_round = cache.round();
+    EXPECT_LT(rounds, 100) << "evictions go on";
+    EXPECT_GT(evicted, 0);
+    EXPECT_EQ(cache.too_fine(), 0);
+    EXPECT_TRUE(cache.nearest_are_drawn()) << seed;
   }
 }
 

@@ -1,0 +1,60 @@
+// What the main thread does with a mesh that lands beyond book-keeping: the boxes of the parts of a
+// merged mesh, the lines of a node's ground.
+#include <benchmark/benchmark.h>
+
+#include "engine/scene/ground_relief.hpp"
+#include "engine/scene/mesh_parts.hpp"
+#include "engine/world/merged_models.hpp"
+
+namespace psygen::scene {
+namespace {
+
+world::World paper_world(const models::Registry& registry) {
+  return world::load_world(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml", registry).value();
+}
+
+template <class Vertex>
+struct Synthesised {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint16_t> indices;
+  core::Bounds box;
+
+  Synthesised(const models::ModelType& type, const models::Parameters& p, int level) {
+    const models::MeshSize size = type.mesh_size(p, level);
+    vertices.resize(size.vertex_count);
+    indices.resize(size.shared_indices == 0 ? size.index_count : 0);
+    box = type.synthesize(p, level, {std::as_writable_bytes(std::span(vertices)), indices});
+  }
+};
+
+void parts_of_a_merged_mesh(benchmark::State& state) {
+  const models::Registry registry = models::make_standard_registry();
+  const auto world = std::make_shared<const world::World>(paper_world(registry));
+  const auto type = world::make_merged_type(world, registry);
+  const auto p = world::merged_parameters({5, 7}, static_cast<int>(state.range(0)));
+  const Synthesised<core::ModelVertex> mesh(*type, p, 0);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(mesh_parts(mesh.vertices, mesh.indices, type->bounds(p)));
+  state.counters["triangles"] = static_cast<double>(mesh.indices.size()) / 3;
+}
+BENCHMARK(parts_of_a_merged_mesh)->ArgName("node_level")->DenseRange(1, 5);
+
+void relief_of_ground(benchmark::State& state) {
+  const models::Registry registry = models::make_standard_registry();
+  const world::World world = paper_world(registry);
+  const models::ModelType& type = registry[world.terrain_model];
+  const auto level = static_cast<int>(state.range(0));
+  const models::Parameters p = world::terrain_parameters(world, {5, 7});
+  const Synthesised<core::TerrainVertex> mesh(type, p, level);
+  const models::TerrainGrid grid(static_cast<int>(world.terrain.integer(models::kTerrainSize)),
+                                 level);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        ground_relief(mesh.vertices, grid, mesh.box.min.y, mesh.box.max.y - mesh.box.min.y, 0.0F));
+}
+BENCHMARK(relief_of_ground)->ArgName("level")->DenseRange(0, 1);
+
+}  // namespace
+}  // namespace psygen::scene
+
+BENCHMARK_MAIN();
