@@ -8,12 +8,11 @@ namespace {
 
 constexpr double kSmoothing = 0.1;  // share of the newest frame
 // Steps of a frame whose time is off by kFullStepAt: at 60 Hz the error doubles in a second and
-// halves in four. Frames that take far too long are answered by up to kMostSteps of them.
-constexpr double kStepUp = 0.012, kStepDown = 0.003;
+// halves in four, at the start in one. Frames that take far too long are answered by up to
+// kMostSteps of them.
+constexpr double kStepUp = 0.012, kStepDown = 0.003, kStartStepDown = 0.012;
 constexpr double kFullStepAt = 0.25;
 constexpr double kMostSteps = 3;
-// At the start every frame counts for itself, and for so many times as much.
-constexpr double kStartFactor = 4;
 
 }  // namespace
 
@@ -21,15 +20,14 @@ void Governor::observe(double frame_ms) {
   const double target_ms = settings_.target_ms;
   if (!(target_ms > 0) || !(frame_ms > 0)) return;
   const double counted_ms = std::min(frame_ms, 3 * target_ms);
-  smoothed_ms_ += (counted_ms - smoothed_ms_) * (met_ ? kSmoothing : 1);
-  met_ = met_ || frame_ms <= target_ms;
+  smoothed_ms_ += (counted_ms - smoothed_ms_) * (smoothed_ms_ > 0 ? kSmoothing : 1);
   const double over = smoothed_ms_ / target_ms - 1;
   const double under = settings_.rest_share - smoothed_ms_ / target_ms;
+  refining_ = refining_ && under > 0;
   if (over > 0) {
-    const double start = met_ ? 1.0 : kStartFactor;
-    factor_ *= 1 + start * kStepUp * std::min(over / kFullStepAt, kMostSteps);
+    factor_ *= 1 + kStepUp * std::min(over / kFullStepAt, kMostSteps);
   } else if (under > 0) {
-    factor_ *= 1 - kStepDown * std::min(under / kFullStepAt, 1.0);
+    factor_ *= 1 - (refining_ ? kStartStepDown : kStepDown) * std::min(under / kFullStepAt, 1.0);
   }
   factor_ = std::clamp(factor_, 1.0, settings_.max_factor);
 }

@@ -1,7 +1,8 @@
 // Holds a frame time by the error that levels of detail may have: more when frames take too long,
 // less, slowly, when there is time to spare. What it steers acts late (meshes must be synthesised
-// first), so that it takes small steps and rests inside a band. Only at the start, until a frame is
-// fast enough for the first time, it takes large ones. Pure; no clock of its own.
+// first), so that it takes small steps and rests inside a band. It starts with the largest error,
+// so that the first picture is there soon and is fast, and until frames reach the band it refines
+// in larger steps. Pure; no clock of its own.
 #pragma once
 
 namespace psygen::scene {
@@ -14,7 +15,8 @@ struct GovernorSettings {
 
 class Governor {
  public:
-  explicit Governor(const GovernorSettings& settings = {}) : settings_(settings) {}
+  explicit Governor(const GovernorSettings& settings = {})
+      : settings_(settings), factor_(settings.target_ms > 0 ? settings.max_factor : 1) {}
 
   // What the last frame took, without waiting for a display. Values that are not positive are
   // ignored, one frame counts for at most three targets.
@@ -25,9 +27,9 @@ class Governor {
 
  private:
   GovernorSettings settings_;
-  bool met_ = false;  // the target, by any frame so far
+  bool refining_ = true;  // no frames have reached the band yet
   double smoothed_ms_ = 0;
-  double factor_ = 1;
+  double factor_;
 };
 
 }  // namespace psygen::scene

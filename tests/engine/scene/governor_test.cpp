@@ -27,6 +27,17 @@ class Load {
   std::deque<double> factors_;
 };
 
+// One that has refined as far as it may and then met frames within the band.
+Governor at_the_finest(const GovernorSettings& settings) {
+  Governor governor(settings);
+  for (int i = 0; i < 3000; ++i)
+    governor.observe(settings.target_ms / 2);
+  for (int i = 0; i < 100; ++i)
+    governor.observe(settings.target_ms * 0.9);
+  EXPECT_EQ(governor.error_factor(), 1);
+  return governor;
+}
+
 TEST(Governor, WithoutATargetTheErrorStays) {
   Governor governor;
   for (int i = 0; i < 100; ++i)
@@ -35,7 +46,7 @@ TEST(Governor, WithoutATargetTheErrorStays) {
 }
 
 TEST(Governor, FramesThatTakeTooLongGetCoarserUntilTheyAreInTheBand) {
-  Governor governor({.target_ms = 16.7});
+  Governor governor = at_the_finest({.target_ms = 16.7});
   Load load(4, 25, 30);
   double frame_ms = 0;
   for (int i = 0; i < 600; ++i)
@@ -54,21 +65,30 @@ double answer_to(Governor& governor, double frame_ms, int frames) {
 
 TEST(Governor, FramesThatTakeFarTooLongAreAnsweredFaster) {
   for (const auto& [frame_ms, step] : {std::pair(20.0, 0.012), std::pair(32.0, 3 * 0.012)}) {
-    Governor governor({.target_ms = 16, .max_factor = 1e9});
-    governor.observe(15);  // the start is over
+    Governor governor = at_the_finest({.target_ms = 16, .max_factor = 1e9});
     answer_to(governor, frame_ms, 60);
     EXPECT_NEAR(answer_to(governor, frame_ms, 40), step, 1e-4);
   }
 }
 
-TEST(Governor, UntilAFrameIsFastEnoughForTheFirstTimeItTakesLargeSteps) {
+TEST(Governor, StartsWithTheLargestErrorAndRefinesFastUntilFramesReachTheBand) {
   Governor governor({.target_ms = 16, .max_factor = 100});
-  EXPECT_NEAR(answer_to(governor, 20, 5), 4 * 0.012, 1e-9);
-  EXPECT_NEAR(answer_to(governor, 32, 5), 4 * 3 * 0.012, 1e-9);
+  EXPECT_EQ(governor.error_factor(), 100);
+  EXPECT_NEAR(answer_to(governor, 5, 60), -0.012, 1e-9);
+  answer_to(governor, 14.5, 60);  // within the band
   const double factor = governor.error_factor();
-  governor.observe(15);  // nothing of the frames before is left
+  EXPECT_NEAR(answer_to(governor, 15, 60), 0, 1e-12);
   EXPECT_EQ(governor.error_factor(), factor);
-  EXPECT_LT(answer_to(governor, 20, 40), 0.012);
+  answer_to(governor, 5, 60);
+  EXPECT_NEAR(answer_to(governor, 5, 60), -0.003, 1e-5);
+}
+
+TEST(Governor, FramesThatAreTooSlowFromTheStartKeepTheLargestError) {
+  Governor governor({.target_ms = 16});
+  for (int i = 0; i < 100; ++i) {
+    governor.observe(40);
+    EXPECT_EQ(governor.error_factor(), 4);
+  }
 }
 
 TEST(Governor, ComesToRestInsteadOfOscillating) {
@@ -85,7 +105,7 @@ TEST(Governor, ComesToRestInsteadOfOscillating) {
 }
 
 TEST(Governor, GoesBackToTheFinestWhenThereIsTime) {
-  Governor governor({.target_ms = 16.7});
+  Governor governor = at_the_finest({.target_ms = 16.7});
   for (int i = 0; i < 300; ++i)
     governor.observe(30);
   EXPECT_GT(governor.error_factor(), 2);
@@ -95,8 +115,7 @@ TEST(Governor, GoesBackToTheFinestWhenThereIsTime) {
 }
 
 TEST(Governor, StaysBelowItsBoundAndASingleHitchHardlyCounts) {
-  Governor governor({.target_ms = 16.7, .max_factor = 3});
-  governor.observe(15);
+  Governor governor = at_the_finest({.target_ms = 16.7, .max_factor = 3});
   governor.observe(5000);
   EXPECT_LT(governor.error_factor(), 1.02);
   for (int i = 0; i < 5000; ++i)
