@@ -32,7 +32,7 @@ using UintTag = hn::RebindToUnsigned<FloatTag>;
 using Float = hn::Vec<FloatTag>;
 
 // Arrays over columns are padded to whole vectors.
-std::size_t padded(std::size_t n) {
+HWY_INLINE std::size_t padded(std::size_t n) {
   const std::size_t lanes = hn::Lanes(FloatTag());
   return (n + lanes - 1) / lanes * lanes;
 }
@@ -81,7 +81,7 @@ struct Axis {
     const auto advance = hn::Set(d, lanes * distance * step);
     auto now = hn::Add(hn::Set(d, static_cast<std::uint64_t>(at[0]) * step + origin),
                        multiples(d, distance * step));
-    for (std::size_t i = 0; i < padded(count); i += lanes) {
+    for (std::size_t i = 0, width = padded(count); i < width; i += lanes) {
       hn::Store(now, d, position + i);
       now = hn::Add(now, advance);
     }
@@ -188,11 +188,21 @@ HWY_INLINE Gradient gradient(hn::Vec<UintTag> key, hn::Vec<UintTag> row_hash, Fl
   return {hn::Mul(cosine, turned), hn::Mul(hn::Mul(sine, t), turned)};
 }
 
-// Gradients along one lattice row.
+// Gradients along one lattice row of an octave.
 struct GradientRow {
   HWY_ALIGN float x[2 * kMaxNoiseAxis + 3 * kPad];
   HWY_ALIGN float z[2 * kMaxNoiseAxis + 3 * kPad];
+  std::uint32_t key;  // of the lattice row
+  bool filled = false;
 
+  void hold(const ColumnOctave& column, std::uint32_t row_key, float gradient_length) {
+    if (filled && key == row_key) return;
+    fill(column, row_key, gradient_length);
+    key = row_key;
+    filled = true;
+  }
+
+ private:
   void fill(const ColumnOctave& column, std::uint32_t row_key, float gradient_length) {
     const FloatTag d;
     const UintTag du;
@@ -257,7 +267,7 @@ void raise(ColumnOctave& octave, const GradientRow& gradients) {
 }
 
 void raise_to(ColumnOctave& octave, GradientRow& gradients, std::uint32_t row_key, float length) {
-  gradients.fill(octave, row_key, length);
+  gradients.hold(octave, row_key, length);
   octave.narrow ? raise<true>(octave, gradients) : raise<false>(octave, gradients);
 }
 

@@ -43,7 +43,7 @@ class RidgedNoise {
                 std::span<float> values, std::size_t stride, int octaves = kMaxOctaves) const;
 
  private:
-  RidgedKernel kernel_;
+  RidgedKernel kernel_{};
   double max_value_ = 0;
   double cells_per_step_, lacunarity_;
 };
