@@ -25,7 +25,7 @@ struct RidgedOctave {
 // Everything is scaled by κ = √(gain · lacunarity^−H), so that one product serves as the octave's
 // share of the sum and as the weight of the next octave (docs/models.md, "Height").
 struct RidgedKernel {
-  std::array<RidgedOctave, kMaxOctaves> octaves;
+  std::array<RidgedOctave, kMaxOctaves> octaves{};  // also those beyond octave_count are read
   int octave_count;
   float offset;                            // κ · offset
   float gradient_length;                   // κ · √2

@@ -195,6 +195,7 @@ struct GradientRow {
   std::uint32_t key;  // of the lattice row
   bool filled = false;
 
+  // Fills it unless it has those of this lattice row already.
   void hold(const ColumnOctave& column, std::uint32_t row_key, float gradient_length) {
     if (filled && key == row_key) return;
     fill(column, row_key, gradient_length);

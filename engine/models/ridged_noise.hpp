@@ -35,7 +35,7 @@ class RidgedNoise {
   int octaves_wider_than(double steps) const;
 
   // values[r · stride + c] = R(columns[c], rows[r]). Ascending coordinates without large gaps are
-  // fastest; a warp takes ten times as long. Takes about 170 KiB of stack; at most kMaxAxis
+  // fastest; a warp takes ten times as long. Takes about 230 KiB of stack; at most kMaxAxis
   // columns and kMaxAxis rows; stride >= number of columns. With fewer than all octaves, the sum of
   // the first ones.
   static constexpr std::size_t kMaxAxis = kMaxNoiseAxis;
@@ -43,7 +43,7 @@ class RidgedNoise {
                 std::span<float> values, std::size_t stride, int octaves = kMaxOctaves) const;
 
  private:
-  RidgedKernel kernel_{};
+  RidgedKernel kernel_;
   double max_value_ = 0;
   double cells_per_step_, lacunarity_;
 };

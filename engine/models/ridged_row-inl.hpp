@@ -17,17 +17,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// The square of an octave's ridge, from vectors of the gradients that are blended along x.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V ridge_square(D d, const float* lower_x, const float* lower_z, const float* rise_x,
-                          const float* rise_z, V f, V fade, V offset) {
-  const V low = hn::Add(hn::Load(d, lower_x), hn::Mul(f, hn::Load(d, lower_z)));
-  const V more = hn::Add(hn::Load(d, rise_x), hn::Mul(f, hn::Load(d, rise_z)));
-  const V noise = hn::Add(low, hn::Mul(fade, more));
-  const V ridge = hn::Sub(offset, hn::Abs(noise));
-  return hn::Mul(ridge, ridge);
-}
-
 // Adds an octave to the sums.
 template <class V>
 HWY_INLINE void add_octave(V square, V limit, V& weight, V& sum) {
@@ -63,12 +52,17 @@ struct RowKernel {
   RowSettings settings;
   RowPlace row;
 
-  // An octave of one vector of columns, `at` elements into the pairs of vectors (ColumnOctave).
+  // The squares of an octave's ridges, of the columns `at` elements into the pairs of vectors
+  // (ColumnOctave).
   template <class D, class V = hn::Vec<D>>
   HWY_INLINE V square(D d, std::size_t o, std::size_t at, V f, V fade, V offset) const {
     const float *const lower = columns[o].lower + at, *const rise = columns[o].rise + at;
     const std::size_t second = hn::Lanes(FloatTag());
-    return ridge_square(d, lower, lower + second, rise, rise + second, f, fade, offset);
+    const V low = hn::Add(hn::Load(d, lower), hn::Mul(f, hn::Load(d, lower + second)));
+    const V more = hn::Add(hn::Load(d, rise), hn::Mul(f, hn::Load(d, rise + second)));
+    const V noise = hn::Add(low, hn::Mul(fade, more));
+    const V ridge = hn::Sub(offset, hn::Abs(noise));
+    return hn::Mul(ridge, ridge);
   }
 
   // One vector from column i on; with fewer lanes than the kernel's vectors where D has fewer.
@@ -104,7 +98,7 @@ struct RowKernel {
       add_octave(square(d, o, at + 2 * n, f, u, offset), limit, weight1, sum1);
       add_octave(square(d, o, at + 4 * n, f, u, offset), limit, weight2, sum2);
       add_octave(square(d, o, at + 6 * n, f, u, offset), limit, weight3, sum3);
-      if (kRest)
+      if constexpr (kRest)
         add_octave(square(few, o, at + 8 * n, low_lanes(f), low_lanes(u), low_lanes(offset)),
                    low_lanes(limit), weight4, sum4);
     }
@@ -112,26 +106,26 @@ struct RowKernel {
     hn::StoreU(hn::Mul(sum1, scale), d, out + i + n);
     hn::StoreU(hn::Mul(sum2, scale), d, out + i + 2 * n);
     hn::StoreU(hn::Mul(sum3, scale), d, out + i + 3 * n);
-    if (kRest)
+    if constexpr (kRest)
       hn::BlendedStore(hn::Mul(sum4, low_lanes(scale)), hn::FirstN(few, rest), few,
                        out + i + 4 * n);
   }
 
   void run(std::size_t count, float* HWY_RESTRICT out) const {
     const FloatTag d;
-    const hn::CappedTag<float, 4> small;
-    const std::size_t n = hn::Lanes(d), few = hn::Lanes(small);
+    const hn::CappedTag<float, 4> few;
+    const std::size_t n = hn::Lanes(d), few_lanes = hn::Lanes(few);
     std::size_t i = 0;
     for (; i + 4 * n <= count; i += 4 * n) {
       const std::size_t rest = count - i - 4 * n;
-      if (rest > 0 && rest <= few) return four<true>(i, rest, out);
+      if (rest > 0 && rest <= few_lanes) return four<true>(i, rest, out);
       four<false>(i, 0, out);
     }
     for (; i + n <= count; i += n)
       hn::StoreU(one(d, i), d, out + i);
     if (count - i > n / 2) return hn::BlendedStore(one(d, i), hn::FirstN(d, count - i), d, out + i);
-    for (; i < count; i += few)
-      hn::BlendedStore(one(small, i), hn::FirstN(small, std::min(few, count - i)), small, out + i);
+    for (; i < count; i += few_lanes)
+      hn::BlendedStore(one(few, i), hn::FirstN(few, std::min(few_lanes, count - i)), few, out + i);
   }
 };
 

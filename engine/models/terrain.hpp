@@ -39,7 +39,7 @@ enum TerrainParameter : std::size_t {
 // Levels 0 … 3 keep every vertex, then every s-th (terrain_grid.hpp). Vertices are
 // core::TerrainVertex; the n² of the surface come first, then the 4·(n − 1) of the skirt. The first
 // 3 · terrain_surface_triangles() indices are the surface, the others the skirt. bounds() and the
-// box that synthesize() returns are those of the surface. Needs 384 KiB of stack; nothing on the
+// box that synthesize() returns are those of the surface. Needs 448 KiB of stack; nothing on the
 // heap.
 std::unique_ptr<ModelType> make_terrain_type();
 

@@ -20,7 +20,7 @@ namespace psygen::models {
 class BlockGround {
  public:
   // `questions` is about how often at() will be called. The block coordinates in `terrain` are
-  // ignored. Needs 200 KiB of stack.
+  // ignored. Needs 256 KiB of stack.
   BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions);
 
   // Reads the heights from the block's mesh of level 0, which must outlive it unchanged.

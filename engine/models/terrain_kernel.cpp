@@ -117,17 +117,11 @@ class CoarseHeights {
     HWY_ALIGN float height[kRow + 33];
     const std::size_t count = columns_;
     const float* const samples = c_.first + row * c_.row_stride * c_.step;
-    std::size_t i = 0;
-    for (; c_.step == 2 && i + hn::Lanes(d) < count; i += hn::Lanes(d)) {
-      Float even, odd;
-      hn::LoadInterleaved2(d, samples + 2 * i, even, odd);
-      hn::Store(even, d, height + i);
-    }
-    for (; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i)
       height[i] = samples[i * c_.step];
     std::fill(height + count, height + count + 33, height[count - 1]);
     const Float quantum = set(s_.quantum);
-    for (i = 0; i <= count; i += hn::Lanes(d))
+    for (std::size_t i = 0; i <= count; i += hn::Lanes(d))
       hn::Store(hn::Sub(quantise(hn::Load(d, height + i), quantum), set(kToInteger)), d,
                 height + i);
     for (std::size_t x = 0, block = 0; x < s_.n; x += hn::Lanes(d), ++block) {

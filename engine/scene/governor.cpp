@@ -6,7 +6,7 @@
 namespace psygen::scene {
 namespace {
 
-constexpr double kSmoothing = 0.1;  // share of the newest frame
+constexpr double kSmoothing = 0.1;  // share of the newest frame; the first counts wholly
 // Steps of a frame whose time is off by kFullStepAt: at 60 Hz the error doubles in a second and
 // halves in four, at the start in one. Frames that take far too long are answered by up to
 // kMostSteps of them.
@@ -23,7 +23,8 @@ void Governor::observe(double frame_ms) {
   smoothed_ms_ += (counted_ms - smoothed_ms_) * (smoothed_ms_ > 0 ? kSmoothing : 1);
   const double over = smoothed_ms_ / target_ms - 1;
   const double under = settings_.rest_share - smoothed_ms_ / target_ms;
-  refining_ = refining_ && under > 0;
+  // Slow frames before anything is refined, such as the very first, do not end the start.
+  if (under <= 0 && factor_ < settings_.max_factor) refining_ = false;
   if (over > 0) {
     factor_ *= 1 + kStepUp * std::min(over / kFullStepAt, kMostSteps);
   } else if (under > 0) {

@@ -27,7 +27,7 @@ class Governor {
 
  private:
   GovernorSettings settings_;
-  bool refining_ = true;  // no frames have reached the band yet
+  bool refining_ = true;  // since the start, and no frames have come to the band yet
   double smoothed_ms_ = 0;
   double factor_;
 };

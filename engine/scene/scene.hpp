@@ -33,7 +33,8 @@ class Scene {
 
   // Fills the cache for a pose before the first frame (paper, section 4: the initial cache): ticks
   // without drawing and waits for the modelers, until nothing is missing, or nothing more can be
-  // had (a small budget, models that fail). Also what makes a picture independent of timing.
+  // had (a small budget, models that fail); with a target of frame times at the error of the
+  // start. Also what makes a picture independent of timing.
   // Returns how many meshes were synthesised.
   std::uint64_t settle(const core::CameraPose& pose, const Progress& progress = {});
 

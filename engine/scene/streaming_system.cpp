@@ -60,7 +60,7 @@ void fill(const Created& created, std::size_t i, const WorldFacts& facts, core::
       placement.model, static_cast<std::uint16_t>(first_level)};
 }
 
-// With the components of every mesh entity and `Also`.
+// Creates the mesh entities of a node, with the components of all such and `Also`.
 template <class... Also>
 void create_children(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
                      std::span<const world::Placement> placements, ecs::World& entities) {

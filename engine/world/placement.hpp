@@ -69,7 +69,7 @@ std::size_t models_per_block(const World& world);
 // Replaces `out` by the placements of `block`, by growing index. An instance that finds no allowed
 // place in kPlacementTries tries is left out; the indices of the others do not change. About 10 µs
 // for the block's heights and 0.1 µs for each model. Does not ask whether the world contains the
-// block. Needs 300 KiB of stack.
+// block. Needs 350 KiB of stack.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out);
 // The same with the block's ground at hand.

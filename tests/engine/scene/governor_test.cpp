@@ -91,8 +91,15 @@ TEST(Governor, FramesThatAreTooSlowFromTheStartKeepTheLargestError) {
   }
 }
 
-TEST(Governor, ComesToRestInsteadOfOscillating) {
-  Governor governor({.target_ms = 16.7});
+TEST(Governor, ASlowFirstFrameDoesNotEndTheStart) {
+  Governor governor({.target_ms = 16, .max_factor = 100});
+  governor.observe(60);
+  EXPECT_EQ(governor.error_factor(), 100);
+  answer_to(governor, 5, 40);
+  EXPECT_NEAR(answer_to(governor, 5, 40), -0.012, 1e-9);
+}
+
+void expect_rest(Governor governor) {
   Load load(4, 40, 40);
   for (int i = 0; i < 3000; ++i)
     governor.observe(load.frame_ms(governor.error_factor()));
@@ -102,6 +109,11 @@ TEST(Governor, ComesToRestInsteadOfOscillating) {
     governor.observe(load.frame_ms(governor.error_factor()) * (i % 2 == 0 ? 0.95 : 1.0));
     EXPECT_NEAR(governor.error_factor(), rest, 0.03 * rest);
   }
+}
+
+TEST(Governor, ComesToRestInsteadOfOscillating) {
+  expect_rest(Governor({.target_ms = 16.7}));
+  expect_rest(at_the_finest({.target_ms = 16.7}));
 }
 
 TEST(Governor, GoesBackToTheFinestWhenThereIsTime) {

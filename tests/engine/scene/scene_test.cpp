@@ -292,8 +292,18 @@ TEST(Scene, SettlingEndsUnderAnyBudget) {
       settings.max_error_pixels = 0.5;
       settings.budget_bytes = mib << 20;
       const auto scene = make_scene(settings);
-      scene->settle(pose_at(256, 256));
-      EXPECT_LT(scene->state().clock.tick, 1500u) << mib << " MiB, levels " << levels;
+      constexpr std::uint32_t kMostTicks = 1500;
+      scene->settle(pose_at(256, 256), [&](std::string_view, double) {
+        return scene->state().clock.tick < kMostTicks;
+      });
+      EXPECT_LT(scene->state().clock.tick, kMostTicks) << mib << " MiB, levels " << levels;
+      const std::uint64_t evicted = scene->state().synthesis.cache->stats().evictions;
+      for (int i = 0; i < 60; ++i) {
+        tick_at(*scene, pose_at(256, 256));
+        scene->state().synthesis.manager->wait_all();
+      }
+      // Meshes that evict each other in turn would do so in every tick.
+      EXPECT_LT(scene->state().synthesis.cache->stats().evictions, evicted + 10);
       expect_consistent(*scene);
       expect_within_budget(*scene);
     }
@@ -318,6 +328,9 @@ std::map<std::uint64_t, int> check_parts(Scene& scene) {
                           bytes.size() / sizeof(core::ModelVertex)},
                          s.memory->indices(meshes[i].range),
                          core::Bounds::around(placed[i].box_center, placed[i].box_half_extent));
+          EXPECT_GT(parts[i].count, 0u);
+          EXPECT_EQ(parts[i].count, now.count);
+          EXPECT_EQ(parts[i].indices_each, now.indices_each);
           EXPECT_EQ(parts[i].index_count, now.index_count);
           EXPECT_LE(now.index_count, meshes[i].range.index_count);
           EXPECT_EQ(parts[i].boxes, now.boxes);

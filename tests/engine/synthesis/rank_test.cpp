@@ -132,7 +132,7 @@ class CrowdedCache {
     int bytes;
   };
 
-  float distance() { return std::exp2(static_cast<float>(random_.next_integer(0, 400)) / 50.0F); }
+  float distance() { return std::exp2(static_cast<float>(random_.next_integer(0, 128)) / 16.0F); }
   static Rank rank_of(const Mesh& mesh) {
     const auto layer = static_cast<std::uint32_t>(mesh.distance_m / 20);
     if (mesh.bytes == 0)
@@ -169,7 +169,7 @@ TEST(Rank, EvictionsInTurnEndWithTheNearestDrawnAndNothingTooFine) {
     CrowdedCache cache(seed);
     EXPECT_GT(cache.too_fine(), 0);
     int rounds = 0, evicted = 0, of_round = 1;
-    // Quiet when a whole round in which all may ask changes nothing.
+    // Quiet when a whole round in which all may ask evicts nothing.
     for (; of_round > 0 && rounds < 100; ++rounds)
       evicted += of_round = cache.round();
     EXPECT_LT(rounds, 100) << "evictions go on";
