@@ -64,4 +64,11 @@ class GeometryMemory {
   virtual std::span<const std::uint16_t> indices(const GeometryRange& range) const = 0;
 };
 
+// vertex_bytes() as vertices of the range's layout.
+template <class Vertex>
+std::span<const Vertex> vertices_of(const GeometryMemory& memory, const GeometryRange& range) {
+  const std::span<const std::byte> bytes = memory.vertex_bytes(range);
+  return {reinterpret_cast<const Vertex*>(bytes.data()), bytes.size() / sizeof(Vertex)};
+}
+
 }  // namespace psygen::core

@@ -88,20 +88,23 @@ struct RowOctaves {
  private:
   static void place(const RidgedKernel& kernel, const Axis& rows, std::uint64_t* position) {
     const hn::CappedTag<std::uint64_t, kPad / 2> d;
-    HWY_ALIGN std::uint64_t first[kPad], advance[kPad];
+    const std::size_t computed = rows.even ? 1 : rows.at.size();
+    HWY_ALIGN std::uint64_t advance[kPad];
     for (std::size_t o = 0; o < kPad; ++o) {
       const RidgedOctave& octave = kernel.octaves[o];
-      first[o] = static_cast<std::uint64_t>(rows.at[0]) * octave.step + octave.origin_z;
       advance[o] = rows.distance * octave.step;
-      for (std::size_t r = 0; !rows.even && r < rows.at.size(); ++r)
+      for (std::size_t r = 0; r < computed; ++r)
         position[r * kPad + o] =
             static_cast<std::uint64_t>(rows.at[r]) * octave.step + octave.origin_z;
     }
-    for (std::size_t o = 0; rows.even && o < kPad; o += hn::Lanes(d)) {
+    if (computed == rows.at.size()) return;
+    for (std::size_t o = 0; o < kPad; o += hn::Lanes(d)) {
       const auto by = hn::Load(d, advance + o);
-      auto now = hn::Load(d, first + o);
-      for (std::size_t r = 0; r < rows.at.size(); ++r, now = hn::Add(now, by))
+      auto now = hn::Load(d, position + o);
+      for (std::size_t r = 1; r < rows.at.size(); ++r) {
+        now = hn::Add(now, by);
         hn::Store(now, d, position + r * kPad + o);
+      }
     }
   }
   static std::uint32_t different(const std::uint32_t* a, const std::uint32_t* b) {

@@ -108,15 +108,13 @@ void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& 
       finest ? 0.0F : static_cast<float>(kPossibleError * level.ground_error_m);
   node.low_m = std::max(level.bounds.min.y, record.tight.min.y - possible_m);
   node.high_m = std::min(level.bounds.max.y, record.tight.max.y + possible_m);
-  const std::span<const std::byte> bytes = memory.vertex_bytes(record.range);
-  if (bytes.empty()) {
+  const auto vertices = core::vertices_of<core::TerrainVertex>(memory, record.range);
+  if (vertices.empty()) {
     relief.points = 0;
     return relief.top_m.fill(node.high_m);
   }
   // The coarse ground of a block may give way to its finest, in the tick for which the lines hold.
-  relief = ground_relief({reinterpret_cast<const core::TerrainVertex*>(bytes.data()),
-                          bytes.size() / sizeof(core::TerrainVertex)},
-                         facts.grids[record.key.level], level.bounds.min.y,
+  relief = ground_relief(vertices, facts.grids[record.key.level], level.bounds.min.y,
                          level.bounds.max.y - level.bounds.min.y,
                          node.at.level == 0 ? possible_m : 0.0F);
 }
@@ -125,11 +123,9 @@ void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& 
 void note_parts(MeshParts& parts, const Placed& placed, const synthesis::MeshRecord& record,
                 const core::GeometryMemory& memory) {
   parts = {};
-  const std::span<const std::byte> bytes = memory.vertex_bytes(record.range);
-  if (bytes.empty()) return;
-  parts = mesh_parts({reinterpret_cast<const core::ModelVertex*>(bytes.data()),
-                      bytes.size() / sizeof(core::ModelVertex)},
-                     memory.indices(record.range),
+  const auto vertices = core::vertices_of<core::ModelVertex>(memory, record.range);
+  if (vertices.empty()) return;
+  parts = mesh_parts(vertices, memory.indices(record.range),
                      core::Bounds::around(placed.box_center, placed.box_half_extent));
 }
 

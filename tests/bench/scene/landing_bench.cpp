@@ -38,8 +38,9 @@ void parts_of_a_merged_mesh(benchmark::State& state) {
   const auto type = world::make_merged_type(world, registry);
   const auto p = world::merged_parameters({5, 7}, static_cast<int>(state.range(0)));
   const Synthesised<core::ModelVertex> mesh(*type, p, 0);
+  const core::Bounds box = type->bounds(p);
   for (auto _ : state)
-    benchmark::DoNotOptimize(mesh_parts(mesh.vertices, mesh.indices, type->bounds(p)));
+    benchmark::DoNotOptimize(mesh_parts(mesh.vertices, mesh.indices, box));
   state.counters["triangles"] = static_cast<double>(mesh.indices.size()) / 3;
 }
 BENCHMARK(parts_of_a_merged_mesh)->ArgName("node_level")->DenseRange(1, 5);

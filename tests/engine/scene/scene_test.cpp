@@ -322,10 +322,8 @@ std::map<std::uint64_t, int> check_parts(Scene& scene) {
         for (std::size_t i = 0; i < parts.size(); ++i) {
           if (demands[i].drawn_level == kNoLevel) continue;
           drawn[owner_of(entities[i])] = demands[i].drawn_level;
-          const std::span<const std::byte> bytes = s.memory->vertex_bytes(meshes[i].range);
           const MeshParts now =
-              mesh_parts({reinterpret_cast<const core::ModelVertex*>(bytes.data()),
-                          bytes.size() / sizeof(core::ModelVertex)},
+              mesh_parts(core::vertices_of<core::ModelVertex>(*s.memory, meshes[i].range),
                          s.memory->indices(meshes[i].range),
                          core::Bounds::around(placed[i].box_center, placed[i].box_half_extent));
           EXPECT_GT(parts[i].count, 0u);

@@ -90,6 +90,28 @@ TEST(Rank, TwoMeshesCanNeverEvictEachOtherInTurn) {
   }
 }
 
+// The layer and distance of a visible mesh, in another group; a hole takes the most urgent turn.
+Rank as(RankGroup group, Rank rank) {
+  const std::uint64_t key = rank.bits() & ((std::uint64_t{1} << 48) - 1);
+  return {group, static_cast<std::uint32_t>(key >> 32),
+          std::bit_cast<float>(static_cast<std::uint32_t>(key))};
+}
+
+TEST(Rank, TwoMeshesCannotGoOnEvictingEachOther) {
+  // What a request is granted is drawn no finer than wanted: only what was too fine can be taken by
+  // what is farther, and only once.
+  using enum RankGroup;
+  for (const Rank request : many_ranks()) {
+    for (const Rank victim : many_ranks()) {
+      if (!is_visible(request.group()) || !is_visible(victim.group())) continue;
+      if (!may_evict(request, victim)) continue;
+      const bool back = may_evict(as(kVisibleHole, victim), as(kDrawn, request));
+      EXPECT_TRUE(!back || victim.group() == kVisibleFine);
+      EXPECT_FALSE(back && may_evict(as(kVisibleHole, request), as(kDrawn, victim)));
+    }
+  }
+}
+
 // Meshes in view, most of them finer than wanted, in a cache that is too small even for coarse ones
 // of all: each that is drawn at no level, or too fine, requests a coarse mesh whenever its turn is.
 class CrowdedCache {
