@@ -33,9 +33,12 @@ void main() {
 
   vec3 p = draw.origin.xyz + draw.scale.xyz * vec3(xy, z);
   float time = frame.sun_direction.w * 0.31 + draw.origin.w;
-  p.x += sway * 0.12 * draw.scale.w * wave(time + xy.y * 0.3);
-  p.z += sway * 0.09 * draw.scale.w * wave(time * 1.37 + xy.x * 0.4);
+  p.x += sway * 0.12 * wave(time + xy.y * 0.3);
+  p.z += sway * 0.09 * wave(time * 1.37 + xy.x * 0.4);
 
+#ifdef PSYGEN_FADING
+  fade = draw.scale.w;
+#endif
 #if defined(PSYGEN_DRAW_COLOUR)
   colour = colour_of_draw(draw.origin.w, n);
 #elif defined(PSYGEN_PIXEL_LIGHT)

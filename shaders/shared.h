@@ -82,7 +82,7 @@ struct FrameData {
 struct DrawData {
   vec4 origin;  // terrain: origin, w cell size in m; model: center, w phase of the wind, 0 to 1
   vec4 scale;  // terrain: height range, skirt, morph or < 0 (FrameData), cover; model: half extent,
-               // w fade
+               // w fade (fading.glsl), 1 if it is there as a whole
 };
 
 // A corner of the overlay's quads, or an end of a line.

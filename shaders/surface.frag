@@ -1,6 +1,11 @@
 // Writes the colour that the vertex shader found; one varying is what a software rasteriser likes.
 #version 460
+#extension GL_GOOGLE_include_directive : require
+#include "fading.glsl"
 layout(location = 0) in vec3 colour;
 layout(location = 0) out vec4 pixel;
 
-void main() { pixel = vec4(colour, 1.0); }
+void main() {
+  leave_out_faded();
+  pixel = vec4(colour, 1.0);
+}

@@ -6,6 +6,7 @@
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "ground.glsl"
+#include "fading.glsl"
 
 layout(constant_id = 0) const bool fine_grain = false;
 layout(constant_id = 1) const bool shadows = false;
@@ -37,6 +38,7 @@ float sun_at(vec3 p, vec3 n) {
 }
 
 void main() {
+  leave_out_faded();
   vec3 n = normalize(normal);
   vec3 albedo = albedo_ambient.rgb;
   if (fine_grain && leaf_ground.y > 0.5) {

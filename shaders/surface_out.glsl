@@ -11,6 +11,10 @@ layout(location = 3) out vec2 leaf_ground;
 #elif !defined(PSYGEN_SHADOW)
 layout(location = 0) out vec3 colour;
 #endif
+// With PSYGEN_FADING besides: how much of its draw is there (fading.glsl).
+#ifdef PSYGEN_FADING
+layout(location = 4) flat out float fade;
+#endif
 
 vec3 colour_of_draw(float packed_colour, vec3 n) {
   uint bits = uint(packed_colour);

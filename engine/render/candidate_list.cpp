@@ -8,13 +8,13 @@
 
 namespace psygen::render {
 
-std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool shared) {
+std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool shared, bool fading) {
   const std::size_t key =
-      std::size_t{range.pool_block} << 2 | (shared ? 2u : 0u) |
+      std::size_t{range.pool_block} << 3 | (fading ? 4u : 0u) | (shared ? 2u : 0u) |
       static_cast<std::size_t>(range.layout == core::VertexLayout::kTerrain ? 1 : 0);
   if (key >= open_.size()) open_.resize(key + 1);
   if (open_[key] == 0 || groups_[open_[key] - 1].capacity == kGroupCapacity) {
-    groups_.push_back({range.layout, shared, range.pool_block, 0, 0});
+    groups_.push_back({range.layout, shared, fading, range.pool_block, 0, 0});
     open_[key] = static_cast<std::uint32_t>(groups_.size());
   }
   ++groups_[open_[key] - 1].capacity;
@@ -22,8 +22,8 @@ std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool sh
 }
 
 void CandidateList::add_level(const core::GeometryRange& range, const IndexList& indices,
-                              bool shared, float error_m) {
-  const std::uint32_t group = group_for(range, shared);
+                              bool shared, bool fading, float error_m) {
+  const std::uint32_t group = group_for(range, shared, fading);
   levels_.push_back({{indices.first_index, indices.index_count, range.first_vertex, group},
                      {error_m, 0.0F, 0.0F, 0.0F}});
 }
@@ -33,12 +33,12 @@ void CandidateList::add(const Draw& draw, bool choose, bool coloured) {
   const core::Bounds box = bounds_of(draw);
   const auto first = static_cast<std::uint32_t>(levels_.size());
   add_level(draw.range, indices_of(draw.range, draw.shared_indices, draw.part, lists_),
-            draw.shared_indices != kNoSharedIndices, 0.0F);
+            draw.shared_indices != kNoSharedIndices, is_fading(draw), 0.0F);
   if (choose) {
     PSYGEN_ASSERT(draw.part.count == 0 || draw.coarser.empty(), "coarser levels have no parts");
     for (const DrawLevel& level : draw.coarser)
       add_level(level.range, indices_of(level.range, level.shared_indices, {}, lists_),
-                level.shared_indices != kNoSharedIndices, level.error_m);
+                level.shared_indices != kNoSharedIndices, is_fading(draw), level.error_m);
   }
   // Meshes without a name of their own share bit 0.
   const std::uint32_t name = draw.range.id == core::kNoGeometry ? 0 : draw.range.id + 1;

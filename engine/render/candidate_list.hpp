@@ -17,6 +17,7 @@ namespace psygen::render {
 struct DrawGroup {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
+  bool fading = false;  // models that come or go
   std::uint32_t pool_block = 0;
   std::uint32_t first_command = 0;
   std::uint32_t capacity = 0;
@@ -45,8 +46,8 @@ class CandidateList {
   template <class Draw>
   void add(const Draw& draw, bool choose, bool coloured);
   void add_level(const core::GeometryRange& range, const IndexList& indices, bool shared,
-                 float error_m);
-  std::uint32_t group_for(const core::GeometryRange& range, bool shared);
+                 bool fading, float error_m);
+  std::uint32_t group_for(const core::GeometryRange& range, bool shared, bool fading);
 
   std::vector<shaders::CullCandidate> candidates_;
   std::vector<shaders::CullLevel> levels_;

@@ -61,9 +61,7 @@ core::Bounds bounds_of(const TerrainDraw& draw) {
 }
 
 core::Bounds bounds_of(const MeshDraw& draw) {
-  const glm::vec3 center = draw.origin + draw.box_center * draw.fade;
-  const glm::vec3 extent = (draw.box_half_extent + kSwayM) * draw.fade;
-  return core::Bounds::around(center, extent);
+  return core::Bounds::around(draw.origin + draw.box_center, draw.box_half_extent + kSwayM);
 }
 
 }  // namespace psygen::render

@@ -13,11 +13,10 @@ shaders::DrawData data_of(const TerrainDraw& draw) {
 }
 
 shaders::DrawData data_of(const MeshDraw& draw) {
-  const glm::vec3 center = draw.origin + draw.box_center * draw.fade;
-  const glm::vec3 extent = draw.box_half_extent * draw.fade;
   // A phase that belongs to the mesh, not to the camera: its box is unlike its neighbour's.
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
-  return {.origin = {center, phase - std::floor(phase)}, .scale = {extent, draw.fade}};
+  return {.origin = {draw.origin + draw.box_center, phase - std::floor(phase)},
+          .scale = {draw.box_half_extent, draw.fade}};
 }
 
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw) {
@@ -44,6 +43,7 @@ void DrawList::append(const Draw& draw) {
   const DrawRun run{draw.range.layout,
                     draw.shared_indices != kNoSharedIndices,
                     indices.index_count >= pushed_from_,
+                    is_fading(draw),
                     draw.range.pool_block,
                     static_cast<std::uint32_t>(draws_.size()),
                     0};
@@ -62,7 +62,8 @@ void DrawList::add(std::span<const Draw> input) {
   const auto key = [&](const Draw& draw) {
     const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
     const std::uint64_t pushed = indices.index_count >= pushed_from_ ? 0 : 2;
-    return pushed << 31 | std::uint64_t{draw.range.pool_block} * 2 |
+    const std::uint64_t fading = is_fading(draw) ? 1 : 0;
+    return fading << 33 | pushed << 31 | std::uint64_t{draw.range.pool_block} * 2 |
            (draw.shared_indices != kNoSharedIndices ? 1u : 0u);
   };
   for (std::size_t first = 0; first < input.size(); first += kWindow) {

@@ -28,6 +28,13 @@ IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indi
 // What the shaders read of a draw.
 shaders::DrawData data_of(const TerrainDraw& draw);
 shaders::DrawData data_of(const MeshDraw& draw);
+// Whether it leaves out pixels.
+constexpr bool is_fading(const TerrainDraw&) {
+  return false;
+}
+constexpr bool is_fading(const MeshDraw& draw) {
+  return draw.fade < 1.0F;
+}
 // The draw's colour in its data, for the views that show it.
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw);
 void set_colour(shaders::DrawData& data, const MeshDraw& draw);
@@ -44,12 +51,13 @@ struct DrawRun {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
   bool pushed = false;  // one call per draw with its data pushed, else one call for all
+  bool fading = false;  // models that come or go
   std::uint32_t pool_block = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
 
   bool continues(const DrawRun& r) const {
-    return layout == r.layout && shared == r.shared && pushed == r.pushed &&
+    return layout == r.layout && shared == r.shared && pushed == r.pushed && fading == r.fading &&
            pool_block == r.pool_block;
   }
 };

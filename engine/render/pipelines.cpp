@@ -136,8 +136,23 @@ Result<void> Pipelines::create_meshes(const Device& device, PipelineShape shape,
       shape.vert = mesh_vertex_code(layout, look, pushed);
       Result<UniquePipeline> made = make_pipeline(device, layout_.get(), shape);
       if (!made) return tl::unexpected(made.error());
-      out[terrain ? 0 : 1][pushed ? 1 : 0] = std::move(*made);
+      out.whole[terrain ? 0 : 1][pushed ? 1 : 0] = std::move(*made);
     }
+  }
+  return {};
+}
+
+// `shape` is that of the same models as a whole.
+Result<void> Pipelines::create_fading(const Device& device, PipelineShape shape, MeshLook look,
+                                      MeshPipelines& out) {
+  const OtherCode& code = other_code();
+  shape.kind = PipelineKind::kModel;
+  shape.frag = look == MeshLook::kLit ? code.surface_lit_fading_frag : code.surface_fading_frag;
+  for (const bool pushed : {false, true}) {
+    shape.vert = fading_vertex_code(look, pushed);
+    Result<UniquePipeline> made = make_pipeline(device, layout_.get(), shape);
+    if (!made) return tl::unexpected(made.error());
+    out.fading[pushed ? 1 : 0] = std::move(*made);
   }
   return {};
 }
@@ -164,7 +179,10 @@ Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_f
         PipelineShape meshes = shape;
         meshes.frag = lit ? code.surface_lit_frag : code.surface_frag;
         meshes.constants = {on(traits_.fine_grain), on(traits_.cascades > 0)};
-        return create_meshes(device, meshes, lit ? MeshLook::kLit : MeshLook::kColour, landscape_);
+        const MeshLook look = lit ? MeshLook::kLit : MeshLook::kColour;
+        return create_meshes(device, meshes, look, landscape_).and_then([&] {
+          return create_fading(device, meshes, look, landscape_);
+        });
       })
       .and_then([&] { return create_views(device, shape); })
       .and_then([&]() -> Result<void> {
@@ -215,6 +233,7 @@ Result<void> Pipelines::create_sky(const Device& device, PipelineShape shape) {
 Result<void> Pipelines::create_views(const Device& device, PipelineShape shape) {
   shape.frag = other_code().surface_frag;
   return create_meshes(device, shape, MeshLook::kDrawColour, coloured_)
+      .and_then([&] { return create_fading(device, shape, MeshLook::kDrawColour, coloured_); })
       .and_then([&]() -> Result<void> {
         if (!device.info.wireframe) return {};
         shape.wireframe = true;
@@ -222,10 +241,11 @@ Result<void> Pipelines::create_views(const Device& device, PipelineShape shape) 
       });
 }
 
-VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, View view) const {
-  const bool edges = view == View::kWireframe && wireframe_[0][0].get() != VK_NULL_HANDLE;
+VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, View view) const {
+  const bool edges = view == View::kWireframe && wireframe_.whole[0][0].get() != VK_NULL_HANDLE;
   const MeshPipelines& all = edges ? wireframe_ : colours_draws(view) ? coloured_ : landscape_;
-  return all[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed ? 1 : 0].get();
+  if (fading && !edges) return all.fading[pushed ? 1 : 0].get();
+  return all.whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed ? 1 : 0].get();
 }
 
 Result<VkDescriptorSet> Pipelines::make_set(const Device& device) {

@@ -19,10 +19,11 @@ class Pipelines {
   VkSampleCountFlagBits samples() const { return samples_; }
   VkPipelineLayout layout() const { return layout_.get(); }
   // `pushed`: the draw's data is in push constants, else in the buffer of draws.
-  VkPipeline mesh(core::VertexLayout layout, bool pushed, View view) const;
+  // `fading`: of models that come or go.
+  VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, View view) const;
   // Into a cascade; only where the preset has some.
   VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed) const {
-    return shadow_[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed ? 1 : 0].get();
+    return shadow_.whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed ? 1 : 0].get();
   }
   VkPipeline water() const { return water_.get(); }
   VkPipeline lines() const { return lines_.get(); }
@@ -42,12 +43,17 @@ class Pipelines {
  private:
   core::Result<void> create_layouts(const Device& device, std::uint32_t sets);
   core::Result<void> create_textures(const Device& device, const Overlay& overlay);
-  // By layout (terrain, model) and by whether the data is pushed.
-  using MeshPipelines = std::array<std::array<UniquePipeline, 2>, 2>;
+  struct MeshPipelines {
+    // By layout (terrain, model) and by whether the data is pushed.
+    std::array<std::array<UniquePipeline, 2>, 2> whole;
+    std::array<UniquePipeline, 2> fading;  // models; by whether the data is pushed
+  };
   core::Result<void> create_pipelines(const Device& device, VkFormat colour_format);
   core::Result<void> create_sky(const Device& device, PipelineShape shape);
   core::Result<void> create_views(const Device& device, PipelineShape shape);
   core::Result<void> create_meshes(const Device& device, PipelineShape shape, MeshLook look,
+                                   MeshPipelines& out);
+  core::Result<void> create_fading(const Device& device, PipelineShape shape, MeshLook look,
                                    MeshPipelines& out);
 
   PresetTraits traits_;

@@ -141,14 +141,14 @@ void draw_many(const Device& device, VkCommandBuffer commands, const DrawList& l
   }
 }
 
-// `pipeline_of(layout, pushed)`.
+// `pipeline_of(run)`.
 template <class PipelineOf>
 void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
                  const ScenePass& pass, const PipelineOf& pipeline_of) {
   VkPipeline bound = VK_NULL_HANDLE;
   VkBuffer bound_vertices = VK_NULL_HANDLE, bound_indices = VK_NULL_HANDLE;
   for (const DrawRun& run : pass.list.runs()) {
-    const VkPipeline pipeline = pipeline_of(run.layout, run.pushed);
+    const VkPipeline pipeline = pipeline_of(run);
     const VkBuffer vertices = pass.buffers.pool_blocks[run.pool_block].buffer.get();
     const VkBuffer indices = run.shared ? pass.buffers.shared_indices : vertices;
     if (pipeline != bound) bind_pipeline(device, commands, pipeline);
@@ -176,7 +176,7 @@ void draw_culled(const Device& device, const Pipelines& pipelines, VkCommandBuff
   VkPipeline bound = VK_NULL_HANDLE;
   for (std::size_t i = 0; i < culling.groups().size(); ++i) {
     const DrawGroup& group = culling.groups()[i];
-    const VkPipeline pipeline = pipelines.mesh(group.layout, false, pass.view);
+    const VkPipeline pipeline = pipelines.mesh(group.layout, false, group.fading, pass.view);
     const VkBuffer vertices = pass.buffers.pool_blocks[group.pool_block].buffer.get();
     const VkBuffer indices = group.shared ? pass.buffers.shared_indices : vertices;
     const VkDeviceSize zero = 0;
@@ -211,9 +211,8 @@ void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameS
     bind_set(device, pipelines, slot);
     device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT,
                                  sizeof(shaders::DrawData), sizeof(cascade), &cascade);
-    draw_meshes(device, pipelines, commands, pass, [&](core::VertexLayout layout, bool pushed) {
-      return pipelines.mesh_shadow(layout, pushed);
-    });
+    draw_meshes(device, pipelines, commands, pass,
+                [&](const DrawRun& run) { return pipelines.mesh_shadow(run.layout, run.pushed); });
   });
 }
 
@@ -302,8 +301,8 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
   } else {
     begin_pass(device, commands, targets);
     bind_set(device, pipelines, slot);
-    draw_meshes(device, pipelines, commands, pass, [&](core::VertexLayout layout, bool pushed) {
-      return pipelines.mesh(layout, pushed, pass.view);
+    draw_meshes(device, pipelines, commands, pass, [&](const DrawRun& run) {
+      return pipelines.mesh(run.layout, run.pushed, run.fading, pass.view);
     });
   }
   draw_water_and_sky(device, pipelines, commands, pass.water);
@@ -326,11 +325,14 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
   const shaders::DrawData data{};
   device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT, 0,
                                sizeof(data), &data);
-  for (const auto layout : {core::VertexLayout::kTerrain, core::VertexLayout::kModel}) {
-    for (const bool pushed : {false, true}) {
-      bind_pipeline(device, commands, pipelines.mesh(layout, pushed, View::kNormal));
-      device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
-    }
+  const auto draw_once = [&](core::VertexLayout layout, bool pushed, bool fading) {
+    bind_pipeline(device, commands, pipelines.mesh(layout, pushed, fading, View::kNormal));
+    device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
+  };
+  for (const bool pushed : {false, true}) {
+    draw_once(core::VertexLayout::kTerrain, pushed, false);
+    draw_once(core::VertexLayout::kModel, pushed, false);
+    draw_once(core::VertexLayout::kModel, pushed, true);
   }
   draw_water_and_sky(device, pipelines, commands, true);
   draw_lines_and_text(device, pipelines, commands, 3, 0);

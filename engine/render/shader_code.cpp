@@ -52,11 +52,35 @@ constexpr std::uint32_t kModelShadowVert[] =
 constexpr std::uint32_t kModelShadowPushedVert[] =
 #include "model_shadow_pushed_vert_spv.h"
     ;
+constexpr std::uint32_t kModelFadingVert[] =
+#include "model_fading_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelFadingPushedVert[] =
+#include "model_fading_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelFadingLitVert[] =
+#include "model_fading_lit_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelFadingLitPushedVert[] =
+#include "model_fading_lit_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelFadingColouredVert[] =
+#include "model_fading_coloured_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelFadingColouredPushedVert[] =
+#include "model_fading_coloured_pushed_vert_spv.h"
+    ;
 constexpr std::uint32_t kSurfaceFrag[] =
 #include "surface_frag_spv.h"
     ;
 constexpr std::uint32_t kSurfaceLitFrag[] =
 #include "surface_lit_frag_spv.h"
+    ;
+constexpr std::uint32_t kSurfaceFadingFrag[] =
+#include "surface_fading_frag_spv.h"
+    ;
+constexpr std::uint32_t kSurfaceLitFadingFrag[] =
+#include "surface_lit_fading_frag_spv.h"
     ;
 constexpr std::uint32_t kWaterVert[] =
 #include "water_vert_spv.h"
@@ -107,16 +131,27 @@ constexpr ShaderCode kMeshes[2][4][2] = {
      {kModelShadowVert, kModelShadowPushedVert}},
 };
 
-constexpr OtherCode kOthers{kSurfaceFrag, kSurfaceLitFrag, kWaterVert,    kWaterLitVert,
-                            kWaterFrag,   kLineVert,       kSkyVert,      kSkyFrag,
-                            kSkyDomeVert, kSkyDomeFrag,    kSkyBelowVert, kSunVert,
-                            kOverlayVert, kOverlayFrag};
+// Those that come or go, by look and whether the data is pushed.
+constexpr ShaderCode kFadingModels[3][2] = {
+    {kModelFadingVert, kModelFadingPushedVert},
+    {kModelFadingLitVert, kModelFadingLitPushedVert},
+    {kModelFadingColouredVert, kModelFadingColouredPushedVert}};
+
+constexpr OtherCode kOthers{
+    kSurfaceFrag,  kSurfaceLitFrag, kSurfaceFadingFrag, kSurfaceLitFadingFrag,
+    kWaterVert,    kWaterLitVert,   kWaterFrag,         kLineVert,
+    kSkyVert,      kSkyFrag,        kSkyDomeVert,       kSkyDomeFrag,
+    kSkyBelowVert, kSunVert,        kOverlayVert,       kOverlayFrag};
 
 }  // namespace
 
 ShaderCode mesh_vertex_code(core::VertexLayout layout, MeshLook look, bool pushed) {
   const std::size_t mesh = layout == core::VertexLayout::kTerrain ? 0 : 1;
   return kMeshes[mesh][static_cast<std::size_t>(look)][pushed ? 1 : 0];
+}
+
+ShaderCode fading_vertex_code(MeshLook look, bool pushed) {
+  return kFadingModels[static_cast<std::size_t>(look)][pushed ? 1 : 0];
 }
 
 const OtherCode& other_code() {

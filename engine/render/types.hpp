@@ -135,7 +135,9 @@ struct DrawLevel {
 // How far the wind moves a vertex of a mesh at most, either way, metres (shaders/model.vert).
 inline constexpr glm::vec3 kSwayM{0.12F, 0.0F, 0.09F};
 
-// A tree, rock or any other mesh of core::VertexLayout::kModel.
+// A tree, rock or any other mesh of core::VertexLayout::kModel. With `fade` in (0, 1) it covers
+// such a share of its pixels; with −fade, in (−1, 0], just the others: for what goes while it
+// comes.
 struct MeshDraw {
   core::GeometryRange range;
   std::uint32_t shared_indices = kNoSharedIndices;  // from upload_shared_indices
@@ -143,7 +145,7 @@ struct MeshDraw {
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
   core::IndexPart part;                     // of its indices; of 0: all; not with `coarser`
-  float fade = 1.0F;                        // 0 … 1, size while a mesh appears
+  float fade = 1.0F;                        // what is there of one that comes or goes: below
   std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
   std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
 };

@@ -92,7 +92,7 @@ TEST(DrawChoice, takes_the_finest_level_around_the_camera_and_without_an_allowed
   EXPECT_EQ(level_of(view_test(clip_of(input), input, kHeight), far, coarser), 0u);
 }
 
-TEST(DrawChoice, puts_skirts_fading_and_wind_into_the_boxes) {
+TEST(DrawChoice, puts_skirts_and_wind_into_the_boxes) {
   TerrainDraw terrain;
   terrain.origin = {10, -5, 20};
   terrain.cell_m = 2;
@@ -106,12 +106,11 @@ TEST(DrawChoice, puts_skirts_fading_and_wind_into_the_boxes) {
   mesh.origin = {1, 2, 3};
   mesh.box_center = {0, 4, 0};
   mesh.box_half_extent = {1, 4, 1};
-  mesh.fade = 0.5F;
   const core::Bounds box = bounds_of(mesh);
   EXPECT_FLOAT_EQ(box.min.y, 2.0F);
-  EXPECT_FLOAT_EQ(box.max.y, 6.0F);
-  EXPECT_FLOAT_EQ(box.max.x, 1.0F + 0.56F);
-  EXPECT_FLOAT_EQ(box.min.z, 3.0F - 0.545F);
+  EXPECT_FLOAT_EQ(box.max.y, 10.0F);
+  EXPECT_FLOAT_EQ(box.max.x, 1.0F + 1.12F);
+  EXPECT_FLOAT_EQ(box.min.z, 3.0F - 1.09F);
 }
 
 }  // namespace

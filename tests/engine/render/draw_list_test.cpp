@@ -77,16 +77,22 @@ TEST(DrawList, puts_terrain_first_and_folds_its_least_height_into_the_origin) {
   EXPECT_EQ(list.data()[0].scale.x, 50.0F);
 }
 
-TEST(DrawList, shrinks_a_fading_mesh_towards_its_foot) {
-  MeshDraw draw = model(0, 0, 0);
-  draw.origin = {10, 0, 0};
-  draw.box_center = {0, 4, 0};
-  draw.box_half_extent = {2, 4, 2};
-  draw.fade = 0.5F;
+TEST(DrawList, draws_what_comes_and_goes_apart_and_after_the_rest_of_its_window) {
+  std::vector<MeshDraw> draws(5, model(0, 0, 0));
+  draws[0].fade = 0.5F;
+  draws[2].fade = -0.5F;
+  draws[3].fade = 0.0F;
   DrawList list;
-  list.build({}, std::span(&draw, 1), {});
-  EXPECT_EQ(glm::vec3(list.data()[0].origin), glm::vec3(10, 2, 0));
-  EXPECT_EQ(glm::vec3(list.data()[0].scale), glm::vec3(1, 2, 1));
+  list.build({}, draws, {});
+  ASSERT_EQ(list.runs().size(), 2u);
+  EXPECT_FALSE(list.runs()[0].fading);
+  EXPECT_EQ(list.runs()[0].count, 2u);
+  EXPECT_TRUE(list.runs()[1].fading);
+  EXPECT_EQ(list.runs()[1].count, 3u);
+  EXPECT_EQ(list.data()[0].scale.w, 1.0F);
+  EXPECT_EQ(list.data()[2].scale.w, 0.5F);
+  EXPECT_EQ(list.data()[3].scale.w, -0.5F);
+  EXPECT_EQ(list.data()[4].scale.w, 0.0F);
 }
 
 TEST(DrawList, draws_the_part_that_is_asked_for_of_own_and_of_shared_indices) {

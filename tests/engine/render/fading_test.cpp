@@ -1,0 +1,123 @@
+// Meshes that come and go leave out pixels: what goes and what comes in its place cover each pixel
+// once, on every path, with every preset.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include "engine/render/preset.hpp"
+#include "engine/render/render_path.hpp"
+#include "tests/engine/render/synthetic_scene.hpp"
+
+namespace psygen::render {
+namespace {
+
+constexpr core::Extent kSize{160, 120};
+
+using How = std::tuple<RenderPath, Submission, Preset>;
+
+class Fading : public testing::TestWithParam<How> {
+ protected:
+  void SetUp() override {
+    RendererOptions options;
+    options.validation = true;
+    options.size = kSize;
+    options.geometry_budget_bytes = 8 << 20;
+    std::tie(options.path, options.submission, options.preset) = GetParam();
+    auto made = Renderer::create(options);
+    ASSERT_TRUE(made) << made.error().message;
+    renderer_ = std::move(*made);
+    for (std::size_t i = 0; i < meshes_.size(); ++i) {
+      const auto range = synthetic::make_box(renderer_->geometry(), {0.4F, 0.1F, 0.05F});
+      ASSERT_TRUE(range);
+      meshes_[i].range = *range;
+      meshes_[i].origin = {i < 2 ? -2.0F : 3.0F, -1, i < 2 ? -10.0F : -12.0F};
+      meshes_[i].box_half_extent = {2, 4, 2};
+      meshes_[i].debug_colour = 0xE03020;
+    }
+    input_ = synthetic::look(60, 0, kSize);
+    input_.light.cloud_cover = 0;
+  }
+  void TearDown() override {
+    if (!renderer_) return;
+    renderer_->wait_idle();
+    for (const std::string& message : renderer_->validation_messages())
+      ADD_FAILURE() << message;
+  }
+  // Twice, so that what was hidden or seen in the first frame is known in the second.
+  Picture draw(std::span<const MeshDraw> models) {
+    input_.models = models;
+    for (int i = 0; i < 2; ++i)
+      EXPECT_TRUE(renderer_->render(input_));
+    auto picture = renderer_->capture();
+    EXPECT_TRUE(picture);
+    return picture ? *picture : Picture{};
+  }
+  MeshDraw mesh(std::size_t index, float fade) const {
+    MeshDraw draw = meshes_[index];
+    draw.fade = fade;
+    return draw;
+  }
+  static std::size_t different(const Picture& a, const Picture& b) {
+    std::size_t pixels = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); i += 4)
+      pixels += std::equal(&a.rgba[i], &a.rgba[i] + 4, &b.rgba[i]) ? 0 : 1;
+    return pixels;
+  }
+
+  std::unique_ptr<Renderer> renderer_;
+  std::array<MeshDraw, 3> meshes_;  // two at the same place, one beside and behind them
+  FrameInput input_;
+};
+
+TEST_P(Fading, what_goes_and_what_comes_cover_every_pixel_once) {
+  const std::array whole{mesh(0, 1), mesh(2, 1)};
+  const Picture expected = draw(whole);
+  for (const float fade : {0.01F, 0.3F, 0.5F, 0.97F}) {
+    const std::array both{mesh(0, fade), mesh(1, -fade), mesh(2, 1)};
+    EXPECT_EQ(draw(both).rgba, expected.rgba) << fade;
+    const std::array turned{mesh(2, 1), mesh(1, -fade), mesh(0, fade)};
+    EXPECT_EQ(draw(turned).rgba, expected.rgba) << fade;
+  }
+}
+
+TEST_P(Fading, a_mesh_covers_as_large_a_share_of_its_pixels_as_it_is_there) {
+  const Picture empty = draw({});
+  const std::array whole{mesh(0, 1)};
+  const auto all = static_cast<double>(different(draw(whole), empty));
+  ASSERT_GT(all, 1000);
+  for (const float fade : {0.1F, 0.5F, 0.9F}) {
+    const std::array coming{mesh(0, fade)}, going{mesh(0, -fade)};
+    EXPECT_NEAR(static_cast<double>(different(draw(coming), empty)) / all, fade, 0.03);
+    EXPECT_NEAR(static_cast<double>(different(draw(going), empty)) / all, 1 - fade, 0.03);
+  }
+  const std::array not_yet_going{mesh(0, 0)};
+  EXPECT_EQ(draw(not_yet_going).rgba, draw(whole).rgba);
+}
+
+TEST_P(Fading, views_for_understanding_fade_too) {
+  for (const View view : {View::kLevels, View::kWireframe, View::kBounds}) {
+    input_.view = view;
+    const std::array whole{mesh(0, 1)};
+    const std::array both{mesh(0, 0.4F), mesh(1, -0.4F)};
+    EXPECT_EQ(draw(both).rgba, draw(whole).rgba);
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<How>& info) {
+  const auto [path, submission, preset] = info.param;
+  return std::string(to_string(preset)) + (path == RenderPath::kGpu ? "_gpu_path" : "_cpu_path") +
+         (submission == Submission::kPushed ? "_pushed" : "_multi_draw");
+}
+INSTANTIATE_TEST_SUITE_P(
+    Ways, Fading,
+    testing::Values(How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                    How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kLow},
+                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                    How{RenderPath::kCpu, Submission::kPushed, Preset::kHigh},
+                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kUltra}),
+    name_of);
+
+}  // namespace
+}  // namespace psygen::render
