@@ -132,6 +132,7 @@ class Chooser {
 
   void note_in_view(Demand& demand, bool leaf) {
     const bool entered = demand.in_view_tick + 1 != clock_.tick;
+    if (entered) demand.entered_tick = clock_.tick;
     demand.in_view_tick = clock_.tick;
     if (demand.wanted_level == kNoLevel || !leaf) return;
     if (demand.drawn_level == kNoLevel) {
@@ -334,6 +335,8 @@ void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
     if (mesh != nullptr && mesh->handle == eviction.handle) {
       entities.get<Demand>(owner)->drawn_level = kNoLevel;
     }
+    Fading* fading = entities.get<Fading>(owner);
+    if (fading != nullptr && fading->old_mesh == eviction.handle) fading->old_mesh = {};
   }
 }
 

@@ -95,10 +95,22 @@ struct MeshParts {
 };
 static_assert(sizeof(MeshParts) == 396);
 
+// How a model comes and goes (fading.hpp).
+struct Fading {
+  float share = 0;                  // of its pixels that are there
+  std::uint32_t tick = UINT32_MAX;  // the last one in which it was drawn
+  // What Mesh takes the place of, drawn in the other pixels until `share` is 1. Null: nothing.
+  synthesis::MeshHandle old_mesh;
+  core::GeometryRange old_range;
+  std::uint32_t old_shared_indices = 0;
+};
+static_assert(sizeof(Fading) == 52);
+
 // What is wanted for an entity and what has been done about it. Changes every tick.
 struct Demand {
   float seen_s = -1;  // since when it is in view without a mesh; −1: it is not
   std::uint32_t in_view_tick = UINT32_MAX;  // the last tick in which it was in view
+  std::uint32_t entered_tick = UINT32_MAX;  // since when it was in every tick up to that one
   std::uint8_t drawn_level = kNoLevel;      // level of Mesh; kNoLevel: there is none
   std::uint8_t wanted_level = kNoLevel;     // kNoLevel: too small on screen to be drawn
   std::uint8_t requested_level = kNoLevel;
@@ -107,7 +119,7 @@ struct Demand {
   bool stale = false;  // Mesh is of other parameters than Source: drawn until the new one is there
   std::uint8_t ranked = kNotRanked;  // group of the rank that the cache has for Mesh
 };
-static_assert(sizeof(Demand) == 16);
+static_assert(sizeof(Demand) == 20);
 
 inline std::uint64_t owner_of(ecs::Entity entity) {
   return (std::uint64_t{entity.generation} << 32) | entity.index;

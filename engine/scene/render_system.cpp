@@ -5,8 +5,9 @@
 
 #include "engine/scene/ground_draws.hpp"
 #include "engine/scene/lighting.hpp"
-#include "engine/scene/mesh_parts.hpp"
 #include "engine/scene/missing.hpp"
+#include "engine/scene/model_draws.hpp"
+#include "engine/scene/seen.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/scene/views.hpp"
 
@@ -15,32 +16,30 @@ namespace {
 
 class Drawing {
  public:
-  Drawing(render::View shown, const Clock& clock, const Camera& camera, const WorldFacts& facts,
+  Drawing(render::View shown, FadeStep step, const Camera& camera, const WorldFacts& facts,
           const View& view, float fine_m, const RenderQuery& entities, DrawLists& draws,
           Counters& counters)
       : shown_(shown),
-        clock_(clock),
         camera_(camera),
         facts_(facts),
         view_(view),
         fine_m_(fine_m),
         entities_(entities),
         draws_(draws),
-        counters_(counters) {}
+        counters_(counters),
+        models_(shown, step, camera, facts, view, entities, draws, counters) {}
 
-  // Entities of the nodes of the cut, in its order; null where there is none.
-  void run(std::span<const ecs::Entity> entities) {
-    const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
+  // Entities of the nodes of the cut, in its order; null where there is none. `continues`: the last
+  // tick was drawn too.
+  void run(std::span<const ecs::Entity> entities, const Streaming& streaming, bool continues) {
     find_ready(entities);
     visibility::drawn_nodes(view_.cut, draws_.ready, draws_.scratch, draws_.nodes);
-    std::size_t next = 0;
-    for (std::uint32_t i = 0; i < cut.size();) {
-      const bool drawn = next < draws_.nodes.size() && draws_.nodes[next] == i;
-      // What has no ancestor to stand for it is drawn as far as it goes.
-      if ((drawn || cut[i].leaf) && view_.in_view[i] != 0) draw(i, entities[i]);
-      next += drawn ? 1 : 0;
-      i = drawn ? cut[i].end : i + 1;
-    }
+    list_shown();
+    draws_.handover.update(draws_.shown_nodes, continues);
+    for (const std::uint32_t i : draws_.shown)
+      draw(i, entities[i]);
+    draws_.handover.for_each_going(
+        [&](const visibility::NodeCoord& node) { return draw_going(node, streaming); });
   }
 
  private:
@@ -60,23 +59,67 @@ class Drawing {
     }
   }
 
+  void list_shown() {
+    const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
+    draws_.shown.clear();
+    draws_.shown_nodes.clear();
+    std::size_t next = 0;
+    for (std::uint32_t i = 0; i < cut.size();) {
+      const bool drawn = next < draws_.nodes.size() && draws_.nodes[next] == i;
+      // What has no ancestor to stand for it is drawn as far as it goes.
+      if ((drawn || cut[i].leaf) && view_.in_view[i] != 0) {
+        draws_.shown.push_back(i);
+        draws_.shown_nodes.push_back(cut[i].node);
+      }
+      next += drawn ? 1 : 0;
+      i = drawn ? cut[i].end : i + 1;
+    }
+  }
+
+  glm::vec3 corner_of(const visibility::NodeCoord& node) const {
+    return glm::vec3(core::offset_m(visibility::corner_block(node), camera_.pose.position,
+                                    facts_.world.block_size_m()));
+  }
+
+  // The models of a node that is drawn no more; false once they are gone, or out of view.
+  bool draw_going(const visibility::NodeCoord& node, const Streaming& streaming) {
+    const NodeGrid& grid = streaming.grids[node.level];
+    if (!grid.contains(node.coord)) return false;
+    const ecs::Entity entity = grid.entity_of(node.coord);
+    if (!entities_.alive(entity)) return false;
+    const Node& at = *entities_.get<Node>(entity);
+    const glm::vec3 corner = corner_of(node);
+    const float side_m = static_cast<float>(facts_.levels[node.level].size_m);
+    const glm::vec3 beyond(facts_.models_reach_m.x, 0, facts_.models_reach_m.x);
+    const glm::vec3 opposite(side_m, at.high_m + facts_.models_reach_m.y, side_m);
+    if (!can_be_seen({corner + glm::vec3(0, at.low_m, 0) - beyond, corner + opposite + beyond},
+                     view_))
+      return false;
+    const DrawFacts facts{node.level, entities_.get<Visibility>(entity)->layer, 0, 0};
+    return models_.add_going(*entities_.get<ecs::Children>(entity), facts, corner);
+  }
+
+  ModelDraws::Node how_drawn(const visibility::NodeCoord& node) const {
+    if (!draws_.handover.is_fresh(node)) return ModelDraws::Node::kStays;
+    return draws_.handover.replaces(node) ? ModelDraws::Node::kReplaces : ModelDraws::Node::kEnters;
+  }
+
   void draw(std::uint32_t index, ecs::Entity entity) {
     if (!entities_.alive(entity)) return;  // counted by the visibility system
     const visibility::CutNode& node = view_.cut.nodes[index];
     const auto [placed, demand] =
         std::tuple(entities_.get<Placed>(entity), entities_.get<Demand>(entity));
     const Node& at = *entities_.get<Node>(entity);
-    const glm::vec3 corner(core::offset_m(visibility::corner_block(node.node),
-                                          camera_.pose.position, facts_.world.block_size_m()));
+    const glm::vec3 corner = corner_of(node.node);
     const glm::vec3 middle =
         corner + glm::vec3(node.side_m / 2, (at.low_m + at.high_m) / 2, node.side_m / 2);
     const bool hole = demand->drawn_level == kNoLevel;
     const std::uint32_t coarser = node.leaf ? 0 : coarser_by(index);
-    count(middle, placed->radius_m, hole, coarser > 1);
+    count_seen(camera_, middle, placed->radius_m, hole, coarser > 1, counters_);
     DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
     if (!hole) add_ground(node, entity, at, facts, corner);
-    add_models(*entities_.get<ecs::Children>(entity), facts, corner);
+    models_.add(*entities_.get<ecs::Children>(entity), how_drawn(node.node), facts, corner);
     if (shown_ == render::View::kBounds) {
       add_box({corner + glm::vec3(0, at.low_m, 0),
                corner + glm::vec3(node.side_m, at.high_m, node.side_m)},
@@ -109,14 +152,6 @@ class Drawing {
     return node.node.level - finest;
   }
 
-  void count(glm::vec3 center, float radius_m, bool hole, bool coarse) {
-    ++counters_.nodes_in_view;
-    if (hole) ++counters_.holes;
-    if (coarse) ++counters_.coarse;
-    if (hole || coarse)
-      counters_.missing_pixels_percent += covered_percent(camera_, center, radius_m);
-  }
-
   void add_ground(const visibility::CutNode& node, ecs::Entity entity, const Node& at,
                   const DrawFacts& facts, glm::vec3 corner) {
     const auto [placed, demand, mesh, relief] =
@@ -147,54 +182,7 @@ class Drawing {
     add_tiles(tiles, in_view, fine ? &*facts_.tiles : nullptr, fine_m_, draw, draws_.terrain);
   }
 
-  // `facts` are those of their node.
-  void add_models(const ecs::Children& children, DrawFacts facts, glm::vec3 corner) {
-    const bool single = facts.level == 0;
-    entities_.each_of<const Placed, const Demand, const Mesh>(
-        entities_.children(children),
-        [&](std::span<const ecs::Entity> models, std::span<const Placed> placed,
-            std::span<const Demand> demands, std::span<const Mesh> meshes) {
-          for (std::size_t i = 0; i < placed.size(); ++i) {
-            const Demand& demand = demands[i];
-            if (demand.wanted_level == kNoLevel || demand.in_view_tick != clock_.tick) continue;
-            const glm::vec3 foot = corner + placed[i].position;
-            const bool hole = demand.drawn_level == kNoLevel;
-            const bool coarse = !hole && demand.drawn_level > demand.wanted_level + 1;
-            if (single && !hole) {
-              facts.level = demand.drawn_level;
-              facts.coarser =
-                  static_cast<std::uint32_t>(std::max(demand.drawn_level - demand.wanted_level, 0));
-            }
-            const MeshParts* parts =
-                single || facts_.shadows ? nullptr : entities_.get<MeshParts>(models[i]);
-            const bool seen =
-                hole || add_model(parts, foot, placed[i], meshes[i], colour_of(shown_, facts));
-            if (seen) count(foot + placed[i].middle, placed[i].radius_m, hole, coarse);
-          }
-        });
-  }
-
-  // Where its parts are known only those that can be seen. Returns whether any can.
-  bool add_model(const MeshParts* parts, glm::vec3 foot, const Placed& placed, const Mesh& mesh,
-                 std::uint32_t debug_colour) {
-    render::MeshDraw draw;
-    draw.range = mesh.range;
-    draw.shared_indices = mesh.shared_indices;
-    draw.origin = foot;
-    draw.box_center = placed.box_center;
-    draw.box_half_extent = placed.box_half_extent;
-    draw.debug_colour = debug_colour;
-    if (parts == nullptr || parts->indices_each == 0) {
-      draws_.models.push_back(draw);
-    } else if (!add_parts(*parts, view_, draw, draws_.models)) {
-      return false;
-    }
-    draws_.meshes.push_back(mesh.handle);
-    return true;
-  }
-
   const render::View shown_;
-  const Clock& clock_;
   const Camera& camera_;
   const WorldFacts& facts_;
   const View& view_;
@@ -202,13 +190,23 @@ class Drawing {
   const RenderQuery& entities_;
   DrawLists& draws_;
   Counters& counters_;
+  ModelDraws models_;
 };
+
+// A clock that stands still does not stop what fades.
+FadeStep fade_step(const Settings& settings, const Clock& clock, const DrawLists& draws) {
+  constexpr double kLeastSeconds = 1.0 / 240.0;
+  const double passed_s = std::max(clock.now_s - draws.now_s, kLeastSeconds);
+  const bool at_once = settings.fade_seconds <= passed_s;
+  return {clock.tick, at_once ? 1.0F : static_cast<float>(passed_s / settings.fade_seconds)};
+}
 
 }  // namespace
 
-void render_system(const Input& input, const Clock& clock, const Camera& camera,
-                   const WorldFacts& facts, const Streaming& streaming, const View& view,
-                   RenderQuery entities, DrawLists& draws, Output& output, Counters& counters) {
+void render_system(const Settings& settings, const Input& input, const Clock& clock,
+                   const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
+                   const View& view, RenderQuery entities, DrawLists& draws, Output& output,
+                   Counters& counters) {
   draws.terrain.clear();
   draws.models.clear();
   draws.meshes.clear();
@@ -217,8 +215,11 @@ void render_system(const Input& input, const Clock& clock, const Camera& camera,
   for (const visibility::CutNode& node : view.cut.nodes)
     draws.entities.push_back(streaming.grids[node.node.level].entity_of(node.node.coord));
   const render::Morph morph = morph_of(streaming);
-  Drawing(input.view, clock, camera, facts, view, morph.to_m, entities, draws, counters)
-      .run(draws.entities);
+  Drawing(input.view, fade_step(settings, clock, draws), camera, facts, view, morph.to_m, entities,
+          draws, counters)
+      .run(draws.entities, streaming, draws.tick + 1 == clock.tick);
+  draws.tick = clock.tick;
+  draws.now_s = clock.now_s;
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
   if (output.renderer == nullptr) return;
 

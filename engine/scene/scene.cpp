@@ -36,6 +36,9 @@ core::Result<void> check(const Settings& settings) {
   if (!(settings.max_error_factor >= 1 && settings.max_error_factor <= 100)) {
     return refuse("the error may grow by a factor between 1 and 100");
   }
+  if (!(settings.fade_seconds >= 0 && settings.fade_seconds <= 60)) {
+    return refuse("models come and go within 0 to 60 seconds");
+  }
   if (settings.streaming_ticks < 1) return refuse("nodes are created over at least one tick");
   if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
   if (settings.budget_bytes < Scene::kMinBudgetBytes) {

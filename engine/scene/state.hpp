@@ -14,6 +14,7 @@
 #include "engine/models/terrain_tiles.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
+#include "engine/scene/fading.hpp"
 #include "engine/scene/governor.hpp"
 #include "engine/scene/ground_relief.hpp"
 #include "engine/scene/node_grid.hpp"
@@ -166,10 +167,15 @@ struct DrawLists {
   std::vector<ecs::Entity> entities;  // per node of the cut; null where there is none
   std::vector<std::uint32_t> nodes;   // of the cut: what stands for it while meshes are missing
   std::vector<std::uint8_t> ready, scratch;  // per node of the cut
+  std::vector<std::uint32_t> shown;          // those of `nodes`, and holes, that are in view
+  std::vector<visibility::NodeCoord> shown_nodes;
   std::vector<render::TerrainDraw> terrain;
   std::vector<render::MeshDraw> models;
   std::vector<synthesis::MeshHandle> meshes;  // of both
   std::vector<render::Line> lines;            // boxes of what is drawn, in the view of bounds
+  NodeHandover handover;
+  std::uint32_t tick = 0;  // of these lists
+  double now_s = 0;        // the clock's then
 };
 
 // Counts of one tick, reset by the tick.

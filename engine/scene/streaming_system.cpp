@@ -65,7 +65,7 @@ template <class... Also>
 void create_children(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
                      std::span<const world::Placement> placements, ecs::World& entities) {
   const auto models =
-      entities.create<Placed, Detail, Source, Demand, Mesh, Also...>(placements.size());
+      entities.create<Placed, Detail, Source, Demand, Mesh, Fading, Also...>(placements.size());
   for (std::size_t i = 0; i < placements.size(); ++i)
     fill(models, i, facts, block, placements[i]);
   entities.set_children(node, models.entities);

@@ -34,7 +34,7 @@ void visibility_system(const Settings& settings, const Camera& camera, const Wor
 
 // Chooses levels of detail, finds what the cache has, ranks what it keeps, plans what is missing.
 using CacheQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
-                              const Detail, const Source, const Mesh, Demand, Lacking>;
+                              const Detail, const Source, const Mesh, Demand, Fading, Lacking>;
 void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
                   const Quality& quality, const WorldFacts& facts, const View& view,
                   CacheQuery entities, Synthesis& synthesis, Counters& counters, Totals& totals);
@@ -45,17 +45,19 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
 using UploadQuery =
-    ecs::Query<const Source, const Placed, Mesh, MeshParts, Demand, Node, GroundRelief>;
+    ecs::Query<const Source, const Placed, Mesh, MeshParts, Fading, Demand, Node, GroundRelief>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
-using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
-                               const Demand, const Mesh, const MeshParts, const GroundRelief>;
-void render_system(const Input& input, const Clock& clock, const Camera& camera,
-                   const WorldFacts& facts, const Streaming& streaming, const View& view,
-                   RenderQuery entities, DrawLists& draws, Output& output, Counters& counters);
+using RenderQuery =
+    ecs::Query<const Node, const ecs::Children, const Visibility, const Placed, const Demand,
+               const Mesh, const MeshParts, const GroundRelief, Fading>;
+void render_system(const Settings& settings, const Input& input, const Clock& clock,
+                   const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
+                   const View& view, RenderQuery entities, DrawLists& draws, Output& output,
+                   Counters& counters);
 
 // Writes down what the tick did.
 void telemetry_system(const Clock& clock, const Counters& counters, const DrawLists& draws,

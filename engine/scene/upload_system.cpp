@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/core/log.hpp"
+#include "engine/scene/fading.hpp"
 #include "engine/scene/mesh_parts.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/synthesis/landing.hpp"
@@ -144,12 +145,16 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
   const int first_level = node != nullptr ? first_ground_level(facts, *node) : 0;
   const auto level = static_cast<std::uint8_t>(record.key.level - first_level);
   const bool fresh = record.key.parameters_hash == entities.get<Source>(owner)->parameters_hash;
+  const bool of_old_parameters = demand->stale;
   if (!accept(*demand, level, fresh, now_s, counters)) {
     synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());
     return;
   }
   if (replaces) {
-    synthesis.cache->set_rank(entities.get<Mesh>(owner)->handle, synthesis::Rank::unwanted());
+    const Mesh& before = *entities.get<Mesh>(owner);
+    synthesis.cache->set_rank(before.handle, synthesis::Rank::unwanted());
+    Fading* fading = entities.get<Fading>(owner);
+    if (fading != nullptr && !of_old_parameters) replace_mesh(*fading, before);
   }
   if (node != nullptr) {
     note_ground(*node, *entities.get<GroundRelief>(owner), record, facts, *synthesis.memory);

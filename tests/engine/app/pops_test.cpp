@@ -11,7 +11,7 @@ namespace psygen::app {
 namespace {
 
 constexpr std::uint32_t kTile = 20;
-constexpr double kGroundTile = 12, kModelTile = 45;
+constexpr double kGroundTile = 12, kModelTile = 15;
 
 // Of 255: the mean over the picture, and over the tile that differs most.
 struct Difference {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <set>
 
 #include "engine/core/clock.hpp"
 #include "engine/scene/scene.hpp"
@@ -70,6 +71,24 @@ inline void expect_within_budget(const Scene& scene) {
   EXPECT_LE(scene.state().memory->used_bytes(), stats.budget_bytes);
 }
 
+// What the last tick drew is alive in the cache.
+inline void expect_drawn_alive(const Scene& scene) {
+  const State& s = scene.state();
+  if (s.draws.tick + 1 != s.clock.tick) return;  // the last tick drew nothing
+  std::set<std::uint32_t> alive;
+  std::size_t wrong = 0;
+  for (const synthesis::MeshHandle handle : s.draws.meshes) {
+    const synthesis::MeshRecord* record = s.synthesis.cache->get(handle);
+    if (record != nullptr && record->state == synthesis::MeshState::kReady)
+      alive.insert(record->range.id);
+    else
+      ++wrong;
+  }
+  for (const render::MeshDraw& draw : s.draws.models)
+    wrong += alive.contains(draw.range.id) ? 0 : 1;
+  EXPECT_EQ(wrong, 0u);
+}
+
 // Whatever an entity draws is alive in the cache, and is what the entity thinks it is.
 inline void expect_consistent(Scene& scene) {
   const synthesis::GeometryCache& cache = *scene.state().synthesis.cache;
@@ -87,6 +106,7 @@ inline void expect_consistent(Scene& scene) {
             }
           });
   EXPECT_EQ(wrong, 0u);
+  expect_drawn_alive(scene);
   expect_within_budget(scene);
 }
 

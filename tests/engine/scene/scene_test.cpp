@@ -386,6 +386,11 @@ TEST(Scene, SettingsThatMakeNoSenseAreRefused) {
   settings.max_error_pixels = 0;
   EXPECT_TRUE(refused(settings));
   settings = small_settings();
+  settings.fade_seconds = -1;
+  EXPECT_TRUE(refused(settings));
+  settings.fade_seconds = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(refused(settings));
+  settings = small_settings();
   settings.modelers = 100000;
   EXPECT_TRUE(refused(settings));
   settings = small_settings();

@@ -1,0 +1,60 @@
+// What is drawn of the models of nodes: those in view, as much of them as is there while they come
+// and go (fading.hpp), and of merged meshes the parts that can be seen.
+#pragma once
+
+#include "engine/scene/fading.hpp"
+#include "engine/scene/state.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/scene/views.hpp"
+
+namespace psygen::scene {
+
+// One tick's; adds to its draw lists and counts.
+class ModelDraws {
+ public:
+  ModelDraws(render::View shown, FadeStep step, const Camera& camera, const WorldFacts& facts,
+             const View& view, const RenderQuery& entities, DrawLists& draws, Counters& counters)
+      : shown_(shown),
+        step_(step),
+        camera_(camera),
+        facts_(facts),
+        view_(view),
+        entities_(entities),
+        draws_(draws),
+        counters_(counters) {}
+
+  // How a node came to be drawn in this tick.
+  enum class Node : std::uint8_t {
+    kStays,     // it was drawn in the last one
+    kReplaces,  // it takes the place of others
+    kEnters,    // nothing was seen there
+  };
+  // The models of a node that is drawn, whose corner is there. `facts` are those of the node.
+  void add(const ecs::Children& children, Node node, DrawFacts facts, glm::vec3 corner);
+  // Those of a node that is drawn no more. Returns whether anything of them is left.
+  bool add_going(const ecs::Children& children, DrawFacts facts, glm::vec3 corner);
+
+ private:
+  struct Model {
+    const MeshParts* parts;  // null: there are none, it is drawn as a whole
+    const Placed& placed;
+    const Mesh& mesh;
+    glm::vec3 foot;
+  };
+  const MeshParts* parts_of(ecs::Entity entity, const DrawFacts& node) const;
+  bool add_model(const Model& model, float fade, std::uint32_t debug_colour);
+  void add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour);
+  bool add_one_going(const Model& model, const Demand& demand, Fading& fading,
+                     std::uint32_t debug_colour);
+
+  render::View shown_;
+  FadeStep step_;
+  const Camera& camera_;
+  const WorldFacts& facts_;
+  const View& view_;
+  const RenderQuery& entities_;
+  DrawLists& draws_;
+  Counters& counters_;
+};
+
+}  // namespace psygen::scene
