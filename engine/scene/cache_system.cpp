@@ -188,6 +188,9 @@ class Chooser {
     RankGroup group = RankGroup::kPrefetch;
     if (hole) {
       group = RankGroup::kVisibleHole;
+    } else if (level ==
+               demand.drawn_level) {  // the same with older parameters, as ground is at dawn
+      group = RankGroup::kPredicted;
     } else if (wanted) {  // what frees room is urgent only where room is short
       group = too_fine && !roomy_ ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
     }

@@ -62,5 +62,29 @@ TEST(Daylight, WhenTheSunHasMovedAStepTheGroundIsMadeAnewWithoutAHole) {
   EXPECT_EQ(ground_of(scene).stale, 0u);
 }
 
+TEST(Daylight, WhatLacksDetailComesBeforeGroundThatIsOnlyLitAnew) {
+  const auto scene =
+      make_scene_of(small_settings(), [](world::World& world) { world.sky.day_length_s = 2400; });
+  State& s = scene->state();
+  scene->settle(pose_at(256, 256));
+  tick_at(*scene, pose_at(256, 256));
+  s.clock.now_s += 150;
+  s.settings.max_error_pixels /= 2;
+  tick_at(*scene, pose_at(256, 256));
+  std::optional<synthesis::Rank> first_lit, last_finer;
+  for (const synthesis::Want& want : s.synthesis.wants) {
+    const ecs::Entity entity = entity_of(want.owner);
+    const Demand& demand = *s.entities.get<Demand>(entity);
+    if (demand.in_view_tick + 1 != s.clock.tick) continue;
+    if (demand.stale && demand.drawn_level == demand.requested_level) {
+      if (!first_lit || want.rank < *first_lit) first_lit = want.rank;
+    } else if (demand.drawn_level > demand.requested_level) {
+      if (!last_finer || want.rank > *last_finer) last_finer = want.rank;
+    }
+  }
+  ASSERT_TRUE(first_lit && last_finer);
+  EXPECT_LT(*last_finer, *first_lit);
+}
+
 }  // namespace
 }  // namespace psygen::scene
