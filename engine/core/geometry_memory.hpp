@@ -59,16 +59,10 @@ class GeometryMemory {
   virtual std::uint64_t capacity_bytes() const = 0;
   // True where GPU (or, on a software device, the CPU) reads the very memory that was written.
   virtual bool zero_copy() const = 0;
-  // The bytes of a committed range, for hashing and export; empty where they cannot be read.
+  // The bytes of a committed range, for tests; empty where they cannot be read. Slow on some
+  // devices: what must be known of a mesh its modeler notes (synthesis::Annotate).
   virtual std::span<const std::byte> vertex_bytes(const GeometryRange& range) const = 0;
   virtual std::span<const std::uint16_t> indices(const GeometryRange& range) const = 0;
 };
-
-// vertex_bytes() as vertices of the range's layout.
-template <class Vertex>
-std::span<const Vertex> vertices_of(const GeometryMemory& memory, const GeometryRange& range) {
-  const std::span<const std::byte> bytes = memory.vertex_bytes(range);
-  return {reinterpret_cast<const Vertex*>(bytes.data()), bytes.size() / sizeof(Vertex)};
-}
 
 }  // namespace psygen::core

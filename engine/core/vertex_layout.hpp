@@ -2,7 +2,9 @@
 // (shaders/terrain.vert, shaders/model.vert). Seam between synthesis and rendering.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace psygen::core {
 
@@ -46,6 +48,12 @@ static_assert(sizeof(ModelVertex) == 16);
 
 constexpr std::uint32_t vertex_stride_bytes(VertexLayout layout) {
   return layout == VertexLayout::kTerrain ? sizeof(TerrainVertex) : sizeof(ModelVertex);
+}
+
+// The bytes of a mesh as vertices of its layout.
+template <class Vertex>
+std::span<const Vertex> vertices_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const Vertex*>(bytes.data()), bytes.size() / sizeof(Vertex)};
 }
 
 }  // namespace psygen::core

@@ -14,8 +14,8 @@
 namespace psygen::scene {
 
 // From the vertices and triangles of a mesh whose positions span this box: looks at each index
-// once, 4 to 6 µs for a node (psygen_bench_landing). Triangles at the end that name a vertex twice
-// are left out.
+// once, 4 to 6 µs for a node (psygen_bench_landing), which its modeler spends (mesh_notes.hpp).
+// Triangles at the end that name a vertex twice are left out.
 MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
                      std::span<const std::uint16_t> indices, const core::Bounds& box);
 

@@ -9,6 +9,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/scene/lighting.hpp"
+#include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/node_solidity.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/scene/usual_boxes.hpp"
@@ -209,7 +210,6 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   }
   s.memory = renderer != nullptr ? &renderer->geometry() : s.heap.get();
   Synthesis& synthesis = s.synthesis;
-  synthesis.memory = s.memory;
   synthesis.cache =
       std::make_unique<synthesis::GeometryCache>(*s.memory, facts.registry, settings.budget_bytes);
   synthesis.cost = std::make_unique<synthesis::CostModel>(facts.registry);
@@ -222,6 +222,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   synthesis::SynthesisOptions options;
   options.modelers = settings.modelers;
   options.watchdog_seconds = settings.watchdog_seconds;
+  options.annotate = mesh_notes(facts);
   synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
   s.settings.modelers = synthesis.manager->modeler_count();
   s.quality.governor =

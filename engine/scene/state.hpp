@@ -150,7 +150,6 @@ struct Synthesis {
   std::unique_ptr<synthesis::CostModel> cost;
   std::unique_ptr<synthesis::SynthesisManager> manager;
   std::unique_ptr<synthesis::Planner> planner;
-  const core::GeometryMemory* memory = nullptr;  // where meshes lie
   std::vector<synthesis::Want> wants;
   std::vector<synthesis::Completion> finished;  // synthesised, not yet resident; oldest first
   struct Ready {

@@ -44,8 +44,7 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
                       Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
-using UploadQuery =
-    ecs::Query<const Source, const Placed, Mesh, MeshParts, Fading, Demand, Node, GroundRelief>;
+using UploadQuery = ecs::Query<const Source, Mesh, MeshParts, Fading, Demand, Node, GroundRelief>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);

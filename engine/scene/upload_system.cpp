@@ -1,20 +1,19 @@
 // Makes finished meshes resident and lands them in their entities. Where memory is shared with the
-// device the modeler has already written the final bytes, and this is only book-keeping.
+// device the modeler has already written the final bytes, and this is only book-keeping: what must
+// be known of a mesh comes with it (mesh_notes.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "engine/core/assert.hpp"
 #include "engine/core/log.hpp"
 #include "engine/scene/fading.hpp"
-#include "engine/scene/mesh_parts.hpp"
+#include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/synthesis/landing.hpp"
 
 namespace psygen::scene {
 namespace {
-
-// The largest error of a node over the usual one.
-constexpr double kPossibleError = 2.5;
 
 // In place of the list of a block's finest ground: that of its tiles. No type names a list so.
 constexpr std::uint32_t kTiles = UINT32_MAX;
@@ -100,34 +99,22 @@ std::size_t count_within_budget(const Synthesis& synthesis, std::uint64_t budget
   return count;
 }
 
-// From now on the ground of a node is known: as far as the mesh is off, it may be higher or lower.
-void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& record,
-                 const WorldFacts& facts, const core::GeometryMemory& memory) {
-  const NodeLevel& level = facts.levels[node.at.level];
-  const bool finest = node.at.level == 0 && record.key.level == 0;
-  const float possible_m =
-      finest ? 0.0F : static_cast<float>(kPossibleError * level.ground_error_m);
-  node.low_m = std::max(level.bounds.min.y, record.tight.min.y - possible_m);
-  node.high_m = std::min(level.bounds.max.y, record.tight.max.y + possible_m);
-  const auto vertices = core::vertices_of<core::TerrainVertex>(memory, record.range);
-  if (vertices.empty()) {
-    relief.points = 0;
-    return relief.top_m.fill(node.high_m);
-  }
-  // The coarse ground of a block may give way to its finest, in the tick for which the lines hold.
-  relief = ground_relief(vertices, facts.grids[record.key.level], level.bounds.min.y,
-                         level.bounds.max.y - level.bounds.min.y,
-                         node.at.level == 0 ? possible_m : 0.0F);
+// What the modeler noted of a mesh.
+template <class T>
+const T& note_of(const synthesis::MeshRecord& record) {
+  const T* note = std::any_cast<T>(&record.note);
+  PSYGEN_CHECK(note != nullptr, "a mesh landed without its note");
+  return *note;
 }
 
-// Where the parts of a mesh for everything on a node lie.
-void note_parts(MeshParts& parts, const Placed& placed, const synthesis::MeshRecord& record,
-                const core::GeometryMemory& memory) {
-  parts = {};
-  const auto vertices = core::vertices_of<core::ModelVertex>(memory, record.range);
-  if (vertices.empty()) return;
-  parts = mesh_parts(vertices, memory.indices(record.range),
-                     core::Bounds::around(placed.box_center, placed.box_half_extent));
+// From now on the ground of a node is known: as far as the mesh is off, it may be higher or lower.
+void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& record,
+                 const WorldFacts& facts) {
+  const core::Bounds& bounds = facts.levels[node.at.level].bounds;
+  const float possible_m = possible_error_m(facts, node.at.level, record.key.level);
+  node.low_m = std::max(bounds.min.y, record.tight.min.y - possible_m);
+  node.high_m = std::min(bounds.max.y, record.tight.max.y + possible_m);
+  relief = note_of<GroundRelief>(record);
 }
 
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.
@@ -157,10 +144,9 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     if (fading != nullptr && !of_old_parameters) replace_mesh(*fading, before);
   }
   if (node != nullptr) {
-    note_ground(*node, *entities.get<GroundRelief>(owner), record, facts, *synthesis.memory);
+    note_ground(*node, *entities.get<GroundRelief>(owner), record, facts);
   }
-  if (MeshParts* parts = entities.get<MeshParts>(owner))
-    note_parts(*parts, *entities.get<Placed>(owner), record, *synthesis.memory);
+  if (MeshParts* parts = entities.get<MeshParts>(owner)) *parts = note_of<MeshParts>(record);
   landings.push_back({owner, {record.range, handle, shared_indices, record.tight}});
 }
 
@@ -180,7 +166,7 @@ void upload_system(const Settings& settings, const Clock& clock, const WorldFact
   const std::uint64_t budget_bytes =
       settings.paradigm == Paradigm::kLazyEvaluation ? UINT64_MAX : settings.upload_budget_bytes;
   const std::size_t count = count_within_budget(synthesis, budget_bytes);
-  const std::span<const synthesis::Completion> batch(synthesis.finished.data(), count);
+  const std::span<synthesis::Completion> batch(synthesis.finished.data(), count);
   counters.bytes_synthesised = synthesis::land(batch, *synthesis.cache, synthesis.cost.get()).bytes;
   for (const synthesis::Completion& job : batch) {
     if (!job.ok) give_up(job, facts, entities, totals);

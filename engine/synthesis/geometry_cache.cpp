@@ -106,7 +106,7 @@ core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
   return MeshHandle{slot, r.generation};
 }
 
-void GeometryCache::complete(MeshHandle handle, const core::Bounds& tight) {
+void GeometryCache::complete(MeshHandle handle, const core::Bounds& tight, std::any note) {
   MeshRecord* r = live(handle);
   if (r == nullptr || r->state != MeshState::kRequested) return;
   --stats_.requested;
@@ -119,6 +119,7 @@ void GeometryCache::complete(MeshHandle handle, const core::Bounds& tight) {
   r->state = MeshState::kReady;
   r->destination = {};
   r->tight = tight;
+  r->note = std::move(note);
   r->prefetched = !is_visible(r->rank.group());
   if (r->prefetched) ++stats_.prefetched;
   ++stats_.ready;

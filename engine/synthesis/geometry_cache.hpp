@@ -8,6 +8,7 @@
 // selection over all ready meshes per batch of requests, not a heap operation per mesh.
 #pragma once
 
+#include <any>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -31,6 +32,7 @@ struct MeshRecord {
   core::GeometryRange range;     // where to draw it from; index_count 0 where indices are shared
   models::MeshView destination;  // what the modeler writes; only while requested
   core::Bounds tight;            // of the vertices written; only when ready
+  std::any note;                 // what its modeler noted of it; only when ready, not in the budget
   std::uint64_t owner = 0;       // the caller's name for whoever asked, e.g. an entity
   Rank rank;
   std::uint32_t generation = 0;
@@ -127,8 +129,9 @@ class GeometryCache {
                                    std::uint64_t owner, Rank rank,
                                    const std::optional<models::MeshSize>& size = {});
 
-  // The destination is written: the mesh is ready (or gone, if it was released meanwhile).
-  void complete(MeshHandle handle, const core::Bounds& tight);
+  // The destination is written: the mesh is ready (or gone, if it was released meanwhile). The note
+  // stays as long as the mesh.
+  void complete(MeshHandle handle, const core::Bounds& tight, std::any note = {});
   // Synthesis failed; the key is remembered with its reason. With `still_writing` the destination
   // is kept until settle(), because a hung modeler may write to it yet.
   void fail(MeshHandle handle, std::string reason, bool still_writing = false);

@@ -1,10 +1,12 @@
 #include "engine/synthesis/landing.hpp"
 
+#include <utility>
+
 namespace psygen::synthesis {
 
-LandingReport land(std::span<const Completion> completions, GeometryCache& cache, CostModel* cost) {
+LandingReport land(std::span<Completion> completions, GeometryCache& cache, CostModel* cost) {
   LandingReport report;
-  for (const Completion& c : completions) {
+  for (Completion& c : completions) {
     if (c.late) {
       cache.settle(c.handle);
       ++report.settled;
@@ -15,7 +17,7 @@ LandingReport land(std::span<const Completion> completions, GeometryCache& cache
       if (cost != nullptr) {
         cost->observe(c.key.model, c.key.level, c.work, c.predicted_seconds, c.seconds);
       }
-      cache.complete(c.handle, c.tight);
+      cache.complete(c.handle, c.tight, std::move(c.note));
       const MeshRecord* record = cache.get(c.handle);  // may be evicted or released already
       if (record == nullptr || record->state != MeshState::kReady) continue;
       ++report.ready;

@@ -19,7 +19,8 @@ struct LandingReport {
 };
 
 // Completes or fails each mesh; stale handles are dropped. `cost`, if not null, learns from every
-// success. Completions may come in any order, but a late one after its abandoned one.
-LandingReport land(std::span<const Completion> completions, GeometryCache& cache, CostModel* cost);
+// success. Completions may come in any order, but a late one after its abandoned one. Notes go to
+// the records of their meshes.
+LandingReport land(std::span<Completion> completions, GeometryCache& cache, CostModel* cost);
 
 }  // namespace psygen::synthesis

@@ -60,6 +60,18 @@ void Modeler::perform(Workshop& workshop, const Request& request) {
   execute(workshop, cpu_mark);
 }
 
+// Writes the mesh and what is noted of it.
+void Modeler::make_mesh(const Workshop& workshop, Completion& c) {
+  const models::ModelIndex model = current_.key.model;
+  SynthesisOutcome outcome = synthesize_guarded((*workshop.registry)[model], current_.parameters,
+                                                current_.key.level, current_.destination);
+  c.ok = outcome.ok;
+  c.tight = outcome.tight;
+  c.error = std::move(outcome.error);
+  if (!c.ok || model >= workshop.annotate.size() || !workshop.annotate[model]) return;
+  c.note = workshop.annotate[model](current_, current_.destination);
+}
+
 bool Modeler::execute(Workshop& workshop, double& cpu_mark) {
   Completion c = completion_of(current_, number_);
   c.started_s = workshop.clock();
@@ -67,12 +79,7 @@ bool Modeler::execute(Workshop& workshop, double& cpu_mark) {
   ++serial_;
   state_.store(serial_ * 4 + kWorking, std::memory_order_release);
 
-  SynthesisOutcome outcome =
-      synthesize_guarded((*workshop.registry)[current_.key.model], current_.parameters,
-                         current_.key.level, current_.destination);
-  c.ok = outcome.ok;
-  c.tight = outcome.tight;
-  c.error = std::move(outcome.error);
+  make_mesh(workshop, c);
   const double cpu = core::thread_cpu_seconds();
   c.seconds = cpu - cpu_mark;
   cpu_mark = cpu;
@@ -86,6 +93,7 @@ bool Modeler::execute(Workshop& workshop, double& cpu_mark) {
   if (!state_.compare_exchange_strong(expected, serial_ * 4 + kIdle, std::memory_order_acq_rel)) {
     c.ok = false;
     c.late = true;
+    c.note.reset();
     c.error = "given up before it was done";
     queue_.push(std::move(c));
     return false;

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "engine/synthesis/completion_queue.hpp"
 #include "engine/synthesis/plan_board.hpp"
@@ -25,6 +26,7 @@ struct Workshop {
   const models::Registry* registry = nullptr;
   std::function<double()> clock;  // called from all threads
   bool hash_content = false;
+  std::vector<Annotate> annotate;  // by model; see SynthesisOptions
   PlanBoard board;
   std::atomic<bool> stop{false};
   // Modelers give up their priority before the next request; a thread cannot get it back.
@@ -79,6 +81,7 @@ class Modeler {
   enum Phase : std::uint64_t { kIdle = 0, kWorking = 1, kGivenUp = 2, kPhaseMask = 3 };
   // False if the request was given up meanwhile.
   bool execute(Workshop& workshop, double& cpu_mark);
+  void make_mesh(const Workshop& workshop, Completion& c);
   void wake_waiting(Workshop& workshop);
   void count(const Completion& completion);
 

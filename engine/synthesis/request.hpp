@@ -2,7 +2,9 @@
 // its request; it never sees the cache, the world or the renderer.
 #pragma once
 
+#include <any>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "engine/models/registry.hpp"
@@ -22,6 +24,11 @@ struct Request {
   std::uint64_t owner = 0;
 };
 
+// What shall be known of a mesh when it lands, so that nobody has to read it back: any value, a
+// pure function of the request and of the mesh that was made for it. Called by modelers, several at
+// once; throws nothing.
+using Annotate = std::function<std::any(const Request&, const models::MeshView& mesh)>;
+
 struct Completion {
   MeshHandle handle;
   MeshKey key;
@@ -38,6 +45,7 @@ struct Completion {
   Work work;                             // as requested, for CostModel::observe()
   double predicted_seconds = 0;
   core::Bounds tight;
+  std::any note;                   // by the Annotate of its model, if ok and there is one
   std::uint64_t content_hash = 0;  // if the manager hashes content, else 0
 };
 

@@ -43,6 +43,7 @@ SynthesisManager::SynthesisManager(const models::Registry& registry,
   workshop_->registry = &registry;
   workshop_->clock = options.clock ? options.clock : core::monotonic_seconds;
   workshop_->hash_content = options.hash_content;
+  workshop_->annotate = options.annotate;
   for (unsigned i = 0; i < modeler_count_for(options.modelers); ++i) {
     if (!start_modeler()) break;
   }

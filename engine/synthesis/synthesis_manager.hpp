@@ -24,6 +24,9 @@ struct SynthesisOptions {
   double watchdog_seconds = 10;        // a request that runs longer is given up; 0: never
   unsigned max_replacements = 8;       // modelers started in place of hung ones, altogether
   std::function<double()> clock = {};  // thread-safe; default: core::monotonic_seconds
+  // What is noted of meshes, by model index; empty ones and those beyond the end note nothing. What
+  // they refer to outlives the manager as the registry does.
+  std::vector<Annotate> annotate = {};
 };
 
 // Number of modelers that `requested` (0: default) stands for on this machine.

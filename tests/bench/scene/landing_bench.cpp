@@ -1,7 +1,9 @@
-// What the main thread does with a mesh that lands beyond book-keeping: the boxes of the parts of a
-// merged mesh, the lines of a node's ground.
+// What the main thread must know of a mesh that lands: what its modeler takes to note it (the boxes
+// of the parts of a merged mesh, the lines of a node's ground), and what the main thread takes to
+// have it from there.
 #include <benchmark/benchmark.h>
 
+#include <any>
 #include <memory>
 #include <span>
 #include <vector>
@@ -60,6 +62,22 @@ void relief_of_ground(benchmark::State& state) {
         ground_relief(mesh.vertices, grid, box.min.y, box.max.y - box.min.y, 0.0F));
 }
 BENCHMARK(relief_of_ground)->ArgName("level")->DenseRange(0, 1);
+
+// Of meshes that landed long after they were made: more notes than caches hold.
+template <class T>
+void note_lands(benchmark::State& state) {
+  constexpr std::size_t kNotes = 20'000;
+  const std::vector<std::any> notes(kNotes, std::any(T{}));
+  T component;
+  std::size_t next = 0;
+  for (auto _ : state) {
+    component = *std::any_cast<T>(&notes[next]);
+    benchmark::DoNotOptimize(component);
+    next = (next + 7919) % kNotes;
+  }
+}
+BENCHMARK(note_lands<GroundRelief>);
+BENCHMARK(note_lands<MeshParts>);
 
 }  // namespace
 }  // namespace psygen::scene

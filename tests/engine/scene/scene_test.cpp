@@ -322,10 +322,10 @@ std::map<std::uint64_t, int> check_parts(Scene& scene) {
         for (std::size_t i = 0; i < parts.size(); ++i) {
           if (demands[i].drawn_level == kNoLevel) continue;
           drawn[owner_of(entities[i])] = demands[i].drawn_level;
-          const MeshParts now =
-              mesh_parts(core::vertices_of<core::ModelVertex>(*s.memory, meshes[i].range),
-                         s.memory->indices(meshes[i].range),
-                         core::Bounds::around(placed[i].box_center, placed[i].box_half_extent));
+          const MeshParts now = mesh_parts(
+              core::vertices_of<core::ModelVertex>(s.memory->vertex_bytes(meshes[i].range)),
+              s.memory->indices(meshes[i].range),
+              core::Bounds::around(placed[i].box_center, placed[i].box_half_extent));
           EXPECT_GT(parts[i].count, 0u);
           EXPECT_EQ(parts[i].count, now.count);
           EXPECT_EQ(parts[i].indices_each, now.indices_each);

@@ -1,0 +1,20 @@
+// What the modelers note of meshes while they have them in their caches, so that the main thread
+// never reads geometry: the relief of a node's ground (GroundRelief) and the parts of the mesh of
+// everything on a node (MeshParts). Of single models nothing. Notes are pure functions of a mesh
+// and stay in its record (synthesis::MeshRecord::note) as long as it is resident.
+#pragma once
+
+#include <vector>
+
+#include "engine/scene/state.hpp"
+
+namespace psygen::scene {
+
+// How far the ground of a node may lie off its mesh of this level of the terrain type, in metres.
+float possible_error_m(const WorldFacts& facts, int node_level, int mesh_level);
+
+// For synthesis::SynthesisOptions. `facts` are complete, do not change from here on, and outlive
+// the modelers.
+std::vector<synthesis::Annotate> mesh_notes(const WorldFacts& facts);
+
+}  // namespace psygen::scene

@@ -1,0 +1,125 @@
+#include "engine/scene/mesh_notes.hpp"
+
+#include <algorithm>
+
+#include "engine/models/terrain.hpp"
+#include "engine/scene/mesh_parts.hpp"
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+bool same(const GroundRelief& a, const GroundRelief& b) {
+  return a.points == b.points && a.place == b.place && a.height_m == b.height_m &&
+         a.top_m == b.top_m;
+}
+
+struct Noted {
+  std::size_t ground = 0, fine = 0, merged = 0, single = 0;
+};
+
+// Holds the notes of everything in the cache against what is in memory.
+Noted check_records(const State& s) {
+  Noted noted;
+  for (const synthesis::MeshRecord& record : s.synthesis.cache->records()) {
+    if (record.state != synthesis::MeshState::kReady) {
+      EXPECT_FALSE(record.note.has_value());
+    } else if (record.key.model == s.facts.world.terrain_model) {
+      EXPECT_NE(std::any_cast<GroundRelief>(&record.note), nullptr);
+      ++noted.ground;
+    } else if (record.key.model == s.facts.merged_model) {
+      const auto* parts = std::any_cast<MeshParts>(&record.note);
+      ++noted.merged;
+      if (parts == nullptr) {
+        ADD_FAILURE() << "no parts";
+        continue;
+      }
+      const MeshParts now =
+          mesh_parts(core::vertices_of<core::ModelVertex>(s.memory->vertex_bytes(record.range)),
+                     s.memory->indices(record.range), {});
+      EXPECT_EQ(parts->count, now.count);
+      EXPECT_EQ(parts->index_count, now.index_count);
+    } else {
+      EXPECT_FALSE(record.note.has_value());
+      ++noted.single;
+    }
+  }
+  return noted;
+}
+
+// Holds the relief of every node with ground against the mesh that it draws; adds to `noted`.
+void check_reliefs(Scene& scene, Noted& noted) {
+  const State& s = scene.state();
+  s.entities.each<const Node, const GroundRelief, const Demand, const Mesh, const Source>(
+      [&](std::span<const ecs::Entity>, std::span<const Node> nodes,
+          std::span<const GroundRelief> reliefs, std::span<const Demand> demands,
+          std::span<const Mesh> meshes, std::span<const Source> sources) {
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+          if (demands[i].drawn_level == kNoLevel) continue;
+          const int level = sources[i].first_level + demands[i].drawn_level;
+          const NodeLevel& facts = s.facts.levels[nodes[i].at.level];
+          // Ground of a block that its finest may take the place of.
+          const bool coarse = nodes[i].at.level == 0 && level > 0;
+          const float lower_by_m = coarse ? static_cast<float>(2.5 * facts.ground_error_m) : 0.0F;
+          const GroundRelief now = ground_relief(
+              core::vertices_of<core::TerrainVertex>(s.memory->vertex_bytes(meshes[i].range)),
+              s.facts.grids[static_cast<std::size_t>(level)], facts.bounds.min.y,
+              facts.bounds.max.y - facts.bounds.min.y, lower_by_m);
+          EXPECT_GT(reliefs[i].points, 0u);
+          EXPECT_TRUE(same(reliefs[i], now)) << int{nodes[i].at.level} << " " << level;
+          EXPECT_LE(nodes[i].low_m, meshes[i].tight.min.y);
+          EXPECT_GE(nodes[i].high_m, meshes[i].tight.max.y);
+          ++(level == 0 ? noted.fine : noted.ground);
+        }
+      });
+}
+
+TEST(MeshNotes, AreThoseOfTheMeshesAndThereWhenMeshesAreFoundAgain) {
+  Settings settings = small_settings();
+  settings.view_distance_m = 1000;
+  const auto scene = make_scene(settings);
+  scene->settle(pose_at(256, 256));
+  const std::uint64_t evictions = scene->state().synthesis.cache->stats().evictions;
+  for (const std::int32_t block : {256, 330, 256}) {  // away from all blocks and back
+    const std::uint64_t made = scene->settle(pose_at(block, 256));
+    const Noted kept = check_records(scene->state());
+    EXPECT_GT(kept.ground, 100u);
+    EXPECT_GT(kept.merged, 20u);
+    EXPECT_GT(kept.single, 100u);
+    Noted drawn;
+    check_reliefs(*scene, drawn);
+    EXPECT_GT(drawn.ground, 100u);
+    EXPECT_GT(drawn.fine, 3u);
+    if (block == 256) {
+      EXPECT_EQ(made, 0u);  // everything is found in the cache
+    }
+  }
+  EXPECT_EQ(scene->state().synthesis.cache->stats().evictions, evictions);
+}
+
+TEST(MeshNotes, AreThereInEveryParadigm) {
+  for (const Paradigm paradigm : {Paradigm::kParallelLazyAmplification, Paradigm::kLazyEvaluation,
+                                  Paradigm::kDataAmplification}) {
+    Settings settings = small_settings();
+    settings.paradigm = paradigm;
+    if (paradigm == Paradigm::kDataAmplification) {
+      settings.view_distance_m = 64;
+      settings.budget_bytes = 512ull << 20;
+    }
+    const auto scene = make_scene(settings);
+    if (paradigm == Paradigm::kDataAmplification) {
+      ASSERT_TRUE(scene->amplify(pose_at(256, 256)));
+    }
+    for (int i = 0; i < 20; ++i) {
+      tick_at(*scene, pose_at(256, 256));
+      scene->state().synthesis.manager->wait_all();
+    }
+    Noted noted = check_records(scene->state());
+    EXPECT_GT(noted.ground, 10u);
+    check_reliefs(*scene, noted);
+    EXPECT_GT(noted.fine, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace psygen::scene
