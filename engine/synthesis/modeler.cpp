@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/core/clock.hpp"
@@ -60,16 +61,31 @@ void Modeler::perform(Workshop& workshop, const Request& request) {
   execute(workshop, cpu_mark);
 }
 
-// Writes the mesh and what is noted of it.
+// Writes the mesh and what is noted of it. It is read where it is cached: destinations may
+// be slow to read, and a copy costs no more than writing in place.
 void Modeler::make_mesh(const Workshop& workshop, Completion& c) {
   const models::ModelIndex model = current_.key.model;
+  const bool noted = model < workshop.annotate.size() && workshop.annotate[model];
+  const models::MeshView& destination = current_.destination;
+  const models::MeshView mesh = noted ? scratch_for(destination) : destination;
   SynthesisOutcome outcome = synthesize_guarded((*workshop.registry)[model], current_.parameters,
-                                                current_.key.level, current_.destination);
+                                                current_.key.level, mesh);
   c.ok = outcome.ok;
   c.tight = outcome.tight;
   c.error = std::move(outcome.error);
-  if (!c.ok || model >= workshop.annotate.size() || !workshop.annotate[model]) return;
-  c.note = workshop.annotate[model](current_, current_.destination);
+  if (!c.ok || !noted) return;
+  c.note = workshop.annotate[model](current_, mesh);
+  std::ranges::copy(mesh.vertices, destination.vertices.begin());
+  std::ranges::copy(mesh.indices, destination.indices.begin());
+}
+
+models::MeshView Modeler::scratch_for(const models::MeshView& destination) {
+  const std::size_t vertex_bytes = destination.vertices.size();
+  const std::size_t bytes = vertex_bytes + destination.indices.size_bytes();
+  if (scratch_.size() < bytes) scratch_.resize(bytes);
+  return {{scratch_.data(), vertex_bytes},
+          {reinterpret_cast<std::uint16_t*>(scratch_.data() + vertex_bytes),
+           destination.indices.size()}};
 }
 
 bool Modeler::execute(Workshop& workshop, double& cpu_mark) {

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -82,6 +83,7 @@ class Modeler {
   // False if the request was given up meanwhile.
   bool execute(Workshop& workshop, double& cpu_mark);
   void make_mesh(const Workshop& workshop, Completion& c);
+  models::MeshView scratch_for(const models::MeshView& destination);
   void wake_waiting(Workshop& workshop);
   void count(const Completion& completion);
 
@@ -89,6 +91,7 @@ class Modeler {
   const std::shared_ptr<PlanBoard::Reader> reader_;
   Request current_;  // written while idle only
   std::uint64_t serial_ = 0;
+  std::vector<std::byte> scratch_;                       // where meshes are made that are noted
   alignas(64) std::atomic<std::uint64_t> state_{kIdle};  // serial number of the request · 4 + phase
   std::atomic<double> started_s_{0};
   std::atomic<std::uint64_t> finished_{0};

@@ -25,7 +25,8 @@ struct SynthesisOptions {
   unsigned max_replacements = 8;       // modelers started in place of hung ones, altogether
   std::function<double()> clock = {};  // thread-safe; default: core::monotonic_seconds
   // What is noted of meshes, by model index; empty ones and those beyond the end note nothing. What
-  // they refer to outlives the manager as the registry does.
+  // they refer to outlives the manager as the registry does. Meshes of these models are synthesised
+  // in memory of the modeler's own and copied to their destinations, which may be slow to read.
   std::vector<Annotate> annotate = {};
 };
 

@@ -7,6 +7,7 @@
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/landing.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
+#include "engine/synthesis/synthesize.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 
 namespace psygen::synthesis {
@@ -129,6 +130,30 @@ TEST_F(NoteTest, IsNotMadeOfOtherTypesNorOfWhatFailed) {
   done = run({request(3)});
   EXPECT_TRUE(done[0].ok);
   EXPECT_FALSE(done[0].note.has_value());
+}
+
+// Destinations may be slow to read: the hook sees the mesh elsewhere, and it arrives as it is.
+TEST_F(NoteTest, IsMadeBeforeTheMeshIsCopiedToItsDestination) {
+  std::vector<const std::byte*> places;
+  const Annotate annotate = options.annotate[kNoted];
+  options.annotate[kNoted] = [&](const Request& r, const models::MeshView& mesh) {
+    places.push_back(mesh.vertices.data());
+    EXPECT_EQ(mesh.vertices.size(), r.destination.vertices.size());
+    EXPECT_EQ(mesh.indices.size(), r.destination.indices.size());
+    return annotate(r, mesh);
+  };
+  const std::vector<Request> plan = {request(1), request(2)};
+  const std::vector<Completion> done = run(plan);
+  ASSERT_EQ(done.size(), 2u);
+  ASSERT_EQ(places.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NE(places[i], plan[i].destination.vertices.data());
+    const auto alone = HeapDestination::make(registry[kNoted], plan[i].parameters, 0);
+    ASSERT_TRUE(synthesize_guarded(registry[kNoted], plan[i].parameters, 0, alone->view()).ok);
+    EXPECT_EQ(content_hash(plan[i].key, plan[i].destination),
+              content_hash(plan[i].key, alone->view()));
+    EXPECT_EQ(seen(done[i].note)->hash, done[i].content_hash);
+  }
 }
 
 TEST_F(NoteTest, LandsWithItsMeshAndIsThereAtEveryHit) {
