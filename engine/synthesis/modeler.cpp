@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "engine/core/clock.hpp"
@@ -61,22 +62,29 @@ void Modeler::perform(Workshop& workshop, const Request& request) {
   execute(workshop, cpu_mark);
 }
 
-// Writes the mesh and what is noted of it. It is read where it is cached: destinations may
-// be slow to read, and a copy costs no more than writing in place.
-void Modeler::make_mesh(const Workshop& workshop, Completion& c) {
-  const models::ModelIndex model = current_.key.model;
-  const bool noted = model < workshop.annotate.size() && workshop.annotate[model];
-  const models::MeshView& destination = current_.destination;
-  const models::MeshView mesh = noted ? scratch_for(destination) : destination;
-  SynthesisOutcome outcome = synthesize_guarded((*workshop.registry)[model], current_.parameters,
-                                                current_.key.level, mesh);
+bool Modeler::write_mesh(const Workshop& workshop, const models::MeshView& mesh, Completion& c) {
+  SynthesisOutcome outcome = synthesize_guarded((*workshop.registry)[current_.key.model],
+                                                current_.parameters, current_.key.level, mesh);
   c.ok = outcome.ok;
   c.tight = outcome.tight;
   c.error = std::move(outcome.error);
-  if (!c.ok || !noted) return;
-  c.note = workshop.annotate[model](current_, mesh);
-  std::ranges::copy(mesh.vertices, destination.vertices.begin());
-  std::ranges::copy(mesh.indices, destination.indices.begin());
+  return c.ok;
+}
+
+// Writes the mesh and what is noted of it. It is read where it is cached: destinations may
+// be slow to read, and a copy costs no more than writing in place.
+void Modeler::write_noted_mesh(const Workshop& workshop, const Annotate& annotate, Completion& c) {
+  const models::MeshView& destination = current_.destination;
+  try {
+    const models::MeshView mesh = scratch_for(destination);
+    if (!write_mesh(workshop, mesh, c)) return;
+    c.note = annotate(current_, mesh);
+    std::ranges::copy(mesh.vertices, destination.vertices.begin());
+    std::ranges::copy(mesh.indices, destination.indices.begin());
+  } catch (const std::exception& e) {
+    c.ok = false;
+    c.error = fmt::format("nothing could be noted of a mesh: {}", e.what());
+  }
 }
 
 models::MeshView Modeler::scratch_for(const models::MeshView& destination) {
@@ -95,7 +103,12 @@ bool Modeler::execute(Workshop& workshop, double& cpu_mark) {
   ++serial_;
   state_.store(serial_ * 4 + kWorking, std::memory_order_release);
 
-  make_mesh(workshop, c);
+  const models::ModelIndex model = current_.key.model;
+  if (model < workshop.annotate.size() && workshop.annotate[model]) {
+    write_noted_mesh(workshop, workshop.annotate[model], c);
+  } else {
+    write_mesh(workshop, current_.destination, c);
+  }
   const double cpu = core::thread_cpu_seconds();
   c.seconds = cpu - cpu_mark;
   cpu_mark = cpu;

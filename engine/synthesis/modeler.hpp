@@ -82,7 +82,8 @@ class Modeler {
   enum Phase : std::uint64_t { kIdle = 0, kWorking = 1, kGivenUp = 2, kPhaseMask = 3 };
   // False if the request was given up meanwhile.
   bool execute(Workshop& workshop, double& cpu_mark);
-  void make_mesh(const Workshop& workshop, Completion& c);
+  bool write_mesh(const Workshop& workshop, const models::MeshView& mesh, Completion& c);
+  void write_noted_mesh(const Workshop& workshop, const Annotate& annotate, Completion& c);
   models::MeshView scratch_for(const models::MeshView& destination);
   void wake_waiting(Workshop& workshop);
   void count(const Completion& completion);

@@ -26,7 +26,7 @@ struct Request {
 
 // What shall be known of a mesh when it lands, so that nobody has to read it back: any value, a
 // pure function of the request and of the mesh that was made for it. Called by modelers, several at
-// once; throws nothing.
+// once. A std::exception fails the request.
 using Annotate = std::function<std::any(const Request&, const models::MeshView& mesh)>;
 
 struct Completion {

@@ -132,6 +132,21 @@ TEST_F(NoteTest, IsNotMadeOfOtherTypesNorOfWhatFailed) {
   EXPECT_FALSE(done[0].note.has_value());
 }
 
+TEST_F(NoteTest, AHookThatThrowsFailsItsRequestOnly) {
+  options.annotate[kNoted] = [](const Request& asked, const models::MeshView&) {
+    if (asked.owner == 1) throw std::bad_alloc();
+    return std::any(asked.owner);
+  };
+  std::vector<Completion> done = run({request(1), request(2)});
+  ASSERT_EQ(done.size(), 2u);
+  EXPECT_FALSE(done[0].ok);
+  EXPECT_NE(done[0].error.find("noted"), std::string::npos);
+  EXPECT_FALSE(done[0].note.has_value());
+  EXPECT_TRUE(done[1].ok);
+  EXPECT_EQ(land(done, cache, nullptr).failed, 1u);
+  EXPECT_EQ(cache.get(done[0].handle)->state, MeshState::kFailed);
+}
+
 // Destinations may be slow to read: the hook sees the mesh elsewhere, and it arrives as it is.
 TEST_F(NoteTest, IsMadeBeforeTheMeshIsCopiedToItsDestination) {
   std::vector<const std::byte*> places;
