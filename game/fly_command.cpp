@@ -84,6 +84,9 @@ FlyCommand::FlyCommand(CLI::App& cli)
        "Hold this frame rate with a larger error (up to 4 times); 0: fixed error")
       ->default_str("60 in a window, 0 headless")
       ->check(number_between(0, 1000));
+  c.add_option("--fade", scene.fade_seconds, "Seconds in which models come and go; 0: at once")
+      ->capture_default_str()
+      ->check(number_between(0, 60));
   c.add_option_function<std::string>(
        "--occlusion", [this](const std::string& text) { options_.scene.occlusion = text == "on"; },
        "Leave out what lies behind ridges: on, off")
