@@ -12,6 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "engine/models/ridged_ends-inl.hpp"
 #include "engine/models/ridged_lattice-inl.hpp"
 #include "engine/models/ridged_row-inl.hpp"
 #include "engine/models/ridged_warp-inl.hpp"
@@ -42,9 +43,9 @@ struct Workspace {
     c.left_x = f + 6 * width;
     c.right_x = f + 7 * width;
     c.fade = f + 8 * width;
-    c.key = u;
-    c.first = u + 2 * width + kPad;
-    c.slot = slots + index * width;
+    c.lines.key = u;
+    c.lines.first = u + 2 * width + kPad;
+    c.lines.slot = slots + index * width;
     axis.place(octave.step, octave.origin_x, positions);
     locate(positions, width, cells, fractions, c.fade);
     const FloatTag d;
@@ -54,71 +55,10 @@ struct Workspace {
       hn::Store(hn::Mul(t, hn::Sub(one, fade)), d, c.left_x + i);
       hn::Store(hn::Mul(hn::Sub(t, one), fade), d, c.right_x + i);
     }
-    constexpr std::uint64_t kCell = std::uint64_t{1} << 32;
-    c.place_lattice(cells,
-                    axis.even && axis.distance * octave.step <= kCell && axis.distance <= kCell &&
-                        octave.step <= kCell,
-                    octave.key_x);
+    c.lines.place(cells, width, axis.contiguous(octave.step), octave.key_x);
     clear_vectors(c.upper, 2 * width);
   }
 };
-
-// The rows' positions on the lattices: kPad elements for each row, of which one per octave is used.
-// All computed before the first row of samples, which would otherwise wait for them.
-struct RowOctaves {
-  HWY_ALIGN std::uint32_t cell[kMaxNoiseAxis * kPad];
-  HWY_ALIGN float fraction[kMaxNoiseAxis * kPad];
-  HWY_ALIGN float fade[kMaxNoiseAxis * kPad];
-  HWY_ALIGN float next_limit[kPad];
-  std::uint32_t changed[kMaxNoiseAxis];  // a bit for each octave in another cell than a row before
-
-  RowOctaves(const RidgedKernel& kernel, const Axis& rows) {
-    const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
-    HWY_ALIGN std::uint64_t position[kMaxNoiseAxis * kPad];
-    for (std::size_t o = 0; o < octave_count; ++o)
-      next_limit[o] = o + 1 < octave_count ? kernel.octaves[o + 1].limit : 0.0F;
-    place(kernel, rows, position);
-    locate(position, rows.at.size() * kPad, cell, fraction, fade);
-    const std::uint32_t all = (1U << octave_count) - 1;
-    changed[0] = all;
-    for (std::size_t r = 1; r < rows.at.size(); ++r)
-      changed[r] = different(cell + r * kPad, cell + (r - 1) * kPad) & all;
-  }
-
- private:
-  static void place(const RidgedKernel& kernel, const Axis& rows, std::uint64_t* position) {
-    const hn::CappedTag<std::uint64_t, kPad / 2> d;
-    const std::size_t computed = rows.even ? 1 : rows.at.size();
-    HWY_ALIGN std::uint64_t advance[kPad];
-    for (std::size_t o = 0; o < kPad; ++o) {
-      const RidgedOctave& octave = kernel.octaves[o];
-      advance[o] = rows.distance * octave.step;
-      for (std::size_t r = 0; r < computed; ++r)
-        position[r * kPad + o] =
-            static_cast<std::uint64_t>(rows.at[r]) * octave.step + octave.origin_z;
-    }
-    if (computed == rows.at.size()) return;
-    for (std::size_t o = 0; o < kPad; o += hn::Lanes(d)) {
-      const auto by = hn::Load(d, advance + o);
-      auto now = hn::Load(d, position + o);
-      for (std::size_t r = 1; r < rows.at.size(); ++r) {
-        now = hn::Add(now, by);
-        hn::Store(now, d, position + r * kPad + o);
-      }
-    }
-  }
-  static std::uint32_t different(const std::uint32_t* a, const std::uint32_t* b) {
-    const UintTag du;
-    std::uint32_t result = 0;
-    for (std::size_t o = 0; o < kPad; o += hn::Lanes(du)) {
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(du, hn::Ne(hn::Load(du, a + o), hn::Load(du, b + o)), bits);
-      result |= static_cast<std::uint32_t>(bits[0] | bits[1] << 8) << o;
-    }
-    return result;
-  }
-};
-static_assert(kPad == kMaxOctaves);
 
 // Moves the octaves whose samples lie in rows on to the lattice cells of row r.
 void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
@@ -127,7 +67,8 @@ void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
     const auto o = static_cast<std::size_t>(std::countr_zero(changed));
     ColumnOctave& octave = memory.columns[o];
     GradientRow& gradients = memory.gradients[o];
-    const std::uint32_t cell = along_z.cell[r * kPad + o], key = cell + kernel.octaves[o].key_z;
+    const std::uint32_t cell = along_z.cell[o * along_z.stride + r],
+                        key = cell + kernel.octaves[o].key_z;
     const bool next = r > 0 && cell == octave.lattice_row + 1;
     if (!next) raise_to(octave, gradients, key, kernel.gradient_length);
     raise_to(octave, gradients, key + 1, kernel.gradient_length);
@@ -139,33 +80,40 @@ void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
 
 // `warp` may be null.
 void write_rows(const RidgedKernel& kernel, std::span<const std::int64_t> rows,
-                std::size_t column_count, const Warp* warp, Workspace& memory, float* values,
-                std::size_t stride) {
-  const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
-  const RowOctaves along_z(kernel, Axis(rows));
-  RowKernel row_kernel{
-      memory.columns, {along_z.next_limit, octave_count, kernel.offset, kernel.result_scale}, {}};
+                const RowOctaves& along_z, const RowSettings& settings, std::size_t column_count,
+                const Warp* warp, Workspace& memory, float* values, std::size_t stride) {
+  RowKernel row_kernel{memory.columns, settings, {}};
   const std::uint32_t in_rows = warp == nullptr ? ~0U : ~0U << warp->octave_count;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (warp != nullptr) warp->write(rows[r], kernel.cells_ratio, memory.columns);
     move_to(r, in_rows, kernel, along_z, memory);
-    row_kernel.row = {along_z.fraction + r * kPad, along_z.fade + r * kPad};
+    row_kernel.row = {along_z.fraction + r, along_z.fade + r, along_z.stride};
     row_kernel.run(column_count, values + r * stride);
   }
 }
 
 void evaluate(const RidgedKernel& kernel, std::span<const std::int64_t> columns,
               std::span<const std::int64_t> rows, float* values, std::size_t stride) {
+  const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
+  const bool warped = kernel.warp > 0;
+  const RowOctaves along_z(kernel, Axis(rows));
+  const std::size_t ends =
+      warped || !along_z.contiguous ? 0 : EndColumns::count(columns.size(), rows.size());
+  const std::size_t main_count = columns.size() - ends;
+  const RowSettings settings{along_z.next_limit, octave_count, kernel.offset, kernel.result_scale};
+  if (ends > 0)
+    EndColumns(kernel, along_z, columns.last(ends))
+        .write(settings, rows.size(), values + main_count, stride);
   Workspace memory;
-  const Axis column_axis(columns);
-  for (std::size_t o = 0; o < static_cast<std::size_t>(kernel.octave_count); ++o)
+  const Axis column_axis(columns.first(main_count));
+  for (std::size_t o = 0; o < octave_count; ++o)
     memory.prepare(o, kernel.octaves[o], column_axis);
-  if (!(kernel.warp > 0))
-    return write_rows(kernel, rows, columns.size(), nullptr, memory, values, stride);
+  if (!warped)
+    return write_rows(kernel, rows, along_z, settings, main_count, nullptr, memory, values, stride);
   const Warp warp(kernel, column_axis);
   for (std::size_t o = 0; o < warp.octave_count; ++o)
     memory.columns[o].clear();
-  write_rows(kernel, rows, columns.size(), &warp, memory, values, stride);
+  write_rows(kernel, rows, along_z, settings, main_count, &warp, memory, values, stride);
 }
 
 }  // namespace psygen::models::HWY_NAMESPACE

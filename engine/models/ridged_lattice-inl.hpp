@@ -53,6 +53,11 @@ struct Axis {
   std::uint64_t difference(std::size_t i) const {
     return static_cast<std::uint64_t>(at[i]) - static_cast<std::uint64_t>(at[i - 1]);
   }
+  // Whether each lies in the lattice cell of the one before or in the next.
+  bool contiguous(std::uint64_t step) const {
+    constexpr std::uint64_t kCell = std::uint64_t{1} << 32;
+    return even && distance * step <= kCell && distance <= kCell && step <= kCell;
+  }
 
   // 0, `of`, 2 · `of`, …: with the bits of a lane's number, for few sets multiply 64 bits, and
   // loading what single numbers have just been written to stalls.
@@ -117,20 +122,51 @@ HWY_INLINE void clear_vectors(float* to, std::size_t count) {
     hn::Store(hn::Zero(d), d, to + i);
 }
 
+// The lattice lines of an octave around the samples of an axis: keys before mixing; those of the
+// lines before samples i … start at first[block of i], and slot[i] counts from there, less than the
+// lanes of a vector. Those of the lines behind are `to_next` further on. Narrow: all keys fit one
+// vector, all blocks start at 0.
+struct LatticeLines {
+  std::uint32_t* key;
+  std::size_t key_count, to_next;
+  std::uint32_t* first;
+  std::int32_t* slot;
+  bool narrow;
+
+  // From the cells of `width` samples, padded.
+  void place(const std::uint32_t* HWY_RESTRICT cell, std::size_t width, bool contiguous,
+             std::uint32_t key_offset) {
+    const UintTag du;
+    const IntTag di;
+    const std::size_t lanes = hn::Lanes(du);
+    key_count = contiguous ? cell[width - 1] - cell[0] + 2 : 2 * width;
+    to_next = contiguous ? 1 : width;
+    narrow = contiguous && key_count <= lanes;
+    for (std::size_t i = 0; contiguous && i < key_count; i += lanes)
+      hn::Store(hn::Add(hn::Iota(du, 0),
+                        hn::Set(du, cell[0] + key_offset + static_cast<std::uint32_t>(i))),
+                du, key + i);
+    for (std::size_t i = 0; i < width; i += lanes) {
+      const auto cells = hn::Load(du, cell + i);
+      const std::uint32_t start = narrow ? cell[0] : cell[i];
+      first[i] = contiguous ? start - cell[0] : static_cast<std::uint32_t>(i);
+      const auto slots =
+          contiguous ? hn::BitCast(di, hn::Sub(cells, hn::Set(du, start))) : hn::Iota(di, 0);
+      hn::Store(slots, di, slot + i);
+      if (contiguous) continue;
+      hn::Store(hn::Add(cells, hn::Set(du, key_offset)), du, key + i);
+      hn::Store(hn::Add(cells, hn::Set(du, key_offset + 1)), du, key + width + i);
+    }
+  }
+};
+
 // One octave on the columns of a call, each array `stride` elements.
 struct ColumnOctave {
   std::size_t stride;
   // Along x, of each column: how much the gradients' x to the left and right and z to the right
   // count.
   float *left_x, *right_x, *fade;
-  // Lattice columns: keys before mixing; those to the left of column i start at first[block of i],
-  // and slot[i] counts from there, less than the lanes of a vector. Those to the right are
-  // `to_right` further on. Narrow: all keys fit one vector, all blocks start at 0.
-  std::uint32_t* key;
-  std::size_t key_count, to_right;
-  std::uint32_t* first;
-  std::int32_t* slot;
-  bool narrow;
+  LatticeLines lines;
   // Gradients blended along x, of the lower and the upper lattice row: pairs of vectors, a vector
   // of x and one of z. Pairs lie in one line of the cache, in different banks.
   float *lower, *upper;
@@ -140,30 +176,6 @@ struct ColumnOctave {
   void clear() const {
     clear_vectors(lower, 2 * stride);
     clear_vectors(rise, 2 * stride);
-  }
-
-  // From the cells of the columns; `contiguous` where each is that of the column before or the
-  // next.
-  void place_lattice(const std::uint32_t* HWY_RESTRICT cell, bool contiguous, std::uint32_t key_x) {
-    const UintTag du;
-    const IntTag di;
-    const std::size_t lanes = hn::Lanes(du);
-    key_count = contiguous ? cell[stride - 1] - cell[0] + 2 : 2 * stride;
-    to_right = contiguous ? 1 : stride;
-    narrow = contiguous && key_count <= lanes;
-    for (std::size_t i = 0; contiguous && i < key_count; i += lanes)
-      hn::Store(hn::Iota(du, cell[0] + key_x + static_cast<std::uint32_t>(i)), du, key + i);
-    for (std::size_t i = 0; i < stride; i += lanes) {
-      const auto cells = hn::Load(du, cell + i);
-      const std::uint32_t start = narrow ? cell[0] : cell[i];
-      first[i] = contiguous ? start - cell[0] : static_cast<std::uint32_t>(i);
-      const auto slots =
-          contiguous ? hn::BitCast(di, hn::Sub(cells, hn::Set(du, start))) : hn::Iota(di, 0);
-      hn::Store(slots, di, slot + i);
-      if (contiguous) continue;
-      hn::Store(hn::Add(cells, hn::Set(du, key_x)), du, key + i);
-      hn::Store(hn::Add(cells, hn::Set(du, key_x + 1)), du, key + stride + i);
-    }
   }
 };
 
@@ -209,27 +221,26 @@ struct GradientRow {
     const UintTag du;
     const auto row_hash = hn::Set(du, models::mix32(row_key));
     const Float length = hn::Set(d, gradient_length);
-    for (std::size_t i = 0; i < column.key_count; i += hn::Lanes(d)) {
-      const Gradient g = gradient(hn::Load(du, column.key + i), row_hash, length);
+    for (std::size_t i = 0; i < column.lines.key_count; i += hn::Lanes(d)) {
+      const Gradient g = gradient(hn::Load(du, column.lines.key + i), row_hash, length);
       hn::Store(g.x, d, x + i);
       hn::Store(g.z, d, z + i);
     }
   }
 };
 
-// Gradients left and right of the columns of one block.
+// Gradients on the lattice lines before and behind the samples of one block.
 struct Neighbours {
   Float left_x, left_z, right_x, right_z;
 };
-HWY_INLINE Neighbours neighbours(const ColumnOctave& o, const GradientRow& gradients,
-                                 hn::Vec<IntTag> slots, std::size_t left) {
+HWY_INLINE Neighbours neighbours(const float* x, const float* z, hn::Vec<IntTag> slots,
+                                 std::size_t left, std::size_t right) {
   const FloatTag d;
   const auto indices = hn::IndicesFromVec(d, slots);
-  const std::size_t right = left + o.to_right;
-  return {hn::TableLookupLanes(hn::LoadU(d, gradients.x + left), indices),
-          hn::TableLookupLanes(hn::LoadU(d, gradients.z + left), indices),
-          hn::TableLookupLanes(hn::LoadU(d, gradients.x + right), indices),
-          hn::TableLookupLanes(hn::LoadU(d, gradients.z + right), indices)};
+  return {hn::TableLookupLanes(hn::LoadU(d, x + left), indices),
+          hn::TableLookupLanes(hn::LoadU(d, z + left), indices),
+          hn::TableLookupLanes(hn::LoadU(d, x + right), indices),
+          hn::TableLookupLanes(hn::LoadU(d, z + right), indices)};
 }
 HWY_INLINE Neighbours narrow_neighbours(Float x, Float z, hn::Vec<IntTag> slots) {
   const FloatTag d;
@@ -249,9 +260,11 @@ void raise(ColumnOctave& octave, const GradientRow& gradients) {
   const IntTag di;
   const Float all_x = hn::Load(d, gradients.x), all_z = hn::Load(d, gradients.z);
   for (std::size_t i = 0; i < o.stride; i += hn::Lanes(d)) {
-    const auto slots = hn::Load(di, o.slot + i);
-    const Neighbours g = kNarrow ? narrow_neighbours(all_x, all_z, slots)
-                                 : neighbours(o, gradients, slots, o.first[i]);
+    const auto slots = hn::Load(di, o.lines.slot + i);
+    const std::size_t left = o.lines.first[i];
+    const Neighbours g =
+        kNarrow ? narrow_neighbours(all_x, all_z, slots)
+                : neighbours(gradients.x, gradients.z, slots, left, left + o.lines.to_next);
     const Float x = hn::Add(hn::Mul(g.left_x, hn::Load(d, o.left_x + i)),
                             hn::Mul(g.right_x, hn::Load(d, o.right_x + i)));
     const Float z =
@@ -269,7 +282,7 @@ void raise(ColumnOctave& octave, const GradientRow& gradients) {
 
 void raise_to(ColumnOctave& octave, GradientRow& gradients, std::uint32_t row_key, float length) {
   gradients.hold(octave, row_key, length);
-  octave.narrow ? raise<true>(octave, gradients) : raise<false>(octave, gradients);
+  octave.lines.narrow ? raise<true>(octave, gradients) : raise<false>(octave, gradients);
 }
 
 }  // namespace psygen::models::HWY_NAMESPACE

@@ -1,0 +1,176 @@
+// Ridged noise with rows as lanes: positions of all rows, and the samples of the last columns of a
+// call, which would leave most lanes of a vector along x unused. Included once per instruction set,
+// by ridged_kernel.cpp only; hence its include guard.
+#if defined(PSYGEN_MODELS_RIDGED_ENDS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSYGEN_MODELS_RIDGED_ENDS_INL
+#undef PSYGEN_MODELS_RIDGED_ENDS_INL
+#else
+#define PSYGEN_MODELS_RIDGED_ENDS_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "engine/models/ridged_lattice-inl.hpp"
+#include "engine/models/ridged_row-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace psygen::models::HWY_NAMESPACE {
+
+// The rows' positions on the lattices, octave after octave, `stride` apart. All computed before the
+// first row of samples, which would otherwise wait for them.
+struct RowOctaves {
+  std::size_t stride;
+  HWY_ALIGN std::uint32_t cell[kMaxOctaves * kMaxNoiseAxis + kPad];
+  HWY_ALIGN float fraction[kMaxOctaves * kMaxNoiseAxis];
+  HWY_ALIGN float fade[kMaxOctaves * kMaxNoiseAxis];
+  float next_limit[kMaxOctaves];
+  bool contiguous = true;  // none skips a lattice row of any octave
+  std::uint32_t
+      changed[kMaxNoiseAxis + 1];  // a bit for each octave in another cell than a row before
+
+  RowOctaves(const RidgedKernel& kernel, const Axis& rows) : stride(padded(rows.at.size())) {
+    const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
+    HWY_ALIGN std::uint64_t position[kMaxNoiseAxis];
+    std::fill(changed + 1, changed + 1 + stride, 0U);
+    changed[0] = (1U << octave_count) - 1;
+    for (std::size_t o = 0; o < octave_count; ++o) {
+      const RidgedOctave& octave = kernel.octaves[o];
+      next_limit[o] = o + 1 < octave_count ? kernel.octaves[o + 1].limit : 0.0F;
+      contiguous = contiguous && rows.contiguous(octave.step);
+      rows.place(octave.step, octave.origin_z, position);
+      const std::size_t at = o * stride;
+      locate(position, stride, cell + at, fraction + at, fade + at);
+      find_changes(o);
+    }
+  }
+
+ private:
+  void find_changes(std::size_t o) {
+    const UintTag du;
+    const auto bit = hn::Set(du, 1U << o);
+    const std::uint32_t* const cells = cell + o * stride;
+    for (std::size_t r = 0; r < stride; r += hn::Lanes(du)) {
+      const auto differs = hn::Ne(hn::LoadU(du, cells + r + 1), hn::Load(du, cells + r));
+      const auto bits = hn::IfThenElseZero(differs, bit);
+      hn::StoreU(hn::Or(hn::LoadU(du, changed + 1 + r), bits), du, changed + 1 + r);
+    }
+  }
+};
+
+// Rows follow each other closely: none skips a lattice row of any octave.
+class EndColumns {
+ public:
+  // How many of the columns are worth it.
+  static std::size_t count(std::size_t columns, std::size_t rows) {
+    const std::size_t lanes = hn::Lanes(FloatTag()), rest = columns % lanes;
+    return rest <= kMost && columns > lanes && rows >= 16 * rest ? rest : 0;
+  }
+
+  EndColumns(const RidgedKernel& kernel, const RowOctaves& rows,
+             std::span<const std::int64_t> columns)
+      : kernel_(kernel), rows_(rows), count_(columns.size()) {
+    for (std::size_t c = 0; c < count_; ++c)
+      places_[c].find(kernel, columns[c]);
+    for (std::size_t o = 0; o < static_cast<std::size_t>(kernel.octave_count); ++o)
+      blend(o);
+  }
+
+  void write(const RowSettings& settings, std::size_t row_count, float* values,
+             std::size_t stride) const {
+    const FloatTag d;
+    HWY_ALIGN float result[kMaxNoiseAxis];
+    for (std::size_t c = 0; c < count_; ++c) {
+      for (std::size_t r = 0; r < row_count; r += hn::Lanes(d))
+        hn::Store(one(settings, c, r), d, result + r);
+      for (std::size_t r = 0; r < row_count; ++r)
+        values[r * stride + c] = result[r];
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMost = 3;
+  static constexpr std::size_t kLines = kMaxNoiseAxis + 3 * kPad;
+
+  // Of one column, on the lattice of each octave.
+  struct Place {
+    HWY_ALIGN std::uint32_t cell[kPad];
+    HWY_ALIGN float fraction[kPad], fade[kPad];
+
+    void find(const RidgedKernel& kernel, std::int64_t column) {
+      HWY_ALIGN std::uint64_t position[kPad];
+      for (std::size_t o = 0; o < kPad; ++o)
+        position[o] = static_cast<std::uint64_t>(column) * kernel.octaves[o].step +
+                      kernel.octaves[o].origin_x;
+      locate(position, kPad, cell, fraction, fade);
+    }
+  };
+
+  // Gradients on all lattice rows of an octave, blended along x at every column.
+  void blend(std::size_t o) {
+    const FloatTag d;
+    const UintTag du;
+    const RidgedOctave& octave = kernel_.octaves[o];
+    const std::uint32_t* const rows = rows_.cell + o * rows_.stride;
+    const std::size_t count = rows[rows_.stride - 1] - rows[0] + 2;
+    const Float length = hn::Set(d, kernel_.gradient_length);
+    for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+      const auto hash =
+          mix32(du, hn::Add(hn::Iota(du, 0),
+                            hn::Set(du, rows[0] + octave.key_z + static_cast<std::uint32_t>(k))));
+      const auto along = [&](std::uint32_t cell) {
+        return gradient(hn::Set(du, cell + octave.key_x), hash, length);
+      };
+      Gradient left = along(places_[0].cell[o]), right = along(places_[0].cell[o] + 1);
+      for (std::size_t c = 0; c < count_; ++c) {
+        const std::uint32_t cell = places_[c].cell[o];
+        if (c > 0 && cell != places_[c - 1].cell[o]) {
+          left = cell == places_[c - 1].cell[o] + 1 ? right : along(cell);
+          right = along(cell + 1);
+        }
+        const float t = places_[c].fraction[o], u = places_[c].fade[o];
+        hn::Store(hn::Add(hn::Mul(left.x, hn::Set(d, t * (1.0F - u))),
+                          hn::Mul(right.x, hn::Set(d, (t - 1.0F) * u))),
+                  d, x_[c][o] + k);
+        hn::Store(hn::Add(left.z, hn::Mul(hn::Set(d, u), hn::Sub(right.z, left.z))), d,
+                  z_[c][o] + k);
+      }
+    }
+  }
+
+  // The samples of a column, of one vector of rows.
+  HWY_INLINE Float one(const RowSettings& settings, std::size_t c, std::size_t r) const {
+    const FloatTag d;
+    const UintTag du;
+    const Float offset = hn::Set(d, settings.offset);
+    Float weight = hn::Set(d, 1.0F), sum = hn::Zero(d);
+    for (std::size_t o = 0; o < settings.octave_count; ++o) {
+      const std::size_t at = o * rows_.stride + r;
+      const std::size_t lower = rows_.cell[at] - rows_.cell[at - r];
+      const auto slots = hn::Sub(hn::Load(du, rows_.cell + at), hn::Set(du, rows_.cell[at]));
+      const Neighbours g =
+          neighbours(x_[c][o], z_[c][o], hn::BitCast(IntTag(), slots), lower, lower + 1);
+      const Float rise_x = hn::Sub(hn::Sub(g.right_x, g.right_z), g.left_x);
+      const Float rise_z = hn::Sub(g.right_z, g.left_z);
+      add_octave(square_of(g.left_x, g.left_z, rise_x, rise_z, hn::Load(d, rows_.fraction + at),
+                           hn::Load(d, rows_.fade + at), offset),
+                 hn::Set(d, settings.next_limit[o]), weight, sum);
+    }
+    return hn::Mul(sum, hn::Set(d, settings.scale));
+  }
+
+  const RidgedKernel& kernel_;
+  const RowOctaves& rows_;
+  const std::size_t count_;
+  Place places_[kMost];
+  HWY_ALIGN float x_[kMost][kMaxOctaves][kLines], z_[kMost][kMaxOctaves][kLines];
+};
+
+}  // namespace psygen::models::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
