@@ -1,6 +1,6 @@
 // A row of vertices at a time: heights are quantised, normals come from the samples on four sides,
 // and the heights of the next coarser level from its triangles. Heights and their weighted sums are
-// integers below 2^24, which single precision represents exactly.
+// integers below 2^24, which single precision represents exactly: fused or not, sums are the same.
 #include "engine/models/terrain_kernel.hpp"
 
 #include <algorithm>
@@ -53,42 +53,35 @@ class CoarseHeights {
         c_(surface.coarse),
         columns_(last_of(c_.phase_x) + 1),
         last_row_(last_of(c_.phase_z)),
-        ratio_(static_cast<float>(c_.ratio)) {
-    const std::size_t lanes = hn::Lanes(FloatTag());
-    std::size_t cell = 0, along = c_.phase_x;
-    for (std::size_t x = 0; x < s_.n + lanes; ++x) {
-      along_[x] = static_cast<float>(along);
-      if (x % lanes == 0) first_[x / lanes] = cell;
-      slot_[x] = static_cast<std::int32_t>(cell - first_[x / lanes]);
-      if (++along == c_.ratio && cell + 1 < columns_) {
-        along = 0;
-        ++cell;
-      }
+        ratio_(static_cast<float>(c_.ratio)),
+        across_(static_cast<float>(c_.phase_z)) {
+    quantise_samples();
+    place_columns();
+    for (std::size_t x = 0; x < s_.n; x += hn::Lanes(FloatTag())) {
+      hn::Store(height(0, x), FloatTag(), left_ + x);
+      hn::Store(height(1, x), FloatTag(), right_ + x);
     }
-    load(0);
+    find_planes(std::min<std::size_t>(1, last_row_));
   }
 
-  // Moves on to a row of vertices, from 0 without gaps.
-  void move_to(std::size_t z) {
-    const std::size_t row = (z + c_.phase_z) / c_.ratio;
-    across_ = static_cast<float>((z + c_.phase_z) % c_.ratio);
-    if (across_ != 0 && z != 0) return;
-    std::swap(near_, far_);
-    load(std::min(row + 1, last_row_));
-    find_planes();
+  // Moves on to the next row of vertices.
+  void advance() {
+    across_ += 1;
+    if (across_ < ratio_) return;
+    across_ = 0;
+    ++row_;
+    find_planes(std::min(row_ + 1, last_row_));
   }
 
   // The heights of the vertices from x on, in the low 16 bits: rounded to nearest, halves upwards.
   HWY_INLINE hn::Vec<IntTag> at(std::size_t x) const {
     const FloatTag d;
     const Float across = set(across_), rest = set(ratio_ - across_);
-    const Float low = hn::Add(hn::Load(d, low_ + x), hn::Mul(across, hn::Load(d, low_rise_ + x)));
-    const Float high = hn::Add(hn::Load(d, high_ + x), hn::Mul(rest, hn::Load(d, high_rise_ + x)));
+    const Float low = hn::MulAdd(across, hn::Load(d, low_rise_ + x), hn::Load(d, low_ + x));
+    const Float high = hn::MulAdd(rest, hn::Load(d, high_rise_ + x), hn::Load(d, high_ + x));
     const Float sum = hn::IfThenElse(hn::Le(hn::Load(d, along_ + x), rest), low, high);
-    // The quarter decides halves; up to this ratio it outweighs the errors of single precision.
-    if (c_.ratio <= 32)
-      return hn::BitCast(IntTag(), hn::Add(hn::Mul(hn::Add(sum, set(0.25F)), set(1.0F / ratio_)),
-                                           set(kToInteger)));
+    if (c_.ratio <= kLargestRatio)
+      return hn::BitCast(IntTag(), hn::MulAdd(sum, set(1.0F / ratio_), set(kToInteger)));
     // An estimate from below is right or one too low, which the remainder tells.
     const Float divisor = set(2.0F * ratio_);
     const Float dividend = hn::Add(hn::Add(sum, sum), set(ratio_));
@@ -100,63 +93,87 @@ class CoarseHeights {
   }
 
  private:
-  // The coarse heights left and right of every vertex of one coarse row.
-  struct Row {
-    HWY_ALIGN float left[kRow];
-    HWY_ALIGN float right[kRow];
-  };
-
   // The number of the sample at the level's end or, where there is none, of the first beyond.
   std::size_t last_of(std::size_t phase) const {
     return (s_.n - 1 + phase + c_.ratio - 1) / c_.ratio;
   }
 
-  // Makes a row of the samples the far one.
-  void load(std::size_t row) {
+  // All samples beforehand: loading what single numbers have just been written to stalls.
+  void quantise_samples() {
     const FloatTag d;
-    HWY_ALIGN float height[kRow + 33];
-    const std::size_t count = columns_;
-    const float* const samples = c_.first + row * c_.row_stride * c_.step;
-    for (std::size_t i = 0; i < count; ++i)
-      height[i] = samples[i * c_.step];
-    std::fill(height + count, height + count + 33, height[count - 1]);
+    stride_ = columns_ / 16 * 16 + 16;
+    for (std::size_t row = 0; row <= last_row_; ++row) {
+      const float* const from = c_.first + row * c_.row_stride * c_.step;
+      float* const to = heights_ + row * stride_;
+      for (std::size_t i = 0; i < columns_; ++i)
+        to[i] = from[i * c_.step];
+      std::fill(to + columns_, to + stride_, to[columns_ - 1]);
+    }
     const Float quantum = set(s_.quantum);
-    for (std::size_t i = 0; i <= count; i += hn::Lanes(d))
-      hn::Store(hn::Sub(quantise(hn::Load(d, height + i), quantum), set(kToInteger)), d,
-                height + i);
+    for (std::size_t i = 0; i < (last_row_ + 1) * stride_; i += hn::Lanes(d))
+      hn::Store(hn::Sub(quantise(hn::Load(d, heights_ + i), quantum), set(kToInteger)), d,
+                heights_ + i);
+  }
+
+  void place_columns() {
+    const FloatTag d;
+    const IntTag di;
     for (std::size_t x = 0, block = 0; x < s_.n; x += hn::Lanes(d), ++block) {
-      const auto slots = hn::IndicesFromVec(d, hn::Load(IntTag(), slot_ + x));
-      const float* const left = height + first_[block];
-      hn::Store(hn::TableLookupLanes(hn::LoadU(d, left), slots), d, far_->left + x);
-      hn::Store(hn::TableLookupLanes(hn::LoadU(d, left + 1), slots), d, far_->right + x);
+      const Float along = hn::Add(hn::Iota(d, 0), set(static_cast<float>(x + c_.phase_x)));
+      const Float cells = hn::Floor(hn::Mul(hn::Add(along, set(0.5F)), set(1.0F / ratio_)));
+      const Float cell = hn::Min(cells, set(static_cast<float>(columns_ - 1)));
+      const auto number = hn::ConvertTo(di, cell);
+      const std::int32_t first = hn::GetLane(number);
+      first_[block] = static_cast<std::size_t>(first);
+      hn::Store(hn::Sub(number, hn::Set(di, first)), di, slot_ + x);
+      hn::Store(hn::Sub(along, hn::Mul(cell, set(ratio_))), d, along_ + x);
     }
   }
 
-  void find_planes() {
+  // Of the coarse row that starts at `from`, left of the vertices from x on; right, one further on.
+  HWY_INLINE Float height(std::size_t from, std::size_t x) const {
     const FloatTag d;
+    const auto slots = hn::IndicesFromVec(d, hn::Load(IntTag(), slot_ + x));
+    return hn::TableLookupLanes(hn::LoadU(d, heights_ + from + first_[x / hn::Lanes(d)]), slots);
+  }
+
+  // From the row of samples before, whose heights it replaces, to this one.
+  void find_planes(std::size_t row) {
+    const FloatTag d;
+    const Float quarter = set(c_.ratio <= kLargestRatio ? 0.25F : 0.0F);
     for (std::size_t x = 0; x < s_.n; x += hn::Lanes(d)) {
-      const Float h00 = hn::Load(d, near_->left + x), h10 = hn::Load(d, near_->right + x);
-      const Float h01 = hn::Load(d, far_->left + x), h11 = hn::Load(d, far_->right + x);
+      const Float h00 = hn::Load(d, left_ + x), h10 = hn::Load(d, right_ + x);
+      const Float h01 = height(row * stride_, x), h11 = height(row * stride_ + 1, x);
       const Float along = hn::Load(d, along_ + x), ratio = set(ratio_);
-      hn::Store(hn::Add(hn::Mul(h00, ratio), hn::Mul(along, hn::Sub(h10, h00))), d, low_ + x);
+      hn::Store(h01, d, left_ + x);
+      hn::Store(h11, d, right_ + x);
+      const Float low = hn::MulAdd(h00, ratio, quarter), high = hn::MulAdd(h11, ratio, quarter);
+      hn::Store(hn::MulAdd(along, hn::Sub(h10, h00), low), d, low_ + x);
       hn::Store(hn::Sub(h01, h00), d, low_rise_ + x);
-      hn::Store(hn::Add(hn::Mul(h11, ratio), hn::Mul(hn::Sub(ratio, along), hn::Sub(h01, h11))), d,
-                high_ + x);
+      hn::Store(hn::MulAdd(hn::Sub(ratio, along), hn::Sub(h01, h11), high), d, high_ + x);
       hn::Store(hn::Sub(h10, h11), d, high_rise_ + x);
     }
   }
+
+  // Sums are a quarter too large up to this ratio: it decides halves, and outweighs the errors of
+  // single precision.
+  static constexpr std::size_t kLargestRatio = 32;
+  // Coarse samples along one side.
+  static constexpr std::size_t kMost = kMaxTerrainSize / 2 + 2;
 
   const TerrainSurface& s_;
   const CoarseSamples& c_;
   const std::size_t columns_, last_row_;  // of the coarse samples
   const float ratio_;
-  float across_ = 0;             // cells from the coarse row before
+  float across_;                 // cells from the coarse row before
+  std::size_t row_ = 0;          // the number of that
   HWY_ALIGN float along_[kRow];  // cells from the coarse vertex on the left
   // The coarse vertex on the left is number first + slot, first being that of the whole vector.
   HWY_ALIGN std::int32_t slot_[kRow];
   std::size_t first_[kRow];
-  Row rows_[2];
-  Row *near_ = &rows_[0], *far_ = &rows_[1];
+  std::size_t stride_;
+  HWY_ALIGN float heights_[kMost * (kMost + 16) + 32];
+  HWY_ALIGN float left_[kRow], right_[kRow];  // of the vertices, of one coarse row
   HWY_ALIGN float low_[kRow];
   HWY_ALIGN float low_rise_[kRow];
   HWY_ALIGN float high_[kRow];
@@ -167,15 +184,18 @@ class CoarseHeights {
 class LightRows {
  public:
   explicit LightRows(const TerrainSurface& s)
-      : s_(s), l_(s.light), spread_(s.n, l_.phase_x, s.stride, l_.spacing) {
+      : s_(s), l_(s.light), spread_(s.n, l_.phase_x, s.stride, l_.spacing), rest_(l_.phase_z) {
     load(0, *near_);
     load(1, *far_);
+    find_weight();
   }
 
-  // Moves on to a row of vertices, upwards.
-  void move_to(std::size_t z) {
-    const std::size_t cell = l_.phase_z + z * s_.stride, row = cell / l_.spacing;
-    weight_ = static_cast<float>(cell % l_.spacing) / static_cast<float>(l_.spacing);
+  // Moves on to the next row of vertices.
+  void advance() {
+    std::size_t row = row_;
+    for (rest_ += s_.stride; rest_ >= l_.spacing; rest_ -= l_.spacing)
+      ++row;
+    find_weight();
     if (row == row_) return;
     std::swap(near_, far_);
     if (row != row_ + 1) load(row, *near_);
@@ -185,8 +205,9 @@ class LightRows {
 
   // Sun in the low byte and ambient above it, of the vertices from x on.
   HWY_INLINE hn::Vec<UintTag> at(std::size_t x) const {
-    return hn::Or(byte(near_->sun + x, far_->sun + x),
-                  hn::ShiftLeft<8>(byte(near_->ambient + x, far_->ambient + x)));
+    return hn::Or(hn::And(byte(near_->sun + x, far_->sun + x), hn::Set(UintTag(), 0xFFU)),
+                  hn::ShiftLeft<8>(hn::And(byte(near_->ambient + x, far_->ambient + x),
+                                           hn::Set(UintTag(), 0xFFU))));
   }
 
  private:
@@ -205,19 +226,20 @@ class LightRows {
     }
   }
 
+  void find_weight() { weight_ = static_cast<float>(rest_) / static_cast<float>(l_.spacing); }
+
   HWY_INLINE hn::Vec<UintTag> byte(const float* near, const float* far) const {
     const FloatTag d;
     const Float a = hn::Load(d, near), b = hn::Load(d, far);
     const Float value = hn::Add(a, hn::Mul(set(weight_), hn::Sub(b, a)));
-    return hn::And(hn::BitCast(UintTag(), hn::Add(value, set(kToInteger))),
-                   hn::Set(UintTag(), 0xFFU));
+    return hn::BitCast(UintTag(), hn::Add(value, set(kToInteger)));
   }
 
   const TerrainSurface& s_;
   const LightSamples& l_;
   const Spread<kMaxTerrainSize> spread_;
-  std::size_t row_ = 0;
-  float weight_ = 0;
+  std::size_t row_ = 0, rest_;  // of the light above, and cells from there
+  float weight_;
   Row rows_[2];
   Row *near_ = &rows_[0], *far_ = &rows_[1];
 };
@@ -278,38 +300,53 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
   HWY_ALIGN std::uint32_t grid_x[kRow];
   HWY_ALIGN PackedVertex row[kRow];
   PackedVertex skirt[4 * kMaxTerrainSize];
-  for (std::size_t x = 0; x < s.n + hn::Lanes(d); ++x)
-    grid_x[x] = static_cast<std::uint32_t>(x * s.stride) & 0xFFU;
+  const std::size_t lanes = hn::Lanes(d), last = s.n - 1;
+  const std::size_t row_bytes = s.n * sizeof(PackedVertex);
+  for (std::size_t x = 0; x < s.n; x += lanes)
+    hn::Store(hn::And(hn::Mul(hn::Add(hn::Iota(du, 0), hn::Set(du, static_cast<std::uint32_t>(x))),
+                              hn::Set(du, static_cast<std::uint32_t>(s.stride))),
+                      hn::Set(du, 0xFFU)),
+              du, grid_x + x);
   const Float quantum = set(s.quantum), slope_scale = set(s.slope_scale);
   Float lowest = set(65535.0F + kToInteger), highest = set(kToInteger);
-  const std::size_t last = s.n - 1;
-  for (std::size_t z = 0; z < s.n; ++z) {
-    coarse.move_to(z);
-    light.move_to(z);
+  for (std::size_t z = 0; z < s.n; ++z, out += row_bytes) {
     samples.load(s, z);
+    const bool border = z == 0 || z == last;
+    const std::size_t direct = border ? 0 : s.n - s.n % lanes;
+    PackedVertex first;
     const auto grid_z = hn::Set(du, static_cast<std::uint32_t>(z * s.stride) << 8);
-    for (std::size_t x = 0; x < s.n; x += hn::Lanes(d)) {
+    for (std::size_t x = 0; x < s.n; x += lanes) {
       Float height = quantise(hn::LoadU(d, samples.centre + x), quantum);
-      const auto low = hn::Or(hn::Or(hn::Load(du, grid_x + x), grid_z),
-                              hn::ShiftLeft<16>(hn::BitCast(du, height)));
+      const auto low =
+          hn::Or3(hn::Load(du, grid_x + x), grid_z, hn::ShiftLeft<16>(hn::BitCast(du, height)));
       const auto below = hn::And(hn::BitCast(du, coarse.at(x)), hn::Set(du, 0xFFFFU));
       const auto high = hn::Or(below, normals(samples, x, slope_scale));
-      hn::StoreInterleaved3(low, high, light.at(x), du, reinterpret_cast<std::uint32_t*>(row + x));
-      if (s.n - x < hn::Lanes(d)) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, lowest);
+      const auto bright = light.at(x);
+      if (x == 0) first = {hn::GetLane(low), hn::GetLane(high), hn::GetLane(bright)};
+      if (x < direct)
+        hn::StoreInterleaved3(low, high, bright, du, reinterpret_cast<std::uint32_t*>(out) + 3 * x);
+      if (x + lanes >= direct)
+        hn::StoreInterleaved3(low, high, bright, du, reinterpret_cast<std::uint32_t*>(row + x));
+      if (s.n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, lowest);
       lowest = hn::Min(lowest, height);
-      if (s.n - x < hn::Lanes(d)) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, highest);
+      if (s.n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, highest);
       highest = hn::Max(highest, height);
     }
-    std::memcpy(out + z * s.n * sizeof(PackedVertex), row, s.n * sizeof(PackedVertex));
+    if (direct < s.n)
+      std::memcpy(out + direct * sizeof(PackedVertex), row + direct,
+                  (s.n - direct) * sizeof(PackedVertex));
     // The border runs along +x, +z, −x and −z; every side has its first corner.
     if (z == 0) std::copy_n(row, last, skirt);
     if (z < last) skirt[last + z] = row[last];
     if (z == last) std::reverse_copy(row + 1, row + s.n, skirt + 2 * last);
-    if (z > 0) skirt[4 * last - z] = row[0];
+    if (z > 0) skirt[4 * last - z] = first;
+    if (z == last) break;
+    coarse.advance();
+    light.advance();
   }
   for (std::size_t k = 0; k < 4 * last; ++k)
     skirt[k].low |= core::kTerrainSkirtBit;
-  std::memcpy(out + s.n * s.n * sizeof(PackedVertex), skirt, 4 * last * sizeof(PackedVertex));
+  std::memcpy(out + row_bytes, skirt, 4 * last * sizeof(PackedVertex));
   const float least = hn::GetLane(hn::MinOfLanes(d, lowest)) - kToInteger;
   const float most = hn::GetLane(hn::MaxOfLanes(d, highest)) - kToInteger;
   return {static_cast<std::uint16_t>(least), static_cast<std::uint16_t>(most)};

@@ -29,17 +29,21 @@ class Spread {
   static constexpr std::size_t kRow = kLongest + 16;
 
   Spread(std::size_t count, std::size_t phase, std::size_t step, std::size_t spacing)
-      : step_(step), spacing_(spacing), scale_(1.0F / static_cast<float>(spacing)) {
-    const std::size_t lanes = hn::Lanes(FloatTag());
-    std::size_t at = phase / spacing, rest = phase % spacing, first = at;
-    dense_ = step <= spacing;
-    for (std::size_t i = 0; i < (count + lanes - 1) / lanes * lanes; ++i) {
-      if (i % lanes == 0) first_[i / lanes] = first = at;
-      slot_[i] = static_cast<std::int32_t>(at - first);
-      weight_[i] = static_cast<float>(rest) * scale_;
-      if (i + 1 >= count) continue;  // the padding repeats the last sample
-      for (rest += step; rest >= spacing; rest -= spacing)
-        ++at;
+      : dense_(step <= spacing) {
+    const FloatTag d;
+    const IntTag di;
+    const auto set = [](auto value) { return hn::Set(FloatTag(), static_cast<float>(value)); };
+    const float scale = 1.0F / static_cast<float>(spacing);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+      // The padding repeats the last sample.
+      const Float fine = hn::Min(hn::Add(hn::Iota(d, 0), set(i)), set(count - 1));
+      const Float place = hn::Add(set(phase), hn::Mul(fine, set(step)));
+      const Float at = hn::Floor(hn::Mul(hn::Add(place, set(0.5F)), set(scale)));
+      const auto number = hn::ConvertTo(di, at);
+      const std::int32_t first = hn::GetLane(number);
+      first_[i / hn::Lanes(d)] = static_cast<std::size_t>(first);
+      hn::Store(hn::Sub(number, hn::Set(di, first)), di, slot_ + i);
+      hn::Store(hn::Mul(hn::Sub(place, hn::Mul(at, set(spacing))), set(scale)), d, weight_ + i);
     }
   }
 
@@ -61,8 +65,6 @@ class Spread {
   }
 
  private:
-  std::size_t step_, spacing_;
-  float scale_;
   bool dense_;  // no fine sample is a coarse one further on than its place in the vector
   std::size_t first_[kRow];
   HWY_ALIGN std::int32_t slot_[kRow];
