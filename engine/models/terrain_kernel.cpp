@@ -16,6 +16,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "engine/models/interleave-inl.hpp"
 #include "engine/models/terrain_spread-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,6 +55,7 @@ class CoarseHeights {
         columns_(last_of(c_.phase_x) + 1),
         last_row_(last_of(c_.phase_z)),
         ratio_(static_cast<float>(c_.ratio)),
+        inverse_(1.0F / ratio_),
         across_(static_cast<float>(c_.phase_z)) {
     quantise_samples();
     place_columns();
@@ -81,7 +83,7 @@ class CoarseHeights {
     const Float high = hn::MulAdd(rest, hn::Load(d, high_rise_ + x), hn::Load(d, high_ + x));
     const Float sum = hn::IfThenElse(hn::Le(hn::Load(d, along_ + x), rest), low, high);
     if (c_.ratio <= kLargestRatio)
-      return hn::BitCast(IntTag(), hn::MulAdd(sum, set(1.0F / ratio_), set(kToInteger)));
+      return hn::BitCast(IntTag(), hn::MulAdd(sum, set(inverse_), set(kToInteger)));
     // An estimate from below is right or one too low, which the remainder tells.
     const Float divisor = set(2.0F * ratio_);
     const Float dividend = hn::Add(hn::Add(sum, sum), set(ratio_));
@@ -120,7 +122,7 @@ class CoarseHeights {
     const IntTag di;
     for (std::size_t x = 0, block = 0; x < s_.n; x += hn::Lanes(d), ++block) {
       const Float along = hn::Add(hn::Iota(d, 0), set(static_cast<float>(x + c_.phase_x)));
-      const Float cells = hn::Floor(hn::Mul(hn::Add(along, set(0.5F)), set(1.0F / ratio_)));
+      const Float cells = hn::Floor(hn::Mul(hn::Add(along, set(0.5F)), set(inverse_)));
       const Float cell = hn::Min(cells, set(static_cast<float>(columns_ - 1)));
       const auto number = hn::ConvertTo(di, cell);
       const std::int32_t first = hn::GetLane(number);
@@ -164,7 +166,7 @@ class CoarseHeights {
   const TerrainSurface& s_;
   const CoarseSamples& c_;
   const std::size_t columns_, last_row_;  // of the coarse samples
-  const float ratio_;
+  const float ratio_, inverse_;
   float across_;                 // cells from the coarse row before
   std::size_t row_ = 0;          // the number of that
   HWY_ALIGN float along_[kRow];  // cells from the coarse vertex on the left
@@ -297,25 +299,26 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
   CoarseHeights coarse(s);
   LightRows light(s);
   SampleRow samples;
+  const Interleave3 interleave;
   HWY_ALIGN std::uint32_t grid_x[kRow];
   HWY_ALIGN PackedVertex row[kRow];
   PackedVertex skirt[4 * kMaxTerrainSize];
-  const std::size_t lanes = hn::Lanes(d), last = s.n - 1;
-  const std::size_t row_bytes = s.n * sizeof(PackedVertex);
-  for (std::size_t x = 0; x < s.n; x += lanes)
+  const std::size_t lanes = hn::Lanes(d), n = s.n, last = n - 1;
+  const std::size_t row_bytes = n * sizeof(PackedVertex);
+  for (std::size_t x = 0; x < n; x += lanes)
     hn::Store(hn::And(hn::Mul(hn::Add(hn::Iota(du, 0), hn::Set(du, static_cast<std::uint32_t>(x))),
                               hn::Set(du, static_cast<std::uint32_t>(s.stride))),
                       hn::Set(du, 0xFFU)),
               du, grid_x + x);
   const Float quantum = set(s.quantum), slope_scale = set(s.slope_scale);
   Float lowest = set(65535.0F + kToInteger), highest = set(kToInteger);
-  for (std::size_t z = 0; z < s.n; ++z, out += row_bytes) {
+  for (std::size_t z = 0; z < n; ++z, out += row_bytes) {
     samples.load(s, z);
     const bool border = z == 0 || z == last;
-    const std::size_t direct = border ? 0 : s.n - s.n % lanes;
+    const std::size_t direct = border ? 0 : n - n % lanes;  // vertices that go straight out
     PackedVertex first;
     const auto grid_z = hn::Set(du, static_cast<std::uint32_t>(z * s.stride) << 8);
-    for (std::size_t x = 0; x < s.n; x += lanes) {
+    for (std::size_t x = 0; x < n; x += lanes) {
       Float height = quantise(hn::LoadU(d, samples.centre + x), quantum);
       const auto low =
           hn::Or3(hn::Load(du, grid_x + x), grid_z, hn::ShiftLeft<16>(hn::BitCast(du, height)));
@@ -324,21 +327,21 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
       const auto bright = light.at(x);
       if (x == 0) first = {hn::GetLane(low), hn::GetLane(high), hn::GetLane(bright)};
       if (x < direct)
-        hn::StoreInterleaved3(low, high, bright, du, reinterpret_cast<std::uint32_t*>(out) + 3 * x);
-      if (x + lanes >= direct)
-        hn::StoreInterleaved3(low, high, bright, du, reinterpret_cast<std::uint32_t*>(row + x));
-      if (s.n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, lowest);
+        interleave.store(low, high, bright, reinterpret_cast<std::uint32_t*>(out) + 3 * x);
+      if (border || x + lanes >= n)
+        interleave.store(low, high, bright, reinterpret_cast<std::uint32_t*>(row + x));
+      if (n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, n - x), height, lowest);
       lowest = hn::Min(lowest, height);
-      if (s.n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, s.n - x), height, highest);
+      if (n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, n - x), height, highest);
       highest = hn::Max(highest, height);
     }
-    if (direct < s.n)
+    if (direct < n)
       std::memcpy(out + direct * sizeof(PackedVertex), row + direct,
-                  (s.n - direct) * sizeof(PackedVertex));
+                  (n - direct) * sizeof(PackedVertex));
     // The border runs along +x, +z, −x and −z; every side has its first corner.
     if (z == 0) std::copy_n(row, last, skirt);
     if (z < last) skirt[last + z] = row[last];
-    if (z == last) std::reverse_copy(row + 1, row + s.n, skirt + 2 * last);
+    if (z == last) std::reverse_copy(row + 1, row + n, skirt + 2 * last);
     if (z > 0) skirt[4 * last - z] = first;
     if (z == last) break;
     coarse.advance();

@@ -1,0 +1,68 @@
+// Stores three vectors interleaved. Included once per instruction set, by kernels between
+// foreach_target.h and their own namespaces; hence its include guard.
+#if defined(PSYGEN_MODELS_INTERLEAVE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSYGEN_MODELS_INTERLEAVE_INL
+#undef PSYGEN_MODELS_INTERLEAVE_INL
+#else
+#define PSYGEN_MODELS_INTERLEAVE_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace psygen::models::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Element i of vector v belongs at place 3 · i + v of three vectors in a row. As 3 has an inverse
+// modulo the number of lanes, the elements of one vector never meet in a lane: one permutation each
+// and two selections for every result, half of what hn::StoreInterleaved3 takes.
+class Interleave3 {
+ public:
+  using Tag = hn::CappedTag<std::uint32_t, 16>;
+  using V = hn::Vec<Tag>;
+
+  // At most 16 · 3 elements, at any address of 32-bit integers.
+  HWY_INLINE void store(V a, V b, V c, std::uint32_t* to) const {
+    const Tag d;
+    const V v[3] = {hn::TableLookupLanes(a, from_a_), hn::TableLookupLanes(b, from_b_),
+                    hn::TableLookupLanes(c, from_c_)};
+    constexpr std::size_t kLanes = hn::MaxLanes(Tag());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t first = k * kLanes;
+      hn::StoreU(hn::IfThenElse(first_, v[first % 3],
+                                hn::IfThenElse(second_, v[(first + 1) % 3], v[(first + 2) % 3])),
+                 d, to + first);
+    }
+  }
+
+ private:
+  using SignedTag = hn::RebindToSigned<Tag>;
+  using Lanes = decltype(hn::IndicesFromVec(Tag(), hn::Zero(SignedTag())));
+  using Mask = hn::Mask<Tag>;
+  static constexpr std::uint32_t kInverse = 11;  // of 3, modulo 16 and smaller powers of two
+  HWY_ALIGN static constexpr std::uint32_t kThirds[16] = {0, 1, 2, 0, 1, 2, 0, 1,
+                                                          2, 0, 1, 2, 0, 1, 2, 0};
+
+  // The lane of vector v that belongs in each lane.
+  static Lanes lanes_of(std::uint32_t v) {
+    const Tag d;
+    const auto last = static_cast<std::uint32_t>(hn::Lanes(d)) - 1;
+    const V lane = hn::Mul(hn::Add(hn::Iota(d, 0), hn::Set(d, 16 - v)), hn::Set(d, kInverse));
+    return hn::IndicesFromVec(d, hn::BitCast(SignedTag(), hn::And(lane, hn::Set(d, last))));
+  }
+  static Mask third(std::uint32_t number) {
+    return hn::Eq(hn::Load(Tag(), kThirds), hn::Set(Tag(), number));
+  }
+
+  const Lanes from_a_ = lanes_of(0), from_b_ = lanes_of(1), from_c_ = lanes_of(2);
+  const Mask first_ = third(0), second_ = third(1);
+};
+
+}  // namespace psygen::models::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
