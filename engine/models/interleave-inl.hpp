@@ -28,6 +28,7 @@ class Interleave3 {
   // At most 16 · 3 elements, at any address of 32-bit integers.
   HWY_INLINE void store(V a, V b, V c, std::uint32_t* to) const {
     const Tag d;
+    if constexpr (hn::MaxLanes(Tag()) <= 4) return hn::StoreInterleaved3(a, b, c, d, to);
     const V v[3] = {hn::TableLookupLanes(a, from_a_), hn::TableLookupLanes(b, from_b_),
                     hn::TableLookupLanes(c, from_c_)};
     constexpr std::size_t kLanes = hn::MaxLanes(Tag());

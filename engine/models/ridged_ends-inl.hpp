@@ -21,10 +21,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// The rows' positions on the lattices, octave after octave, `stride` apart. All computed before the
-// first row of samples, which would otherwise wait for them.
+// The rows' positions on the lattices, octave after octave, kMaxNoiseAxis apart. All computed before
+// the first row of samples, which would otherwise wait for them.
 struct RowOctaves {
-  std::size_t stride;
+  std::size_t width;  // the rows, padded
   HWY_ALIGN std::uint32_t cell[kMaxOctaves * kMaxNoiseAxis + kPad];
   HWY_ALIGN float fraction[kMaxOctaves * kMaxNoiseAxis];
   HWY_ALIGN float fade[kMaxOctaves * kMaxNoiseAxis];
@@ -33,18 +33,18 @@ struct RowOctaves {
   std::uint32_t
       changed[kMaxNoiseAxis + 1];  // a bit for each octave in another cell than a row before
 
-  RowOctaves(const RidgedKernel& kernel, const Axis& rows) : stride(padded(rows.at.size())) {
+  RowOctaves(const RidgedKernel& kernel, const Axis& rows) : width(padded(rows.at.size())) {
     const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
     HWY_ALIGN std::uint64_t position[kMaxNoiseAxis];
-    std::fill(changed + 1, changed + 1 + stride, 0U);
+    std::fill(changed + 1, changed + 1 + width, 0U);
     changed[0] = (1U << octave_count) - 1;
     for (std::size_t o = 0; o < octave_count; ++o) {
       const RidgedOctave& octave = kernel.octaves[o];
       next_limit[o] = o + 1 < octave_count ? kernel.octaves[o + 1].limit : 0.0F;
       contiguous = contiguous && rows.contiguous(octave.step);
       rows.place(octave.step, octave.origin_z, position);
-      const std::size_t at = o * stride;
-      locate(position, stride, cell + at, fraction + at, fade + at);
+      const std::size_t at = o * kMaxNoiseAxis;
+      locate(position, width, cell + at, fraction + at, fade + at);
       find_changes(o);
     }
   }
@@ -53,8 +53,8 @@ struct RowOctaves {
   void find_changes(std::size_t o) {
     const UintTag du;
     const auto bit = hn::Set(du, 1U << o);
-    const std::uint32_t* const cells = cell + o * stride;
-    for (std::size_t r = 0; r < stride; r += hn::Lanes(du)) {
+    const std::uint32_t* const cells = cell + o * kMaxNoiseAxis;
+    for (std::size_t r = 0; r < width; r += hn::Lanes(du)) {
       const auto differs = hn::Ne(hn::LoadU(du, cells + r + 1), hn::Load(du, cells + r));
       const auto bits = hn::IfThenElseZero(differs, bit);
       hn::StoreU(hn::Or(hn::LoadU(du, changed + 1 + r), bits), du, changed + 1 + r);
@@ -115,8 +115,8 @@ class EndColumns {
     const FloatTag d;
     const UintTag du;
     const RidgedOctave& octave = kernel_.octaves[o];
-    const std::uint32_t* const rows = rows_.cell + o * rows_.stride;
-    const std::size_t count = rows[rows_.stride - 1] - rows[0] + 2;
+    const std::uint32_t* const rows = rows_.cell + o * kMaxNoiseAxis;
+    const std::size_t count = rows[rows_.width - 1] - rows[0] + 2;
     const Float length = hn::Set(d, kernel_.gradient_length);
     for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
       const auto hash =
@@ -149,7 +149,7 @@ class EndColumns {
     const Float offset = hn::Set(d, settings.offset);
     Float weight = hn::Set(d, 1.0F), sum = hn::Zero(d);
     for (std::size_t o = 0; o < settings.octave_count; ++o) {
-      const std::size_t at = o * rows_.stride + r;
+      const std::size_t at = o * kMaxNoiseAxis + r;
       const std::size_t lower = rows_.cell[at] - rows_.cell[at - r];
       const auto slots = hn::Sub(hn::Load(du, rows_.cell + at), hn::Set(du, rows_.cell[at]));
       const Neighbours g =

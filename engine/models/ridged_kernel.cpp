@@ -67,7 +67,7 @@ void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
     const auto o = static_cast<std::size_t>(std::countr_zero(changed));
     ColumnOctave& octave = memory.columns[o];
     GradientRow& gradients = memory.gradients[o];
-    const std::uint32_t cell = along_z.cell[o * along_z.stride + r],
+    const std::uint32_t cell = along_z.cell[o * kMaxNoiseAxis + r],
                         key = cell + kernel.octaves[o].key_z;
     const bool next = r > 0 && cell == octave.lattice_row + 1;
     if (!next) raise_to(octave, gradients, key, kernel.gradient_length);
@@ -87,7 +87,7 @@ void write_rows(const RidgedKernel& kernel, std::span<const std::int64_t> rows,
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (warp != nullptr) warp->write(rows[r], kernel.cells_ratio, memory.columns);
     move_to(r, in_rows, kernel, along_z, memory);
-    row_kernel.row = {along_z.fraction + r, along_z.fade + r, along_z.stride};
+    row_kernel.row = {along_z.fraction + r, along_z.fade + r};
     row_kernel.run(column_count, values + r * stride);
   }
 }

@@ -36,10 +36,9 @@ HWY_INLINE V square_of(V lower_x, V lower_z, V rise_x, V rise_z, V f, V fade, V 
   return hn::Mul(ridge, ridge);
 }
 
-// Of one row: where it lies between two lattice rows of each octave, `stride` apart.
+// Of one row: where it lies between two lattice rows of each octave, kMaxNoiseAxis apart.
 struct RowPlace {
   const float *fraction, *fade;
-  std::size_t stride;
 };
 
 // What is the same in all rows.
@@ -72,8 +71,8 @@ struct RowKernel {
     const std::size_t at = 2 * i - i % hn::Lanes(FloatTag());
     auto weight = hn::Set(d, 1.0F), sum = hn::Zero(d);
     for (std::size_t o = 0; o < s.octave_count; ++o)
-      add_octave(square(d, o, at, hn::Set(d, row.fraction[o * row.stride]),
-                        hn::Set(d, row.fade[o * row.stride]), hn::Set(d, s.offset)),
+      add_octave(square(d, o, at, hn::Set(d, row.fraction[o * kMaxNoiseAxis]),
+                        hn::Set(d, row.fade[o * kMaxNoiseAxis]), hn::Set(d, s.offset)),
                  hn::Set(d, s.next_limit[o]), weight, sum);
     return hn::Mul(sum, hn::Set(d, s.scale));
   }
@@ -87,10 +86,9 @@ struct RowKernel {
     Float weight0 = hn::Set(d, 1.0F), weight1 = weight0, weight2 = weight0, weight3 = weight0;
     Float sum0 = hn::Zero(d), sum1 = sum0, sum2 = sum0, sum3 = sum0;
     const std::size_t at = 2 * i;
-    const float *fraction = row.fraction, *fade = row.fade;
-    for (std::size_t o = 0; o < s.octave_count; ++o, fraction += row.stride, fade += row.stride) {
-      const Float f = hn::Set(d, *fraction), u = hn::Set(d, *fade),
-                  limit = hn::Set(d, s.next_limit[o]);
+    for (std::size_t o = 0; o < s.octave_count; ++o) {
+      const Float f = hn::Set(d, row.fraction[o * kMaxNoiseAxis]),
+                  u = hn::Set(d, row.fade[o * kMaxNoiseAxis]), limit = hn::Set(d, s.next_limit[o]);
       add_octave(square(d, o, at, f, u, offset), limit, weight0, sum0);
       add_octave(square(d, o, at + 2 * n, f, u, offset), limit, weight1, sum1);
       add_octave(square(d, o, at + 4 * n, f, u, offset), limit, weight2, sum2);
