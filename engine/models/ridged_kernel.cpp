@@ -56,7 +56,6 @@ struct Workspace {
       hn::Store(hn::Mul(hn::Sub(t, one), fade), d, c.right_x + i);
     }
     c.lines.place(cells, width, axis.contiguous(octave.step), octave.key_x);
-    clear_vectors(c.upper, 2 * width);
   }
 };
 
@@ -70,8 +69,8 @@ void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
     const std::uint32_t cell = along_z.cell[o * kMaxNoiseAxis + r],
                         key = cell + kernel.octaves[o].key_z;
     const bool next = r > 0 && cell == octave.lattice_row + 1;
-    if (!next) raise_to(octave, gradients, key, kernel.gradient_length);
-    raise_to(octave, gradients, key + 1, kernel.gradient_length);
+    if (!next) raise_to<true>(octave, gradients, key, kernel.gradient_length);
+    raise_to<false>(octave, gradients, key + 1, kernel.gradient_length);
     // Those of the row that is likely next are there when it comes, instead of being waited for.
     if (next) gradients.hold(octave, key + 2, kernel.gradient_length);
     octave.lattice_row = cell;

@@ -250,39 +250,50 @@ HWY_INLINE Neighbours narrow_neighbours(Float x, Float z, hn::Vec<IntTag> slots)
           hn::TableLookupLanes(x, right), hn::TableLookupLanes(z, right)};
 }
 
-// Makes the gradients the octave's upper lattice row; what was the upper one becomes the lower.
+// Gradients blended along x at the columns of one block.
 template <bool kNarrow>
+HWY_INLINE Gradient blended(const ColumnOctave& o, const GradientRow& gradients, Float all_x,
+                            Float all_z, std::size_t i) {
+  const FloatTag d;
+  const auto slots = hn::Load(IntTag(), o.lines.slot + i);
+  const std::size_t left = o.lines.first[i];
+  const Neighbours g =
+      kNarrow ? narrow_neighbours(all_x, all_z, slots)
+              : neighbours(gradients.x, gradients.z, slots, left, left + o.lines.to_next);
+  return {
+      hn::Add(hn::Mul(g.left_x, hn::Load(d, o.left_x + i)),
+              hn::Mul(g.right_x, hn::Load(d, o.right_x + i))),
+      hn::Add(g.left_z, hn::Mul(hn::Load(d, o.fade + i), hn::Sub(g.right_z, g.left_z)))};
+}
+
+// Makes the gradients the octave's upper lattice row; unless it is the first, what was the upper
+// one becomes the lower.
+template <bool kNarrow, bool kFirst>
 void raise(ColumnOctave& octave, const GradientRow& gradients) {
   const ColumnOctave o = octave;
   float *const HWY_RESTRICT below = o.upper, *const HWY_RESTRICT above = o.lower;
   float* const HWY_RESTRICT rise = o.rise;
   const FloatTag d;
-  const IntTag di;
   const Float all_x = hn::Load(d, gradients.x), all_z = hn::Load(d, gradients.z);
   for (std::size_t i = 0; i < o.stride; i += hn::Lanes(d)) {
-    const auto slots = hn::Load(di, o.lines.slot + i);
-    const std::size_t left = o.lines.first[i];
-    const Neighbours g =
-        kNarrow ? narrow_neighbours(all_x, all_z, slots)
-                : neighbours(gradients.x, gradients.z, slots, left, left + o.lines.to_next);
-    const Float x = hn::Add(hn::Mul(g.left_x, hn::Load(d, o.left_x + i)),
-                            hn::Mul(g.right_x, hn::Load(d, o.right_x + i)));
-    const Float z =
-        hn::Add(g.left_z, hn::Mul(hn::Load(d, o.fade + i), hn::Sub(g.right_z, g.left_z)));
+    const auto [x, z] = blended<kNarrow>(o, gradients, all_x, all_z, i);
     const std::size_t pair = 2 * i, second = pair + hn::Lanes(d);
+    hn::Store(x, d, above + pair);
+    hn::Store(z, d, above + second);
+    if constexpr (kFirst) continue;
     const Float below_x = hn::Load(d, below + pair), below_z = hn::Load(d, below + second);
     hn::Store(hn::Sub(hn::Sub(x, z), below_x), d, rise + pair);
     hn::Store(hn::Sub(z, below_z), d, rise + second);
-    hn::Store(x, d, above + pair);
-    hn::Store(z, d, above + second);
   }
   octave.lower = below;
   octave.upper = above;
 }
 
+template <bool kFirst>
 void raise_to(ColumnOctave& octave, GradientRow& gradients, std::uint32_t row_key, float length) {
   gradients.hold(octave, row_key, length);
-  octave.lines.narrow ? raise<true>(octave, gradients) : raise<false>(octave, gradients);
+  octave.lines.narrow ? raise<true, kFirst>(octave, gradients)
+                      : raise<false, kFirst>(octave, gradients);
 }
 
 }  // namespace psygen::models::HWY_NAMESPACE
