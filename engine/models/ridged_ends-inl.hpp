@@ -21,10 +21,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// The rows' positions on the lattices, octave after octave, kMaxNoiseAxis apart. All computed before
-// the first row of samples, which would otherwise wait for them.
+// The rows' positions on the lattices, octave after octave, kMaxNoiseAxis apart. All computed
+// before the first row of samples, which would otherwise wait for them.
 struct RowOctaves {
-  std::size_t width;  // the rows, padded
+  std::size_t count, width;  // rows; padded
   HWY_ALIGN std::uint32_t cell[kMaxOctaves * kMaxNoiseAxis + kPad];
   HWY_ALIGN float fraction[kMaxOctaves * kMaxNoiseAxis];
   HWY_ALIGN float fade[kMaxOctaves * kMaxNoiseAxis];
@@ -33,7 +33,8 @@ struct RowOctaves {
   std::uint32_t
       changed[kMaxNoiseAxis + 1];  // a bit for each octave in another cell than a row before
 
-  RowOctaves(const RidgedKernel& kernel, const Axis& rows) : width(padded(rows.at.size())) {
+  RowOctaves(const RidgedKernel& kernel, const Axis& rows)
+      : count(rows.at.size()), width(padded(rows.at.size())) {
     const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
     HWY_ALIGN std::uint64_t position[kMaxNoiseAxis];
     std::fill(changed + 1, changed + 1 + width, 0U);
@@ -80,14 +81,13 @@ class EndColumns {
       blend(o);
   }
 
-  void write(const RowSettings& settings, std::size_t row_count, float* values,
-             std::size_t stride) const {
+  void write(const RowSettings& settings, float* values, std::size_t stride) const {
     const FloatTag d;
     HWY_ALIGN float result[kMaxNoiseAxis];
     for (std::size_t c = 0; c < count_; ++c) {
-      for (std::size_t r = 0; r < row_count; r += hn::Lanes(d))
+      for (std::size_t r = 0; r < rows_.count; r += hn::Lanes(d))
         hn::Store(one(settings, c, r), d, result + r);
-      for (std::size_t r = 0; r < row_count; ++r)
+      for (std::size_t r = 0; r < rows_.count; ++r)
         values[r * stride + c] = result[r];
     }
   }

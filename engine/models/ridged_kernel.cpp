@@ -71,8 +71,10 @@ void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
     const bool next = r > 0 && cell == octave.lattice_row + 1;
     if (!next) raise_to<true>(octave, gradients, key, kernel.gradient_length);
     raise_to<false>(octave, gradients, key + 1, kernel.gradient_length);
-    // Those of the row that is likely next are there when it comes, instead of being waited for.
-    if (next) gradients.hold(octave, key + 2, kernel.gradient_length);
+    // Those of the row that is next are there when it comes, instead of being waited for.
+    const std::uint32_t last = along_z.cell[o * kMaxNoiseAxis + along_z.count - 1];
+    if (next && along_z.contiguous && cell != last)
+      gradients.hold(octave, key + 2, kernel.gradient_length);
     octave.lattice_row = cell;
   }
 }
@@ -101,8 +103,7 @@ void evaluate(const RidgedKernel& kernel, std::span<const std::int64_t> columns,
   const std::size_t main_count = columns.size() - ends;
   const RowSettings settings{along_z.next_limit, octave_count, kernel.offset, kernel.result_scale};
   if (ends > 0)
-    EndColumns(kernel, along_z, columns.last(ends))
-        .write(settings, rows.size(), values + main_count, stride);
+    EndColumns(kernel, along_z, columns.last(ends)).write(settings, values + main_count, stride);
   Workspace memory;
   const Axis column_axis(columns.first(main_count));
   for (std::size_t o = 0; o < octave_count; ++o)

@@ -260,10 +260,9 @@ HWY_INLINE Gradient blended(const ColumnOctave& o, const GradientRow& gradients,
   const Neighbours g =
       kNarrow ? narrow_neighbours(all_x, all_z, slots)
               : neighbours(gradients.x, gradients.z, slots, left, left + o.lines.to_next);
-  return {
-      hn::Add(hn::Mul(g.left_x, hn::Load(d, o.left_x + i)),
-              hn::Mul(g.right_x, hn::Load(d, o.right_x + i))),
-      hn::Add(g.left_z, hn::Mul(hn::Load(d, o.fade + i), hn::Sub(g.right_z, g.left_z)))};
+  return {hn::Add(hn::Mul(g.left_x, hn::Load(d, o.left_x + i)),
+                  hn::Mul(g.right_x, hn::Load(d, o.right_x + i))),
+          hn::Add(g.left_z, hn::Mul(hn::Load(d, o.fade + i), hn::Sub(g.right_z, g.left_z)))};
 }
 
 // Makes the gradients the octave's upper lattice row; unless it is the first, what was the upper
