@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
@@ -25,9 +26,15 @@ class Interleave3 {
   using Tag = hn::CappedTag<std::uint32_t, 16>;
   using V = hn::Vec<Tag>;
 
-  // At most 16 · 3 elements, at any address of 32-bit integers.
-  HWY_INLINE void store(V a, V b, V c, std::uint32_t* to) const {
+  // To any address.
+  HWY_INLINE void store(V a, V b, V c, void* bytes) const {
     const Tag d;
+    auto* const to = static_cast<std::uint32_t*>(bytes);
+    if constexpr (hn::MaxLanes(Tag()) == 1) {
+      const std::uint32_t elements[3] = {hn::GetLane(a), hn::GetLane(b), hn::GetLane(c)};
+      std::memcpy(bytes, elements, sizeof(elements));
+      return;
+    }
     if constexpr (hn::MaxLanes(Tag()) <= 4) return hn::StoreInterleaved3(a, b, c, d, to);
     const V v[3] = {hn::TableLookupLanes(a, from_a_), hn::TableLookupLanes(b, from_b_),
                     hn::TableLookupLanes(c, from_c_)};

@@ -326,10 +326,8 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
       const auto high = hn::Or(below, normals(samples, x, slope_scale));
       const auto bright = light.at(x);
       if (x == 0) first = {hn::GetLane(low), hn::GetLane(high), hn::GetLane(bright)};
-      if (x < direct)
-        interleave.store(low, high, bright, reinterpret_cast<std::uint32_t*>(out) + 3 * x);
-      if (border || x + lanes >= n)
-        interleave.store(low, high, bright, reinterpret_cast<std::uint32_t*>(row + x));
+      if (x < direct) interleave.store(low, high, bright, out + x * sizeof(PackedVertex));
+      if (border || x + lanes >= n) interleave.store(low, high, bright, row + x);
       if (n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, n - x), height, lowest);
       lowest = hn::Min(lowest, height);
       if (n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, n - x), height, highest);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "engine/models/packing.hpp"
@@ -99,6 +100,52 @@ TEST_F(SimdKernels, OfTerrainNoiseHaveTheSameBitsOnEveryTarget) {
     // Only the samples were written.
     for (std::size_t i = 0; i < results[0].size(); ++i)
       ASSERT_EQ(results[0][i] == -7.0F, i % stride >= columns.size() || i >= stride * rows.size());
+  }
+}
+
+// Few columns beyond whole vectors have rows as lanes where rows follow each other closely.
+TEST_F(SimdKernels, OfTerrainNoiseHaveTheSameBitsInTheLastColumns) {
+  constexpr std::array<std::int64_t, 5> kRows{1, 16, 17, 65, 144};
+  for (int trial = 0; trial < 120; ++trial) {
+    const RidgedNoise noise = noise_of(random_terrain());
+    const std::int64_t vectors = std::array{4, 8, 16, 64, 128}[static_cast<std::size_t>(trial % 5)];
+    std::vector<std::int64_t> columns = random_axis(1), rows = columns;
+    const std::int64_t step = trial % 4 == 0 ? random.next_integer(2, 90) : 1;
+    while (static_cast<std::int64_t>(columns.size()) < vectors + trial % 4)
+      columns.push_back(columns.back() + step);
+    while (static_cast<std::int64_t>(rows.size()) < kRows[static_cast<std::size_t>(trial / 5 % 5)])
+      rows.push_back(rows.back() + 1);
+    std::vector<float> values(columns.size() * rows.size()), alone(rows.size());
+    for (const std::string_view target : simd_targets()) {
+      pin_simd_target(target);
+      noise.evaluate(columns, rows, values, columns.size());
+      for (std::size_t c = columns.size() - 4; c < columns.size(); ++c) {
+        noise.evaluate(std::span(columns).subspan(c, 1), rows, alone, 1);
+        for (std::size_t r = 0; r < rows.size(); ++r)
+          ASSERT_EQ(values[r * columns.size() + c], alone[r]) << target << " column " << c;
+      }
+    }
+  }
+}
+
+TEST_F(SimdKernels, OfTerrainMeshesWriteNoFurtherAtAnyAddressOnEveryTarget) {
+  const auto type = make_terrain_type();
+  constexpr std::size_t kGuard = 256;
+  for (int trial = 0; trial < 32; ++trial) {
+    Parameters p = test::random_parameters(*type, random);
+    p.set_integer(kTerrainSize, random.next_integer(4, 128));
+    const int level = trial % 4;
+    const std::size_t bytes = type->mesh_size(p, level).vertex_count * sizeof(core::TerrainVertex);
+    const auto at = static_cast<std::size_t>(kGuard + trial);
+    for (const std::string_view target : simd_targets()) {
+      pin_simd_target(target);
+      const auto expected = test::synthesize(*type, p, level).vertex_bytes;
+      std::vector<std::byte> memory(at + bytes + kGuard, std::byte{0xA5});
+      type->synthesize(p, level, {std::span(memory).subspan(at, bytes), {}});
+      ASSERT_TRUE(std::equal(expected.begin(), expected.end(), memory.begin() + at)) << target;
+      for (std::size_t i = 0; i < memory.size(); ++i)
+        ASSERT_TRUE((i >= at && i < at + bytes) || memory[i] == std::byte{0xA5}) << target;
+    }
   }
 }
 
