@@ -108,7 +108,7 @@ class CoarseHeights {
       float* const to = heights_ + row * stride_;
       for (std::size_t i = 0; i < columns_; ++i)
         to[i] = from[i * c_.step];
-      std::fill(to + columns_, to + stride_, to[columns_ - 1]);
+      to[columns_] = to[columns_ - 1];  // right of the last; vertices have nothing from further on
     }
     const Float quantum = set(s_.quantum);
     for (std::size_t i = 0; i < (last_row_ + 1) * stride_; i += hn::Lanes(d))
