@@ -31,8 +31,10 @@ class Interleave3 {
     const Tag d;
     auto* const to = static_cast<std::uint32_t*>(bytes);
     if constexpr (hn::MaxLanes(Tag()) == 1) {
-      const std::uint32_t elements[3] = {hn::GetLane(a), hn::GetLane(b), hn::GetLane(c)};
-      std::memcpy(bytes, elements, sizeof(elements));
+      const std::uint32_t first = hn::GetLane(a), second = hn::GetLane(b), third = hn::GetLane(c);
+      std::memcpy(to, &first, sizeof(first));
+      std::memcpy(to + 1, &second, sizeof(second));
+      std::memcpy(to + 2, &third, sizeof(third));
       return;
     }
     if constexpr (hn::MaxLanes(Tag()) <= 4) return hn::StoreInterleaved3(a, b, c, d, to);
@@ -62,12 +64,12 @@ class Interleave3 {
     const V lane = hn::Mul(hn::Add(hn::Iota(d, 0), hn::Set(d, 16 - v)), hn::Set(d, kInverse));
     return hn::IndicesFromVec(d, hn::BitCast(SignedTag(), hn::And(lane, hn::Set(d, last))));
   }
-  static Mask third(std::uint32_t number) {
+  static Mask third_of(std::uint32_t number) {
     return hn::Eq(hn::Load(Tag(), kThirds), hn::Set(Tag(), number));
   }
 
   const Lanes from_a_ = lanes_of(0), from_b_ = lanes_of(1), from_c_ = lanes_of(2);
-  const Mask first_ = third(0), second_ = third(1);
+  const Mask first_ = third_of(0), second_ = third_of(1);
 };
 
 }  // namespace psygen::models::HWY_NAMESPACE

@@ -140,11 +140,11 @@ struct Skirt {
 
   explicit Skirt(std::size_t last_vertex) : last(last_vertex) {}
 
-  // Of row z its first vertex and, in their places in `row`, the last or, of the rows at the ends,
-  // all.
-  HWY_INLINE void add(std::size_t z, PackedVertex first, const PackedVertex* row) {
+  // Of row z the first vertex and the last; all, of the rows at the ends.
+  HWY_INLINE void add(std::size_t z, PackedVertex first, PackedVertex end,
+                      const PackedVertex* row) {
     if (z == 0) std::copy_n(row, last, vertices);
-    if (z < last) vertices[last + z] = row[last];
+    if (z < last) vertices[last + z] = end;
     if (z == last) std::reverse_copy(row + 1, row + last + 1, vertices + 2 * last);
     if (z > 0) vertices[4 * last - z] = first;
   }
@@ -154,6 +154,12 @@ struct Skirt {
     std::memcpy(out, vertices, 4 * last * sizeof(PackedVertex));
   }
 };
+
+// One lane; from memory it would have to wait for the vector to be stored.
+template <class V, class Indices>
+HWY_INLINE std::uint32_t lane(V v, Indices index) {
+  return hn::GetLane(hn::TableLookupLanes(v, index));
+}
 
 // The columns of the vertices in their low bytes.
 void number_columns(const TerrainSurface& s, std::uint32_t* to) {
@@ -173,9 +179,11 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
   SampleRow samples;
   const Interleave3 interleave;
   HWY_ALIGN std::uint32_t grid_x[kRow];
-  HWY_ALIGN PackedVertex row[kRow];  // of those that do not go straight out, and the last
+  HWY_ALIGN PackedVertex row[kRow];  // those that do not go straight out
   const std::size_t lanes = hn::Lanes(d), n = s.n, last = n - 1;
   Skirt skirt(last);
+  const auto end_lane =
+      hn::IndicesFromVec(du, hn::Set(IntTag(), static_cast<std::int32_t>(last % lanes)));
   number_columns(s, grid_x);
   const Float quantum = set(s.quantum), slope_scale = set(s.slope_scale);
   Float lowest = set(65535.0F + kToInteger), highest = set(kToInteger);
@@ -183,7 +191,7 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
     samples.load(s, z);
     const bool border = z == 0 || z == last;
     const std::size_t direct = border ? 0 : n - n % lanes;
-    PackedVertex first;
+    PackedVertex first{}, end{};
     const auto grid_z = hn::Set(du, static_cast<std::uint32_t>(z * s.stride) << 8);
     for (std::size_t x = 0; x < n; x += lanes) {
       Float height = quantise(hn::LoadU(d, samples.centre + x), quantum);
@@ -193,8 +201,10 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
       const auto high = hn::Or(below, normals(samples, x, slope_scale));
       const auto bright = light.at(x);
       if (x == 0) first = {hn::GetLane(low), hn::GetLane(high), hn::GetLane(bright)};
-      if (x < direct) interleave.store(low, high, bright, out + x * sizeof(PackedVertex));
-      if (border || x + lanes >= n) interleave.store(low, high, bright, row + x);
+      if (x + lanes >= n) end = {lane(low, end_lane), lane(high, end_lane), lane(bright, end_lane)};
+      interleave.store(
+          low, high, bright,
+          x < direct ? out + x * sizeof(PackedVertex) : reinterpret_cast<std::byte*>(row + x));
       if (n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, n - x), height, lowest);
       lowest = hn::Min(lowest, height);
       if (n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, n - x), height, highest);
@@ -203,7 +213,7 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
     if (direct < n)
       std::memcpy(out + direct * sizeof(PackedVertex), row + direct,
                   (n - direct) * sizeof(PackedVertex));
-    skirt.add(z, first, row);
+    skirt.add(z, first, end, row);
     if (z == last) break;
     coarse.advance();
     light.advance();
