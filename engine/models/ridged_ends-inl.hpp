@@ -120,8 +120,7 @@ class EndColumns {
     const Float length = hn::Set(d, kernel_.gradient_length);
     for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
       const auto hash =
-          mix32(du, hn::Add(hn::Iota(du, 0),
-                            hn::Set(du, rows[0] + octave.key_z + static_cast<std::uint32_t>(k))));
+          mix32(du, counting_from(du, rows[0] + octave.key_z + static_cast<std::uint32_t>(k)));
       const auto along = [&](std::uint32_t cell) {
         return gradient(hn::Set(du, cell + octave.key_x), hash, length);
       };

@@ -143,9 +143,8 @@ struct LatticeLines {
     to_next = contiguous ? 1 : width;
     narrow = contiguous && key_count <= lanes;
     for (std::size_t i = 0; contiguous && i < key_count; i += lanes)
-      hn::Store(hn::Add(hn::Iota(du, 0),
-                        hn::Set(du, cell[0] + key_offset + static_cast<std::uint32_t>(i))),
-                du, key + i);
+      hn::Store(counting_from(du, cell[0] + key_offset + static_cast<std::uint32_t>(i)), du,
+                key + i);
     for (std::size_t i = 0; i < width; i += lanes) {
       const auto cells = hn::Load(du, cell + i);
       const std::uint32_t start = narrow ? cell[0] : cell[i];

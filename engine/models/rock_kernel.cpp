@@ -83,7 +83,7 @@ class RockMesher {
   template <class D>
   HWY_INLINE static Uint<D> steps(D, std::size_t first) {
     const hn::RebindToUnsigned<D> du;
-    return hn::Mul(hn::Iota(du, static_cast<std::uint32_t>(first + 2)),
+    return hn::Mul(counting_from(du, static_cast<std::uint32_t>(first + 2)),
                    hn::Set(du, RockRandom::kStep));
   }
 

@@ -1,5 +1,5 @@
-// The 32-bit hash of mix32.hpp in lanes. Included once per instruction set, by
-// kernels between foreach_target.h and their own namespaces; hence its include guard.
+// The 32-bit hash of mix32.hpp in lanes, and lanes that count. Included once per instruction set,
+// by kernels between foreach_target.h and their own namespaces; hence its include guard.
 #if defined(PSYGEN_MODELS_SIMD_HASH_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_SIMD_HASH_INL
 #undef PSYGEN_MODELS_SIMD_HASH_INL
@@ -20,6 +20,14 @@ HWY_INLINE V mix32(D d, V h) {
   h = hn::Mul(hn::Xor(h, hn::ShiftRight<16>(h)), hn::Set(d, 0x7FEB352DU));
   h = hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(d, 0x846CA68BU));
   return hn::Xor(h, hn::ShiftRight<16>(h));
+}
+
+// first, first + 1, … hn::Iota() of a number that is not known beforehand writes every lane to
+// memory and waits for it to read the vector back.
+template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
+HWY_INLINE V counting_from(D d, std::uint32_t first) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  return hn::Add(hn::Iota(d, 0), hn::Set(d, first));
 }
 
 }  // namespace psygen::models::HWY_NAMESPACE

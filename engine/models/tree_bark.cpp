@@ -245,7 +245,7 @@ void add_rings(const TreeSkeleton& s, const TreeGroup& group, const RingPlaces& 
         hn::StoreU(hn::Set(d, s.rows[row][i]), d, &out.rows[row][to]);
       hn::StoreU(hn::Load(d, places.t + r), d, &out.t[to]);
       hn::StoreU(hn::Load(d, places.flare + r), d, &out.flare[to]);
-      hn::StoreU(hn::Iota(du, r), du, &out.ring[to]);
+      hn::StoreU(counting_from(du, r), du, &out.ring[to]);
     }
     out.count += places.count;
   }

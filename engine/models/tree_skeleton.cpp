@@ -146,7 +146,7 @@ HWY_INLINE void link(TreeSkeleton& s, std::uint32_t parent, std::size_t to, std:
 HWY_INLINE void link_singly(const TreeGroup& parents, TreeSkeleton& s, std::size_t to) {
   const DU du;
   for (std::uint32_t i = 0; i < parents.count; i += static_cast<std::uint32_t>(hn::Lanes(du))) {
-    hn::StoreU(hn::Iota(du, parents.first + i), du, &s.parent[to + i]);
+    hn::StoreU(counting_from(du, parents.first + i), du, &s.parent[to + i]);
     hn::StoreU(f1(1.0F), DF(), &s.share[to + i]);
     hn::StoreU(u1(0), du, &s.rank[to + i]);
   }
@@ -164,7 +164,8 @@ void link_group(const TreePlan& plan, const TreeGroup& group, std::size_t first,
     if (only != nullptr && only->star != group.kind && only->count[group.kind] == 1) {
       const DU du;
       for (std::uint32_t i = 0; i < parents.count; i += static_cast<std::uint32_t>(hn::Lanes(du)))
-        hn::StoreU(hn::Iota(du, static_cast<std::uint32_t>(to) + i), du, &child[parents.first + i]);
+        hn::StoreU(counting_from(du, static_cast<std::uint32_t>(to) + i), du,
+                   &child[parents.first + i]);
       link_singly(parents, s, to);
       to += parents.count;
       continue;

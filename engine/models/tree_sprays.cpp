@@ -81,8 +81,8 @@ HWY_INLINE void place_sprays(const SprayJob& job, const Bearers& bearers, std::s
                              std::uint32_t first, std::size_t count, Chunk& c) {
   const DF d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const VU id = (u1(first + static_cast<std::uint32_t>(i)) + hn::Iota(DU(), 0)) * u1(kChildStep) +
-                  u1(job.key);
+    const VU id =
+        counting_from(DU(), first + static_cast<std::uint32_t>(i)) * u1(kChildStep) + u1(job.key);
     const VU h0 = mix(id), h1 = mix(id ^ u1(kNumberStep)), h2 = mix(id ^ u1(2 * kNumberStep)),
              h3 = mix(id ^ u1(3 * kNumberStep)), h4 = mix(id ^ u1(4 * kNumberStep));
     const auto at = [&](std::size_t r) {
