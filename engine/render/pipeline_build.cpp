@@ -65,7 +65,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   Result<UniqueShaderModule> vert_module = make_module(device, shape.vert);
   if (!vert_module) return tl::unexpected(vert_module.error());
   Result<UniqueShaderModule> frag_module;
-  if (!shape.shadow) frag_module = make_module(device, shape.frag);
+  if (!shape.frag.empty()) frag_module = make_module(device, shape.frag);
   if (!frag_module) return tl::unexpected(frag_module.error());
   std::array stages{stage_of(VK_SHADER_STAGE_VERTEX_BIT, vert_module->get()),
                     stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, frag_module->get())};
@@ -134,7 +134,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   VkGraphicsPipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
   info.pNext = &rendering;
-  info.stageCount = shape.shadow ? 1 : static_cast<std::uint32_t>(stages.size());
+  info.stageCount = shape.frag.empty() ? 1 : static_cast<std::uint32_t>(stages.size());
   info.pStages = stages.data();
   info.pVertexInputState = &input;
   info.pInputAssemblyState = &assembly;

@@ -29,7 +29,7 @@ struct PipelineShape {
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   std::array<VkBool32, 2> constants{};  // of the fragment shader; those it lacks are ignored
   bool wireframe = false;               // needs DeviceInfo::wireframe
-  bool shadow = false;                  // depth only, of a cascade; no fragment shader
+  bool shadow = false;  // depth only, of a cascade; mostly without a fragment shader
 };
 
 core::Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layout,

@@ -147,7 +147,9 @@ Result<void> Pipelines::create_fading(const Device& device, PipelineShape shape,
                                       MeshPipelines& out) {
   const OtherCode& code = other_code();
   shape.kind = PipelineKind::kModel;
-  shape.frag = look == MeshLook::kLit ? code.surface_lit_fading_frag : code.surface_fading_frag;
+  shape.frag = look == MeshLook::kLit      ? code.surface_lit_fading_frag
+               : look == MeshLook::kShadow ? code.shadow_fading_frag
+                                           : code.surface_fading_frag;
   for (const bool pushed : {false, true}) {
     shape.vert = fading_vertex_code(look, pushed);
     Result<UniquePipeline> made = make_pipeline(device, layout_.get(), shape);
@@ -189,7 +191,9 @@ Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_f
         if (traits_.cascades == 0) return {};
         PipelineShape shadow = shape;
         shadow.shadow = true;
-        return create_meshes(device, shadow, MeshLook::kShadow, shadow_);
+        return create_meshes(device, shadow, MeshLook::kShadow, shadow_).and_then([&] {
+          return create_fading(device, shadow, MeshLook::kShadow, shadow_);
+        });
       })
       .and_then([&] { return create_sky(device, shape); })
       .and_then(
@@ -244,8 +248,7 @@ Result<void> Pipelines::create_views(const Device& device, PipelineShape shape) 
 VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, View view) const {
   const bool edges = view == View::kWireframe && wireframe_.whole[0][0].get() != VK_NULL_HANDLE;
   const MeshPipelines& all = edges ? wireframe_ : colours_draws(view) ? coloured_ : landscape_;
-  if (fading && !edges) return all.fading[pushed ? 1 : 0].get();
-  return all.whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed ? 1 : 0].get();
+  return all.of(layout, pushed, fading && !edges);
 }
 
 Result<VkDescriptorSet> Pipelines::make_set(const Device& device) {

@@ -22,8 +22,8 @@ class Pipelines {
   // `fading`: of models that come or go.
   VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, View view) const;
   // Into a cascade; only where the preset has some.
-  VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed) const {
-    return shadow_.whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed ? 1 : 0].get();
+  VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, bool fading) const {
+    return shadow_.of(layout, pushed, fading);
   }
   VkPipeline water() const { return water_.get(); }
   VkPipeline lines() const { return lines_.get(); }
@@ -47,6 +47,12 @@ class Pipelines {
     // By layout (terrain, model) and by whether the data is pushed.
     std::array<std::array<UniquePipeline, 2>, 2> whole;
     std::array<UniquePipeline, 2> fading;  // models; by whether the data is pushed
+
+    VkPipeline of(core::VertexLayout layout, bool is_pushed, bool is_fading) const {
+      const std::size_t pushed = is_pushed ? 1 : 0;
+      if (is_fading) return fading[pushed].get();
+      return whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed].get();
+    }
   };
   core::Result<void> create_pipelines(const Device& device, VkFormat colour_format);
   core::Result<void> create_sky(const Device& device, PipelineShape shape);

@@ -211,8 +211,9 @@ void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameS
     bind_set(device, pipelines, slot);
     device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT,
                                  sizeof(shaders::DrawData), sizeof(cascade), &cascade);
-    draw_meshes(device, pipelines, commands, pass,
-                [&](const DrawRun& run) { return pipelines.mesh_shadow(run.layout, run.pushed); });
+    draw_meshes(device, pipelines, commands, pass, [&](const DrawRun& run) {
+      return pipelines.mesh_shadow(run.layout, run.pushed, run.fading);
+    });
   });
 }
 

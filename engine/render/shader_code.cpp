@@ -70,6 +70,15 @@ constexpr std::uint32_t kModelFadingColouredVert[] =
 constexpr std::uint32_t kModelFadingColouredPushedVert[] =
 #include "model_fading_coloured_pushed_vert_spv.h"
     ;
+constexpr std::uint32_t kModelFadingShadowVert[] =
+#include "model_fading_shadow_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelFadingShadowPushedVert[] =
+#include "model_fading_shadow_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kShadowFadingFrag[] =
+#include "shadow_fading_frag_spv.h"
+    ;
 constexpr std::uint32_t kSurfaceFrag[] =
 #include "surface_frag_spv.h"
     ;
@@ -132,16 +141,19 @@ constexpr ShaderCode kMeshes[2][4][2] = {
 };
 
 // Those that come or go, by look and whether the data is pushed.
-constexpr ShaderCode kFadingModels[3][2] = {
+constexpr ShaderCode kFadingModels[4][2] = {
     {kModelFadingVert, kModelFadingPushedVert},
     {kModelFadingLitVert, kModelFadingLitPushedVert},
-    {kModelFadingColouredVert, kModelFadingColouredPushedVert}};
+    {kModelFadingColouredVert, kModelFadingColouredPushedVert},
+    {kModelFadingShadowVert, kModelFadingShadowPushedVert},
+};
 
 constexpr OtherCode kOthers{
-    kSurfaceFrag,  kSurfaceLitFrag, kSurfaceFadingFrag, kSurfaceLitFadingFrag,
-    kWaterVert,    kWaterLitVert,   kWaterFrag,         kLineVert,
-    kSkyVert,      kSkyFrag,        kSkyDomeVert,       kSkyDomeFrag,
-    kSkyBelowVert, kSunVert,        kOverlayVert,       kOverlayFrag};
+    kSurfaceFrag,      kSurfaceLitFrag, kSurfaceFadingFrag, kSurfaceLitFadingFrag,
+    kShadowFadingFrag, kWaterVert,      kWaterLitVert,      kWaterFrag,
+    kLineVert,         kSkyVert,        kSkyFrag,           kSkyDomeVert,
+    kSkyDomeFrag,      kSkyBelowVert,   kSunVert,           kOverlayVert,
+    kOverlayFrag};
 
 }  // namespace
 

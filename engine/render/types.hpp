@@ -145,7 +145,7 @@ struct MeshDraw {
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
   core::IndexPart part;                     // of its indices; of 0: all; not with `coarser`
-  float fade = 1.0F;                        // what is there of one that comes or goes: below
+  float fade = 1.0F;                        // what is there of one that comes or goes
   std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
   std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
 };

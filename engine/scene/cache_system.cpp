@@ -188,9 +188,9 @@ class Chooser {
     RankGroup group = RankGroup::kPrefetch;
     if (hole) {
       group = RankGroup::kVisibleHole;
-    } else if (level ==
-               demand.drawn_level) {  // the same with older parameters, as ground is at dawn
-      group = RankGroup::kPredicted;
+    } else if (wanted && level == demand.drawn_level) {
+      // Ground that is only lit anew waits for what lacks detail: with a fast sun it is all of it.
+      group = RankGroup::kDrawn;
     } else if (wanted) {  // what frees room is urgent only where room is short
       group = too_fine && !roomy_ ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
     }

@@ -103,8 +103,9 @@ struct Fading {
   synthesis::MeshHandle old_mesh;
   core::GeometryRange old_range;
   std::uint32_t old_shared_indices = 0;
+  std::uint8_t old_level = kNoLevel;
 };
-static_assert(sizeof(Fading) == 52);
+static_assert(sizeof(Fading) == 56);
 
 // What is wanted for an entity and what has been done about it. Changes every tick.
 struct Demand {

@@ -5,7 +5,7 @@
 
 namespace psygen::scene {
 
-void replace_mesh(Fading& fading, const Mesh& before) {
+void replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level) {
   const bool coming = fading.share < 1.0F;
   const bool mostly_old = fading.old_mesh && fading.share < 0.5F;
   if (coming && (!fading.old_mesh || mostly_old)) return;
@@ -13,6 +13,7 @@ void replace_mesh(Fading& fading, const Mesh& before) {
   fading.old_range = before.range;
   fading.old_mesh = before.handle;
   fading.old_shared_indices = before.shared_indices;
+  fading.old_level = level;
 }
 
 float come(Fading& fading, FadeStep step, bool fades_in) {
@@ -28,6 +29,7 @@ float come(Fading& fading, FadeStep step, bool fades_in) {
 
 float go(Fading& fading, FadeStep step) {
   if (fading.tick + 1 != step.tick) return 0;
+  if (fading.old_mesh) fading.share = 1.0F;  // with its old mesh it is there as a whole
   fading.old_mesh = {};
   fading.share = std::max(fading.share - step.share, 0.0F);
   if (fading.share > 0) fading.tick = step.tick;
@@ -49,6 +51,9 @@ void NodeHandover::update(std::span<const visibility::NodeCoord> drawn, bool con
   going_.clear();
   std::ranges::set_difference(before, now, std::back_inserter(going_));
   drawn_ = std::move(now);
+}
+
+void NodeHandover::find_replaced() {
   top_level_ = 0;
   for (const auto* nodes : {&drawn_, &going_}) {
     for (const visibility::NodeCoord& node : *nodes)

@@ -17,9 +17,9 @@ struct FadeStep {
   float share = 1;  // of a whole fade, in (0, 1]; 1: everything comes and goes at once
 };
 
-// The model draws another mesh than `before` from now on. One that was coming itself gives its
-// place to the new one.
-void replace_mesh(Fading& fading, const Mesh& before);
+// The model draws another mesh from now on than `before`, its level of detail, which is resident.
+// One that was coming itself gives its place to the new one.
+void replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level);
 
 // A model is drawn in this tick: returns the share of it that is there, in (0, 1]. If it was not
 // drawn in the last tick it begins to come where `fades_in`, else is there as a whole.
@@ -35,19 +35,22 @@ class NodeHandover {
   // call's; else nothing is known of what was drawn before, and nothing goes.
   void update(std::span<const visibility::NodeCoord> drawn, bool continues);
 
+  // Draws those that were drawn and are no more: all that update() found, and those of the ticks
+  // before that are still kept. `draw` says, once for each of them, whether anything of it is left.
+  template <class Draw>
+  void for_each_going(const Draw& draw) {
+    std::erase_if(going_, [&](const visibility::NodeCoord& node) { return !draw(node); });
+    find_replaced();
+  }
+
   // Of a node drawn in this tick: whether it was not in the last one, and if so, whether it has
-  // come in the place of going ones: its ancestor, or nodes below it.
+  // come in the place of what is left of going ones: its ancestor, or nodes below it.
   bool is_fresh(const visibility::NodeCoord& node) const;
   bool replaces(const visibility::NodeCoord& node) const;
 
-  // Nodes that were drawn and are no more: all that update() found, and those of the ticks before
-  // that are still kept. `stays` says, once for each of them, whether it goes on going.
-  template <class Stays>
-  void for_each_going(const Stays& stays) {
-    std::erase_if(going_, [&](const visibility::NodeCoord& node) { return !stays(node); });
-  }
-
  private:
+  void find_replaced();
+
   std::vector<visibility::NodeCoord> drawn_, fresh_, going_, above_going_, scratch_;  // all sorted
   std::uint8_t top_level_ = 0;                                                        // of these
 };

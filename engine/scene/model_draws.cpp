@@ -49,64 +49,72 @@ void ModelDraws::add_old(const Model& model, const Fading& fading, std::uint32_t
   draws_.meshes.push_back(fading.old_mesh);
 }
 
-bool ModelDraws::add_one_going(const Model& model, const Demand& demand, Fading& fading,
-                               std::uint32_t debug_colour) {
-  const bool there = demand.drawn_level != kNoLevel;
-  if (!there || !mesh_can_be_seen(model.mesh.tight, model.foot, view_)) return false;
-  const float share = go(fading, step_);
-  if (share <= 0) return false;
-  add_model(model, share - 1.0F, debug_colour);
+// Single models have levels of their own.
+std::uint32_t ModelDraws::colour_at(DrawFacts node, const Demand& demand,
+                                    std::uint8_t level) const {
+  if (node.level == 0) {
+    node.level = level;
+    node.coarser = static_cast<std::uint32_t>(std::max(level - demand.wanted_level, 0));
+  }
+  return colour_of(shown_, node);
+}
+
+// Returns whether anything of it can be seen.
+bool ModelDraws::add_coming(const Model& model, const Demand& demand, Fading& fading, bool fades_in,
+                            const DrawFacts& node) {
+  const float share = come(fading, step_, fades_in);
+  if (!add_model(model, share, colour_at(node, demand, demand.drawn_level))) return false;
+  if (fading.old_mesh) add_old(model, fading, colour_at(node, demand, fading.old_level));
   return true;
 }
 
-void ModelDraws::add(const ecs::Children& children, Node node, DrawFacts facts, glm::vec3 corner) {
-  const bool single = facts.level == 0;
-  const DrawFacts node_facts = facts;
-  entities_.each_of<const Placed, const Demand, const Mesh, Fading>(
-      entities_.children(children),
-      [&](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
-          std::span<const Demand> demands, std::span<const Mesh> meshes, std::span<Fading> fading) {
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-          const Demand& demand = demands[i];
-          if (demand.in_view_tick != step_.tick) continue;
-          const Model model{parts_of(rows[i], node_facts), placed[i], meshes[i],
-                            corner + placed[i].position};
-          const bool hole = demand.drawn_level == kNoLevel;
-          if (single && !hole) {
-            facts.level = demand.drawn_level;
-            facts.coarser =
-                static_cast<std::uint32_t>(std::max(demand.drawn_level - demand.wanted_level, 0));
-          }
-          const std::uint32_t colour = colour_of(shown_, facts);
-          if (demand.wanted_level == kNoLevel) {  // too small by now
-            add_one_going(model, demand, fading[i], colour);
-            continue;
-          }
-          if (!hole) {
-            const bool fades_in = node == Node::kReplaces ||
-                                  (node == Node::kStays && demand.entered_tick != step_.tick);
-            const float share = come(fading[i], step_, fades_in);
-            if (!add_model(model, share, colour)) continue;
-            if (fading[i].old_mesh) add_old(model, fading[i], colour);
-          }
-          count_seen(camera_, model.foot + placed[i].middle, placed[i].radius_m, hole,
-                     !hole && demand.drawn_level > demand.wanted_level + 1, counters_);
-        }
-      });
+bool ModelDraws::add_going(const Model& model, const Demand& demand, Fading& fading,
+                           const DrawFacts& node) {
+  const bool there = demand.drawn_level != kNoLevel;
+  if (!there || !mesh_can_be_seen(model.mesh.tight, model.foot, view_)) return false;
+  const float share = go(fading, step_);
+  return share > 0 && add_model(model, share - 1.0F, colour_at(node, demand, demand.drawn_level));
 }
 
-bool ModelDraws::add_going(const ecs::Children& children, DrawFacts facts, glm::vec3 corner) {
+void ModelDraws::add(const ecs::Children& children, Node how, const DrawFacts& node,
+                     glm::vec3 corner) {
+  entities_.each_of<const Placed, const Demand, const Mesh,
+                    Fading>(entities_.children(children), [&](std::span<const ecs::Entity> rows,
+                                                              std::span<const Placed> placed,
+                                                              std::span<const Demand> demands,
+                                                              std::span<const Mesh> meshes,
+                                                              std::span<Fading> fading) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Demand& demand = demands[i];
+      if (demand.in_view_tick != step_.tick) continue;
+      const Model model{parts_of(rows[i], node), placed[i], meshes[i], corner + placed[i].position};
+      if (demand.wanted_level == kNoLevel) {  // too small by now
+        add_going(model, demand, fading[i], node);
+        continue;
+      }
+      const bool hole = demand.drawn_level == kNoLevel;
+      const bool appears = how == Node::kStays && demand.entered_tick != step_.tick;
+      const bool fades_in = appears || how == Node::kReplaces;
+      if (!hole && !add_coming(model, demand, fading[i], fades_in, node)) continue;
+      count_seen(camera_, model.foot + placed[i].middle, placed[i].radius_m, hole,
+                 !hole && demand.drawn_level > demand.wanted_level + 1, counters_);
+    }
+  });
+}
+
+bool ModelDraws::add_going(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner) {
   bool any = false;
-  entities_.each_of<const Placed, const Demand, const Mesh, Fading>(
-      entities_.children(children),
-      [&](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
-          std::span<const Demand> demands, std::span<const Mesh> meshes, std::span<Fading> fading) {
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-          const Model model{parts_of(rows[i], facts), placed[i], meshes[i],
-                            corner + placed[i].position};
-          if (add_one_going(model, demands[i], fading[i], colour_of(shown_, facts))) any = true;
-        }
-      });
+  entities_.each_of<const Placed, const Demand, const Mesh,
+                    Fading>(entities_.children(children), [&](std::span<const ecs::Entity> rows,
+                                                              std::span<const Placed> placed,
+                                                              std::span<const Demand> demands,
+                                                              std::span<const Mesh> meshes,
+                                                              std::span<Fading> fading) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Model model{parts_of(rows[i], node), placed[i], meshes[i], corner + placed[i].position};
+      if (add_going(model, demands[i], fading[i], node)) any = true;
+    }
+  });
   return any;
 }
 

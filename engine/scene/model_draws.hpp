@@ -29,10 +29,10 @@ class ModelDraws {
     kReplaces,  // it takes the place of others
     kEnters,    // nothing was seen there
   };
-  // The models of a node that is drawn, whose corner is there. `facts` are those of the node.
-  void add(const ecs::Children& children, Node node, DrawFacts facts, glm::vec3 corner);
+  // The models of a node that is drawn, whose corner is there.
+  void add(const ecs::Children& children, Node how, const DrawFacts& node, glm::vec3 corner);
   // Those of a node that is drawn no more. Returns whether anything of them is left.
-  bool add_going(const ecs::Children& children, DrawFacts facts, glm::vec3 corner);
+  bool add_going(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner);
 
  private:
   struct Model {
@@ -44,8 +44,10 @@ class ModelDraws {
   const MeshParts* parts_of(ecs::Entity entity, const DrawFacts& node) const;
   bool add_model(const Model& model, float fade, std::uint32_t debug_colour);
   void add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour);
-  bool add_one_going(const Model& model, const Demand& demand, Fading& fading,
-                     std::uint32_t debug_colour);
+  std::uint32_t colour_at(DrawFacts node, const Demand& demand, std::uint8_t level) const;
+  bool add_coming(const Model& model, const Demand& demand, Fading& fading, bool fades_in,
+                  const DrawFacts& node);
+  bool add_going(const Model& model, const Demand& demand, Fading& fading, const DrawFacts& node);
 
   render::View shown_;
   FadeStep step_;

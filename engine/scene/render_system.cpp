@@ -36,10 +36,10 @@ class Drawing {
     visibility::drawn_nodes(view_.cut, draws_.ready, draws_.scratch, draws_.nodes);
     list_shown();
     draws_.handover.update(draws_.shown_nodes, continues);
-    for (const std::uint32_t i : draws_.shown)
-      draw(i, entities[i]);
     draws_.handover.for_each_going(
         [&](const visibility::NodeCoord& node) { return draw_going(node, streaming); });
+    for (const std::uint32_t i : draws_.shown)
+      draw(i, entities[i]);
   }
 
  private:
@@ -95,7 +95,8 @@ class Drawing {
     if (!can_be_seen({corner + glm::vec3(0, at.low_m, 0) - beyond, corner + opposite + beyond},
                      view_))
       return false;
-    const DrawFacts facts{node.level, entities_.get<Visibility>(entity)->layer, 0, 0};
+    DrawFacts facts{node.level, entities_.get<Visibility>(entity)->layer, 0, 0};
+    if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, side_m);
     return models_.add_going(*entities_.get<ecs::Children>(entity), facts, corner);
   }
 

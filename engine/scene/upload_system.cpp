@@ -117,6 +117,16 @@ void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& 
   relief = note_of<GroundRelief>(record);
 }
 
+// What an entity draws so far. What landed in this tick is not in its component yet, where a mesh
+// may be that was evicted.
+const Mesh& mesh_before(ecs::Entity owner, const UploadQuery& entities,
+                        std::span<const ecs::Landing<Mesh>> landings) {
+  for (std::size_t i = landings.size(); i-- > 0;) {
+    if (landings[i].entity == owner) return landings[i].value;
+  }
+  return *entities.get<Mesh>(owner);
+}
+
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.
 void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::MeshRecord& record,
            std::uint32_t shared_indices, const WorldFacts& facts, double now_s,
@@ -127,21 +137,19 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());  // destroyed meanwhile
     return;
   }
-  const bool replaces = demand->drawn_level != kNoLevel;
+  const std::uint8_t level_before = demand->drawn_level;
   Node* node = entities.get<Node>(owner);
   const int first_level = node != nullptr ? first_ground_level(facts, *node) : 0;
   const auto level = static_cast<std::uint8_t>(record.key.level - first_level);
   const bool fresh = record.key.parameters_hash == entities.get<Source>(owner)->parameters_hash;
-  const bool of_old_parameters = demand->stale;
   if (!accept(*demand, level, fresh, now_s, counters)) {
     synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());
     return;
   }
-  if (replaces) {
-    const Mesh& before = *entities.get<Mesh>(owner);
+  if (level_before != kNoLevel) {
+    const Mesh& before = mesh_before(owner, entities, landings);
     synthesis.cache->set_rank(before.handle, synthesis::Rank::unwanted());
-    Fading* fading = entities.get<Fading>(owner);
-    if (fading != nullptr && !of_old_parameters) replace_mesh(*fading, before);
+    if (Fading* fading = entities.get<Fading>(owner)) replace_mesh(*fading, before, level_before);
   }
   if (node != nullptr) {
     note_ground(*node, *entities.get<GroundRelief>(owner), record, facts);

@@ -62,6 +62,11 @@ void Modeler::perform(Workshop& workshop, const Request& request) {
   execute(workshop, cpu_mark);
 }
 
+// Then what the request and the hook refer to may be gone.
+bool Modeler::is_given_up() const {
+  return (state_.load(std::memory_order_acquire) & kPhaseMask) == kGivenUp;
+}
+
 bool Modeler::write_mesh(const Workshop& workshop, const models::MeshView& mesh, Completion& c) {
   SynthesisOutcome outcome = synthesize_guarded((*workshop.registry)[current_.key.model],
                                                 current_.parameters, current_.key.level, mesh);
@@ -77,7 +82,7 @@ void Modeler::write_noted_mesh(const Workshop& workshop, const Annotate& annotat
   const models::MeshView& destination = current_.destination;
   try {
     const models::MeshView mesh = scratch_for(destination);
-    if (!write_mesh(workshop, mesh, c)) return;
+    if (!write_mesh(workshop, mesh, c) || is_given_up()) return;
     c.note = annotate(current_, mesh);
     std::ranges::copy(mesh.vertices, destination.vertices.begin());
     std::ranges::copy(mesh.indices, destination.indices.begin());

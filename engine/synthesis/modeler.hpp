@@ -82,6 +82,7 @@ class Modeler {
   enum Phase : std::uint64_t { kIdle = 0, kWorking = 1, kGivenUp = 2, kPhaseMask = 3 };
   // False if the request was given up meanwhile.
   bool execute(Workshop& workshop, double& cpu_mark);
+  bool is_given_up() const;
   bool write_mesh(const Workshop& workshop, const models::MeshView& mesh, Completion& c);
   void write_noted_mesh(const Workshop& workshop, const Annotate& annotate, Completion& c);
   models::MeshView scratch_for(const models::MeshView& destination);

@@ -20,7 +20,7 @@ enum class RankGroup : std::uint8_t {
   kVisibleHole = 0,    // in view, drawn at no level
   kVisibleFine = 1,    // in view, drawn finer than wanted; of a request: what frees that room
   kVisibleCoarse = 2,  // in view, drawn, but not by the mesh that is wanted
-  kDrawn = 3,          // in view and drawn now
+  kDrawn = 3,          // in view and drawn now; of a request: the same anew
   kPredicted = 4,      // will be in view, by deadline
   kPrefetch = 5,       // around the camera, by PLP layer
   kUnwanted = 6,       // nobody asks for it; kept while there is room

@@ -96,6 +96,20 @@ TEST_P(Fading, a_mesh_covers_as_large_a_share_of_its_pixels_as_it_is_there) {
   EXPECT_EQ(draw(not_yet_going).rgba, draw(whole).rgba);
 }
 
+// Also of its shadow.
+TEST_P(Fading, a_hint_of_another_mesh_changes_a_hint_of_the_picture) {
+  const std::array whole{mesh(0, 1)};
+  const Picture before = draw(whole);
+  meshes_[1].box_half_extent = {2.6F, 4.6F, 2.6F};
+  const std::array larger{mesh(1, 1)};
+  const std::size_t all = different(draw(larger), before);
+  const std::array hint{mesh(1, 0.02F), mesh(0, -0.02F)};
+  EXPECT_LT(different(draw(hint), before), all / 5);
+  const std::array nearly{mesh(1, 0.98F), mesh(0, -0.98F)};
+  const Picture almost = draw(nearly);
+  EXPECT_LT(different(almost, draw(larger)), all / 5);
+}
+
 TEST_P(Fading, views_for_understanding_fade_too) {
   for (const View view : {View::kLevels, View::kWireframe, View::kBounds}) {
     input_.view = view;

@@ -52,6 +52,7 @@ TEST(Daylight, WhenTheSunHasMovedAStepTheGroundIsMadeAnewWithoutAHole) {
   EXPECT_GT(noon.stale, 0u);
   EXPECT_EQ(scene.state().counters.holes, 0u);
 
+  const synthesis::CacheStats before = scene.state().synthesis.cache->stats();
   const double then_s = scene.state().clock.now_s;
   for (int i = 0; i < 40; ++i) {
     scene.state().synthesis.manager->wait_all();
@@ -60,6 +61,8 @@ TEST(Daylight, WhenTheSunHasMovedAStepTheGroundIsMadeAnewWithoutAHole) {
     EXPECT_EQ(scene.state().counters.holes, 0u);
   }
   EXPECT_EQ(ground_of(scene).stale, 0u);
+  // What is seen already is nothing that was fetched before it is seen.
+  EXPECT_EQ(scene.state().synthesis.cache->stats().prefetch_hits, before.prefetch_hits);
 }
 
 TEST(Daylight, WhatLacksDetailComesBeforeGroundThatIsOnlyLitAnew) {
