@@ -22,6 +22,7 @@ std::string formula_of(const models::ModelType& type) {
   if (type.name() == "rock") return "c·n·4^(n−1)";
   if (type.name() == "terrain") return "c·m·n²";
   if (type.name() == "tree") return "c·mⁿ";
+  if (type.name() == "grass") return "c·blades";
   return models::is_species_type(type) ? "c·branches" : "c·complexity";
 }
 

@@ -112,6 +112,12 @@ class ModelType {
   // Tells types of one name apart whose functions differ, such as two editions of a species: it is
   // part of every mesh's key (parameters_hash). 0 for types that never change.
   virtual std::uint64_t identity() const { return 0; }
+  // False for what is smaller than a pixel where single models end: the meshes that stand for
+  // everything on a node and the colour of far ground leave it out.
+  virtual bool is_seen_from_far() const { return true; }
+  // By what it is judged whether a single model is large enough on screen to be drawn, in metres:
+  // for many small things that are one model, the size of one. 0: the sphere around its mesh.
+  virtual double seen_size_m(const Parameters&) const { return 0; }
   // True only for types whose coarse levels are certain to end within microseconds, whatever their
   // parameters: the main thread may synthesise them itself when their absence is seen. A type that
   // could hang must leave this to the modelers, which are watched.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/grass.hpp"
 #include "engine/models/rock.hpp"
 #include "engine/models/terrain.hpp"
 #include "engine/models/tree.hpp"
@@ -86,7 +87,7 @@ int Registry::find(std::string_view name) const {
 
 Registry make_standard_registry() {
   Registry registry;
-  for (auto make : {make_terrain_type, make_rock_type, make_tree_type}) {
+  for (auto make : {make_terrain_type, make_rock_type, make_tree_type, make_grass_type}) {
     const auto added = registry.add(make());
     PSYGEN_CHECK(added.has_value(), "the standard types have sound schemas");
   }

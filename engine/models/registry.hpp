@@ -31,7 +31,7 @@ class Registry {
   std::vector<std::unique_ptr<ModelType>> types_;
 };
 
-// Terrain, rock and tree (paper, section 5.2), in this order.
+// Terrain, rock and tree (paper, section 5.2), and grass, in this order.
 Registry make_standard_registry();
 
 }  // namespace psygen::models

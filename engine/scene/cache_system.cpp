@@ -115,7 +115,8 @@ class Chooser {
 
   std::uint8_t wanted_level(const Placed& placed, const Detail& detail, const Demand& demand,
                             float distance_m, const NodeView& node) const {
-    const float size_pixels = 2 * placed.radius_m * camera_.pixels_per_radian /
+    const float size_m = detail.seen_size_m > 0 ? detail.seen_size_m : 2 * placed.radius_m;
+    const float size_pixels = size_m * camera_.pixels_per_radian /
                               std::max(distance_m + placed.radius_m, camera_.projection.near_m);
     if (node.level == 0 && size_pixels < static_cast<float>(settings_.min_size_pixels))
       return kNoLevel;

@@ -63,6 +63,7 @@ static_assert(sizeof(Placed) == 60);
 struct Detail {
   std::array<float, kMaxLevels> error_m{};
   std::uint32_t level_count = 0;
+  float seen_size_m = 0;  // ModelType::seen_size_m
 };
 
 // What is synthesised. Cold: read when a request is made.

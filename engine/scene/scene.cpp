@@ -89,6 +89,9 @@ glm::vec2 models_reach(const world::World& world, const models::Registry& regist
         const world::ParameterRange& range = scatter.ranges[ranged[k]];
         world::set_parameter(type, p, ranged[k], (corner >> k & 1) != 0 ? range.high : range.low);
       }
+      const auto steepest =
+          static_cast<float>(std::tan(scatter.max_slope_deg * std::numbers::pi / 180));
+      world::set_slope(type, glm::vec2(steepest), p);
       const core::Bounds box = type.bounds(p);
       reach_m.x = std::max({reach_m.x, -box.min.x, -box.min.z, box.max.x, box.max.z});
       reach_m.y = std::max(reach_m.y, box.max.y);

@@ -37,6 +37,7 @@ Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds&
 Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first,
                  int last) {
   Detail detail;
+  detail.seen_size_m = static_cast<float>(type.seen_size_m(parameters));
   for (int level = first; level <= std::min(last, type.level_count_of(parameters) - 1); ++level) {
     if (detail.level_count == kMaxLevels) break;
     detail.error_m[detail.level_count++] =

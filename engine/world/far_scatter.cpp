@@ -44,7 +44,7 @@ Silhouette silhouette_of_form(Form form, const Outline& outline) {
 FarScatter::FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,
                        std::uint32_t first)
     : type_(&type), scatter_(&scatter), first_(first) {
-  if (scatter.count == 0) return;
+  if (scatter.count == 0 || !type.is_seen_from_far()) return;
   try {  // types of users may throw; nothing of ours does
     measure(world);
   } catch (...) {

@@ -30,8 +30,8 @@ class FarScatter {
   static constexpr std::uint32_t kRepresentatives = 32;
 
   // Draws and synthesises kRepresentatives instances of `scatter`, whose first instance in a block
-  // has the index `first`. `world` and the type must outlive it. Where the type throws or makes
-  // nothing that can be seen, there are none.
+  // has the index `first`. `world` and the type must outlive it. Where the type throws, makes
+  // nothing that can be seen or is not seen from far, there are none.
   FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,
              std::uint32_t first);
 

@@ -206,7 +206,7 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   const NodeBlock& block = instance.block;
   const auto place = scattering.place(*making.ground, instance.index, block.in_tile_m);
   if (!place) return;
-  instance.place = *place;
+  instance.place = place->position;
   const Parameters p = scattering.parameters(instance.index);
   if (how.each_is_synthesised) {
     making.mesh.make(far.type(), p);
@@ -219,7 +219,7 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   }
   const glm::vec3 corner{static_cast<float>(block.in_node_m.x), 0,
                          static_cast<float>(block.in_node_m.y)};
-  making.writer.add(how.form, making.form, corner + *place, making.plan.form_level == 1);
+  making.writer.add(how.form, making.form, corner + instance.place, making.plan.form_level == 1);
 }
 
 // Instances of the whole node are numbered block by block; `together` numbers in a row are one

@@ -91,6 +91,7 @@ double work_of(const World& world, std::span<const FarScatter> scatters, const L
   for (std::size_t s = 0; s < scatters.size(); ++s) {
     const ScatterPlan& how = plan.scatters[s];
     const FarScatter& far = scatters[s];
+    if (how.forms == 0) continue;
     const double make = !how.each_is_synthesised ? 500 : far.is_leafy() ? 3000 : 400;
     const double search = far.scatter().has_filter() ? 200 : 0;
     sum += (make + search) * static_cast<double>(how.forms) + std::ldexp(80, 2 * plan.level);

@@ -1,6 +1,7 @@
 #include "engine/world/placement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/trigonometric.hpp>
@@ -29,25 +30,28 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
                        core::BlockCoord block)
     : seed_(world.seed),
       size_m_(static_cast<float>(world.block_size_m())),
+      type_(type),
       scatter_(scatter),
       specs_(type.parameters()),
       defaults_(models::default_parameters(type)),
       block_(block),
-      least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))) {}
+      least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
+      follows_ground_(models::parameter_index(type, "slope_x") >= 0) {}
 
-std::optional<glm::vec3> Scattering::place(const models::BlockGround& ground, std::uint32_t index,
-                                           glm::dvec2 corner_m) const {
+std::optional<Scattering::Foothold> Scattering::place(const models::BlockGround& ground,
+                                                      std::uint32_t index,
+                                                      glm::dvec2 corner_m) const {
   core::RandomStream random(seed_, block_.x, block_.z, index, core::Purpose::kPosition);
   for (int i = 0; i < kPlacementTries; ++i) {
     const double x = draw_coordinate(random, size_m_), z = draw_coordinate(random, size_m_);
     const models::GroundPoint point = ground.at(corner_m + glm::dvec2(x, z));
     if (!scatter_.has_filter() || may_stand(scatter_, least_up_, point))
-      return glm::vec3(x, point.height_m, z);
+      return Foothold{{x, point.height_m, z}, point.normal};
   }
   return std::nullopt;
 }
 
-models::Parameters Scattering::parameters(std::uint32_t index) const {
+models::Parameters Scattering::parameters(std::uint32_t index, const glm::vec3& normal) const {
   models::Parameters p = defaults_;
   core::RandomStream values(seed_, block_.x, block_.z, index, core::Purpose::kParameters);
   core::RandomStream seeds(seed_, block_.x, block_.z, index, core::Purpose::kSeed);
@@ -63,6 +67,7 @@ models::Parameters Scattering::parameters(std::uint32_t index) const {
       p.set_real(i, range.low == range.high ? range.low : std::min(drawn, range.high));
     }
   }
+  if (follows_ground_) set_slope(type_, glm::vec2(normal.x, normal.z) / -normal.y, p);
   return p;
 }
 
@@ -106,7 +111,8 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
     const Scattering scattering(world, registry[scatter.model], scatter, block);
     for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
       if (const auto place = scattering.place(ground, index))
-        out.push_back({scatter.model, index, *place, scattering.parameters(index)});
+        out.push_back(
+            {scatter.model, index, place->position, scattering.parameters(index, place->normal)});
     }
   }
 }
@@ -118,6 +124,18 @@ void set_parameter(const models::ModelType& type, models::Parameters& parameters
     parameters.set_integer(i, std::llround(std::clamp(value, -0x1.0p63, 0x1.fffffffffffffp62)));
   } else {
     parameters.set_real(i, value);
+  }
+}
+
+void set_slope(const models::ModelType& type, glm::vec2 slope, models::Parameters& parameters) {
+  constexpr std::array<std::string_view, 2> kNames{"slope_x", "slope_z"};
+  for (int axis = 0; axis < 2; ++axis) {
+    const int i = models::parameter_index(type, kNames[static_cast<std::size_t>(axis)]);
+    if (i < 0) continue;
+    const models::ParameterSpec& spec = type.parameters()[static_cast<std::size_t>(i)];
+    if (spec.source != models::ParameterSource::kPlaced) continue;
+    set_parameter(type, parameters, static_cast<std::size_t>(i),
+                  std::clamp(static_cast<double>(slope[axis]), spec.hard_min, spec.hard_max));
   }
 }
 

@@ -38,18 +38,26 @@ class Scattering {
   // The first allowed one of the places that instance `index` of the block tries, in metres from
   // the block's corner. `ground` is that of the block, or of a larger node that has the block's
   // corner at `corner_m`.
-  std::optional<glm::vec3> place(const models::BlockGround& ground, std::uint32_t index,
-                                 glm::dvec2 corner_m = {0, 0}) const;
-  models::Parameters parameters(std::uint32_t index) const;
+  struct Foothold {
+    glm::vec3 position{0.0F};
+    glm::vec3 normal{0, 1, 0};  // of the ground
+  };
+  std::optional<Foothold> place(const models::BlockGround& ground, std::uint32_t index,
+                                glm::dvec2 corner_m = {0, 0}) const;
+  // On ground with this normal: types that have the placed parameters `slope_x` and `slope_z`
+  // follow it.
+  models::Parameters parameters(std::uint32_t index, const glm::vec3& normal = {0, 1, 0}) const;
 
  private:
   std::uint64_t seed_;
   float size_m_;
+  const models::ModelType& type_;
   const Scatter& scatter_;
   std::span<const models::ParameterSpec> specs_;
   models::Parameters defaults_;
   core::BlockCoord block_;
   float least_up_;
+  bool follows_ground_;
 };
 
 // Steps in degrees in which the terrain's shadows follow the sun: each makes new meshes.
@@ -84,11 +92,15 @@ std::vector<double> placed_per_block(const World& world, const models::Registry&
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,
                    double value);
 
+// Sets `slope_x` and `slope_z`, the rise of the ground per metre, within their ranges, where the
+// type has them as placed parameters.
+void set_slope(const models::ModelType& type, glm::vec2 slope, models::Parameters& parameters);
+
 // The parameters of a scatter with everything at the low end of its range.
 models::Parameters scatter_parameters(const models::Registry& registry, const Scatter& scatter);
 
 // The parameters of instance `index` of `block`, which belongs to `scatter`; the same that
-// place_models() gives it.
+// place_models() gives it, but on level ground.
 models::Parameters draw_parameters(const World& world, const models::Registry& registry,
                                    const Scatter& scatter, core::BlockCoord block,
                                    std::uint32_t index);

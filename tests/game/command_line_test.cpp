@@ -120,7 +120,7 @@ TEST(CommandLine, ModelsListsEveryModelWithUnitsAndRanges) {
   const Outcome outcome = run_psygen("models");
   EXPECT_EQ(outcome.code, 0);
   for (const char* words :
-       {"terrain", "rock", "tree", "octaves", "subdivisions", "iterations", "radius_m"}) {
+       {"terrain", "rock", "tree", "grass", "octaves", "subdivisions", "iterations", "radius_m"}) {
     EXPECT_TRUE(mentions(outcome.out, words)) << words;
   }
   EXPECT_TRUE(mentions(run_psygen("models --json").out, "\"unit\""));

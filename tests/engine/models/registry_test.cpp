@@ -48,12 +48,13 @@ std::string refusal(std::vector<ParameterSpec> specs, std::string_view name = "f
   return added ? "" : added.error().message;
 }
 
-TEST(Registry, StandardOneHoldsTerrainRockAndTreeInThisOrder) {
+TEST(Registry, StandardOneHoldsTerrainRockTreeAndGrassInThisOrder) {
   const Registry registry = make_standard_registry();
-  ASSERT_EQ(registry.size(), 3u);
+  ASSERT_EQ(registry.size(), 4u);
   EXPECT_EQ(registry[0].name(), "terrain");
   EXPECT_EQ(registry[1].name(), "rock");
   EXPECT_EQ(registry[2].name(), "tree");
+  EXPECT_EQ(registry[3].name(), "grass");
   EXPECT_EQ(registry.find("tree"), 2);
   EXPECT_EQ(registry.find("house"), -1);
 }

@@ -388,6 +388,34 @@ TEST(MergedModels, OfAUsersTypeAreBuiltFromItsCoarsestMesh) {
   }
 }
 
+constexpr const char* kGrass = "\n[[scatter]]\nmodel = \"grass\"\ncount = 40\n";
+
+TEST(MergedModels, LeaveOutWhatIsNotSeenFromFar) {
+  const Scenery with(trees() + kGrass), without(trees());
+  for (int level = 1; level <= kMaxMergedLevel; ++level) {
+    const models::Parameters p = merged_parameters({0, 0}, level);
+    EXPECT_EQ(with.type->mesh_size(p, 0), without.type->mesh_size(p, 0));
+    EXPECT_EQ(with.type->complexity(p, 0), without.type->complexity(p, 0));
+    EXPECT_EQ(with.mesh({0, 0}, level).vertex_bytes, without.mesh({0, 0}, level).vertex_bytes);
+  }
+  const FarCover green = far_cover(*with.world, with.registry);
+  const FarCover bare = far_cover(*without.world, without.registry);
+  EXPECT_EQ(green.share, bare.share);
+  EXPECT_EQ(green.albedo, bare.albedo);
+}
+
+TEST(MergedModels, OfNothingButGrassAreEmpty) {
+  const std::string text = trees();
+  const Scenery grass(text.substr(0, text.find("[[scatter]]")) + kGrass);
+  ASSERT_EQ(grass.world->scatter.size(), 1U);
+  for (int level = 1; level <= kMaxMergedLevel; ++level) {
+    const models::Parameters p = merged_parameters({0, 0}, level);
+    EXPECT_EQ(grass.type->mesh_size(p, 0).vertex_count, 0U);
+    EXPECT_EQ(grass.type->level_count_of(p), 1);
+  }
+  EXPECT_EQ(far_cover(*grass.world, grass.registry).share, 0);
+}
+
 // Behaves as a fence until it is synthesised.
 class ThrowingType final : public models::ModelType {
  public:

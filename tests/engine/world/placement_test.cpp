@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "engine/models/grass.hpp"
 #include "engine/models/rock.hpp"
 #include "engine/models/terrain.hpp"
 #include "engine/models/tree.hpp"
@@ -165,6 +167,27 @@ TEST(Placement, WithoutAnAllowedPlaceAnInstanceIsLeftOutAndTheOthersKeepTheirInd
     EXPECT_EQ(b[i].position, a[i + 3].position);
     EXPECT_EQ(b[i].parameters, a[i + 3].parameters);
   }
+}
+
+TEST(Placement, GrassFollowsTheSlopeOfTheGround) {
+  const World world = parsed(filtered("[[scatter]]\nmodel = \"grass\"\ncount = 20\n"));
+  bool sloping = false;
+  for (const core::BlockCoord block : kBlocks) {
+    const std::vector<Placement> models = placed(world, block);
+    ASSERT_EQ(models.size(), 28U);
+    for (std::size_t i = 8; i < models.size(); ++i) {
+      const Placement& p = models[i];
+      const glm::vec3 normal =
+          models::ground_normal(world.terrain, block, static_cast<double>(p.position.x),
+                                static_cast<double>(p.position.z));
+      const double x = p.parameters.real(models::kGrassSlopeX);
+      const double z = p.parameters.real(models::kGrassSlopeZ);
+      EXPECT_FLOAT_EQ(static_cast<float>(x), std::clamp(-normal.x / normal.y, -1.5F, 1.5F));
+      EXPECT_FLOAT_EQ(static_cast<float>(z), std::clamp(-normal.z / normal.y, -1.5F, 1.5F));
+      sloping = sloping || std::abs(x) > 0.1;
+    }
+  }
+  EXPECT_TRUE(sloping);
 }
 
 TEST(Placement, AWorldWithoutModelsHasEmptyBlocks) {

@@ -48,7 +48,7 @@ season = 2
 std::string error_with(std::string_view from, std::string_view to) {
   models::Registry registry = models::make_standard_registry();
   const auto world = parse_world(replaced(kFile, from, to), "w.toml", registry);
-  EXPECT_EQ(registry.size(), 3U);
+  EXPECT_EQ(registry.size(), 4U);
   EXPECT_FALSE(world.has_value()) << to;
   return world ? "" : world.error().message;
 }
@@ -57,7 +57,7 @@ TEST(SpeciesFile, MakesAModelThatCanBeScattered) {
   models::Registry registry = models::make_standard_registry();
   const auto world = parse_world(kFile, "w.toml", registry);
   ASSERT_TRUE(world.has_value()) << world.error().message;
-  ASSERT_EQ(registry.size(), 4U);
+  ASSERT_EQ(registry.size(), 5U);
   EXPECT_EQ(registry[3].name(), "ash");
   EXPECT_EQ(world->scatter[2].model, 3);
   EXPECT_EQ(world->scatter[2].ranges[models::kSpeciesSeason], (ParameterRange{2, 2}));
@@ -76,7 +76,7 @@ TEST(SpeciesFile, KeepsOneModelForEqualSpeciesAndRefusesOthersOfTheName) {
   models::Registry registry = models::make_standard_registry();
   ASSERT_TRUE(parse_world(kFile, "w.toml", registry).has_value());
   EXPECT_TRUE(parse_world(kFile, "w.toml", registry).has_value());
-  EXPECT_EQ(registry.size(), 4U);
+  EXPECT_EQ(registry.size(), 5U);
   const auto edited =
       parse_world(replaced(kFile, "length = 0.7", "length = 0.71"), "w.toml", registry);
   ASSERT_FALSE(edited.has_value());
@@ -124,7 +124,7 @@ TEST(SpeciesFile, SurvivesBeingCutAtEveryByte) {
     models::Registry registry = models::make_standard_registry();
     const auto world = parse_world(std::string_view(kFile).substr(0, n), "w.toml", registry);
     if (!world) {
-      EXPECT_EQ(registry.size(), 3U);
+      EXPECT_EQ(registry.size(), 4U);
     }
   }
 }
