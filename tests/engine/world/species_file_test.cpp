@@ -58,8 +58,8 @@ TEST(SpeciesFile, MakesAModelThatCanBeScattered) {
   const auto world = parse_world(kFile, "w.toml", registry);
   ASSERT_TRUE(world.has_value()) << world.error().message;
   ASSERT_EQ(registry.size(), 5U);
-  EXPECT_EQ(registry[3].name(), "ash");
-  EXPECT_EQ(world->scatter[2].model, 3);
+  EXPECT_EQ(registry[4].name(), "ash");
+  EXPECT_EQ(world->scatter[2].model, 4);
   EXPECT_EQ(world->scatter[2].ranges[models::kSpeciesSeason], (ParameterRange{2, 2}));
   EXPECT_EQ(world->species[0].rules.size(), 3U);
   EXPECT_GT(world_size(*world, registry).triangles, 0);
