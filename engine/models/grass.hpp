@@ -32,8 +32,8 @@ enum GrassParameter : std::size_t {
 enum GrassFlower : int { kWhiteFlower = 0, kYellowFlower, kPinkFlower, kBlueFlower, kFlowerCount };
 
 // Level 0 has blades of 3 triangles and flowers of 3 + 4, level 1 one triangle for each of either;
-// levels 2 and 3 a third and a ninth of those, broader by so much. Own indices. About 40 ns a
-// blade.
+// levels 2 and 3 a third and a ninth of those, broader by so much. Own indices. Scalar code: about
+// 0.25 µs a blade of level 0 (psygen amplify of a world of nothing else).
 std::unique_ptr<ModelType> make_grass_type();
 
 }  // namespace psygen::models
