@@ -44,22 +44,23 @@ void NodeHandover::update(std::span<const visibility::NodeCoord> drawn, bool con
   std::vector<visibility::NodeCoord>& before = scratch_;
   before.clear();
   std::ranges::set_union(drawn_, going_, std::back_inserter(before));
-  std::vector<visibility::NodeCoord> now(drawn.begin(), drawn.end());
-  std::ranges::sort(now);
+  drawn_before_.swap(drawn_);
+  drawn_.assign(drawn.begin(), drawn.end());
+  std::ranges::sort(drawn_);
   fresh_.clear();
-  std::ranges::set_difference(now, drawn_, std::back_inserter(fresh_));
+  std::ranges::set_difference(drawn_, drawn_before_, std::back_inserter(fresh_));
   going_.clear();
-  std::ranges::set_difference(before, now, std::back_inserter(going_));
-  drawn_ = std::move(now);
+  std::ranges::set_difference(before, drawn_, std::back_inserter(going_));
 }
 
 void NodeHandover::find_replaced() {
+  above_going_.clear();
+  if (going_.empty()) return;
   top_level_ = 0;
   for (const auto* nodes : {&drawn_, &going_}) {
     for (const visibility::NodeCoord& node : *nodes)
       top_level_ = std::max(top_level_, node.level);
   }
-  above_going_.clear();
   for (visibility::NodeCoord node : going_) {
     while (node.level < top_level_) {
       node = visibility::parent_of(node);
@@ -74,7 +75,7 @@ bool NodeHandover::is_fresh(const visibility::NodeCoord& node) const {
 }
 
 bool NodeHandover::replaces(const visibility::NodeCoord& node) const {
-  if (!is_fresh(node)) return false;
+  if (going_.empty() || !is_fresh(node)) return false;
   if (std::ranges::binary_search(above_going_, node)) return true;
   visibility::NodeCoord above = node;
   while (above.level < top_level_) {

@@ -51,8 +51,9 @@ class NodeHandover {
  private:
   void find_replaced();
 
-  std::vector<visibility::NodeCoord> drawn_, fresh_, going_, above_going_, scratch_;  // all sorted
-  std::uint8_t top_level_ = 0;                                                        // of these
+  // All sorted.
+  std::vector<visibility::NodeCoord> drawn_, drawn_before_, fresh_, going_, above_going_, scratch_;
+  std::uint8_t top_level_ = 0;  // of drawn and going ones
 };
 
 }  // namespace psygen::scene

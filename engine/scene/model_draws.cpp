@@ -76,44 +76,41 @@ bool ModelDraws::add_going(const Model& model, const Demand& demand, Fading& fad
   return share > 0 && add_model(model, share - 1.0F, colour_at(node, demand, demand.drawn_level));
 }
 
+// visit(model, demand, fading) for all models of a node.
+template <class Visit>
+void ModelDraws::each_model(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner,
+                            const Visit& visit) const {
+  entities_.each_of<const Placed, const Demand, const Mesh, Fading>(
+      entities_.children(children),
+      [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          visit(Model{parts_of(rows[i], node), placed[i], meshes[i], corner + placed[i].position},
+                demands[i], fading[i]);
+        }
+      });
+}
+
 void ModelDraws::add(const ecs::Children& children, Node how, const DrawFacts& node,
                      glm::vec3 corner) {
-  entities_.each_of<const Placed, const Demand, const Mesh,
-                    Fading>(entities_.children(children), [&](std::span<const ecs::Entity> rows,
-                                                              std::span<const Placed> placed,
-                                                              std::span<const Demand> demands,
-                                                              std::span<const Mesh> meshes,
-                                                              std::span<Fading> fading) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const Demand& demand = demands[i];
-      if (demand.in_view_tick != step_.tick) continue;
-      const Model model{parts_of(rows[i], node), placed[i], meshes[i], corner + placed[i].position};
-      if (demand.wanted_level == kNoLevel) {  // too small by now
-        add_going(model, demand, fading[i], node);
-        continue;
-      }
-      const bool hole = demand.drawn_level == kNoLevel;
-      const bool appears = how == Node::kStays && demand.entered_tick != step_.tick;
-      const bool fades_in = appears || how == Node::kReplaces;
-      if (!hole && !add_coming(model, demand, fading[i], fades_in, node)) continue;
-      count_seen(camera_, model.foot + placed[i].middle, placed[i].radius_m, hole,
-                 !hole && demand.drawn_level > demand.wanted_level + 1, counters_);
+  each_model(children, node, corner, [&](const Model& model, const Demand& demand, Fading& fading) {
+    if (demand.in_view_tick != step_.tick) return;
+    if (demand.wanted_level == kNoLevel) {  // too small by now
+      add_going(model, demand, fading, node);
+      return;
     }
+    const bool hole = demand.drawn_level == kNoLevel;
+    const bool appears = how == Node::kStays && demand.entered_tick != step_.tick;
+    const bool fades_in = appears || how == Node::kReplaces;
+    if (!hole && !add_coming(model, demand, fading, fades_in, node)) return;
+    count_seen(camera_, model.foot + model.placed.middle, model.placed.radius_m, hole,
+               !hole && demand.drawn_level > demand.wanted_level + 1, counters_);
   });
 }
 
 bool ModelDraws::add_going(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner) {
   bool any = false;
-  entities_.each_of<const Placed, const Demand, const Mesh,
-                    Fading>(entities_.children(children), [&](std::span<const ecs::Entity> rows,
-                                                              std::span<const Placed> placed,
-                                                              std::span<const Demand> demands,
-                                                              std::span<const Mesh> meshes,
-                                                              std::span<Fading> fading) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const Model model{parts_of(rows[i], node), placed[i], meshes[i], corner + placed[i].position};
-      if (add_going(model, demands[i], fading[i], node)) any = true;
-    }
+  each_model(children, node, corner, [&](const Model& model, const Demand& demand, Fading& fading) {
+    if (add_going(model, demand, fading, node)) any = true;
   });
   return any;
 }

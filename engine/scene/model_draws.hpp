@@ -41,6 +41,9 @@ class ModelDraws {
     const Mesh& mesh;
     glm::vec3 foot;
   };
+  template <class Visit>
+  void each_model(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner,
+                  const Visit& visit) const;
   const MeshParts* parts_of(ecs::Entity entity, const DrawFacts& node) const;
   bool add_model(const Model& model, float fade, std::uint32_t debug_colour);
   void add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour);

@@ -91,7 +91,7 @@ glm::vec2 models_reach(const world::World& world, const models::Registry& regist
       }
       const auto steepest =
           static_cast<float>(std::tan(scatter.max_slope_deg * std::numbers::pi / 180));
-      world::set_slope(type, glm::vec2(steepest), p);
+      world::set_slope(type, world::slope_parameters(type), glm::vec2(steepest), p);
       const core::Bounds box = type.bounds(p);
       reach_m.x = std::max({reach_m.x, -box.min.x, -box.min.z, box.max.x, box.max.z});
       reach_m.y = std::max(reach_m.y, box.max.y);

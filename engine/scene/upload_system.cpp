@@ -118,10 +118,10 @@ void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& 
 }
 
 // What an entity draws so far. What landed in this tick is not in its component yet, where a mesh
-// may be that was evicted.
-const Mesh& mesh_before(ecs::Entity owner, const UploadQuery& entities,
+// may be that was evicted. `ranked`: not since the cache system ranked it.
+const Mesh& mesh_before(ecs::Entity owner, bool ranked, const UploadQuery& entities,
                         std::span<const ecs::Landing<Mesh>> landings) {
-  for (std::size_t i = landings.size(); i-- > 0;) {
+  for (std::size_t i = ranked ? 0 : landings.size(); i-- > 0;) {
     if (landings[i].entity == owner) return landings[i].value;
   }
   return *entities.get<Mesh>(owner);
@@ -138,6 +138,7 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     return;
   }
   const std::uint8_t level_before = demand->drawn_level;
+  const bool ranked = demand->ranked != kNotRanked;
   Node* node = entities.get<Node>(owner);
   const int first_level = node != nullptr ? first_ground_level(facts, *node) : 0;
   const auto level = static_cast<std::uint8_t>(record.key.level - first_level);
@@ -147,7 +148,7 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     return;
   }
   if (level_before != kNoLevel) {
-    const Mesh& before = mesh_before(owner, entities, landings);
+    const Mesh& before = mesh_before(owner, ranked, entities, landings);
     synthesis.cache->set_rank(before.handle, synthesis::Rank::unwanted());
     if (Fading* fading = entities.get<Fading>(owner)) replace_mesh(*fading, before, level_before);
   }

@@ -36,7 +36,7 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
       defaults_(models::default_parameters(type)),
       block_(block),
       least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
-      follows_ground_(models::parameter_index(type, "slope_x") >= 0) {}
+      slope_(slope_parameters(type)) {}
 
 std::optional<Scattering::Foothold> Scattering::place(const models::BlockGround& ground,
                                                       std::uint32_t index,
@@ -67,7 +67,7 @@ models::Parameters Scattering::parameters(std::uint32_t index, const glm::vec3& 
       p.set_real(i, range.low == range.high ? range.low : std::min(drawn, range.high));
     }
   }
-  if (follows_ground_) set_slope(type_, glm::vec2(normal.x, normal.z) / -normal.y, p);
+  set_slope(type_, slope_, glm::vec2(normal.x, normal.z) / -normal.y, p);
   return p;
 }
 
@@ -127,14 +127,25 @@ void set_parameter(const models::ModelType& type, models::Parameters& parameters
   }
 }
 
-void set_slope(const models::ModelType& type, glm::vec2 slope, models::Parameters& parameters) {
-  constexpr std::array<std::string_view, 2> kNames{"slope_x", "slope_z"};
+SlopeParameters slope_parameters(const models::ModelType& type) {
+  SlopeParameters indices{models::parameter_index(type, "slope_x"),
+                          models::parameter_index(type, "slope_z")};
+  for (int& i : indices) {
+    const bool placed = i >= 0 && type.parameters()[static_cast<std::size_t>(i)].source ==
+                                      models::ParameterSource::kPlaced;
+    if (!placed) i = -1;
+  }
+  return indices;
+}
+
+void set_slope(const models::ModelType& type, const SlopeParameters& indices, glm::vec2 slope,
+               models::Parameters& parameters) {
   for (int axis = 0; axis < 2; ++axis) {
-    const int i = models::parameter_index(type, kNames[static_cast<std::size_t>(axis)]);
-    if (i < 0) continue;
-    const models::ParameterSpec& spec = type.parameters()[static_cast<std::size_t>(i)];
-    if (spec.source != models::ParameterSource::kPlaced) continue;
-    set_parameter(type, parameters, static_cast<std::size_t>(i),
+    const int index = indices[static_cast<std::size_t>(axis)];
+    if (index < 0) continue;
+    const auto i = static_cast<std::size_t>(index);
+    const models::ParameterSpec& spec = type.parameters()[i];
+    set_parameter(type, parameters, i,
                   std::clamp(static_cast<double>(slope[axis]), spec.hard_min, spec.hard_max));
   }
 }

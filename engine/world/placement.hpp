@@ -2,6 +2,7 @@
 // block. The same on every machine and in any order of blocks. Knows no meshes. Any thread.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -27,6 +28,10 @@ struct Placement {
 
 // Tries of an instance to find a place that its Scatter allows.
 inline constexpr int kPlacementTries = 24;
+
+// Where a type has `slope_x` and `slope_z` as placed parameters; −1: it has not.
+using SlopeParameters = std::array<int, 2>;
+SlopeParameters slope_parameters(const models::ModelType& type);
 
 // One scatter on one block: what place_models() does, instance by instance. All arguments must
 // outlive it.
@@ -57,7 +62,7 @@ class Scattering {
   models::Parameters defaults_;
   core::BlockCoord block_;
   float least_up_;
-  bool follows_ground_;
+  SlopeParameters slope_;
 };
 
 // Steps in degrees in which the terrain's shadows follow the sun: each makes new meshes.
@@ -92,9 +97,9 @@ std::vector<double> placed_per_block(const World& world, const models::Registry&
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,
                    double value);
 
-// Sets `slope_x` and `slope_z`, the rise of the ground per metre, within their ranges, where the
-// type has them as placed parameters.
-void set_slope(const models::ModelType& type, glm::vec2 slope, models::Parameters& parameters);
+// Sets them to the rise of the ground per metre, within their ranges.
+void set_slope(const models::ModelType& type, const SlopeParameters& indices, glm::vec2 slope,
+               models::Parameters& parameters);
 
 // The parameters of a scatter with everything at the low end of its range.
 models::Parameters scatter_parameters(const models::Registry& registry, const Scatter& scatter);

@@ -173,6 +173,17 @@ Seen count_fading(const Scene& scene) {
   return seen;
 }
 
+// Flies forward, so far in each tick, and waits for what each asks for; visit() after each.
+template <class Visit>
+void fly(Scene& scene, core::CameraPose& pose, int ticks, double step_m, const Visit& visit) {
+  for (int i = 0; i < ticks; ++i) {
+    pose.position.local.z -= step_m;
+    tick_at(scene, pose);
+    scene.state().synthesis.manager->wait_all();
+    visit(count_fading(scene));
+  }
+}
+
 TEST(FadingScene, OnAFlightModelsFadeAndWhenItEndsAllAreThere) {
   Settings settings = small_settings();
   settings.view_distance_m = 600;
@@ -183,22 +194,14 @@ TEST(FadingScene, OnAFlightModelsFadeAndWhenItEndsAllAreThere) {
   Seen seen = count_fading(*scene);
   EXPECT_EQ(seen.coming + seen.going, 0u) << "after settling everything is there";
   std::size_t coming = 0, going = 0;
-  for (int i = 0; i < 90; ++i) {
-    pose.position.local.z -= 0.8;
-    tick_at(*scene, pose);
-    scene->state().synthesis.manager->wait_all();
-    seen = count_fading(*scene);
-    coming += seen.coming;
-    going += seen.going;
+  fly(*scene, pose, 90, 0.8, [&](const Seen& now) {
+    coming += now.coming;
+    going += now.going;
     expect_consistent(*scene);
-  }
+  });
   EXPECT_GT(coming, 500u);
   EXPECT_GT(going, 200u);
-  for (int i = 0; i < 60; ++i) {
-    tick_at(*scene, pose);
-    scene->state().synthesis.manager->wait_all();
-  }
-  seen = count_fading(*scene);
+  fly(*scene, pose, 60, 0, [&](const Seen& now) { seen = now; });
   EXPECT_EQ(seen.coming + seen.going, 0u);
 }
 
@@ -208,15 +211,13 @@ TEST(FadingScene, AClockThatStandsStillDoesNotKeepModelsAway) {
   core::CameraPose pose = pose_at(256, 256);
   scene->settle(pose);
   std::size_t fading = 0, most = 0;
-  for (int i = 0; i < 200; ++i) {
-    if (i < 60) pose.position.local.z -= 0.8;
-    tick_at(*scene, pose);
+  const auto stop_clock = [&](const Seen& seen) {
     scene->state().clock.now_s = 0;
-    scene->state().synthesis.manager->wait_all();
-    const Seen seen = count_fading(*scene);
     fading = seen.coming + seen.going;
     most = std::max(most, fading);
-  }
+  };
+  fly(*scene, pose, 60, 0.8, stop_clock);
+  fly(*scene, pose, 140, 0, stop_clock);
   EXPECT_GT(most, 5u);
   EXPECT_EQ(fading, 0u);
 }
@@ -227,13 +228,7 @@ TEST(FadingScene, WithoutTimeToFadeEverythingComesAndGoesAtOnce) {
   const auto scene = make_scene(settings);
   core::CameraPose pose = pose_at(256, 256);
   scene->settle(pose);
-  for (int i = 0; i < 60; ++i) {
-    pose.position.local.z -= 0.8;
-    tick_at(*scene, pose);
-    scene->state().synthesis.manager->wait_all();
-    const Seen seen = count_fading(*scene);
-    EXPECT_EQ(seen.coming + seen.going, 0u);
-  }
+  fly(*scene, pose, 60, 0.8, [](const Seen& seen) { EXPECT_EQ(seen.coming + seen.going, 0u); });
 }
 
 // What goes may be evicted at any time; it is not drawn any more then.
@@ -246,12 +241,7 @@ TEST(FadingScene, WhatGoesIsNotDrawnWhenItsRoomIsTaken) {
   State& s = scene->state();
   s.synthesis.cache->set_budget(s.memory->used_bytes());
   const std::uint64_t evicted = s.synthesis.cache->stats().evictions;
-  for (int i = 0; i < 120; ++i) {
-    pose.position.local.z -= 0.8;
-    tick_at(*scene, pose);
-    s.synthesis.manager->wait_all();
-    expect_consistent(*scene);
-  }
+  fly(*scene, pose, 120, 0.8, [&](const Seen&) { expect_consistent(*scene); });
   EXPECT_GT(s.synthesis.cache->stats().evictions, evicted + 100);
 }
 
@@ -411,12 +401,7 @@ TEST(FadingScene, LazyEvaluationFadesNothing) {
   settings.view_distance_m = 400;
   const auto scene = make_scene(settings);
   core::CameraPose pose = pose_at(256, 256);
-  for (int i = 0; i < 80; ++i) {
-    pose.position.local.z -= 0.8;
-    tick_at(*scene, pose);
-    const Seen seen = count_fading(*scene);
-    EXPECT_EQ(seen.coming + seen.going, 0u) << i;
-  }
+  fly(*scene, pose, 80, 0.8, [](const Seen& seen) { EXPECT_EQ(seen.coming + seen.going, 0u); });
 }
 
 }  // namespace
