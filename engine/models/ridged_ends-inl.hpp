@@ -37,8 +37,6 @@ struct RowOctaves {
       : count(rows.at.size()), width(padded(rows.at.size())) {
     const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
     HWY_ALIGN std::uint64_t position[kMaxNoiseAxis];
-    std::fill(changed + 1, changed + 1 + width, 0U);
-    changed[0] = (1U << octave_count) - 1;
     for (std::size_t o = 0; o < octave_count; ++o) {
       const RidgedOctave& octave = kernel.octaves[o];
       next_limit[o] = o + 1 < octave_count ? kernel.octaves[o + 1].limit : 0.0F;
@@ -46,19 +44,22 @@ struct RowOctaves {
       rows.place(octave.step, octave.origin_z, position);
       const std::size_t at = o * kMaxNoiseAxis;
       locate(position, width, cell + at, fraction + at, fade + at);
-      find_changes(o);
     }
+    find_changes(octave_count);
   }
 
  private:
-  void find_changes(std::size_t o) {
+  void find_changes(std::size_t octave_count) {
     const UintTag du;
-    const auto bit = hn::Set(du, 1U << o);
-    const std::uint32_t* const cells = cell + o * kMaxNoiseAxis;
+    changed[0] = (1U << octave_count) - 1;
     for (std::size_t r = 0; r < width; r += hn::Lanes(du)) {
-      const auto differs = hn::Ne(hn::LoadU(du, cells + r + 1), hn::Load(du, cells + r));
-      const auto bits = hn::IfThenElseZero(differs, bit);
-      hn::StoreU(hn::Or(hn::LoadU(du, changed + 1 + r), bits), du, changed + 1 + r);
+      auto bits = hn::Zero(du);
+      for (std::size_t o = 0; o < octave_count; ++o) {
+        const std::uint32_t* const cells = cell + o * kMaxNoiseAxis + r;
+        const auto differs = hn::Ne(hn::LoadU(du, cells + 1), hn::Load(du, cells));
+        bits = hn::Or(bits, hn::IfThenElseZero(differs, hn::Set(du, 1U << o)));
+      }
+      hn::StoreU(bits, du, changed + 1 + r);
     }
   }
 };

@@ -103,17 +103,29 @@ class CoarseHeights {
   void quantise_samples() {
     const FloatTag d;
     stride_ = columns_ / 16 * 16 + 16;
-    for (std::size_t row = 0; row <= last_row_; ++row) {
-      const float* const from = c_.first + row * c_.row_stride * c_.step;
-      float* const to = heights_ + row * stride_;
-      for (std::size_t i = 0; i < columns_; ++i)
-        to[i] = from[i * c_.step];
-      to[columns_] = to[columns_ - 1];  // right of the last; vertices have nothing from further on
-    }
+    for (std::size_t row = 0; row <= last_row_; ++row)
+      copy_samples(c_.first + row * c_.row_stride * c_.step, heights_ + row * stride_);
     const Float quantum = set(s_.quantum);
     for (std::size_t i = 0; i < (last_row_ + 1) * stride_; i += hn::Lanes(d))
       hn::Store(hn::Sub(quantise(hn::Load(d, heights_ + i), quantum), set(kToInteger)), d,
                 heights_ + i);
+  }
+
+  HWY_INLINE void copy_samples(const float* from, float* to) const {
+    const FloatTag d;
+    std::size_t i = 0;
+    // Vertices' distances at level 0 are a half or a third of those at level 1.
+    if (c_.step == 2 || c_.step == 3) {
+      for (; i + hn::Lanes(d) < columns_; i += hn::Lanes(d)) {
+        Float wanted, second, third;
+        c_.step == 2 ? hn::LoadInterleaved2(d, from + 2 * i, wanted, second)
+                     : hn::LoadInterleaved3(d, from + 3 * i, wanted, second, third);
+        hn::Store(wanted, d, to + i);
+      }
+    }
+    for (; i < columns_; ++i)
+      to[i] = from[i * c_.step];
+    to[columns_] = to[columns_ - 1];  // right of the last; vertices have nothing from further on
   }
 
   void place_columns() {

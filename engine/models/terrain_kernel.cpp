@@ -3,7 +3,6 @@
 #include "engine/models/terrain_kernel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <utility>
 
@@ -15,9 +14,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "engine/models/interleave-inl.hpp"
 #include "engine/models/terrain_coarse-inl.hpp"
 #include "engine/models/terrain_spread-inl.hpp"
+#include "engine/models/terrain_vertices-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
@@ -47,9 +46,9 @@ class LightRows {
 
   // Sun in the low byte and ambient above it, of the vertices from x on.
   HWY_INLINE hn::Vec<UintTag> at(std::size_t x) const {
-    return hn::Or(hn::And(byte(near_->sun + x, far_->sun + x), hn::Set(UintTag(), 0xFFU)),
-                  hn::ShiftLeft<8>(hn::And(byte(near_->ambient + x, far_->ambient + x),
-                                           hn::Set(UintTag(), 0xFFU))));
+    const auto both = hn::Or(low_byte(near_->sun + x, far_->sun + x),
+                             hn::ShiftLeft<8>(low_byte(near_->ambient + x, far_->ambient + x)));
+    return hn::And(both, hn::Set(UintTag(), 0xFFFFU));
   }
 
  private:
@@ -70,7 +69,8 @@ class LightRows {
 
   void find_weight() { weight_ = static_cast<float>(rest_) / static_cast<float>(l_.spacing); }
 
-  HWY_INLINE hn::Vec<UintTag> byte(const float* near, const float* far) const {
+  // At most 255 in the low 16 bits.
+  HWY_INLINE hn::Vec<UintTag> low_byte(const float* near, const float* far) const {
     const FloatTag d;
     const Float a = hn::Load(d, near), b = hn::Load(d, far);
     const Float value = hn::Add(a, hn::Mul(set(weight_), hn::Sub(b, a)));
@@ -123,42 +123,8 @@ HWY_INLINE hn::Vec<UintTag> normals(const SampleRow& row, std::size_t x, Float s
   const Float nx = hn::Mul(east_west, scale), nz = hn::Mul(south_north, scale);
   const Float length = hn::Add(hn::Add(hn::Abs(nx), set(1.0F)), hn::Abs(nz));
   const Float to_snorm8 = hn::Div(set(127.0F), length);
-  const auto low = hn::And(component(nx, to_snorm8), hn::Set(du, 0xFFU));
-  return hn::Or(hn::ShiftLeft<16>(low), hn::ShiftLeft<24>(component(nz, to_snorm8)));
-}
-
-// A vertex as its bytes lie in memory.
-struct PackedVertex {
-  std::uint32_t low, high, light;
-};
-static_assert(sizeof(PackedVertex) == sizeof(core::TerrainVertex));
-
-// The vertices of the border, which runs along +x, +z, −x and −z; every side has its first corner.
-struct Skirt {
-  const std::size_t last;
-  PackedVertex vertices[4 * kMaxTerrainSize];
-
-  explicit Skirt(std::size_t last_vertex) : last(last_vertex) {}
-
-  // Of row z the first vertex and the last; all, of the rows at the ends.
-  HWY_INLINE void add(std::size_t z, PackedVertex first, PackedVertex end,
-                      const PackedVertex* row) {
-    if (z == 0) std::copy_n(row, last, vertices);
-    if (z < last) vertices[last + z] = end;
-    if (z == last) std::reverse_copy(row + 1, row + last + 1, vertices + 2 * last);
-    if (z > 0) vertices[4 * last - z] = first;
-  }
-  void write(std::byte* out) {
-    for (std::size_t k = 0; k < 4 * last; ++k)
-      vertices[k].low |= core::kTerrainSkirtBit;
-    std::memcpy(out, vertices, 4 * last * sizeof(PackedVertex));
-  }
-};
-
-// One lane; from memory it would have to wait for the vector to be stored.
-template <class V, class Indices>
-HWY_INLINE std::uint32_t lane(V v, Indices index) {
-  return hn::GetLane(hn::TableLookupLanes(v, index));
+  const auto low = hn::ShiftLeft<16>(component(nx, to_snorm8));
+  return hn::Or(hn::And(low, hn::Set(du, 0xFF0000U)), hn::ShiftLeft<24>(component(nz, to_snorm8)));
 }
 
 // The columns of the vertices in their low bytes.
@@ -179,7 +145,6 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
   SampleRow samples;
   const Interleave3 interleave;
   HWY_ALIGN std::uint32_t grid_x[kRow];
-  HWY_ALIGN PackedVertex row[kRow];  // those that do not go straight out
   const std::size_t lanes = hn::Lanes(d), n = s.n, last = n - 1;
   Skirt skirt(last);
   const auto end_lane =
@@ -187,11 +152,10 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
   number_columns(s, grid_x);
   const Float quantum = set(s.quantum), slope_scale = set(s.slope_scale);
   Float lowest = set(65535.0F + kToInteger), highest = set(kToInteger);
-  for (std::size_t z = 0; z < n; ++z, out += n * sizeof(PackedVertex)) {
+  for (std::size_t z = 0; z < n; ++z, out += n * kVertexBytes) {
     samples.load(s, z);
     const bool border = z == 0 || z == last;
-    const std::size_t direct = border ? 0 : n - n % lanes;
-    PackedVertex first{}, end{};
+    VertexWords row;  // of a border
     const auto grid_z = hn::Set(du, static_cast<std::uint32_t>(z * s.stride) << 8);
     for (std::size_t x = 0; x < n; x += lanes) {
       Float height = quantise(hn::LoadU(d, samples.centre + x), quantum);
@@ -199,26 +163,22 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
           hn::Or3(hn::Load(du, grid_x + x), grid_z, hn::ShiftLeft<16>(hn::BitCast(du, height)));
       const auto below = hn::And(hn::BitCast(du, coarse.at(x)), hn::Set(du, 0xFFFFU));
       const auto high = hn::Or(below, normals(samples, x, slope_scale));
-      const auto bright = light.at(x);
-      if (x == 0) first = {hn::GetLane(low), hn::GetLane(high), hn::GetLane(bright)};
-      if (x + lanes >= n) end = {lane(low, end_lane), lane(high, end_lane), lane(bright, end_lane)};
-      interleave.store(
-          low, high, bright,
-          x < direct ? out + x * sizeof(PackedVertex) : reinterpret_cast<std::byte*>(row + x));
+      const VertexVector vertices{low, high, light.at(x)};
+      vertices.store(interleave, n - x, out + x * kVertexBytes);
+      if (border) vertices.store_words(row, x);
+      if (x == 0) skirt.add_first(z, vertices);
+      if (x + lanes >= n) skirt.add_last(z, vertices, end_lane);
       if (n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, n - x), height, lowest);
       lowest = hn::Min(lowest, height);
       if (n - x < lanes) height = hn::IfThenElse(hn::FirstN(d, n - x), height, highest);
       highest = hn::Max(highest, height);
     }
-    if (direct < n)
-      std::memcpy(out + direct * sizeof(PackedVertex), row + direct,
-                  (n - direct) * sizeof(PackedVertex));
-    skirt.add(z, first, end, row);
+    if (border) skirt.add_row(z, row);
     if (z == last) break;
     coarse.advance();
     light.advance();
   }
-  skirt.write(out + n * sizeof(PackedVertex));
+  skirt.write(interleave, out + n * kVertexBytes);
   const float least = hn::GetLane(hn::MinOfLanes(d, lowest)) - kToInteger;
   const float most = hn::GetLane(hn::MaxOfLanes(d, highest)) - kToInteger;
   return {static_cast<std::uint16_t>(least), static_cast<std::uint16_t>(most)};
