@@ -45,9 +45,9 @@ void main() {
   place = p;
   normal = n;
   albedo_ambient = vec4(albedo, ambient);
-  leaf_ground = vec2(leaf, 0.0);
+  sun_leaf_ground = vec3(draw.light.x, leaf, 0.0);
 #elif !defined(PSYGEN_SHADOW)
-  colour = shown(through_haze(model_light(albedo, n, p, ambient, leaf, 1.0), p));
+  colour = shown(through_haze(model_light(albedo, n, p, ambient, leaf, draw.light.x), p));
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);
 }

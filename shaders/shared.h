@@ -83,6 +83,7 @@ struct DrawData {
   vec4 origin;  // terrain: origin, w cell size in m; model: center, w phase of the wind, 0 to 1
   vec4 scale;  // terrain: height range, skirt, morph or < 0 (FrameData), cover; model: half extent,
                // w fade (fading.glsl), 1 if it is there as a whole
+  vec4 light;  // model: x share of the sun's light that the ground does not hold up
 };
 
 // A corner of the overlay's quads, or an end of a line.
@@ -93,7 +94,7 @@ struct OverlayVertex {
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameData) == 64 + 28 * 16 + 3 * 64);
-static_assert(sizeof(DrawData) == 32);
+static_assert(sizeof(DrawData) == 48);
 static_assert(sizeof(OverlayVertex) == 32);
 static_assert(offsetof(FrameData, ray_right) == 64);
 }  // namespace psygen::shaders

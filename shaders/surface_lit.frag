@@ -14,7 +14,8 @@ layout(set = 0, binding = PSYGEN_BINDING_SHADOWS) uniform sampler2DArrayShadow s
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 albedo_ambient;
-layout(location = 3) in vec2 leaf_ground;  // x: leaf, or the ground's share of the sun; y: 1 on ground
+// x: share of the sun that the ground does not hold up; y: leaf; z: 1 on ground
+layout(location = 3) in vec3 sun_leaf_ground;
 layout(location = 0) out vec4 pixel;
 
 // Share of the sun's light that arrives, from nine texels around the place.
@@ -41,15 +42,15 @@ void main() {
   leave_out_faded();
   vec3 n = normalize(normal);
   vec3 albedo = albedo_ambient.rgb;
-  if (fine_grain && leaf_ground.y > 0.5) {
+  if (fine_grain && sun_leaf_ground.z > 0.5) {
     vec2 plane = place.xz + frame.ground_anchor.xy;
     float near = 1.0 - smoothstep(30.0, 150.0, length(place));
     float grain = 0.4 * slow_noise(plane * 0.5) + 0.6 * slow_noise(plane * 4.0);
     albedo *= 1.0 + 0.8 * frame.ground_colour.w * near * (grain - 0.5);
   }
-  float sun = shadows ? sun_at(place, n) : 1.0;
-  vec3 light = leaf_ground.y > 0.5
-                   ? ground_light(albedo, n, sun * leaf_ground.x, albedo_ambient.a)
-                   : model_light(albedo, n, place, albedo_ambient.a, leaf_ground.x, sun);
+  float sun = sun_leaf_ground.x * (shadows ? sun_at(place, n) : 1.0);
+  vec3 light = sun_leaf_ground.z > 0.5
+                   ? ground_light(albedo, n, sun, albedo_ambient.a)
+                   : model_light(albedo, n, place, albedo_ambient.a, sun_leaf_ground.y, sun);
   pixel = vec4(shown(through_haze(light, place)), 1.0);
 }

@@ -41,7 +41,7 @@ void main() {
   place = p;
   normal = n;
   albedo_ambient = vec4(albedo, visible.y);
-  leaf_ground = vec2(visible.x, 1.0);
+  sun_leaf_ground = vec3(visible.x, 0.0, 1.0);
 #elif !defined(PSYGEN_DRAW_COLOUR) && !defined(PSYGEN_SHADOW)
   colour = shown(through_haze(ground_light(albedo, n, visible.x, visible.y), p));
 #endif

@@ -9,14 +9,16 @@ namespace psygen::render {
 
 shaders::DrawData data_of(const TerrainDraw& draw) {
   return {.origin = {draw.origin.x, draw.origin.y + draw.height_min_m, draw.origin.z, draw.cell_m},
-          .scale = {draw.height_range_m, draw.skirt_m, draw.morph, draw.cover}};
+          .scale = {draw.height_range_m, draw.skirt_m, draw.morph, draw.cover},
+          .light = {}};
 }
 
 shaders::DrawData data_of(const MeshDraw& draw) {
   // A phase that belongs to the mesh, not to the camera: its box is unlike its neighbour's.
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
   return {.origin = {draw.origin + draw.box_center, phase - std::floor(phase)},
-          .scale = {draw.box_half_extent, draw.fade}};
+          .scale = {draw.box_half_extent, draw.fade},
+          .light = {draw.sun, 0, 0, 0}};
 }
 
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw) {

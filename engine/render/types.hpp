@@ -144,8 +144,9 @@ struct MeshDraw {
   glm::vec3 origin{0.0F};                           // the mesh's foot
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
-  core::IndexPart part;                     // of its indices; of 0: all; not with `coarser`
-  float fade = 1.0F;                        // what is there of one that comes or goes
+  core::IndexPart part;  // of its indices; of 0: all; not with `coarser`
+  float fade = 1.0F;     // what is there of one that comes or goes
+  float sun = 1.0F;      // share of the sun's light that the ground does not hold up, 0 to 1
   std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
   std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
 };

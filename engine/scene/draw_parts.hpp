@@ -27,6 +27,13 @@ class DrawParts {
     }
     draw_.part.count += part.count;
   }
+  // What comes from here on is drawn with this share of the sun.
+  void set_sun(float sun) {
+    if (sun == draw_.sun) return;
+    flush();
+    draw_.part = {};
+    draw_.sun = sun;
+  }
 
  private:
   void flush() {

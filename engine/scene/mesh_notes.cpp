@@ -11,16 +11,17 @@ namespace {
 // The largest error of a node over the usual one.
 constexpr double kPossibleError = 2.5;
 
-GroundRelief relief_of(const WorldFacts& facts, const synthesis::Request& request,
-                       const models::MeshView& mesh) {
+GroundNote ground_of(const WorldFacts& facts, const synthesis::Request& request,
+                     const models::MeshView& mesh) {
   const auto node_level = static_cast<int>(request.parameters.integer(models::kTerrainNodeLevel));
   const core::Bounds& bounds = facts.levels[static_cast<std::size_t>(node_level)].bounds;
   // The coarse ground of a block may give way to its finest, in the tick for which the lines hold.
   const float lower_by_m =
       node_level == 0 ? possible_error_m(facts, node_level, request.key.level) : 0.0F;
-  return ground_relief(core::vertices_of<core::TerrainVertex>(mesh.vertices),
-                       facts.grids[request.key.level], bounds.min.y, bounds.max.y - bounds.min.y,
-                       lower_by_m);
+  const auto vertices = core::vertices_of<core::TerrainVertex>(mesh.vertices);
+  const models::TerrainGrid& grid = facts.grids[request.key.level];
+  return {ground_relief(vertices, grid, bounds.min.y, bounds.max.y - bounds.min.y, lower_by_m),
+          ground_sun(vertices, static_cast<std::size_t>(grid.n))};
 }
 
 MeshParts parts_of(const WorldFacts& facts, const synthesis::Request& request,
@@ -42,7 +43,7 @@ std::vector<synthesis::Annotate> mesh_notes(const WorldFacts& facts) {
   const models::ModelIndex terrain = facts.world.terrain_model, merged = facts.merged_model;
   std::vector<synthesis::Annotate> notes(std::max(terrain, merged) + std::size_t{1});
   notes[terrain] = [&facts](const synthesis::Request& request, const models::MeshView& mesh) {
-    return std::any(relief_of(facts, request, mesh));
+    return std::any(ground_of(facts, request, mesh));
   };
   if (merged != 0) {
     notes[merged] = [&facts](const synthesis::Request& request, const models::MeshView& mesh) {

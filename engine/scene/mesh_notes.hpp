@@ -1,7 +1,7 @@
 // What the modelers note of meshes while they have them in their caches, so that the main thread
-// never reads geometry: the relief of a node's ground (GroundRelief) and the parts of the mesh of
-// everything on a node (MeshParts). Of single models nothing. Notes are pure functions of a mesh
-// and stay in its record (synthesis::MeshRecord::note) as long as it is resident.
+// never reads geometry: of a node's ground what it hides and shades (GroundNote), and the parts of
+// the mesh of everything on a node (MeshParts). Of single models nothing. Notes are pure functions
+// of a mesh and stay in its record (synthesis::MeshRecord::note) as long as it is resident.
 #pragma once
 
 #include <vector>
@@ -9,6 +9,11 @@
 #include "engine/scene/state.hpp"
 
 namespace psygen::scene {
+
+struct GroundNote {
+  GroundRelief relief;
+  GroundSun sun;
+};
 
 // How far the ground of a node may lie off its mesh of this level of the terrain type, in metres.
 float possible_error_m(const WorldFacts& facts, int node_level, int mesh_level);

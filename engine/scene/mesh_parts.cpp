@@ -1,6 +1,7 @@
 #include "engine/scene/mesh_parts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
 
@@ -35,6 +36,16 @@ core::Bounds box_of(std::span<const core::ModelVertex> vertices,
   return {box.center() + glm::vec3(low) * scale, box.center() + glm::vec3(high) * scale};
 }
 
+glm::vec2 flat(glm::vec3 v) {
+  return {v.x, v.z};
+}
+
+// Steps so large that neighbours can often be one draw.
+float in_steps(float share) {
+  constexpr float kSteps = 6;
+  return std::round(share * kSteps) / kSteps;
+}
+
 }  // namespace
 
 MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
@@ -52,12 +63,14 @@ MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
   return parts;
 }
 
-bool add_parts(const MeshParts& parts, const View& view, const render::MeshDraw& draw,
-               std::vector<render::MeshDraw>& draws) {
+bool add_parts(const MeshParts& parts, const View& view, const GroundSun& sun, float side_m,
+               const render::MeshDraw& draw, std::vector<render::MeshDraw>& draws) {
   bool any = false;
   DrawParts run(draw, draws);
   for (std::uint32_t i = 0; i < parts.count; ++i) {
     if (!mesh_can_be_seen(parts.boxes[i], draw.origin, view)) continue;
+    run.set_sun(in_steps(
+        sun_over(sun, flat(parts.boxes[i].min) / side_m, flat(parts.boxes[i].max) / side_m)));
     const std::uint32_t first = i * parts.indices_each;
     run.add({first, std::min(parts.indices_each, parts.index_count - first)});
     any = true;

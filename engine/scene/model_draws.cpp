@@ -7,20 +7,20 @@
 #include "engine/scene/seen.hpp"
 
 namespace psygen::scene {
-namespace {
 
-render::MeshDraw draw_of(const Placed& placed, glm::vec3 foot, float fade,
-                         std::uint32_t debug_colour) {
+render::MeshDraw ModelDraws::draw_of(const Model& model, float fade, std::uint32_t debug_colour) {
+  const Ground& ground = model.ground;
+  const glm::vec2 place = glm::vec2(model.placed.position.x, model.placed.position.z);
   render::MeshDraw draw;
-  draw.origin = foot;
-  draw.box_center = placed.box_center;
-  draw.box_half_extent = placed.box_half_extent;
+  draw.origin = model.foot;
+  draw.box_center = model.placed.box_center;
+  draw.box_half_extent = model.placed.box_half_extent;
   draw.fade = fade;
+  draw.sun = model.single ? sun_at(ground.sun, place / ground.side_m)
+                          : sun_over(ground.sun, glm::vec2(0.0F), glm::vec2(1.0F));
   draw.debug_colour = debug_colour;
   return draw;
 }
-
-}  // namespace
 
 const MeshParts* ModelDraws::parts_of(ecs::Entity entity, const DrawFacts& node) const {
   return node.level == 0 || facts_.shadows ? nullptr : entities_.get<MeshParts>(entity);
@@ -28,12 +28,13 @@ const MeshParts* ModelDraws::parts_of(ecs::Entity entity, const DrawFacts& node)
 
 // Where its parts are known only those that can be seen. Returns whether any can.
 bool ModelDraws::add_model(const Model& model, float fade, std::uint32_t debug_colour) {
-  render::MeshDraw draw = draw_of(model.placed, model.foot, fade, debug_colour);
+  render::MeshDraw draw = draw_of(model, fade, debug_colour);
   draw.range = model.mesh.range;
   draw.shared_indices = model.mesh.shared_indices;
   if (model.parts == nullptr || model.parts->indices_each == 0) {
     draws_.models.push_back(draw);
-  } else if (!add_parts(*model.parts, view_, draw, draws_.models)) {
+  } else if (!add_parts(*model.parts, view_, model.ground.sun, model.ground.side_m, draw,
+                        draws_.models)) {
     return false;
   }
   draws_.meshes.push_back(model.mesh.handle);
@@ -42,7 +43,7 @@ bool ModelDraws::add_model(const Model& model, float fade, std::uint32_t debug_c
 
 // What the mesh replaces, in the pixels that it leaves out.
 void ModelDraws::add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour) {
-  render::MeshDraw draw = draw_of(model.placed, model.foot, -fading.share, debug_colour);
+  render::MeshDraw draw = draw_of(model, -fading.share, debug_colour);
   draw.range = fading.old_range;
   draw.shared_indices = fading.old_shared_indices;
   draws_.models.push_back(draw);
@@ -78,21 +79,22 @@ bool ModelDraws::add_going(const Model& model, const Demand& demand, Fading& fad
 
 // visit(model, demand, fading) for all models of a node.
 template <class Visit>
-void ModelDraws::each_model(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner,
-                            const Visit& visit) const {
+void ModelDraws::each_model(const ecs::Children& children, const DrawFacts& node,
+                            const Ground& ground, const Visit& visit) const {
   entities_.each_of<const Placed, const Demand, const Mesh, Fading>(
       entities_.children(children),
       [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
-          visit(Model{parts_of(rows[i], node), placed[i], meshes[i], corner + placed[i].position},
+          visit(Model{parts_of(rows[i], node), placed[i], meshes[i],
+                      ground.corner + placed[i].position, ground, node.level == 0},
                 demands[i], fading[i]);
         }
       });
 }
 
 void ModelDraws::add(const ecs::Children& children, Node how, const DrawFacts& node,
-                     glm::vec3 corner) {
-  each_model(children, node, corner, [&](const Model& model, const Demand& demand, Fading& fading) {
+                     const Ground& ground) {
+  each_model(children, node, ground, [&](const Model& model, const Demand& demand, Fading& fading) {
     if (demand.in_view_tick != step_.tick) return;
     if (demand.wanted_level == kNoLevel) {  // too small by now
       add_going(model, demand, fading, node);
@@ -107,9 +109,10 @@ void ModelDraws::add(const ecs::Children& children, Node how, const DrawFacts& n
   });
 }
 
-bool ModelDraws::add_going(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner) {
+bool ModelDraws::add_going(const ecs::Children& children, const DrawFacts& node,
+                           const Ground& ground) {
   bool any = false;
-  each_model(children, node, corner, [&](const Model& model, const Demand& demand, Fading& fading) {
+  each_model(children, node, ground, [&](const Model& model, const Demand& demand, Fading& fading) {
     if (add_going(model, demand, fading, node)) any = true;
   });
   return any;

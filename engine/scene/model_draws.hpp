@@ -29,10 +29,16 @@ class ModelDraws {
     kReplaces,  // it takes the place of others
     kEnters,    // nothing was seen there
   };
-  // The models of a node that is drawn, whose corner is there.
-  void add(const ecs::Children& children, Node how, const DrawFacts& node, glm::vec3 corner);
+  // What they stand on: the node's corner, its size and light.
+  struct Ground {
+    glm::vec3 corner;
+    float side_m;
+    const GroundSun& sun;
+  };
+  // The models of a node that is drawn.
+  void add(const ecs::Children& children, Node how, const DrawFacts& node, const Ground& ground);
   // Those of a node that is drawn no more. Returns whether anything of them is left.
-  bool add_going(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner);
+  bool add_going(const ecs::Children& children, const DrawFacts& node, const Ground& ground);
 
  private:
   struct Model {
@@ -40,10 +46,13 @@ class ModelDraws {
     const Placed& placed;
     const Mesh& mesh;
     glm::vec3 foot;
+    const Ground& ground;
+    bool single;  // else of everything that stands there
   };
   template <class Visit>
-  void each_model(const ecs::Children& children, const DrawFacts& node, glm::vec3 corner,
+  void each_model(const ecs::Children& children, const DrawFacts& node, const Ground& ground,
                   const Visit& visit) const;
+  static render::MeshDraw draw_of(const Model& model, float fade, std::uint32_t debug_colour);
   const MeshParts* parts_of(ecs::Entity entity, const DrawFacts& node) const;
   bool add_model(const Model& model, float fade, std::uint32_t debug_colour);
   void add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour);

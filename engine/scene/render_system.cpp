@@ -97,7 +97,8 @@ class Drawing {
       return false;
     DrawFacts facts{node.level, entities_.get<Visibility>(entity)->layer, 0, 0};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, side_m);
-    return models_.add_going(*entities_.get<ecs::Children>(entity), facts, corner);
+    return models_.add_going(*entities_.get<ecs::Children>(entity), facts,
+                             {corner, side_m, *entities_.get<GroundSun>(entity)});
   }
 
   ModelDraws::Node how_drawn(const visibility::NodeCoord& node) const {
@@ -120,7 +121,8 @@ class Drawing {
     DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
     if (!hole) add_ground(node, entity, at, facts, corner);
-    models_.add(*entities_.get<ecs::Children>(entity), how_drawn(node.node), facts, corner);
+    models_.add(*entities_.get<ecs::Children>(entity), how_drawn(node.node), facts,
+                {corner, node.side_m, *entities_.get<GroundSun>(entity)});
     if (shown_ == render::View::kBounds) {
       add_box({corner + glm::vec3(0, at.low_m, 0),
                corner + glm::vec3(node.side_m, at.high_m, node.side_m)},

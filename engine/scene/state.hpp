@@ -17,6 +17,7 @@
 #include "engine/scene/fading.hpp"
 #include "engine/scene/governor.hpp"
 #include "engine/scene/ground_relief.hpp"
+#include "engine/scene/ground_sun.hpp"
 #include "engine/scene/node_grid.hpp"
 #include "engine/scene/node_levels.hpp"
 #include "engine/scene/settings.hpp"

@@ -91,7 +91,7 @@ void create_node(const Settings& settings, const WorldFacts& facts, const Daylig
                  Streaming& streaming, ecs::World& entities) {
   const NodeLevel& level = facts.levels[at.level];
   const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundRelief,
-                                       Placed, Detail, Source, Demand, Mesh>(1);
+                                       GroundSun, Placed, Detail, Source, Demand, Mesh>(1);
   models::Parameters ground = node_terrain(facts.world, at);
   world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
   const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;

@@ -108,13 +108,15 @@ const T& note_of(const synthesis::MeshRecord& record) {
 }
 
 // From now on the ground of a node is known: as far as the mesh is off, it may be higher or lower.
-void note_ground(Node& node, GroundRelief& relief, const synthesis::MeshRecord& record,
-                 const WorldFacts& facts) {
+void note_ground(ecs::Entity owner, Node& node, const synthesis::MeshRecord& record,
+                 const WorldFacts& facts, const UploadQuery& entities) {
   const core::Bounds& bounds = facts.levels[node.at.level].bounds;
   const float possible_m = possible_error_m(facts, node.at.level, record.key.level);
   node.low_m = std::max(bounds.min.y, record.tight.min.y - possible_m);
   node.high_m = std::min(bounds.max.y, record.tight.max.y + possible_m);
-  relief = note_of<GroundRelief>(record);
+  const GroundNote& note = note_of<GroundNote>(record);
+  *entities.get<GroundRelief>(owner) = note.relief;
+  *entities.get<GroundSun>(owner) = note.sun;
 }
 
 // What an entity draws so far. What landed in this tick is not in its component yet, where a mesh
@@ -152,9 +154,7 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     synthesis.cache->set_rank(before.handle, synthesis::Rank::unwanted());
     if (Fading* fading = entities.get<Fading>(owner)) replace_mesh(*fading, before, level_before);
   }
-  if (node != nullptr) {
-    note_ground(*node, *entities.get<GroundRelief>(owner), record, facts);
-  }
+  if (node != nullptr) note_ground(owner, *node, record, facts, entities);
   if (MeshParts* parts = entities.get<MeshParts>(owner)) *parts = note_of<MeshParts>(record);
   landings.push_back({owner, {record.range, handle, shared_indices, record.tight}});
 }

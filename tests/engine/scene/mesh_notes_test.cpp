@@ -25,7 +25,7 @@ Noted check_records(const State& s) {
     if (record.state != synthesis::MeshState::kReady) {
       EXPECT_FALSE(record.note.has_value());
     } else if (record.key.model == s.facts.world.terrain_model) {
-      EXPECT_NE(std::any_cast<GroundRelief>(&record.note), nullptr);
+      EXPECT_NE(std::any_cast<GroundNote>(&record.note), nullptr);
       ++noted.ground;
     } else if (record.key.model == s.facts.merged_model) {
       const auto* parts = std::any_cast<MeshParts>(&record.note);

@@ -35,6 +35,8 @@ struct Row {
   MeshParts parts() const { return mesh_parts(vertices, indices, box); }
 };
 
+constexpr float kSideM = 160;  // of the node that a row stands on
+
 View looking_north() {
   View view;
   view.frustum = visibility::make_frustum(core::projection_matrix(core::Projection{}) *
@@ -42,11 +44,12 @@ View looking_north() {
   return view;
 }
 
-std::vector<render::MeshDraw> draws_of(const MeshParts& parts, const View& view, glm::vec3 at) {
+std::vector<render::MeshDraw> draws_of(const MeshParts& parts, const View& view, glm::vec3 at,
+                                       const GroundSun& sun = {}) {
   render::MeshDraw draw;
   draw.origin = at;
   std::vector<render::MeshDraw> draws;
-  add_parts(parts, view, draw, draws);
+  add_parts(parts, view, sun, kSideM, draw, draws);
   return draws;
 }
 
@@ -91,6 +94,25 @@ TEST(MeshParts, OnlyThoseInThePictureAreDrawnAndNeighboursAreOneDraw) {
   ASSERT_EQ(some.size(), 1u);
   EXPECT_EQ(some[0].part.first, 0u);
   EXPECT_EQ(some[0].part.count, 30u * 5);
+}
+
+TEST(MeshParts, ThoseInTheShadeAreDrawsOfTheirOwn) {
+  const MeshParts parts = Row(160).parts();  // ten metres each
+  GroundSun sun;
+  for (std::size_t i = 0; i < sun.share.size(); ++i)
+    sun.share[i] = i % GroundSun::kSide < 8 ? 0 : 255;
+  const auto draws = draws_of(parts, looking_north(), {-80, 0, -200}, sun);
+  ASSERT_GE(draws.size(), 2u);
+  EXPECT_EQ(draws.front().sun, 0.0F);
+  EXPECT_EQ(draws.back().sun, 1.0F);
+  std::uint32_t next = 0, dark = 0;
+  for (const render::MeshDraw& draw : draws) {
+    EXPECT_EQ(draw.part.first, next);
+    next += draw.part.count;
+    dark += draw.sun < 0.5F ? draw.part.count : 0;
+  }
+  EXPECT_EQ(next, 480u);
+  EXPECT_NEAR(dark, 240, 60);
 }
 
 TEST(MeshParts, WhatStandsBehindARidgeIsDrawnOnlyIfItReachesOverIt) {
