@@ -7,6 +7,7 @@
 
 #include "engine/amplify/block_files.hpp"
 #include "engine/core/log.hpp"
+#include "engine/models/simd_targets.hpp"
 #include "engine/models/terrain.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/telemetry/units.hpp"
@@ -113,10 +114,13 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
       ->check(CLI::IsMember({"glb", "obj"}))
       ->capture_default_str()
       ->needs("--out");
+  c.add_option("--simd", simd_, "Instruction set of the kernels, to compare; default: the best")
+      ->check(CLI::IsMember(models::simd_targets()));
   c.add_flag("--json", json_, "Print the figures as JSON");
 }
 
 int AmplifyCommand::run() {
+  if (!simd_.empty()) models::pin_simd_target(simd_);
   models::Registry registry = models::make_standard_registry();
   const auto world = world::load_world(world_, registry);
   if (!world) {

@@ -70,6 +70,7 @@ class AmplifyCommand {
   std::vector<glm::dvec2> samples_;  // x and z in metres
   std::string out_;                  // empty: nothing is written
   std::string format_ = "glb";
+  std::string simd_;                         // empty: the best
   std::uint64_t written_ = 0, skipped_ = 0;  // files
   bool json_ = false;
 };

@@ -1,7 +1,7 @@
 // Which instruction sets the SIMD kernels of this library are compiled for, and a way to pin one.
 // Kernels choose the best set of the CPU at run time (Highway); every set gives the same bits
-// (docs/models.md, "Arithmetic"). For tests, which compare the sets, and benchmarks, which print
-// one line for each: engine and games call nothing of this.
+// (docs/models.md, "Arithmetic"). For tests, which compare the sets, and for measurements, which
+// tell how fast each is (`psygen amplify --simd`): the engine calls nothing of this.
 #pragma once
 
 #include <string_view>

@@ -85,6 +85,7 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
                                 "amplify --threads 0",
                                 "amplify --threads 257",
                                 "amplify --threads x",
+                                "amplify --simd mmx",
                                 "amplify --sample 1",
                                 "amplify --sample nan,0",
                                 "amplify --sample 1,1 --region 0,0,1,1",
@@ -188,6 +189,9 @@ TEST(CommandLine, AmplifyPrintsItsFiguresAndTheSameHashForAnyNumberOfThreads) {
   EXPECT_TRUE(mentions(json.out, "\"blocks\": 4,")) << json.out;
   ASSERT_EQ(hash_in(json.out).size(), 16u) << json.out;
   EXPECT_TRUE(mentions(text.out, hash_in(json.out)));
+  const Outcome scalar = run_psygen("amplify --region 3,4,5,6 --simd scalar --json");
+  EXPECT_EQ(scalar.code, 0) << scalar.err;
+  EXPECT_EQ(hash_in(scalar.out), hash_in(json.out));
 }
 
 TEST(CommandLine, AmplifyOfAWorldWithSpeciesHasTheSameHashForAnyNumberOfThreads) {
