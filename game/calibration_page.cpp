@@ -87,6 +87,10 @@ Json curve_json(const synthesis::CostCurve& curve, const models::Registry& regis
           {"formula", formula_of(type)},
           {"c_seconds", curve.formula.seconds_per_operation},
           {"r_squared", curve.formula.r_squared},
+          {"with_fixed",
+           {{"a_seconds", curve.formula.fixed_s},
+            {"c_seconds", curve.formula.seconds_per_operation_above},
+            {"r_squared", curve.formula.r_squared_above}}},
           {"points", points}};
 }
 
@@ -96,8 +100,10 @@ std::string plot_of(const synthesis::CostCurve& curve, const models::Registry& r
   plot.title = fmt::format("{}: time over {}", type.name(), curve.parameter);
   plot.x_name = curve.parameter;
   plot.unit = "µs";
-  plot.note = fmt::format("c = {}, R² = {:.4f}", seconds_text(curve.formula.seconds_per_operation),
-                          curve.formula.r_squared);
+  plot.note =
+      fmt::format("c = {}, R² = {:.4f}; with {} besides {:.4f}",
+                  seconds_text(curve.formula.seconds_per_operation), curve.formula.r_squared,
+                  seconds_text(curve.formula.fixed_s), curve.formula.r_squared_above);
   plot.curves = {{formula_of(type), 2, telemetry::CurveKind::kLine, {}},
                  {"cost model", 3, telemetry::CurveKind::kLine, {}},
                  {"measured", 1, telemetry::CurveKind::kPoints, {}}};
@@ -113,14 +119,18 @@ std::string plot_of(const synthesis::CostCurve& curve, const models::Registry& r
 }  // namespace
 
 std::string calibration_text(const Calibration& found, const models::Registry& registry) {
-  std::string text = "time over a parameter, level 0\n";
+  std::string text =
+      "time over a parameter, level 0: c times the formula, and the same above a fixed time a\n";
   const auto out = std::back_inserter(text);
   const std::size_t width = name_width(registry);
   for (const synthesis::CostCurve& curve : found.curves) {
     const models::ModelType& type = registry[curve.model];
-    fmt::format_to(out, "  {:<{}} {:<13} {:<13} c = {:<9} R² = {:.4f}\n", type.name(), width,
-                   curve.parameter, formula_of(type),
-                   seconds_text(curve.formula.seconds_per_operation), curve.formula.r_squared);
+    const synthesis::FormulaFit& f = curve.formula;
+    fmt::format_to(
+        out, "  {:<{}} {:<13} {:<13} c = {:<9} R² = {:.4f}; a = {:<9} c = {:<9} R² = {:.4f}\n",
+        type.name(), width, curve.parameter, formula_of(type),
+        seconds_text(f.seconds_per_operation), f.r_squared, seconds_text(f.fixed_s),
+        seconds_text(f.seconds_per_operation_above), f.r_squared_above);
   }
   fmt::format_to(out, "error of predictions for {} other parameter sets of each type, in %\n",
                  found.held_out_sets);

@@ -188,20 +188,33 @@ CostFit fit_cost(std::span<const Measurement> measurements) {
 }
 
 FormulaFit fit_formula(std::span<const Measurement> measurements) {
-  double xx = 0, xt = 0, sum = 0;
+  const auto count = static_cast<double>(measurements.size());
+  double xx = 0, xt = 0, sum_x = 0, sum_t = 0;
   for (const Measurement& m : measurements) {
     xx += m.work.operations * m.work.operations;
     xt += m.work.operations * m.seconds;
-    sum += m.seconds;
+    sum_x += m.work.operations;
+    sum_t += m.seconds;
   }
   if (!(xx > 0)) return {};
-  const double c = xt / xx, mean = sum / static_cast<double>(measurements.size());
-  double unexplained = 0, variance = 0;
-  for (const Measurement& m : measurements) {
-    unexplained += (m.seconds - c * m.work.operations) * (m.seconds - c * m.work.operations);
-    variance += (m.seconds - mean) * (m.seconds - mean);
-  }
-  return {c, variance > 0 ? 1 - unexplained / variance : 1};
+  const auto r_squared = [&](double fixed, double slope) {
+    double unexplained = 0, variance = 0;
+    for (const Measurement& m : measurements) {
+      const double error = m.seconds - fixed - slope * m.work.operations;
+      const double deviation = m.seconds - sum_t / count;
+      unexplained += error * error;
+      variance += deviation * deviation;
+    }
+    return variance > 0 ? 1 - unexplained / variance : 1;
+  };
+  FormulaFit fit;
+  fit.seconds_per_operation = xt / xx;
+  fit.r_squared = r_squared(0, fit.seconds_per_operation);
+  const double spread = xx - sum_x * sum_x / count;
+  if (spread > 1e-12 * xx) fit.seconds_per_operation_above = (xt - sum_x * sum_t / count) / spread;
+  fit.fixed_s = (sum_t - fit.seconds_per_operation_above * sum_x) / count;
+  fit.r_squared_above = r_squared(fit.fixed_s, fit.seconds_per_operation_above);
+  return fit;
 }
 
 }  // namespace psygen::synthesis

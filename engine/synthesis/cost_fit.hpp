@@ -53,10 +53,13 @@ inline constexpr std::size_t kMinForTerms = 5, kMinForKnots = 16;
 CostFit fit_cost(std::span<const Measurement> measurements);
 
 // seconds = c · operations by least squares of the seconds, as in the paper's Figure 9, and how
-// much of the variance it explains.
+// much of the variance it explains: less than none (below 0) where a constant would explain more.
 struct FormulaFit {
   double seconds_per_operation = 0;  // c
   double r_squared = 0;              // 1 for fewer than two different times
+  // The same with what does not depend on the parameter: seconds = a + c · operations.
+  double fixed_s = 0, seconds_per_operation_above = 0;
+  double r_squared_above = 0;  // in [0, 1]
 };
 FormulaFit fit_formula(std::span<const Measurement> measurements);
 

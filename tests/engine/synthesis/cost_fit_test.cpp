@@ -109,5 +109,20 @@ TEST(FormulaFit, ExplainsAllOfWhatFollowsTheFormulaAndLittleOfWhatDoesNot) {
   EXPECT_EQ(fit_formula({}).seconds_per_operation, 0);
 }
 
+TEST(FormulaFit, KnowsAFixedTimeBesidesTheFormula) {
+  std::vector<Measurement> measured;
+  for (int i = 1; i <= 6; ++i)
+    measured.push_back({{1e3 * i, 0, 0}, 4e-5 + 2e-9 * 1e3 * i});
+  const FormulaFit fit = fit_formula(measured);
+  EXPECT_LT(fit.r_squared, 0);  // a constant explains more
+  EXPECT_NEAR(fit.fixed_s, 4e-5, 1e-12);
+  EXPECT_NEAR(fit.seconds_per_operation_above, 2e-9, 1e-16);
+  EXPECT_NEAR(fit.r_squared_above, 1, 1e-9);
+  // One value of the parameter tells nothing about it.
+  const FormulaFit one = fit_formula(std::span(measured).first(1));
+  EXPECT_EQ(one.seconds_per_operation_above, 0);
+  EXPECT_NEAR(one.fixed_s, measured[0].seconds, 1e-15);
+}
+
 }  // namespace
 }  // namespace psygen::synthesis
