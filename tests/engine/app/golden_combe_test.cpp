@@ -1,0 +1,71 @@
+// Pictures in the middle of changes of models, and of models in the shade of hills: meadows, trees
+// and rocks of silver combe.
+#include <algorithm>
+#include <optional>
+
+#include "engine/world/camera_path.hpp"
+#include "tests/engine/app/golden.hpp"
+
+namespace psygen::app {
+namespace {
+
+class GoldenCombe : public testing::Test {
+ protected:
+  void SetUp() override {
+    Options options = short_flight();
+    options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/silver_combe.toml";
+    options.path_file = PSYGEN_SOURCE_DIR "/game/paths/combe.toml";
+    options.size = {480, 270};
+    options.scene.view_distance_m = 16000;
+    options.scene.budget_bytes = 512ull << 20;
+    auto app = App::create(options);
+    ASSERT_TRUE(app) << app.error().message;
+    app_ = std::move(*app);
+    auto path = world::load_camera_path(options.path_file);
+    ASSERT_TRUE(path);
+    path_ = std::move(*path);
+  }
+  void TearDown() override {
+    EXPECT_THAT(app_->renderer().validation_messages(), testing::IsEmpty());
+  }
+  core::CameraPose pose_at(double seconds) { return path_->pose_at(seconds, state().facts.world); }
+  scene::State& state() { return app_->scene().state(); }
+  template <class Predicate>
+  std::ptrdiff_t draws(const Predicate& predicate) {
+    return std::ranges::count_if(state().draws.models, predicate);
+  }
+
+  std::unique_ptr<App> app_;
+  std::optional<world::CameraPath> path_;
+};
+
+TEST_F(GoldenCombe, StandsInTheShadeOfItsHills) {
+  const core::CameraPose pose = pose_at(4);
+  app_->scene().settle(pose);
+  ASSERT_TRUE(app_->frame(pose, 1.0 / 60.0));
+  EXPECT_GT(draws([](const render::MeshDraw& d) { return d.sun < 0.1F; }), 50);
+  EXPECT_GT(draws([](const render::MeshDraw& d) { return d.sun > 0.9F; }), 50);
+  expect_golden("combe_shade", captured(*app_));
+}
+
+// Thirty metres further on all is there already: every change of level begins in the first frame.
+TEST_F(GoldenCombe, HalfwayThroughItsFades) {
+  const core::CameraPose from = pose_at(4);
+  core::CameraPose to = from;
+  to.position.local += glm::dvec3(26, 0, 15);  // ahead
+  to.position = core::normalised(to.position, state().facts.world.block_size_m());
+  for (const core::CameraPose& pose : {to, from})
+    app_->scene().settle(pose);
+  const double step_s = state().settings.fade_seconds / 6;
+  ASSERT_TRUE(app_->frame(from, step_s));
+  for (int i = 0; i < 3; ++i)
+    ASSERT_TRUE(app_->frame(to, step_s));
+  const auto coming = [](const render::MeshDraw& d) { return d.fade > 0.4F && d.fade < 0.6F; };
+  const auto going = [](const render::MeshDraw& d) { return d.fade < -0.4F && d.fade > -0.6F; };
+  EXPECT_GT(draws(coming), 20);
+  EXPECT_GT(draws(going), 20);
+  expect_golden("combe_fades", captured(*app_));
+}
+
+}  // namespace
+}  // namespace psygen::app
