@@ -35,8 +35,9 @@ std::size_t name_width(const models::Registry& registry) {
 }
 
 std::string seconds_text(double seconds) {
-  if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
-  if (seconds < 1e-3) return fmt::format("{:.3g} µs", seconds * 1e6);
+  const double size = std::abs(seconds);
+  if (size < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
+  if (size < 1e-3) return fmt::format("{:.3g} µs", seconds * 1e6);
   return fmt::format("{:.3g} ms", seconds * 1e3);
 }
 
@@ -101,7 +102,7 @@ std::string plot_of(const synthesis::CostCurve& curve, const models::Registry& r
   plot.x_name = curve.parameter;
   plot.unit = "µs";
   plot.note =
-      fmt::format("c = {}, R² = {:.4f}; with {} besides {:.4f}",
+      fmt::format("c = {}, R² = {:.4f}; above a = {} R² = {:.4f}",
                   seconds_text(curve.formula.seconds_per_operation), curve.formula.r_squared,
                   seconds_text(curve.formula.fixed_s), curve.formula.r_squared_above);
   plot.curves = {{formula_of(type), 2, telemetry::CurveKind::kLine, {}},

@@ -114,12 +114,15 @@ class CoarseHeights {
   HWY_INLINE void copy_samples(const float* from, float* to) const {
     const FloatTag d;
     std::size_t i = 0;
-    // Vertices' distances at level 0 are a half or a third of those at level 1.
+    // As between levels of blocks of odd and of most even sizes.
     if (c_.step == 2 || c_.step == 3) {
       for (; i + hn::Lanes(d) < columns_; i += hn::Lanes(d)) {
         Float wanted, second, third;
-        c_.step == 2 ? hn::LoadInterleaved2(d, from + 2 * i, wanted, second)
-                     : hn::LoadInterleaved3(d, from + 3 * i, wanted, second, third);
+        if (c_.step == 2) {
+          hn::LoadInterleaved2(d, from + 2 * i, wanted, second);
+        } else {
+          hn::LoadInterleaved3(d, from + 3 * i, wanted, second, third);
+        }
         hn::Store(wanted, d, to + i);
       }
     }

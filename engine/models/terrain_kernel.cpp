@@ -3,7 +3,6 @@
 #include "engine/models/terrain_kernel.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "engine/core/vertex_layout.hpp"

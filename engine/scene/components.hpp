@@ -96,6 +96,11 @@ struct MeshParts {
 };
 static_assert(sizeof(MeshParts) == 396);
 
+// Those of the mesh that Mesh takes the place of (Fading::old_mesh).
+struct OldParts {
+  MeshParts parts;
+};
+
 // How a model comes and goes (fading.hpp).
 struct Fading {
   float share = 0;                  // of its pixels that are there

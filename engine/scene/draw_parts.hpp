@@ -27,7 +27,7 @@ class DrawParts {
     }
     draw_.part.count += part.count;
   }
-  // What comes from here on is drawn with this share of the sun.
+  // Of render::MeshDraw: what comes from here on is drawn with this share of the sun.
   void set_sun(float sun) {
     if (sun == draw_.sun) return;
     flush();

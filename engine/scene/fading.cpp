@@ -5,15 +5,16 @@
 
 namespace psygen::scene {
 
-void replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level) {
+bool replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level) {
   const bool coming = fading.share < 1.0F;
   const bool mostly_old = fading.old_mesh && fading.share < 0.5F;
-  if (coming && (!fading.old_mesh || mostly_old)) return;
+  if (coming && (!fading.old_mesh || mostly_old)) return false;
   fading.share = 0;
   fading.old_range = before.range;
   fading.old_mesh = before.handle;
   fading.old_shared_indices = before.shared_indices;
   fading.old_level = level;
+  return true;
 }
 
 float come(Fading& fading, FadeStep step, bool fades_in) {

@@ -63,12 +63,12 @@ MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
   return parts;
 }
 
-bool add_parts(const MeshParts& parts, const View& view, const GroundSun& sun, float side_m,
+bool add_parts(const MeshParts& parts, const View* view, const GroundSun& sun, float side_m,
                const render::MeshDraw& draw, std::vector<render::MeshDraw>& draws) {
   bool any = false;
   DrawParts run(draw, draws);
   for (std::uint32_t i = 0; i < parts.count; ++i) {
-    if (!mesh_can_be_seen(parts.boxes[i], draw.origin, view)) continue;
+    if (view != nullptr && !mesh_can_be_seen(parts.boxes[i], draw.origin, *view)) continue;
     run.set_sun(in_steps(
         sun_over(sun, flat(parts.boxes[i].min) / side_m, flat(parts.boxes[i].max) / side_m)));
     const std::uint32_t first = i * parts.indices_each;

@@ -19,9 +19,10 @@ namespace psygen::scene {
 MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
                      std::span<const std::uint16_t> indices, const core::Bounds& box);
 
-// Adds draws for the parts that can be seen, in the light that the ground of their node, of this
-// size, lets through; `draw` is that of the whole mesh. Returns whether there are any.
-bool add_parts(const MeshParts& parts, const View& view, const GroundSun& sun, float side_m,
+// Adds draws for the parts that can be seen, or without a view for all, in the light that the
+// ground of their node, of this size, lets through; `draw` is that of the whole mesh. Returns
+// whether there are any.
+bool add_parts(const MeshParts& parts, const View* view, const GroundSun& sun, float side_m,
                const render::MeshDraw& draw, std::vector<render::MeshDraw>& draws);
 
 }  // namespace psygen::scene

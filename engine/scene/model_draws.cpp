@@ -8,46 +8,41 @@
 
 namespace psygen::scene {
 
-render::MeshDraw ModelDraws::draw_of(const Model& model, float fade, std::uint32_t debug_colour) {
-  const Ground& ground = model.ground;
-  const glm::vec2 place = glm::vec2(model.placed.position.x, model.placed.position.z);
-  render::MeshDraw draw;
+// What is the same of what comes and what goes.
+bool ModelDraws::add_mesh(const Model& model, const MeshParts* parts, render::MeshDraw draw) {
+  const auto& [corner, side_m, sun] = model.ground;
   draw.origin = model.foot;
   draw.box_center = model.placed.box_center;
   draw.box_half_extent = model.placed.box_half_extent;
-  draw.fade = fade;
-  draw.sun = model.single ? sun_at(ground.sun, place / ground.side_m)
-                          : sun_over(ground.sun, glm::vec2(0.0F), glm::vec2(1.0F));
-  draw.debug_colour = debug_colour;
-  return draw;
+  if (parts == nullptr) {
+    draw.sun = sun_at(sun, glm::vec2(model.placed.position.x, model.placed.position.z) / side_m);
+    draws_.models.push_back(draw);
+    return true;
+  }
+  // What is not in the picture may cast a shadow into it.
+  return add_parts(*parts, facts_.shadows ? nullptr : &view_, sun, side_m, draw, draws_.models);
 }
 
-const MeshParts* ModelDraws::parts_of(ecs::Entity entity, const DrawFacts& node) const {
-  return node.level == 0 || facts_.shadows ? nullptr : entities_.get<MeshParts>(entity);
-}
-
-// Where its parts are known only those that can be seen. Returns whether any can.
+// Returns whether anything of it can be seen.
 bool ModelDraws::add_model(const Model& model, float fade, std::uint32_t debug_colour) {
-  render::MeshDraw draw = draw_of(model, fade, debug_colour);
+  render::MeshDraw draw;
   draw.range = model.mesh.range;
   draw.shared_indices = model.mesh.shared_indices;
-  if (model.parts == nullptr || model.parts->indices_each == 0) {
-    draws_.models.push_back(draw);
-  } else if (!add_parts(*model.parts, view_, model.ground.sun, model.ground.side_m, draw,
-                        draws_.models)) {
-    return false;
-  }
+  draw.fade = fade;
+  draw.debug_colour = debug_colour;
+  if (!add_mesh(model, model.parts, draw)) return false;
   draws_.meshes.push_back(model.mesh.handle);
   return true;
 }
 
 // What the mesh replaces, in the pixels that it leaves out.
 void ModelDraws::add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour) {
-  render::MeshDraw draw = draw_of(model, -fading.share, debug_colour);
+  render::MeshDraw draw;
   draw.range = fading.old_range;
   draw.shared_indices = fading.old_shared_indices;
-  draws_.models.push_back(draw);
-  draws_.meshes.push_back(fading.old_mesh);
+  draw.fade = -fading.share;
+  draw.debug_colour = debug_colour;
+  if (add_mesh(model, model.old_parts, draw)) draws_.meshes.push_back(fading.old_mesh);
 }
 
 // Single models have levels of their own.
@@ -85,8 +80,10 @@ void ModelDraws::each_model(const ecs::Children& children, const DrawFacts& node
       entities_.children(children),
       [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
-          visit(Model{parts_of(rows[i], node), placed[i], meshes[i],
-                      ground.corner + placed[i].position, ground, node.level == 0},
+          const bool merged = node.level > 0;
+          visit(Model{merged ? entities_.get<MeshParts>(rows[i]) : nullptr,
+                      merged ? &entities_.get<OldParts>(rows[i])->parts : nullptr, placed[i],
+                      meshes[i], ground.corner + placed[i].position, ground},
                 demands[i], fading[i]);
         }
       });

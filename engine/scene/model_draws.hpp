@@ -42,18 +42,16 @@ class ModelDraws {
 
  private:
   struct Model {
-    const MeshParts* parts;  // null: there are none, it is drawn as a whole
+    const MeshParts *parts, *old_parts;  // null: of a single model
     const Placed& placed;
     const Mesh& mesh;
     glm::vec3 foot;
     const Ground& ground;
-    bool single;  // else of everything that stands there
   };
   template <class Visit>
   void each_model(const ecs::Children& children, const DrawFacts& node, const Ground& ground,
                   const Visit& visit) const;
-  static render::MeshDraw draw_of(const Model& model, float fade, std::uint32_t debug_colour);
-  const MeshParts* parts_of(ecs::Entity entity, const DrawFacts& node) const;
+  bool add_mesh(const Model& model, const MeshParts* parts, render::MeshDraw draw);
   bool add_model(const Model& model, float fade, std::uint32_t debug_colour);
   void add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour);
   std::uint32_t colour_at(DrawFacts node, const Demand& demand, std::uint8_t level) const;

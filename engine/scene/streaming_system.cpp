@@ -82,7 +82,7 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
   } else if (facts.levels[at.level].merged) {
     scratch.assign(1, {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
                        world::merged_parameters(at.coord, at.level)});
-    create_children<MeshParts>(facts, block, node, scratch, entities);
+    create_children<MeshParts, OldParts>(facts, block, node, scratch, entities);
   }
 }
 

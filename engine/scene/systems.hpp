@@ -44,16 +44,16 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
                       Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
-using UploadQuery =
-    ecs::Query<const Source, Mesh, MeshParts, Fading, Demand, Node, GroundRelief, GroundSun>;
+using UploadQuery = ecs::Query<const Source, Mesh, MeshParts, OldParts, Fading, Demand, Node,
+                               GroundRelief, GroundSun>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
-using RenderQuery =
-    ecs::Query<const Node, const ecs::Children, const Visibility, const Placed, const Demand,
-               const Mesh, const MeshParts, const GroundRelief, const GroundSun, Fading>;
+using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
+                               const Demand, const Mesh, const MeshParts, const OldParts,
+                               const GroundRelief, const GroundSun, Fading>;
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
                    const View& view, RenderQuery entities, DrawLists& draws, Output& output,

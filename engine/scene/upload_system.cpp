@@ -107,7 +107,8 @@ const T& note_of(const synthesis::MeshRecord& record) {
   return *note;
 }
 
-// From now on the ground of a node is known: as far as the mesh is off, it may be higher or lower.
+// From now on the ground of a node is known, and its light: as far as the mesh is off, it may be
+// higher or lower.
 void note_ground(ecs::Entity owner, Node& node, const synthesis::MeshRecord& record,
                  const WorldFacts& facts, const UploadQuery& entities) {
   const core::Bounds& bounds = facts.levels[node.at.level].bounds;
@@ -149,13 +150,18 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());
     return;
   }
+  bool before_goes = false;
   if (level_before != kNoLevel) {
     const Mesh& before = mesh_before(owner, ranked, entities, landings);
     synthesis.cache->set_rank(before.handle, synthesis::Rank::unwanted());
-    if (Fading* fading = entities.get<Fading>(owner)) replace_mesh(*fading, before, level_before);
+    if (Fading* fading = entities.get<Fading>(owner))
+      before_goes = replace_mesh(*fading, before, level_before);
   }
   if (node != nullptr) note_ground(owner, *node, record, facts, entities);
-  if (MeshParts* parts = entities.get<MeshParts>(owner)) *parts = note_of<MeshParts>(record);
+  if (MeshParts* parts = entities.get<MeshParts>(owner)) {
+    if (before_goes) entities.get<OldParts>(owner)->parts = *parts;
+    *parts = note_of<MeshParts>(record);
+  }
   landings.push_back({owner, {record.range, handle, shared_indices, record.tight}});
 }
 

@@ -213,7 +213,7 @@ FormulaFit fit_formula(std::span<const Measurement> measurements) {
   const double spread = xx - sum_x * sum_x / count;
   if (spread > 1e-12 * xx) fit.seconds_per_operation_above = (xt - sum_x * sum_t / count) / spread;
   fit.fixed_s = (sum_t - fit.seconds_per_operation_above * sum_x) / count;
-  fit.r_squared_above = r_squared(fit.fixed_s, fit.seconds_per_operation_above);
+  fit.r_squared_above = std::max(r_squared(fit.fixed_s, fit.seconds_per_operation_above), 0.0);
   return fit;
 }
 

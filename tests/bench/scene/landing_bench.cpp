@@ -1,6 +1,6 @@
 // What the main thread must know of a mesh that lands: what its modeler takes to note it (the boxes
-// of the parts of a merged mesh, the lines of a node's ground), and what the main thread takes to
-// have it from there.
+// of the parts of a merged mesh, the lines and the light of a node's ground), and what the main
+// thread takes to have it from there.
 #include <benchmark/benchmark.h>
 
 #include <any>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/scene/ground_relief.hpp"
+#include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/mesh_parts.hpp"
 #include "engine/world/merged_models.hpp"
 #include "engine/world/placement.hpp"
@@ -47,7 +48,7 @@ void parts_of_a_merged_mesh(benchmark::State& state) {
 }
 BENCHMARK(parts_of_a_merged_mesh)->ArgName("node_level")->DenseRange(1, 5);
 
-void relief_of_ground(benchmark::State& state) {
+void note_of_ground(benchmark::State& state) {
   const models::Registry registry = models::make_standard_registry();
   const world::World world = paper_world(registry);
   const models::ModelType& type = registry[world.terrain_model];
@@ -57,11 +58,13 @@ void relief_of_ground(benchmark::State& state) {
   const models::TerrainGrid grid(static_cast<int>(world.terrain.integer(models::kTerrainSize)),
                                  level);
   const core::Bounds box = type.bounds(p);
-  for (auto _ : state)
+  for (auto _ : state) {
     benchmark::DoNotOptimize(
         ground_relief(mesh.vertices, grid, box.min.y, box.max.y - box.min.y, 0.0F));
+    benchmark::DoNotOptimize(ground_sun(mesh.vertices, static_cast<std::size_t>(grid.n)));
+  }
 }
-BENCHMARK(relief_of_ground)->ArgName("level")->DenseRange(0, 1);
+BENCHMARK(note_of_ground)->ArgName("level")->DenseRange(0, 1);
 
 // Of meshes that landed long after they were made: more notes than caches hold.
 template <class T>
@@ -76,7 +79,7 @@ void note_lands(benchmark::State& state) {
     next = (next + 7919) % kNotes;
   }
 }
-BENCHMARK(note_lands<GroundRelief>);
+BENCHMARK(note_lands<GroundNote>);
 BENCHMARK(note_lands<MeshParts>);
 
 }  // namespace

@@ -3,6 +3,10 @@
 // CHANGELOG.md.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <ostream>
+#include <string>
+
 #include "engine/amplify/block_synthesizer.hpp"
 #include "engine/models/simd_targets.hpp"
 #include "engine/world/world.hpp"

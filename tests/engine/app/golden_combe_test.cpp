@@ -1,7 +1,10 @@
 // Pictures in the middle of changes of models, and of models in the shade of hills: meadows, trees
 // and rocks of silver combe.
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 
 #include "engine/world/camera_path.hpp"
 #include "tests/engine/app/golden.hpp"
@@ -11,10 +14,12 @@ namespace {
 
 class GoldenCombe : public testing::Test {
  protected:
-  void SetUp() override {
+  void SetUp() override { open(render::Preset::kLow); }
+  void open(render::Preset preset) {
     Options options = short_flight();
     options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/silver_combe.toml";
     options.path_file = PSYGEN_SOURCE_DIR "/game/paths/combe.toml";
+    options.preset = preset;
     options.size = {480, 270};
     options.scene.view_distance_m = 16000;
     options.scene.budget_bytes = 512ull << 20;
@@ -48,6 +53,23 @@ TEST_F(GoldenCombe, StandsInTheShadeOfItsHills) {
   expect_golden("combe_shade", captured(*app_));
 }
 
+// Of what stands on a node as one mesh some is in the shade and some is not, also where everything
+// may cast a shadow.
+TEST_F(GoldenCombe, MergedMeshesHaveTheLightOfTheirParts) {
+  for (const render::Preset preset : {render::Preset::kLow, render::Preset::kHigh}) {
+    open(preset);
+    const core::CameraPose pose = pose_at(4);
+    app_->scene().settle(pose);
+    ASSERT_TRUE(app_->frame(pose, 1.0 / 60.0));
+    std::map<std::uint32_t, std::set<float>> light;  // of each mesh that is drawn in parts
+    for (const render::MeshDraw& d : state().draws.models) {
+      if (d.part.count > 0) light[d.range.id].insert(d.sun);
+    }
+    EXPECT_GT(std::ranges::count_if(light, [](const auto& mesh) { return mesh.second.size() > 1; }),
+              10);
+  }
+}
+
 // Thirty metres further on all is there already: every change of level begins in the first frame.
 TEST_F(GoldenCombe, HalfwayThroughItsFades) {
   const core::CameraPose from = pose_at(4);
@@ -58,12 +80,22 @@ TEST_F(GoldenCombe, HalfwayThroughItsFades) {
     app_->scene().settle(pose);
   const double step_s = state().settings.fade_seconds / 6;
   ASSERT_TRUE(app_->frame(from, step_s));
+  const auto name_of = [](const render::MeshDraw& d) {
+    return std::tuple(d.range.id, d.part.first, d.part.count);
+  };
+  std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, float> light;
+  for (const render::MeshDraw& d : state().draws.models)
+    light[name_of(d)] = d.sun;
   for (int i = 0; i < 3; ++i)
     ASSERT_TRUE(app_->frame(to, step_s));
+  const auto as_before = [&](const render::MeshDraw& d) {
+    return d.fade < 0 && light.contains(name_of(d)) && light[name_of(d)] == d.sun;
+  };
   const auto coming = [](const render::MeshDraw& d) { return d.fade > 0.4F && d.fade < 0.6F; };
   const auto going = [](const render::MeshDraw& d) { return d.fade < -0.4F && d.fade > -0.6F; };
   EXPECT_GT(draws(coming), 20);
   EXPECT_GT(draws(going), 20);
+  EXPECT_GT(draws(as_before), draws(going) / 2) << "what goes keeps its light";
   expect_golden("combe_fades", captured(*app_));
 }
 

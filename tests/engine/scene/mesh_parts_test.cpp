@@ -49,7 +49,7 @@ std::vector<render::MeshDraw> draws_of(const MeshParts& parts, const View& view,
   render::MeshDraw draw;
   draw.origin = at;
   std::vector<render::MeshDraw> draws;
-  add_parts(parts, view, sun, kSideM, draw, draws);
+  add_parts(parts, &view, sun, kSideM, draw, draws);
   return draws;
 }
 
