@@ -13,12 +13,12 @@ namespace psygen::scene {
 
 // Component of nodes: shares of 255 in cells of a square grid, row by row.
 struct GroundSun {
-  static constexpr std::size_t kSide = 16;
-  std::array<std::uint8_t, kSide* kSide> share = full();
+  static constexpr std::size_t kSide = 16, kCells = kSide * kSide;
+  std::array<std::uint8_t, kCells> share = full();
 
  private:
-  static constexpr std::array<std::uint8_t, kSide * kSide> full() {
-    std::array<std::uint8_t, kSide * kSide> all{};
+  static constexpr std::array<std::uint8_t, kCells> full() {
+    std::array<std::uint8_t, kCells> all{};
     all.fill(255);
     return all;
   }
