@@ -90,8 +90,8 @@ static_assert(sizeof(Mesh) == 68);
 struct MeshParts {
   static constexpr std::size_t kMost = 16;
   std::uint32_t count = 0;
-  std::uint32_t indices_each = 0;  // of all parts but the last; 0: none landed yet
-  std::uint32_t index_count = 0;   // of all parts
+  std::uint32_t indices_each = 0;           // of all parts but the last; 0: none landed yet
+  std::uint32_t index_count = 0;            // of all parts
   std::array<core::Bounds, kMost> boxes{};  // from the foot
 };
 static_assert(sizeof(MeshParts) == 396);
