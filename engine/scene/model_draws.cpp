@@ -8,7 +8,7 @@
 
 namespace psygen::scene {
 
-// What is the same of what comes and what goes.
+// What is the same of what comes and what goes; without parts, of a single model.
 bool ModelDraws::add_mesh(const Model& model, const MeshParts* parts, render::MeshDraw draw) {
   const auto& [corner, side_m, sun] = model.ground;
   draw.origin = model.foot;
@@ -30,7 +30,8 @@ bool ModelDraws::add_model(const Model& model, float fade, std::uint32_t debug_c
   draw.shared_indices = model.mesh.shared_indices;
   draw.fade = fade;
   draw.debug_colour = debug_colour;
-  if (!add_mesh(model, model.parts, draw)) return false;
+  if (!add_mesh(model, model.merged ? entities_.get<MeshParts>(model.entity) : nullptr, draw))
+    return false;
   draws_.meshes.push_back(model.mesh.handle);
   return true;
 }
@@ -42,7 +43,8 @@ void ModelDraws::add_old(const Model& model, const Fading& fading, std::uint32_t
   draw.shared_indices = fading.old_shared_indices;
   draw.fade = -fading.share;
   draw.debug_colour = debug_colour;
-  if (add_mesh(model, model.old_parts, draw)) draws_.meshes.push_back(fading.old_mesh);
+  const MeshParts* parts = model.merged ? &entities_.get<OldParts>(model.entity)->parts : nullptr;
+  if (add_mesh(model, parts, draw)) draws_.meshes.push_back(fading.old_mesh);
 }
 
 // Single models have levels of their own.
@@ -80,10 +82,8 @@ void ModelDraws::each_model(const ecs::Children& children, const DrawFacts& node
       entities_.children(children),
       [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
-          const bool merged = node.level > 0;
-          visit(Model{merged ? entities_.get<MeshParts>(rows[i]) : nullptr,
-                      merged ? &entities_.get<OldParts>(rows[i])->parts : nullptr, placed[i],
-                      meshes[i], ground.corner + placed[i].position, ground},
+          visit(Model{rows[i], node.level > 0, placed[i], meshes[i],
+                      ground.corner + placed[i].position, ground},
                 demands[i], fading[i]);
         }
       });

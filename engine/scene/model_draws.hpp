@@ -42,7 +42,8 @@ class ModelDraws {
 
  private:
   struct Model {
-    const MeshParts *parts, *old_parts;  // null: of a single model
+    ecs::Entity entity;
+    bool merged;  // everything that stands on a node, in parts
     const Placed& placed;
     const Mesh& mesh;
     glm::vec3 foot;
