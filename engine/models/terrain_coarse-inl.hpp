@@ -114,7 +114,7 @@ class CoarseHeights {
   HWY_INLINE void copy_samples(const float* from, float* to) const {
     const FloatTag d;
     std::size_t i = 0;
-    // As between levels of blocks of odd and of most even sizes.
+    // Blocks of 64 vertices have every third of them at level 1.
     if (c_.step == 2 || c_.step == 3) {
       for (; i + hn::Lanes(d) < columns_; i += hn::Lanes(d)) {
         Float wanted, second, third;
