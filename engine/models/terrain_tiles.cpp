@@ -1,6 +1,7 @@
 #include "engine/models/terrain_tiles.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 
 #include "engine/core/assert.hpp"
@@ -53,7 +54,7 @@ class Writer {
 TerrainTiles::TerrainTiles(int size) : grid_(size, 0), stride_(TerrainGrid(size, 1).stride) {
   const int side = grid_.tiles_per_side();
   std::uint32_t first = 0, at = 0;
-  for (const Form form : {Form::kFine, Form::kRimmed, Form::kCoarse}) {
+  for (std::uint32_t form = 0; form < kForms; ++form) {
     for (int tile = 0; tile < side * side; ++tile) {
       firsts_[at++] = first;
       first += index_count_of(rect_of(tile % side, tile / side), form);
@@ -67,20 +68,22 @@ TerrainTiles::Rect TerrainTiles::rect_of(int column, int row) const {
           grid_.tile_line(row + 1)};
 }
 
-std::uint32_t TerrainTiles::index_count_of(const Rect& rect, Form form) const {
+std::uint32_t TerrainTiles::index_count_of(const Rect& rect, std::uint32_t form) const {
   const int wide = rect.x1 - rect.x0, deep = rect.z1 - rect.z0;
-  if (form == Form::kFine) return static_cast<std::uint32_t>(6 * wide * deep);
+  if (form == 0) return static_cast<std::uint32_t>(6 * wide * deep);
   const int columns = wide / stride_, rows = deep / stride_;
-  const int divided = form == Form::kRimmed ? 2 * (columns + rows) * (stride_ - 1) : 0;
-  return static_cast<std::uint32_t>(3 * (2 * columns * rows + divided));
+  const std::uint32_t divided = form - 1;
+  const int cells = columns * std::popcount(divided & (kNorth | kSouth)) +
+                    rows * std::popcount(divided & (kEast | kWest));
+  return static_cast<std::uint32_t>(3 * (2 * columns * rows + cells * (stride_ - 1)));
 }
 
-core::IndexPart TerrainTiles::tile(int column, int row, Form form) const {
+core::IndexPart TerrainTiles::part(std::uint32_t form, int column, int row) const {
   const int side = grid_.tiles_per_side();
   PSYGEN_ASSERT(column >= 0 && column < side && row >= 0 && row < side,
                 "the block has such a tile");
-  const std::uint32_t at =
-      static_cast<std::uint32_t>(form) * tiles() + static_cast<std::uint32_t>(row * side + column);
+  PSYGEN_ASSERT(form < kForms, "a tile has four sides");
+  const std::uint32_t at = form * tiles() + static_cast<std::uint32_t>(row * side + column);
   return {firsts_[at], firsts_[at + 1] - firsts_[at]};
 }
 
@@ -97,19 +100,22 @@ void TerrainTiles::write_indices(std::span<std::uint16_t> out) const {
   std::copy(fine.begin(), surface, out.begin());
   std::copy(surface, fine.end(), out.begin() + skirt(0).first);
   const int side = grid_.tiles_per_side();
-  for (const Form form : {Form::kRimmed, Form::kCoarse}) {
-    const bool rim = form == Form::kRimmed;
+  for (std::uint8_t divided = 0; divided <= kAll; ++divided) {
     for (int tile_at = 0; tile_at < side * side; ++tile_at) {
       const int column = tile_at % side, row = tile_at / side;
       const Rect r = rect_of(column, row);
-      const core::IndexPart part = tile(column, row, form);
-      Writer writer(grid_.size, out.subspan(part.first, part.count));
+      const core::IndexPart at = coarse(column, row, divided);
+      Writer writer(grid_.size, out.subspan(at.first, at.count));
+      const auto on = [divided](Sides side_of, bool border) {
+        return border && (divided & side_of) != 0;
+      };
       for (int z = r.z0; z < r.z1; z += stride_) {
         for (int x = r.x0; x < r.x1; x += stride_) {
           const Writer::Place near{x, z}, down{x, z + stride_}, right{x + stride_, z},
               far{x + stride_, z + stride_};
-          writer.half_cell(near, down, rim && x == r.x0, right, rim && z == r.z0, stride_);
-          writer.half_cell(far, right, rim && far.x == r.x1, down, rim && far.z == r.z1, stride_);
+          writer.half_cell(near, down, on(kWest, x == r.x0), right, on(kNorth, z == r.z0), stride_);
+          writer.half_cell(far, right, on(kEast, far.x == r.x1), down, on(kSouth, far.z == r.z1),
+                           stride_);
         }
       }
     }

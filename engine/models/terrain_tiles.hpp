@@ -21,13 +21,17 @@ class TerrainTiles {
   // Of the vertices, and of the tiles in their fine form.
   const TerrainGrid& grid() const { return grid_; }
 
-  enum class Form : std::uint8_t {
-    kFine,    // every cell
-    kRimmed,  // cells of the coarser level that share every vertex of the tile's border with fine
-              // tiles
-    kCoarse,  // cells of the coarser level
-  };
-  core::IndexPart tile(int column, int row, Form form) const;
+  // Sides of a tile, to be added: towards −z, +x, +z and −x.
+  enum Sides : std::uint8_t { kNone = 0, kNorth = 1, kEast = 2, kSouth = 4, kWest = 8, kAll = 15 };
+
+  // Every cell of a tile.
+  core::IndexPart fine(int column, int row) const { return part(0, column, row); }
+  // Cells of the coarser level, that share every vertex of the `divided` sides with fine tiles and
+  // only those of the coarser level on the others: no side is shared with other vertices on it than
+  // the neighbour's, through which the sky would be seen in single pixels.
+  core::IndexPart coarse(int column, int row, std::uint8_t divided) const {
+    return part(1U + divided, column, row);
+  }
   // The skirt of a side, as in TerrainGrid.
   core::IndexPart skirt(int side) const;
 
@@ -37,14 +41,15 @@ class TerrainTiles {
   void write_indices(std::span<std::uint16_t> out) const;
 
  private:
-  static constexpr std::uint32_t kForms = 3;
-  struct Rect;  // of cells
+  static constexpr std::uint32_t kForms = 1 + kAll + 1;  // 0: fine; 1 + the sides that are divided
+  struct Rect;                                           // of cells
 
   std::uint32_t tiles() const {
     return static_cast<std::uint32_t>(grid_.tiles_per_side() * grid_.tiles_per_side());
   }
   Rect rect_of(int column, int row) const;
-  std::uint32_t index_count_of(const Rect& rect, Form form) const;
+  std::uint32_t index_count_of(const Rect& rect, std::uint32_t form) const;
+  core::IndexPart part(std::uint32_t form, int column, int row) const;
 
   TerrainGrid grid_;
   int stride_;  // cells along the side of one of the coarser level

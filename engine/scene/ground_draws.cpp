@@ -1,5 +1,6 @@
 #include "engine/scene/ground_draws.hpp"
 
+#include <algorithm>
 #include <array>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -10,19 +11,28 @@
 namespace psygen::scene {
 namespace {
 
-using Form = models::TerrainTiles::Form;
+using models::TerrainTiles;
 
-// Which tiles of a block are fine, with a rim of what is not: beyond the block lies another one's
-// ground, with skirts in between.
+// Which tiles of a block are fine. So are all skirts: they have every vertex of the border.
 class FineTiles {
  public:
+  // `skirts`: the sides (TerrainTiles::Sides) that have some.
+  FineTiles(int side, std::uint8_t skirts) {
+    for (int i = 0; i < side; ++i) {
+      set(i, -1, (skirts & TerrainTiles::kNorth) != 0);
+      set(side, i, (skirts & TerrainTiles::kEast) != 0);
+      set(i, side, (skirts & TerrainTiles::kSouth) != 0);
+      set(-1, i, (skirts & TerrainTiles::kWest) != 0);
+    }
+  }
   void set(int column, int row, bool fine) { fine_[place(column, row)] = fine; }
-  Form form(int column, int row) const {
+  bool fine(int column, int row) const { return fine_[place(column, row)]; }
+  // The sides of a tile that it shares with what is fine.
+  std::uint8_t fine_sides(int column, int row) const {
     const std::size_t at = place(column, row);
-    if (fine_[at]) return Form::kFine;
-    const bool beside_fine =
-        fine_[at - 1] || fine_[at + 1] || fine_[at - kWide] || fine_[at + kWide];
-    return beside_fine ? Form::kRimmed : Form::kCoarse;
+    return static_cast<std::uint8_t>(
+        (fine_[at - kWide] ? TerrainTiles::kNorth : 0) | (fine_[at + 1] ? TerrainTiles::kEast : 0) |
+        (fine_[at + kWide] ? TerrainTiles::kSouth : 0) | (fine_[at - 1] ? TerrainTiles::kWest : 0));
   }
 
  private:
@@ -45,9 +55,10 @@ std::uint32_t bit(int tile) {
   return 1U << static_cast<unsigned>(tile);
 }
 
-// The skirts that show their outside: with them a gap beside a tile that is drawn is closed.
-template <class Grid>
-void add_skirts(const NodeTiles& tiles, std::uint32_t in_view, const Grid& grid, Parts& parts) {
+// The sides (TerrainTiles::Sides) with skirts: those that show their outside, with which a gap
+// beside a tile that is drawn is closed, or all where all tiles are drawn.
+std::uint8_t sides_with_skirts(const NodeTiles& tiles, std::uint32_t in_view) {
+  if (in_view == kAllTiles) return TerrainTiles::kAll;
   const int side = tiles.grid.tiles_per_side();
   const core::Bounds first = tiles.box(0, 0), last = tiles.box(side - 1, side - 1);
   struct Side {
@@ -58,14 +69,21 @@ void add_skirts(const NodeTiles& tiles, std::uint32_t in_view, const Grid& grid,
   const bool south = last.max.z<0.0F, west = first.min.x> 0.0F;
   const std::array sides{Side{north, 0, 1}, Side{east, side - 1, side},
                          Side{south, side * (side - 1), 1}, Side{west, 0, side}};
-  for (int i = 0; i < 4; ++i) {
-    const Side& at = sides[static_cast<std::size_t>(i)];
+  std::uint8_t with_skirts = 0;
+  for (unsigned i = 0; i < 4; ++i) {
     std::uint32_t along = 0;
     for (int k = 0; k < side; ++k)
-      along |= bit(at.tile + k * at.step);
-    if (in_view == kAllTiles || (at.faces_camera && (along & in_view) != 0))
-      parts.add(grid.skirt(i));
+      along |= bit(sides[i].tile + k * sides[i].step);
+    if (sides[i].faces_camera && (along & in_view) != 0)
+      with_skirts = static_cast<std::uint8_t>(with_skirts | 1U << i);
   }
+  return with_skirts;
+}
+
+template <class Grid>
+void add_skirts(const Grid& grid, std::uint8_t sides, Parts& parts) {
+  for (int i = 0; i < 4; ++i)
+    if ((sides >> i & 1) != 0) parts.add(grid.skirt(i));
 }
 
 }  // namespace
@@ -94,25 +112,30 @@ std::uint32_t tiles_in_view(const NodeTiles& tiles, const View& view) {
 void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::TerrainTiles* fine,
                float fine_m, render::TerrainDraw draw, std::vector<render::TerrainDraw>& draws) {
   const int side = tiles.grid.tiles_per_side(), count = side * side;
+  const std::uint8_t skirts = sides_with_skirts(tiles, in_view);
   if (fine == nullptr) {
     Parts parts(draw, draws);
     for (int i = 0; i < count; ++i)
       if ((in_view & bit(i)) != 0) parts.add(tiles.grid.tile(i % side, i / side));
-    return add_skirts(tiles, in_view, tiles.grid, parts);
+    return add_skirts(tiles.grid, skirts, parts);
   }
   draw.morph = render::kMorphByDistance;
-  FineTiles near;
+  FineTiles near(side, skirts);
   for (int i = 0; i < count; ++i)
     near.set(i % side, i / side, distance_m(tiles.box(i % side, i / side)) < fine_m);
-  Parts parts(draw, draws);
-  for (const Form form : {Form::kFine, Form::kRimmed, Form::kCoarse}) {
-    for (int i = 0; i < count; ++i) {
-      const int column = i % side, row = i / side;
-      if ((in_view & bit(i)) != 0 && near.form(column, row) == form)
-        parts.add(fine->tile(column, row, form));
-    }
+  std::array<core::IndexPart, models::kMostTilesPerSide * models::kMostTilesPerSide> chosen;
+  auto end = chosen.begin();
+  for (int i = 0; i < count; ++i) {
+    const int column = i % side, row = i / side;
+    if ((in_view & bit(i)) == 0) continue;
+    *end++ = near.fine(column, row) ? fine->fine(column, row)
+                                    : fine->coarse(column, row, near.fine_sides(column, row));
   }
-  add_skirts(tiles, in_view, *fine, parts);
+  std::sort(chosen.begin(), end, [](const auto& a, const auto& b) { return a.first < b.first; });
+  Parts parts(draw, draws);
+  for (auto part = chosen.begin(); part != end; ++part)
+    parts.add(*part);
+  add_skirts(*fine, skirts, parts);
 }
 
 }  // namespace psygen::scene

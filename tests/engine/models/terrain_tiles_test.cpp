@@ -12,11 +12,10 @@
 namespace psygen::models {
 namespace {
 
-using Form = TerrainTiles::Form;
 using Triangle = std::array<std::uint16_t, 3>;
 
 constexpr int kSizes[] = {4, 5, 8, 17, 33, 64, 65, 128};
-constexpr Form kForms[] = {Form::kFine, Form::kRimmed, Form::kCoarse};
+constexpr int kFine = -1;  // else the sides of a coarse tile that are divided
 
 // With the smallest index first, in the same direction.
 Triangle canonical(Triangle t) {
@@ -37,13 +36,15 @@ std::vector<std::uint16_t> list_of(const TerrainTiles& tiles) {
   return list;
 }
 
-std::vector<Triangle> tile_of(const TerrainTiles& tiles, int column, int row, Form form) {
+std::vector<Triangle> tile_of(const TerrainTiles& tiles, int column, int row, int form) {
   const std::vector<std::uint16_t> list = list_of(tiles);
-  const core::IndexPart part = tiles.tile(column, row, form);
+  const core::IndexPart part = form == kFine
+                                   ? tiles.fine(column, row)
+                                   : tiles.coarse(column, row, static_cast<std::uint8_t>(form));
   return triangles_of(std::span(list).subspan(part.first, part.count));
 }
 
-std::set<Triangle> all_of(const TerrainTiles& tiles, Form form) {
+std::set<Triangle> all_of(const TerrainTiles& tiles, int form) {
   std::set<Triangle> all;
   for (int row = 0; row < tiles.grid().tiles_per_side(); ++row) {
     for (int column = 0; column < tiles.grid().tiles_per_side(); ++column) {
@@ -103,8 +104,8 @@ TEST(TerrainGrid, TilesOfEveryLevelAreTheCellsBetweenTheirLines) {
 TEST(TerrainTiles, AreTogetherTheSurfacesOfTheirTwoLevels) {
   for (const int size : kSizes) {
     const TerrainTiles tiles(size);
-    EXPECT_EQ(all_of(tiles, Form::kFine), surface_of(size, 0)) << size;
-    EXPECT_EQ(all_of(tiles, Form::kCoarse), surface_of(size, 1)) << size;
+    EXPECT_EQ(all_of(tiles, kFine), surface_of(size, 0)) << size;
+    EXPECT_EQ(all_of(tiles, TerrainTiles::kNone), surface_of(size, 1)) << size;
   }
 }
 
@@ -113,7 +114,7 @@ TEST(TerrainTiles, CoverEveryTileOnceInEveryForm) {
     const TerrainTiles tiles(size);
     EXPECT_EQ(tiles.grid().tile_line(0), 0);
     EXPECT_EQ(tiles.grid().tile_line(tiles.grid().tiles_per_side()), size - 1);
-    for (const Form form : kForms) {
+    for (int form = kFine; form <= TerrainTiles::kAll; ++form) {
       for (int row = 0; row < tiles.grid().tiles_per_side(); ++row) {
         for (int column = 0; column < tiles.grid().tiles_per_side(); ++column) {
           int area = 0;
@@ -143,13 +144,31 @@ std::set<std::pair<std::uint16_t, std::uint16_t>> border_of(const std::vector<Tr
   return sides;
 }
 
-TEST(TerrainTiles, WithARimShareEverySideOfTheirBorderWithFineOnes) {
+// Any tiles fine: every side of a triangle is one of its neighbour's as well, with no vertex on it,
+// or lies on the border of the block.
+TEST(TerrainTiles, MeetWithoutAVertexOnASideWhicheverAreFine) {
   for (const int size : kSizes) {
     const TerrainTiles tiles(size);
-    for (int row = 0; row < tiles.grid().tiles_per_side(); ++row) {
-      for (int column = 0; column < tiles.grid().tiles_per_side(); ++column) {
-        const auto rimmed = tile_of(tiles, column, row, Form::kRimmed);
-        EXPECT_EQ(border_of(rimmed), border_of(tile_of(tiles, column, row, Form::kFine))) << size;
+    const int side = tiles.grid().tiles_per_side(), count = side * side;
+    for (int fine = 0; fine < 1 << count; fine += size == 64 ? 1 : 7) {
+      const auto is_fine = [&](int column, int row) {
+        return column >= 0 && column < side && row >= 0 && row < side &&
+               (fine >> (row * side + column) & 1) != 0;
+      };
+      std::vector<Triangle> ground;
+      for (int tile = 0; tile < count; ++tile) {
+        const int column = tile % side, row = tile / side;
+        const int divided = (is_fine(column, row - 1) ? TerrainTiles::kNorth : 0) |
+                            (is_fine(column + 1, row) ? TerrainTiles::kEast : 0) |
+                            (is_fine(column, row + 1) ? TerrainTiles::kSouth : 0) |
+                            (is_fine(column - 1, row) ? TerrainTiles::kWest : 0);
+        const auto part = tile_of(tiles, column, row, is_fine(column, row) ? kFine : divided);
+        ground.insert(ground.end(), part.begin(), part.end());
+      }
+      for (const auto& [from, to] : border_of(ground)) {
+        const auto along = [&](int a, int b) { return a == b && (a == 0 || a == size - 1); };
+        ASSERT_TRUE(along(from % size, to % size) || along(from / size, to / size))
+            << "size " << size << ", fine tiles " << fine;
       }
     }
   }
@@ -175,9 +194,9 @@ TEST(TerrainTiles, HaveTheSkirtsOfTheWholeMeshAtTheEnd) {
 TEST(TerrainTiles, OfThePaperAreThreeToASide) {
   const TerrainTiles tiles(64);
   EXPECT_EQ(tiles.grid().tiles_per_side(), 3);
-  EXPECT_EQ(tiles.tile(1, 1, Form::kFine).count, 882U * 3);
-  EXPECT_EQ(tiles.tile(1, 1, Form::kRimmed).count, 154U * 3);
-  EXPECT_EQ(tiles.tile(1, 1, Form::kCoarse).count, 98U * 3);
+  EXPECT_EQ(tiles.fine(1, 1).count, 882U * 3);
+  EXPECT_EQ(tiles.coarse(1, 1, TerrainTiles::kAll).count, 154U * 3);
+  EXPECT_EQ(tiles.coarse(1, 1, TerrainTiles::kNone).count, 98U * 3);
 }
 
 }  // namespace

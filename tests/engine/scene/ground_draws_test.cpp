@@ -118,21 +118,30 @@ TEST(GroundDraws, OfABlocksFinestGroundTheNearTilesAreFine) {
   std::vector<render::TerrainDraw> draws;
   // The southern row begins 78 m away.
   add_tiles(node.fine_tiles(), kAll, &node.fine, 70, {}, draws);
-  const auto part = [&](int row, models::TerrainTiles::Form form) {
-    std::set<std::uint32_t> indices;
-    for (int column = 0; column < 3; ++column)
-      insert(node.fine.tile(column, row, form), indices);
-    return indices;
-  };
   std::set<std::uint32_t> expected;
-  expected.merge(part(2, models::TerrainTiles::Form::kFine));
-  expected.merge(part(1, models::TerrainTiles::Form::kRimmed));
-  expected.merge(part(0, models::TerrainTiles::Form::kCoarse));
+  for (int column = 0; column < 3; ++column) {
+    insert(node.fine.fine(column, 2), expected);
+    insert(node.fine.coarse(column, 1, models::TerrainTiles::kSouth), expected);
+    insert(node.fine.coarse(column, 0, models::TerrainTiles::kNone), expected);
+  }
   insert(node.fine.skirt(2), expected);
   EXPECT_EQ(indices_of(draws), expected);
   EXPECT_TRUE(std::ranges::all_of(draws, [](const render::TerrainDraw& draw) {
     return draw.morph == render::kMorphByDistance;
   }));
+}
+
+// A side with a skirt has every vertex of it.
+TEST(GroundDraws, OfABlocksFinestGroundTilesWithSkirtsHaveTheirVertices) {
+  const Fixture node({-31, -10, -120});
+  constexpr std::uint32_t kSouthernRow = 7U << 6U;
+  std::vector<render::TerrainDraw> draws;
+  add_tiles(node.fine_tiles(), kSouthernRow, &node.fine, 10, {}, draws);
+  std::set<std::uint32_t> expected;
+  for (int column = 0; column < 3; ++column)
+    insert(node.fine.coarse(column, 2, models::TerrainTiles::kSouth), expected);
+  insert(node.fine.skirt(2), expected);
+  EXPECT_EQ(indices_of(draws), expected);
 }
 
 }  // namespace
