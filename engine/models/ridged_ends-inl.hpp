@@ -78,7 +78,7 @@ class EndColumns {
     for (std::size_t c = 0; c < count_; ++c)
       places_[c].find(kernel, columns[c]);
     for (std::size_t o = 0; o < static_cast<std::size_t>(kernel.octave_count); ++o)
-      blend(o);
+      blend_rows(o);
   }
 
   void write(const RowSettings& settings, float* values, std::size_t stride) const {
@@ -110,8 +110,8 @@ class EndColumns {
     }
   };
 
-  // Gradients on all lattice rows of an octave, blended along x at every column.
-  void blend(std::size_t o) {
+  // All lattice rows of an octave, blended along x at every column.
+  void blend_rows(std::size_t o) {
     const FloatTag d;
     const UintTag du;
     const RidgedOctave& octave = kernel_.octaves[o];
@@ -122,9 +122,9 @@ class EndColumns {
       const auto hash =
           mix32(du, counting_from(du, rows[0] + octave.key_z + static_cast<std::uint32_t>(k)));
       const auto along = [&](std::uint32_t cell) {
-        return gradient(hn::Set(du, cell + octave.key_x), hash, length);
+        return lattice_point(hn::Set(du, cell + octave.key_x), hash, length);
       };
-      Gradient left = along(places_[0].cell[o]), right = along(places_[0].cell[o] + 1);
+      LatticePoint left = along(places_[0].cell[o]), right = along(places_[0].cell[o] + 1);
       for (std::size_t c = 0; c < count_; ++c) {
         const std::uint32_t cell = places_[c].cell[o];
         if (c > 0 && cell != places_[c - 1].cell[o]) {
@@ -132,11 +132,10 @@ class EndColumns {
           right = along(cell + 1);
         }
         const float t = places_[c].fraction[o], u = places_[c].fade[o];
-        hn::Store(hn::Add(hn::Mul(left.x, hn::Set(d, t * (1.0F - u))),
-                          hn::Mul(right.x, hn::Set(d, (t - 1.0F) * u))),
-                  d, x_[c][o] + k);
-        hn::Store(hn::Add(left.z, hn::Mul(hn::Set(d, u), hn::Sub(right.z, left.z))), d,
-                  z_[c][o] + k);
+        const Blend b = blend(left, right, hn::Set(d, t * (1.0F - u)), hn::Set(d, (t - 1.0F) * u),
+                              hn::Set(d, u));
+        hn::Store(b.value, d, values_[c][o] + k);
+        hn::Store(b.slope, d, slopes_[c][o] + k);
       }
     }
   }
@@ -151,12 +150,15 @@ class EndColumns {
       const std::size_t at = o * kMaxNoiseAxis + r;
       const std::size_t lower = rows_.cell[at] - rows_.cell[at - r];
       const auto slots = hn::Sub(hn::Load(du, rows_.cell + at), hn::Set(du, rows_.cell[at]));
-      const Neighbours g =
-          neighbours(x_[c][o], z_[c][o], hn::BitCast(IntTag(), slots), lower, lower + 1);
-      const Float rise_x = hn::Sub(hn::Sub(g.right_x, g.right_z), g.left_x);
-      const Float rise_z = hn::Sub(g.right_z, g.left_z);
-      add_octave(square_of(g.left_x, g.left_z, rise_x, rise_z, hn::Load(d, rows_.fraction + at),
-                           hn::Load(d, rows_.fade + at), offset),
+      const auto indices = hn::IndicesFromVec(d, hn::BitCast(IntTag(), slots));
+      const auto row = [&](std::size_t first) -> Blend {
+        return {hn::TableLookupLanes(hn::LoadU(d, values_[c][o] + first), indices),
+                hn::TableLookupLanes(hn::LoadU(d, slopes_[c][o] + first), indices)};
+      };
+      const Blend below = row(lower), above = row(lower + 1);
+      const Float rise = hn::Sub(hn::Sub(above.value, above.slope), below.value);
+      add_octave(square_of(below.value, below.slope, rise, hn::Sub(above.slope, below.slope),
+                           hn::Load(d, rows_.fraction + at), hn::Load(d, rows_.fade + at), offset),
                  hn::Set(d, settings.next_limit[o]), weight, sum);
     }
     return hn::Mul(sum, hn::Set(d, settings.scale));
@@ -166,7 +168,7 @@ class EndColumns {
   const RowOctaves& rows_;
   const std::size_t count_;
   Place places_[kMost];
-  HWY_ALIGN float x_[kMost][kMaxOctaves][kLines], z_[kMost][kMaxOctaves][kLines];
+  HWY_ALIGN float values_[kMost][kMaxOctaves][kLines], slopes_[kMost][kMaxOctaves][kLines];
 };
 
 }  // namespace psygen::models::HWY_NAMESPACE

@@ -28,7 +28,7 @@ struct Workspace {
   HWY_ALIGN std::int32_t slots[kMaxOctaves * kMaxNoiseAxis];
   HWY_ALIGN std::uint64_t positions[kMaxNoiseAxis];
   HWY_ALIGN std::uint32_t cells[kMaxNoiseAxis];
-  GradientRow gradients[kMaxOctaves];
+  LatticeRow lattice_rows[kMaxOctaves];
   ColumnOctave columns[kMaxOctaves];
 
   void prepare(std::size_t index, const RidgedOctave& octave, const Axis& axis) {
@@ -65,16 +65,16 @@ void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
   for (std::uint32_t changed = along_z.changed[r] & in_rows; changed != 0; changed &= changed - 1) {
     const auto o = static_cast<std::size_t>(std::countr_zero(changed));
     ColumnOctave& octave = memory.columns[o];
-    GradientRow& gradients = memory.gradients[o];
+    LatticeRow& row = memory.lattice_rows[o];
     const std::uint32_t cell = along_z.cell[o * kMaxNoiseAxis + r],
                         key = cell + kernel.octaves[o].key_z;
     const bool next = r > 0 && cell == octave.lattice_row + 1;
-    if (!next) raise_to<true>(octave, gradients, key, kernel.gradient_length);
-    raise_to<false>(octave, gradients, key + 1, kernel.gradient_length);
+    if (!next) raise_to<true>(octave, row, key, kernel.gradient_length);
+    raise_to<false>(octave, row, key + 1, kernel.gradient_length);
     // Those of the row that is next are there when it comes, instead of being waited for.
     const std::uint32_t last = along_z.cell[o * kMaxNoiseAxis + along_z.count - 1];
     if (next && along_z.contiguous && cell != last)
-      gradients.hold(octave, key + 2, kernel.gradient_length);
+      row.hold(octave, key + 2, kernel.gradient_length);
     octave.lattice_row = cell;
   }
 }

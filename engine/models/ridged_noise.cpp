@@ -10,6 +10,8 @@
 namespace psygen::models {
 namespace {
 
+// Where all four gradients of a lattice cell point at its centre: ½ + 1/√2.
+constexpr double kMaxNoise = 1.2071067811865475;
 constexpr double kTwo32 = 4294967296.0;
 
 // Lattice cells per integer modulo 2^32 as Q32.32, rounded to nearest. Exact but for the rounding:
@@ -36,7 +38,8 @@ RidgedOctave octave_of(std::uint64_t key, double frequency) {
 RidgedNoise::RidgedNoise(const RidgedSettings& s)
     : cells_per_step_(s.cells_per_step), lacunarity_(s.lacunarity) {
   PSYGEN_ASSERT(s.octaves >= 1 && s.octaves <= kMaxOctaves, "octaves are within their range");
-  const double highest = std::max(s.offset * s.offset, (s.offset - 1) * (s.offset - 1));
+  const double deepest = s.offset - kMaxNoise;
+  const double highest = std::max(s.offset * s.offset, deepest * deepest);
   const double ratio = exact_pow(s.lacunarity, -s.height);
   // Gains so small that further octaves cannot be seen in single precision leave only the first.
   const double square = s.gain * ratio;
@@ -44,7 +47,7 @@ RidgedNoise::RidgedNoise(const RidgedSettings& s)
   const double scale = one_octave ? 1 : std::sqrt(square);
   kernel_.octave_count = one_octave ? 1 : s.octaves;
   kernel_.offset = static_cast<float>(scale * s.offset);
-  kernel_.gradient_length = static_cast<float>(scale * 1.4142135623730951);
+  kernel_.gradient_length = static_cast<float>(scale);
   kernel_.result_scale = static_cast<float>(one_octave ? 1 : 1 / square);
   kernel_.warp = static_cast<float>(s.warp);
   for (std::size_t i = 0; i < 2; ++i)

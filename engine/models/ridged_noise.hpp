@@ -1,8 +1,8 @@
 // Ridged multifractal over a lattice of integers (Musgrave, in Ebert et al., "Texturing and
-// Modeling"; docs/models.md, "Terrain"): 2-D gradient noise of several octaves, each octave
-// weighted by the one before. Coordinates are exact fixed point, so values have the same bits at
-// any distance from the origin, however the samples are grouped into calls, and on every
-// instruction set. Knows no metres and no meshes.
+// Modeling"; docs/models.md, "Terrain"): 2-D value-gradient noise (Peachey, in the same book) of
+// several octaves, each octave weighted by the one before. Coordinates are exact fixed point, so
+// values have the same bits at any distance from the origin, however the samples are grouped into
+// calls, and on every instruction set. Knows no metres and no meshes.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ class RidgedNoise {
   int octaves_wider_than(double steps) const;
 
   // values[r · stride + c] = R(columns[c], rows[r]). Ascending coordinates without large gaps are
-  // fastest; a warp takes ten times as long. Takes about 230 KiB of stack; at most kMaxAxis
+  // fastest; a warp takes ten times as long. Takes about 250 KiB of stack; at most kMaxAxis
   // columns and kMaxAxis rows; stride >= number of columns. With fewer than all octaves, the sum of
   // the first ones.
   static constexpr std::size_t kMaxAxis = kMaxNoiseAxis;

@@ -25,12 +25,12 @@ HWY_INLINE void add_octave(V square, V limit, V& weight, V& sum) {
   weight = hn::Min(signal, limit);
 }
 
-// The square of a ridge: of noise on x and z of the gradients blended along x, of the lower lattice
-// row and how much those of the upper one are more.
+// The square of a ridge: of the value and the slope of noise on the lower lattice row, and how much
+// those of the upper one are more.
 template <class V>
-HWY_INLINE V square_of(V lower_x, V lower_z, V rise_x, V rise_z, V f, V fade, V offset) {
-  const V low = hn::Add(lower_x, hn::Mul(f, lower_z));
-  const V more = hn::Add(rise_x, hn::Mul(f, rise_z));
+HWY_INLINE V square_of(V value, V slope, V value_rise, V slope_rise, V f, V fade, V offset) {
+  const V low = hn::Add(value, hn::Mul(f, slope));
+  const V more = hn::Add(value_rise, hn::Mul(f, slope_rise));
   const V noise = hn::Add(low, hn::Mul(fade, more));
   const V ridge = hn::Sub(offset, hn::Abs(noise));
   return hn::Mul(ridge, ridge);

@@ -1,6 +1,7 @@
 // Domain warp: the coarse octaves of ridged noise, sampled where a field of low frequency moves
-// them. Every sample finds gradients of its own, which takes about ten times as long as sharing
-// them. Included once per instruction set, by ridged_kernel.cpp only; hence its include guard.
+// them. Every sample finds lattice points of its own, which takes about ten times as long as
+// sharing them. Included once per instruction set, by ridged_kernel.cpp only; hence its include
+// guard.
 #if defined(PSYGEN_MODELS_RIDGED_WARP_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_RIDGED_WARP_INL
 #undef PSYGEN_MODELS_RIDGED_WARP_INL
@@ -48,11 +49,16 @@ struct FreeOctave {
     const Float fade = fade_of(fx);
     const Float left = hn::Mul(fx, hn::Sub(hn::Set(d, 1.0F), fade));
     const Float right = hn::Mul(hn::Sub(fx, hn::Set(d, 1.0F)), fade);
-    const Gradient lower = blended(ix, mix32(du, iz), left, right, fade);
-    const Gradient upper = blended(ix, mix32(du, hn::Add(iz, one)), left, right, fade);
-    const Float low = hn::Add(lower.x, hn::Mul(fz, lower.z));
-    const Float rise = hn::Add(hn::Sub(hn::Sub(upper.x, upper.z), lower.x),
-                               hn::Mul(fz, hn::Sub(upper.z, lower.z)));
+    const auto along = [&](hn::Vec<UintTag> lattice_row) {
+      const auto hash = mix32(du, lattice_row);
+      const Float length = hn::Set(d, gradient_length);
+      return blend(lattice_point(ix, hash, length), lattice_point(hn::Add(ix, one), hash, length),
+                   left, right, fade);
+    };
+    const Blend lower = along(iz), upper = along(hn::Add(iz, one));
+    const Float low = hn::Add(lower.value, hn::Mul(fz, lower.slope));
+    const Float rise = hn::Add(hn::Sub(hn::Sub(upper.value, upper.slope), lower.value),
+                               hn::Mul(fz, hn::Sub(upper.slope, lower.slope)));
     return hn::Add(low, hn::Mul(fade_of(fz), rise));
   }
 
@@ -67,14 +73,6 @@ struct FreeOctave {
     cells = hn::Add(cells, hn::BitCast(UintTag(), hn::ConvertTo(IntTag(), whole)));
     return hn::Sub(sum, whole);
   }
-  HWY_INLINE Gradient blended(hn::Vec<UintTag> key, hn::Vec<UintTag> row_hash, Float left,
-                              Float right, Float fade) const {
-    const Float length = hn::Set(FloatTag(), gradient_length);
-    const Gradient a = gradient(key, row_hash, length);
-    const Gradient b = gradient(hn::Add(key, hn::Set(UintTag(), 1U)), row_hash, length);
-    return {hn::Add(hn::Mul(a.x, left), hn::Mul(b.x, right)),
-            hn::Add(a.z, hn::Mul(fade, hn::Sub(b.z, a.z)))};
-  }
 };
 
 // Moves the coarse octaves by a field of low frequency.
@@ -85,9 +83,9 @@ struct Warp {
 
   Warp(const RidgedKernel& kernel, const Axis& axis)
       : octave_count(static_cast<std::size_t>(std::min(kernel.octave_count, kWarpedOctaves))) {
-    constexpr float kRoot2 = 1.41421356F;
-    field_x.prepare(kernel.warp_field[0], kernel.warp * kRoot2, axis);
-    field_z.prepare(kernel.warp_field[1], kernel.warp * kRoot2, axis);
+    constexpr float kLength = 0.828427125F;  // for which noise is no more than 1
+    field_x.prepare(kernel.warp_field[0], kernel.warp * kLength, axis);
+    field_z.prepare(kernel.warp_field[1], kernel.warp * kLength, axis);
     for (std::size_t o = 0; o < octave_count; ++o)
       octaves[o].prepare(kernel.octaves[o], kernel.gradient_length, axis);
   }

@@ -131,22 +131,21 @@ struct ParentSamples {
 };
 
 // An octave of wavelength λ and amplitude A (half a ridge's height counts) leaves A · d/λ when it
-// is sampled d apart, at most A.
+// is sampled d apart, at most A. Amplitudes add up to half the relief.
 double TerrainType::level_error_m(const Parameters& p, int level) const {
   const TerrainShape shape(p);
   const double gap = (grid_of(p, level).stride - 1) * shape.cell_m;
   const double ratio = exact_pow(p.real(kTerrainLacunarity), -p.real(kTerrainHeight));
-  const double offset = p.real(kTerrainOffset);
-  double amplitude = 0.5 * std::max(offset * offset, (offset - 1) * (offset - 1)) *
-                     p.real(kTerrainReliefM) / shape.noise.max_value();
+  double amplitude = 1, amplitudes = 0;
   double wavelength = p.real(kTerrainFeatureM);
   double error = 0;
   for (std::int64_t o = 0; o < p.integer(kTerrainOctaves); ++o) {
     error += amplitude * std::min(1.0, gap / wavelength);
+    amplitudes += amplitude;
     amplitude *= ratio;
     wavelength /= p.real(kTerrainLacunarity);
   }
-  return error;
+  return 0.5 * p.real(kTerrainReliefM) * error / amplitudes;
 }
 
 core::Bounds TerrainType::bounds(const Parameters& p) const {

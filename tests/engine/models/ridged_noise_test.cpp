@@ -90,52 +90,6 @@ TEST(RidgedNoise, HasTheSameBitsHoweverSamplesAreGrouped) {
   EXPECT_EQ(backwards[1], all[5 * columns.size() + 2]);
 }
 
-TEST(RidgedNoise, LatticePointsOfTheFirstOctaveAreNotTheHighestPoints) {
-  const TerrainOracle oracle{.seed = 5, .cells_per_step = 1.0 / 256};
-  const RidgedNoise noise(settings_of(oracle));
-  int near_the_top = 0;
-  double sum = 0, squares = 0;
-  constexpr int kPoints = 400;
-  for (int i = 0; i < kPoints; ++i) {
-    // The world coordinate nearest to lattice point i of octave 0.
-    const auto nearest = [&](std::uint64_t lattice_of_zero, int cell) {
-      const std::uint64_t fraction = lattice_of_zero & 0xFFFFFFFFU;
-      return cell * 256 - static_cast<std::int64_t>((fraction + (1U << 23)) >> 24);
-    };
-    const float value = evaluate(noise, {nearest(oracle.lattice_x(0, 0), i)},
-                                 {nearest(oracle.lattice_z(0, 0), 7 * i)})[0];
-    const double share = value / noise.max_value();
-    near_the_top += share > 0.9 ? 1 : 0;
-    sum += share;
-    squares += share * share;
-  }
-  EXPECT_LT(near_the_top, kPoints / 5);  // all of them if the octaves shared their lattice
-  EXPECT_GT(squares / kPoints - std::pow(sum / kPoints, 2), 1e-3);
-}
-
-TEST(RidgedNoise, LatticesOfFineOctavesLeaveNoTrace) {
-  // Octave 3 has a lattice line every 32 steps. The mean over rows must not depend on where the
-  // column lies between two of them by more than chance.
-  const TerrainOracle oracle{.seed = 8, .cells_per_step = 1.0 / 256, .octaves = 6};
-  const RidgedNoise noise(settings_of(oracle));
-  std::array<double, 32> mean{};
-  double total = 0, squares = 0;
-  constexpr int kTiles = 24;
-  for (int tile = 0; tile < kTiles; ++tile) {
-    const auto columns = range(tile * 12'800, 1, 128), rows = range(tile * 9'100, 257, 128);
-    const std::vector<float> values = evaluate(noise, columns, rows);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      mean[i % 32] += values[i];
-      total += values[i];
-      squares += static_cast<double>(values[i]) * static_cast<double>(values[i]);
-    }
-  }
-  const double count = kTiles * 128.0 * 128.0;
-  const double deviation = std::sqrt(squares / count - std::pow(total / count, 2));
-  for (const double m : mean)
-    EXPECT_NEAR(m * 32 / count, total / count, 0.12 * deviation);
-}
-
 TEST(RidgedNoise, LooksTheSameAlongBothAxes) {
   double along_x = 0, along_z = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
@@ -176,35 +130,6 @@ TEST(RidgedNoise, LooksTheSameInEveryDirection) {
     mean += e / kWays.size();
   for (const double e : energy)
     EXPECT_NEAR(e / mean, 1, 0.12);
-}
-
-TEST(RidgedNoise, VariesAtTheLatticePointsOfTheFirstOctave) {
-  // Octave 0 is the same at all its lattice points; the others must not be, as they would on a
-  // lattice that all share.
-  const TerrainOracle oracle{.seed = 21, .cells_per_step = 1.0 / 256};
-  const RidgedNoise noise(settings_of(oracle));
-  const auto variance = [&](std::int64_t shift) {
-    double sum = 0, squares = 0;
-    constexpr int kSide = 40;
-    std::vector<std::int64_t> columns, rows;
-    for (std::int64_t i = 0; i < kSide; ++i) {
-      columns.push_back(i * 256 + shift -
-                        static_cast<std::int64_t>((oracle.lattice_x(0, 0) & 0xFFFFFFFFU) >> 24));
-      rows.push_back(i * 256 + shift -
-                     static_cast<std::int64_t>((oracle.lattice_z(0, 0) & 0xFFFFFFFFU) >> 24));
-    }
-    for (const float v : evaluate(noise, columns, rows)) {
-      sum += static_cast<double>(v);
-      squares += static_cast<double>(v) * static_cast<double>(v);
-    }
-    const double count = kSide * kSide;
-    return squares / count - std::pow(sum / count, 2);
-  };
-  double elsewhere = 0;
-  for (const std::int64_t shift : {64, 128, 192})
-    elsewhere += variance(shift) / 3;
-  EXPECT_GT(variance(0), 0.05 * elsewhere);
-  EXPECT_LT(variance(0), 2 * elsewhere);
 }
 
 TEST(RidgedNoise, WithoutGainIsItsFirstOctave) {

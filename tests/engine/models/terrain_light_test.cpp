@@ -166,7 +166,7 @@ TEST_F(Light, OverheadCastsNoShadowsAndBelowTheHorizonLightsNothing) {
 
 TEST_F(Light, HillsShadowWhatLiesBehindThem) {
   std::size_t lit = 0, not_lit = 0, dark = 0, not_dark = 0, behind = 0;
-  for (std::int64_t block = 0; block < 40; ++block) {
+  for (std::int64_t block = 0; block < 80; ++block) {
     const auto east = surface(at(block, 3, 90, 12), 1), west = surface(at(block, 3, 270, 12), 1);
     for (std::size_t i = 0; i < east.size(); ++i) {
       const float to_east = static_cast<float>(east[i].normal_x) / 127.0F;
@@ -184,7 +184,7 @@ TEST_F(Light, HillsShadowWhatLiesBehindThem) {
 TEST_F(Light, OfTheSkyIsLessInHollowsThanOnHumps) {
   double sums[2] = {};
   double counts[2] = {};
-  for (std::int64_t block = 0; block < 40; ++block) {
+  for (std::int64_t block = 0; block < 80; ++block) {
     const auto mesh = surface(at(block * 3, 11, 0, 90), 1);
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       const std::size_t x = i % 22, z = i / 22;

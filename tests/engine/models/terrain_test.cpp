@@ -274,7 +274,7 @@ TEST_F(Terrain, LevelErrorIsAnHonestEstimate) {
   for (int level = 1; level < 4; ++level) {
     double largest = 0;
     const TerrainGrid grid(64, level);
-    for (std::int64_t block = 0; block < 6; ++block) {
+    for (std::int64_t block = 0; block < 40; ++block) {
       const Parameters p = at(block * 11, block * 5);
       const auto coarse = vertices(p, level);
       for (const TerrainVertex& v : vertices(p, 0)) {

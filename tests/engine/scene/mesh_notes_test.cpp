@@ -110,10 +110,10 @@ TEST(MeshNotes, AreThereInEveryParadigm) {
     }
     const auto scene = make_scene(settings);
     if (paradigm == Paradigm::kDataAmplification) {
-      ASSERT_TRUE(scene->amplify(pose_at(256, 256)));
+      ASSERT_TRUE(scene->amplify(pose_at(260, 256)));
     }
     for (int i = 0; i < 20; ++i) {
-      tick_at(*scene, pose_at(256, 256));
+      tick_at(*scene, pose_at(260, 256));
       scene->state().synthesis.manager->wait_all();
     }
     Noted noted = check_records(scene->state());
