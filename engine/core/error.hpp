@@ -14,6 +14,7 @@ enum class ErrorCode : std::uint8_t {
   kIo,               // a file could not be read or written
   kOverBudget,       // legal, but larger than a limit that was set
   kOutOfMemory,      // host or device memory
+  kNotYet,           // what is asked for is on its way; ask again
   kNoDevice,         // no usable Vulkan device or no display
   kDeviceLost,
   kSynthesisFailed,  // a model's synthesis threw or was given up

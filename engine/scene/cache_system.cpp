@@ -54,10 +54,19 @@ struct MeshEntity {
   Demand& demand;
 };
 
-bool is_roomy(const synthesis::GeometryCache& cache) {
+// Whether ranks do not matter: only what nobody wants need go.
+bool is_roomy(const synthesis::CacheStats& stats) {
   constexpr double kRoomyShare = 0.8;
-  const synthesis::CacheStats& stats = cache.stats();
-  return static_cast<double>(stats.bytes) < kRoomyShare * static_cast<double>(stats.limit_bytes);
+  return static_cast<double>(stats.bytes - std::min(stats.bytes, stats.unwanted_bytes)) <
+         kRoomyShare * static_cast<double>(stats.limit_bytes);
+}
+
+// Whether what is seen leaves room for finer levels of it and for what is around. What is kept only
+// because it was there gives way, and says nothing of how much is needed.
+bool leaves_room(const synthesis::CacheStats& stats) {
+  constexpr double kSeenShare = 0.5;
+  return static_cast<double>(stats.visible_bytes) <
+         kSeenShare * static_cast<double>(stats.limit_bytes);
 }
 
 class Chooser {
@@ -73,7 +82,7 @@ class Chooser {
         view_(view),
         synthesis_(synthesis),
         counters_(counters),
-        roomy_(is_roomy(*synthesis.cache)) {}
+        roomy_(is_roomy(synthesis.cache->stats())) {}
 
   // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
   bool consider(const MeshEntity& row, const NodeView& node, bool is_ground) {
@@ -193,7 +202,8 @@ class Chooser {
       // Ground that is only lit anew waits for what lacks detail: with a fast sun it is all of it.
       group = RankGroup::kDrawn;
     } else if (wanted) {  // what frees room is urgent only where room is short
-      group = too_fine && !roomy_ ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
+      group = too_fine && synthesis_.coarsening > 1 ? RankGroup::kVisibleFine
+                                                    : RankGroup::kVisibleCoarse;
     }
     request(row, level, group, node, distance_m);
   }
@@ -349,7 +359,7 @@ void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
 void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& report,
                      Synthesis& synthesis, Totals& totals) {
   constexpr float kUp = 1.15F, kDown = 0.99F, kCoarsest = 64.0F;
-  if (report.refused > 0) {
+  if (report.refused_visible > 0) {
     synthesis.coarsening = std::min(synthesis.coarsening * kUp, kCoarsest);
     if (!totals.warned_budget) {
       totals.warned_budget = true;
@@ -359,7 +369,7 @@ void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& repo
               : "the geometry budget is too small for this view at full detail; some of it is "
                 "missing");
     }
-  } else if (is_roomy(*synthesis.cache)) {
+  } else if (leaves_room(synthesis.cache->stats())) {
     synthesis.coarsening = std::max(synthesis.coarsening * kDown, 1.0F);
   }
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/clock.hpp"
+#include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/systems.hpp"
 
@@ -107,6 +108,8 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   std::uint64_t synthesised = 0;
   int quiet = 0, idle = 0, refused = 0;
   s.synthesis.settling = true;
+  // What frames in flight may read cannot be given back before they are done, and none follows.
+  if (s.output.renderer != nullptr) s.output.renderer->wait_idle();
   while (quiet < kQuietTicks && idle < kIdleTicks && refused < kRefusedTicks) {
     const float coarsening = s.synthesis.coarsening;
     tick_without_drawing(pose);

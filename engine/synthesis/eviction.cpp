@@ -8,6 +8,9 @@
 namespace psygen::synthesis {
 namespace {
 constexpr std::size_t kCandidateBatch = 256;
+// Parts of the limit: where less than the first is free the second is made free, and the third
+// where the memory has only pieces that are too small.
+constexpr std::uint64_t kLeastFree = 64, kFree = 24, kFreeOfPieces = 8;
 }  // namespace
 
 void GeometryCache::begin_batch() {
@@ -15,6 +18,46 @@ void GeometryCache::begin_batch() {
   out_of_memory_in_batch_ = false;
   limit_bytes_ = std::min(budget_bytes_, limit_bytes_ + budget_bytes_ / 64 + 1);
   enforce_budget();
+  keep_room_free();
+}
+
+void GeometryCache::keep_room_free() {
+  observe_memory();
+  const auto lacks = [this](std::uint64_t free_bytes) {
+    return last_used_bytes_ + free_bytes > limit_bytes_ + returning_bytes_;
+  };
+  if (!lacks(limit_bytes_ / kLeastFree)) return;
+  while (lacks(limit_bytes_ / kFree) && evict_unwanted()) {
+  }
+}
+
+// The mesh that nobody wants for longest; false if there is none.
+bool GeometryCache::evict_unwanted() {
+  while (!unwanted_.empty()) {
+    const MeshHandle mesh = unwanted_.pop();
+    const MeshRecord* r = get(mesh);
+    if (r == nullptr || r->state != MeshState::kReady || r->rank.group() != RankGroup::kUnwanted)
+      continue;
+    candidates_valid_ = false;
+    evict_slot(mesh.slot);
+    return true;
+  }
+  return false;
+}
+
+// The memory has no piece that is large enough, although the budget has room: once a batch, of what
+// nobody wants so much goes that larger pieces come back. What came together goes together.
+GeometryCache::Room GeometryCache::make_pieces(std::uint64_t need, Rank rank) {
+  ++stats_.out_of_memory;
+  if (!std::exchange(out_of_memory_in_batch_, true)) {
+    limit_bytes_ = std::min(limit_bytes_, std::max(last_used_bytes_, budget_bytes_ / 16));
+    const std::uint64_t least =
+        stats_.unwanted_bytes - std::min(stats_.unwanted_bytes, limit_bytes_ / kFreeOfPieces);
+    while (stats_.unwanted_bytes > least && evict_unwanted()) {
+    }
+    if (const Room room = make_room(need, rank); room != Room::kNone) return room;
+  }
+  return returning_bytes_ > 0 ? Room::kLater : Room::kNone;
 }
 
 void GeometryCache::set_budget(std::uint64_t bytes) {
@@ -34,6 +77,18 @@ void GeometryCache::observe_memory() {
   stats_.peak_bytes = std::max(stats_.peak_bytes, used);
 }
 
+void GeometryCache::count(const MeshRecord& r, std::int64_t sign) {
+  const auto bytes = static_cast<std::uint64_t>(sign * std::int64_t{r.range.bytes});
+  if (is_visible(r.rank.group())) stats_.visible_bytes += bytes;
+  if (r.rank.group() == RankGroup::kUnwanted && r.state == MeshState::kReady)
+    stats_.unwanted_bytes += bytes;
+}
+
+void GeometryCache::give_back(MeshRecord& r) {
+  count(r, -1);
+  give_back(std::exchange(r.range, {}));
+}
+
 void GeometryCache::give_back(const core::GeometryRange& range) {
   observe_memory();
   memory_.release(range);
@@ -45,40 +100,42 @@ core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const mode
                                                                       Rank rank) {
   const std::uint32_t own_indices = size.shared_indices == 0 ? size.index_count : 0;
   const std::uint64_t need = memory_.charged_bytes(size.layout, size.vertex_count, own_indices);
-  const auto refuse = [this] {
+  const auto refuse = [this](Room room) {
     ++stats_.refusals;
-    return core::fail(core::ErrorCode::kOverBudget, "the geometry budget has no room for a mesh");
+    return room == Room::kLater
+               ? core::fail(core::ErrorCode::kNotYet, "the room for a mesh is not free yet")
+               : core::fail(core::ErrorCode::kOverBudget,
+                            "the geometry budget has no room for a mesh");
   };
-  if (!make_room(need, rank)) return refuse();
+  if (const Room room = make_room(need, rank); room != Room::kNow) return refuse(room);
   auto place = memory_.reserve(size.layout, size.vertex_count, own_indices);
   if (!place) {
-    ++stats_.out_of_memory;
-    if (std::exchange(out_of_memory_in_batch_, true)) return place;
-    limit_bytes_ = std::min(limit_bytes_, std::max(last_used_bytes_, budget_bytes_ / 16));
-    if (!make_room(need, rank)) return place;
+    const Room room = make_pieces(need, rank);
+    if (room == Room::kLater) return refuse(room);
+    if (room == Room::kNone) return place;
     place = memory_.reserve(size.layout, size.vertex_count, own_indices);
     if (!place) return place;
   }
   if (memory_.used_bytes() > budget_bytes_) {  // charged more than it had said
     give_back(place->range);
-    return refuse();
+    return refuse(Room::kNone);
   }
   observe_memory();
   return place;
 }
 
-// True when `need` bytes can be reserved now. Evicts only if that makes enough room, now or once
+// Whether `need` bytes can be reserved now. Evicts only if that makes enough room, now or once
 // the memory has given the bytes back; in the second case they are promised to this request.
-bool GeometryCache::make_room(std::uint64_t need, Rank rank) {
+GeometryCache::Room GeometryCache::make_room(std::uint64_t need, Rank rank) {
   observe_memory();
-  if (need > limit_bytes_) return false;
+  if (need > limit_bytes_) return Room::kNone;
   const auto wanted = [&] { return last_used_bytes_ + waiting_bytes_ + need; };
-  if (wanted() <= limit_bytes_) return true;
+  if (wanted() <= limit_bytes_) return Room::kNow;
   const std::uint64_t coming = limit_bytes_ + returning_bytes_;
-  if (wanted() > coming && !evict(wanted() - coming, &rank)) return false;
-  if (wanted() <= limit_bytes_) return true;
+  if (wanted() > coming && !evict(wanted() - coming, &rank)) return Room::kNone;
+  if (wanted() <= limit_bytes_) return Room::kNow;
   waiting_bytes_ += need;
-  return false;
+  return Room::kLater;
 }
 
 void GeometryCache::enforce_budget() {
@@ -136,7 +193,7 @@ void GeometryCache::evict_slot(Slot slot) {
   evicted_keys_.insert(hash_of(r.key));
   ++stats_.evictions;
   --stats_.ready;
-  give_back(r.range);
+  give_back(r);
   evictable_[slot] = 0;  // already taken off the candidates, which stay valid
   free_slot(slot);
 }

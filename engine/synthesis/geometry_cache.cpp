@@ -101,6 +101,7 @@ core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
   r.size = *size;
   r.range = place->range;
   r.destination = {place->vertices, place->indices};
+  count(r, 1);
   ++stats_.requested;
   if (evicted_keys_.take(hash_of(key))) ++stats_.regenerations;
   return MeshHandle{slot, r.generation};
@@ -111,12 +112,14 @@ void GeometryCache::complete(MeshHandle handle, const core::Bounds& tight, std::
   if (r == nullptr || r->state != MeshState::kRequested) return;
   --stats_.requested;
   if (r->released) {
-    give_back(r->range);
+    give_back(*r);
     free_slot(handle.slot);
     return;
   }
   memory_.commit(r->range);
+  count(*r, -1);
   r->state = MeshState::kReady;
+  count(*r, 1);
   r->destination = {};
   r->tight = tight;
   r->note = std::move(note);
@@ -128,6 +131,7 @@ void GeometryCache::complete(MeshHandle handle, const core::Bounds& tight, std::
   drawn_[handle.slot] = 0;
   evictable_[handle.slot] = eviction_order(r->rank);
   candidates_valid_ = false;
+  if (r->rank.group() == RankGroup::kUnwanted) unwanted_.push(handle);
   enforce_budget();
 }
 
@@ -147,7 +151,7 @@ void GeometryCache::fail(MeshHandle handle, std::string reason, bool still_writi
   --stats_.requested;
   r->destination = {};
   r->still_writing = still_writing;
-  if (!still_writing) give_back(std::exchange(r->range, {}));
+  if (!still_writing) give_back(*r);
   remember_failure(handle.slot, std::move(reason));
 }
 
@@ -155,14 +159,14 @@ void GeometryCache::settle(MeshHandle handle) {
   MeshRecord* r = live(handle);
   if (r == nullptr || !r->still_writing) return;
   r->still_writing = false;
-  give_back(std::exchange(r->range, {}));
+  give_back(*r);
 }
 
 void GeometryCache::cancel(MeshHandle handle) {
-  const MeshRecord* r = get(handle);
+  MeshRecord* r = live(handle);
   if (r == nullptr || r->state != MeshState::kRequested) return;
   --stats_.requested;
-  give_back(r->range);
+  give_back(*r);
   free_slot(handle.slot);
 }
 
@@ -173,7 +177,7 @@ void GeometryCache::release(MeshHandle handle) {
     r->released = true;
   } else if (r->state == MeshState::kReady) {
     --stats_.ready;
-    give_back(r->range);
+    give_back(*r);
     free_slot(handle.slot);
   }
 }
@@ -181,12 +185,15 @@ void GeometryCache::release(MeshHandle handle) {
 void GeometryCache::set_rank(MeshHandle handle, Rank rank) {
   MeshRecord* r = live(handle);
   if (r == nullptr) return;
+  count(*r, -1);
   r->rank = rank;
+  count(*r, 1);
   if (r->state != MeshState::kReady) return;
   if (r->prefetched && is_visible(rank.group())) {
     r->prefetched = false;
     ++stats_.prefetch_hits;
   }
+  if (rank.group() == RankGroup::kUnwanted) unwanted_.push(handle);
   const std::uint64_t order = eviction_order(rank);
   if (evictable_[handle.slot] != order) {
     evictable_[handle.slot] = order;

@@ -55,8 +55,10 @@ struct RankUpdate {
 
 struct CacheStats {
   std::uint64_t budget_bytes = 0;
-  std::uint64_t limit_bytes = 0;  // the budget, or less for a while after memory ran out
-  std::uint64_t bytes = 0;        // used now, everything counted
+  std::uint64_t limit_bytes = 0;     // the budget, or less for a while after memory ran out
+  std::uint64_t bytes = 0;           // used now, everything counted
+  std::uint64_t visible_bytes = 0;   // of meshes whose rank is that of something visible
+  std::uint64_t unwanted_bytes = 0;  // of ready meshes that nobody asks for
   std::uint64_t peak_bytes = 0;
   std::uint64_t hits = 0, misses = 0;  // of look_up()
   std::uint64_t evictions = 0;
@@ -69,6 +71,29 @@ struct CacheStats {
   std::uint64_t out_of_memory = 0;    // reservations that the memory itself refused
   std::uint64_t failures = 0;
   std::uint32_t ready = 0, requested = 0, failed = 0;  // meshes now
+};
+
+// Ready meshes that nobody wants, those first of which this is so for longest. Some may be wanted
+// again or gone; each slot is in it once at most.
+class UnwantedMeshes {
+ public:
+  void push(MeshHandle mesh) {
+    if (mesh.slot >= waits_.size()) waits_.resize(std::size_t{mesh.slot} + 1);
+    if (waits_[mesh.slot]) return;
+    waits_[mesh.slot] = true;
+    queue_.push_back(mesh);
+  }
+  bool empty() const { return queue_.empty(); }
+  MeshHandle pop() {
+    const MeshHandle first = queue_.front();
+    queue_.pop_front();
+    waits_[first.slot] = false;
+    return first;
+  }
+
+ private:
+  std::deque<MeshHandle> queue_;
+  std::vector<bool> waits_;  // per slot
 };
 
 // Remembers which keys were evicted, in constant space: a direct-mapped table of 2^16 fingerprints.
@@ -115,12 +140,15 @@ class GeometryCache {
   std::span<const MeshRecord> records() const { return records_; }
   const models::Registry& registry() const { return registry_; }
 
-  // Starts a batch of reservations (a tick): enforces the budget and forgets who waits for room.
+  // Starts a batch of reservations (a tick): enforces the budget, forgets who waits for room, and
+  // keeps a little room free for this batch and the next ones, as long as there is something that
+  // nobody wants: what is evicted only when room is needed comes back frames later.
   void begin_batch();
 
   // Room for the mesh `key`, exactly as large as its type says, evicting ready meshes that
   // may_evict() allows. Returns the mesh there is if it is requested or ready already. Errors:
-  //   kOverBudget       no room: nothing worse to evict, or the GPU still reads what was evicted
+  //   kOverBudget       no room: nothing worse to evict
+  //   kNotYet           the GPU still reads what was evicted for it
   //   kOutOfMemory      the memory refused although the budget had room; the limit is lowered
   //   kSynthesisFailed  this key failed before (the reason is in the message), or its size cannot
   //                     be had; never retried until forget_failures()
@@ -169,13 +197,19 @@ class GeometryCache {
   core::Result<models::MeshSize> size_of(const MeshKey& key, const models::Parameters& parameters,
                                          const std::optional<models::MeshSize>& known);
   core::Result<core::GeometryReservation> reserve_memory(const models::MeshSize& size, Rank rank);
-  bool make_room(std::uint64_t need, Rank rank);
+  enum class Room : std::uint8_t { kNow, kLater, kNone };
+  Room make_room(std::uint64_t need, Rank rank);
+  Room make_pieces(std::uint64_t need, Rank rank);
   bool evict(std::uint64_t bytes, const Rank* request);
   void select_candidates(std::size_t count);
   void evict_slot(Slot slot);
   void enforce_budget();
   void observe_memory();
+  void give_back(MeshRecord& r);
   void give_back(const core::GeometryRange& range);
+  void count(const MeshRecord& r, std::int64_t sign);
+  void keep_room_free();
+  bool evict_unwanted();
   Slot take_slot(const MeshKey& key, std::uint64_t owner, Rank rank);
   void free_slot(Slot slot);
   void remember_failure(Slot slot, std::string reason);
@@ -194,6 +228,7 @@ class GeometryCache {
   std::vector<std::uint64_t> evictable_;  // per slot: eviction_order() if ready, else 0
   std::vector<Slot> free_slots_;
   KeyIndex index_;
+  UnwantedMeshes unwanted_;
   std::vector<Candidate> candidates_;  // the worst ready meshes, worst first
   std::size_t next_candidate_ = 0;
   bool candidates_valid_ = false, candidates_complete_ = false;

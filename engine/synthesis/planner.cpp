@@ -134,8 +134,13 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
   }
   if (!handle) {
-    const bool failed = handle.error().code == core::ErrorCode::kSynthesisFailed;
-    ++(failed ? report.failed : report.refused);
+    const core::ErrorCode code = handle.error().code;
+    ++(code == core::ErrorCode::kSynthesisFailed ? report.failed
+       : code == core::ErrorCode::kNotYet        ? report.waiting
+                                                 : report.refused);
+    const bool refused =
+        code == core::ErrorCode::kOverBudget || code == core::ErrorCode::kOutOfMemory;
+    if (refused && is_visible(want.rank.group())) ++report.refused_visible;
     return;
   }
   const MeshRecord& record = *cache.get(*handle);

@@ -49,9 +49,11 @@ struct PlanReport {
   std::uint32_t executed = 0;   // of carried + reserved, executed at once and not published
   std::uint32_t cancelled = 0;  // reservations given back
   std::uint32_t ready = 0, in_flight = 0, failed = 0;  // wants that need no request
-  std::uint32_t refused = 0;     // no room: the caller should want coarser levels
-  std::uint32_t deferred = 0;    // beyond the limits; want them again in the next tick
-  double predicted_seconds = 0;  // of the whole plan, one core
+  std::uint32_t refused = 0;                           // no room
+  std::uint32_t refused_visible = 0;  // of these: the caller should want coarser levels
+  std::uint32_t waiting = 0;          // room is on its way; want them again in the next tick
+  std::uint32_t deferred = 0;         // beyond the limits; want them again in the next tick
+  double predicted_seconds = 0;       // of the whole plan, one core
 };
 
 class Planner {

@@ -78,9 +78,11 @@ class Rank {
 };
 static_assert(sizeof(Rank) == 8);
 
-// Where a ready mesh stands in the order of eviction, larger goes first: all visible groups are
-// one, of which those that are too fine go first; then layer and distance count.
+// Where a ready mesh stands in the order of eviction, larger goes first: what nobody wants is all
+// alike, and all visible groups are one, of which those that are too fine go first; then layer and
+// distance count.
 constexpr std::uint64_t eviction_order(Rank rank) {
+  if (rank.group() == RankGroup::kUnwanted) return Rank::unwanted().bits();
   if (!is_visible(rank.group())) return rank.bits();
   constexpr std::uint64_t kKeyMask = (std::uint64_t{1} << (32 + Rank::kLayerBits)) - 1;
   const std::uint64_t fine = rank.group() == RankGroup::kVisibleFine ? 1 : 0;

@@ -29,5 +29,48 @@ TEST(FarPlaces, AMillimetreChangesThePictureNoMoreThanAtTheOrigin) {
   }
 }
 
+// Everything of the last place gives way, also what frames in flight might read.
+TEST(FarPlaces, SettlingAfterALeapWithAFullCacheIsLikeAFreshStart) {
+  Options options = short_flight();
+  options.validation = false;
+  options.scene.view_distance_m = 3000;
+  options.scene.budget_bytes = 28ull << 20;  // room for one place, not for two
+  Studio studio("silver_combe.toml", options);
+  for (const core::BlockCoord block : {core::BlockCoord{300, 300}, {100, 400}, {200, 100}}) {
+    Studio fresh("silver_combe.toml", options);
+    const core::CameraPose pose = studio.above(block, 20, 30, 6, 0.5, -0.2);
+    for (Studio* at : {&studio, &fresh}) {
+      at->settle(pose);
+      EXPECT_EQ(at->state().counters.requests, 0u) << block.x;
+      EXPECT_EQ(at->state().counters.refused, 0u) << block.x;
+    }
+    EXPECT_EQ(studio.state().synthesis.coarsening, fresh.state().synthesis.coarsening);
+    EXPECT_EQ(image::compare(studio.picture(), fresh.picture(), 0).pixels_over, 0u) << block.x;
+  }
+  EXPECT_GT(studio.state().synthesis.cache->stats().evictions, 1000u);
+}
+
+// What frames in flight may read comes back later: that is no want of memory.
+TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
+  Options options = short_flight();
+  options.validation = false;
+  options.scene.view_distance_m = 1500;
+  options.scene.budget_bytes = 24ull << 20;
+  Studio studio("silver_combe.toml", options);
+  core::CameraPose pose = studio.above({300, 300}, 20, 30, 6, 1.57, -0.1);
+  pose.position.local.y = 340;  // above every hill
+  studio.settle(pose);
+  for (int i = 0; i < 500; ++i) {
+    pose.position.local.x += 20;
+    pose.position = core::normalised(pose.position, 63);
+    studio.draw(pose);
+    studio.state().synthesis.manager->wait_all();
+  }
+  const synthesis::CacheStats stats = studio.state().synthesis.cache->stats();
+  EXPECT_GT(stats.evictions, 1000u);
+  EXPECT_GT(stats.bytes, options.scene.budget_bytes * 3 / 4);
+  EXPECT_EQ(studio.state().synthesis.coarsening, 1.0F);
+}
+
 }  // namespace
 }  // namespace psygen::app

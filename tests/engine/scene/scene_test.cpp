@@ -210,6 +210,28 @@ TEST(Scene, ABudgetThatIsTooSmallGivesCoarserLevelsWithoutThrashing) {
   EXPECT_LT(scene->state().synthesis.cache->stats().evictions - evictions, 500u);
 }
 
+// After a long flight a cache is full of what lies behind: that must not make what is seen coarser.
+TEST(Scene, ACacheThatIsFullOfWhatNobodyWantsMakesNothingCoarser) {
+  Settings settings = small_settings();
+  settings.budget_bytes = 24ull << 20;
+  const auto scene = make_scene(settings);
+  core::CameraPose pose = pose_at(100, 256, 1.57);
+  pose.position.local.y = 140;
+  for (int i = 0; i < 600; ++i) {
+    pose.position.local.x += 25;
+    pose.position = core::normalised(pose.position, scene->state().facts.world.block_size_m());
+    tick_at(*scene, pose);
+    scene->state().synthesis.manager->wait_all();
+    expect_within_budget(*scene);
+    EXPECT_EQ(scene->state().synthesis.coarsening, 1.0F) << i;
+  }
+  const synthesis::CacheStats stats = scene->state().synthesis.cache->stats();
+  EXPECT_GT(stats.evictions, 1000u);
+  EXPECT_GT(stats.bytes, settings.budget_bytes * 9 / 10);
+  EXPECT_LT(stats.visible_bytes, settings.budget_bytes / 4);
+  EXPECT_FALSE(scene->state().totals.warned_budget);
+}
+
 // Of what is drawn in view.
 std::uint64_t visible_bytes(const Scene& scene) {
   std::uint64_t bytes = 0;

@@ -165,6 +165,76 @@ TEST_F(PressureTest, OneRequestThatWaitsForTheGpuEvictsOnceAndNotAgainEveryTick)
   EXPECT_EQ(memory.used_bytes(), 8 * kMeshBytes);
 }
 
+TEST_F(PressureTest, ARequestWhoseRoomIsOnItsWayIsToldSoAndNotThatThereIsNone) {
+  fill(8);
+  const auto p = parameters_of(100, 80);
+  const auto error_of = [&](std::uint32_t index, Rank rank) {
+    return cache.reserve(key_of(index, p), p, index, rank).error().code;
+  };
+  EXPECT_EQ(error_of(100, prefetch(0)), core::ErrorCode::kNotYet);
+  EXPECT_EQ(error_of(101, prefetch(1e6F)), core::ErrorCode::kOverBudget);
+}
+
+TEST_F(PressureTest, ALittleRoomIsKeptFreeOfWhatNobodyWants) {
+  cache.set_budget(64 * kMeshBytes);
+  fill(64);
+  std::vector<MeshHandle> unwanted;  // in this order, others between them
+  for (std::uint32_t i = 0; i < 64; i += 2) {
+    unwanted.push_back(cache.find(key_of(63 - i, parameters_of(63 - i, 80))));
+    cache.set_rank(unwanted.back(), Rank::unwanted());
+  }
+  EXPECT_EQ(cache.stats().unwanted_bytes, 32 * kMeshBytes);
+  cache.set_rank(unwanted[1], prefetch(0));  // wanted again
+  cache.begin_batch();
+  EXPECT_EQ(cache.stats().evictions, 3u);  // 64 / 24 meshes
+  for (const std::size_t gone : {0, 2, 3})
+    EXPECT_EQ(cache.get(unwanted[gone]), nullptr) << gone;
+  EXPECT_NE(cache.get(unwanted[1]), nullptr);
+  EXPECT_EQ(cache.stats().unwanted_bytes, 28 * kMeshBytes);
+  for (int frame = 0; frame < 2; ++frame)
+    memory.end_frame();
+  cache.begin_batch();
+  EXPECT_EQ(cache.stats().evictions, 3u);
+  for (std::uint32_t i = 0; i < 3; ++i)
+    EXPECT_TRUE(reserve(100 + i, prefetch(1e6F)));  // without waiting
+}
+
+TEST_F(PressureTest, NothingThatIsWantedGoesForTheSakeOfRoom) {
+  fill(8);
+  for (int i = 0; i < 10; ++i)
+    cache.begin_batch();
+  EXPECT_EQ(cache.stats().evictions, 0u);
+}
+
+TEST_F(PressureTest, WhatIsVisibleIsCountedHoweverItGoes) {
+  const auto visible = [](float distance) {
+    return Rank::by_layer(RankGroup::kDrawn, 0, distance);
+  };
+  for (std::uint32_t i = 0; i < 4; ++i)
+    cache.complete(reserve(i, visible(1)), {});
+  const MeshHandle requested = reserve(4, visible(1));
+  EXPECT_EQ(cache.stats().visible_bytes, 5 * kMeshBytes);
+  cache.cancel(requested);
+  cache.set_rank(cache.find(key_of(0, parameters_of(0, 80))), prefetch(1));
+  cache.release(cache.find(key_of(1, parameters_of(1, 80))));
+  EXPECT_EQ(cache.stats().visible_bytes, 2 * kMeshBytes);
+  cache.fail(reserve(5, visible(1)), "no");
+  EXPECT_EQ(cache.stats().visible_bytes, 2 * kMeshBytes);
+  cache.set_budget(kMeshBytes);  // the prefetched one goes first, then one of the drawn
+  EXPECT_EQ(cache.stats().visible_bytes, kMeshBytes);
+}
+
+TEST_F(PressureTest, WhereMemoryIsInPiecesWhatNobodyWantsGoesInAHeap) {
+  FakeMemory immediate(1 << 20, 0);
+  GeometryCache other(immediate, registry, 80 * kMeshBytes);
+  const auto p = parameters_of(1, 80);
+  for (std::uint32_t i = 0; i < 40; ++i)
+    other.complete(*other.reserve(key_of(i, p), p, i, Rank::unwanted()), {});
+  immediate.fail_next_reservations(1);
+  EXPECT_TRUE(other.reserve(key_of(50, p), p, 50, prefetch(0)));
+  EXPECT_EQ(other.stats().evictions, 5u);  // an eighth
+}
+
 TEST_F(PressureTest, EachOfSeveralWaitingRequestsGetsItsOwnRoom) {
   fill(8);
   for (std::uint32_t i = 0; i < 3; ++i)
