@@ -117,7 +117,7 @@ class EndColumns {
     const RidgedOctave& octave = kernel_.octaves[o];
     const std::uint32_t* const rows = rows_.cell + o * kMaxNoiseAxis;
     const std::size_t count = rows[rows_.width - 1] - rows[0] + 2;
-    const Float length = hn::Set(d, kernel_.gradient_length);
+    const Float length = hn::Set(d, kernel_.amplitude);
     for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
       const auto hash =
           mix32(du, counting_from(du, rows[0] + octave.key_z + static_cast<std::uint32_t>(k)));

@@ -69,12 +69,11 @@ void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
     const std::uint32_t cell = along_z.cell[o * kMaxNoiseAxis + r],
                         key = cell + kernel.octaves[o].key_z;
     const bool next = r > 0 && cell == octave.lattice_row + 1;
-    if (!next) raise_to<true>(octave, row, key, kernel.gradient_length);
-    raise_to<false>(octave, row, key + 1, kernel.gradient_length);
+    if (!next) raise_to<true>(octave, row, key, kernel.amplitude);
+    raise_to<false>(octave, row, key + 1, kernel.amplitude);
     // Those of the row that is next are there when it comes, instead of being waited for.
     const std::uint32_t last = along_z.cell[o * kMaxNoiseAxis + along_z.count - 1];
-    if (next && along_z.contiguous && cell != last)
-      row.hold(octave, key + 2, kernel.gradient_length);
+    if (next && along_z.contiguous && cell != last) row.hold(octave, key + 2, kernel.amplitude);
     octave.lattice_row = cell;
   }
 }

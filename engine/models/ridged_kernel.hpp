@@ -28,7 +28,7 @@ struct RidgedKernel {
   std::array<RidgedOctave, kMaxOctaves> octaves{};  // also those beyond octave_count are read
   int octave_count;
   float offset;                            // κ · offset
-  float gradient_length;                   // κ
+  float amplitude;                         // κ: length of gradients; values lie in ± half of it
   float result_scale;                      // κ^−2
   float warp;                              // largest displacement, in cells of octave 0; 0: none
   std::array<RidgedOctave, 2> warp_field;  // its parts along x and z; limits are not used

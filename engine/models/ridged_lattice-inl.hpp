@@ -221,19 +221,19 @@ struct LatticeRow {
   bool filled = false;
 
   // Fills it unless it has those of this lattice row already.
-  void hold(const ColumnOctave& column, std::uint32_t row_key, float gradient_length) {
+  void hold(const ColumnOctave& column, std::uint32_t row_key, float amplitude) {
     if (filled && key == row_key) return;
-    fill(column, row_key, gradient_length);
+    fill(column, row_key, amplitude);
     key = row_key;
     filled = true;
   }
 
  private:
-  void fill(const ColumnOctave& column, std::uint32_t row_key, float gradient_length) {
+  void fill(const ColumnOctave& column, std::uint32_t row_key, float amplitude) {
     const FloatTag d;
     const UintTag du;
     const auto row_hash = hn::Set(du, models::mix32(row_key));
-    const Float length = hn::Set(d, gradient_length);
+    const Float length = hn::Set(d, amplitude);
     for (std::size_t i = 0; i < column.lines.key_count; i += hn::Lanes(d)) {
       const LatticePoint p = lattice_point(hn::Load(du, column.lines.key + i), row_hash, length);
       hn::Store(p.value, d, value + i);

@@ -10,8 +10,8 @@
 namespace psygen::models {
 namespace {
 
-// Where all four gradients of a lattice cell point at its centre: ½ + 1/√2.
-constexpr double kMaxNoise = 1.2071067811865475;
+// Where all four gradients of a lattice cell point at its centre: ½ + 1.0005/√2.
+constexpr double kMaxNoise = 1.2075;
 constexpr double kTwo32 = 4294967296.0;
 
 // Lattice cells per integer modulo 2^32 as Q32.32, rounded to nearest. Exact but for the rounding:
@@ -47,7 +47,7 @@ RidgedNoise::RidgedNoise(const RidgedSettings& s)
   const double scale = one_octave ? 1 : std::sqrt(square);
   kernel_.octave_count = one_octave ? 1 : s.octaves;
   kernel_.offset = static_cast<float>(scale * s.offset);
-  kernel_.gradient_length = static_cast<float>(scale);
+  kernel_.amplitude = static_cast<float>(scale);
   kernel_.result_scale = static_cast<float>(one_octave ? 1 : 1 / square);
   kernel_.warp = static_cast<float>(s.warp);
   for (std::size_t i = 0; i < 2; ++i)

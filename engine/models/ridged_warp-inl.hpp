@@ -24,13 +24,13 @@ struct FreeOctave {
   HWY_ALIGN std::uint32_t cell[kMaxNoiseAxis];
   HWY_ALIGN float fraction[kMaxNoiseAxis];
   RidgedOctave settings;
-  float gradient_length;
+  float amplitude;
 
   void prepare(const RidgedOctave& octave, float length, const Axis& axis) {
     HWY_ALIGN std::uint64_t position[kMaxNoiseAxis];
     HWY_ALIGN float fade[kMaxNoiseAxis];
     settings = octave;
-    gradient_length = length;
+    amplitude = length;
     axis.place(octave.step, octave.origin_x, position);
     locate(position, padded(axis.at.size()), cell, fraction, fade);
   }
@@ -51,7 +51,7 @@ struct FreeOctave {
     const Float right = hn::Mul(hn::Sub(fx, hn::Set(d, 1.0F)), fade);
     const auto along = [&](hn::Vec<UintTag> lattice_row) {
       const auto hash = mix32(du, lattice_row);
-      const Float length = hn::Set(d, gradient_length);
+      const Float length = hn::Set(d, amplitude);
       return blend(lattice_point(ix, hash, length), lattice_point(hn::Add(ix, one), hash, length),
                    left, right, fade);
     };
@@ -87,7 +87,7 @@ struct Warp {
     field_x.prepare(kernel.warp_field[0], kernel.warp * kLength, axis);
     field_z.prepare(kernel.warp_field[1], kernel.warp * kLength, axis);
     for (std::size_t o = 0; o < octave_count; ++o)
-      octaves[o].prepare(kernel.octaves[o], kernel.gradient_length, axis);
+      octaves[o].prepare(kernel.octaves[o], kernel.amplitude, axis);
   }
 
   // Leaves the noise of one row in the columns, as octaves that are constant along z.

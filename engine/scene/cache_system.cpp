@@ -217,7 +217,8 @@ class Chooser {
                               settings_.paradigm == Paradigm::kParallelLazyAmplification;
     // A modeler that holds the coarsest one may not get a processor for a while: then the next one.
     // Not where it waits for room.
-    const bool stuck = !synthesis_.settling && synthesis_.coarsening <= 1 && demand.seen_s >= 0 &&
+    const bool stuck = !synthesis_.settling && synthesis_.coarsening <= 1 &&
+                       synthesis_.waiting == 0 && demand.seen_s >= 0 &&
                        clock_.real_s - double{demand.seen_s} > kHolePatienceSeconds;
     const int coarsest = stuck && levels > 1 ? levels - 2 : levels - 1;
     const int first = coarse_first ? coarsest : demand.wanted_level;
@@ -359,7 +360,9 @@ void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
 void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& report,
                      Synthesis& synthesis, Totals& totals) {
   constexpr float kUp = 1.15F, kDown = 0.99F, kCoarsest = 64.0F;
-  if (report.refused_visible > 0) {
+  // Lazy evaluation has no next tick in which to come again.
+  const bool too_late = settings.paradigm == Paradigm::kLazyEvaluation && report.waiting > 0;
+  if (report.refused_visible > 0 || too_late) {
     synthesis.coarsening = std::min(synthesis.coarsening * kUp, kCoarsest);
     if (!totals.warned_budget) {
       totals.warned_budget = true;
@@ -408,6 +411,7 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
                               *synthesis.manager, limits, settings.policy);
   counters.requests = static_cast<std::uint32_t>(synthesis.wants.size());
   counters.refused = static_cast<std::uint32_t>(report.refused);
+  synthesis.waiting = report.waiting;
   drop_evicted(entities, synthesis);
   adapt_to_budget(settings, report, synthesis, totals);
 }

@@ -108,6 +108,7 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   std::uint64_t synthesised = 0;
   int quiet = 0, idle = 0, refused = 0;
   s.synthesis.settling = true;
+  s.synthesis.coarsening = 1;
   // What frames in flight may read cannot be given back before they are done, and none follows.
   if (s.output.renderer != nullptr) s.output.renderer->wait_idle();
   while (quiet < kQuietTicks && idle < kIdleTicks && refused < kRefusedTicks) {

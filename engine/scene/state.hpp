@@ -160,7 +160,8 @@ struct Synthesis {
   std::vector<Ready> ready;        // found in the cache in this tick
   std::uint32_t spread_ticks = 1;  // over which new nodes are created now
   bool settling = false;  // levels follow from the pose alone: not from what came first, or when
-  float coarsening = 1;   // ≥ 1: how much the wanted error grows under memory pressure
+  std::uint32_t waiting = 0;  // requests of the last plan whose room is on its way
+  float coarsening = 1;       // ≥ 1: how much the wanted error grows under memory pressure
 };
 
 struct DrawLists {

@@ -10,12 +10,12 @@ namespace {
 constexpr std::size_t kCandidateBatch = 256;
 // Parts of the limit: where less than the first is free the second is made free, and the third
 // where the memory has only pieces that are too small.
-constexpr std::uint64_t kLeastFree = 64, kFree = 24, kFreeOfPieces = 8;
+constexpr std::uint64_t kLeastFreePart = 64, kFreePart = 24, kPiecesPart = 8;
 }  // namespace
 
 void GeometryCache::begin_batch() {
   waiting_bytes_ = 0;
-  out_of_memory_in_batch_ = false;
+  pieces_ = Room::kNow;
   limit_bytes_ = std::min(budget_bytes_, limit_bytes_ + budget_bytes_ / 64 + 1);
   enforce_budget();
   keep_room_free();
@@ -26,38 +26,38 @@ void GeometryCache::keep_room_free() {
   const auto lacks = [this](std::uint64_t free_bytes) {
     return last_used_bytes_ + free_bytes > limit_bytes_ + returning_bytes_;
   };
-  if (!lacks(limit_bytes_ / kLeastFree)) return;
-  while (lacks(limit_bytes_ / kFree) && evict_unwanted()) {
+  if (!lacks(limit_bytes_ / kLeastFreePart)) return;
+  while (lacks(limit_bytes_ / kFreePart) && evict_unwanted()) {
   }
 }
 
 // The mesh that nobody wants for longest; false if there is none.
 bool GeometryCache::evict_unwanted() {
-  while (!unwanted_.empty()) {
-    const MeshHandle mesh = unwanted_.pop();
-    const MeshRecord* r = get(mesh);
+  while (const std::optional<MeshHandle> mesh = unwanted_.pop()) {
+    const MeshRecord* r = get(*mesh);
     if (r == nullptr || r->state != MeshState::kReady || r->rank.group() != RankGroup::kUnwanted)
       continue;
     candidates_valid_ = false;
-    evict_slot(mesh.slot);
+    evict_slot(mesh->slot);
     return true;
   }
   return false;
 }
 
-// The memory has no piece that is large enough, although the budget has room: once a batch, of what
-// nobody wants so much goes that larger pieces come back. What came together goes together.
+// The budget has room, but the memory has no piece of it that is large enough. Once a batch an
+// eighth is made free, with what is coming already: what came together goes together.
 GeometryCache::Room GeometryCache::make_pieces(std::uint64_t need, Rank rank) {
   ++stats_.out_of_memory;
-  if (!std::exchange(out_of_memory_in_batch_, true)) {
-    limit_bytes_ = std::min(limit_bytes_, std::max(last_used_bytes_, budget_bytes_ / 16));
-    const std::uint64_t least =
-        stats_.unwanted_bytes - std::min(stats_.unwanted_bytes, limit_bytes_ / kFreeOfPieces);
-    while (stats_.unwanted_bytes > least && evict_unwanted()) {
-    }
-    if (const Room room = make_room(need, rank); room != Room::kNone) return room;
+  if (pieces_ != Room::kNow) return pieces_;
+  limit_bytes_ = std::min(limit_bytes_, std::max(last_used_bytes_, budget_bytes_ / 16));
+  const std::uint64_t goal =
+      limit_bytes_ / kPiecesPart - std::min(limit_bytes_ / kPiecesPart, returning_bytes_);
+  const std::uint64_t least = stats_.unwanted_bytes - std::min(stats_.unwanted_bytes, goal);
+  while (stats_.unwanted_bytes > least && evict_unwanted()) {
   }
-  return returning_bytes_ > 0 ? Room::kLater : Room::kNone;
+  const Room room = make_room(need, rank);
+  pieces_ = returning_bytes_ > 0 ? Room::kLater : Room::kNone;
+  return room == Room::kNone ? pieces_ : room;
 }
 
 void GeometryCache::set_budget(std::uint64_t bytes) {
@@ -77,7 +77,7 @@ void GeometryCache::observe_memory() {
   stats_.peak_bytes = std::max(stats_.peak_bytes, used);
 }
 
-void GeometryCache::count(const MeshRecord& r, std::int64_t sign) {
+void GeometryCache::count_bytes(const MeshRecord& r, std::int64_t sign) {
   const auto bytes = static_cast<std::uint64_t>(sign * std::int64_t{r.range.bytes});
   if (is_visible(r.rank.group())) stats_.visible_bytes += bytes;
   if (r.rank.group() == RankGroup::kUnwanted && r.state == MeshState::kReady)
@@ -85,7 +85,7 @@ void GeometryCache::count(const MeshRecord& r, std::int64_t sign) {
 }
 
 void GeometryCache::give_back(MeshRecord& r) {
-  count(r, -1);
+  count_bytes(r, -1);
   give_back(std::exchange(r.range, {}));
 }
 
@@ -101,7 +101,7 @@ core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const mode
   const std::uint32_t own_indices = size.shared_indices == 0 ? size.index_count : 0;
   const std::uint64_t need = memory_.charged_bytes(size.layout, size.vertex_count, own_indices);
   const auto refuse = [this](Room room) {
-    ++stats_.refusals;
+    stats_.refusals += room == Room::kNone ? 1 : 0;
     return room == Room::kLater
                ? core::fail(core::ErrorCode::kNotYet, "the room for a mesh is not free yet")
                : core::fail(core::ErrorCode::kOverBudget,
@@ -114,6 +114,7 @@ core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const mode
     if (room == Room::kLater) return refuse(room);
     if (room == Room::kNone) return place;
     place = memory_.reserve(size.layout, size.vertex_count, own_indices);
+    if (!place && pieces_ == Room::kLater) return refuse(pieces_);
     if (!place) return place;
   }
   if (memory_.used_bytes() > budget_bytes_) {  // charged more than it had said

@@ -101,7 +101,7 @@ core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
   r.size = *size;
   r.range = place->range;
   r.destination = {place->vertices, place->indices};
-  count(r, 1);
+  count_bytes(r, 1);
   ++stats_.requested;
   if (evicted_keys_.take(hash_of(key))) ++stats_.regenerations;
   return MeshHandle{slot, r.generation};
@@ -117,9 +117,9 @@ void GeometryCache::complete(MeshHandle handle, const core::Bounds& tight, std::
     return;
   }
   memory_.commit(r->range);
-  count(*r, -1);
+  count_bytes(*r, -1);
   r->state = MeshState::kReady;
-  count(*r, 1);
+  count_bytes(*r, 1);
   r->destination = {};
   r->tight = tight;
   r->note = std::move(note);
@@ -185,15 +185,16 @@ void GeometryCache::release(MeshHandle handle) {
 void GeometryCache::set_rank(MeshHandle handle, Rank rank) {
   MeshRecord* r = live(handle);
   if (r == nullptr) return;
-  count(*r, -1);
+  const bool was_unwanted = r->rank.group() == RankGroup::kUnwanted;
+  count_bytes(*r, -1);
   r->rank = rank;
-  count(*r, 1);
+  count_bytes(*r, 1);
   if (r->state != MeshState::kReady) return;
   if (r->prefetched && is_visible(rank.group())) {
     r->prefetched = false;
     ++stats_.prefetch_hits;
   }
-  if (rank.group() == RankGroup::kUnwanted) unwanted_.push(handle);
+  if (rank.group() == RankGroup::kUnwanted && !was_unwanted) unwanted_.push(handle);
   const std::uint64_t order = eviction_order(rank);
   if (evictable_[handle.slot] != order) {
     evictable_[handle.slot] = order;

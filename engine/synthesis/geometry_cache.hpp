@@ -23,6 +23,7 @@
 #include "engine/synthesis/key_index.hpp"
 #include "engine/synthesis/mesh_key.hpp"
 #include "engine/synthesis/rank.hpp"
+#include "engine/synthesis/unwanted_meshes.hpp"
 
 namespace psygen::synthesis {
 
@@ -71,29 +72,6 @@ struct CacheStats {
   std::uint64_t out_of_memory = 0;    // reservations that the memory itself refused
   std::uint64_t failures = 0;
   std::uint32_t ready = 0, requested = 0, failed = 0;  // meshes now
-};
-
-// Ready meshes that nobody wants, those first of which this is so for longest. Some may be wanted
-// again or gone; each slot is in it once at most.
-class UnwantedMeshes {
- public:
-  void push(MeshHandle mesh) {
-    if (mesh.slot >= waits_.size()) waits_.resize(std::size_t{mesh.slot} + 1);
-    if (waits_[mesh.slot]) return;
-    waits_[mesh.slot] = true;
-    queue_.push_back(mesh);
-  }
-  bool empty() const { return queue_.empty(); }
-  MeshHandle pop() {
-    const MeshHandle first = queue_.front();
-    queue_.pop_front();
-    waits_[first.slot] = false;
-    return first;
-  }
-
- private:
-  std::deque<MeshHandle> queue_;
-  std::vector<bool> waits_;  // per slot
 };
 
 // Remembers which keys were evicted, in constant space: a direct-mapped table of 2^16 fingerprints.
@@ -189,6 +167,7 @@ class GeometryCache {
   CacheStats stats() const;
 
  private:
+  enum class Room : std::uint8_t { kNow, kLater, kNone };
   struct Candidate {
     std::uint64_t order;
     Slot slot;
@@ -197,7 +176,6 @@ class GeometryCache {
   core::Result<models::MeshSize> size_of(const MeshKey& key, const models::Parameters& parameters,
                                          const std::optional<models::MeshSize>& known);
   core::Result<core::GeometryReservation> reserve_memory(const models::MeshSize& size, Rank rank);
-  enum class Room : std::uint8_t { kNow, kLater, kNone };
   Room make_room(std::uint64_t need, Rank rank);
   Room make_pieces(std::uint64_t need, Rank rank);
   bool evict(std::uint64_t bytes, const Rank* request);
@@ -207,7 +185,7 @@ class GeometryCache {
   void observe_memory();
   void give_back(MeshRecord& r);
   void give_back(const core::GeometryRange& range);
-  void count(const MeshRecord& r, std::int64_t sign);
+  void count_bytes(const MeshRecord& r, std::int64_t sign);
   void keep_room_free();
   bool evict_unwanted();
   Slot take_slot(const MeshKey& key, std::uint64_t owner, Rank rank);
@@ -221,7 +199,7 @@ class GeometryCache {
   std::uint64_t last_used_bytes_ = 0;
   std::uint64_t returning_bytes_ = 0;  // released, but the memory still reports them as used
   std::uint64_t waiting_bytes_ = 0;    // promised in this batch to requests that must wait for them
-  bool out_of_memory_in_batch_ = false;
+  Room pieces_ = Room::kNow;           // what make_pieces() found in this batch; kNow: not asked
 
   std::vector<MeshRecord> records_;
   std::vector<std::uint8_t> drawn_;       // per slot: 1 once it was drawn

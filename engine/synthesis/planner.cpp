@@ -129,8 +129,12 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
   }
   if (cache.find(want.key)) return;  // a second want of the same mesh
   auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
-  while (!handle && handle.error().code == core::ErrorCode::kOverBudget &&
-         give_back_last(cache, report)) {
+  const bool hole = want.rank.group() == RankGroup::kVisibleHole;
+  const auto gives_way = [&] {  // a reservation's room is free at once
+    return handle.error().code == core::ErrorCode::kOverBudget ||
+           (hole && handle.error().code == core::ErrorCode::kNotYet);
+  };
+  while (!handle && gives_way() && give_back_last(cache, report)) {
     handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
   }
   if (!handle) {
@@ -141,6 +145,7 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     const bool refused =
         code == core::ErrorCode::kOverBudget || code == core::ErrorCode::kOutOfMemory;
     if (refused && is_visible(want.rank.group())) ++report.refused_visible;
+    if (code == core::ErrorCode::kNotYet) waiting_seconds_ += item.order.predicted_seconds;
     return;
   }
   const MeshRecord& record = *cache.get(*handle);
@@ -175,11 +180,13 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   give_back_unwanted(cache, report);
 
   plan_.clear();
+  waiting_seconds_ = 0;
   separate_holes_ = limits.seconds_here > 0;
   const double enough = limits.seconds_ahead * std::max(manager.modeler_count(), 1u);
   std::size_t next = 0;
   for (; next < items_.size(); ++next) {
-    if (report.predicted_seconds >= enough || plan_.size() + holes_.size() >= limits.max_requests ||
+    if (report.predicted_seconds + waiting_seconds_ >= enough ||
+        plan_.size() + holes_.size() >= limits.max_requests ||
         report.refused >= limits.max_refusals) {
       break;
     }

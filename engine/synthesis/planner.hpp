@@ -96,6 +96,7 @@ class Planner {
   std::vector<Item> new_;                  // those of them that need a reservation
   std::vector<std::uint32_t> last_first_;  // wanted ones of reclaimed_ in serving order
   std::vector<Request> plan_;
+  double waiting_seconds_ = 0;  // predicted, of requests that wait for room
   bool separate_holes_ = false;
   std::vector<Request> holes_;  // visible ones, executed here as far as time allows
 };

@@ -94,6 +94,7 @@ TEST(Holes, AreFoundWhereGroundOrSkirtsAreLeftOut) {
   studio.settle(studio.above({250, 250}, 3, 60, 30, 0.3, -0.3));
   EXPECT_EQ(studio.holes(), 0u);
   std::vector<render::TerrainDraw>& draws = studio.state().draws.terrain;
+  ASSERT_GE(draws.size(), 12u);
   std::size_t most = 0;  // behind some near tiles lies a hill
   for (std::size_t i = 0; i < 12; ++i) {
     const auto all = draws;

@@ -26,7 +26,7 @@ struct TerrainOracle {
   }
 
   static constexpr std::uint64_t kWarp = std::uint64_t{1} << 32;
-  static constexpr double kMaxNoise = 1.2071067811865475;  // 1/2 + 1/√2
+  static constexpr double kMaxNoise = 1.2075;
 
   std::uint64_t key(std::uint64_t octave) const { return core::combine(seed, octave); }
   std::uint64_t step(std::uint64_t octave) const {
@@ -83,7 +83,7 @@ struct TerrainOracle {
   double warped_noise(int octave, std::int64_t x, std::int64_t z) const {
     const auto o = static_cast<std::uint64_t>(octave);
     if (warp == 0 || octave >= 3) return noise(o, x, z);
-    const double cells = warp / kMaxNoise * std::pow(lacunarity, octave);
+    const double cells = warp * 0.828427125 * std::pow(lacunarity, octave);
     return noise(o, x, z, cells * noise(kWarp, x, z), cells * noise(kWarp + 1, x, z));
   }
 

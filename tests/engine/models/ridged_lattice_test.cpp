@@ -1,5 +1,6 @@
-// Whether ridged noise shows where its lattices lie: heights on the lattice lines and at the
-// lattice points of every octave against heights elsewhere, along both axes, with and without warp.
+// Whether ridged noise shows where its lattices lie: what every octave adds to the heights on its
+// lattice lines and at its lattice points against what it adds elsewhere, along both axes, with and
+// without warp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ std::vector<std::int64_t> through_cells(std::uint64_t octave, std::uint64_t latt
   return result;
 }
 
-// Heights in lattice cells of an octave.
+// What an octave adds in its lattice cells, or heights in the cells of the warp's field.
 struct Samples {
   // [phase along x][phase along z], of one lattice cell after another
   std::vector<float> at[kPhases][kPhases];
@@ -63,7 +64,15 @@ struct Samples {
       const auto columns = through_cells(octave, o.lattice_x(octave, 0), random);
       const auto rows = through_cells(octave, o.lattice_z(octave, 0), random);
       std::vector<float> values(columns.size() * rows.size());
-      noise.evaluate(columns, rows, values, columns.size());
+      const bool field = octave >= TerrainOracle::kWarp;
+      const int before = field ? 0 : static_cast<int>(octave);
+      noise.evaluate(columns, rows, values, columns.size(), field ? kOctaves : before + 1);
+      if (before > 0) {
+        std::vector<float> coarser(values.size());
+        noise.evaluate(columns, rows, coarser, columns.size(), before);
+        for (std::size_t i = 0; i < values.size(); ++i)
+          values[i] -= coarser[i];
+      }
       for (std::size_t i = 0; i < values.size(); ++i)
         at[i % columns.size() % kPhases][i / columns.size() % kPhases].push_back(values[i]);
     }

@@ -59,6 +59,14 @@ void expect_same(const GeometryCache& cache, const Model& model) {
     ASSERT_EQ(record->rank, b.rank);
     ++(b.ready ? ready : requested);
   }
+  std::uint64_t visible = 0, unwanted = 0;
+  for (const MeshRecord& r : cache.records()) {
+    if (is_visible(r.rank.group())) visible += r.range.bytes;
+    const bool kept = r.state == MeshState::kReady && r.rank.group() == RankGroup::kUnwanted;
+    unwanted += kept ? r.range.bytes : 0;
+  }
+  ASSERT_EQ(cache.stats().visible_bytes, visible);
+  ASSERT_EQ(cache.stats().unwanted_bytes, unwanted);
   ASSERT_EQ(cache.stats().ready, ready);
   ASSERT_EQ(cache.stats().requested, requested);
 }

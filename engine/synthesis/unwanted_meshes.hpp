@@ -1,0 +1,50 @@
+// Ready meshes that nobody wants, in the order in which they became so. Knows nothing of what they
+// are: some may be wanted again, or gone.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "engine/synthesis/mesh_key.hpp"
+
+namespace psygen::synthesis {
+
+class UnwantedMeshes {
+ public:
+  // From now on nobody wants it. Of a slot only what was pushed last counts.
+  void push(MeshHandle mesh) {
+    if (mesh.slot >= turns_.size()) turns_.resize(std::size_t{mesh.slot} + 1);
+    turns_[mesh.slot] = ++turn_;
+    queue_.push_back({mesh, turn_});
+    if (queue_.size() <= 2 * turns_.size()) return;
+    std::erase_if(queue_, [this](const Entry& entry) { return !is_last(entry); });
+  }
+
+  // The one that nobody wants for longest.
+  std::optional<MeshHandle> pop() {
+    while (!queue_.empty()) {
+      const Entry first = queue_.front();
+      queue_.pop_front();
+      if (is_last(first)) return first.mesh;
+    }
+    return std::nullopt;
+  }
+  // At most two for each slot.
+  std::size_t entries() const { return queue_.size(); }
+
+ private:
+  struct Entry {
+    MeshHandle mesh;
+    std::uint64_t turn;
+  };
+  bool is_last(const Entry& entry) const { return turns_[entry.mesh.slot] == entry.turn; }
+
+  std::deque<Entry> queue_;
+  std::vector<std::uint64_t> turns_;  // per slot: that of its last entry
+  std::uint64_t turn_ = 0;
+};
+
+}  // namespace psygen::synthesis
