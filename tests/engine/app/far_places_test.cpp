@@ -72,5 +72,27 @@ TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
   EXPECT_EQ(studio.state().synthesis.coarsening, 1.0F);
 }
 
+// What the last picture drew comes back too late for this one: then pictures must get coarser until
+// there is room for more than one.
+TEST(FarPlaces, LazyEvaluationMissesNothingForLongWhereOnlyOnePictureFits) {
+  Options options = short_flight();
+  options.validation = false;
+  options.scene.view_distance_m = 4000;
+  options.scene.max_error_pixels = 1;
+  options.scene.paradigm = scene::Paradigm::kLazyEvaluation;
+  Studio ample("paper.toml", options);
+  const core::CameraPose pose = ample.above({256, 256}, 20, 30, 6, 0.5, -0.2);
+  ample.draw(pose);
+  options.scene.budget_bytes = ample.state().synthesis.cache->stats().bytes * 5 / 4;
+  Studio studio("paper.toml", options);
+  for (int i = 0; i < 80; ++i)
+    studio.draw(pose);
+  EXPECT_GT(studio.state().synthesis.coarsening, 1.0F);
+  for (int i = 0; i < 8; ++i) {
+    studio.draw(pose);
+    EXPECT_EQ(studio.state().counters.holes, 0u) << i;
+  }
+}
+
 }  // namespace
 }  // namespace psygen::app

@@ -243,6 +243,25 @@ TEST_F(PressureTest, WhereMemoryIsInPiecesWhatNobodyWantsGoesInAHeap) {
   EXPECT_EQ(other.stats().evictions, 5u);  // an eighth
 }
 
+TEST_F(PressureTest, PiecesThatAreOnTheirWayAreWaitedFor) {
+  GeometryCache other(memory, registry, 80 * kMeshBytes);  // whose memory returns two frames later
+  const auto p = parameters_of(1, 80);
+  for (std::uint32_t i = 0; i < 40; ++i)
+    other.complete(*other.reserve(key_of(i, p), p, i, Rank::unwanted()), {});
+  memory.fail_next_reservations(3);
+  for (int tick = 0; tick < 3; ++tick) {
+    other.begin_batch();
+    const auto waits = other.reserve(key_of(50, p), p, 50, prefetch(0));
+    ASSERT_FALSE(waits);
+    EXPECT_EQ(waits.error().code, core::ErrorCode::kNotYet) << tick;
+    EXPECT_LE(other.stats().evictions, 7u) << tick;  // an eighth, and what the limit grew by
+  }
+  for (int frame = 0; frame < 2; ++frame)
+    memory.end_frame();
+  other.begin_batch();
+  EXPECT_TRUE(other.reserve(key_of(50, p), p, 50, prefetch(0)));
+}
+
 TEST_F(PressureTest, EachOfSeveralWaitingRequestsGetsItsOwnRoom) {
   fill(8);
   for (std::uint32_t i = 0; i < 3; ++i)
