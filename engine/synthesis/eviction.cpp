@@ -14,7 +14,7 @@ constexpr std::uint64_t kLeastFreePart = 64, kFreePart = 24, kPiecesPart = 8;
 }  // namespace
 
 void GeometryCache::begin_batch() {
-  waiting_bytes_ = 0;
+  waiting_bytes_ = promised_bytes_ = 0;
   pieces_ = Room::kNow;
   limit_bytes_ = std::min(budget_bytes_, limit_bytes_ + budget_bytes_ / 64 + 1);
   enforce_budget();

@@ -92,7 +92,14 @@ core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
     remember_failure(take_slot(key, owner, rank), size.error().message);
     return tl::unexpected<core::Error>(size.error());
   }
+  const std::uint64_t hash = hash_of(key);
+  if (hash == promised_to_) waiting_bytes_ -= std::exchange(promised_bytes_, 0);  // it asks again
+  const std::uint64_t waiting = waiting_bytes_;
   const core::Result<core::GeometryReservation> place = reserve_memory(*size, rank);
+  if (waiting_bytes_ > waiting) {
+    promised_to_ = hash;
+    promised_bytes_ = waiting_bytes_ - waiting;
+  }
   if (!place) return tl::unexpected<core::Error>(place.error());
 
   const Slot slot = take_slot(key, owner, rank);

@@ -199,7 +199,8 @@ class GeometryCache {
   std::uint64_t last_used_bytes_ = 0;
   std::uint64_t returning_bytes_ = 0;  // released, but the memory still reports them as used
   std::uint64_t waiting_bytes_ = 0;    // promised in this batch to requests that must wait for them
-  Room pieces_ = Room::kNow;           // what make_pieces() found in this batch; kNow: not asked
+  std::uint64_t promised_to_ = 0, promised_bytes_ = 0;  // the last promise: hash of the key, bytes
+  Room pieces_ = Room::kNow;  // what make_pieces() found in this batch; kNow: not asked
 
   std::vector<MeshRecord> records_;
   std::vector<std::uint8_t> drawn_;       // per slot: 1 once it was drawn

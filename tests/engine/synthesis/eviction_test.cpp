@@ -243,6 +243,15 @@ TEST_F(PressureTest, WhereMemoryIsInPiecesWhatNobodyWantsGoesInAHeap) {
   EXPECT_EQ(other.stats().evictions, 5u);  // an eighth
 }
 
+TEST_F(PressureTest, ARequestThatAsksAgainInTheSameBatchIsPromisedItsRoomOnce) {
+  fill(8);
+  for (int i = 0; i < 5; ++i)
+    EXPECT_FALSE(reserve(100, prefetch(0)));
+  EXPECT_EQ(cache.stats().evictions, 1u);
+  EXPECT_FALSE(reserve(101, prefetch(0)));
+  EXPECT_EQ(cache.stats().evictions, 2u);
+}
+
 TEST_F(PressureTest, PiecesThatAreOnTheirWayAreWaitedFor) {
   GeometryCache other(memory, registry, 80 * kMeshBytes);  // whose memory returns two frames later
   const auto p = parameters_of(1, 80);
