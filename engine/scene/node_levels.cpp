@@ -18,7 +18,8 @@ constexpr double kMergeFactor = 1.1;
 constexpr double kAheadFactor = 1.1;
 // The error of a level of the terrain type is the sum of what its octaves could lose at worst. The
 // largest in a block of the paper's world is about 0.7 of it; in a coarser node, whose finest level
-// has lost something already, 1.05 (medians of the largest, for 4 … 300 m between vertices).
+// has lost something already, 1.05 (medians of the largest, for 4 … 300 m between vertices; found
+// for terrain of gradients alone, of which values leave three quarters: on the safe side).
 constexpr double kBlockErrorSeen = 0.7, kNodeErrorSeen = 1.05;
 // How far a border hangs down, in metres per metre of the next coarser error, and at least.
 constexpr float kSkirtPerError = 2.0F, kLeastSkirtM = 1.0F;
@@ -100,18 +101,20 @@ void split_distances(std::span<const NodeLevel> levels, const Settings& settings
                      std::vector<visibility::LevelDistances>& distances) {
   distances.resize(levels.size());
   std::vector<double> errors;
-  const double error_per_m = error_pixels / pixels_per_radian;
   for (const NodeLevel& level : levels)
-    errors.push_back(std::min(level.error_m, kMaxSplitRatio * level.size_m * error_per_m));
+    errors.push_back(level.error_m);
   visibility::SplitSettings split;
   split.block_size_m = levels[0].size_m;
   split.pixels_per_radian = pixels_per_radian;
   split.max_error_pixels = error_pixels;
   split.min_ratio = kMinSplitRatio;
+  split.max_ratio = kMaxSplitRatio;
   split.merge_factor = kMergeFactor;
   visibility::split_distances(errors, split, distances);
   // Blocks are made of their finest mesh only where its error asks for it.
-  const double fine_m = settings.levels_of_detail ? errors[0] / error_per_m : kEverywhereM;
+  const double seen_m =
+      std::min(errors[0] * pixels_per_radian / error_pixels, kMaxSplitRatio * levels[0].size_m);
+  const double fine_m = settings.levels_of_detail ? seen_m : kEverywhereM;
   distances[0] = {fine_m, fine_m * kMergeFactor, fine_m * split.morph_share};
 }
 

@@ -1,5 +1,6 @@
 // The part of GeometryCache that keeps the budget: what is used, what is on its way back, and which
-// meshes go. The order of eviction is selected once per batch and then walked.
+// meshes go. What nobody wants goes ahead of need, the oldest first; the order of eviction of all
+// the others is selected once per batch and then walked.
 #include <algorithm>
 #include <utility>
 

@@ -139,7 +139,8 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double side = side_of(static_cast<std::uint8_t>(k), settings.block_size_m);
     const double by_error =
-        level_errors_m[k] * settings.pixels_per_radian / settings.max_error_pixels;
+        std::min(level_errors_m[k] * settings.pixels_per_radian / settings.max_error_pixels,
+                 settings.max_ratio * side);
     const double split =
         std::max({by_error, settings.min_ratio * side, merge_below, reach_two_below});
     // Where all are 0 the level is never split and morphs nowhere.

@@ -69,6 +69,8 @@ struct SplitSettings {
   double pixels_per_radian = 1000;
   double max_error_pixels = 1;  // what an error in metres may cover
   double min_ratio = 1;  // a node is split nearer than so many of its sides, whatever its error
+  // Its error alone splits no node farther away than so many of its sides.
+  double max_ratio = std::numeric_limits<double>::infinity();
   double merge_factor = 1.1;  // merge_m / split_m, >= 1
   double morph_share = 0.7;   // of split_m, where morphing begins; above 0, at most 1
 };
@@ -78,7 +80,8 @@ struct SplitSettings {
 // is a block drawn with its finest mesh (CutNode::fine), so level_errors_m[0] is the error of a
 // block's coarser mesh.
 //
-// split(k) = max(error(k) · pixels per radian / max error in pixels, min_ratio · side(k),
+// split(k) = max(min(error(k) · pixels per radian / max error in pixels, max_ratio · side(k)),
+//                min_ratio · side(k),
 //                merge(k − 1) / morph_share, merge(k − 2) + diagonal(k − 2)).
 //
 // The last term makes the cut restricted. Let P of level p be split, so d(P) < merge(p), and let B

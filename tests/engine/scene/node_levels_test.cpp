@@ -104,8 +104,7 @@ TEST(NodeLevels, NodesAreSplitWhereTheirErrorIsSeenUnlessFinerOnesNeedMore) {
     ASSERT_EQ(distances.size(), levels.size());
     for (std::size_t k = 1; k < levels.size(); ++k) {
       const double seen_m = levels[k].error_m * wish.pixels_per_radian / wish.error_pixels;
-      const double wanted_m = std::min(seen_m, 3.0 * levels[k].size_m);
-      EXPECT_GE(distances[k].split_m, wanted_m * (1 - 1e-12));  // but for rounding
+      EXPECT_GE(distances[k].split_m, std::min(seen_m, 3.0 * levels[k].size_m));
       EXPECT_GE(distances[k].split_m, 0.6 * levels[k].size_m);
       EXPECT_GE(distances[k].split_m, distances[k - 1].merge_m);
       EXPECT_GE(distances[k].merge_m, distances[k].split_m);

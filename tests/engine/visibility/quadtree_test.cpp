@@ -135,6 +135,15 @@ TEST(SplitDistances, FollowTheErrorTheRatioAndTheLevelsBelow) {
   EXPECT_NEAR(levels[3].split_m, 6250, 1e-3);
 }
 
+TEST(SplitDistances, FollowTheErrorNoFartherThanTheLargestRatio) {
+  std::vector<LevelDistances> levels(2);
+  const SplitSettings settings{
+      .block_size_m = 63, .pixels_per_radian = 745, .max_error_pixels = 0.7, .max_ratio = 3};
+  split_distances(std::vector{0.1, 1e6}, settings, levels);
+  EXPECT_DOUBLE_EQ(levels[0].split_m, 0.1 * 745 / 0.7);
+  EXPECT_EQ(levels[1].split_m, 3.0 * 126);  // exactly
+}
+
 TEST(SplitDistances, ReachBeyondWhatTouchesNodesTwoLevelsBelow) {
   std::vector<LevelDistances> levels(3);
   const SplitSettings settings{.block_size_m = 64, .min_ratio = 0.1, .merge_factor = 1};
