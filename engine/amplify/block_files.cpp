@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/replace_file.hpp"
+#include "engine/exchange/cut_short.hpp"
 #include "engine/exchange/unpack.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/text_file.hpp"
@@ -13,7 +14,7 @@
 namespace psygen::amplify {
 namespace {
 
-constexpr const char* kWorldFile = "world.toml";
+constexpr const char *kWorldFile = "world.toml", *kSampleFile = "sample.hash";
 
 std::string name_of(core::BlockCoord block) {
   return fmt::format("block_{}_{}", block.x, block.z);
@@ -29,6 +30,23 @@ core::Result<exchange::Object> object_of(const world::World& world,
     object->position = placement.position;
   }
   return object;
+}
+
+// Whether the file holds this text, which it gets where it does not exist.
+core::Result<bool> same_or_written(const std::filesystem::path& file, const std::string& text) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) {
+    return world::read_text_file(file).map([&text](const auto& theirs) { return theirs == text; });
+  }
+  return core::replace_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})
+      .map([] { return true; });
+}
+
+tl::unexpected<core::Error> refusal(const std::filesystem::path& folder, const char* of_what,
+                                    const char* file) {
+  return core::fail(core::ErrorCode::kInvalidArgument,
+                    fmt::format("{}: holds the blocks of {} ({}); choose another folder",
+                                folder.string(), of_what, (folder / file).string()));
 }
 
 }  // namespace
@@ -55,7 +73,9 @@ class BlockFolder::Sink final : public BlockSink {
 
   bool wants(core::BlockCoord block) override {
     std::error_code error;
-    const bool there = std::filesystem::is_regular_file(folder_.file_of(block), error);
+    const std::filesystem::path file = folder_.file_of(block);
+    const bool there = std::filesystem::is_regular_file(file, error) &&
+                       !exchange::is_cut_short(file, folder_.format_, name_of(block));
     if (there) folder_.skipped_.fetch_add(1, std::memory_order_relaxed);
     return !there;
   }
@@ -104,19 +124,21 @@ core::Result<std::unique_ptr<BlockFolder>> BlockFolder::open(std::filesystem::pa
 
 // Leaves the world's file in the folder, or finds the same one there.
 core::Result<void> BlockFolder::claim() const {
-  const std::filesystem::path file = folder_ / kWorldFile;
-  const std::string mine = world::write_world(world_, registry_);
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    return core::replace_file(file,
-                              {reinterpret_cast<const std::uint8_t*>(mine.data()), mine.size()});
-  }
-  const auto theirs = world::read_text_file(file);
-  if (!theirs) return tl::unexpected(theirs.error());
-  if (*theirs == mine) return {};
-  return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("{}: holds the blocks of another world ({}); choose another folder",
-                                folder_.string(), file.string()));
+  const auto same = same_or_written(folder_ / kWorldFile, world::write_world(world_, registry_));
+  if (!same) return tl::unexpected(same.error());
+  if (!*same) return refusal(folder_, "another world", kWorldFile);
+  return claim_version();
+}
+
+// The same with the hash of a few blocks. Where a model type fails they have none: its blocks get
+// no files either.
+core::Result<void> BlockFolder::claim_version() const {
+  const std::optional<std::uint64_t> sample = sample_world_hash(world_, registry_, {0, 0});
+  if (!sample) return {};
+  const auto same = same_or_written(folder_ / kSampleFile, fmt::format("{:016x}\n", *sample));
+  if (!same) return tl::unexpected(same.error());
+  if (!*same) return refusal(folder_, "this world made by another version", kSampleFile);
+  return {};
 }
 
 std::unique_ptr<BlockSink> BlockFolder::make_sink() {

@@ -106,8 +106,9 @@ void BlockSynthesizer::make(const world::Placement& placement, core::BlockCoord 
   if (visit) visit({placement, level, *size, outcome.tight, view});
 }
 
-std::uint64_t sample_world_hash(const world::World& world, const models::Registry& registry,
-                                core::BlockCoord block) {
+std::optional<std::uint64_t> sample_world_hash(const world::World& world,
+                                               const models::Registry& registry,
+                                               core::BlockCoord block) {
   BlockSynthesizer synthesizer(world, registry, kAllLevels);
   Totals totals;
   for (std::int64_t z = std::int64_t{block.z} - 1; z <= std::int64_t{block.z} + 1; ++z) {
@@ -117,6 +118,7 @@ std::uint64_t sample_world_hash(const world::World& world, const models::Registr
       if (exists) synthesizer.synthesise(coord, totals);
     }
   }
+  if (totals.failed > 0) return std::nullopt;
   return totals.hash.value();
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,8 +74,10 @@ class BlockSynthesizer {
   std::size_t line_count_ = 0;
 };
 
-// The hash of the 3 × 3 blocks around `block`, as far as they exist, at every level.
-std::uint64_t sample_world_hash(const world::World& world, const models::Registry& registry,
-                                core::BlockCoord block);
+// The hash of the 3 × 3 blocks around `block`, as far as they exist, at every level. Nothing where
+// a mesh failed.
+std::optional<std::uint64_t> sample_world_hash(const world::World& world,
+                                               const models::Registry& registry,
+                                               core::BlockCoord block);
 
 }  // namespace psygen::amplify

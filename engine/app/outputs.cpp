@@ -51,6 +51,11 @@ telemetry::Figure floor_ratio(const telemetry::FrameLog& log, render::Renderer& 
   return last[kFloorFrames / 2] / *floor_ms;
 }
 
+telemetry::Count sample_hash(const scene::State& state, core::BlockCoord block) {
+  const auto hash = amplify::sample_world_hash(state.facts.world, state.facts.registry, block);
+  return hash ? telemetry::Count(*hash) : telemetry::Count::missing("a model there failed");
+}
+
 }  // namespace
 
 telemetry::RunFacts App::run_facts() {
@@ -83,10 +88,8 @@ telemetry::RunFacts App::run_facts() {
   state.synthesis.manager->wait_all();  // nothing else runs while the floor is measured
   facts.floor_ratio = floor_ratio(*log_, *renderer_);
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
-  facts.world_hash = options_.hash_world
-                         ? telemetry::Count(amplify::sample_world_hash(
-                               state.facts.world, state.facts.registry, home().position.block))
-                         : telemetry::Count::missing("switched off");
+  facts.world_hash = options_.hash_world ? sample_hash(state, home().position.block)
+                                         : telemetry::Count::missing("switched off");
   facts.images_hash = images_ > 0 ? telemetry::Count(images_hash_)
                                   : telemetry::Count::missing("no pictures were written");
   return facts;

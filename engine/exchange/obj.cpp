@@ -40,17 +40,21 @@ std::string mtl_of(const Document& document) {
                    "newmtl {}\nKd {:.4f} {:.4f} {:.4f}\nKs 0 0 0\nillum 1\n",
                    material_name(material), colour.x, colour.y, colour.z);
   }
-  return text;
+  return text += kObjLastLine;
 }
 
 }  // namespace
+
+std::string obj_first_line(std::string_view document_name) {
+  return fmt::format("# {}: metres, +Y up; colours behind the coordinates are sRGB\n",
+                     document_name);
+}
 
 ObjText obj_text(const Document& document, std::string_view mtl_file_name) {
   ObjText text;
   text.mtl = mtl_of(document);
   const auto out = std::back_inserter(text.obj);
-  fmt::format_to(out, "# {}: metres, +Y up; colours behind the coordinates are sRGB\nmtllib {}\n",
-                 document.name, mtl_file_name);
+  fmt::format_to(out, "{}mtllib {}\n", obj_first_line(document.name), mtl_file_name);
   std::uint64_t first = 1;  // the format counts from 1, over the whole file
   for (const Object& object : document.objects) {
     fmt::format_to(out, "o {}\n", object.name);
@@ -71,6 +75,7 @@ ObjText obj_text(const Document& document, std::string_view mtl_file_name) {
       first += part.positions.size();
     }
   }
+  text.obj += kObjLastLine;
   return text;
 }
 

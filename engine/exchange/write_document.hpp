@@ -27,6 +27,10 @@ struct ObjText {
   std::string obj, mtl;
 };
 ObjText obj_text(const Document& document, std::string_view mtl_file_name);
+// Both texts end with this line, so that one that was cut short can be told from a whole one; an
+// .obj starts with a comment that names the document.
+inline constexpr std::string_view kObjLastLine = "# end\n";
+std::string obj_first_line(std::string_view document_name);
 
 // Writes `path`, and for kObj the .mtl of the same stem before it. Fails with kIo.
 core::Result<void> write_document(const std::filesystem::path& path, Format format,

@@ -1,5 +1,6 @@
 #include "engine/amplify/block_files.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -47,7 +48,7 @@ TEST(BlockFiles, OneFileABlockAndTheWorldBesideThem) {
   const auto made = make_files(parsed(kSmallWorld), folder.path(), Format::kGlb);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->written, 6u);
-  EXPECT_EQ(folder.file_count(), 7u);
+  EXPECT_EQ(folder.file_count(), 8u);  // with the world and the hash of a sample
   for (int x = 1; x < 4; ++x) {
     for (int z = 1; z < 3; ++z) {
       const std::string name = "block_" + std::to_string(x) + "_" + std::to_string(z) + ".glb";
@@ -90,14 +91,14 @@ TEST(BlockFiles, ABlockThatLacksAMeshHasNoFileUntilItIsWhole) {
   EXPECT_EQ(mended->written, 6u);
   EXPECT_EQ(mended->skipped, 0u);
   EXPECT_TRUE(mended->report.complete);
-  EXPECT_EQ(folder.file_count(), 7u);
+  EXPECT_EQ(folder.file_count(), 8u);
 }
 
 TEST(BlockFiles, WhatAKilledRunLeftHalfDoneIsRemoved) {
   const TemporaryFolder folder;
   std::ofstream(folder / ".block_1_1.glb.99999999-0.partial") << "half";
   ASSERT_TRUE(make_files(parsed(kSmallWorld), folder.path(), Format::kGlb));
-  EXPECT_EQ(folder.file_count(), 7u);
+  EXPECT_EQ(folder.file_count(), 8u);
 }
 
 TEST(BlockFiles, AnInterruptedRunLeavesWholeFilesOnly) {
@@ -106,18 +107,53 @@ TEST(BlockFiles, AnInterruptedRunLeavesWholeFilesOnly) {
   const auto made = make_files(parsed(kSmallWorld), folder.path(), Format::kObj, &stop);
   ASSERT_TRUE(made);
   EXPECT_FALSE(made->report.complete);
-  EXPECT_EQ(folder.file_count(), 1u);
+  EXPECT_EQ(folder.file_count(), 2u);  // the world and the hash of a sample
 }
 
 TEST(BlockFiles, TheBlocksOfAnotherWorldAreNotMixedIn) {
   const TemporaryFolder folder;
   world::World world = parsed(kSmallWorld);
   ASSERT_TRUE(make_files(world, folder.path(), Format::kObj));
-  EXPECT_EQ(folder.file_count(), 13u);  // an .mtl beside each .obj
+  EXPECT_EQ(folder.file_count(), 14u);  // an .mtl beside each .obj
   world.seed += 1;
   const auto other = make_files(world, folder.path(), Format::kObj);
   ASSERT_FALSE(other);
   EXPECT_NE(other.error().message.find("another world"), std::string::npos);
+}
+
+TEST(BlockFiles, TheBlocksOfAnotherVersionOfTheEngineAreNotMixedIn) {
+  const TemporaryFolder folder;
+  const world::World world = parsed(kSmallWorld);
+  ASSERT_TRUE(make_files(world, folder.path(), Format::kGlb));
+  const std::string hash = content(folder / "sample.hash");
+  ASSERT_EQ(hash.size(), 17u);
+  std::filesystem::remove(folder / "block_2_2.glb");
+  std::ofstream(folder / "sample.hash") << "0123456789abcdef\n";
+  const auto other = make_files(world, folder.path(), Format::kGlb);
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().code, core::ErrorCode::kInvalidArgument);
+  EXPECT_NE(other.error().message.find("sample.hash"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder / "block_2_2.glb"));
+  std::ofstream(folder / "sample.hash") << hash;
+  EXPECT_TRUE(make_files(world, folder.path(), Format::kGlb));
+}
+
+TEST(BlockFiles, WhatHasLostItsEndIsWrittenAgain) {
+  for (const Format format : {Format::kGlb, Format::kObj}) {
+    const TemporaryFolder folder;
+    const world::World world = parsed(kSmallWorld);
+    ASSERT_TRUE(make_files(world, folder.path(), format));
+    const auto file = folder / fmt::format("block_2_2.{}", name_of(format));
+    const std::string whole = content(file);
+    for (const std::size_t left : {std::size_t{0}, std::size_t{9}, whole.size() - 1}) {
+      std::filesystem::resize_file(file, left);
+      const auto again = make_files(world, folder.path(), format);
+      ASSERT_TRUE(again);
+      EXPECT_EQ(again->written, 1u) << left;
+      EXPECT_EQ(again->skipped, 5u) << left;
+      EXPECT_EQ(content(file), whole) << left;
+    }
+  }
 }
 
 TEST(BlockFiles, AFolderThatCannotBeWrittenIsNamed) {

@@ -93,7 +93,8 @@ TEST(BlockSynthesizer, AModelThatThrowsIsCountedAndTheOthersGoOn) {
 
 TEST(SampleWorldHash, NamesTheWorldAndThePlace) {
   world::World world = parsed(kSmallWorld);
-  const std::uint64_t hash = sample_world_hash(world, registry(), {2, 2});
+  const auto hash = sample_world_hash(world, registry(), {2, 2});
+  ASSERT_TRUE(hash);
   EXPECT_EQ(sample_world_hash(world, registry(), {2, 2}), hash);
   EXPECT_NE(sample_world_hash(world, registry(), {3, 2}), hash);
   world.seed += 1;
@@ -103,8 +104,16 @@ TEST(SampleWorldHash, NamesTheWorldAndThePlace) {
 TEST(SampleWorldHash, IsDefinedAtTheEndOfAllBlocks) {
   world::World world = parsed(kSmallWorld);
   world.blocks_x = world.blocks_z = 0;
-  const std::uint64_t corner = sample_world_hash(world, registry(), {INT32_MAX, INT32_MAX});
+  const auto corner = sample_world_hash(world, registry(), {INT32_MAX, INT32_MAX});
+  ASSERT_TRUE(corner);
   EXPECT_NE(corner, sample_world_hash(world, registry(), {INT32_MAX, INT32_MAX - 2}));
+}
+
+TEST(SampleWorldHash, IsNothingWhereAMeshFails) {
+  ThrowingWorld throwing;
+  EXPECT_FALSE(sample_world_hash(throwing.world, throwing.registry, {0, 0}));
+  throwing.throws = false;
+  EXPECT_TRUE(sample_world_hash(throwing.world, throwing.registry, {0, 0}));
 }
 
 }  // namespace

@@ -1,12 +1,8 @@
 #include "engine/exchange/write_document.hpp"
 
-#include <assimp/mesh.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
 #include <glm/common.hpp>
 
+#include "tests/engine/exchange/read_back.hpp"
 #include "tests/engine/exchange/synthesised.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -21,32 +17,6 @@ Document grove() {
   document.objects[2].position = {-5, 1, 2};
   return document;
 }
-
-struct Counts {
-  std::uint64_t vertices = 0, triangles = 0;
-};
-
-Counts counts_of(const aiScene& scene) {
-  Counts counts;
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
-    counts.vertices += scene.mMeshes[i]->mNumVertices;
-    counts.triangles += scene.mMeshes[i]->mNumFaces;
-  }
-  return counts;
-}
-
-// Everything that stands in the file, through another library.
-class ReadBack {
- public:
-  explicit ReadBack(const std::filesystem::path& file)
-      : scene_(importer_.ReadFile(file.string(), aiProcess_ValidateDataStructure)) {}
-  const aiScene* scene() const { return scene_; }
-  std::string error() const { return importer_.GetErrorString(); }
-
- private:
-  Assimp::Importer importer_;
-  const aiScene* scene_;
-};
 
 TEST(WriteDocument, AGlbReadByAnotherLibraryHasTheSameCounts) {
   const TemporaryFolder folder;
