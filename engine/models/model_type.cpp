@@ -7,17 +7,17 @@
 namespace psygen::models {
 namespace {
 
-// Costs as people read them: the number itself while it is small, a power of two beyond.
-std::string predicted_cost(double log2_triangles) {
-  if (!std::isfinite(log2_triangles)) return "predicted cost: unbounded";
-  if (log2_triangles < 40)
-    return fmt::format("predicted cost: {:.0f} triangles", std::exp2(log2_triangles));
-  return fmt::format("predicted cost: 2^{:.1f} triangles", log2_triangles);
-}
-
 std::string value_text(const ParameterSpec& spec, const Parameters& p, std::size_t i) {
   return spec.type == ParameterType::kInteger ? fmt::format("{}", p.integer(i))
                                               : fmt::format("{:g}", p.real(i));
+}
+
+// "an integer from 4 to 128 vertices".
+std::string allowed_text(const ParameterSpec& spec) {
+  const bool has_unit = !spec.unit.empty() && spec.unit != "1";
+  return fmt::format("{} from {:g} to {:g}{}{}",
+                     spec.type == ParameterType::kInteger ? "an integer" : "a number",
+                     spec.hard_min, spec.hard_max, has_unit ? " " : "", has_unit ? spec.unit : "");
 }
 
 bool is_allowed(const ParameterSpec& spec, const Parameters& p, std::size_t i) {
@@ -28,6 +28,13 @@ bool is_allowed(const ParameterSpec& spec, const Parameters& p, std::size_t i) {
 }
 
 }  // namespace
+
+std::string predicted_cost_text(double log2_triangles) {
+  if (!std::isfinite(log2_triangles)) return "predicted cost: unbounded";
+  if (log2_triangles < 40)
+    return fmt::format("predicted cost: {:.0f} triangles", std::exp2(log2_triangles));
+  return fmt::format("predicted cost: 2^{:.1f} triangles", log2_triangles);
+}
 
 Parameters default_parameters(const ModelType& type) {
   Parameters p;
@@ -53,16 +60,11 @@ int parameter_index(const ModelType& type, std::string_view name) {
 core::Result<void> validate(const ModelType& type, const Parameters& p, double max_log2_cost) {
   const std::span<const ParameterSpec> specs = type.parameters();
   for (std::size_t i = 0; i < specs.size(); ++i) {
-    const ParameterSpec& spec = specs[i];
-    if (is_allowed(spec, p, i)) continue;
-    return core::fail(
-        core::ErrorCode::kInvalidArgument,
-        fmt::format("{}: {} = {} is not allowed: it must be {} from {:g} to {:g}{}{} "
-                    "({})",
-                    type.name(), spec.name, value_text(spec, p, i),
-                    spec.type == ParameterType::kInteger ? "an integer" : "a number", spec.hard_min,
-                    spec.hard_max, spec.unit.empty() ? "" : " ", spec.unit == "1" ? "" : spec.unit,
-                    predicted_cost(type.log2_cost(p))));
+    if (is_allowed(specs[i], p, i)) continue;
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{}: {} = {} is not allowed: it must be {} ({})", type.name(),
+                                  specs[i].name, value_text(specs[i], p, i), allowed_text(specs[i]),
+                                  predicted_cost_text(type.log2_cost(p))));
   }
   const double cost = type.log2_cost(p);
   if (cost <= max_log2_cost) return {};
@@ -74,7 +76,7 @@ core::Result<void> validate(const ModelType& type, const Parameters& p, double m
   }
   return core::fail(core::ErrorCode::kOverBudget,
                     fmt::format("{}: {} together are too large ({}; allowed: 2^{:g})", type.name(),
-                                values, predicted_cost(cost), max_log2_cost));
+                                values, predicted_cost_text(cost), max_log2_cost));
 }
 
 }  // namespace psygen::models

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "engine/core/coordinates.hpp"
@@ -131,6 +132,9 @@ inline std::uint64_t parameters_hash(const ModelType& type, const Parameters& p)
   const std::uint64_t identity = type.identity();
   return identity == 0 ? p.hash() : core::combine(p.hash(), identity);
 }
+
+// "predicted cost: 8192 triangles", or "2^82.0" where the number itself says nothing any more.
+std::string predicted_cost_text(double log2_triangles);
 
 // All parameters at their defaults.
 Parameters default_parameters(const ModelType& type);

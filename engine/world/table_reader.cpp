@@ -12,8 +12,11 @@ namespace {
 
 // What may be written: "an integer from 1 to 9".
 std::string allowed_text(Limits limits, bool integer) {
-  const std::string_view kind = integer ? "an integer" : "a number";
-  return fmt::format("{} from {:g} to {:g}", kind, limits.low, limits.high);
+  constexpr double kExact = 0x1.0p53;  // larger integers are shown rounded
+  if (integer && limits.low >= -kExact && limits.high <= kExact)
+    return fmt::format("an integer from {:.0f} to {:.0f}", limits.low, limits.high);
+  return fmt::format("{} from {:g} to {:g}", integer ? "an integer" : "a number", limits.low,
+                     limits.high);
 }
 
 std::string value_text(const Node& node) {

@@ -139,7 +139,14 @@ TEST(WorldFile, LegalValuesWhoseProductIsTooLargeAreRefused) {
 }
 
 TEST(WorldFile, TooManyModelsAreRefused) {
-  EXPECT_THAT(error_with("count = 5", "count = 1000000000"), HasSubstr("scatter[1].count"));
+  EXPECT_THAT(error_with("count = 5", "count = 1000000000"),
+              AllOf(HasSubstr("scatter[1].count: 1000000000"), HasSubstr("from 0 to 16384"),
+                    HasSubstr("predicted cost: 16000000000 triangles on each block")));
+  EXPECT_THAT(error_with("count = 5", "count = 9223372036854775807"),
+              AllOf(HasSubstr("scatter[1].count"), HasSubstr("predicted cost: 2^67")));
+  EXPECT_THAT(error_with("count = 5", "count = -1"), HasSubstr("scatter[1].count: -1"));
+  EXPECT_THAT(error_with("blocks = [8, 4]", "blocks = [8, 9000000000]"),
+              HasSubstr("from 0 to 2147483648"));
   EXPECT_THAT(error_with("count = 5", "count = 16384"), HasSubstr("16387 models"));
   std::string many = kSmallWorld;
   for (int i = 0; i < 70; ++i)
