@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "engine/models/terrain.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::game {
 namespace {
 constexpr std::int64_t kEndlessSide = std::int64_t{1} << 16;
 constexpr std::size_t kBlocksForRareTypes = 8;  // times as many as for others
+constexpr std::size_t kNodeLevels = 10;         // of 64 vertices, 1 m apart, to 32 km a side
 }  // namespace
 
 std::vector<core::BlockCoord> sample_blocks(const world::World& world, int half, std::size_t most) {
@@ -38,7 +40,9 @@ std::vector<synthesis::CostSample> world_samples(const world::World& world,
   };
   const auto blocks = sample_blocks(world, half, kBlocksForRareTypes * count);
   for (std::size_t i = 0; i < blocks.size() && (i < count || rare()); ++i) {
-    take(world.terrain_model, world::terrain_parameters(world, blocks[i]));
+    models::Parameters terrain = world::terrain_parameters(world, blocks[i]);
+    terrain.set_integer(models::kTerrainNodeLevel, static_cast<int>(i % kNodeLevels));
+    take(world.terrain_model, terrain);
     world::place_models(world, registry, blocks[i], placements);
     for (const world::Placement& placement : placements)
       take(placement.model, placement.parameters);

@@ -14,7 +14,7 @@ namespace psygen::game {
 std::vector<core::BlockCoord> sample_blocks(const world::World& world, int half, std::size_t most);
 
 // Up to `count` parameter sets of each type that stands in that half, from `count` blocks, and from
-// eight times as many for types that are rare.
+// eight times as many for types that are rare; of the terrain nodes of all levels in turn.
 std::vector<synthesis::CostSample> world_samples(const world::World& world,
                                                  const models::Registry& registry, int half,
                                                  std::size_t count);

@@ -77,6 +77,20 @@ int RidgedNoise::octaves_wider_than(double steps) const {
   return octaves;
 }
 
+// Measured (AVX-512, Zen 5): 0.14 ns a sample and octave, 0.55 ns where a lattice row is blended
+// for it, 2.6 ns where a warp moves it.
+double RidgedNoise::work(std::size_t columns, std::size_t rows, double spacing, int octaves) const {
+  constexpr double kBlend = 4, kFree = 18, kWarpFields = 2;
+  const int count = std::min(octaves, kernel_.octave_count);
+  double cells = cells_per_step_ * spacing, per_sample = 0;
+  for (int o = 0; o < count; ++o) {
+    per_sample += 1 + kBlend * std::min(cells, 2.0);
+    cells *= lacunarity_;
+  }
+  if (kernel_.warp > 0) per_sample += kFree * (kWarpFields + std::min(count, kWarpedOctaves));
+  return static_cast<double>(columns) * static_cast<double>(rows) * per_sample;
+}
+
 void RidgedNoise::evaluate(std::span<const std::int64_t> columns,
                            std::span<const std::int64_t> rows, std::span<float> values,
                            std::size_t stride, int octaves) const {

@@ -42,6 +42,12 @@ class RidgedNoise {
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                 std::span<float> values, std::size_t stride, int octaves = kMaxOctaves) const;
 
+  // How long that takes, roughly, for samples `spacing` integers apart along both axes: in samples
+  // of one octave with wide lattice cells. Where they are narrower than the spacing each row of
+  // samples has two lattice rows of its own, and a sample takes ten times as long.
+  double work(std::size_t columns, std::size_t rows, double spacing,
+              int octaves = kMaxOctaves) const;
+
  private:
   RidgedKernel kernel_;
   double max_value_ = 0;

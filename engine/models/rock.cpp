@@ -109,6 +109,7 @@ class RockType final : public ModelType {
   core::Bounds bounds(const Parameters& p) const override;
   MeshSize mesh_size(const Parameters& p, int level) const override;
   double complexity(const Parameters& p, int level) const override;
+  double steps(const Parameters& p, int level) const override;
   double log2_cost(const Parameters& p) const override {
     return 2 + 2 * static_cast<double>(p.integer(kRockSubdivisions));
   }
@@ -157,6 +158,15 @@ MeshSize RockType::mesh_size(const Parameters& p, int level) const {
 double RockType::complexity(const Parameters& p, int level) const {
   const int n = subdivisions_at(p, level);
   return n == 0 ? 0.25 : std::ldexp(n, 2 * (n - 1));
+}
+
+// In the time of a vertex (1.25 ns, AVX-512, Zen 5). Faceted rocks, whose triangles share none,
+// have the most; the smallest rocks take longer to set up than to make.
+double RockType::steps(const Parameters& p, int level) const {
+  constexpr double kSetUp = 70, kFirstMidpoints = 15, kTriangle = 0.6;
+  const int n = subdivisions_at(p, level);
+  return kSetUp + (n > 0 ? kFirstMidpoints : 0) + kTriangle * rock_triangles(n) +
+         rock_mesh_vertices(n, family_of(p).facet > 0);
 }
 
 void RockType::write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const {

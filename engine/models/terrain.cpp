@@ -83,6 +83,7 @@ class TerrainType final : public ModelType {
   core::Bounds bounds(const Parameters& p) const override;
   MeshSize mesh_size(const Parameters& p, int level) const override;
   double complexity(const Parameters& p, int level) const override;
+  double steps(const Parameters& p, int level) const override;
   double log2_cost(const Parameters& p) const override;
   core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
   void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {
@@ -92,6 +93,11 @@ class TerrainType final : public ModelType {
 
 TerrainGrid grid_of(const Parameters& p, int level) {
   return {static_cast<int>(p.integer(kTerrainSize)), level};
+}
+
+// The finest grid of the light of a level (TerrainLight).
+std::size_t light_grid_of(int level) {
+  return level < 2 ? 0 : 1;
 }
 
 double cell_of(const Parameters& p) {
@@ -165,6 +171,28 @@ double TerrainType::complexity(const Parameters& p, int level) const {
   return static_cast<double>(p.integer(kTerrainOctaves)) * samples_per_side * samples_per_side;
 }
 
+// The work of the noise: of the samples, of those of the parent's mesh, of the heights for the
+// light. Nodes whose octaves are narrower than their cells take five times as long as blocks.
+double TerrainType::steps(const Parameters& p, int level) const {
+  const TerrainShape shape(p);
+  const TerrainGrid grid = grid_of(p, level);
+  const auto n = static_cast<std::size_t>(grid.n);
+  const double cell = std::ldexp(1.0, shape.node_level);
+  double work = 0;
+  if (grid.stride <= 3) {
+    const auto samples = static_cast<std::size_t>(grid.size) + 2;
+    work = shape.noise.work(samples, samples, cell);
+  } else {  // vertices with their neighbours, and gaps between them
+    work = (2 * shape.noise.work(3 * n, 3 * n, cell) +
+            shape.noise.work(3 * n, 3 * n, cell * (grid.stride - 2))) /
+           3;
+  }
+  if (level == 1) work += shape.noise.work(n / 2 + 1, n / 2 + 1, 2 * grid.stride * cell);
+  return work + TerrainLight::noise_work(
+                    shape, {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)},
+                    p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ), light_grid_of(level));
+}
+
 double TerrainType::log2_cost(const Parameters& p) const {
   const double cells = std::max(static_cast<double>(p.integer(kTerrainSize)) - 1, 1.0);
   return 1 + std::log2(cells) + std::log2(cells + 4);  // with skirts
@@ -184,7 +212,8 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
   shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
                        noise, stride);
   const TerrainLight light(shape, {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)},
-                           p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ), level < 2 ? 0 : 1);
+                           p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ),
+                           light_grid_of(level));
   const float* const first = &noise[rows.vertex(0) * stride + columns.vertex(0)];
   std::optional<ParentSamples> parent;
   if (level == 1) parent.emplace(shape, grid, p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ));

@@ -42,6 +42,10 @@ class TerrainLight {
 
   LightSamples samples() const;
 
+  // Of the noise (RidgedNoise::work) that the heights for it take.
+  static double noise_work(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
+                           std::int64_t block_z, std::size_t finest);
+
  private:
   static constexpr std::size_t kRows = (kMaxTerrainSize - 1) / kLightCells + 3;
   static constexpr std::size_t kStride = kLightRow + 16;

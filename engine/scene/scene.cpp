@@ -126,9 +126,10 @@ std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
   std::vector<world::Placement> placements;
   const core::BlockCoord block{};
   world::place_models(facts.world, facts.registry, block, placements);
-  std::vector<synthesis::CostSample> samples{
-      {facts.world.terrain_model, world::terrain_parameters(facts.world, block)}};
-  for (std::size_t k = 1; k < facts.levels.size(); ++k) {
+  std::vector<synthesis::CostSample> samples;
+  for (std::size_t k = 0; k < facts.levels.size(); ++k) {
+    const visibility::NodeCoord node{block, static_cast<std::uint8_t>(k)};
+    samples.push_back({facts.world.terrain_model, node_terrain(facts.world, node)});
     if (facts.levels[k].merged)
       samples.push_back({facts.merged_model, world::merged_parameters(block, static_cast<int>(k))});
   }

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "engine/models/terrain.hpp"
 #include "tests/engine/world/files.hpp"
 
 namespace psygen::game {
@@ -43,6 +44,12 @@ TEST(CalibrationSamples, RareTypesAreLookedForInMoreBlocks) {
   for (const synthesis::CostSample& sample : world_samples(world, registry(), 1, 10))
     ++found[sample.model];
   EXPECT_EQ(found[world.terrain_model], 10u);
+  std::set<std::int64_t> node_levels;
+  for (const synthesis::CostSample& sample : world_samples(world, registry(), 0, 10)) {
+    if (sample.model == world.terrain_model)
+      node_levels.insert(sample.parameters.integer(models::kTerrainNodeLevel));
+  }
+  EXPECT_EQ(node_levels.size(), 10u);
   for (const world::Scatter& scatter : world.scatter)
     EXPECT_EQ(found[scatter.model], 10u);
   world::World sparse = world;

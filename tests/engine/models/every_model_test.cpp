@@ -99,6 +99,7 @@ TEST(EveryModel, OfTerrainAndRocksHasExactSizesForAMillionParameterSets) {
 TEST(EveryModel, CostsAndErrorsAreOrderedByLevel) {
   for_random_models(20, [](const ModelType& type, const Parameters& p, int level) {
     ASSERT_GT(type.complexity(p, level), 0);
+    ASSERT_TRUE(std::isfinite(type.steps(p, level)) && type.steps(p, level) >= 0) << type.name();
     ASSERT_LE(std::log2(type.mesh_size(p, 0).triangle_count()), type.log2_cost(p) + 1e-9)
         << type.name();
     if (level == 0) {

@@ -132,6 +132,18 @@ TEST(RidgedNoise, LooksTheSameInEveryDirection) {
     EXPECT_NEAR(e / mean, 1, 0.12);
 }
 
+TEST(RidgedNoise, WorkIsThatOfItsSamplesAndOfOctavesNarrowerThanTheirSpacing) {
+  RidgedSettings settings;
+  settings.cells_per_step = 1e-6;
+  const double wide = RidgedNoise(settings).work(64, 64, 1);
+  EXPECT_NEAR(wide, 64 * 64 * settings.octaves, 0.01 * wide);
+  EXPECT_DOUBLE_EQ(RidgedNoise(settings).work(128, 64, 1), 2 * wide);
+  EXPECT_NEAR(RidgedNoise(settings).work(64, 64, 1, 3), wide / 3, 0.01 * wide);
+  EXPECT_NEAR(RidgedNoise(settings).work(64, 64, 1e7), 9 * wide, 0.01 * wide);
+  settings.warp = 0.2;
+  EXPECT_GT(RidgedNoise(settings).work(64, 64, 1), 5 * wide);
+}
+
 TEST(RidgedNoise, WithoutGainIsItsFirstOctave) {
   for (const double gain : {0.0, 1e-300, 1e-12, 1e-7, 0.01}) {
     const TerrainOracle oracle{.seed = 4, .gain = gain, .cells_per_step = 0.03};

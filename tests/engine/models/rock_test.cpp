@@ -190,6 +190,16 @@ TEST_F(Rock, FamiliesDifferInShadingShapeAndColour) {
   EXPECT_GT(contrast[kRockLayered], 1.15 * contrast[kRockFaceted]) << "layers show";
 }
 
+TEST_F(Rock, StepsOfFacetedRocksAreThoseOfTheirOwnVertices) {
+  Parameters p = rock(1, 4, 0.3, 0.5);
+  p.set_integer(kRockFamily, 0);
+  const double rounded = type->steps(p, 0);
+  p.set_integer(kRockFamily, 1);
+  EXPECT_GT(type->steps(p, 0), 2.5 * rounded);  // 4.7 µs and 1.5 µs
+  EXPECT_LT(type->steps(p, 0), 3.5 * rounded);
+  EXPECT_LT(type->steps(p, 4), 1.5 * type->steps(rock(1, 0, 0.3, 0.5), 0));
+}
+
 TEST_F(Rock, SharesOneIndexListPerSubdivisionAndShading) {
   const MeshSize a = type->mesh_size(rock(1, 3, 0.2, 0.5), 1);
   const MeshSize b = type->mesh_size(rock(2, 2, 0.3, 0.6), 0);

@@ -270,6 +270,21 @@ TEST_F(Terrain, WithItsSkirtsFacesUpAndOutwards) {
   }
 }
 
+// As measured: 13.9 µs for a block, 65.7 µs for a node of level 9, about 3 µs for the coarsest mesh
+// of either.
+TEST_F(Terrain, StepsOfNodesGrowAsTheirTimesDo) {
+  Parameters far = paper;
+  far.set_integer(kTerrainNodeLevel, 9);
+  EXPECT_GT(type->steps(far, 0), 4 * type->steps(paper, 0));
+  EXPECT_LT(type->steps(far, 0), 6 * type->steps(paper, 0));
+  EXPECT_GT(type->steps(paper, 1), type->steps(paper, 0)) << "with the samples of the parent";
+  EXPECT_LT(type->steps(far, 3), 2 * type->steps(paper, 3));
+  EXPECT_LT(type->steps(paper, 3), type->steps(paper, 0) / 10);
+  Parameters shadows = paper;
+  shadows.set_real(kTerrainSunElevation, 10);
+  EXPECT_GT(type->steps(shadows, 1), type->steps(paper, 1)) << "heights further away";
+}
+
 TEST_F(Terrain, LevelErrorIsAnHonestEstimate) {
   for (int level = 1; level < 4; ++level) {
     double largest = 0;
