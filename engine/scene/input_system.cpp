@@ -31,7 +31,7 @@ void input_system(const Settings& settings, const Input& input, const Clock& clo
     camera.predictions.push_back({tau_s, camera.predictor.predict(tau_s)});
   }
 
-  quality.governor.observe(input.frame_ms);
+  quality.governor.observe(input.frame_ms, input.frame_triangles);
   const double unhurried = settings.max_error_pixels * synthesis.coarsening;
   quality.error_pixels = unhurried * quality.governor.error_factor();
   quality.model_error_pixels = unhurried * std::sqrt(quality.governor.error_factor());

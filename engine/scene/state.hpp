@@ -42,7 +42,8 @@ struct Input {
   core::Extent size{1280, 720};
   std::vector<std::string> overlay_lines;
   render::View view = render::View::kNormal;
-  double frame_ms = 0;  // what the last frame took, without waiting for a display; 0: unknown
+  // What the last frame took, without waiting for a display, and drew; 0: unknown.
+  double frame_ms = 0, frame_triangles = 0;
 };
 
 // How fine the picture is in this tick.

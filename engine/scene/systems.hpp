@@ -60,7 +60,8 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
                    Counters& counters);
 
 // Writes down what the tick did.
-void telemetry_system(const Clock& clock, const Counters& counters, const DrawLists& draws,
-                      Synthesis& synthesis, Totals& totals, telemetry::FrameRecord& record);
+void telemetry_system(const Clock& clock, const Quality& quality, const Counters& counters,
+                      const DrawLists& draws, Synthesis& synthesis, Totals& totals,
+                      telemetry::FrameRecord& record);
 
 }  // namespace psygen::scene

@@ -2,8 +2,9 @@
 
 namespace psygen::scene {
 
-void telemetry_system(const Clock& clock, const Counters& counters, const DrawLists& draws,
-                      Synthesis& synthesis, Totals& totals, telemetry::FrameRecord& record) {
+void telemetry_system(const Clock& clock, const Quality& quality, const Counters& counters,
+                      const DrawLists& draws, Synthesis& synthesis, Totals& totals,
+                      telemetry::FrameRecord& record) {
   synthesis.cache->note_drawn(draws.meshes);
   const synthesis::CacheStats cache = synthesis.cache->stats();
   const auto since = [](std::uint64_t now, std::uint64_t before) {
@@ -12,6 +13,7 @@ void telemetry_system(const Clock& clock, const Counters& counters, const DrawLi
   record.time_s = clock.now_s;
   record.wait_ms = counters.frame.wait_ms;
   record.gpu_ms = counters.frame.gpu_ms.value_or(0.0);
+  record.error_pixels = quality.error_pixels;
   record.triangles = counters.frame.triangles;
   record.draws = counters.frame.draws;
   record.nodes_in_view = counters.nodes_in_view;

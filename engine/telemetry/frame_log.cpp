@@ -15,7 +15,8 @@ namespace {
 constexpr std::string_view kColumnsBeforeSystems =
     "frame,time_s,frame_ms,main_cpu_ms,wait_ms,gpu_ms";
 constexpr std::string_view kColumnsAfterSystems =
-    "triangles,draws,nodes_in_view,holes,coarse_nodes,missing_pixels_percent,cache_bytes,cache_"
+    "error_pixels,triangles,draws,nodes_in_view,holes,coarse_nodes,missing_pixels_percent,cache_"
+    "bytes,cache_"
     "hits,"
     "cache_misses,cache_evictions,cache_regenerations,requests_queued,requests_completed,"
     "models_synthesised,triangles_synthesised,bytes_synthesised,synthesis_seconds";
@@ -27,10 +28,10 @@ std::string row(const FrameRecord& r, std::size_t system_count) {
                  r.main_cpu_ms, r.wait_ms, r.gpu_ms);
   for (std::size_t i = 0; i < system_count; ++i)
     fmt::format_to(to, ",{:.4f}", r.system_ms[i]);
-  fmt::format_to(to, ",{},{},{},{},{},{:.4f},{},{},{},{},{},{},{},{},{},{},{:.6f}\n", r.triangles,
-                 r.draws, r.nodes_in_view, r.holes, r.coarse_nodes, r.missing_pixels_percent,
-                 r.cache_bytes, r.cache_hits, r.cache_misses, r.cache_evictions,
-                 r.cache_regenerations, r.requests_queued, r.requests_completed,
+  fmt::format_to(to, ",{:.3f},{},{},{},{},{},{:.4f},{},{},{},{},{},{},{},{},{},{},{:.6f}\n",
+                 r.error_pixels, r.triangles, r.draws, r.nodes_in_view, r.holes, r.coarse_nodes,
+                 r.missing_pixels_percent, r.cache_bytes, r.cache_hits, r.cache_misses,
+                 r.cache_evictions, r.cache_regenerations, r.requests_queued, r.requests_completed,
                  r.models_synthesised, r.triangles_synthesised, r.bytes_synthesised,
                  r.synthesis_seconds);
   return text;

@@ -26,6 +26,7 @@ struct FrameRecord {
   double gpu_ms = 0;  // by timestamps, of the newest frame that is known; 0: unknown, or software
   std::array<float, kMaxSystems> system_ms{};  // in the order of FrameLog::systems()
 
+  double error_pixels = 0;      // that levels of detail might have
   std::uint64_t triangles = 0;  // submitted
   std::uint32_t draws = 0;
   std::uint32_t nodes_in_view = 0;

@@ -99,6 +99,67 @@ TEST(Governor, ASlowFirstFrameDoesNotEndTheStart) {
   EXPECT_NEAR(answer_to(governor, 5, 40), -0.012, 1e-9);
 }
 
+// A picture whose triangles follow the error some frames late, of a view that may become wider.
+class Picture {
+ public:
+  double triangles(double factor) {
+    factors_.push_back(factor);
+    const double acting = factors_.front();
+    if (factors_.size() > 12) factors_.pop_front();
+    return 40'000 * width / acting;
+  }
+  double width = 1;
+
+ private:
+  std::deque<double> factors_;
+};
+
+double frame_ms_of(double triangles) {
+  return 5 + triangles * 1.5e-4;
+}
+
+// Frames that take more than a quarter too long after a view has become three times as wide.
+int slow_frames_behind_a_hilltop(bool knows_triangles) {
+  Governor governor = at_the_finest({.target_ms = 16});
+  Picture picture;
+  int slow = 0;
+  for (int i = 0; i < 400; ++i) {
+    picture.width = i < 200 ? 1 : 3;
+    const double triangles = picture.triangles(governor.error_factor());
+    slow += i >= 200 && frame_ms_of(triangles) > 20 ? 1 : 0;
+    governor.observe(frame_ms_of(triangles), knows_triangles ? triangles : 0);
+  }
+  EXPECT_LE(frame_ms_of(picture.triangles(governor.error_factor())), 16.1);
+  return slow;
+}
+
+TEST(Governor, KnowsFromTheTrianglesWhatAWideViewWillTake) {
+  EXPECT_GT(slow_frames_behind_a_hilltop(false), 25);
+  EXPECT_LT(slow_frames_behind_a_hilltop(true), 18);  // of which twelve are the picture's own
+}
+
+TEST(Governor, AWideViewIsNotAnsweredByMoreThanItNeeds) {
+  Governor governor = at_the_finest({.target_ms = 16});
+  Picture picture;
+  double most = 0;
+  for (int i = 0; i < 1000; ++i) {
+    picture.width = i < 200 ? 1 : 3;
+    const double triangles = picture.triangles(governor.error_factor());
+    governor.observe(frame_ms_of(triangles), triangles);
+    most = std::max(most, governor.error_factor());
+  }
+  const double enough = 3 * 40'000 / ((16 - 5) / 1.5e-4);
+  EXPECT_GT(most, enough);
+  EXPECT_LT(most, 1.5 * enough);
+}
+
+TEST(Governor, TrianglesThatCostNothingChangeNothing) {
+  Governor governor = at_the_finest({.target_ms = 16});
+  for (int i = 0; i < 1000; ++i)
+    governor.observe(5, i < 500 ? 10'000 : 1'000'000);
+  EXPECT_EQ(governor.error_factor(), 1);
+}
+
 void expect_rest(Governor governor) {
   Load load(4, 40, 40);
   for (int i = 0; i < 3000; ++i)

@@ -1,0 +1,52 @@
+#include "engine/scene/frame_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace psygen::scene {
+namespace {
+
+TEST(FrameLine, BeforeTheFirstFrameNothingIsExpected) {
+  const FrameLine line;
+  EXPECT_EQ(line.frame_ms(1e6), 0);
+  EXPECT_TRUE(std::isinf(line.triangles(10)));
+}
+
+TEST(FrameLine, FindsTheLineThatFramesLieOnThroughTheirNoise) {
+  FrameLine line;
+  for (int i = 0; i < 600; ++i) {
+    const double triangles = 50'000 + 30'000 * std::sin(i * 0.05);
+    line.observe(6 + triangles * 1.5e-4 + (i % 2 == 0 ? 3 : -3), triangles);
+  }
+  EXPECT_NEAR(line.frame_ms(100'000), 21, 1);
+  EXPECT_NEAR(line.frame_ms(20'000), 9, 1);
+  EXPECT_NEAR(line.triangles(16.7), 71'000, 5000);
+}
+
+TEST(FrameLine, WhereTrianglesHardlyChangeHalfOfTheTimeIsTheirs) {
+  FrameLine line;
+  for (int i = 0; i < 600; ++i)
+    line.observe(10, 20'000 + i % 2);
+  EXPECT_NEAR(line.frame_ms(40'000), 15, 0.1);
+  EXPECT_NEAR(line.triangles(15), 40'000, 400);
+}
+
+TEST(FrameLine, WhereTheyMakeNoDifferenceAnyNumberIsAllowed) {
+  FrameLine line;
+  for (int i = 0; i < 600; ++i)
+    line.observe(30 - 1e-4 * (i % 100) * 1000, (i % 100) * 1000);  // less with more of them
+  EXPECT_TRUE(std::isinf(line.triangles(16)));
+}
+
+TEST(FrameLine, ForgetsWhatWasLongAgo) {
+  FrameLine line;
+  for (int i = 0; i < 600; ++i)
+    line.observe(20, 50'000);
+  for (int i = 0; i < 1200; ++i)
+    line.observe(4, 50'000);
+  EXPECT_NEAR(line.frame_ms(50'000), 4, 0.1);
+}
+
+}  // namespace
+}  // namespace psygen::scene
