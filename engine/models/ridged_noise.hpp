@@ -44,7 +44,7 @@ class RidgedNoise {
 
   // How long that takes, roughly, for samples `spacing` integers apart along both axes: in samples
   // of one octave with wide lattice cells. Where they are narrower than the spacing each row of
-  // samples has two lattice rows of its own, and a sample takes ten times as long.
+  // samples has two lattice rows of its own, and a sample takes nine times as long.
   double work(std::size_t columns, std::size_t rows, double spacing,
               int octaves = kMaxOctaves) const;
 

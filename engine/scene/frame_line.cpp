@@ -31,10 +31,6 @@ double FrameLine::slope() const {
   return std::max((covariance_ + trust * assumed) / (variance_ + trust), 0.0);
 }
 
-double FrameLine::frame_ms(double triangles) const {
-  return mean_ms_ + slope() * (triangles - mean_triangles_);
-}
-
 double FrameLine::triangles(double frame_ms) const {
   const double each_ms = slope();
   if (!(each_ms > 0)) return std::numeric_limits<double>::infinity();

@@ -10,9 +10,9 @@ class FrameLine {
   // One frame; the last ones of about two seconds at 60 Hz count.
   void observe(double frame_ms, double triangles);
 
-  // Both are on the line; before the first frame 0 and infinity.
-  double frame_ms(double triangles) const;
-  double triangles(double frame_ms) const;  // at least 0; infinity where they make no difference
+  // How many a frame of this time draws; at least 0. Infinity where they make no difference, and
+  // before the first frame.
+  double triangles(double frame_ms) const;
 
  private:
   double slope() const;  // milliseconds a triangle, at least 0
