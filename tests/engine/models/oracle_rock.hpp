@@ -1,7 +1,9 @@
 // The rock once more, as docs/models.md defines it: in double precision, with a list of edges and a
-// plain recursion over subdivisions. The tests hold the engine's places to it.
+// plain recursion over subdivisions; then how every vertex looks. The tests hold the engine's
+// meshes to it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -13,6 +15,7 @@
 
 #include "engine/core/hash.hpp"
 #include "engine/models/rock.hpp"
+#include "tests/engine/models/oracle_look.hpp"
 
 namespace psygen::models::test {
 
@@ -21,6 +24,7 @@ struct RockOracle {
   int subdivisions = 2;
   double radius = 1, amplitude = 0.2, decay = 0.5;
   int family = 1;  // 0 rounded, 1 faceted, 2 layered
+  double albedo = 0.26, warmth = 0.25, moss = 0.3;
 
   std::vector<glm::dvec3> places = {};  // of the vertices, metres over the foot
   std::vector<std::array<int, 3>> triangles = {};
@@ -102,7 +106,39 @@ struct RockOracle {
     return sums;
   }
 
+  // The corners of all triangles, one after the other.
+  std::vector<Look> looks() const {
+    const std::vector<glm::dvec3> shared = normals();
+    std::vector<Look> result;
+    for (const auto& t : triangles) {
+      const glm::dvec3 a = places[static_cast<std::size_t>(t[0])];
+      const glm::dvec3 face = glm::normalize(glm::cross(
+          places[static_cast<std::size_t>(t[1])] - a, places[static_cast<std::size_t>(t[2])] - a));
+      for (const int v : t) {
+        const glm::dvec3 n = glm::normalize(shared[static_cast<std::size_t>(v)]);
+        result.push_back(look(static_cast<std::size_t>(v), n));
+        if (family == kRockFaceted) result.back().normal = 0.7 * face + 0.3 * n;
+      }
+    }
+    return result;
+  }
+
  private:
+  Look look(std::size_t v, const glm::dvec3& n) const {
+    const double u = n.y / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+    const double g = (random(2 + v, 1) + random(2 + v, v < 4 ? 3 : 0)) / 2;
+    const double rise = std::clamp(0.8 * places[v].y / scale().y + 0.16, 0.0, 1.0);
+    const glm::dvec3 before = glm::normalize(places[v] / scale() - glm::dvec3(0, 0.45, 0));
+    const double w = 0.22 * warmth, tint = family == kRockLayered ? 0.14 : 0;
+    const double tone = (1 + 0.25 * g) * (0.86 + 0.14 * rise) * (1 + tint * band(before));
+    const double cover = moss * (2 - moss) * std::clamp(4 * (u - 0.35) + 2 * g, 0.0, 1.0);
+    const glm::dvec3 light = glm::dvec3(1 + w, 1, 1 - w) * albedo * (1 + 0.15 * random(1, 3));
+    const glm::dvec3 stone =
+        tone * glm::dvec3(std::sqrt(light.x), std::sqrt(light.y), std::sqrt(light.z));
+    return {n, stone + cover * (glm::dvec3(0.26, 0.33, 0.17) - stone),
+            (0.3 + 0.7 * rise) * (0.8 + 0.2 * u)};
+  }
+
   // How far a layer stands out in a direction, in [−1, 1].
   double band(const glm::dvec3& direction) const {
     const std::uint64_t item = std::uint64_t{1} << 31;
@@ -111,23 +147,31 @@ struct RockOracle {
     return std::abs(2 * (t - std::floor(t)) - 1) * 2 - 1;
   }
 
+  glm::dvec3 scale() const {
+    return radius * glm::dvec3{1 + 0.2 * random(1, 0),
+                               (0.75 + 0.15 * random(1, 1)) * (family == 2 ? 0.75 : 1),
+                               1 + 0.2 * random(1, 2)};
+  }
+
   void stretch() {
-    const glm::dvec3 scale{1 + 0.2 * random(1, 0),
-                           (0.75 + 0.15 * random(1, 1)) * (family == 2 ? 0.75 : 1),
-                           1 + 0.2 * random(1, 2)};
+    const glm::dvec3 factors = scale();
     for (glm::dvec3& p : places)
-      p = p * (family == 2 ? 1 + 0.13 * band(glm::normalize(p)) : 1.0) * scale * radius +
-          glm::dvec3(0, 0.45 * scale.y * radius, 0);
+      p = p * (family == 2 ? 1 + 0.13 * band(glm::normalize(p)) : 1.0) * factors +
+          glm::dvec3(0, 0.45 * factors.y, 0);
   }
 };
 
-inline RockOracle rock_oracle(const Parameters& p) {
+inline RockOracle rock_oracle(const Parameters& p, int level = 0) {
+  const int subdivisions = static_cast<int>(p.integer(kRockSubdivisions)) - level;
   RockOracle oracle{.seed = static_cast<std::uint64_t>(p.integer(kRockSeed)),
-                    .subdivisions = static_cast<int>(p.integer(kRockSubdivisions)),
+                    .subdivisions = std::max(subdivisions, 0),
                     .radius = p.real(kRockRadiusM),
                     .amplitude = p.real(kRockAmplitude),
                     .decay = p.real(kRockDecay),
-                    .family = static_cast<int>(p.integer(kRockFamily))};
+                    .family = static_cast<int>(p.integer(kRockFamily)),
+                    .albedo = p.real(kRockAlbedo),
+                    .warmth = p.real(kRockWarmth),
+                    .moss = p.real(kRockMoss)};
   oracle.build();
   return oracle;
 }
