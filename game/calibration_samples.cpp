@@ -10,6 +10,11 @@ namespace {
 constexpr std::int64_t kEndlessSide = std::int64_t{1} << 16;
 constexpr std::size_t kBlocksForRareTypes = 8;  // times as many as for others
 constexpr std::size_t kNodeLevels = 10;         // of 64 vertices, 1 m apart, to 32 km a side
+
+// All levels in turn, of even and odd nodes alike.
+int node_level_of(std::size_t i) {
+  return static_cast<int>((i + i / kNodeLevels) % kNodeLevels);
+}
 }  // namespace
 
 std::vector<core::BlockCoord> sample_blocks(const world::World& world, int half, std::size_t most) {
@@ -41,7 +46,7 @@ std::vector<synthesis::CostSample> world_samples(const world::World& world,
   const auto blocks = sample_blocks(world, half, kBlocksForRareTypes * count);
   for (std::size_t i = 0; i < blocks.size() && (i < count || rare()); ++i) {
     models::Parameters terrain = world::terrain_parameters(world, blocks[i]);
-    terrain.set_integer(models::kTerrainNodeLevel, static_cast<int>(i % kNodeLevels));
+    terrain.set_integer(models::kTerrainNodeLevel, node_level_of(i));
     take(world.terrain_model, terrain);
     world::place_models(world, registry, blocks[i], placements);
     for (const world::Placement& placement : placements)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "engine/core/replace_file.hpp"
@@ -14,7 +15,7 @@
 namespace psygen::amplify {
 namespace {
 
-constexpr const char *kWorldFile = "world.toml", *kSampleFile = "sample.hash";
+constexpr const char* kWorldFile = "world.toml";
 
 std::string name_of(core::BlockCoord block) {
   return fmt::format("block_{}_{}", block.x, block.z);
@@ -32,21 +33,25 @@ core::Result<exchange::Object> object_of(const world::World& world,
   return object;
 }
 
-// Whether the file holds this text, which it gets where it does not exist.
-core::Result<bool> same_or_written(const std::filesystem::path& file, const std::string& text) {
-  std::error_code error;
-  if (std::filesystem::exists(file, error)) {
-    return world::read_text_file(file).map([&text](const auto& theirs) { return theirs == text; });
-  }
-  return core::replace_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})
-      .map([] { return true; });
-}
+// So much of a text that lost its end tells whose it was.
+constexpr std::size_t kTelling = 8;
 
-tl::unexpected<core::Error> refusal(const std::filesystem::path& folder, const char* of_what,
-                                    const char* file) {
-  return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("{}: holds the blocks of {} ({}); choose another folder",
-                                folder.string(), of_what, (folder / file).string()));
+// Of the bytes of a block in the middle of the world; nothing where a model of it fails.
+std::optional<std::uint64_t> sample_of(const world::World& world, const models::Registry& registry,
+                                       exchange::Format format) {
+  const core::BlockCoord middle{static_cast<std::int32_t>(world.blocks_x / 2),
+                                static_cast<std::int32_t>(world.blocks_z / 2)};
+  const auto meshes = sample_world_hash(world, registry, middle);
+  const auto document = block_document(world, registry, middle, 0);
+  if (!meshes || !document) return std::nullopt;
+  if (format == exchange::Format::kGlb) {
+    const auto bytes = exchange::glb_bytes(*document);
+    if (!bytes) return std::nullopt;
+    return core::hash_bytes(std::as_bytes(std::span(*bytes)), *meshes);
+  }
+  const exchange::ObjText text = exchange::obj_text(*document, "sample.mtl");
+  return core::hash_bytes(std::as_bytes(std::span(text.obj)),
+                          core::hash_bytes(std::as_bytes(std::span(text.mtl)), *meshes));
 }
 
 }  // namespace
@@ -122,23 +127,51 @@ core::Result<std::unique_ptr<BlockFolder>> BlockFolder::open(std::filesystem::pa
   return opened;
 }
 
-// Leaves the world's file in the folder, or finds the same one there.
-core::Result<void> BlockFolder::claim() const {
-  const auto same = same_or_written(folder_ / kWorldFile, world::write_world(world_, registry_));
-  if (!same) return tl::unexpected(same.error());
-  if (!*same) return refusal(folder_, "another world", kWorldFile);
-  return claim_version();
+// Leaves a text in the folder, or finds the same one there, or what is left of it. Where it is
+// missing beside blocks nobody knows whose they are.
+core::Result<void> BlockFolder::claim(const char* file, const std::string& text,
+                                      const char* others) const {
+  const std::filesystem::path path = folder_ / file;
+  std::string theirs;
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) {
+    auto read = world::read_text_file(path);
+    if (!read) return tl::unexpected(read.error());
+    theirs = std::move(*read);
+  }
+  if (theirs == text) return {};
+  const auto refuse = [&](std::string_view why) {
+    return core::fail(
+        core::ErrorCode::kInvalidArgument,
+        fmt::format("{}: {} ({}); choose another folder", folder_.string(), why, path.string()));
+  };
+  if (theirs.empty() && has_blocks())
+    return refuse("holds blocks, and nothing tells whose they are");
+  const bool rest = theirs.size() >= kTelling && text.starts_with(theirs);
+  if (!theirs.empty() && !rest) return refuse(fmt::format("holds the blocks of {}", others));
+  return core::replace_file(path,
+                            {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-// The same with the hash of a few blocks. Where a model type fails they have none: its blocks get
-// no files either.
-core::Result<void> BlockFolder::claim_version() const {
-  const std::optional<std::uint64_t> sample = sample_world_hash(world_, registry_, {0, 0});
-  if (!sample) return {};
-  const auto same = same_or_written(folder_ / kSampleFile, fmt::format("{:016x}\n", *sample));
-  if (!same) return tl::unexpected(same.error());
-  if (!*same) return refusal(folder_, "this world made by another version", kSampleFile);
-  return {};
+// Whether there are blocks of this format.
+bool BlockFolder::has_blocks() const {
+  const std::string extension = fmt::format(".{}", exchange::name_of(format_));
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, error)) {
+    const std::filesystem::path& path = entry.path();
+    if (path.extension() == extension && path.filename().string().starts_with("block_"))
+      return true;
+  }
+  return false;
+}
+
+core::Result<void> BlockFolder::claim() const {
+  if (auto ok = claim(kWorldFile, world::write_world(world_, registry_), "another world"); !ok)
+    return ok;
+  const auto sample = sample_of(world_, registry_, format_);
+  if (!sample) return {};  // a later run finds blocks without one, and refuses them
+  return claim(format_ == exchange::Format::kGlb ? "sample_glb.hash" : "sample_obj.hash",
+               fmt::format("{:016x}\n", *sample), "this world made by another version");
 }
 
 std::unique_ptr<BlockSink> BlockFolder::make_sink() {

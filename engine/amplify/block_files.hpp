@@ -1,8 +1,9 @@
 // A folder with one file per block: glTF or OBJ with everything on it at one level of detail. Can
 // be gone on with: what is there already is not written again unless it has lost its end, what a
 // killed process left half-done is removed, a block with a mesh that failed gets no file. The
-// folder also holds the world's own file and the hash of a sample of its blocks, so that blocks of
-// two worlds, or of one world made by two versions of the engine, never mix.
+// folder also holds the world's own file and the hash of a sample of its blocks as they are
+// written, so that blocks of two worlds never mix, nor, as far as that sample shows, those of one
+// world made by two versions of the engine.
 #pragma once
 
 #include <atomic>
@@ -21,8 +22,8 @@ core::Result<exchange::Document> block_document(const world::World& world,
 class BlockFolder {
  public:
   // World and registry outlive it. Creates the folder. Fails with kIo where it cannot be written,
-  // with kInvalidArgument where it holds the blocks of another world, or such as this version of
-  // the engine and these model types would make otherwise.
+  // with kInvalidArgument where it holds the blocks of another world, such as this version of the
+  // engine and these model types would make otherwise, or such of which neither is known.
   static core::Result<std::unique_ptr<BlockFolder>> open(std::filesystem::path folder,
                                                          const world::World& world,
                                                          const models::Registry& registry,
@@ -40,7 +41,8 @@ class BlockFolder {
   BlockFolder(std::filesystem::path folder, const world::World& world,
               const models::Registry& registry, exchange::Format format);
   core::Result<void> claim() const;
-  core::Result<void> claim_version() const;
+  core::Result<void> claim(const char* file, const std::string& text, const char* others) const;
+  bool has_blocks() const;
 
   std::filesystem::path folder_;
   const world::World& world_;

@@ -121,6 +121,7 @@ core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double d
   state.input.frame_ms = renderer_->device().software
                              ? frame_ms - drawn.display_ms
                              : std::max(frame_ms - drawn.wait_ms, drawn.gpu_ms.value_or(0.0));
+  // On a device of its own the time is that of a frame or two before.
   state.input.frame_triangles = static_cast<double>(drawn.triangles);
   return {};
 }

@@ -2,19 +2,20 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <optional>
 #include <string>
 
 namespace psygen::exchange {
 namespace {
 
-// Up to `count` bytes of the file from its start, or the last ones.
-std::string bytes_of(const std::filesystem::path& path, std::size_t count, bool last) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return {};
-  const auto size = static_cast<std::size_t>(std::max<std::streamoff>(file.tellg(), 0));
-  std::string bytes(std::min(count, size), '\0');
-  file.seekg(static_cast<std::streamoff>(last ? size - bytes.size() : 0));
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+// Up to `count` bytes from the file's start; nothing where it cannot be read.
+std::optional<std::string> first_bytes(const std::filesystem::path& path, std::size_t count) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(count, '\0');
+  if (!file || (!file.read(bytes.data(), static_cast<std::streamsize>(count)) && !file.eof()))
+    return std::nullopt;
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
   return bytes;
 }
 
@@ -26,22 +27,32 @@ bool agree(std::string_view a, std::string_view b) {
 // A .glb starts with its name, its version and the length of the whole, little-endian.
 bool glb_is_cut_short(const std::filesystem::path& path, std::uintmax_t size) {
   constexpr std::size_t kHead = 12;
-  const std::string head = bytes_of(path, kHead, false);
-  if (!agree(head, std::string_view("glTF\2\0\0\0", 8))) return false;
-  if (head.size() < kHead) return true;
+  const auto head = first_bytes(path, kHead);
+  if (!head || !agree(*head, std::string_view("glTF\2\0\0\0", 8))) return false;
+  if (head->size() < kHead) return true;
   std::uint32_t length = 0;
   for (std::size_t i = 0; i < 4; ++i)
-    length |= std::uint32_t{static_cast<unsigned char>(head[8 + i])} << (8 * i);
+    length |= std::uint32_t{static_cast<unsigned char>((*head)[8 + i])} << (8 * i);
   return size < length;
 }
 
+bool is_missing_or_empty(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  return error ? error == std::errc::no_such_file_or_directory : size == 0;
+}
+
+// What somebody has added behind the last line does no harm.
 bool obj_is_cut_short(const std::filesystem::path& path, std::string_view document_name) {
   const std::string first = obj_first_line(document_name);
-  if (!agree(bytes_of(path, first.size(), false), first)) return false;
+  const auto head = first_bytes(path, first.size());
+  if (!head || !agree(*head, first)) return false;
   std::filesystem::path mtl = path;
   mtl.replace_extension(".mtl");
-  return bytes_of(path, kObjLastLine.size(), true) != kObjLastLine ||
-         bytes_of(mtl, kObjLastLine.size(), true) != kObjLastLine;
+  if (is_missing_or_empty(mtl)) return true;
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return !file.bad() && text.size() >= head->size() && text.find(kObjLastLine) == std::string::npos;
 }
 
 }  // namespace

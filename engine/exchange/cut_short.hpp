@@ -1,5 +1,5 @@
-// Tells a file that write_document() wrote and that lost its end since (a full disk while it was
-// copied, a damaged file system) from a whole one. Looks at the first and last bytes only.
+// Tells a file that write_document() wrote and that lost its end since, as when a disk was full
+// while it was copied, from a whole one. Damage within a file is not seen.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,10 @@
 
 namespace psygen::exchange {
 
-// Whether `path` begins as the file of a document of this name and lacks its end, or the .mtl that
-// belongs to it, or is empty. False for a whole file, for what another program wrote, and for what
-// does not exist or cannot be read. Any thread.
+// Whether `path` is empty, or begins as such a file and lacks its end (of a .glb: is shorter than
+// it says), or is the .obj of a document of this name whose .mtl is missing or empty. False for a
+// whole file, whatever was added to it or to its materials, for one that does not begin like that,
+// and for what does not exist or cannot be read. Any thread.
 bool is_cut_short(const std::filesystem::path& path, Format format, std::string_view document_name);
 
 }  // namespace psygen::exchange

@@ -99,8 +99,8 @@ class ModelType {
   // this.
   virtual double complexity(const Parameters& p, int level) const = 0;
   // What a level is made from, in steps of about equal time (branches of trees, samples and octaves
-  // of terrain), counted for this very seed: beside the triangles of the level what its time is
-  // predicted from. 0: as many as level 0 has triangles. Without synthesis.
+  // of terrain, vertices of rocks), counted for this very seed: beside the triangles of the level
+  // what its time is predicted from. 0: as many as level 0 has triangles. Without synthesis.
   virtual double steps(const Parameters&, int) const { return 0; }
   // Upper bound of the triangles of level 0 over all seeds, as log2, computed without overflow for
   // any parameters inside or outside their hard ranges. Used to refuse hostile values.

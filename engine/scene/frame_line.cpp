@@ -7,9 +7,9 @@ namespace psygen::scene {
 namespace {
 
 constexpr double kNewest = 1.0 / 120;  // share of the newest frame
-// While triangles have hardly changed nothing tells how they count: half of a frame's time is taken
-// to be theirs, with the weight that a spread of this part of their mean would have.
-constexpr double kAssumedShare = 0.5, kAssumedSpread = 0.2;
+// While triangles have hardly changed nothing tells how they count: they make no difference then,
+// and with this spread, in parts of their mean, half of what was measured.
+constexpr double kTrustedSpread = 0.1;
 
 }  // namespace
 
@@ -25,10 +25,8 @@ void FrameLine::observe(double frame_ms, double triangles) {
 
 double FrameLine::slope() const {
   if (!(mean_triangles_ > 0)) return 0;
-  const double assumed = kAssumedShare * mean_ms_ / mean_triangles_;
-  const double spread = kAssumedSpread * mean_triangles_;
-  const double trust = spread * spread;
-  return std::max((covariance_ + trust * assumed) / (variance_ + trust), 0.0);
+  const double doubt = kTrustedSpread * mean_triangles_;
+  return std::max(covariance_ / (variance_ + doubt * doubt), 0.0);
 }
 
 double FrameLine::triangles(double frame_ms) const {

@@ -13,7 +13,7 @@ constexpr double kSmoothing = 0.1;  // share of the newest frame; the first coun
 constexpr double kStepUp = 0.012, kStepDown = 0.003, kStartStepDown = 0.012;
 constexpr double kFullStepAt = 0.25;
 constexpr double kMostSteps = 3;
-// Where too many triangles are seen, so much of the error is added in a frame at most.
+// Where too many triangles are seen, so much of the error is added in a frame at most, beside that.
 constexpr double kJump = 0.12;
 
 }  // namespace

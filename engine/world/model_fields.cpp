@@ -22,6 +22,11 @@ std::size_t culprit_of(const ModelFields& fields, const models::Parameters& p) {
   return last;
 }
 
+std::uint32_t corner_count(const ModelFields& fields) {
+  return 1U << std::ranges::count_if(fields.ranges,
+                                     [](const ParameterRange& r) { return r.low != r.high; });
+}
+
 }  // namespace
 
 ModelFields fields_of(const models::ModelType& type, int line) {
@@ -62,20 +67,22 @@ models::Parameters corner_of(const ModelFields& fields, std::uint32_t corner) {
   return p;
 }
 
-double check_model(const ModelFields& fields, Problems& problems) {
-  std::uint32_t ranged = 0;
-  for (const ParameterRange& range : fields.ranges)
-    ranged += range.low != range.high ? 1 : 0;
-  double cost = 0;
-  for (std::uint32_t corner = 0; corner < (1U << ranged); ++corner) {
+bool check_model(const ModelFields& fields, Problems& problems) {
+  for (std::uint32_t corner = 0; corner < corner_count(fields); ++corner) {
     const models::Parameters p = corner_of(fields, corner);
     if (const auto valid = models::validate(*fields.type, p); !valid) {
       const std::size_t i = culprit_of(fields, p);
       problems.add(fields.lines[i], fields.names[i], valid.error().message, valid.error().code);
-      return 0;
+      return false;
     }
-    cost = std::max(cost, fields.type->log2_cost(p));
   }
+  return true;
+}
+
+double log2_cost(const ModelFields& fields) {
+  double cost = 0;
+  for (std::uint32_t corner = 0; corner < corner_count(fields); ++corner)
+    cost = std::max(cost, fields.type->log2_cost(corner_of(fields, corner)));
   return cost;
 }
 

@@ -30,7 +30,10 @@ void read_parameter(TableReader& reader, std::string_view key, std::size_t i, bo
 // that is not a single value.
 models::Parameters corner_of(const ModelFields& fields, std::uint32_t corner);
 
-// Asks the model about every corner of its ranges. Returns the largest cost as log2 of triangles.
-double check_model(const ModelFields& fields, Problems& problems);
+// Asks the model about every corner of its ranges. False after a problem.
+bool check_model(const ModelFields& fields, Problems& problems);
+
+// The largest cost of any of them, as log2 of triangles, whether they are allowed or not.
+double log2_cost(const ModelFields& fields);
 
 }  // namespace psygen::world

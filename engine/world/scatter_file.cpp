@@ -69,8 +69,9 @@ double read_scatter(const Node& node, std::size_t number, const models::Registry
       read_parameter(reader, specs[i].name, i, true, fields);
   }
   reader.finish();
+  const bool allowed = check_model(fields, problems) && !too_many;
   const double cost =
-      check_model(fields, problems) + std::log2(std::max<double>(static_cast<double>(count), 1));
+      log2_cost(fields) + std::log2(std::max<double>(static_cast<double>(count), 1));
   if (too_many)
     reader.problem(reader.find("count")->line, "count",
                    fmt::format("{} is not allowed: it must be an integer from 0 to {} ({} on each "
@@ -78,7 +79,7 @@ double read_scatter(const Node& node, std::size_t number, const models::Registry
                                count, kMaxModelsPerBlock, models::predicted_cost_text(cost)));
   scatter.ranges = std::move(fields.ranges);
   world.scatter.push_back(std::move(scatter));
-  return too_many ? 0 : cost;
+  return allowed ? cost : 0;
 }
 
 }  // namespace

@@ -125,17 +125,48 @@ TEST(BlockFiles, TheBlocksOfAnotherVersionOfTheEngineAreNotMixedIn) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
   ASSERT_TRUE(make_files(world, folder.path(), Format::kGlb));
-  const std::string hash = content(folder / "sample.hash");
+  const std::string hash = content(folder / "sample_glb.hash");
   ASSERT_EQ(hash.size(), 17u);
   std::filesystem::remove(folder / "block_2_2.glb");
-  std::ofstream(folder / "sample.hash") << "0123456789abcdef\n";
+  std::ofstream(folder / "sample_glb.hash") << "0123456789abcdef\n";
   const auto other = make_files(world, folder.path(), Format::kGlb);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, core::ErrorCode::kInvalidArgument);
-  EXPECT_NE(other.error().message.find("sample.hash"), std::string::npos);
+  EXPECT_NE(other.error().message.find("sample_glb.hash"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder / "block_2_2.glb"));
-  std::ofstream(folder / "sample.hash") << hash;
+  std::ofstream(folder / "sample_glb.hash") << hash;
   EXPECT_TRUE(make_files(world, folder.path(), Format::kGlb));
+  EXPECT_TRUE(make_files(world, folder.path(), Format::kObj)) << "another format has its own";
+}
+
+TEST(BlockFiles, BlocksOfWhichNothingTellsWhoseTheyAreAreNotClaimed) {
+  const world::World world = parsed(kSmallWorld);
+  for (const char* lost : {"world.toml", "sample_glb.hash"}) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(make_files(world, folder.path(), Format::kGlb));
+    std::filesystem::remove(folder / lost);
+    const auto made = make_files(world, folder.path(), Format::kGlb);
+    ASSERT_FALSE(made) << lost;
+    EXPECT_NE(made.error().message.find(lost), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder / lost));
+    std::filesystem::resize_file(folder / "block_2_2.glb", 0);
+    std::ofstream(folder / lost) << "";
+    EXPECT_FALSE(make_files(world, folder.path(), Format::kGlb)) << lost;
+    EXPECT_EQ(std::filesystem::file_size(folder / "block_2_2.glb"), 0u);
+  }
+}
+
+TEST(BlockFiles, WhatIsLeftOfTheFilesThatTellWhoseBlocksTheseAreIsEnough) {
+  const world::World world = parsed(kSmallWorld);
+  const TemporaryFolder folder;
+  ASSERT_TRUE(make_files(world, folder.path(), Format::kGlb));
+  for (const char* file : {"world.toml", "sample_glb.hash"}) {
+    const std::string whole = content(folder / file);
+    std::filesystem::resize_file(folder / file, 10);
+    const auto made = make_files(world, folder.path(), Format::kGlb);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_EQ(content(folder / file), whole);
+  }
 }
 
 TEST(BlockFiles, WhatHasLostItsEndIsWrittenAgain) {

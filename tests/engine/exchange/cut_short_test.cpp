@@ -47,11 +47,24 @@ TEST(CutShortObj, ItsMaterialsBelongToIt) {
   ASSERT_TRUE(write_document(obj, Format::kObj, {kName, {synthesised("rock", 0)}}));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, kName));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, "another"));
-  std::filesystem::resize_file(mtl, std::filesystem::file_size(mtl) - 1);
+  std::ofstream(mtl, std::ios::app) << "Kd 1 0 0\n";  // somebody's own
+  std::ofstream(obj, std::ios::app) << "o mine\n";
+  EXPECT_FALSE(is_cut_short(obj, Format::kObj, kName));
+  std::filesystem::resize_file(mtl, 0);
   EXPECT_TRUE(is_cut_short(obj, Format::kObj, kName));
   std::filesystem::remove(mtl);
   EXPECT_TRUE(is_cut_short(obj, Format::kObj, kName));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, "another"));  // nobody's who asks
+}
+
+TEST(CutShortFile, WhatCannotBeReadIsNot) {
+  const TemporaryFolder folder;
+  for (const Format format : {Format::kGlb, Format::kObj}) {
+    std::filesystem::create_symlink("itself", folder / "itself");
+    EXPECT_FALSE(is_cut_short(folder / "itself", format, kName));
+    std::filesystem::remove(folder / "itself");
+    EXPECT_FALSE(is_cut_short(folder.path(), format, kName));
+  }
 }
 
 TEST(CutShortGlb, AFileWithMoreBehindItIsWhole) {

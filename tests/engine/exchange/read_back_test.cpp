@@ -1,6 +1,10 @@
 // Every model type and species of every world of the game, exported and read by another library.
 #include "tests/engine/exchange/read_back.hpp"
 
+#include <gtest/gtest.h>
+
+#include <set>
+
 #include "engine/exchange/write_document.hpp"
 #include "engine/world/world.hpp"
 #include "tests/engine/exchange/synthesised.hpp"

@@ -23,12 +23,11 @@ TEST(FrameLine, FindsTheLineThatFramesLieOnThroughTheirNoise) {
   EXPECT_EQ(line.triangles(1), 0);
 }
 
-TEST(FrameLine, WhereTrianglesHardlyChangeHalfOfTheTimeIsTheirs) {
+TEST(FrameLine, WhereTrianglesHardlyChangeNothingTellsHowTheyCount) {
   FrameLine line;
   for (int i = 0; i < 600; ++i)
-    line.observe(10, 20'000 + i % 2);
-  EXPECT_NEAR(line.triangles(15), 40'000, 400);
-  EXPECT_NEAR(line.triangles(5), 0, 400);
+    line.observe(10 + i % 2, 20'000 + i % 2);
+  EXPECT_GT(line.triangles(20), 1e6);
 }
 
 TEST(FrameLine, WhereTheyMakeNoDifferenceAnyNumberIsAllowed) {
@@ -40,11 +39,15 @@ TEST(FrameLine, WhereTheyMakeNoDifferenceAnyNumberIsAllowed) {
 
 TEST(FrameLine, ForgetsWhatWasLongAgo) {
   FrameLine line;
-  for (int i = 0; i < 600; ++i)
-    line.observe(20, 50'000);
-  for (int i = 0; i < 1200; ++i)
-    line.observe(4, 50'000);
-  EXPECT_NEAR(line.triangles(4), 50'000, 500);
+  const auto fly = [&line](int frames, double ms_each) {
+    for (int i = 0; i < frames; ++i) {
+      const double triangles = 50'000 + 30'000 * std::sin(i * 0.05);
+      line.observe(triangles * ms_each, triangles);
+    }
+  };
+  fly(600, 4e-4);
+  fly(1200, 1e-4);
+  EXPECT_NEAR(line.triangles(5), 50'000, 2000);
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <limits>
 
 namespace psygen::scene {
@@ -154,10 +156,22 @@ TEST(Governor, AWideViewIsNotAnsweredByMoreThanItNeeds) {
 }
 
 TEST(Governor, TrianglesThatCostNothingChangeNothing) {
-  Governor governor = at_the_finest({.target_ms = 16});
-  for (int i = 0; i < 1000; ++i)
-    governor.observe(5, i < 500 ? 10'000 : 1'000'000);
-  EXPECT_EQ(governor.error_factor(), 1);
+  const auto once = [](double times) {
+    return [times](int i) { return i < 500 ? 10'000 : 10'000 * times; };
+  };
+  const auto by_turns = [](int i) { return i / 300 % 2 == 0 ? 10'000 : 14'000; };
+  const auto slowly = [](int i) { return 10'000.0 + 200 * std::clamp(i - 300, 0, 60); };
+  for (const std::function<double(int)>& triangles :
+       {std::function<double(int)>(once(1.3)), std::function<double(int)>(once(100)),
+        std::function<double(int)>(by_turns), std::function<double(int)>(slowly)}) {
+    for (const double frame_ms : {5.0, 14.5, 15.0, 15.9}) {
+      Governor governor = at_the_finest({.target_ms = 16});
+      for (int i = 0; i < 2000; ++i) {
+        governor.observe(frame_ms, triangles(i));
+        ASSERT_EQ(governor.error_factor(), 1) << frame_ms << " ms, frame " << i;
+      }
+    }
+  }
 }
 
 void expect_rest(Governor governor) {

@@ -23,7 +23,10 @@ std::vector<SimulatedJob> recorded(const std::string& name) {
   std::stringstream text;
   text << file.rdbuf();
   auto jobs = parse_stream(text.str(), name);
-  EXPECT_TRUE(jobs) << jobs.error().message;
+  if (!jobs) {
+    ADD_FAILURE() << jobs.error().message;
+    return {};
+  }
   for (SimulatedJob& j : *jobs)
     j.seconds *= 200;
   return *jobs;
@@ -105,13 +108,14 @@ TEST_P(RecordedFlight, TheDeadlinePolicyIsNeverAsLateAsTheOthers) {
     EXPECT_LT(due.lateness_max_s, row_of(rows_, other).lateness_max_s) << name_of(other);
 }
 
-TEST_P(RecordedFlight, ModelersHaveHardlyNothingToDoWhileTheyFill) {
+TEST_P(RecordedFlight, ModelersAreHardlyEverIdleWhileTheyFillAndLongestFirstEndsSooner) {
+  if (GetParam() == "leap") GTEST_SKIP() << "begins on the way, with what is there";
   for (const PolicyFigures& row : rows_) {
     EXPECT_GE(row.visible_p50_s, 0);
-    EXPECT_GT(row.fill_s, 0);
+    EXPECT_GT(row.fill_s, 0.05);
     EXPECT_LT(row.fill_idle_percent, 5);
   }
-  EXPECT_LE(row_of(rows_, Policy::kLongest).fill_s, row_of(rows_, Policy::kShortest).fill_s);
+  EXPECT_LT(row_of(rows_, Policy::kLongest).fill_s, row_of(rows_, Policy::kShortest).fill_s);
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, RecordedFlight, ::testing::Values("walk", "dash", "leap"),

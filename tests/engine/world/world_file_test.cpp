@@ -144,6 +144,10 @@ TEST(WorldFile, TooManyModelsAreRefused) {
                     HasSubstr("predicted cost: 16000000000 triangles on each block")));
   EXPECT_THAT(error_with("count = 5", "count = 9223372036854775807"),
               AllOf(HasSubstr("scatter[1].count"), HasSubstr("predicted cost: 2^67")));
+  EXPECT_THAT(error_of(replaced(replaced(kSmallWorld, "subdivisions = 1", "subdivisions = 40"),
+                                "count = 5", "count = 1000000000"))
+                  .message,
+              AllOf(HasSubstr("scatter[1].count"), HasSubstr("predicted cost: 2^111.9")));
   EXPECT_THAT(error_with("count = 5", "count = -1"), HasSubstr("scatter[1].count: -1"));
   EXPECT_THAT(error_with("blocks = [8, 4]", "blocks = [8, 9000000000]"),
               HasSubstr("from 0 to 2147483648"));
