@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "engine/models/packing.hpp"
+#include "engine/models/simd_targets.hpp"
 #include "engine/models/terrain_grid.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/models/oracle_terrain.hpp"
@@ -62,17 +63,51 @@ TEST_F(Terrain, KeepsEveryVertexOfACoarserLevelInTheFinerOne) {
   }
 }
 
+test::TerrainOracle oracle_of(const Parameters& p) {
+  return {.seed = static_cast<std::uint64_t>(p.integer(kTerrainSeed)),
+          .height = p.real(kTerrainHeight),
+          .lacunarity = p.real(kTerrainLacunarity),
+          .offset = p.real(kTerrainOffset),
+          .gain = p.real(kTerrainGain),
+          .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM),
+          .octaves = static_cast<int>(p.integer(kTerrainOctaves))};
+}
+
+// At every level and on every instruction set, to half a step of snorm8 and what a height that is
+// 1e-5 of the relief off can turn them.
+TEST_F(Terrain, NormalsEqualTheOracleHereAndAtTheEndOfTheWorld) {
+  constexpr double kRelief = 120, kCell = 1;
+  for (const std::int64_t block : {std::int64_t{0}, std::int64_t{-1}, kFar, -kFar - 1}) {
+    const Parameters p = at(block, 5 - block / 2);
+    const test::TerrainOracle oracle = oracle_of(p);
+    const double metres = kRelief / oracle.max_value();
+    for (int level = 0; level < 4; ++level) {
+      const TerrainGrid grid(64, level);
+      for (const std::string_view target : simd_targets()) {
+        pin_simd_target(target);
+        const auto mesh = vertices(p, level);
+        for (std::uint32_t i = 0; i < grid.surface_vertices(); i += level == 0 ? 97 : 5) {
+          const std::int64_t x = p.integer(kTerrainBlockX) * 63 + mesh[i].grid_x,
+                             z = p.integer(kTerrainBlockZ) * 63 + mesh[i].grid_z;
+          const double dx =
+              (oracle.value(x - 1, z) - oracle.value(x + 1, z)) * metres / (2 * kCell);
+          const double dz =
+              (oracle.value(x, z - 1) - oracle.value(x, z + 1)) * metres / (2 * kCell);
+          const double scale = 127 / (std::abs(dx) + 1 + std::abs(dz));
+          const double most = 0.5 + 127 * 1e-5 * kRelief / kCell;
+          ASSERT_NEAR(mesh[i].normal_x, scale * dx, most) << target << " level " << level;
+          ASSERT_NEAR(mesh[i].normal_z, scale * dz, most) << target << " level " << level;
+        }
+      }
+      unpin_simd_target();
+    }
+  }
+}
+
 TEST_F(Terrain, HeightsEqualTheOracleHereAndAtTheEndOfTheWorld) {
   for (const std::int64_t block : {std::int64_t{0}, std::int64_t{-1}, kFar, -kFar - 1}) {
     const Parameters p = at(block, 5 - block / 2);
-    const test::TerrainOracle oracle{
-        .seed = static_cast<std::uint64_t>(p.integer(kTerrainSeed)),
-        .height = p.real(kTerrainHeight),
-        .lacunarity = p.real(kTerrainLacunarity),
-        .offset = p.real(kTerrainOffset),
-        .gain = p.real(kTerrainGain),
-        .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM),
-        .octaves = 9};
+    const test::TerrainOracle oracle = oracle_of(p);
     const std::vector<TerrainVertex> mesh = vertices(p, 0);
     for (int z = 0; z < 64; z += 7) {
       for (int x = 0; x < 64; x += 5) {

@@ -66,7 +66,7 @@ TEST(FramesCsv, HasAHeaderAndOneRowPerFrameWithTheSameNumberOfFields) {
   const std::vector<std::string> lines = lines_of(text_of(folder / "frames.csv"));
   ASSERT_EQ(lines.size(), 26U);
   for (const std::string& line : lines)
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 6 + 8 + 17 - 1) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 6 + 8 + 18 - 1) << line;
   EXPECT_EQ(lines[0].rfind("frame,time_s,frame_ms,", 0), 0U);
   EXPECT_NE(lines[0].find(",input_ms,streaming_ms,visibility_ms,"), std::string::npos);
   EXPECT_EQ(lines[25].rfind("24,", 0), 0U);
@@ -80,14 +80,15 @@ TEST(FramesCsv, HoldsTheValuesUnderTheirNames) {
   r.time_s = 1.5;
   r.frame_ms = 16.25;
   r.system_ms[0] = 12.5F;
+  r.error_pixels = 5.25;
   r.triangles = 123'456;
   r.cache_bytes = 1ULL << 33;
   log.add(r);
   ASSERT_TRUE(write_frames_csv(folder / "frames.csv", log));
   EXPECT_EQ(
       lines_of(text_of(folder / "frames.csv"))[1],
-      "7,1.500000,16.2500,0.0000,0.0000,0.0000,12.5000,123456,0,0,0,0,0.0000,8589934592,0,0,0,"
-      "0,0,0,0,0,0,0.000000");
+      "7,1.500000,16.2500,0.0000,0.0000,0.0000,12.5000,5.250,123456,0,0,0,0,0.0000,8589934592,"
+      "0,0,0,0,0,0,0,0,0,0.000000");
 }
 
 TEST(FramesCsv, ReportsAFullDiskAndAMissingFolderWithThePath) {

@@ -40,6 +40,7 @@ inline FrameRecord synthetic_frame(std::uint64_t i, double time_s, double noise)
   r.wait_ms = 1.0;
   r.system_ms = {0.02F, 0.35F, 0.9F, 0.4F, 0.25F, 0.2F, static_cast<float>(r.frame_ms * 0.8 - 2.2),
                  0.01F};
+  r.error_pixels = 4;
   r.triangles = 95'000 + static_cast<std::uint64_t>(20'000.0 * std::sin(progress * 9.0));
   r.draws = 900;
   r.nodes_in_view = 1900;
