@@ -20,6 +20,17 @@ float wave(float t) {
   return (f * f * (3.0 - 2.0 * f)) * 2.0 - 1.0;
 }
 
+// The horizontal direction, of length 1, from the camera or from the sun to `p`.
+vec2 ahead_of_viewer(vec3 p) {
+#ifdef PSYGEN_SHADOW
+  vec2 ahead = -frame.sun_direction.xz;
+#else
+  vec2 ahead = p.xz;
+#endif
+  ahead.x += 1e-6;
+  return ahead * inversesqrt(dot(ahead, ahead));
+}
+
 void main() {
   DrawData draw = this_draw();
   vec2 xy = snorm16(packed.x);
@@ -29,9 +40,18 @@ void main() {
   vec3 n = octahedral_normal(snorm16(packed.z));
   vec3 c = vec3(packed.w & 0xFFu, (packed.w >> 8) & 0xFFu, (packed.w >> 16) & 0xFFu) * (1.0 / 255.0);
   vec3 albedo = c * c;
-  float leaf = float(packed.w >> 24);
+  uint material = packed.w >> 24;
+  float leaf = float(material & 1u);
 
   vec3 p = draw.origin.xyz + draw.scale.xyz * vec3(xy, z);
+  if ((material & PSYGEN_BILLBOARD_BIT) != 0u) {
+    vec2 ahead = ahead_of_viewer(p);
+    vec2 right = vec2(-ahead.y, ahead.x);
+    vec2 aside = snorm16(packed.z) * PSYGEN_BILLBOARD_REACH_M;
+    p.xz += aside.x * right + aside.y * ahead;
+    vec2 flat_n = 0.7 * (sign(aside.x) * right - ahead);  // rounded
+    n = normalize(vec3(flat_n.x, 0.35 + 0.7 * sign(aside.y), flat_n.y));
+  }
   float time = frame.sun_direction.w * 0.31 + draw.origin.w;
   p.x += sway * 0.12 * wave(time + xy.y * 0.3);
   p.z += sway * 0.09 * wave(time * 1.37 + xy.x * 0.4);

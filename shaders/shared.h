@@ -23,6 +23,10 @@ using glm::vec4;
 // Cascades of the sun's shadow that a frame can have.
 #define PSYGEN_MAX_CASCADES 3
 
+// Vertices that turn towards the camera: core::kBillboardBit and kBillboardReachM.
+#define PSYGEN_BILLBOARD_BIT 2u
+#define PSYGEN_BILLBOARD_REACH_M 256.0
+
 // The plane of water (water.vert): places around each ring, rings, vertices of one ring, metres.
 #define PSYGEN_WATER_SIDES 64
 #define PSYGEN_WATER_RINGS 28

@@ -40,11 +40,25 @@ struct ModelVertex {
   std::int16_t position[3];
   std::uint8_t ambient;    // unorm8: baked ambient visibility, 255 = open sky
   std::uint8_t sway;       // unorm8: how much the wind moves it, 0 = not at all
-  std::int16_t normal[2];  // octahedral, snorm16
+  std::int16_t normal[2];  // octahedral, snorm16; see kBillboardBit
   std::uint8_t colour[3];  // linear-light albedo, stored with sqrt: albedo = (c/255)^2
-  std::uint8_t material;   // 0 solid (bark, stone), 1 leaf (lit from both sides)
+  std::uint8_t material;   // 0 solid (bark, stone), 1 leaf (lit from both sides); kBillboardBit
 };
 static_assert(sizeof(ModelVertex) == 16);
+
+// Of a material: the vertex turns about the vertical line through `position` towards the camera
+// (towards the sun where shadows are cast). `normal` says where it is then, to the right of that
+// line and behind it as the camera sees it, in 1/32767 of kBillboardReachM metres; it is lit from
+// half above and half the camera.
+inline constexpr std::uint8_t kBillboardBit = 2;
+inline constexpr float kBillboardReachM = 256;
+// No further from `position` than this does a vertex get by that, in metres.
+constexpr float billboard_reach_m(const ModelVertex& v) {
+  if ((v.material & kBillboardBit) == 0) return 0;
+  const int right = v.normal[0], behind = v.normal[1];
+  return static_cast<float>((right < 0 ? -right : right) + (behind < 0 ? -behind : behind)) *
+         (kBillboardReachM / 32767.0F);
+}
 
 constexpr std::uint32_t vertex_stride_bytes(VertexLayout layout) {
   return layout == VertexLayout::kTerrain ? sizeof(TerrainVertex) : sizeof(ModelVertex);

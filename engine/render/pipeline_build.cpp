@@ -2,6 +2,11 @@
 
 #include <array>
 
+#include "shaders/shared.h"
+
+static_assert(PSYGEN_BILLBOARD_BIT == psygen::core::kBillboardBit);
+static_assert(PSYGEN_BILLBOARD_REACH_M == psygen::core::kBillboardReachM);
+
 namespace psygen::render {
 
 using core::Result;

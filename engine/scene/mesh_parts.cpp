@@ -26,14 +26,18 @@ std::size_t used_triangles(std::span<const std::uint16_t> indices) {
 core::Bounds box_of(std::span<const core::ModelVertex> vertices,
                     std::span<const std::uint16_t> indices, const core::Bounds& box) {
   glm::ivec3 low(INT16_MAX), high(INT16_MIN);
+  float reach_m = 0;
   for (const std::uint16_t index : indices) {
     const core::ModelVertex& v = vertices[index];
     const glm::ivec3 place(v.position[0], v.position[1], v.position[2]);
     low = glm::min(low, place);
     high = glm::max(high, place);
+    reach_m = std::max(reach_m, core::billboard_reach_m(v));
   }
   const glm::vec3 scale = box.half_extent() / 32767.0F;
-  return {box.center() + glm::vec3(low) * scale, box.center() + glm::vec3(high) * scale};
+  const glm::vec3 around(reach_m, 0, reach_m);
+  return {box.center() + glm::vec3(low) * scale - around,
+          box.center() + glm::vec3(high) * scale + around};
 }
 
 glm::vec2 flat(glm::vec3 v) {

@@ -37,7 +37,7 @@ int count_of_levels(const world::World& world, const Settings& settings) {
   const std::int64_t blocks =
       world.is_endless() ? INT32_MAX : std::max(world.blocks_x, world.blocks_z);
   int top = 0;
-  while (top < visibility::kMaxNodeLevel / 2 && 4 * side(top) < settings.view_distance_m &&
+  while (top < visibility::kMaxNodeLevel / 2 && 2 * side(top) < settings.view_distance_m &&
          (std::int64_t{1} << top) < blocks)
     ++top;
   return top + 1;

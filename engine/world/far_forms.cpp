@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/assert.hpp"
+
 namespace psygen::world {
 namespace {
 
 constexpr glm::vec3 kUp{0, 1, 0};
-constexpr float kCosine = -0.5F, kSine = 0.8660254F;  // of a third of a turn
-constexpr float kThirds[3][2] = {{1, 0}, {kCosine, kSine}, {kCosine, -kSine}};
 // The second corner on top of a chunk is so much lower, in parts of its height.
 constexpr float kChunkStep = 0.4F;
 
-// Sheets lie flat to the light where crowns shade themselves.
-constexpr float kSheetShade = 0.6F;
+// Billboards lie flat to the light where crowns shade themselves.
+constexpr float kBillboardShade = 0.6F;
 
 template <std::size_t N>
 void set_indices(FormMesh& out, const std::uint16_t (&list)[N], std::size_t first = 0) {
@@ -34,6 +34,11 @@ Corner upper_light(const Outline& o) {
 }
 Corner lower_light(const Outline& o) {
   return mixed(o.mean_ring(), o.bottom, 0.4F);
+}
+
+Corner flat(Corner corner) {
+  if (corner.material == kLeaf) corner.ambient *= kBillboardShade;
+  return corner;
 }
 
 glm::vec3 axis_of(const Outline& o) {
@@ -63,13 +68,18 @@ void make_spindle(const Outline& o, const Stretch& stretch, FormMesh& out) {
   set_indices(out, {0, 2, 1, 0, 3, 2, 0, 4, 3, 0, 1, 4, 5, 1, 2, 5, 2, 3, 5, 3, 4, 5, 4, 1});
 }
 
-void add_trunk_cone(const Outline& o, glm::vec2 turn, FormMesh& out) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const glm::vec3 away = turned(turn, kThirds[i][0], kThirds[i][1]);
-    out.corners[6 + i] = placed(o.foot, o.foot.position + o.trunk_radius * away, away);
+// After so many vertices and indices.
+void add_trunk(const Outline& o, std::size_t vertices, std::size_t indices, FormMesh& out) {
+  const auto first = static_cast<std::uint16_t>(vertices);
+  const auto second = static_cast<std::uint16_t>(vertices + 1);
+  const auto third = static_cast<std::uint16_t>(vertices + 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    out.corners[vertices + i] = o.foot;
+    out.aside[vertices + i] = {i == 0 ? -o.trunk_radius : o.trunk_radius, 0};
   }
-  out.corners[9] = placed(o.foot, axis_of(o) + o.ring_height() * kUp, kUp);
-  set_indices(out, {9, 7, 6, 9, 8, 7, 9, 6, 8}, 24);
+  out.corners[vertices + 2] = placed(o.foot, axis_of(o) + o.ring_height() * kUp, kUp);
+  out.aside[vertices + 2] = {0, 0};
+  set_indices(out, {first, second, third}, indices);
 }
 
 void make_chunk(const Outline& o, const Stretch& stretch, glm::vec2 turn, FormMesh& out) {
@@ -87,79 +97,65 @@ void make_chunk(const Outline& o, const Stretch& stretch, glm::vec2 turn, FormMe
   set_indices(out, {0, 1, 2, 1, 0, 3, 0, 2, 3, 1, 3, 2});
 }
 
-// In the plane of the turn; the cone is narrower in the mean than at its foot.
-void add_trunk_triangle(const Outline& o, glm::vec2 turn, FormMesh& out) {
+// The kite is broadest where the crown is.
+void make_kite(const Outline& o, const Billboard& b, FormMesh& out) {
+  const glm::vec3 axis = axis_of(o);
+  const float top = o.top.position.y, bottom = o.bottom.position.y;
+  const float part = (o.ring_height() - bottom) / std::max(top - bottom, 1e-3F);
+  const float middle = b.base_m + std::clamp(part, 0.2F, 0.8F) * (top - b.base_m);
+  const Corner lower = flat(lower_light(o)), upper = flat(upper_light(o));
+  const Corner between = mixed(lower, upper, 0.5F);
   for (std::size_t i = 0; i < 2; ++i) {
-    const glm::vec3 along = turned(turn, i == 0 ? -1.0F : 1.0F, 0);
-    out.corners[4 + i] = placed(o.foot, o.foot.position + o.trunk_radius * along, along);
+    out.corners[i] = placed(between, axis + middle * kUp, kUp);
+    out.aside[i] = {i == 0 ? -b.half_width_m : b.half_width_m, 0};
   }
-  out.corners[6] = placed(o.foot, axis_of(o) + o.ring_height() * kUp, kUp);
-  set_indices(out, {4, 5, 6}, 12);
+  out.corners[2] = placed(upper, axis + top * kUp, kUp);
+  out.aside[2] = {0, 0.5F * b.lean_m};
+  out.corners[3] = placed(lower, axis + b.base_m * kUp, kUp);
+  out.aside[3] = {0, -0.5F * b.lean_m};
+  set_indices(out, {0, 1, 2, 1, 0, 3});
 }
 
-void make_spire(const Outline& o, const Stretch& stretch, glm::vec2 turn, FormMesh& out) {
-  const float r = stretch.width * o.ring_radius();
-  const glm::vec3 foot = axis_of(o) + base_of(o, stretch) * kUp;
-  const Corner lower = lower_light(o);
-  out.corners[0] = o.top;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const glm::vec3 away = turned(turn, kThirds[i][0], kThirds[i][1]);
-    out.corners[1 + i] = placed(lower, foot + r * away, away - 0.1F * kUp);
+void make_tent(const Outline& o, const Billboard& b, FormMesh& out) {
+  const glm::vec3 axis = axis_of(o);
+  const Corner lower = flat(lower_light(o));
+  for (std::size_t i = 0; i < 2; ++i) {
+    out.corners[i] = placed(lower, axis + b.base_m * kUp, kUp);
+    out.aside[i] = {i == 0 ? -b.half_width_m : b.half_width_m, -0.5F * b.lean_m};
   }
-  set_indices(out, {0, 2, 1, 0, 3, 2, 0, 1, 3});
+  out.corners[2] = placed(flat(upper_light(o)), axis + o.top.position.y * kUp, kUp);
+  out.aside[2] = {0, 0.5F * b.lean_m};
+  set_indices(out, {0, 1, 2});
 }
 
 }  // namespace
 
 void make_form(Form form, const Outline& outline, const Stretch& stretch, glm::vec2 turn,
                FormMesh& out) {
-  switch (form) {
-    case Form::kSpindleTrunk:
-      make_spindle(outline, stretch, out);
-      return add_trunk_cone(outline, turn, out);
-    case Form::kSpindle:
-      return make_spindle(outline, stretch, out);
-    case Form::kChunkTrunk:
-      make_chunk(outline, stretch, turn, out);
-      return add_trunk_triangle(outline, turn, out);
-    case Form::kChunk:
-      return make_chunk(outline, stretch, turn, out);
-    case Form::kSpire:
-      return make_spire(outline, stretch, turn, out);
-    case Form::kSheet:
-      return make_sheet(outline, {outline.ring_radius(), 0, 0}, turn, {0, 0}, out);
-  }
+  PSYGEN_CHECK(!is_billboard(form), "billboards have no stretch");
+  if (form == Form::kChunk) return make_chunk(outline, stretch, turn, out);
+  make_spindle(outline, stretch, out);
+  if (form == Form::kSpindleTrunk) add_trunk(outline, 6, 24, out);
 }
 
-// A triangle with a base of 2a and the height h has, over all directions, the mean area 2 a h / π.
-// It would be about as wide as long; where it must be higher than there is room for, it is longer
-// instead, up to a limit beyond which it would not look like trees any more.
-Sheet sheet_of(const Outline& outline, const Silhouette& silhouette, float models) {
-  constexpr float kHalfPi = 1.57079633F, kLean = 1.5F, kMostElongation = 2.4F;
-  const float plan = models * silhouette.plan_m2, side = models * silhouette.side_m2 * kHalfPi;
+// A tent with a base of 2a and the height h has the area a h, as has a kite 2a wide. It is as wide
+// as the models are, as far as that leaves it above the ground; where many would make too long a
+// wall, it has a smaller area.
+Billboard billboard_of(const Outline& outline, const Silhouette& silhouette, float models) {
+  constexpr float kMostElongation = 2, kLean = 0.5F;
+  const float plan = models * silhouette.plan_m2, side = models * silhouette.side_m2;
   const float top = std::max(outline.top.position.y, 1e-3F);
-  const float compact = std::sqrt(plan / kLean);
-  const float half = std::clamp(side / top, compact, kMostElongation * compact);
+  const float wide = std::sqrt(models) * outline.ring_radius();
+  const float half = std::min(std::max(side / top, wide), kMostElongation * std::sqrt(plan));
   if (!(half > 0)) return {0, 0, 0};
-  return {half, plan / half, std::max(top - side / half, 0.0F)};
+  return {half, kLean * plan / half, std::max(top - side / half, 0.0F)};
 }
 
-void make_sheet(const Outline& o, const Sheet& sheet, glm::vec2 turn, std::array<float, 2> ground,
-                FormMesh& out) {
-  const glm::vec3 axis = axis_of(o), away = turned(turn, 0, -1);
-  Corner lower = lower_light(o), upper = upper_light(o);
-  lower.ambient *= kSheetShade;
-  upper.ambient *= kSheetShade;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const glm::vec3 end =
-        turned(turn, i == 0 ? -sheet.half_length_m : sheet.half_length_m, -0.5F * sheet.lean_m);
-    out.corners[i] =
-        placed(lower, axis + end + (sheet.base_m + ground[i]) * kUp, away + 0.5F * kUp);
-  }
-  const float top = o.top.position.y + 0.5F * (ground[0] + ground[1]);
-  out.corners[2] =
-      placed(upper, axis + turned(turn, 0, 0.5F * sheet.lean_m) + top * kUp, 0.5F * away + kUp);
-  set_indices(out, {0, 2, 1});
+void make_billboard(Form form, const Outline& outline, const Billboard& billboard, FormMesh& out) {
+  PSYGEN_CHECK(is_billboard(form), "a form that does not turn");
+  if (form == Form::kTent) return make_tent(outline, billboard, out);
+  make_kite(outline, billboard, out);
+  if (form == Form::kKiteTrunk) add_trunk(outline, 4, 6, out);
 }
 
 }  // namespace psygen::world

@@ -11,28 +11,35 @@
 namespace psygen::world {
 
 enum class Form : std::uint8_t {
-  kSpindleTrunk,  // the crown as a double pyramid of four sides, and a cone to the ground
-  kSpindle,       // the double pyramid alone
-  kChunkTrunk,    // a chunk, and one triangle to the ground
+  kSpindleTrunk,  // a spindle, and a billboard of one triangle to the ground
+  kSpindle,       // the crown as a double pyramid of four sides
   kChunk,         // a tetrahedron on its edge: broad at the top and at the bottom
-  kSpire,         // a pyramid of three sides without a base
-  kSheet,         // one leaning triangle for several models
+  kKiteTrunk,     // a kite, and the trunk as above
+  kKite,          // the crown as a billboard of two triangles, broadest in the middle
+  kTent,          // a billboard of one triangle, broadest at its foot, for one or several models
 };
 inline constexpr std::size_t kFormCount = 6;
+// The first vertices are of a solid, the others of billboards, which turn about their axes towards
+// the camera.
 struct FormSize {
-  std::uint32_t vertices, triangles;
+  std::uint32_t vertices, triangles, solid_vertices;
 };
 inline constexpr std::array<FormSize, kFormCount> kFormSizes{
-    {{10, 11}, {6, 8}, {7, 5}, {4, 4}, {4, 3}, {3, 1}}};
+    {{9, 9, 6}, {6, 8, 6}, {4, 4, 4}, {7, 3, 0}, {4, 2, 0}, {3, 1, 0}}};
 constexpr FormSize size_of(Form form) {
   return kFormSizes[static_cast<std::size_t>(form)];
 }
+constexpr bool is_billboard(Form form) {
+  return size_of(form).solid_vertices == 0;
+}
 
 // Metres from the model's foot; the first size_of(form) elements are used. Counter-clockwise seen
-// from outside; sheets and trunks of one triangle are seen from both sides.
+// from outside. Corners of billboards are on their axis, and `aside` says how far they are to the
+// right and behind as the camera sees them.
 struct FormMesh {
-  std::array<Corner, 10> corners;
-  std::array<std::uint16_t, 33> indices;
+  std::array<Corner, 9> corners;
+  std::array<glm::vec2, 9> aside;
+  std::array<std::uint16_t, 27> indices;
 };
 
 // How a form is stretched: about its axis, and down from its top.
@@ -40,19 +47,17 @@ struct Stretch {
   float width = 1, depth = 1;
 };
 
-// Any form but sheets. `turn` is a unit vector that the asymmetric ones point along.
+// Any form but billboards. `turn` is a unit vector that the asymmetric ones point along.
 void make_form(Form form, const Outline& outline, const Stretch& stretch, glm::vec2 turn,
                FormMesh& out);
 
-// A sheet for `models` of them, whose length and lean give as much area from the side (in the mean
-// over all directions) and from above as they have together.
-struct Sheet {
-  float half_length_m, lean_m;
-  float base_m;  // height of the lower edge above the ground
+// A billboard whose width and lean give as much area from the side and from above as `models` of
+// them have together; a kite is always for one.
+struct Billboard {
+  float half_width_m, lean_m;
+  float base_m;  // height of the lowest corner above the ground
 };
-Sheet sheet_of(const Outline& outline, const Silhouette& silhouette, float models);
-// `ground` is the ground's height at the ends, −turn and +turn, above that at the foot.
-void make_sheet(const Outline& outline, const Sheet& sheet, glm::vec2 turn,
-                std::array<float, 2> ground, FormMesh& out);
+Billboard billboard_of(const Outline& outline, const Silhouette& silhouette, float models);
+void make_billboard(Form form, const Outline& outline, const Billboard& billboard, FormMesh& out);
 
 }  // namespace psygen::world

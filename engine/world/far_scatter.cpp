@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t kCheapVertices = 128;
 // Bounds that differ by less than this factor are alike.
 constexpr float kAlike = 1.04F;
+// Of what is no larger than this it cannot be seen that it is flat.
+constexpr double kSmallPixels = 6;
 // Instances beyond the representatives may be so much larger; what reaches further is cut.
 constexpr float kRoom = 1.25F;
 
@@ -31,7 +33,7 @@ FarScatter::Reach larger(const FarScatter::Reach& a, const FarScatter::Reach& b)
 Silhouette silhouette_of_form(Form form, const Outline& outline) {
   FormMesh mesh;
   make_form(form, outline, {}, {0.8F, 0.6F}, mesh);
-  std::array<glm::vec3, 10> places;
+  std::array<glm::vec3, 9> places;
   const FormSize size = size_of(form);
   for (std::size_t i = 0; i < size.vertices; ++i)
     places[i] = mesh.corners[i].position;
@@ -104,23 +106,24 @@ void FarScatter::measure_shape() {
 void FarScatter::fit_forms() {
   for (std::size_t f = 0; f < kFormCount; ++f) {
     const auto form = static_cast<Form>(f);
+    if (is_billboard(form)) continue;  // these are made to measure
     float sum = 0;
     for (const Representative& r : representatives_)
       sum += silhouette_of_form(form, r.outline).side_m2;
     const float meshes = mean_.side_m2 * static_cast<float>(representatives_.size());
     const float factor = sum > 0 ? std::clamp(meshes / sum, 0.05F, 3.0F) : 1.0F;
-    const bool down = leafy_ && form >= Form::kChunkTrunk;
+    const bool down = leafy_ && form == Form::kChunk;
     stretches_[f] = down ? Stretch{1, factor} : Stretch{factor, 1};
   }
 }
 
-Form FarScatter::form_at(int node_level) const {
-  if (node_level >= 3) return Form::kSheet;
-  if (node_level == 2) {
-    if (!leafy_) return Form::kChunk;
-    return conical_ ? Form::kSpire : trunk_ ? Form::kChunkTrunk : Form::kChunk;
+Form FarScatter::form_at(int node_level, double size_pixels) const {
+  if (!leafy_) {
+    if (size_pixels < kSmallPixels || node_level >= 3) return Form::kTent;
+    return node_level == 1 && slender_ ? Form::kSpindle : Form::kChunk;
   }
-  if (!leafy_) return slender_ ? Form::kSpindle : Form::kChunk;
+  if (node_level >= 3) return Form::kTent;
+  if (node_level == 2) return conical_ ? Form::kTent : trunk_ ? Form::kKiteTrunk : Form::kKite;
   return trunk_ ? Form::kSpindleTrunk : Form::kSpindle;
 }
 
@@ -151,8 +154,8 @@ FarScatter::Reach FarScatter::reach(float models) const {
     for (const Stretch& stretch : stretches_)
       aside = std::max(aside, stretch.width * r.outline.ring_radius());
     const glm::vec2 axis = r.outline.axis();
-    const Sheet sheet = sheet_of(r.outline, r.silhouette, models);
-    if (models > 1) aside = std::max(aside, sheet.half_length_m + sheet.lean_m);
+    const Billboard billboard = billboard_of(r.outline, r.silhouette, models);
+    aside = std::max(aside, billboard.half_width_m + 0.5F * billboard.lean_m);
     most.aside = std::max(most.aside, aside + std::abs(axis.x) + std::abs(axis.y));
   }
   return {kRoom * most.aside, kRoom * most.up, kRoom * most.down};

@@ -46,10 +46,10 @@ class FarScatter {
   // Whether the coarsest meshes are small enough to be made for every single instance.
   bool is_cheap() const { return cheap_; }
 
-  // The form for single instances at a node level >= 1, and how it must be stretched to cover as
-  // much of the picture as the coarsest meshes do on average: crowns downwards, others about the
-  // axis.
-  Form form_at(int node_level) const;
+  // The form for single instances at a node level >= 1 where they are first seen so large, and how
+  // it must be stretched to cover as much of the picture as the coarsest meshes do on average:
+  // crowns downwards, others about the axis.
+  Form form_at(int node_level, double size_pixels) const;
   const Stretch& stretch_of(Form form) const { return stretches_[static_cast<std::size_t>(form)]; }
 
   // One that is like the instance with these bounds; which one of those is up to `hash`.

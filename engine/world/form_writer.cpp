@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <glm/common.hpp>
 
 namespace psygen::world {
 
@@ -10,7 +11,7 @@ void FormWriter::add(Form form, const FormMesh& mesh, const glm::vec3& foot, boo
   for (std::size_t i = 0; i < 3 * std::size_t{size.triangles}; ++i)
     out_.indices[indices_++] = static_cast<std::uint16_t>(vertices_ + mesh.indices[i]);
   for (std::size_t i = 0; i < size.vertices; ++i)
-    write(mesh.corners[i], foot, sways);
+    write(mesh.corners[i], foot, i < size.solid_vertices ? nullptr : &mesh.aside[i], sways);
 }
 
 core::Bounds FormWriter::finish() {
@@ -27,10 +28,11 @@ core::Bounds FormWriter::finish() {
   const auto place = [this](const std::array<std::int16_t, 3>& q) {
     return box_.center() + box_.half_extent() * (glm::vec3(q[0], q[1], q[2]) * (1.0F / 32767.0F));
   };
-  return {place(low_), place(high_)};
+  const glm::vec3 around(reach_m_, 0, reach_m_);
+  return {glm::max(place(low_) - around, box_.min), glm::min(place(high_) + around, box_.max)};
 }
 
-void FormWriter::write(const Corner& c, const glm::vec3& foot, bool sways) {
+void FormWriter::write(const Corner& c, const glm::vec3& foot, const glm::vec2* aside, bool sways) {
   core::ModelVertex v;
   packer_.pack(foot + c.position, v.position);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -38,12 +40,14 @@ void FormWriter::write(const Corner& c, const glm::vec3& foot, bool sways) {
     high_[k] = std::max(high_[k], v.position[k]);
     v.colour[k] = models::pack_unorm8(c.colour[static_cast<int>(k)]);
   }
-  const glm::vec2 normal = models::encode_octahedral(c.normal);
+  const glm::vec2 normal = aside != nullptr ? *aside * (1 / core::kBillboardReachM)
+                                            : models::encode_octahedral(c.normal);
   v.normal[0] = models::pack_snorm16(normal.x);
   v.normal[1] = models::pack_snorm16(normal.y);
   v.ambient = models::pack_unorm8(c.ambient);
   v.sway = sways ? models::pack_unorm8(c.sway) : std::uint8_t{0};
-  v.material = c.material;
+  v.material = aside != nullptr ? c.material | core::kBillboardBit : c.material;
+  reach_m_ = std::max(reach_m_, core::billboard_reach_m(v));
   std::memcpy(out_.vertices.data() + vertices_++ * sizeof v, &v, sizeof v);
 }
 

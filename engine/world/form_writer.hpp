@@ -21,13 +21,14 @@ class FormWriter {
   core::Bounds finish();
 
  private:
-  void write(const Corner& c, const glm::vec3& foot, bool sways);
+  void write(const Corner& c, const glm::vec3& foot, const glm::vec2* aside, bool sways);
 
   core::Bounds box_;
   models::BoxPacker packer_;
   models::MeshView out_;
   std::size_t vertices_ = 0, indices_ = 0;
   std::array<std::int16_t, 3> low_{32767, 32767, 32767}, high_{-32767, -32767, -32767};
+  float reach_m_ = 0;  // of billboards, beyond their positions
 };
 
 }  // namespace psygen::world

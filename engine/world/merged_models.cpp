@@ -23,7 +23,7 @@ using models::ParameterSpec;
 
 constexpr models::ParameterType kInteger = models::ParameterType::kInteger;
 constexpr models::ParameterSource kPlaced = models::ParameterSource::kPlaced;
-constexpr std::uint64_t kEdition = 2;  // of what this file makes of a world
+constexpr std::uint64_t kEdition = 3;  // of what this file makes of a world
 
 constexpr ParameterSpec kSchema[kMergedParameterCount] = {
     {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
@@ -181,22 +181,11 @@ void MergedType::make_from_like(const Instance& instance, const Parameters& p,
   const core::Bounds box = far.type().bounds(p);
   const Likeness like = far.like(box.max.x - box.min.x, box.max.y - box.min.y, instance.hash >> 8);
   const Outline outline = like.model->outline.scaled(like.across, like.up);
-  const glm::vec2 turn = direction_of(instance.hash);
-  if (form != Form::kSheet)
-    return make_form(form, outline, far.stretch_of(form), turn, making.form);
-  const Silhouette& area = like.model->silhouette;
-  const Sheet sheet = sheet_of(
-      outline, {area.side_m2 * like.across * like.up, area.plan_m2 * like.across * like.across},
-      static_cast<float>(instance.together));
-  const auto ground_at_end = [&](float sign) {
-    const glm::dvec2 at = instance.block.in_tile_m +
-                          glm::dvec2(instance.place.x, instance.place.z) +
-                          glm::dvec2(turn) * static_cast<double>(sign * sheet.half_length_m);
-    const double limit = making.tile_side_m * (1 - 1e-9);
-    const glm::dvec2 inside{std::clamp(at.x, 0.0, limit), std::clamp(at.y, 0.0, limit)};
-    return static_cast<float>(making.ground->at(inside).height_m) - instance.place.y;
-  };
-  make_sheet(outline, sheet, turn, {ground_at_end(-1), ground_at_end(1)}, making.form);
+  if (!is_billboard(form))
+    return make_form(form, outline, far.stretch_of(form), direction_of(instance.hash), making.form);
+  const Silhouette area = like.model->silhouette.scaled(like.across, like.up);
+  make_billboard(form, outline, billboard_of(outline, area, static_cast<float>(instance.together)),
+                 making.form);
 }
 
 void MergedType::add_instance(Instance& instance, const Scattering& scattering,

@@ -17,10 +17,15 @@ constexpr std::uint32_t kMostTogether = 8;
 constexpr std::uint32_t kMostThinning = 1U << 26;  // more than there are in any node
 constexpr std::uint64_t kMostVertices = 65'536;
 
-// How many models of this size must be together so that they can be seen from `distance_m` on.
-std::uint32_t least_together(double side_m2, double distance_m) {
-  const double least_m = kLeastPixels / kPixelsPerRadian * distance_m;
-  return static_cast<std::uint32_t>(std::ceil(std::min(least_m * least_m / side_m2, 1e6)));
+// How many pixels wide and high a model of this size is where a node of this side is first drawn.
+double size_pixels(double side_m2, double side_m) {
+  return std::sqrt(side_m2) * kPixelsPerRadian / (kNearestSides * side_m);
+}
+
+// How many models of this size must be together so that they can be seen.
+std::uint32_t least_together(double pixels) {
+  const double ratio = kLeastPixels / pixels;
+  return static_cast<std::uint32_t>(std::ceil(std::min(ratio * ratio, 1e6)));
 }
 
 void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint32_t thinning,
@@ -29,15 +34,15 @@ void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint3
   plan.vertices = plan.triangles = 0;
   for (const FarScatter& far : scatters) {
     ScatterPlan how;
-    const std::uint32_t least =
-        far.empty() ? 0 : least_together(far.mean_silhouette().side_m2, kNearestSides * side);
+    const double pixels = far.empty() ? 0 : size_pixels(far.mean_silhouette().side_m2, side);
+    const std::uint32_t least = far.empty() ? 0 : least_together(pixels);
     how.together = std::max(thinning, far.is_leafy() ? least : 1);
     const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMostTogether) : thinning;
     if (!far.empty() && least <= most) {
-      how.form = how.together > 1 ? Form::kSheet : far.form_at(plan.form_level);
+      how.form = how.together > 1 ? Form::kTent : far.form_at(plan.form_level, pixels);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * plan.level);
       how.forms = (instances + how.together - 1) / how.together;
-      how.each_is_synthesised = plan.form_level <= 2 && how.together == 1 && far.is_cheap();
+      how.each_is_synthesised = plan.form_level == 1 && !is_billboard(how.form) && far.is_cheap();
     }
     // Only worlds of thousands of scatters do not fit, however much is put together.
     if (thinning >= kMostThinning &&

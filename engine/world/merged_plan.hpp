@@ -12,7 +12,7 @@
 namespace psygen::world {
 
 struct ScatterPlan {
-  Form form = Form::kSpire;
+  Form form = Form::kTent;
   std::uint32_t together = 1;        // instances that one form stands for
   std::uint64_t forms = 0;           // 0: left out
   bool each_is_synthesised = false;  // else representatives stand for them

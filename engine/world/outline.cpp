@@ -9,8 +9,6 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::uint8_t kLeaf = 1;
-
 Corner corner_of(const core::ModelVertex& v, const core::Bounds& box) {
   const glm::vec3 colour = glm::vec3(v.colour[0], v.colour[1], v.colour[2]) * (1.0F / 255.0F);
   return {models::unpack_position(v, box),

@@ -17,6 +17,8 @@
 
 namespace psygen::world {
 
+inline constexpr std::uint8_t kLeaf = 1;  // core::ModelVertex::material
+
 // A vertex as numbers: metres from the model's foot, unit normal, colour as stored (square root of
 // the albedo), ambient and sway in [0, 1].
 struct Corner {
@@ -54,6 +56,11 @@ std::optional<Outline> outline_of(std::span<const std::byte> vertices, const cor
 // from above. Overlapping triangles count once. To about 3 %.
 struct Silhouette {
   float side_m2 = 0, plan_m2 = 0;
+
+  // Of the same, so many times as wide and as high.
+  Silhouette scaled(float across, float up) const {
+    return {side_m2 * across * up, plan_m2 * across * across};
+  }
 };
 Silhouette silhouette_of(std::span<const glm::vec3> places, std::span<const std::uint16_t> indices);
 

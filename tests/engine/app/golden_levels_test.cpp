@@ -97,7 +97,7 @@ TEST_P(GoldenLevels, ANodeIsReplacedAsItWas) {
   EXPECT_THAT(app_->renderer().validation_messages(), testing::IsEmpty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Levels, GoldenLevels, testing::Range(0U, 7U));
+INSTANTIATE_TEST_SUITE_P(Levels, GoldenLevels, testing::Range(0U, 8U));
 
 }  // namespace
 }  // namespace psygen::app

@@ -53,6 +53,23 @@ std::vector<render::MeshDraw> draws_of(const MeshParts& parts, const View& view,
   return draws;
 }
 
+TEST(MeshParts, HoldBillboardsHoweverTheyAreTurned) {
+  Row row(4);
+  for (core::ModelVertex& v : row.vertices) {
+    v.material = core::kBillboardBit;
+    v.normal[0] = -1280;
+    v.normal[1] = 128;
+  }
+  const MeshParts flat = Row(4).parts(), turning = row.parts();
+  const float reach = 1408 * core::kBillboardReachM / 32767;
+  for (std::uint32_t i = 0; i < flat.count; ++i) {
+    EXPECT_NEAR(turning.boxes[i].min.x, flat.boxes[i].min.x - reach, 1e-3F);
+    EXPECT_NEAR(turning.boxes[i].max.z, flat.boxes[i].max.z + reach, 1e-3F);
+    EXPECT_EQ(turning.boxes[i].min.y, flat.boxes[i].min.y);
+    EXPECT_EQ(turning.boxes[i].max.y, flat.boxes[i].max.y);
+  }
+}
+
 TEST(MeshParts, EveryTriangleIsInOnePartAndTheBoxesAreTight) {
   for (const int count : {1, 15, 16, 17, 100, 1000}) {
     const MeshParts parts = Row(count).parts();

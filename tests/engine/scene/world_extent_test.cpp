@@ -43,8 +43,8 @@ TEST(Extent, EverywhereInAnEndlessWorldAsMuchExistsAndIsDrawn) {
   for (const core::BlockCoord block : kPlaces) {
     SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
     const auto scene = endless_scene();
-    // The same place in every node of 16 × 16 blocks.
-    const core::BlockCoord aligned{block.x & ~15, block.z & ~15};
+    // The same place in every node of 32 × 32 blocks.
+    const core::BlockCoord aligned{block.x & ~31, block.z & ~31};
     scene->settle(endless_pose(aligned));
     tick_at(*scene, endless_pose(aligned));
     const State& s = scene->state();

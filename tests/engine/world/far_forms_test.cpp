@@ -27,23 +27,41 @@ Outline crown() {
   return o;
 }
 
-constexpr Form kSolids[] = {Form::kSpindleTrunk, Form::kSpindle, Form::kChunkTrunk, Form::kChunk,
-                            Form::kSpire};
+constexpr Form kSolids[] = {Form::kSpindleTrunk, Form::kSpindle, Form::kChunk};
+constexpr Form kBillboards[] = {Form::kKiteTrunk, Form::kKite, Form::kTent};
 
-std::vector<glm::vec3> places_of(Form form, const FormMesh& mesh) {
+// As someone sees it who looks into this direction, of length 1.
+std::vector<glm::vec3> places_of(Form form, const FormMesh& mesh, glm::vec2 ahead = {0, -1}) {
   std::vector<glm::vec3> places;
-  for (std::size_t i = 0; i < size_of(form).vertices; ++i)
-    places.push_back(mesh.corners[i].position);
+  const glm::vec2 right{-ahead.y, ahead.x};
+  for (std::size_t i = 0; i < size_of(form).vertices; ++i) {
+    glm::vec3 place = mesh.corners[i].position;
+    if (i >= size_of(form).solid_vertices) {
+      const glm::vec2 aside = mesh.aside[i].x * right + mesh.aside[i].y * ahead;
+      place += glm::vec3(aside.x, 0, aside.y);
+    }
+    places.push_back(place);
+  }
   return places;
 }
 std::span<const std::uint16_t> indices_of(Form form, const FormMesh& mesh) {
   return std::span(mesh.indices).first(std::size_t{3} * size_of(form).triangles);
 }
 
-TEST(FarForms, HaveTheSizesThatAreTold) {
-  for (const Form form : kSolids) {
-    FormMesh mesh;
+FormMesh form_of_crown(Form form) {
+  FormMesh mesh;
+  if (is_billboard(form)) {
+    make_billboard(form, crown(), billboard_of(crown(), {7.2F, 8}, 1), mesh);
+  } else {
     make_form(form, crown(), {}, {0.6F, 0.8F}, mesh);
+  }
+  return mesh;
+}
+
+TEST(FarForms, HaveTheSizesThatAreTold) {
+  for (const Form form : {Form::kSpindleTrunk, Form::kSpindle, Form::kChunk, Form::kKiteTrunk,
+                          Form::kKite, Form::kTent}) {
+    const FormMesh mesh = form_of_crown(form);
     std::vector<bool> used(size_of(form).vertices);
     for (const std::uint16_t index : indices_of(form, mesh)) {
       ASSERT_LT(index, used.size());
@@ -54,7 +72,7 @@ TEST(FarForms, HaveTheSizesThatAreTold) {
 }
 
 TEST(FarForms, FaceOutwards) {
-  for (const Form form : {Form::kSpindle, Form::kChunk, Form::kSpire}) {
+  for (const Form form : {Form::kSpindle, Form::kChunk}) {
     FormMesh mesh;
     make_form(form, crown(), {}, {-0.8F, 0.6F}, mesh);
     const auto indices = indices_of(form, mesh);
@@ -87,49 +105,89 @@ TEST(FarForms, EndAtTheTopAndTurnAboutTheAxis) {
 
 TEST(FarForms, StretchDownwardsAndSideways) {
   FormMesh mesh;
-  make_form(Form::kSpire, crown(), {3, 0.5F}, {1, 0}, mesh);
-  EXPECT_FLOAT_EQ(mesh.corners[1].position.y, 4);
-  EXPECT_FLOAT_EQ(mesh.corners[1].position.x, 6);
+  make_form(Form::kChunk, crown(), {3, 0.5F}, {1, 0}, mesh);
+  EXPECT_FLOAT_EQ(mesh.corners[2].position.y, 4);
+  EXPECT_FLOAT_EQ(mesh.corners[0].position.x, 6);
 }
 
-TEST(FarForms, SheetsHaveTheAreasOfTheModelsThatTheyStandFor) {
+float area_of(std::span<const glm::vec3> places, const glm::vec3& from) {
+  const glm::vec3 twice = glm::cross(places[1] - places[0], places[2] - places[0]);
+  return 0.5F * std::abs(glm::dot(twice, from));
+}
+
+// From the side from wherever one looks, and half of it from above.
+TEST(FarForms, BillboardsHaveTheAreasOfTheModelsThatTheyStandFor) {
   const Silhouette one{7.2F, 8};
   for (const float models : {1.0F, 3.0F}) {
-    const Sheet sheet = sheet_of(crown(), one, models);
-    Silhouette sum;
-    constexpr int kTurns = 24;
-    for (int k = 0; k < kTurns; ++k) {
-      const double angle = 0.2617993878 * k;
-      FormMesh mesh;
-      make_sheet(crown(), sheet,
-                 {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))}, {0, 0},
-                 mesh);
-      const Silhouette area =
-          silhouette_of(places_of(Form::kSheet, mesh), indices_of(Form::kSheet, mesh));
-      sum.side_m2 += area.side_m2 / kTurns;
-      sum.plan_m2 += area.plan_m2 / kTurns;
+    const Billboard billboard = billboard_of(crown(), one, models);
+    FormMesh mesh;
+    make_billboard(Form::kTent, crown(), billboard, mesh);
+    for (const glm::vec2 ahead : {glm::vec2(0, -1), {1, 0}, {-0.6F, 0.8F}}) {
+      const std::vector<glm::vec3> places = places_of(Form::kTent, mesh, ahead);
+      EXPECT_NEAR(area_of(places, {ahead.x, 0, ahead.y}), models * one.side_m2, 1e-3F);
+      EXPECT_NEAR(area_of(places, {0, 1, 0}), 0.5F * models * one.plan_m2, 1e-3F);
+      // Its upper corner is behind, so that it is seen from above as well.
+      EXPECT_GT(glm::dot(glm::vec2(places[2].x, places[2].z), ahead), 0);
     }
-    EXPECT_NEAR(sum.plan_m2, models * one.plan_m2, 0.05F * models * one.plan_m2);
-    EXPECT_NEAR(sum.side_m2, models * one.side_m2, 0.15F * models * one.side_m2);
   }
 }
 
-TEST(FarForms, SheetsOfVeryManyKeepTheirAreaFromAboveAndTheirHeight) {
-  const Sheet sheet = sheet_of(crown(), {7.2F, 8}, 1000);
-  EXPECT_NEAR(sheet.half_length_m * sheet.lean_m, 8000, 1);
-  EXPECT_LT(sheet.half_length_m, 4 * sheet.lean_m);
-  EXPECT_EQ(sheet.base_m, 0);
-  EXPECT_EQ(sheet_of(crown(), {0, 0}, 3).half_length_m, 0);
+TEST(FarForms, KitesAreAsWideAndHighAsTheCrownsWhereTheirAreaAllowsIt) {
+  const Silhouette full{8, 12};  // of the crown, which is a double cone
+  const Billboard billboard = billboard_of(crown(), full, 1);
+  EXPECT_FLOAT_EQ(billboard.half_width_m, 2);
+  EXPECT_FLOAT_EQ(billboard.base_m, 2);
+  FormMesh mesh;
+  make_billboard(Form::kKite, crown(), billboard, mesh);
+  EXPECT_FLOAT_EQ(mesh.corners[0].position.y, 4);
+  EXPECT_FLOAT_EQ(mesh.corners[2].position.y, 6);
+  EXPECT_FLOAT_EQ(mesh.corners[3].position.y, 2);
 }
 
-TEST(FarForms, SheetsFollowTheGround) {
+// Flat things have no parts that turn away from the light or are shaded by others, crowns do.
+TEST(FarForms, BillboardsOfLeavesAreDarkerThanTheirCorners) {
+  Outline leafy = crown(), stone = crown();
+  for (Outline* o : {&leafy, &stone}) {
+    for (Corner* c : {&o->top, &o->bottom, &o->ring[0], &o->ring[1], &o->ring[2], &o->ring[3]})
+      c->material = o == &leafy ? kLeaf : 0;
+  }
   FormMesh mesh;
-  make_sheet(crown(), {5, 2, 0}, {1, 0}, {-3, 7}, mesh);
-  EXPECT_FLOAT_EQ(mesh.corners[0].position.y, -3);
-  EXPECT_FLOAT_EQ(mesh.corners[1].position.y, 7);
-  EXPECT_FLOAT_EQ(mesh.corners[2].position.y, 8);
-  EXPECT_FLOAT_EQ(mesh.corners[0].position.x, -5);
-  EXPECT_FLOAT_EQ(mesh.corners[1].position.x, 5);
+  make_billboard(Form::kTent, leafy, billboard_of(leafy, {7, 8}, 1), mesh);
+  EXPECT_LT(mesh.corners[2].ambient, 0.99F);
+  make_billboard(Form::kTent, stone, billboard_of(stone, {7, 8}, 1), mesh);
+  EXPECT_FLOAT_EQ(mesh.corners[2].ambient, 1);
+}
+
+TEST(FarForms, TrunksReachFromTheGroundIntoTheCrown) {
+  for (const Form form : {Form::kSpindleTrunk, Form::kKiteTrunk}) {
+    const FormMesh mesh = form_of_crown(form);
+    const std::vector<glm::vec3> places = places_of(form, mesh);
+    const std::size_t foot = places.size() - 3;
+    EXPECT_FLOAT_EQ(places[foot].y, -0.3F);
+    EXPECT_FLOAT_EQ(glm::distance(places[foot], places[foot + 1]), 0.4F);
+    EXPECT_FLOAT_EQ(places[foot + 2].y, 4);
+  }
+}
+
+TEST(FarForms, BillboardsOfVeryManyAreNoLongWalls) {
+  const Billboard billboard = billboard_of(crown(), {7.2F, 8}, 1000);
+  EXPECT_NEAR(billboard.half_width_m * billboard.lean_m, 4000, 1);
+  EXPECT_LE(billboard.half_width_m, 8.01F * billboard.lean_m);
+  EXPECT_EQ(billboard.base_m, 0);
+  EXPECT_EQ(billboard_of(crown(), {0, 0}, 3).half_width_m, 0);
+}
+
+TEST(FarForms, CrownsOfBillboardsStayAboveTheGround) {
+  for (const float models : {1.0F, 4.0F, 40.0F, 400.0F}) {
+    FormMesh mesh;
+    for (const Form form : kBillboards) {
+      make_billboard(form, crown(), billboard_of(crown(), {12, 8}, models), mesh);
+      for (std::size_t i = 0; i < std::min<std::size_t>(size_of(form).vertices, 4); ++i) {
+        EXPECT_GE(mesh.corners[i].position.y, 0);
+        EXPECT_LE(mesh.corners[i].position.y, 6);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,130 @@
+// Billboards turn about their axes: they look the same from all sides, and from above one sees how
+// far they lean, on every path, with and without light per pixel.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <tuple>
+
+#include "tests/engine/render/synthetic_scene.hpp"
+
+namespace psygen::render {
+namespace {
+
+constexpr core::Extent kSize{160, 120};
+constexpr float kHalfWidthM = 4, kHalfHeightM = 5, kLeanM = 3;
+
+using How = std::tuple<RenderPath, Submission, Preset>;
+
+// A triangle whose corners are all on the axis of its box, wide at its foot, bright red.
+core::Result<core::GeometryRange> make_tent(core::GeometryMemory& memory) {
+  const auto reserved = memory.reserve(core::VertexLayout::kModel, 3, 3);
+  if (!reserved) return tl::unexpected(reserved.error());
+  const auto in_reach = [](float metres) {
+    return static_cast<std::int16_t>(std::lround(metres / core::kBillboardReachM * 32767));
+  };
+  std::array<core::ModelVertex, 3> vertices{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    core::ModelVertex& v = vertices[i];
+    v.position[1] = i == 2 ? 32767 : -32767;
+    v.normal[0] = in_reach(i == 2 ? 0 : i == 0 ? -kHalfWidthM : kHalfWidthM);
+    v.normal[1] = in_reach(i == 2 ? kLeanM : -kLeanM);
+    v.colour[0] = v.ambient = 255;
+    v.material = core::kBillboardBit | 1;
+    reserved->indices[i] = static_cast<std::uint16_t>(i);
+  }
+  std::memcpy(reserved->vertices.data(), vertices.data(), sizeof vertices);
+  memory.commit(reserved->range);
+  return reserved->range;
+}
+
+// Where in the picture the red is, in pixels.
+struct Seen {
+  int count = 0, left = INT32_MAX, right = -1, top = INT32_MAX, bottom = -1;
+};
+
+class Billboard : public testing::TestWithParam<How> {
+ protected:
+  void SetUp() override {
+    RendererOptions options;
+    options.validation = true;
+    options.size = kSize;
+    options.geometry_budget_bytes = 8 << 20;
+    std::tie(options.path, options.submission, options.preset) = GetParam();
+    auto made = Renderer::create(options);
+    ASSERT_TRUE(made) << made.error().message;
+    renderer_ = std::move(*made);
+    const auto range = make_tent(renderer_->geometry());
+    ASSERT_TRUE(range);
+    tent_.range = *range;
+    tent_.box_half_extent = {kHalfWidthM + kLeanM, kHalfHeightM, kHalfWidthM + kLeanM};
+  }
+  void TearDown() override {
+    if (!renderer_) return;
+    renderer_->wait_idle();
+    for (const std::string& message : renderer_->validation_messages())
+      ADD_FAILURE() << message;
+  }
+
+  Seen seen_at(glm::vec3 origin, double yaw, double pitch) {
+    FrameInput input = synthetic::look(60, pitch, kSize);
+    input.pose.yaw = yaw;
+    input.light.cloud_cover = 0;
+    tent_.origin = origin;
+    const std::array models{tent_};
+    input.models = models;
+    for (int i = 0; i < 2; ++i)
+      EXPECT_TRUE(renderer_->render(input));
+    const auto picture = renderer_->capture();
+    EXPECT_TRUE(picture);
+    Seen seen;
+    for (std::size_t i = 0; picture && i < picture->rgba.size(); i += 4) {
+      if (picture->rgba[i] < 2 * picture->rgba[i + 1]) continue;
+      const int x = static_cast<int>(i / 4 % kSize.width),
+                y = static_cast<int>(i / 4 / kSize.width);
+      ++seen.count;
+      seen = {seen.count, std::min(seen.left, x), std::max(seen.right, x), std::min(seen.top, y),
+              std::max(seen.bottom, y)};
+    }
+    return seen;
+  }
+
+  std::unique_ptr<Renderer> renderer_;
+  MeshDraw tent_;
+};
+
+TEST_P(Billboard, LooksTheSameFromAllSides) {
+  const Seen front = seen_at({0, 0, -25}, 0, 0);
+  EXPECT_GT(front.count, 300);
+  EXPECT_GT(front.right - front.left, 20);
+  EXPECT_NEAR(front.left + front.right, static_cast<int>(kSize.width), 3);
+  for (const double yaw : {0.6, 1.57, 2.5, -2.0}) {
+    const glm::vec3 ahead = core::forward_of({{}, yaw, 0});
+    const Seen seen = seen_at(25.0F * ahead, yaw, 0);
+    EXPECT_NEAR(seen.count, front.count, 0.03 * front.count) << yaw;
+    EXPECT_NEAR(seen.left, front.left, 1) << yaw;
+    EXPECT_NEAR(seen.right, front.right, 1) << yaw;
+    EXPECT_NEAR(seen.top, front.top, 1) << yaw;
+    EXPECT_NEAR(seen.bottom, front.bottom, 1) << yaw;
+  }
+}
+
+TEST_P(Billboard, LeansAwayFromWhoLooksFromAbove) {
+  const Seen above = seen_at({0, -25, -0.5F}, 0, -std::numbers::pi / 2);
+  EXPECT_GT(above.count, 150);
+  EXPECT_GT(above.bottom - above.top, 12);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OnEveryPath, Billboard,
+    testing::Values(How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                    How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kLow},
+                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                    How{RenderPath::kCpu, Submission::kPushed, Preset::kHigh},
+                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kUltra}));
+
+}  // namespace
+}  // namespace psygen::render
