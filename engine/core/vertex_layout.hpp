@@ -47,9 +47,9 @@ struct ModelVertex {
 static_assert(sizeof(ModelVertex) == 16);
 
 // Of a material: the vertex turns about the vertical line through `position` towards the camera
-// (towards the sun where shadows are cast). `normal` says where it is then, to the right of that
-// line and behind it as the camera sees it, in 1/32767 of kBillboardReachM metres; it is lit from
-// half above and half the camera.
+// (for shadows the sun). `normal` says where it is then, to the right of that line and behind it as
+// the camera sees it, in 1/32767 of kBillboardReachM metres. Its normal follows, as if it were
+// rounded: to its side, to the camera, and up where it is behind the line.
 inline constexpr std::uint8_t kBillboardBit = 2;
 inline constexpr float kBillboardReachM = 256;
 // No further from `position` than this does a vertex get by that, in metres.

@@ -60,23 +60,26 @@ void BlockGround::evaluate_vertices() {
   shape_.noise.evaluate(x, z, noise_, vertices_);
 }
 
-bool BlockGround::is_inside(double x, double z) const {
-  const double end = static_cast<double>(vertices_) - 1;
+bool BlockGround::is_inside(double x, double z, int step) const {
+  const double end = static_cast<double>(vertices_) - step;
   return x >= 0 && z >= 0 && x < end && z < end;
 }
 
-BlockGround::Corners BlockGround::corners_of(double x, double z) const {
+BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const {
   Corners heights;
-  if (is_inside(x, z)) {
+  if (is_inside(x, z, step)) {
     const std::size_t first = static_cast<std::size_t>(z) * vertices_ + static_cast<std::size_t>(x);
-    const std::array at{first, first + 1, first + vertices_, first + vertices_ + 1};
+    const auto aside = static_cast<std::size_t>(step), below = aside * vertices_;
+    const std::array at{first, first + aside, first + below, first + below + aside};
     for (std::size_t i = 0; i < 4; ++i)
       heights[i] = mesh_.empty() ? shape_.quantise(noise_[at[i]]) : height_in_mesh(mesh_, at[i]);
     return heights;
   }
-  std::array<std::int64_t, 2> columns, rows;
-  world_of(block_.x, static_cast<std::int64_t>(x), columns);
-  world_of(block_.z, static_cast<std::int64_t>(z), rows);
+  const auto first_x = static_cast<std::int64_t>(x), first_z = static_cast<std::int64_t>(z);
+  const std::array columns{shape_.world_of(block_.x, first_x),
+                           shape_.world_of(block_.x, first_x + step)};
+  const std::array rows{shape_.world_of(block_.z, first_z),
+                        shape_.world_of(block_.z, first_z + step)};
   std::array<float, 4> noise;
   shape_.noise.evaluate(columns, rows, noise, 2);
   for (std::size_t i = 0; i < 4; ++i)
@@ -84,11 +87,12 @@ BlockGround::Corners BlockGround::corners_of(double x, double z) const {
   return heights;
 }
 
-GroundPoint BlockGround::at(glm::dvec2 local_xz) const {
-  const glm::dvec2 cells = local_xz / shape_.cell_m;
+GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {
+  const double cell_m = stride * shape_.cell_m;
+  const glm::dvec2 cells = local_xz / cell_m;
   const double x = std::floor(cells.x), z = std::floor(cells.y);
   const double u = cells.x - x, v = cells.y - z;
-  const Corners heights = corners_of(x, z);
+  const Corners heights = corners_of(stride * x, stride * z, stride);
   std::array<double, 4> h;
   for (std::size_t i = 0; i < 4; ++i)
     h[i] = static_cast<double>(shape_.relief_m) * heights[i] / 65535.0;
@@ -96,10 +100,10 @@ GroundPoint BlockGround::at(glm::dvec2 local_xz) const {
   GroundPoint ground;
   if (u + v <= 1) {
     ground.height_m = h[0] + u * (h[1] - h[0]) + v * (h[2] - h[0]);
-    ground.normal = unit_normal((h[1] - h[0]) / shape_.cell_m, (h[2] - h[0]) / shape_.cell_m);
+    ground.normal = unit_normal((h[1] - h[0]) / cell_m, (h[2] - h[0]) / cell_m);
   } else {
     ground.height_m = h[3] + (1 - u) * (h[2] - h[3]) + (1 - v) * (h[1] - h[3]);
-    ground.normal = unit_normal((h[3] - h[2]) / shape_.cell_m, (h[3] - h[1]) / shape_.cell_m);
+    ground.normal = unit_normal((h[3] - h[2]) / cell_m, (h[3] - h[1]) / cell_m);
   }
   return ground;
 }

@@ -28,16 +28,17 @@ class BlockGround {
 
   // The ground under a point in metres from the block's corner, which may lie outside of the block
   // (within 10^6 cells). About 20 ns inside of a block whose heights are there, else 1 µs.
-  GroundPoint at(glm::dvec2 local_xz) const;
+  // Or, with the stride of a coarser level (terrain_strides()), the ground as that level has it.
+  GroundPoint at(glm::dvec2 local_xz, int stride = 1) const;
 
  private:
-  // Quantised heights at (x, z), (x + 1, z), (x, z + 1), (x + 1, z + 1).
+  // Quantised heights at (x, z), (x + step, z), (x, z + step), (x + step, z + step).
   using Corners = std::array<std::uint16_t, 4>;
 
   void evaluate_vertices();
   void world_of(std::int32_t block_index, std::int64_t first, std::span<std::int64_t> out) const;
-  bool is_inside(double x, double z) const;
-  Corners corners_of(double x, double z) const;
+  bool is_inside(double x, double z, int step) const;
+  Corners corners_of(double x, double z, int step) const;
 
   TerrainShape shape_;
   core::BlockCoord block_;

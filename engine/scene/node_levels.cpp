@@ -6,6 +6,7 @@
 
 #include "engine/models/terrain.hpp"
 #include "engine/world/merged_models.hpp"
+#include "engine/world/node_walk.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::scene {
@@ -28,8 +29,6 @@ constexpr float kSkirtPerError = 2.0F, kLeastSkirtM = 1.0F;
 constexpr double kMergedErrorPerHeight = 0.06;
 // Beyond all distances, and finite.
 constexpr double kEverywhereM = 1e30;
-// Meshes of nodes have at least so many triangles; else the next finer level is used.
-constexpr std::uint32_t kFewestTriangles = 98;
 
 int count_of_levels(const world::World& world, const Settings& settings) {
   if (!settings.levels_of_detail) return 1;
@@ -72,14 +71,13 @@ bool overhangs(const world::World& world, const visibility::NodeCoord& node) {
 std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
                                    const Settings& settings, const models::ModelType* merged) {
   const models::ModelType& terrain = registry[world.terrain_model];
-  const bool coarse = settings.levels_of_detail &&
-                      models::terrain_surface_triangles(world.terrain, 1) >= kFewestTriangles;
+  const int mesh_level = settings.levels_of_detail ? world::node_mesh_level(world) : 0;
   std::vector<NodeLevel> levels(static_cast<std::size_t>(count_of_levels(world, settings)));
   for (std::size_t k = 0; k < levels.size(); ++k) {
     NodeLevel& level = levels[k];
     const models::Parameters p = node_terrain(world, {{}, static_cast<std::uint8_t>(k)});
     level.size_m = std::ldexp(world.block_size_m(), static_cast<int>(k));
-    level.mesh_level = coarse ? 1 : 0;
+    level.mesh_level = static_cast<std::uint16_t>(mesh_level);
     level.bounds = terrain.bounds(p);
     level.ground_error_m =
         (k == 0 ? kBlockErrorSeen : kNodeErrorSeen) * terrain.level_error_m(p, 1);

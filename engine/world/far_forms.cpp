@@ -46,20 +46,15 @@ glm::vec3 axis_of(const Outline& o) {
   return {axis.x, 0, axis.y};
 }
 
-// The lowest point of a form that is stretched from the top down.
-float base_of(const Outline& o, const Stretch& stretch) {
-  return o.top.position.y - stretch.depth * (o.top.position.y - o.bottom.position.y);
-}
-
 // `along` times the turn and `aside` times the direction a quarter turn from it, towards +z from
 // +x.
 glm::vec3 turned(glm::vec2 turn, float along, float aside) {
   return {along * turn.x - aside * turn.y, 0, along * turn.y + aside * turn.x};
 }
 
-void make_spindle(const Outline& o, const Stretch& stretch, FormMesh& out) {
+void make_spindle(const Outline& o, float width, FormMesh& out) {
   const glm::vec3 axis = axis_of(o);
-  const glm::vec3 scale{stretch.width, 1, stretch.width};
+  const glm::vec3 scale{width, 1, width};
   out.corners[0] = o.top;
   for (std::size_t i = 0; i < 4; ++i)
     out.corners[1 + i] =
@@ -82,9 +77,9 @@ void add_trunk(const Outline& o, std::size_t vertices, std::size_t indices, Form
   set_indices(out, {first, second, third}, indices);
 }
 
-void make_chunk(const Outline& o, const Stretch& stretch, glm::vec2 turn, FormMesh& out) {
-  const float top = o.top.position.y, base = base_of(o, stretch);
-  const float r = stretch.width * o.ring_radius();
+void make_chunk(const Outline& o, float width, glm::vec2 turn, FormMesh& out) {
+  const float top = o.top.position.y, base = o.bottom.position.y;
+  const float r = width * o.ring_radius();
   const glm::vec3 axis = axis_of(o);
   const Corner upper = upper_light(o), lower = lower_light(o);
   const float heights[2] = {top, top - kChunkStep * (top - base)};
@@ -130,11 +125,10 @@ void make_tent(const Outline& o, const Billboard& b, FormMesh& out) {
 
 }  // namespace
 
-void make_form(Form form, const Outline& outline, const Stretch& stretch, glm::vec2 turn,
-               FormMesh& out) {
-  PSYGEN_CHECK(!is_billboard(form), "billboards have no stretch");
-  if (form == Form::kChunk) return make_chunk(outline, stretch, turn, out);
-  make_spindle(outline, stretch, out);
+void make_form(Form form, const Outline& outline, float width, glm::vec2 turn, FormMesh& out) {
+  PSYGEN_CHECK(!is_billboard(form), "billboards are made to measure");
+  if (form == Form::kChunk) return make_chunk(outline, width, turn, out);
+  make_spindle(outline, width, out);
   if (form == Form::kSpindleTrunk) add_trunk(outline, 6, 24, out);
 }
 

@@ -42,14 +42,9 @@ struct FormMesh {
   std::array<std::uint16_t, 27> indices;
 };
 
-// How a form is stretched: about its axis, and down from its top.
-struct Stretch {
-  float width = 1, depth = 1;
-};
-
-// Any form but billboards. `turn` is a unit vector that the asymmetric ones point along.
-void make_form(Form form, const Outline& outline, const Stretch& stretch, glm::vec2 turn,
-               FormMesh& out);
+// Any form but billboards, so many times as wide. `turn` is a unit vector that the asymmetric ones
+// point along.
+void make_form(Form form, const Outline& outline, float width, glm::vec2 turn, FormMesh& out);
 
 // A billboard whose width and lean give as much area from the side and from above as `models` of
 // them have together; a kite is always for one.

@@ -32,7 +32,7 @@ FarScatter::Reach larger(const FarScatter::Reach& a, const FarScatter::Reach& b)
 
 Silhouette silhouette_of_form(Form form, const Outline& outline) {
   FormMesh mesh;
-  make_form(form, outline, {}, {0.8F, 0.6F}, mesh);
+  make_form(form, outline, 1, {0.8F, 0.6F}, mesh);
   std::array<glm::vec3, 9> places;
   const FormSize size = size_of(form);
   for (std::size_t i = 0; i < size.vertices; ++i)
@@ -106,14 +106,12 @@ void FarScatter::measure_shape() {
 void FarScatter::fit_forms() {
   for (std::size_t f = 0; f < kFormCount; ++f) {
     const auto form = static_cast<Form>(f);
-    if (is_billboard(form)) continue;  // these are made to measure
+    if (is_billboard(form)) continue;
     float sum = 0;
     for (const Representative& r : representatives_)
       sum += silhouette_of_form(form, r.outline).side_m2;
     const float meshes = mean_.side_m2 * static_cast<float>(representatives_.size());
-    const float factor = sum > 0 ? std::clamp(meshes / sum, 0.05F, 3.0F) : 1.0F;
-    const bool down = leafy_ && form == Form::kChunk;
-    stretches_[f] = down ? Stretch{1, factor} : Stretch{factor, 1};
+    widths_[f] = sum > 0 ? std::clamp(meshes / sum, 0.05F, 3.0F) : 1.0F;
   }
 }
 
@@ -151,8 +149,8 @@ FarScatter::Reach FarScatter::reach(float models) const {
   Reach most = reach_;
   for (const Representative& r : representatives_) {
     float aside = 0;
-    for (const Stretch& stretch : stretches_)
-      aside = std::max(aside, stretch.width * r.outline.ring_radius());
+    for (const float width : widths_)
+      aside = std::max(aside, width * r.outline.ring_radius());
     const glm::vec2 axis = r.outline.axis();
     const Billboard billboard = billboard_of(r.outline, r.silhouette, models);
     aside = std::max(aside, billboard.half_width_m + 0.5F * billboard.lean_m);

@@ -47,10 +47,10 @@ class FarScatter {
   bool is_cheap() const { return cheap_; }
 
   // The form for single instances at a node level >= 1 where they are first seen so large, and how
-  // it must be stretched to cover as much of the picture as the coarsest meshes do on average:
-  // crowns downwards, others about the axis.
+  // much wider it must be to cover as much of the picture as the coarsest meshes do on average; not
+  // for billboards, which are made to measure.
   Form form_at(int node_level, double size_pixels) const;
-  const Stretch& stretch_of(Form form) const { return stretches_[static_cast<std::size_t>(form)]; }
+  float width_of(Form form) const { return widths_[static_cast<std::size_t>(form)]; }
 
   // One that is like the instance with these bounds; which one of those is up to `hash`.
   Likeness like(float width_m, float height_m, std::uint64_t hash) const;
@@ -73,7 +73,7 @@ class FarScatter {
   std::vector<Representative> representatives_;
   Silhouette mean_;
   Reach reach_;  // of the type's bounds
-  std::array<Stretch, kFormCount> stretches_;
+  std::array<float, kFormCount> widths_{};
   bool leafy_ = false, conical_ = false, trunk_ = false, slender_ = false, cheap_ = false;
 };
 

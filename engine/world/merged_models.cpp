@@ -23,7 +23,7 @@ using models::ParameterSpec;
 
 constexpr models::ParameterType kInteger = models::ParameterType::kInteger;
 constexpr models::ParameterSource kPlaced = models::ParameterSource::kPlaced;
-constexpr std::uint64_t kEdition = 3;  // of what this file makes of a world
+constexpr std::uint64_t kEdition = 4;  // of what this file makes of a world
 
 constexpr ParameterSpec kSchema[kMergedParameterCount] = {
     {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
@@ -140,9 +140,10 @@ class MergedType final : public models::ModelType {
 struct MergedType::Making {
   const LevelPlan& plan;
   std::uint64_t key;  // of the node
-  double tile_side_m;
   FormWriter writer;
-  std::optional<models::BlockGround> ground;  // of the tile
+  models::BlockGround drawn;                  // of the whole node
+  int drawn_stride;                           // for what is drawn of it
+  std::optional<models::BlockGround> ground;  // of the tile, for slopes and heights of places
   CoarsestMesh mesh;
   FormMesh form;
 };
@@ -182,7 +183,7 @@ void MergedType::make_from_like(const Instance& instance, const Parameters& p,
   const Likeness like = far.like(box.max.x - box.min.x, box.max.y - box.min.y, instance.hash >> 8);
   const Outline outline = like.model->outline.scaled(like.across, like.up);
   if (!is_billboard(form))
-    return make_form(form, outline, far.stretch_of(form), direction_of(instance.hash), making.form);
+    return make_form(form, outline, far.width_of(form), direction_of(instance.hash), making.form);
   const Silhouette area = like.model->silhouette.scaled(like.across, like.up);
   make_billboard(form, outline, billboard_of(outline, area, static_cast<float>(instance.together)),
                  making.form);
@@ -196,13 +197,14 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   const auto place = scattering.place(*making.ground, instance.index, block.in_tile_m);
   if (!place) return;
   instance.place = place->position;
+  const glm::dvec2 in_node = block.in_node_m + glm::dvec2(place->position.x, place->position.z);
+  instance.place.y = static_cast<float>(making.drawn.at(in_node, making.drawn_stride).height_m);
   const Parameters p = scattering.parameters(instance.index);
   if (how.each_is_synthesised) {
     making.mesh.make(far.type(), p);
     const auto outline = making.mesh.outline();
     if (!outline) return;
-    make_form(how.form, *outline, far.stretch_of(how.form), direction_of(instance.hash),
-              making.form);
+    make_form(how.form, *outline, far.width_of(how.form), direction_of(instance.hash), making.form);
   } else {
     make_from_like(instance, p, making);
   }
@@ -245,8 +247,9 @@ core::Bounds MergedType::synthesize(const Parameters& p, int level, const MeshVi
                       level_of(p));
   Making making{made,
                 core::combine(world_->seed, p.hash()),
-                walk.tile_side_m(),
                 FormWriter(made.box, out),
+                walk.whole_ground(),
+                walk.drawn_stride(),
                 std::nullopt,
                 {},
                 {}};

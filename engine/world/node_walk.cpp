@@ -2,8 +2,14 @@
 
 #include <cmath>
 
+#include "engine/models/terrain_grid.hpp"
+
 namespace psygen::world {
 namespace {
+
+constexpr std::size_t kMany = 65'536;  // questions, so that all heights are evaluated
+// Meshes of nodes have at least so many triangles; else the next finer level is used.
+constexpr std::uint32_t kFewestTriangles = 98;
 
 // Every other bit of `v`, from bit 0 on.
 std::uint32_t even_bits(std::uint32_t v) {
@@ -23,6 +29,10 @@ glm::dvec2 metres(std::uint32_t x, std::uint32_t z, double block_size_m) {
 
 }  // namespace
 
+int node_mesh_level(const World& world) {
+  return models::terrain_surface_triangles(world.terrain, 1) >= kFewestTriangles ? 1 : 0;
+}
+
 NodeWalk::NodeWalk(const World& world, core::BlockCoord node, int node_level)
     : world_(world), node_(node), level_(node_level), tile_(tile_level(node_level)) {}
 
@@ -37,7 +47,6 @@ NodeBlock NodeWalk::block(std::uint32_t ordinal) const {
 }
 
 void NodeWalk::make_ground(std::uint32_t ordinal, std::optional<models::BlockGround>& out) const {
-  constexpr std::size_t kMany = 65'536;  // questions, so that all heights are evaluated
   models::Parameters terrain = world_.terrain;
   terrain.set_integer(models::kTerrainNodeLevel, tile_);
   const std::uint32_t x = even_bits(ordinal) >> tile_, z = even_bits(ordinal >> 1) >> tile_;
@@ -46,8 +55,15 @@ void NodeWalk::make_ground(std::uint32_t ordinal, std::optional<models::BlockGro
   out.emplace(terrain, tile, kMany);
 }
 
-double NodeWalk::tile_side_m() const {
-  return std::ldexp(world_.block_size_m(), tile_);
+models::BlockGround NodeWalk::whole_ground() const {
+  models::Parameters terrain = world_.terrain;
+  terrain.set_integer(models::kTerrainNodeLevel, level_);
+  return {terrain, node_, kMany};
+}
+
+int NodeWalk::drawn_stride() const {
+  const auto size = static_cast<int>(world_.terrain.integer(models::kTerrainSize));
+  return models::terrain_strides(size)[static_cast<std::size_t>(node_mesh_level(world_))];
 }
 
 }  // namespace psygen::world

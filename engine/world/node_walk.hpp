@@ -1,5 +1,5 @@
-// The blocks of a node in Morton order, and the ground under them in square tiles of blocks, which
-// follow each other in the same order. Pure functions.
+// The blocks of a node in Morton order, and the ground under them: in square tiles of blocks, which
+// follow each other in the same order, and as it is drawn. Pure functions.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,9 @@ constexpr std::uint32_t ground_tiles(int node_level) {
   return 1U << (2 * (node_level - tile_level(node_level)));
 }
 
+// The level of the terrain type that nodes of levels 1 and more draw.
+int node_mesh_level(const World& world);
+
 class NodeWalk {
  public:
   // `node` is counted in nodes of its level, 1 … 15. Blocks beyond 2^31 wrap. `world` must outlive
@@ -41,7 +44,9 @@ class NodeWalk {
   }
   // Makes the ground of the tile that a block lies on.
   void make_ground(std::uint32_t ordinal, std::optional<models::BlockGround>& out) const;
-  double tile_side_m() const;
+  // The ground of the whole node, and the stride with which at() gives what is drawn of it.
+  models::BlockGround whole_ground() const;
+  int drawn_stride() const;
 
  private:
   const World& world_;

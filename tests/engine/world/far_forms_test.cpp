@@ -53,7 +53,7 @@ FormMesh form_of_crown(Form form) {
   if (is_billboard(form)) {
     make_billboard(form, crown(), billboard_of(crown(), {7.2F, 8}, 1), mesh);
   } else {
-    make_form(form, crown(), {}, {0.6F, 0.8F}, mesh);
+    make_form(form, crown(), 1, {0.6F, 0.8F}, mesh);
   }
   return mesh;
 }
@@ -74,7 +74,7 @@ TEST(FarForms, HaveTheSizesThatAreTold) {
 TEST(FarForms, FaceOutwards) {
   for (const Form form : {Form::kSpindle, Form::kChunk}) {
     FormMesh mesh;
-    make_form(form, crown(), {}, {-0.8F, 0.6F}, mesh);
+    make_form(form, crown(), 1, {-0.8F, 0.6F}, mesh);
     const auto indices = indices_of(form, mesh);
     const std::vector<glm::vec3> places = places_of(form, mesh);
     glm::vec3 middle(0.0F);
@@ -92,7 +92,7 @@ TEST(FarForms, EndAtTheTopAndTurnAboutTheAxis) {
   for (const Form form : kSolids) {
     for (const glm::vec2 turn : {glm::vec2(1, 0), {0, 1}, {-0.6F, 0.8F}}) {
       FormMesh mesh;
-      make_form(form, crown(), {1, 0.9F}, turn, mesh);
+      make_form(form, crown(), 1, turn, mesh);
       float highest = 0;
       for (const glm::vec3& place : places_of(form, mesh)) {
         highest = std::max(highest, place.y);
@@ -103,11 +103,14 @@ TEST(FarForms, EndAtTheTopAndTurnAboutTheAxis) {
   }
 }
 
-TEST(FarForms, StretchDownwardsAndSideways) {
+TEST(FarForms, AreAsManyTimesAsWideAsAsked) {
   FormMesh mesh;
-  make_form(Form::kChunk, crown(), {3, 0.5F}, {1, 0}, mesh);
-  EXPECT_FLOAT_EQ(mesh.corners[2].position.y, 4);
+  make_form(Form::kChunk, crown(), 3, {1, 0}, mesh);
+  EXPECT_FLOAT_EQ(mesh.corners[2].position.y, 2);
   EXPECT_FLOAT_EQ(mesh.corners[0].position.x, 6);
+  make_form(Form::kSpindle, crown(), 0.5F, {1, 0}, mesh);
+  EXPECT_FLOAT_EQ(mesh.corners[0].position.y, 6);
+  EXPECT_FLOAT_EQ(mesh.corners[1].position.x, 1);
 }
 
 float area_of(std::span<const glm::vec3> places, const glm::vec3& from) {

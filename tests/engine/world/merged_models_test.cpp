@@ -13,6 +13,7 @@
 
 #include "engine/models/packing.hpp"
 #include "engine/models/terrain.hpp"
+#include "engine/world/node_walk.hpp"
 #include "engine/world/outline.hpp"
 #include "engine/world/placement.hpp"
 #include "tests/engine/app/fence.hpp"
@@ -102,7 +103,7 @@ std::vector<core::BlockCoord> blocks_of(const World& world, core::BlockCoord nod
 
 struct CoarsestModel {
   Placement placement;
-  glm::vec3 foot;  // in the node
+  glm::vec3 foot;  // in the node, on its ground as it is drawn
   core::Bounds box;
   bool leafy;
   Silhouette silhouette;
@@ -111,6 +112,8 @@ struct CoarsestModel {
 std::vector<CoarsestModel> single_models(const Scenery& scenery, core::BlockCoord node, int level) {
   std::vector<CoarsestModel> all;
   CoarsestMesh mesh;
+  const NodeWalk walk(*scenery.world, node, level);
+  const models::BlockGround ground = walk.whole_ground();
   for (const core::BlockCoord block : blocks_of(*scenery.world, node, level)) {
     for (const Placement& p : placements_of(scenery, block)) {
       const models::ModelType& type = scenery.registry[p.model];
@@ -124,8 +127,9 @@ std::vector<CoarsestModel> single_models(const Scenery& scenery, core::BlockCoor
         box = {glm::min(box.min, place), glm::max(box.max, place)};
         leafy = leafy || v.material == kLeaf;
       }
-      all.push_back({p, scenery.corner_m(block, node, level) + p.position, box, leafy,
-                     mesh.silhouette(type)});
+      glm::vec3 foot = scenery.corner_m(block, node, level) + p.position;
+      foot.y = static_cast<float>(ground.at({foot.x, foot.z}, walk.drawn_stride()).height_m);
+      all.push_back({p, foot, box, leafy, mesh.silhouette(type)});
     }
   }
   return all;
