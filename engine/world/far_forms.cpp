@@ -111,6 +111,23 @@ void make_kite(const Outline& o, const Billboard& b, FormMesh& out) {
   set_indices(out, {0, 1, 2, 1, 0, 3});
 }
 
+// What the crown leaves free of the trunk's triangle.
+float seen_trunk_m2(const Outline& o) {
+  const float tip = std::max(o.ring_height(), 1e-3F);
+  const float hidden = std::clamp(1 - o.bottom.position.y / tip, 0.0F, 1.0F);
+  return o.trunk_radius * tip * (1 - hidden * hidden);
+}
+
+// A tent with a base of 2a and the height h has the area a h, as has a kite 2a wide. Crowns keep
+// their width, other things may be narrower so that they reach down to where they begin; both are
+// wider where they would have to reach into the ground.
+float half_width(const Outline& o, float side_m2, float models) {
+  const float top = std::max(o.top.position.y, 1e-3F);
+  const float height = std::max(top - std::max(o.bottom.position.y, 0.0F), 1e-3F);
+  const float wide = std::sqrt(models) * o.ring_radius();
+  return std::max(side_m2 / top, o.leafy ? wide : std::min(wide, side_m2 / height));
+}
+
 void make_tent(const Outline& o, const Billboard& b, FormMesh& out) {
   const glm::vec3 axis = axis_of(o);
   const Corner lower = flat(lower_light(o));
@@ -132,16 +149,16 @@ void make_form(Form form, const Outline& outline, float width, glm::vec2 turn, F
   if (form == Form::kSpindleTrunk) add_trunk(outline, 6, 24, out);
 }
 
-// A tent with a base of 2a and the height h has the area a h, as has a kite 2a wide. It is as wide
-// as the models are, as far as that leaves it above the ground; where many would make too long a
-// wall, it has a smaller area.
-Billboard billboard_of(const Outline& outline, const Silhouette& silhouette, float models) {
+Billboard billboard_of(Form form, const Outline& outline, const Silhouette& silhouette,
+                       float models) {
   constexpr float kMostElongation = 2, kLean = 0.5F;
-  const float plan = models * silhouette.plan_m2, side = models * silhouette.side_m2;
+  const float trunk = form == Form::kKiteTrunk ? seen_trunk_m2(outline) : 0;
+  const float one = std::max(silhouette.side_m2 - trunk, 0.1F * silhouette.side_m2);
+  const float plan = models * silhouette.plan_m2, side = models * one;
+  const float most = std::max(kMostElongation * std::sqrt(plan), half_width(outline, one, 1));
+  const float half = std::min(half_width(outline, side, models), most);
+  if (!(half > 0 && side > 0)) return {0, 0, 0};
   const float top = std::max(outline.top.position.y, 1e-3F);
-  const float wide = std::sqrt(models) * outline.ring_radius();
-  const float half = std::min(std::max(side / top, wide), kMostElongation * std::sqrt(plan));
-  if (!(half > 0)) return {0, 0, 0};
   return {half, kLean * plan / half, std::max(top - side / half, 0.0F)};
 }
 

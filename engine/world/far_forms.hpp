@@ -46,13 +46,15 @@ struct FormMesh {
 // point along.
 void make_form(Form form, const Outline& outline, float width, glm::vec2 turn, FormMesh& out);
 
-// A billboard whose width and lean give as much area from the side and from above as `models` of
-// them have together; a kite is always for one.
+// A billboard whose width and height give as much area from the side as `models` of them have
+// together, and whose lean gives half as much from above; a kite is always for one. Where many
+// would be a long wall it has less.
 struct Billboard {
   float half_width_m, lean_m;
   float base_m;  // height of the lowest corner above the ground
 };
-Billboard billboard_of(const Outline& outline, const Silhouette& silhouette, float models);
+Billboard billboard_of(Form form, const Outline& outline, const Silhouette& silhouette,
+                       float models);
 void make_billboard(Form form, const Outline& outline, const Billboard& billboard, FormMesh& out);
 
 }  // namespace psygen::world

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kCheapVertices = 128;
 // Bounds that differ by less than this factor are alike.
 constexpr float kAlike = 1.04F;
-// Of what is no larger than this it cannot be seen that it is flat.
+// Of what is no wider or higher than this it cannot be seen that it is flat.
 constexpr double kSmallPixels = 6;
 // Instances beyond the representatives may be so much larger; what reaches further is cut.
 constexpr float kRoom = 1.25F;
@@ -30,13 +30,18 @@ FarScatter::Reach larger(const FarScatter::Reach& a, const FarScatter::Reach& b)
   return {std::max(a.aside, b.aside), std::max(a.up, b.up), std::max(a.down, b.down)};
 }
 
+// Trunks in the middle of their turns.
+float aside_of(Form form, const FormMesh& mesh, std::size_t corner) {
+  return corner < size_of(form).solid_vertices ? 0 : mesh.aside[corner].x;
+}
+
 Silhouette silhouette_of_form(Form form, const Outline& outline) {
   FormMesh mesh;
   make_form(form, outline, 1, {0.8F, 0.6F}, mesh);
   std::array<glm::vec3, 9> places;
   const FormSize size = size_of(form);
   for (std::size_t i = 0; i < size.vertices; ++i)
-    places[i] = mesh.corners[i].position;
+    places[i] = mesh.corners[i].position + glm::vec3(aside_of(form, mesh, i), 0, 0);
   return silhouette_of(std::span(places).first(size.vertices),
                        std::span(mesh.indices).first(std::size_t{3} * size.triangles));
 }
@@ -86,7 +91,7 @@ void FarScatter::measure(const World& world) {
 }
 
 void FarScatter::measure_shape() {
-  float leafy = 0, ring = 0, gap = 0, slender = 0;
+  float leafy = 0, ring = 0, gap = 0, slender = 0, extent = 0;
   for (const Representative& r : representatives_) {
     const Outline& o = r.outline;
     const float top = o.top.position.y, bottom = o.bottom.position.y;
@@ -95,12 +100,14 @@ void FarScatter::measure_shape() {
     ring += (o.ring_height() - bottom) / height;
     gap += o.trunk_radius > 0 ? bottom / std::max(top, 1e-6F) : 0.0F;
     slender += top / std::max(o.ring_radius(), 1e-6F);
+    extent += std::max(height, 2 * o.ring_radius());
   }
   const auto count = static_cast<float>(representatives_.size());
   leafy_ = 2 * leafy > count;
   conical_ = ring < 0.36F * count;
   trunk_ = leafy_ && gap > 0.08F * count;
   slender_ = slender > 2.5F * count;
+  extent_m_ = extent / count;
 }
 
 void FarScatter::fit_forms() {
@@ -115,9 +122,9 @@ void FarScatter::fit_forms() {
   }
 }
 
-Form FarScatter::form_at(int node_level, double size_pixels) const {
+Form FarScatter::form_at(int node_level, double pixels_per_m) const {
   if (!leafy_) {
-    if (size_pixels < kSmallPixels || node_level >= 3) return Form::kTent;
+    if (extent_m_ * pixels_per_m < kSmallPixels || node_level >= 3) return Form::kTent;
     return node_level == 1 && slender_ ? Form::kSpindle : Form::kChunk;
   }
   if (node_level >= 3) return Form::kTent;
@@ -152,7 +159,7 @@ FarScatter::Reach FarScatter::reach(float models) const {
     for (const float width : widths_)
       aside = std::max(aside, width * r.outline.ring_radius());
     const glm::vec2 axis = r.outline.axis();
-    const Billboard billboard = billboard_of(r.outline, r.silhouette, models);
+    const Billboard billboard = billboard_of(Form::kTent, r.outline, r.silhouette, models);
     aside = std::max(aside, billboard.half_width_m + 0.5F * billboard.lean_m);
     most.aside = std::max(most.aside, aside + std::abs(axis.x) + std::abs(axis.y));
   }

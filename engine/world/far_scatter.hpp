@@ -46,10 +46,10 @@ class FarScatter {
   // Whether the coarsest meshes are small enough to be made for every single instance.
   bool is_cheap() const { return cheap_; }
 
-  // The form for single instances at a node level >= 1 where they are first seen so large, and how
-  // much wider it must be to cover as much of the picture as the coarsest meshes do on average; not
-  // for billboards, which are made to measure.
-  Form form_at(int node_level, double size_pixels) const;
+  // The form for single instances at a node level >= 1 that is first seen so large, and how much
+  // wider it must be to cover as much of the picture as the coarsest meshes do on average; not for
+  // billboards, which are made to measure.
+  Form form_at(int node_level, double pixels_per_m) const;
   float width_of(Form form) const { return widths_[static_cast<std::size_t>(form)]; }
 
   // One that is like the instance with these bounds; which one of those is up to `hash`.
@@ -72,7 +72,8 @@ class FarScatter {
   std::uint32_t first_;
   std::vector<Representative> representatives_;
   Silhouette mean_;
-  Reach reach_;  // of the type's bounds
+  Reach reach_;         // of the type's bounds
+  float extent_m_ = 0;  // mean width or height, what is larger
   std::array<float, kFormCount> widths_{};
   bool leafy_ = false, conical_ = false, trunk_ = false, slender_ = false, cheap_ = false;
 };

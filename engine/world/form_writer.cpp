@@ -1,6 +1,7 @@
 #include "engine/world/form_writer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
 
@@ -28,8 +29,16 @@ core::Bounds FormWriter::finish() {
   const auto place = [this](const std::array<std::int16_t, 3>& q) {
     return box_.center() + box_.half_extent() * (glm::vec3(q[0], q[1], q[2]) * (1.0F / 32767.0F));
   };
-  const glm::vec3 around(reach_m_, 0, reach_m_);
+  const glm::vec3 around(reach_m_, 0, reach_m_);  // up to the box but for rounding
   return {glm::max(place(low_) - around, box_.min), glm::min(place(high_) + around, box_.max)};
+}
+
+// As far as there is room around `axis`, whichever way it turns.
+glm::vec2 FormWriter::limited(glm::vec2 aside, const glm::vec3& axis) const {
+  const float room = std::min(
+      {axis.x - box_.min.x, box_.max.x - axis.x, axis.z - box_.min.z, box_.max.z - axis.z});
+  const float reach = std::abs(aside.x) + std::abs(aside.y);
+  return reach > room ? aside * (std::max(room, 0.0F) / reach) : aside;
 }
 
 void FormWriter::write(const Corner& c, const glm::vec3& foot, const glm::vec2* aside, bool sways) {
@@ -40,8 +49,9 @@ void FormWriter::write(const Corner& c, const glm::vec3& foot, const glm::vec2* 
     high_[k] = std::max(high_[k], v.position[k]);
     v.colour[k] = models::pack_unorm8(c.colour[static_cast<int>(k)]);
   }
-  const glm::vec2 normal = aside != nullptr ? *aside * (1 / core::kBillboardReachM)
-                                            : models::encode_octahedral(c.normal);
+  const glm::vec2 normal = aside != nullptr
+                               ? limited(*aside, foot + c.position) / core::kBillboardReachM
+                               : models::encode_octahedral(c.normal);
   v.normal[0] = models::pack_snorm16(normal.x);
   v.normal[1] = models::pack_snorm16(normal.y);
   v.ambient = models::pack_unorm8(c.ambient);

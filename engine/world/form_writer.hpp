@@ -11,7 +11,8 @@ namespace psygen::world {
 
 class FormWriter {
  public:
-  // Positions are in `box`; what reaches beyond is moved onto it. `out` has room for all forms.
+  // Positions are in `box`; what reaches beyond is moved onto it, and billboards are made narrower.
+  // `out` has room for all forms.
   FormWriter(const core::Bounds& box, const models::MeshView& out)
       : box_(box), packer_(box), out_(out) {}
 
@@ -21,6 +22,7 @@ class FormWriter {
   core::Bounds finish();
 
  private:
+  glm::vec2 limited(glm::vec2 aside, const glm::vec3& axis) const;
   void write(const Corner& c, const glm::vec3& foot, const glm::vec2* aside, bool sways);
 
   core::Bounds box_;

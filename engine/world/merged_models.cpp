@@ -141,7 +141,7 @@ struct MergedType::Making {
   const LevelPlan& plan;
   std::uint64_t key;  // of the node
   FormWriter writer;
-  models::BlockGround drawn;                  // of the whole node
+  models::BlockGround node_ground;            // of the whole node
   int drawn_stride;                           // for what is drawn of it
   std::optional<models::BlockGround> ground;  // of the tile, for slopes and heights of places
   CoarsestMesh mesh;
@@ -185,7 +185,8 @@ void MergedType::make_from_like(const Instance& instance, const Parameters& p,
   if (!is_billboard(form))
     return make_form(form, outline, far.width_of(form), direction_of(instance.hash), making.form);
   const Silhouette area = like.model->silhouette.scaled(like.across, like.up);
-  make_billboard(form, outline, billboard_of(outline, area, static_cast<float>(instance.together)),
+  make_billboard(form, outline,
+                 billboard_of(form, outline, area, static_cast<float>(instance.together)),
                  making.form);
 }
 
@@ -198,7 +199,8 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   if (!place) return;
   instance.place = place->position;
   const glm::dvec2 in_node = block.in_node_m + glm::dvec2(place->position.x, place->position.z);
-  instance.place.y = static_cast<float>(making.drawn.at(in_node, making.drawn_stride).height_m);
+  instance.place.y =
+      static_cast<float>(making.node_ground.at(in_node, making.drawn_stride).height_m);
   const Parameters p = scattering.parameters(instance.index);
   if (how.each_is_synthesised) {
     making.mesh.make(far.type(), p);

@@ -1,8 +1,8 @@
 // The model type "vegetation": one mesh for everything that is scattered over the 2^k × 2^k blocks
 // of a node of level k, each tree or rock as a few triangles, from level 4 on one form for several.
-// It stands where place_models() puts the single models (from level 3 on with the heights and
-// slopes of a coarser lattice of the same ground), so changing from one to the other moves nothing.
-// docs/models.md, "Vegetation".
+// It stands where place_models() puts the single models (from level 3 on by the slopes of a coarser
+// lattice of the same ground), as high as the ground that the node draws, so changing from one to
+// the other moves nothing but up or down with the ground. docs/models.md, "Vegetation".
 #pragma once
 
 #include <memory>
@@ -24,9 +24,10 @@ inline constexpr int kMaxMergedLevel = 5;
 
 // Two levels of detail: what belongs to the node level, and, coarser than anything single but the
 // smallest stones, the forms of the next one. Positions are metres from the node's corner. Models
-// that find no place leave degenerate triangles at the end of the mesh. Needs 1 MiB of stack. Makes
-// a few instances of every scatter at once (about 0.1 ms a scatter). The model types of `registry`
-// must outlive the result, which may become one of them; `world` must be one of this registry.
+// that find no place leave degenerate triangles at the end of the mesh. Needs 1.1 MiB of stack.
+// Makes a few instances of every scatter at once (about 0.1 ms a scatter). The model types of
+// `registry` must outlive the result, which may become one of them; `world` must be one of this
+// registry.
 std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
                                                     const models::Registry& registry);
 

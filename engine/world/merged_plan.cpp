@@ -17,11 +17,6 @@ constexpr std::uint32_t kMostTogether = 8;
 constexpr std::uint32_t kMostThinning = 1U << 26;  // more than there are in any node
 constexpr std::uint64_t kMostVertices = 65'536;
 
-// How many pixels wide and high a model of this size is where a node of this side is first drawn.
-double size_pixels(double side_m2, double side_m) {
-  return std::sqrt(side_m2) * kPixelsPerRadian / (kNearestSides * side_m);
-}
-
 // How many models of this size must be together so that they can be seen.
 std::uint32_t least_together(double pixels) {
   const double ratio = kLeastPixels / pixels;
@@ -32,14 +27,15 @@ void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint3
                    LevelPlan& plan) {
   plan.scatters.clear();
   plan.vertices = plan.triangles = 0;
+  const double pixels_per_m = kPixelsPerRadian / (kNearestSides * side);
   for (const FarScatter& far : scatters) {
     ScatterPlan how;
-    const double pixels = far.empty() ? 0 : size_pixels(far.mean_silhouette().side_m2, side);
-    const std::uint32_t least = far.empty() ? 0 : least_together(pixels);
+    const double size_m = std::sqrt(far.mean_silhouette().side_m2);
+    const std::uint32_t least = far.empty() ? 0 : least_together(size_m * pixels_per_m);
     how.together = std::max(thinning, far.is_leafy() ? least : 1);
     const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMostTogether) : thinning;
     if (!far.empty() && least <= most) {
-      how.form = how.together > 1 ? Form::kTent : far.form_at(plan.form_level, pixels);
+      how.form = how.together > 1 ? Form::kTent : far.form_at(plan.form_level, pixels_per_m);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * plan.level);
       how.forms = (instances + how.together - 1) / how.together;
       how.each_is_synthesised = plan.form_level == 1 && !is_billboard(how.form) && far.is_cheap();
@@ -92,7 +88,7 @@ double work_of(const World& world, std::span<const FarScatter> scatters, const L
   const double ground = 0.35 * vertices * vertices *
                         static_cast<double>(world.terrain.integer(models::kTerrainOctaves)) *
                         (world.terrain.real(models::kTerrainWarp) > 0 ? 8 : 1);
-  double sum = ground * static_cast<double>(ground_tiles(plan.level));
+  double sum = ground * static_cast<double>(ground_tiles(plan.level) + 1);  // and the whole node
   for (std::size_t s = 0; s < scatters.size(); ++s) {
     const ScatterPlan& how = plan.scatters[s];
     const FarScatter& far = scatters[s];

@@ -16,7 +16,7 @@ Corner corner_of(const core::ModelVertex& v, const core::Bounds& box) {
           colour,
           static_cast<float>(v.ambient) * (1.0F / 255.0F),
           static_cast<float>(v.sway) * (1.0F / 255.0F),
-          v.material};
+          static_cast<std::uint8_t>(v.material & kLeaf)};
 }
 
 core::ModelVertex vertex_at(std::span<const std::byte> vertices, std::size_t i) {

@@ -15,11 +15,12 @@ namespace psygen::render {
 namespace {
 
 constexpr core::Extent kSize{160, 120};
-constexpr float kHalfWidthM = 4, kHalfHeightM = 5, kLeanM = 3;
+constexpr float kLeftM = 2, kRightM = 4, kHalfHeightM = 5, kLeanM = 3;
 
 using How = std::tuple<RenderPath, Submission, Preset>;
 
-// A triangle whose corners are all on the axis of its box, wide at its foot, bright red.
+// A triangle whose corners are all on the axis of its box, wide at its foot, more so to the right,
+// bright red.
 core::Result<core::GeometryRange> make_tent(core::GeometryMemory& memory) {
   const auto reserved = memory.reserve(core::VertexLayout::kModel, 3, 3);
   if (!reserved) return tl::unexpected(reserved.error());
@@ -30,7 +31,7 @@ core::Result<core::GeometryRange> make_tent(core::GeometryMemory& memory) {
   for (std::size_t i = 0; i < 3; ++i) {
     core::ModelVertex& v = vertices[i];
     v.position[1] = i == 2 ? 32767 : -32767;
-    v.normal[0] = in_reach(i == 2 ? 0 : i == 0 ? -kHalfWidthM : kHalfWidthM);
+    v.normal[0] = in_reach(i == 2 ? 0 : i == 0 ? -kLeftM : kRightM);
     v.normal[1] = in_reach(i == 2 ? kLeanM : -kLeanM);
     v.colour[0] = v.ambient = 255;
     v.material = core::kBillboardBit | 1;
@@ -44,6 +45,7 @@ core::Result<core::GeometryRange> make_tent(core::GeometryMemory& memory) {
 // Where in the picture the red is, in pixels.
 struct Seen {
   int count = 0, left = INT32_MAX, right = -1, top = INT32_MAX, bottom = -1;
+  std::array<int, kSize.height> in_row{};
 };
 
 class Billboard : public testing::TestWithParam<How> {
@@ -60,7 +62,7 @@ class Billboard : public testing::TestWithParam<How> {
     const auto range = make_tent(renderer_->geometry());
     ASSERT_TRUE(range);
     tent_.range = *range;
-    tent_.box_half_extent = {kHalfWidthM + kLeanM, kHalfHeightM, kHalfWidthM + kLeanM};
+    tent_.box_half_extent = {kRightM + kLeanM, kHalfHeightM, kRightM + kLeanM};
   }
   void TearDown() override {
     if (!renderer_) return;
@@ -86,8 +88,11 @@ class Billboard : public testing::TestWithParam<How> {
       const int x = static_cast<int>(i / 4 % kSize.width),
                 y = static_cast<int>(i / 4 / kSize.width);
       ++seen.count;
-      seen = {seen.count, std::min(seen.left, x), std::max(seen.right, x), std::min(seen.top, y),
-              std::max(seen.bottom, y)};
+      ++seen.in_row[static_cast<std::size_t>(y)];
+      seen.left = std::min(seen.left, x);
+      seen.right = std::max(seen.right, x);
+      seen.top = std::min(seen.top, y);
+      seen.bottom = std::max(seen.bottom, y);
     }
     return seen;
   }
@@ -100,7 +105,8 @@ TEST_P(Billboard, LooksTheSameFromAllSides) {
   const Seen front = seen_at({0, 0, -25}, 0, 0);
   EXPECT_GT(front.count, 300);
   EXPECT_GT(front.right - front.left, 20);
-  EXPECT_NEAR(front.left + front.right, static_cast<int>(kSize.width), 3);
+  const int middle = kSize.width / 2;
+  EXPECT_NEAR(front.right - middle, kRightM / kLeftM * static_cast<float>(middle - front.left), 3);
   for (const double yaw : {0.6, 1.57, 2.5, -2.0}) {
     const glm::vec3 ahead = core::forward_of({{}, yaw, 0});
     const Seen seen = seen_at(25.0F * ahead, yaw, 0);
@@ -115,7 +121,10 @@ TEST_P(Billboard, LooksTheSameFromAllSides) {
 TEST_P(Billboard, LeansAwayFromWhoLooksFromAbove) {
   const Seen above = seen_at({0, -25, -0.5F}, 0, -std::numbers::pi / 2);
   EXPECT_GT(above.count, 150);
-  EXPECT_GT(above.bottom - above.top, 12);
+  ASSERT_GT(above.bottom - above.top, 12);
+  // The wide end is the lower one, nearer to the feet of who looks.
+  const auto row = [&](int y) { return above.in_row[static_cast<std::size_t>(y)]; };
+  EXPECT_GT(row(above.bottom - 2), 2 * row(above.top + 2));
 }
 
 INSTANTIATE_TEST_SUITE_P(

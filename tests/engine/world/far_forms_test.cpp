@@ -51,7 +51,7 @@ std::span<const std::uint16_t> indices_of(Form form, const FormMesh& mesh) {
 FormMesh form_of_crown(Form form) {
   FormMesh mesh;
   if (is_billboard(form)) {
-    make_billboard(form, crown(), billboard_of(crown(), {7.2F, 8}, 1), mesh);
+    make_billboard(form, crown(), billboard_of(form, crown(), {7.2F, 8}, 1), mesh);
   } else {
     make_form(form, crown(), 1, {0.6F, 0.8F}, mesh);
   }
@@ -122,7 +122,7 @@ float area_of(std::span<const glm::vec3> places, const glm::vec3& from) {
 TEST(FarForms, BillboardsHaveTheAreasOfTheModelsThatTheyStandFor) {
   const Silhouette one{7.2F, 8};
   for (const float models : {1.0F, 3.0F}) {
-    const Billboard billboard = billboard_of(crown(), one, models);
+    const Billboard billboard = billboard_of(Form::kTent, crown(), one, models);
     FormMesh mesh;
     make_billboard(Form::kTent, crown(), billboard, mesh);
     for (const glm::vec2 ahead : {glm::vec2(0, -1), {1, 0}, {-0.6F, 0.8F}}) {
@@ -137,7 +137,7 @@ TEST(FarForms, BillboardsHaveTheAreasOfTheModelsThatTheyStandFor) {
 
 TEST(FarForms, KitesAreAsWideAndHighAsTheCrownsWhereTheirAreaAllowsIt) {
   const Silhouette full{8, 12};  // of the crown, which is a double cone
-  const Billboard billboard = billboard_of(crown(), full, 1);
+  const Billboard billboard = billboard_of(Form::kKite, crown(), full, 1);
   EXPECT_FLOAT_EQ(billboard.half_width_m, 2);
   EXPECT_FLOAT_EQ(billboard.base_m, 2);
   FormMesh mesh;
@@ -155,9 +155,9 @@ TEST(FarForms, BillboardsOfLeavesAreDarkerThanTheirCorners) {
       c->material = o == &leafy ? kLeaf : 0;
   }
   FormMesh mesh;
-  make_billboard(Form::kTent, leafy, billboard_of(leafy, {7, 8}, 1), mesh);
+  make_billboard(Form::kTent, leafy, billboard_of(Form::kTent, leafy, {7, 8}, 1), mesh);
   EXPECT_LT(mesh.corners[2].ambient, 0.99F);
-  make_billboard(Form::kTent, stone, billboard_of(stone, {7, 8}, 1), mesh);
+  make_billboard(Form::kTent, stone, billboard_of(Form::kTent, stone, {7, 8}, 1), mesh);
   EXPECT_FLOAT_EQ(mesh.corners[2].ambient, 1);
 }
 
@@ -173,18 +173,38 @@ TEST(FarForms, TrunksReachFromTheGroundIntoTheCrown) {
 }
 
 TEST(FarForms, BillboardsOfVeryManyAreNoLongWalls) {
-  const Billboard billboard = billboard_of(crown(), {7.2F, 8}, 1000);
+  const Billboard billboard = billboard_of(Form::kTent, crown(), {7.2F, 8}, 1000);
   EXPECT_NEAR(billboard.half_width_m * billboard.lean_m, 4000, 1);
   EXPECT_LE(billboard.half_width_m, 8.01F * billboard.lean_m);
   EXPECT_EQ(billboard.base_m, 0);
-  EXPECT_EQ(billboard_of(crown(), {0, 0}, 3).half_width_m, 0);
+  EXPECT_EQ(billboard_of(Form::kTent, crown(), {0, 0}, 3).half_width_m, 0);
+}
+
+// Bare branches reach far and cover little: a narrow billboard from the foot up, none in the air.
+TEST(FarForms, BillboardsOfSparseThingsStandOnTheGround) {
+  Outline bare = crown();
+  bare.bottom.position.y = 0;
+  bare.leafy = false;
+  const Billboard billboard = billboard_of(Form::kTent, bare, {1.8F, 3}, 1);
+  EXPECT_FLOAT_EQ(billboard.base_m, 0);
+  EXPECT_FLOAT_EQ(billboard.half_width_m, 0.3F);
+  // And a wall, which covers no ground, is still seen.
+  EXPECT_FLOAT_EQ(billboard_of(Form::kTent, bare, {6, 0}, 1).half_width_m, 1);
+}
+
+TEST(FarForms, KitesLeaveToTrunksWhatTheseCover) {
+  const Billboard alone = billboard_of(Form::kKite, crown(), {8, 12}, 1);
+  const Billboard with = billboard_of(Form::kKiteTrunk, crown(), {8, 12}, 1);
+  const auto area = [](const Billboard& b) { return b.half_width_m * (6 - b.base_m); };
+  // Half of the triangle's height is in the crown, so three quarters of it are seen.
+  EXPECT_NEAR(area(alone) - area(with), 0.75F * 0.2F * 4, 1e-3F);
 }
 
 TEST(FarForms, CrownsOfBillboardsStayAboveTheGround) {
   for (const float models : {1.0F, 4.0F, 40.0F, 400.0F}) {
     FormMesh mesh;
     for (const Form form : kBillboards) {
-      make_billboard(form, crown(), billboard_of(crown(), {12, 8}, models), mesh);
+      make_billboard(form, crown(), billboard_of(form, crown(), {12, 8}, models), mesh);
       for (std::size_t i = 0; i < std::min<std::size_t>(size_of(form).vertices, 4); ++i) {
         EXPECT_GE(mesh.corners[i].position.y, 0);
         EXPECT_LE(mesh.corners[i].position.y, 6);

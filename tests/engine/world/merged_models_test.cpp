@@ -337,7 +337,8 @@ void expect_same_places(const Scenery& scenery, core::BlockCoord node, int level
       const glm::vec3 beside = foot - single.foot;
       const float aside = level == 1 ? std::max(std::abs(apart.x), std::abs(apart.z))
                                      : std::max(std::abs(beside.x), std::abs(beside.z));
-      best = std::min(best, std::max(aside, level == 1 ? top : 0.1F * top));
+      const float sunk = std::max(beside.y, -0.6F - beside.y);  // roots are in the ground
+      best = std::min(best, std::max({aside, level == 1 ? top : 0.1F * top, sunk}));
     }
     EXPECT_LT(best, 0.1F) << "level " << level;
   }
@@ -354,6 +355,24 @@ TEST(MergedModels, StandWhereTheSingleModelsStandAtTheEndOfAllCoordinates) {
   for (int level = 1; level <= 2; ++level) {
     expect_same_places(scenery, {INT32_MAX >> level, INT32_MIN >> level}, level);
     expect_same_places(scenery, {(1 << 30) >> level, -(1 << 30) >> level}, level);
+  }
+}
+
+TEST(MergedModels, BeginAboveTheGroundThatIsDrawn) {
+  for (const char* file : kWorldFiles) {
+    const Scenery scenery(text_of(file));
+    const core::BlockCoord node{1, 2};
+    for (int level = 3; level <= kMaxMergedLevel; ++level) {
+      const NodeWalk walk(*scenery.world, node, level);
+      const models::BlockGround ground = walk.whole_ground();
+      const auto corners = shown_triangles(scenery, scenery.mesh(node, level), level, node);
+      double lowest = 1e9;
+      for (const glm::vec3& c : corners)
+        lowest = std::min(lowest, c.y - ground.at({c.x, c.z}, walk.drawn_stride()).height_m);
+      // Axes of crowns are beside the foot, where the ground is higher or lower.
+      EXPECT_GT(lowest, -2.5) << file << " level " << level;
+      EXPECT_LT(lowest, 3) << file << " level " << level;
+    }
   }
 }
 
