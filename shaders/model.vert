@@ -1,4 +1,5 @@
-// Trees, rocks and every other model: unpacks core::ModelVertex, sways, lights and hazes.
+// Trees, rocks and every other model: unpacks core::ModelVertex, turns billboards, sways, lights
+// and hazes.
 // On software devices everything per vertex: the fragment shader only writes the colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -7,17 +7,13 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
-#include <tuple>
 
-#include "tests/engine/render/synthetic_scene.hpp"
+#include "tests/engine/render/on_a_path.hpp"
 
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{160, 120};
 constexpr float kLeftM = 2, kRightM = 4, kHalfHeightM = 5, kLeanM = 3;
-
-using How = std::tuple<RenderPath, Submission, Preset>;
 
 // A triangle whose corners are all on the axis of its box, wide at its foot, more so to the right,
 // bright red.
@@ -45,30 +41,18 @@ core::Result<core::GeometryRange> make_tent(core::GeometryMemory& memory) {
 // Where in the picture the red is, in pixels.
 struct Seen {
   int count = 0, left = INT32_MAX, right = -1, top = INT32_MAX, bottom = -1;
-  std::array<int, kSize.height> in_row{};
+  std::array<int, 120> in_row{};  // by row of the picture
 };
 
-class Billboard : public testing::TestWithParam<How> {
+class Billboard : public OnAPath {
  protected:
   void SetUp() override {
-    RendererOptions options;
-    options.validation = true;
-    options.size = kSize;
-    options.geometry_budget_bytes = 8 << 20;
-    std::tie(options.path, options.submission, options.preset) = GetParam();
-    auto made = Renderer::create(options);
-    ASSERT_TRUE(made) << made.error().message;
-    renderer_ = std::move(*made);
+    OnAPath::SetUp();
+    if (!renderer_) return;
     const auto range = make_tent(renderer_->geometry());
     ASSERT_TRUE(range);
     tent_.range = *range;
     tent_.box_half_extent = {kRightM + kLeanM, kHalfHeightM, kRightM + kLeanM};
-  }
-  void TearDown() override {
-    if (!renderer_) return;
-    renderer_->wait_idle();
-    for (const std::string& message : renderer_->validation_messages())
-      ADD_FAILURE() << message;
   }
 
   Seen seen_at(glm::vec3 origin, double yaw, double pitch) {
@@ -78,13 +62,10 @@ class Billboard : public testing::TestWithParam<How> {
     tent_.origin = origin;
     const std::array models{tent_};
     input.models = models;
-    for (int i = 0; i < 2; ++i)
-      EXPECT_TRUE(renderer_->render(input));
-    const auto picture = renderer_->capture();
-    EXPECT_TRUE(picture);
+    const Picture picture = draw(input);
     Seen seen;
-    for (std::size_t i = 0; picture && i < picture->rgba.size(); i += 4) {
-      if (picture->rgba[i] < 2 * picture->rgba[i + 1]) continue;
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+      if (picture.rgba[i] < 2 * picture.rgba[i + 1]) continue;
       const int x = static_cast<int>(i / 4 % kSize.width),
                 y = static_cast<int>(i / 4 / kSize.width);
       ++seen.count;
@@ -97,7 +78,6 @@ class Billboard : public testing::TestWithParam<How> {
     return seen;
   }
 
-  std::unique_ptr<Renderer> renderer_;
   MeshDraw tent_;
 };
 

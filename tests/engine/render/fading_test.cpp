@@ -6,28 +6,16 @@
 #include <array>
 #include <tuple>
 
-#include "engine/render/preset.hpp"
-#include "engine/render/render_path.hpp"
-#include "tests/engine/render/synthetic_scene.hpp"
+#include "tests/engine/render/on_a_path.hpp"
 
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{160, 120};
-
-using How = std::tuple<RenderPath, Submission, Preset>;
-
-class Fading : public testing::TestWithParam<How> {
+class Fading : public OnAPath {
  protected:
   void SetUp() override {
-    RendererOptions options;
-    options.validation = true;
-    options.size = kSize;
-    options.geometry_budget_bytes = 8 << 20;
-    std::tie(options.path, options.submission, options.preset) = GetParam();
-    auto made = Renderer::create(options);
-    ASSERT_TRUE(made) << made.error().message;
-    renderer_ = std::move(*made);
+    OnAPath::SetUp();
+    if (!renderer_) return;
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
       const auto range = synthetic::make_box(renderer_->geometry(), {0.4F, 0.1F, 0.05F});
       ASSERT_TRUE(range);
@@ -39,20 +27,9 @@ class Fading : public testing::TestWithParam<How> {
     input_ = synthetic::look(60, 0, kSize);
     input_.light.cloud_cover = 0;
   }
-  void TearDown() override {
-    if (!renderer_) return;
-    renderer_->wait_idle();
-    for (const std::string& message : renderer_->validation_messages())
-      ADD_FAILURE() << message;
-  }
-  // Twice, so that what was hidden or seen in the first frame is known in the second.
   Picture draw(std::span<const MeshDraw> models) {
     input_.models = models;
-    for (int i = 0; i < 2; ++i)
-      EXPECT_TRUE(renderer_->render(input_));
-    auto picture = renderer_->capture();
-    EXPECT_TRUE(picture);
-    return picture ? *picture : Picture{};
+    return OnAPath::draw(input_);
   }
   MeshDraw mesh(std::size_t index, float fade) const {
     MeshDraw draw = meshes_[index];
@@ -66,7 +43,6 @@ class Fading : public testing::TestWithParam<How> {
     return pixels;
   }
 
-  std::unique_ptr<Renderer> renderer_;
   std::array<MeshDraw, 3> meshes_;  // two at the same place, one beside and behind them
   FrameInput input_;
 };
