@@ -1,7 +1,7 @@
 // Where mesh data lives: reserve, write, commit, release. The seam between synthesis (which writes)
-// and rendering (which draws): render implements it over mapped device memory, HeapGeometryMemory
-// over the heap for tests and tools. All functions belong to the main thread; the spans of a
-// reservation may be written by any one thread until commit.
+// and rendering (which draws): render implements it over mapped device memory, or over the heap
+// with copies to the device; HeapGeometryMemory over the heap for tests and tools. Main thread, but
+// for the spans of a reservation, which any one thread may write until commit.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
-// The renderer's geometry memory: a few large blocks of mapped memory, each one buffer that holds
-// vertices and indices, with an offset allocator per block. Blocks are made when they are first
-// needed and kept; their sum never exceeds the budget. A released range is reused only when the
-// device has passed the last frame submitted before the release. Main thread; knows no Vulkan: a
-// BlockSource makes the blocks.
+// The renderer's geometry memory: a few large blocks, each one buffer that holds vertices and
+// indices, with an offset allocator per block. What is written is that buffer, mapped, or its
+// mirror on the heap (staged_geometry.hpp). Blocks are made when first needed and kept; their sum
+// never exceeds the budget. A released range is reused only when the device has passed the last
+// frame submitted before the release. Main thread; knows no Vulkan: a BlockSource makes the blocks.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ class GeometryPool final : public core::GeometryMemory {
   static constexpr std::uint64_t kBlockBytes = 64ull << 20;
   static constexpr std::uint32_t kUnitBytes = 16;
 
-  // Makes the memory of the next block of `bytes` and returns where it is mapped, 16-byte aligned.
+  // Makes the memory of the next block of `bytes` and returns where it is written, 16-byte aligned.
   // It stays until the pool's owner ends it, after the pool.
   using BlockSource = std::function<core::Result<std::byte*>(std::uint64_t bytes)>;
 

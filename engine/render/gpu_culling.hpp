@@ -34,7 +34,7 @@ class GpuCulling {
 
   // A frame of a slot: record_first() before the first pass; where two_passes(), record_second()
   // between the passes, which needs the depth of the first; record_counts() after the last.
-  // draw(commands, group, first) for every group; then the commands of phase 0 or 1 are issued.
+  // In each pass draw_group() for every group, which issues its commands of phase 0 or 1.
   bool two_passes() const { return occlusion_; }
   void record_first(const Device& device, VkCommandBuffer commands, std::size_t slot);
   void record_second(const Device& device, VkCommandBuffer commands, std::size_t slot,

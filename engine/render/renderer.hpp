@@ -1,7 +1,7 @@
 // The renderer: draws lists of meshes that lie in its geometry memory, into a window or headless,
-// with Vulkan 1.3. It knows nothing of entities, models or synthesis, and decides nothing about
-// what is drawn. All functions belong to the main thread; two frames are in flight.
-// The paper's Renderer (section 4).
+// with Vulkan 1.3. It knows nothing of entities, models or synthesis. Of the lists it leaves out
+// only what cannot be seen, and takes other levels only where they offer some (FrameInput::choose).
+// Main thread; two frames are in flight. The paper's Renderer (section 4).
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // Where meshes are written. Lives as long as the renderer; its spans are mapped device memory.
+  // Where meshes are written, mapped or to be copied (Upload). Lives as long as the renderer.
   core::GeometryMemory& geometry();
 
   // Keeps an index list that many meshes use; the name that draws give. Fails with kOutOfMemory

@@ -1,6 +1,6 @@
-// Records a frame: the sun's shadows where the preset has them, then the one pass: meshes in the
-// order of the draw list, water, the sky behind them, lines and text over them; and the copy of the
-// picture out of the target. Private to engine/render.
+// Records a frame: the sun's shadows where the preset has them; one pass, or two where the device
+// leaves out what is hidden (gpu_culling.hpp): meshes, then water, the sky behind, lines and text
+// in front; and the copy of the picture out of the target. Private to engine/render.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace psygen::render {
 
-// What is drawn into: colour that can be copied out, and depth that is forgotten after the pass.
+// What is drawn into: colour that can be copied out, and depth, forgotten after the last pass.
 // With several samples per pixel these are drawn and `colour` gets their mean.
 struct Targets {
   Image colour, depth;
