@@ -9,7 +9,7 @@
 #include "ground.glsl"
 #include "surface_out.glsl"
 
-// x: grid x, grid z, height; y: coarse height, normal; z: sun, ambient, cover
+// x: grid x, grid z, height; y: coarse height, normal; z: sun, ambient, spare
 layout(location = 0) in uvec3 packed;
 
 void main() {

@@ -28,7 +28,7 @@ struct TerrainVertex {
   std::int8_t normal_z;
   std::uint8_t sun = 255;      // unorm8: visible share of the sun, 255 = unshadowed
   std::uint8_t ambient = 255;  // unorm8: visible share of the sky, 255 = open
-  std::uint8_t cover = 0;      // unorm8: ground hidden by vegetation too far for meshes of its own
+  std::uint8_t cover = 0;      // spare: always 0, far forests are of a draw (TerrainDraw::cover)
   std::uint8_t spare = 0;
 };
 static_assert(sizeof(TerrainVertex) == 12);
