@@ -1,9 +1,9 @@
-// How long a synthesis takes: one measured line over operations and triangles (cost_fit.hpp) per
-// model type and level (paper, sections 5.2 and 6: the constants are computed at start-up).
-// Calibrated in well under a second, then refined by every finished request; the error of its own
-// predictions is kept, so that a schedule never rests on a figure that nobody checked.
-// One thread. Not a profiler. predict() and observe() are O(1) beside the type's complexity() and
-// mesh_size().
+// How long a synthesis takes: one measured curve over operations, triangles and steps
+// (cost_fit.hpp) per model type and level (paper, sections 5.2 and 6: the constants are computed at
+// start-up). Calibrated in well under a second, then refined by every finished request; the error
+// of its own predictions is kept, so that a schedule never rests on a figure that nobody checked.
+// One thread. Not a profiler. predict() and observe() are O(1) beside the type's complexity(),
+// mesh_size() and steps().
 #pragma once
 
 #include <cstdint>
@@ -80,7 +80,7 @@ class CostModel {
   double predict_from(models::ModelIndex model, int level, const Work& work) const;
 
   // A finished synthesis: what had been predicted, what it took (seconds of one core). Moves the
-  // level's whole line by a factor.
+  // level's whole curve by a factor.
   void observe(models::ModelIndex model, int level, const Work& work, double predicted_seconds,
                double seconds);
 

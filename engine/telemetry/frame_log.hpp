@@ -1,5 +1,5 @@
-// What each frame cost and showed: one row per frame, written by the tick's last system, read when
-// the run ends. Adding a row does not allocate. Main thread only.
+// What each frame cost and showed: one row per frame, filled by the tick's last system, timed and
+// added by App::record_frame, read when the run ends. Adding does not allocate. Main thread only.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ inline constexpr std::size_t kMaxSystems = 16;
 struct FrameRecord {
   std::uint64_t index = 0;
   double time_s = 0;       // start of the frame on the flight's clock; 0 is the flight's start
-  double frame_ms = 0;     // wall time from this frame's start to the next one's
+  double frame_ms = 0;     // wall time of pose, tick and plugins; for a picture of the device too
   double main_cpu_ms = 0;  // CPU time of the main thread in this frame
   double wait_ms = 0;      // of frame_ms: waiting for the GPU, a swapchain image or vsync
   double gpu_ms = 0;  // by timestamps, of the newest frame that is known; 0: unknown, or software
