@@ -1,4 +1,4 @@
-// What a vertex of a mesh hands on, in one of three ways:
+// What a vertex of a mesh hands on, in one of four ways:
 //   nothing defined         its colour, lit and hazed: one varying, which software devices like
 //   PSYGEN_PIXEL_LIGHT      what the light needs; surface_lit.frag lights each pixel
 //   PSYGEN_DRAW_COLOUR      the colour of its draw, shaded a little (views for understanding)

@@ -1,4 +1,4 @@
-// The albedo of the ground as shaders/terrain.vert colours it: by height, slope and a slow pattern
+// The albedo of the ground as shaders/ground.glsl colours it: by height, slope and a slow pattern
 // over the plane. Pure.
 #pragma once
 

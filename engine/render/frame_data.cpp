@@ -10,7 +10,7 @@ namespace psygen::render {
 
 namespace {
 
-// The slow pattern of the ground repeats after 64 lattice points of 32 m (terrain.vert).
+// The slow pattern of the ground repeats after 64 lattice points of 32 m (ground.glsl).
 constexpr double kPatternPeriod = 2048.0;
 
 float pattern_coordinate(std::int32_t block, double block_size_m, double local) {

@@ -11,7 +11,7 @@ namespace psygen::visibility {
 
 class CameraPredictor {
  public:
-  // Bounds of what is believed and predicted. A move faster than kMaxSpeed is a teleport.
+  // Bounds of what is believed and predicted. A move faster than kMaxSpeed_m_s is a teleport.
   static constexpr double kMaxSpeed_m_s = 2000;
   static constexpr double kMaxTurnRate = 25;      // rad/s
   static constexpr double kMaxPrediction_s = 10;  // longer predictions are cut
