@@ -28,7 +28,7 @@ struct InputState {
   KeySet went_down;  // pressed during the frame, even if released again; not repeated while held
   glm::dvec2 look_px{0.0};  // mouse movement while looking: right, down; pixels
   double wheel = 0;         // steps; positive is away from the person
-  bool looking = false;     // the right button is down or the pointer is captured
+  bool looking = false;     // the right button is down
   bool resized = false;     // the framebuffer changed its size; ask the window for the new one
 
   bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }

@@ -72,8 +72,6 @@ struct Window::Implementation {
   GLFWwindow* window = nullptr;
   InputState input;         // collected since the last poll
   glm::dvec2 pointer{0.0};  // where it was last told to be; beyond the window while looking
-  bool right_button = false;
-  bool captured = false;
 
   explicit Implementation(GLFWwindow* created) : window(created) {
     ++window_count();
@@ -106,8 +104,7 @@ struct Window::Implementation {
 
   static void on_button(GLFWwindow* window, int button, int action, int) {
     if (button != GLFW_MOUSE_BUTTON_RIGHT) return;
-    of(window).right_button = action == GLFW_PRESS;
-    of(window).update_looking();
+    of(window).look(action == GLFW_PRESS);
   }
 
   static void on_pointer(GLFWwindow* window, double x, double y) {
@@ -123,8 +120,7 @@ struct Window::Implementation {
   static void on_resize(GLFWwindow* window, int, int) { of(window).input.resized = true; }
 
   // While looking, the pointer is hidden and cannot run into the screen's edge.
-  void update_looking() {
-    const bool looking = right_button || captured;
+  void look(bool looking) {
     if (looking == input.looking) return;
     input.looking = looking;
     glfwSetInputMode(window, GLFW_CURSOR, looking ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
@@ -226,11 +222,6 @@ void Window::minimise() {
 
 void Window::restore() {
   glfwRestoreWindow(implementation_->window);
-}
-
-void Window::set_captured(bool captured) {
-  implementation_->captured = captured;
-  implementation_->update_looking();
 }
 
 }  // namespace psygen::platform

@@ -43,8 +43,6 @@ class Window final : public core::SurfaceProvider {
   void set_size(core::Extent size);  // in screen coordinates
   void minimise();
   void restore();
-  // While captured the pointer is hidden and every movement turns the camera.
-  void set_captured(bool captured);
 
  private:
   struct Implementation;
