@@ -109,16 +109,6 @@ bool can_compute(VkPhysicalDevice physical, std::uint32_t family) {
   return (families[family].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
 }
 
-bool is_unified(VkPhysicalDevice physical) {
-  VkPhysicalDeviceMemoryProperties memory{};
-  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
-  const VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT |
-                                       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                       VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  return std::any_of(memory.memoryTypes, memory.memoryTypes + memory.memoryTypeCount,
-                     [&](const VkMemoryType& t) { return (t.propertyFlags & wanted) == wanted; });
-}
-
 int rank_of(VkPhysicalDeviceType type) {
   switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
@@ -163,7 +153,6 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
       fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(p.apiVersion),
                   VK_API_VERSION_MINOR(p.apiVersion), VK_API_VERSION_PATCH(p.apiVersion));
   candidate.info.software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  candidate.info.unified_memory = is_unified(physical);
   candidate.info.multi_draw = offers_multi_draw(physical);
   candidate.info.gpu_path = offers_indirect_count(features) && can_compute(physical, *family);
   candidate.info.wireframe = offers_wireframe(physical);

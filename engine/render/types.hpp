@@ -63,10 +63,9 @@ struct DeviceInfo {
   std::string driver;       // name and version
   std::string api_version;  // "1.3.230"
   bool software = false;
-  bool unified_memory = false;  // geometry is written straight into the device's own memory
-  bool multi_draw = false;      // many meshes in one call
-  bool gpu_path = false;        // RenderPath::kGpu can be used
-  bool wireframe = false;       // View::kWireframe can be drawn
+  bool multi_draw = false;  // many meshes in one call
+  bool gpu_path = false;    // RenderPath::kGpu can be used
+  bool wireframe = false;   // View::kWireframe can be drawn
 };
 
 // Sun, sky and air. Colours are linear radiance before `exposure`.
