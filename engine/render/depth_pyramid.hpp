@@ -30,7 +30,6 @@ class DepthPyramid {
   void record(const Device& device, VkCommandBuffer commands, const Image& depth) const;
 
  private:
-  core::Result<void> make_views(const Device& device);
   void write_sets(const Device& device, const Image* depth) const;
 
   ComputePipeline first_, next_;  // from the depth; from the level below

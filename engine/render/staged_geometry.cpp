@@ -112,7 +112,6 @@ std::vector<StagedGeometry::Piece> StagedGeometry::fill(Part& part) {
     pieces.push_back(piece);
     if (first.bytes == 0) pending_.pop_front();
   }
-  copied_bytes_ += used;
   return pieces;
 }
 

@@ -34,7 +34,6 @@ class StagedGeometry final : public core::GeometryMemory {
                            VkCommandBuffer commands);
   VkSemaphore timeline() const { return timeline_.get(); }
   std::uint64_t value() const { return value_; }
-  std::uint64_t copied_bytes() const { return copied_bytes_; }
 
   core::Result<core::GeometryReservation> reserve(core::VertexLayout layout,
                                                   std::uint32_t vertex_count,
@@ -83,7 +82,6 @@ class StagedGeometry final : public core::GeometryMemory {
   std::size_t next_ = 0;
   UniqueSemaphore timeline_;
   std::uint64_t value_ = 0;
-  std::uint64_t copied_bytes_ = 0;
 };
 
 }  // namespace psygen::render

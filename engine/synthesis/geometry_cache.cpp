@@ -209,11 +209,6 @@ void GeometryCache::set_rank(MeshHandle handle, Rank rank) {
   }
 }
 
-void GeometryCache::set_ranks(std::span<const RankUpdate> updates) {
-  for (const RankUpdate& u : updates)
-    set_rank(u.handle, u.rank);
-}
-
 void GeometryCache::adopt(MeshHandle handle, std::uint64_t owner, Rank rank) {
   MeshRecord* r = live(handle);
   if (r == nullptr) return;

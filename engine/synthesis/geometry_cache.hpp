@@ -49,11 +49,6 @@ struct Eviction {
   MeshHandle handle;  // stale by now
 };
 
-struct RankUpdate {
-  MeshHandle handle;
-  Rank rank;
-};
-
 struct CacheStats {
   std::uint64_t budget_bytes = 0;
   std::uint64_t limit_bytes = 0;     // the budget, or less for a while after memory ran out
@@ -151,7 +146,6 @@ class GeometryCache {
 
   // Stale handles are ignored by all of these and by the four above.
   void set_rank(MeshHandle handle, Rank rank);
-  void set_ranks(std::span<const RankUpdate> updates);
   // These meshes are drawn now. For the statistics: a mesh counts once.
   void note_drawn(std::span<const MeshHandle> handles);
   // Somebody (else) wants a mesh that is there: takes over its owner and rank, undoes a release.

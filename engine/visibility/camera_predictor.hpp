@@ -27,8 +27,7 @@ class CameraPredictor {
   core::CameraPose predict(double tau_s) const;
 
   glm::dvec3 velocity_m_s() const { return velocity_; }
-  double yaw_rate() const { return yaw_rate_; }      // rad/s
-  double pitch_rate() const { return pitch_rate_; }  // rad/s
+  double yaw_rate() const { return yaw_rate_; }  // rad/s
 
   // Forgets everything.
   void reset() { *this = CameraPredictor(); }
