@@ -27,6 +27,9 @@ constexpr float kSkirtPerError = 2.0F, kLeastSkirtM = 1.0F;
 // What a merged mesh of level 1 is off, in parts of the height of what it stands for; with every
 // level twice as much.
 constexpr double kMergedErrorPerHeight = 0.06;
+// However large an error is allowed, forests are more than a colour this far: what is left out
+// beyond the last merged meshes counts as so much of an error, up to 3 sides of the node.
+constexpr double kForestsSeenM = 3000;
 // Beyond all distances, and finite.
 constexpr double kEverywhereM = 1e30;
 
@@ -99,8 +102,11 @@ void split_distances(std::span<const NodeLevel> levels, const Settings& settings
                      std::vector<visibility::LevelDistances>& distances) {
   distances.resize(levels.size());
   std::vector<double> errors;
-  for (const NodeLevel& level : levels)
-    errors.push_back(level.error_m);
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const bool leaves_out = k > 1 && levels[k - 1].merged && !levels[k].merged;
+    const double least = leaves_out ? kForestsSeenM * error_pixels / pixels_per_radian : 0.0;
+    errors.push_back(std::max(levels[k].error_m, least));
+  }
   visibility::SplitSettings split;
   split.block_size_m = levels[0].size_m;
   split.pixels_per_radian = pixels_per_radian;
