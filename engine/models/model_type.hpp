@@ -119,9 +119,9 @@ class ModelType {
   // By what it is judged whether a single model is large enough on screen to be drawn, in metres:
   // for many small things that are one model, the size of one. 0: the sphere around its mesh.
   virtual double seen_size_m(const Parameters&) const { return 0; }
-  // True only for types whose coarse levels are certain to end within microseconds, whatever their
-  // parameters: the main thread may synthesise them itself when their absence is seen. A type that
-  // could hang must leave this to the modelers, which are watched.
+  // True only for types that are certain to end, and in about the time that is predicted, whatever
+  // their parameters: the main thread may synthesise them itself when their absence is seen. A type
+  // that could hang must leave this to the modelers, which are watched.
   virtual bool may_run_on_main_thread() const { return false; }
   // Writes the shared index list `id` (as named by mesh_size), `index_count` entries.
   virtual void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const = 0;

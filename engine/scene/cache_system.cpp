@@ -29,6 +29,9 @@ constexpr std::uint32_t kRankTurns = 32;
 constexpr std::uint32_t kFewestHidden = 48;
 // So long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
+// So long pictures may be too coarse before the main thread helps: modelers get only what others
+// leave of the processors, and that can be nothing.
+constexpr double kCoarsePatienceSeconds = 0.1;
 
 // Where a node stands in the order of importance, in this tick.
 struct NodeView {
@@ -405,7 +408,9 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
   limits.max_new_hidden = limits.max_new;
   if (!wait && !synthesis.settling)
     limits.max_new_hidden = std::max(settings.plan_max_new / synthesis.spread_ticks, kFewestHidden);
-  limits.seconds_here = wait ? 0.0 : settings.hole_budget_ms / 1000.0;
+  limits.seconds_here = wait ? 0.0 : settings.main_thread_budget_ms / 1000.0;
+  if (synthesis.waiting == 0 && clock.real_s - totals.lacking_since_s > kCoarsePatienceSeconds)
+    limits.here_up_to = RankGroup::kVisibleCoarse;
   const synthesis::PlanReport report =
       synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,
                               *synthesis.manager, limits, settings.policy);

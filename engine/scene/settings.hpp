@@ -38,8 +38,8 @@ struct Settings {
   bool levels_of_detail = true;               // false: full detail everywhere, as in the paper
   bool occlusion = true;                      // leave out what lies behind ridges
   double watchdog_seconds = 10;               // a model that takes longer is given up
-  double hole_budget_ms = 2.0;       // per tick, of the main thread, for what is missing in view
-  double plan_seconds_ahead = 0.05;  // synthesis time per modeler in one plan
+  double main_thread_budget_ms = 2.0;         // per tick, for meshes whose absence is seen
+  double plan_seconds_ahead = 0.05;           // synthesis time per modeler in one plan
   std::uint32_t plan_max_requests = 4096;
   std::uint32_t plan_max_new = 256;   // of them, reserved in one tick
   double streaming_budget_ms = 2.0;   // per tick, for creating nodes

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -202,9 +203,12 @@ struct Counters {
   render::FrameResult frame;
 };
 
-// What is remembered from tick to tick for the sake of counting.
+// What is counted from tick to tick.
 struct Totals {
   std::uint64_t failed = 0;
+  // Real seconds since which every picture lacked something or had it more than one level too
+  // coarse; +inf: the last one did not.
+  double lacking_since_s = std::numeric_limits<double>::infinity();
   bool warned_budget = false;
   synthesis::CacheStats cache;  // at the end of the last tick
 };

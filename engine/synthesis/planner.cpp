@@ -156,19 +156,20 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
   report.predicted_seconds += item.order.predicted_seconds;
 }
 
-// Executes holes until the time is over; the others go to the front of the plan. A model that is
-// predicted to take longer than the time that is left is never started here.
-void Planner::execute_holes(SynthesisManager& manager, double seconds, PlanReport& report) {
-  std::size_t done = 0;
+// Executes what is urgent until the time is over; the others go to the front of the plan. A model
+// that is predicted to take longer than the time that is left is never started here.
+void Planner::execute_here(SynthesisManager& manager, double seconds, PlanReport& report) {
   double left_s = seconds;
-  while (done < holes_.size() && holes_[done].predicted_seconds < left_s) {
+  std::erase_if(here_, [&](const Request& request) {
+    if (request.predicted_seconds >= left_s) return false;
     const double start_s = core::monotonic_seconds();
-    manager.execute_here(holes_[done++]);
+    manager.execute_here(request);
     left_s -= core::monotonic_seconds() - start_s;
-  }
-  report.executed = static_cast<std::uint32_t>(done);
-  plan_.insert(plan_.begin(), holes_.begin() + static_cast<std::ptrdiff_t>(done), holes_.end());
-  holes_.clear();
+    ++report.executed;
+    return true;
+  });
+  plan_.insert(plan_.begin(), here_.begin(), here_.end());
+  here_.clear();
 }
 
 PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
@@ -181,12 +182,13 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
 
   plan_.clear();
   waiting_seconds_ = 0;
-  separate_holes_ = limits.seconds_here > 0;
+  here_up_to_.reset();
+  if (limits.seconds_here > 0) here_up_to_ = limits.here_up_to;
   const double enough = limits.seconds_ahead * std::max(manager.modeler_count(), 1u);
   std::size_t next = 0;
   for (; next < items_.size(); ++next) {
     if (report.predicted_seconds + waiting_seconds_ >= enough ||
-        plan_.size() + holes_.size() >= limits.max_requests ||
+        plan_.size() + here_.size() >= limits.max_requests ||
         report.refused >= limits.max_refusals) {
       break;
     }
@@ -195,7 +197,7 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   report.deferred += static_cast<std::uint32_t>(items_.size() - next);
   while (give_back_last(cache, report)) {
   }
-  execute_holes(manager, limits.seconds_here, report);
+  execute_here(manager, limits.seconds_here, report);
   report.published = static_cast<std::uint32_t>(plan_.size());
   manager.publish(std::exchange(plan_, {}));
   return report;

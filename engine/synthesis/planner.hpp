@@ -31,9 +31,10 @@ struct PlanLimits {
   double seconds_ahead = 0.25;  // predicted work per modeler in one plan
   std::uint32_t max_requests = 4096;
   std::uint32_t max_refusals = 16;  // reservations refused by the budget before giving up
-  // For visible holes whose type may run on the main thread; they are executed before plan()
-  // returns.
+  // For what is wanted in the groups up to `here_up_to` and whose type may run on the main thread:
+  // as much of it as fits is executed, in order, before plan() returns.
   double seconds_here = 0;
+  RankGroup here_up_to = RankGroup::kVisibleHole;
   // New reservations in one plan. Where the policy is led by rank, no others are looked at: each
   // costs some microseconds (sizes, prediction, room), and wants may come by the thousand.
   std::uint32_t max_new = UINT32_MAX;
@@ -83,11 +84,11 @@ class Planner {
   bool give_back_last(GeometryCache& cache, PlanReport& report);
   void add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report);
   std::vector<Request>& list_for(const Want& want, const GeometryCache& cache) {
-    const bool here = separate_holes_ && want.rank.group() == RankGroup::kVisibleHole &&
+    const bool here = here_up_to_ && want.rank.group() <= *here_up_to_ &&
                       cache.registry()[want.key.model].may_run_on_main_thread();
-    return here ? holes_ : plan_;
+    return here ? here_ : plan_;
   }
-  void execute_holes(SynthesisManager& manager, double seconds, PlanReport& report);
+  void execute_here(SynthesisManager& manager, double seconds, PlanReport& report);
 
   std::vector<Request> reclaimed_;
   std::vector<std::uint32_t> by_slot_;  // positions in reclaimed_, sorted by slot
@@ -97,8 +98,8 @@ class Planner {
   std::vector<std::uint32_t> last_first_;  // wanted ones of reclaimed_ in serving order
   std::vector<Request> plan_;
   double waiting_seconds_ = 0;  // predicted, of requests that wait for room
-  bool separate_holes_ = false;
-  std::vector<Request> holes_;  // visible ones, executed here as far as time allows
+  std::optional<RankGroup> here_up_to_;
+  std::vector<Request> here_;  // executed by this thread as far as time allows
 };
 
 }  // namespace psygen::synthesis

@@ -1,6 +1,7 @@
 #include "engine/scene/node_levels.hpp"
 
 #include "engine/models/terrain.hpp"
+#include "engine/world/merged_models.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
@@ -116,6 +117,37 @@ TEST(NodeLevels, NodesAreSplitWhereTheirErrorIsSeenUnlessFinerOnesNeedMore) {
   }
 }
 
+// A governor under pressure may allow any error: trees are drawn as such for three kilometres.
+TEST(NodeLevels, ForestsAreMoreThanAColourForThreeKilometresWhateverTheError) {
+  models::Registry registry = models::make_standard_registry();
+  const auto world = std::make_shared<const world::World>(paper_world(registry));
+  const auto merged = world::make_merged_type(world, registry);
+  const auto levels = node_levels(*world, registry, Settings{}, merged.get());
+  constexpr std::size_t kColour = world::kMaxMergedLevel + 1;
+  ASSERT_GT(levels.size(), kColour);
+  EXPECT_TRUE(levels[kColour - 1].merged);
+  EXPECT_FALSE(levels[kColour].merged);
+  for (const double error_pixels : {4.0, 8.0, 16.0, 64.0}) {
+    std::vector<visibility::LevelDistances> distances;
+    split_distances(levels, Settings{}, 745, error_pixels, distances);
+    visibility::Cut cut;
+    visibility::CutInput input;
+    input.camera = {{100, 100}, {7, 20, 50}};
+    input.block_size_m = world->block_size_m();
+    input.levels = distances;
+    input.view_distance_m = 16000;
+    std::vector<visibility::NodeCoord> roots;
+    visibility::roots_around(input.camera, input.block_size_m, input.view_distance_m,
+                             static_cast<std::uint8_t>(levels.size() - 1), roots);
+    input.roots = roots;
+    visibility::select_cut(input, cut);
+    for (const visibility::CutNode& node : cut.nodes) {
+      if (!node.leaf || node.distance_m > 3000) continue;
+      EXPECT_LE(node.node.level, world::kMaxMergedLevel) << error_pixels << " pixels";
+    }
+  }
+}
+
 // Wherever the camera stands in its block, all nodes of the cut have a place in the window and
 // exist in it.
 TEST(NodeLevels, EveryNodeThatIsWantedExistsAsSoonAsThereWasTime) {
@@ -124,7 +156,7 @@ TEST(NodeLevels, EveryNodeThatIsWantedExistsAsSoonAsThereWasTime) {
       Settings settings = small_settings();
       settings.view_distance_m = wish.view_m;
       settings.max_error_pixels = wish.error_pixels;
-      settings.hole_budget_ms = 0;
+      settings.main_thread_budget_ms = 0;
       const auto scene = make_scene_of(settings, [&](world::World& world) {
         world.blocks_x = world.blocks_z = 0;
         world.scatter.clear();

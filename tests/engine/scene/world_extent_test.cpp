@@ -144,7 +144,7 @@ TEST(Extent, AWorldOfAMillionBlocksASideTakesNoMoreThanOneOf512) {
   // Nothing that depends on the time that a mesh takes: the cache keeps what was drawn for a
   // moment.
   Settings settings = far_settings();
-  settings.hole_budget_ms = 0;
+  settings.main_thread_budget_ms = 0;
   settings.plan_seconds_ahead = 1e6;
   std::vector<Size> sizes;
   for (const std::int64_t blocks : {std::int64_t{512}, std::int64_t{1} << 20}) {

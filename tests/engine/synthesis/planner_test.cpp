@@ -27,8 +27,8 @@ Rank prefetch(float distance) {
 class PlannerTest : public ::testing::Test {
  protected:
   ~PlannerTest() override { gate.open(); }
-  Want want(std::uint32_t index, Rank rank, float deadline_s = 0) {
-    parameters.push_back(std::make_unique<models::Parameters>(parameters_of(index, 80)));
+  Want want(std::uint32_t index, Rank rank, float deadline_s = 0, std::uint32_t vertices = 80) {
+    parameters.push_back(std::make_unique<models::Parameters>(parameters_of(index, vertices)));
     return {key_of(index, *parameters.back()), parameters.back().get(), index, rank, deadline_s};
   }
   std::vector<Want> wants_of(std::initializer_list<std::uint32_t> indices) {
@@ -259,6 +259,47 @@ TEST_F(PlannerTest, VisibleHolesAreMadeAtOnceWithinTheirTimeAndNothingElseIs) {
   EXPECT_EQ(done[2].owner, 2u);
   EXPECT_NE(done[2].modeler, kMainThreadModeler);
   EXPECT_EQ(land(done, cache, &cost).ready, 3u);
+}
+
+TEST_F(PlannerTest, WhereTheCallerSaysSoMoreOfWhatIsSeenIsMadeAtOnceInItsOrder) {
+  gate.open();
+  limits.seconds_here = 10;
+  const std::vector<Want> wants{
+      want(1, prefetch(10)), want(2, Rank::by_layer(RankGroup::kVisibleCoarse, 3, 10)),
+      want(3, hole(20)), want(4, Rank::by_layer(RankGroup::kDrawn, 0, 10))};
+  limits.here_up_to = RankGroup::kVisibleCoarse;
+  const PlanReport report = plan(wants);
+  EXPECT_EQ(report.executed, 2u);
+  EXPECT_EQ(report.published, 2u);
+  manager.wait_all();
+  std::vector<Completion> done;
+  manager.collect(done);
+  ASSERT_EQ(done.size(), 4u);
+  EXPECT_EQ(done[0].owner, 3u);
+  EXPECT_EQ(done[1].owner, 2u);
+  EXPECT_EQ(done[1].modeler, kMainThreadModeler);
+  EXPECT_NE(done[2].modeler, kMainThreadModeler);
+  EXPECT_NE(done[3].modeler, kMainThreadModeler);
+}
+
+TEST_F(PlannerTest, OneThatIsPredictedToTakeTooLongDoesNotKeepTheNextFromBeingMadeAtOnce) {
+  gate.open();
+  const std::vector<Want> wants{want(1, hole(10), 0, 800), want(2, hole(20), 0, 8)};
+  const double large_s = cost.predict(wants[0].key.model, *wants[0].parameters, 0);
+  const double small_s = cost.predict(wants[1].key.model, *wants[1].parameters, 0);
+  ASSERT_LT(small_s, large_s);
+  limits.seconds_here = (small_s + large_s) / 2;
+  GeometryCache roomy{memory, registry, 1 << 18};
+  const PlanReport report = planner.plan(wants, roomy, cost, manager, limits, policy);
+  EXPECT_EQ(report.executed, 1u);
+  manager.wait_all();
+  std::vector<Completion> done;
+  manager.collect(done);
+  ASSERT_EQ(done.size(), 2u);
+  EXPECT_EQ(done[0].owner, 2u);
+  EXPECT_EQ(done[0].modeler, kMainThreadModeler);
+  EXPECT_EQ(done[1].owner, 1u);
+  EXPECT_EQ(land(done, roomy, &cost).ready, 2u);
 }
 
 TEST_F(PlannerTest, AHoleThatIsPredictedToTakeTooLongIsLeftToTheModelers) {
