@@ -35,9 +35,10 @@ laps() { # name: the same path twice, the second time from the cache
     fly "until_$seconds" $walk --target-fps 60 --seconds $seconds
   done
 }
-for path in dash whirl leaps; do
+for path in dash whirl leaps jumps; do
   fly "$path" --world $worlds/paper.toml --path "$paths/$path.toml" --target-fps 60
 done
+python3 tools/lap_table.py 4 "$out/jumps/frames.csv" # each jump, its first second left out
 laps laps
 if command -v taskset >/dev/null; then
   first=$(taskset -pc $$ | sed 's/.*: *//; s/[-,].*//')

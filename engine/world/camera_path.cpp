@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <numbers>
@@ -16,7 +17,7 @@ namespace {
 // Ground samples within smoothing_s.
 constexpr int kSteps = 8;
 
-Spline spline_of(const std::vector<PathPoint>& points, const auto& value_of) {
+Spline spline_of(std::span<const PathPoint> points, const auto& value_of) {
   std::vector<double> times, values;
   for (const PathPoint& point : points) {
     times.push_back(point.time_s);
@@ -32,8 +33,7 @@ double heading_of(glm::dvec2 direction, double otherwise) {
 
 // Between two points with a heading the camera turns by their difference as written; all other
 // turns go the short way.
-std::vector<double> yaws_of(const std::vector<PathPoint>& points, const Spline& x,
-                            const Spline& z) {
+std::vector<double> yaws_of(std::span<const PathPoint> points, const Spline& x, const Spline& z) {
   std::vector<double> yaws;
   bool written_before = false;
   for (const PathPoint& point : points) {
@@ -67,34 +67,50 @@ CameraPath::CameraPath(Settings settings, std::vector<PathPoint> points)
     : settings_(std::move(settings)), points_(std::move(points)) {
   PSYGEN_ASSERT(!points_.empty(), "a path has a point");
   PSYGEN_ASSERT(settings_.smoothing_s > 0, "the smoothing time is positive");
-  x_ = spline_of(points_, [](const PathPoint& p) { return p.at_m.x; });
-  z_ = spline_of(points_, [](const PathPoint& p) { return p.at_m.y; });
-  height_ = spline_of(points_, [](const PathPoint& p) { return p.height_m; });
-  pitch_ = spline_of(points_, [](const PathPoint& p) { return glm::radians(p.pitch_deg); });
-  const std::vector<double> yaws = yaws_of(points_, x_, z_);
-  yaw_ = spline_of(points_, [&](const PathPoint& p) {
-    return yaws[static_cast<std::size_t>(&p - points_.data())];
+  for (auto first = points_.begin(); first != points_.end();) {
+    const auto end = std::find_if(first + 1, points_.end(), std::mem_fn(&PathPoint::jump));
+    runs_.emplace_back(std::span(first, end));
+    first = end;
+  }
+}
+
+CameraPath::Run::Run(std::span<const PathPoint> points)
+    : start_s(points.front().time_s),
+      x(spline_of(points, [](const PathPoint& p) { return p.at_m.x; })),
+      z(spline_of(points, [](const PathPoint& p) { return p.at_m.y; })),
+      height(spline_of(points, [](const PathPoint& p) { return p.height_m; })),
+      pitch(spline_of(points, [](const PathPoint& p) { return glm::radians(p.pitch_deg); })) {
+  const std::vector<double> yaws = yaws_of(points, x, z);
+  yaw = spline_of(points, [&](const PathPoint& p) {
+    return yaws[static_cast<std::size_t>(&p - points.data())];
   });
 }
 
+const CameraPath::Run& CameraPath::run_at(double t) const {
+  const auto after = std::ranges::upper_bound(runs_, t, {}, &Run::start_s);
+  return after == runs_.begin() ? runs_.front() : *std::prev(after);
+}
+
 // Metres from the corner of `block`.
-glm::dvec2 CameraPath::local_of(double t, double block_size_m, core::BlockCoord block) const {
+glm::dvec2 CameraPath::local_of(double t, const Run& run, double block_size_m,
+                                core::BlockCoord block) const {
   const glm::dvec3 corner = core::offset_m(settings_.origin_block, {block, {}}, block_size_m);
-  return {corner.x + x_.value(t), corner.z + z_.value(t)};
+  return {corner.x + run.x.value(t), corner.z + run.z.value(t)};
 }
 
 // A smooth curve over the ground along the path. Samples lie at fixed times; at each the highest
 // ground within smoothing_s is taken, and a smooth kernel as wide averages these. Every one of them
 // is at least as high as the samples around `t`, so the average is, too.
-double CameraPath::smooth_ground_m(double t, const World& world, core::BlockCoord block,
-                                   double& ground_here_m) const {
+double CameraPath::smooth_ground_m(double t, const Run& run, const World& world,
+                                   core::BlockCoord block, double& ground_here_m) const {
   const double step = settings_.smoothing_s / kSteps;
   const double first = std::floor(t / step) - 2 * kSteps;
   constexpr int kCount = 4 * kSteps + 2;
   std::array<glm::dvec2, kCount + 1> points;
   for (int i = 0; i < kCount; ++i)
-    points[static_cast<std::size_t>(i)] = local_of((first + i) * step, world.block_size_m(), block);
-  points[kCount] = local_of(t, world.block_size_m(), block);
+    points[static_cast<std::size_t>(i)] =
+        local_of((first + i) * step, run, world.block_size_m(), block);
+  points[kCount] = local_of(t, run, world.block_size_m(), block);
   std::array<models::GroundPoint, kCount + 1> ground;
   models::sample_ground(world.terrain, block, points, ground);
   ground_here_m = ground[kCount].height_m;
@@ -114,14 +130,15 @@ double CameraPath::smooth_ground_m(double t, const World& world, core::BlockCoor
 core::CameraPose CameraPath::pose_at(double t, const World& world) const {
   const double time = std::isnan(t) ? points_.front().time_s
                                     : std::clamp(t, points_.front().time_s, duration_seconds());
+  const Run& run = run_at(time);
   core::CameraPose pose;
-  pose.position = core::normalised({settings_.origin_block, {x_.value(time), 0, z_.value(time)}},
-                                   world.block_size_m());
+  pose.position = core::normalised(
+      {settings_.origin_block, {run.x.value(time), 0, run.z.value(time)}}, world.block_size_m());
   double ground_m = 0;
-  const double smooth_m = smooth_ground_m(time, world, pose.position.block, ground_m);
-  pose.position.local.y = std::max(smooth_m + height_.value(time), ground_m + kClearance_m);
-  pose.yaw = yaw_.value(time);
-  pose.pitch = std::clamp(pitch_.value(time), -std::numbers::pi / 2, std::numbers::pi / 2);
+  const double smooth_m = smooth_ground_m(time, run, world, pose.position.block, ground_m);
+  pose.position.local.y = std::max(smooth_m + run.height.value(time), ground_m + kClearance_m);
+  pose.yaw = run.yaw.value(time);
+  pose.pitch = std::clamp(run.pitch.value(time), -std::numbers::pi / 2, std::numbers::pi / 2);
   return pose;
 }
 

@@ -1,11 +1,13 @@
 // A flight of the camera: points in time over the ground, joined so that velocity and turn are
-// smooth, read from TOML files (docs/world-files.md). Heights are above the ground of whichever
-// world is flown through. Not a simulation: any time can be asked for. Immutable; any thread.
+// smooth but where it jumps, read from TOML files (docs/world-files.md). Heights are above the
+// ground of whichever world is flown through. Not a simulation: any time can be asked for.
+// Immutable; any thread.
 #pragma once
 
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +28,8 @@ struct PathPoint {
   std::optional<double> heading_deg;  // 0 along −Z (north), 90 along +X (east)
   std::optional<glm::dvec2> look_at_m;
   double pitch_deg = 0;  // upwards
+  // The camera is here at once; until then it stands at the point before. Not of the first point.
+  bool jump = false;
 };
 
 class CameraPath {
@@ -54,13 +58,20 @@ class CameraPath {
   core::CameraPose pose_at(double t, const World& world) const;
 
  private:
-  double smooth_ground_m(double t, const World& world, core::BlockCoord block,
+  // Points without a jump between them.
+  struct Run {
+    explicit Run(std::span<const PathPoint> points);
+    double start_s;
+    Spline x, z, height, yaw, pitch;
+  };
+  const Run& run_at(double t) const;
+  double smooth_ground_m(double t, const Run& run, const World& world, core::BlockCoord block,
                          double& ground_here_m) const;
-  glm::dvec2 local_of(double t, double block_size_m, core::BlockCoord block) const;
+  glm::dvec2 local_of(double t, const Run& run, double block_size_m, core::BlockCoord block) const;
 
   Settings settings_;
   std::vector<PathPoint> points_;
-  Spline x_, z_, height_, yaw_, pitch_;
+  std::vector<Run> runs_;  // by start
 };
 
 // Reads a path file. kParse for texts that are no path file (naming file, line and field), kIo and

@@ -50,6 +50,8 @@ PathPoint read_point(const Node& node, std::size_t number, Problems& problems) {
     reader.problem(reader.find("look_at_m")->line, "look_at_m",
                    "a point has a heading_deg or a look_at_m, not both");
   reader.read("pitch_deg", point.pitch_deg, kPitches);
+  if (reader.read("jump", point.jump) && point.jump && number == 0)
+    reader.problem(node.line, "jump", "the first point has none before it to jump from");
   reader.finish();
   return point;
 }
@@ -62,9 +64,10 @@ void check_order(const PathPoint& before, const PathPoint& point, const Node& no
     problems.add(node.line, fmt::format("point[{}].time_s", number),
                  fmt::format("{} is not after the point before it, which is at {}: times must grow",
                              point.time_s, before.time_s));
-  } else if (glm::distance(point.at_m, before.at_m) > kMaxSpeed_m_s * dt) {
+  } else if (!point.jump && glm::distance(point.at_m, before.at_m) > kMaxSpeed_m_s * dt) {
     problems.add(node.line, fmt::format("point[{}].at_m", number),
-                 fmt::format("it is {:.0f} m in {} s from the point before it; allowed: {} m/s",
+                 fmt::format("it is {:.0f} m in {} s from the point before it; allowed: {} m/s, or "
+                             "jump = true",
                              glm::distance(point.at_m, before.at_m), dt, kMaxSpeed_m_s));
   }
 }

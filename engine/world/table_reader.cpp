@@ -121,6 +121,17 @@ bool TableReader::read(std::string_view key, std::int64_t& value, Limits limits,
   return true;
 }
 
+bool TableReader::read(std::string_view key, bool& value, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr) return false;
+  if (member->value.kind != Node::Kind::kBoolean) {
+    problem(member->value.line, key, "it must be true or false");
+    return false;
+  }
+  value = member->value.boolean;
+  return true;
+}
+
 bool TableReader::read(std::string_view key, std::string& value, std::size_t max_bytes,
                        Presence presence) {
   const Member* member = find(key, presence);

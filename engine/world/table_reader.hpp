@@ -63,6 +63,7 @@ class TableReader {
   bool read(std::string_view key, float& value, Limits limits, Presence = Presence::kOptional);
   bool read(std::string_view key, std::int64_t& value, Limits limits,
             Presence = Presence::kOptional);
+  bool read(std::string_view key, bool& value, Presence = Presence::kOptional);
   bool read(std::string_view key, std::string& value, std::size_t max_bytes,
             Presence = Presence::kOptional);
   bool read(std::string_view key, glm::vec3& value, Limits limits, Presence = Presence::kOptional);

@@ -154,6 +154,30 @@ TEST(CameraPath, TurnsTheShortWayAcrossTheBack) {
   EXPECT_LT(std::abs(path.pose_at(2, world).yaw - path.pose_at(0, world).yaw), glm::radians(90.0));
 }
 
+TEST(CameraPath, JumpsWithoutAPlaceBetweenAndWithoutATraceOfIt) {
+  const World world = paper();
+  std::vector<PathPoint> before{point(0, {100, 200}), point(2, {160, 200})};
+  std::vector<PathPoint> after{point(4, {9000, 300}), point(6, {9000, 400})};
+  const CameraPath first({"first", {200, 200}, 1.5}, before);
+  const CameraPath second({"second", {200, 200}, 1.5}, after);
+  after[0].jump = true;
+  std::vector<PathPoint> all = before;
+  all.insert(all.end(), after.begin(), after.end());
+  const CameraPath path({"both", {200, 200}, 1.5}, all);
+  EXPECT_DOUBLE_EQ(path.duration_seconds(), 6);
+  for (const double t : {-1.0, 0.0, 1.3, 2.0, 4.0, 4.1, 6.0, 7.0}) {
+    const core::CameraPose pose = path.pose_at(t, world);
+    const core::CameraPose alone = (t < 4 ? first : second).pose_at(t, world);
+    EXPECT_EQ(pose.position.block, alone.position.block) << t;
+    EXPECT_EQ(pose.position.local, alone.position.local) << t;
+    EXPECT_EQ(pose.yaw, alone.yaw) << t;
+    EXPECT_EQ(pose.pitch, alone.pitch) << t;
+  }
+  const glm::dvec3 stood = move(path.pose_at(2, world), path.pose_at(3.9999, world), world);
+  EXPECT_NEAR(stood.x, 0, 1e-9);
+  EXPECT_NEAR(stood.z, 0, 1e-9);
+}
+
 TEST(CameraPath, APathOfOnePointStandsStill) {
   const World world = parsed(kSmallWorld);
   const CameraPath path({"p", {3, -2}, 1}, {point(0, {5, 6}, 7)});

@@ -89,6 +89,19 @@ TEST(PathFile, FlightsFasterThanAnythingAreRefused) {
               AllOf(HasSubstr("point[1].at_m"), HasSubstr("2000 m/s")));
 }
 
+TEST(PathFile, OnlyAJumpIsFasterAndTheFirstPointHasNowhereToJumpFrom) {
+  const std::string far = replaced(kPath, "at_m = [30, 2.5]", "at_m = [30000, 2.5]");
+  EXPECT_THAT(error_of(far), HasSubstr("or jump = true"));
+  const auto path = parse_camera_path(replaced(far, "pitch_deg = -10", "jump = true"), "p.toml");
+  ASSERT_TRUE(path.has_value()) << path.error().message;
+  EXPECT_FALSE(path->points()[0].jump);
+  EXPECT_TRUE(path->points()[1].jump);
+  EXPECT_THAT(error_with("heading_deg = 90", "jump = true"),
+              AllOf(StartsWith("p.toml:8: point[0].jump"), HasSubstr("none before it")));
+  EXPECT_THAT(error_with("heading_deg = 90", "jump = 1"), HasSubstr("true or false"));
+  EXPECT_EQ(error_with("heading_deg = 90", "jump = false"), "accepted");
+}
+
 TEST(PathFile, APointLooksOneWay) {
   EXPECT_THAT(error_with("heading_deg = 90", "heading_deg = 90\nlook_at_m = [0, 0]"),
               HasSubstr("not both"));
