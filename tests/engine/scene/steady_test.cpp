@@ -1,13 +1,10 @@
 // What must hold in every frame of a flight, however fast it is and however slow the modelers are.
 #include <algorithm>
 #include <cmath>
-#include <condition_variable>
-#include <mutex>
 #include <numbers>
-#include <thread>
 
 #include "engine/scene/ground_draws.hpp"
-#include "tests/engine/scene/fixture.hpp"
+#include "tests/engine/scene/gate.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -101,90 +98,6 @@ std::size_t vanished(const State& s, const std::vector<Square>& before,
     count += is_drawn(before, x, z) && !is_drawn(now, x, z);
   }
   return count;
-}
-
-// Lets modelers through one by one.
-class Gate {
- public:
-  void pass() {
-    std::unique_lock lock(mutex_);
-    opened_.wait(lock, [this] { return open_ || passes_ > 0; });
-    if (!open_) --passes_;
-  }
-  void let_through(int passes) {
-    change([&] { passes_ += passes; });
-  }
-  void set_open(bool open) {
-    change([&] {
-      open_ = open;
-      passes_ = 0;
-    });
-  }
-
- private:
-  template <class Change>
-  void change(const Change& change) {
-    {
-      const std::lock_guard lock(mutex_);
-      change();
-    }
-    opened_.notify_all();
-  }
-  std::mutex mutex_;
-  std::condition_variable opened_;
-  bool open_ = true;
-  int passes_ = 0;
-};
-
-// A model type whose synthesis in a modeler waits at a gate.
-class SlowType final : public models::ModelType {
- public:
-  SlowType(std::string name, const models::ModelType& fast, Gate& gate)
-      : name_(std::move(name)), fast_(fast), gate_(gate) {}
-  std::string_view name() const override { return name_; }
-  std::string_view doc() const override { return "waits at a gate"; }
-  std::span<const models::ParameterSpec> parameters() const override { return fast_.parameters(); }
-  int level_count() const override { return fast_.level_count(); }
-  double level_error_m(const models::Parameters& p, int level) const override {
-    return fast_.level_error_m(p, level);
-  }
-  core::Bounds bounds(const models::Parameters& p) const override { return fast_.bounds(p); }
-  models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
-    return fast_.mesh_size(p, level);
-  }
-  double complexity(const models::Parameters& p, int level) const override {
-    return fast_.complexity(p, level);
-  }
-  double log2_cost(const models::Parameters& p) const override { return fast_.log2_cost(p); }
-  void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {
-    fast_.write_shared_indices(id, out);
-  }
-  core::Bounds synthesize(const models::Parameters& p, int level,
-                          const models::MeshView& out) const override {
-    if (std::this_thread::get_id() != main_thread_) gate_.pass();
-    return fast_.synthesize(p, level, out);
-  }
-
- private:
-  std::string name_;
-  const models::ModelType& fast_;
-  Gate& gate_;
-  const std::thread::id main_thread_ = std::this_thread::get_id();
-};
-
-// The paper's world whose ground and trees wait at a gate.
-std::unique_ptr<Scene> slow_scene(const Settings& settings, Gate& gate) {
-  models::Registry registry = models::make_standard_registry();
-  world::World world = paper_world(registry);
-  const auto slow = [&](models::ModelIndex model) {
-    const std::string name = "slow_" + std::string(registry[model].name());
-    const auto added = registry.add(std::make_unique<SlowType>(name, registry[model], gate));
-    EXPECT_TRUE(added);
-    return *added;
-  };
-  world.terrain_model = slow(world.terrain_model);
-  world.scatter[0].model = slow(world.scatter[0].model);
-  return make_scene(world, settings, std::move(registry));
 }
 
 Settings far_settings() {

@@ -1,0 +1,207 @@
+// What is asked for, and in which order: what is in view, then what the camera is going to see,
+// then what lies around it; what hides behind ridges not before its turn.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+#include "engine/models/terrain.hpp"
+#include "tests/engine/scene/gate.hpp"
+
+namespace psygen::scene {
+namespace {
+
+using synthesis::Rank;
+using synthesis::RankGroup;
+using synthesis::Want;
+
+TEST(Requests, WhoTurnsAroundSeesNoHoleThoughNothingMoreIsSynthesised) {
+  GatedScene gated(gated_settings());
+  Scene& scene = *gated.scene;
+  for (const double yaw : {0.3, 2.0}) {
+    gated.gate.set_open(true);
+    scene.settle(pose_at(256, 256, yaw));
+    tick_at(scene, pose_at(256, 256, yaw));
+    gated.gate.set_open(false);
+    for (int i = 0; i < 5; ++i) {
+      tick_at(scene, pose_at(256, 256, yaw + std::numbers::pi));
+      const Counters& counters = scene.state().counters;
+      EXPECT_EQ(counters.holes, 0u) << "tick " << i;
+      EXPECT_GT(counters.nodes_in_view, 100u);
+      EXPECT_GT(scene.state().draws.terrain.size(), 10u);
+    }
+    expect_consistent(scene);
+  }
+}
+
+// By Want::owner: the node that is wanted, or on which stands what is.
+std::unordered_map<std::uint64_t, ecs::Entity> nodes_of_owners(const State& s) {
+  std::unordered_map<std::uint64_t, ecs::Entity> nodes;
+  s.entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node>) {
+    for (const ecs::Entity node : rows) {
+      nodes[owner_of(node)] = node;
+      for (const ecs::Entity child : s.entities.children(node))
+        nodes[owner_of(child)] = node;
+    }
+  });
+  return nodes;
+}
+
+// A want for a node out of view that is going to be seen.
+struct Expected {
+  Rank rank;
+  float deadline_s = 0;
+  int level = 0;
+  glm::dvec3 corner{
+      0.0};  // of the node, metres from the camera, to the camera's right and behind it
+  double side_m = 0;
+
+  // By how much the camera would have to turn to the right until it looks at the nearest corner.
+  double angle() const {
+    double least = std::numbers::pi;
+    for (const double x : {corner.x, corner.x + side_m}) {
+      for (const double z : {corner.z, corner.z + side_m})
+        least = std::min(least, std::atan2(x, -z));
+    }
+    return least;
+  }
+};
+
+// For cameras that look along −z.
+std::vector<Expected> expected_wants(const State& s) {
+  const auto nodes = nodes_of_owners(s);
+  std::vector<Expected> found;
+  for (const Want& want : s.synthesis.wants) {
+    const ecs::Entity entity = nodes.at(want.owner);
+    if (want.rank.group() != RankGroup::kPredicted ||
+        s.entities.get<Visibility>(entity)->in_view != 0)
+      continue;
+    const visibility::NodeCoord& at = s.entities.get<Node>(entity)->at;
+    found.push_back({want.rank, want.deadline_s, at.level,
+                     core::offset_m(visibility::corner_block(at), s.camera.pose.position,
+                                    s.facts.world.block_size_m()),
+                     s.facts.levels[at.level].size_m});
+  }
+  return found;
+}
+
+void expect_sooner_first(const std::vector<Expected>& wants) {
+  std::set<float> deadlines;
+  for (const Expected& want : wants) {
+    EXPECT_TRUE(std::isfinite(want.deadline_s));
+    EXPECT_GT(want.deadline_s, 0);
+    deadlines.insert(want.deadline_s);
+  }
+  EXPECT_GE(deadlines.size(), 3u);
+  std::size_t wrong = 0;
+  for (const Expected& a : wants) {
+    for (const Expected& b : wants)
+      wrong += a.deadline_s < b.deadline_s && a.rank > b.rank ? 1 : 0;
+  }
+  EXPECT_EQ(wrong, 0u) << "ranked in another order than by when they are needed";
+}
+
+// A second of a flight in which nothing comes.
+template <class Pose>
+std::vector<Expected> wants_after(const Pose& pose_of) {
+  Settings settings = gated_settings();
+  settings.view_distance_m = 3000;
+  GatedScene gated(settings);
+  gated.gate.set_open(false);
+  for (int i = -60; i <= 0; ++i)
+    tick_at(*gated.scene, pose_of(i / 60.0));
+  return expected_wants(gated.scene->state());
+}
+
+TEST(Requests, WhatATurningCameraWillSeeIsAskedForSoonestFirst) {
+  const std::vector<Expected> wants = wants_after([](double time_s) {
+    core::CameraPose pose = pose_at(256, 256, 0.5 * time_s);
+    pose.pitch = 0;
+    return pose;
+  });
+  expect_sooner_first(wants);
+  // Boxes are wider than nodes: by this much sooner they may be seen.
+  constexpr double kWiderRad = 0.1;
+  const core::Projection projection;
+  const double half_fov = std::atan(1280.0 / 720 * std::tan(projection.vertical_fov / 2));
+  std::size_t ordered = 0;
+  for (const Expected& a : wants) {
+    EXPECT_LT(a.angle(), half_fov + 0.5 * a.deadline_s + kWiderRad) << "is not seen by then";
+    for (const Expected& b : wants) {
+      if (a.angle() + kWiderRad >= b.angle()) continue;
+      EXPECT_LE(a.deadline_s, b.deadline_s) << "at " << a.angle() << " and " << b.angle();
+      ordered += a.deadline_s < b.deadline_s ? 1 : 0;
+    }
+  }
+  EXPECT_GT(ordered, 100u);
+}
+
+TEST(Requests, WhatACameraThatMovesWillSeeIsAskedForSoonestFirst) {
+  const std::vector<Expected> wants = wants_after([](double time_s) {
+    core::CameraPose pose = pose_at(256, 256, 0);
+    pose.pitch = 0;
+    pose.position.local.x += 100 * time_s;
+    return pose;
+  });
+  expect_sooner_first(wants);
+  std::size_t neighbours = 0;
+  for (const Expected& a : wants) {
+    for (const Expected& b : wants) {
+      if (a.level != b.level || a.corner.z != b.corner.z || a.corner.x < 0 ||
+          b.corner.x <= a.corner.x)
+        continue;
+      EXPECT_LE(a.deadline_s, b.deadline_s) << a.corner.x << " and " << b.corner.x << " m aside";
+      neighbours += a.deadline_s < b.deadline_s ? 1 : 0;
+    }
+  }
+  EXPECT_GT(neighbours, 100u);
+}
+
+// Whether a node, and the one above it, hides behind the ground that is drawn. (A hidden node is
+// needed when its siblings are seen.)
+bool hides(const State& s, visibility::NodeCoord at) {
+  const auto hidden = [&](const visibility::NodeCoord& node) {
+    const std::size_t cell = s.streaming.grids[node.level].window_index(node.coord);
+    return s.view.horizon.hides(s.view.levels[node.level].bounds[cell]);
+  };
+  return hidden(at) &&
+         (at.level + 1U == s.facts.levels.size() || hidden(visibility::parent_of(at)));
+}
+
+// Near the ground, in four valleys, from an empty cache on and a few meshes at a time.
+TEST(Requests, WhatHidesBehindARidgeComesAfterAllThatIsSeen) {
+  Settings settings = gated_settings();
+  settings.view_distance_m = 3000;
+  settings.plan_max_new = settings.plan_max_requests = 16;
+  std::size_t hidden = 0;
+  for (const auto& [x, z, yaw] : {std::tuple(256, 256, 0.3), std::tuple(100, 300, 2.0),
+                                  std::tuple(200, 200, 1.0), std::tuple(340, 222, 5.0)}) {
+    const auto scene = make_scene(settings);
+    const State& s = scene->state();
+    core::CameraPose pose = pose_at(x, z, yaw);
+    pose.pitch = 0;
+    pose.position.local.y = models::ground_height_m(s.facts.world.terrain, {x, z}, 31.5, 31.5) + 5;
+    for (int i = 0; i < 150; ++i) {
+      tick_at(*scene, pose);
+      const auto nodes = nodes_of_owners(s);
+      Rank first_hidden = Rank::unwanted(), last_seen = Rank::from_bits(0);
+      for (const Want& want : s.synthesis.wants) {
+        if (hides(s, s.entities.get<Node>(nodes.at(want.owner))->at)) {
+          first_hidden = std::min(first_hidden, want.rank);
+          ++hidden;
+        } else if (synthesis::is_visible(want.rank.group())) {
+          last_seen = std::max(last_seen, want.rank);
+        }
+      }
+      EXPECT_FALSE(synthesis::is_visible(first_hidden.group())) << "tick " << i;
+      EXPECT_LT(last_seen, first_hidden) << "tick " << i;
+      s.synthesis.manager->wait_all();
+    }
+  }
+  EXPECT_GT(hidden, 500u);
+}
+
+}  // namespace
+}  // namespace psygen::scene
