@@ -116,19 +116,23 @@ std::vector<Expected> wants_after(const Pose& pose_of) {
 }
 
 TEST(Requests, WhatATurningCameraWillSeeIsAskedForSoonestFirst) {
+  constexpr double kTurnRate = 0.5;  // radians a second, to the right
   const std::vector<Expected> wants = wants_after([](double time_s) {
-    core::CameraPose pose = pose_at(256, 256, 0.5 * time_s);
+    core::CameraPose pose = pose_at(256, 256, kTurnRate * time_s);
     pose.pitch = 0;
     return pose;
   });
   expect_sooner_first(wants);
-  // Boxes are wider than nodes: by this much sooner they may be seen.
-  constexpr double kWiderRad = 0.1;
+  // Boxes are wider than nodes: by this much sooner they may be seen. Cameras are predicted at some
+  // times only, each at most three times as late as the one before.
+  constexpr double kWiderRad = 0.1, kFirst_s = 0.25, kTimesLater = 3;
   const core::Projection projection;
   const double half_fov = std::atan(1280.0 / 720 * std::tan(projection.vertical_fov / 2));
   std::size_t ordered = 0;
   for (const Expected& a : wants) {
-    EXPECT_LT(a.angle(), half_fov + 0.5 * a.deadline_s + kWiderRad) << "is not seen by then";
+    EXPECT_LT(a.angle(), half_fov + kTurnRate * a.deadline_s + kWiderRad) << "is not seen by then";
+    const double seen_s = std::max(0.0, a.angle() + kWiderRad - half_fov) / kTurnRate;
+    EXPECT_LE(a.deadline_s, kFirst_s + kTimesLater * seen_s) << "is seen much sooner";
     for (const Expected& b : wants) {
       if (a.angle() + kWiderRad >= b.angle()) continue;
       EXPECT_LE(a.deadline_s, b.deadline_s) << "at " << a.angle() << " and " << b.angle();
