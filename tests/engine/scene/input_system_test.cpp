@@ -1,0 +1,92 @@
+// How the time that frames take comes to the error of what is drawn.
+#include <cmath>
+#include <numeric>
+
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+constexpr double kError = 5, kFactor = 3, kTarget_ms = 16;
+
+std::unique_ptr<Scene> steered_scene() {
+  Settings settings = small_settings();
+  settings.max_error_pixels = kError;
+  settings.max_error_factor = kFactor;
+  settings.target_frame_ms = kTarget_ms;
+  return make_scene(settings);
+}
+
+// So many ticks after frames of this length. Returns the error of the last; in each of them it lies
+// within its bounds and follows `falls`.
+double after_frames(Scene& scene, double frame_ms, double triangles, int ticks, bool falls) {
+  State& s = scene.state();
+  double error = falls ? kError * kFactor : 0;
+  for (int i = 0; i < ticks; ++i) {
+    s.input.frame_ms = frame_ms;
+    s.input.frame_triangles = triangles;
+    tick_at(scene, pose_at(256, 256));
+    const double now = s.quality.error_pixels;
+    EXPECT_TRUE(falls ? now <= error : now >= error) << "tick " << i;
+    EXPECT_GE(now, kError);
+    EXPECT_LE(now, kError * kFactor);
+    EXPECT_DOUBLE_EQ(s.quality.model_error_pixels, kError * std::sqrt(now / kError));
+    error = now;
+  }
+  return error;
+}
+
+// Of the models that are drawn once everything has come.
+std::size_t drawn_vertices(Scene& scene) {
+  scene.settle(pose_at(256, 256));
+  tick_at(scene, pose_at(256, 256));
+  const auto& models = scene.state().draws.models;
+  return std::accumulate(
+      models.begin(), models.end(), std::size_t{0},
+      [](std::size_t sum, const render::MeshDraw& draw) { return sum + draw.range.vertex_count; });
+}
+
+TEST(InputSystem, SlowFramesMakeThePictureCoarserAndFastOnesFinerWithinBounds) {
+  const auto scene = steered_scene();
+  EXPECT_EQ(after_frames(*scene, 5, 0, 200, true), kError);
+  scene->state().input.frame_ms = 0;  // unknown: settling changes nothing
+  const std::size_t fine = drawn_vertices(*scene);
+  const double soon = after_frames(*scene, 40, 0, 12, false);
+  EXPECT_GT(soon, kError * 1.05);
+  EXPECT_LT(soon, kError * kFactor);
+  EXPECT_EQ(after_frames(*scene, 40, 0, 200, false), kError * kFactor);
+  scene->state().input.frame_ms = 0;
+  const std::size_t coarse = drawn_vertices(*scene);
+  EXPECT_LT(static_cast<double>(coarse), 0.8 * static_cast<double>(fine));
+  EXPECT_LT(after_frames(*scene, 5, 0, 100, true), kError * kFactor);
+  EXPECT_EQ(after_frames(*scene, 5, 0, 500, true), kError);
+  scene->state().input.frame_ms = 0;
+  EXPECT_EQ(drawn_vertices(*scene), fine);
+}
+
+// Where a wide view opens the error rises before frames have been slow for a while.
+TEST(InputSystem, TheTrianglesOfFramesCountAsWell) {
+  const auto error_behind_a_hilltop = [](bool knows_triangles) {
+    const auto scene = steered_scene();
+    for (int i = 0; i < 100; ++i) {
+      const double triangles = 40'000 + 1000 * (i % 7);
+      after_frames(*scene, 5 + triangles * 1.5e-4, knows_triangles ? triangles : 0, 2, true);
+    }
+    return after_frames(*scene, 5 + 120'000 * 1.5e-4, knows_triangles ? 120'000 : 0, 4, false);
+  };
+  EXPECT_GT(error_behind_a_hilltop(true), 1.2 * error_behind_a_hilltop(false));
+}
+
+TEST(InputSystem, WithoutATargetTheErrorIsFixed) {
+  Settings settings = small_settings();
+  settings.max_error_pixels = kError;
+  const auto scene = make_scene(settings);
+  for (int i = 0; i < 50; ++i) {
+    scene->state().input.frame_ms = 1000;
+    tick_at(*scene, pose_at(256, 256));
+    EXPECT_EQ(scene->state().quality.error_pixels, kError);
+  }
+}
+
+}  // namespace
+}  // namespace psygen::scene
