@@ -72,6 +72,7 @@ class SlowType final : public models::ModelType {
     if (std::this_thread::get_id() != main_thread_) gate_.pass();
     return fast_.synthesize(p, level, out);
   }
+  bool may_run_on_main_thread() const override { return fast_.may_run_on_main_thread(); }
 
  private:
   std::string name_;
@@ -102,7 +103,7 @@ inline Settings gated_settings() {
   settings.view_distance_m = 1000;
   settings.max_error_pixels = 12;
   settings.budget_bytes = 128ull << 20;
-  settings.hole_budget_ms = 0;
+  settings.main_thread_budget_ms = 0;
   settings.watchdog_seconds = 1e6;
   return settings;
 }

@@ -1,9 +1,11 @@
 // What is asked for, and in which order: what is in view, then what the camera is going to see,
 // then what lies around it; what hides behind ridges not before its turn.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <thread>
 #include <tuple>
 #include <unordered_map>
 
@@ -33,6 +35,41 @@ TEST(Requests, WhoTurnsAroundSeesNoHoleThoughNothingMoreIsSynthesised) {
       EXPECT_GT(scene.state().draws.terrain.size(), 10u);
     }
     expect_consistent(scene);
+  }
+}
+
+// By the main thread itself.
+std::uint64_t made_here(const Scene& scene) {
+  for (const synthesis::ModelerStats& made : scene.state().synthesis.manager->stats().modelers)
+    if (made.modeler == synthesis::kMainThreadModeler) return made.models;
+  return 0;
+}
+
+TEST(Requests, WhereModelersGetNoProcessorTheMainThreadHelpsWithWhatIsSeenAfterAWhile) {
+  for (const double budget_ms : {0.0, 1000.0}) {
+    Settings settings = gated_settings();
+    settings.main_thread_budget_ms = budget_ms;
+    GatedScene gated(settings);
+    Scene& scene = *gated.scene;
+    const Counters& counters = scene.state().counters;
+    scene.settle(pose_at(256, 256, 0.3));
+    gated.gate.set_open(false);
+    const std::uint64_t before = made_here(scene);
+    tick_at(scene, pose_at(256, 248, 0.3));
+    ASSERT_EQ(counters.holes, 0u) << "coarser nodes stand for what is missing";
+    ASSERT_GT(counters.coarse, 0u);
+    EXPECT_EQ(made_here(scene), before) << "no hole, and it has only just become too coarse";
+    const double missing_percent = counters.missing_pixels_percent;
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    for (int i = 0; i < 5; ++i)
+      tick_at(scene, pose_at(256, 248, 0.3));
+    if (budget_ms > 0) {
+      EXPECT_GT(made_here(scene), before + 100);
+      EXPECT_LT(counters.missing_pixels_percent, 0.5 * missing_percent);
+    } else {
+      EXPECT_EQ(made_here(scene), before);
+      EXPECT_EQ(counters.missing_pixels_percent, missing_percent);
+    }
   }
 }
 
