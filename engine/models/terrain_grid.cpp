@@ -5,6 +5,13 @@
 #include "engine/core/assert.hpp"
 
 namespace psygen::models {
+namespace {
+
+// Two rows of vertices of so many cells are the 32 that GPUs keep after shading them: of wider ones
+// every vertex would be shaded twice.
+constexpr int kStripCells = 15;
+
+}  // namespace
 
 std::array<int, kTerrainLevels> terrain_strides(int size) {
   std::array<int, 8> factors{};  // 127 < 2^7
@@ -94,11 +101,15 @@ void TerrainGrid::write_indices(std::span<std::uint16_t> out) const {
   const int tiles = tiles_per_side() * tiles_per_side();
   for (int tile = 0; tile < tiles; ++tile) {
     const int column = tile % tiles_per_side(), row = tile / tiles_per_side();
-    for (int z = tile_line(row); z < tile_line(row + 1); ++z) {
-      for (int x = tile_line(column); x < tile_line(column + 1); ++x) {
-        const auto v = static_cast<std::uint32_t>(z * n + x);
-        triangle(v, v + width, v + 1);
-        triangle(v + 1, v + width, v + width + 1);
+    const int left = tile_line(column), wide = tile_line(column + 1) - left;
+    const int strips = (wide + kStripCells - 1) / kStripCells;
+    for (int strip = 0; strip < strips; ++strip) {
+      for (int z = tile_line(row); z < tile_line(row + 1); ++z) {
+        for (int x = left + wide * strip / strips; x < left + wide * (strip + 1) / strips; ++x) {
+          const auto v = static_cast<std::uint32_t>(z * n + x);
+          triangle(v, v + width, v + 1);
+          triangle(v + 1, v + width, v + width + 1);
+        }
       }
     }
   }

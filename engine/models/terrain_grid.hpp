@@ -51,7 +51,8 @@ struct TerrainGrid {
   static TerrainGrid of_index_list(std::uint32_t id);
 
   // Writes triangles() · 3 indices, counter-clockwise seen from outside: the surface tile by tile,
-  // row by row, each cell cut from (x, z + 1) to (x + 1, z), then the skirts.
+  // in strips of at most 15 cells row by row, each cell cut from (x, z + 1) to (x + 1, z), then the
+  // skirts.
   void write_indices(std::span<std::uint16_t> out) const;
   // Where a tile lies in that list, and the skirt of a side: 0 at z = 0, then at the greatest x, at
   // the greatest z, at x = 0.
