@@ -11,10 +11,11 @@ vec3 water_light(vec3 p, vec3 n) {
   r *= inversesqrt(dot(r, r));
   float sun = max(frame.sun_direction.y, 0.0);
   vec3 deep = frame.water.rgb * (ambient_light(vec3(0, 1, 0)) + sun * frame.sun_colour.rgb);
-  float toward = max(dot(r, frame.sun_direction.xyz), 0.0);
-  float t2 = toward * toward;
-  float t8 = t2 * t2 * t2 * t2;
-  float t64 = t8 * t8 * t8 * t8 * t8 * t8 * t8 * t8;
-  vec3 glint = frame.sun_colour.rgb * (t64 * t64 * t64 * t64 * 1.5 + 0.15 * t64);
+  // The sun's image in ripples that are not drawn: so many of them have the slope that sends it here
+  // (Cox and Munk 1954, Gaussian), so that it is a path, the longer the lower the sun.
+  vec3 h = frame.sun_direction.xyz - v;
+  vec2 slope = h.xz / max(h.y, 1e-3) - n.xz / n.y;
+  float steep = dot(slope, slope);
+  vec3 glint = frame.sun_colour.rgb * (1.3 * exp(-400.0 * steep) + 0.2 * exp(-45.0 * steep));
   return mix(deep, sky_light(r), mirrored) + glint * (0.2 + mirrored);
 }
