@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "tests/engine/app/studio.hpp"
 
@@ -45,6 +47,7 @@ struct Pops {
   Difference ground, models;
   double motion = 0;         // the median over the frames of the mean that the flight itself makes
   std::size_t switches = 0;  // frames in which nodes were split or merged
+  std::set<int> levels;      // of nodes that were drawn
 };
 
 void keep_worst(const Difference& now, Difference& worst) {
@@ -83,6 +86,8 @@ Pops fly(Studio& studio, core::CameraPose pose, int frames, const Move& move) {
       return sizes;
     };
     pops.switches += cells(now) != cells(before);
+    for (const std::uint32_t node : studio.state().draws.shown)
+      pops.levels.insert(studio.state().view.cut.nodes[node].node.level);
     before = now;
     picture_before = picture;
   }
@@ -122,6 +127,79 @@ TEST(Pops, ClimbingNoChangeOfLevelIsSeen) {
   Studio studio("paper.toml", view());
   expect_unseen(fly(studio, studio.above({200, 270}, 5, 60, 20, 4.0, -0.35), 30,
                     [](int i) { return glm::dvec3(0.5, 0.1 * i, -0.5); }));
+}
+
+// The largest errors of a flight at 60 frames a second, as far as ground is drawn whose trees are
+// no more than its colour.
+Options coarse_view() {
+  Options options = view();
+  options.scene.view_distance_m = 6500;
+  options.scene.max_error_pixels = 16;
+  return options;
+}
+
+void expect_unseen_near_and_far(const Studio& studio, const Pops& pops) {
+  expect_unseen(pops);
+  const std::vector<scene::NodeLevel>& levels = studio.state().facts.levels;
+  EXPECT_TRUE(pops.levels.contains(0) && pops.levels.contains(5) && pops.levels.contains(6));
+  EXPECT_TRUE(levels[4].merged && !levels.back().merged);
+}
+
+TEST(Pops, FlyingForwardWithALargeErrorNoChangeOfLevelIsSeen) {
+  Studio studio("paper.toml", coarse_view());
+  expect_unseen_near_and_far(studio, fly(studio, studio.above({250, 250}, 5, 60, 40, 0.3, -0.2), 24,
+                                         [](int) { return glm::dvec3(0.6, 0, -2.0); }));
+}
+
+TEST(Pops, FlyingBackwardWithALargeErrorNoChangeOfLevelIsSeen) {
+  Studio studio("paper.toml", coarse_view());
+  expect_unseen_near_and_far(studio, fly(studio, studio.above({300, 120}, 5, 60, 30, 0.3, -0.2), 24,
+                                         [](int) { return glm::dvec3(-0.5, 0.1, 2.0); }));
+}
+
+TEST(Pops, ClimbingWithALargeErrorNoChangeOfLevelIsSeen) {
+  Studio studio("paper.toml", coarse_view());
+  expect_unseen_near_and_far(studio, fly(studio, studio.above({200, 270}, 5, 60, 20, 4.0, -0.35),
+                                         24, [](int i) { return glm::dvec3(0.5, 0.1 * i, -0.5); }));
+}
+
+// A frame that takes 5 ms and 150 ns for each triangle.
+void observe_frame(Studio& studio, double triangles) {
+  studio.state().quality.governor.observe(5 + triangles * 1.5e-4, triangles);
+}
+
+// A slow flight during which the error grows from 2 to 8 pixels as fast as the governor allows.
+Pops fly_while_coarsening(Studio& studio, const core::CameraPose& pose, glm::dvec3 step) {
+  for (int i = 0; i < 2000; ++i)
+    observe_frame(studio, 20'000 + 1000 * (i % 7));
+  EXPECT_EQ(studio.state().quality.governor.error_factor(), 1);
+  double before = 2, largest_step = 0;
+  int last = 0;  // each step is asked for more than once
+  const Pops pops = fly(studio, pose, 18, [&](int i) {
+    const double error = studio.state().quality.error_pixels;
+    largest_step = std::max(largest_step, error / std::exchange(before, error) - 1);
+    if (std::exchange(last, i) != i) observe_frame(studio, 1e6);
+    return step;
+  });
+  EXPECT_GT(largest_step, 0.12);
+  EXPECT_EQ(studio.state().quality.error_pixels, 8);
+  return pops;
+}
+
+TEST(Pops, WhileTheGovernorCoarsensNoChangeOfLevelIsSeen) {
+  Options options = coarse_view();
+  options.scene.max_error_pixels = 2;
+  options.scene.max_error_factor = 4;
+  options.target_hz = 60;
+  for (const auto& [block, height_m, yaw, step] :
+       {std::tuple(core::BlockCoord{250, 250}, 40.0, 0.3, glm::dvec3(0.15, 0, -0.5)),
+        std::tuple(core::BlockCoord{300, 120}, 30.0, 0.3, glm::dvec3(-0.15, 0.02, 0.5)),
+        std::tuple(core::BlockCoord{200, 270}, 80.0, 4.0, glm::dvec3(0.15, 0.3, -0.15))}) {
+    Studio studio("paper.toml", options);
+    expect_unseen_near_and_far(
+        studio,
+        fly_while_coarsening(studio, studio.above(block, 5, 60, height_m, yaw, -0.2), step));
+  }
 }
 
 }  // namespace

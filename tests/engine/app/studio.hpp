@@ -39,6 +39,7 @@ class Studio {
 
   scene::Scene& scene() { return app_->scene(); }
   scene::State& state() { return app_->scene().state(); }
+  const scene::State& state() const { return app_->scene().state(); }
   std::uint32_t width() { return app_->renderer().size().width; }
   std::uint32_t height() { return app_->renderer().size().height; }
 
