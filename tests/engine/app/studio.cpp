@@ -23,6 +23,7 @@ image::Image Studio::drawn_again(const render::Light& light,
   frame.projection = s.camera.projection;
   frame.light = light;
   frame.palette = s.facts.palette;
+  frame.canopy = s.facts.canopy;
   frame.morph = scene::morph_of(s.streaming);
   frame.block_size_m = s.facts.world.block_size_m();
   frame.terrain = terrain;
