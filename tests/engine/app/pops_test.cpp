@@ -202,49 +202,5 @@ TEST(Pops, WhileTheGovernorCoarsensNoChangeOfLevelIsSeen) {
   }
 }
 
-// The nodes in view whose trees are only a colour.
-std::set<std::pair<std::int32_t, std::int32_t>> coloured(const scene::State& s) {
-  std::set<std::pair<std::int32_t, std::int32_t>> found;
-  for (std::size_t i = 0; i < s.view.cut.nodes.size(); ++i) {
-    const visibility::CutNode& node = s.view.cut.nodes[i];
-    const bool colour = node.node.level > 0 && !s.facts.levels[node.node.level].merged;
-    if (node.leaf && colour && s.view.in_view[i] != 0)
-      found.insert({node.node.coord.x, node.node.coord.z});
-  }
-  return found;
-}
-
-// Forward over several of the places where it happens. What is drawn right away, and what when
-// everything has faded.
-TEST(Pops, WhereDistantTreesBecomeTheColourOfTheGroundNoChangeIsSeen) {
-  Studio studio("paper.toml", coarse_view());
-  const core::CameraPose start = studio.above({300, 120}, 5, 60, 250, 0.3, -0.2);
-  const auto pose_after = [&](int steps) {
-    core::CameraPose pose = start;
-    pose.position.local += 10.0 * steps * glm::dvec3(std::sin(start.yaw), 0, -std::cos(start.yaw));
-    pose.position = core::normalised(pose.position, studio.state().facts.world.block_size_m());
-    return pose;
-  };
-  std::size_t changes = 0;
-  studio.settle(start);
-  auto before = coloured(studio.state());
-  for (int step = 1; step < 130; ++step) {
-    const core::CameraPose pose = pose_after(step);
-    studio.draw(pose);
-    const auto now = coloured(studio.state());
-    if (std::exchange(before, now) == now) continue;
-    ++changes;
-    studio.settle(pose_after(step - 1));
-    const Studio::Lists lists = studio.lists();
-    studio.fly(pose);
-    const image::Image picture_before = studio.picture_of(lists, lists);
-    EXPECT_LT(difference(picture_before, studio.picture()).worst, kGroundTile) << "step " << step;
-    for (int i = 0; i < 16; ++i)
-      studio.draw(pose);
-    EXPECT_LT(difference(picture_before, studio.picture()).worst, kGroundTile) << "step " << step;
-  }
-  EXPECT_GT(changes, 1u);
-}
-
 }  // namespace
 }  // namespace psygen::app
