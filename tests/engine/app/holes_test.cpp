@@ -1,6 +1,7 @@
 // The ground is closed: wherever the true ground stands in the way, no sky is seen.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "engine/core/hash.hpp"
 #include "tests/engine/app/studio.hpp"
@@ -31,6 +32,28 @@ TEST(Holes, LookingForwardAndDownFromAnyHeightTheGroundIsClosed) {
         studio.above(place.block, place.x, place.z, place.height_m, place.yaw, place.pitch));
     EXPECT_EQ(studio.state().counters.holes, 0u);
     EXPECT_EQ(studio.holes(), 0u) << "at " << place.height_m << " m";
+  }
+}
+
+// Over plains, along ridges and from above, as far as ground is drawn by the coarsest nodes.
+TEST(Holes, In16KilometresOfGroundNotASinglePixelIsOpen) {
+  Options options = wide_view();
+  options.scene.view_distance_m = 16'000;
+  for (const char* world : {"paper.toml", "silver_combe.toml"}) {
+    Studio studio(world, options);
+    std::set<int> levels;
+    for (const Place& place :
+         {Place{{256, 256}, 20, 30, 3, 0.4, -0.02}, Place{{230, 270}, 63.9, 0.1, 60, 2.0, -0.1},
+          Place{{270, 240}, 31, 31, 250, 3.6, -0.15}, Place{{250, 260}, 1, 62, 900, 5.3, -0.2},
+          Place{{256, 256}, 40, 20, 3000, 1.1, -0.5}}) {
+      studio.settle(
+          studio.above(place.block, place.x, place.z, place.height_m, place.yaw, place.pitch));
+      EXPECT_EQ(studio.state().counters.holes, 0u);
+      EXPECT_EQ(studio.holes(), 0u) << world << " at " << place.height_m << " m";
+      for (const std::uint32_t node : studio.state().draws.shown)
+        levels.insert(studio.state().view.cut.nodes[node].node.level);
+    }
+    EXPECT_TRUE(levels.contains(6) && levels.contains(7)) << world;
   }
 }
 
