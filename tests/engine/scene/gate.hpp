@@ -15,11 +15,18 @@ class Gate {
  public:
   void pass() {
     std::unique_lock lock(mutex_);
+    ++waiting_;
     opened_.wait(lock, [this] { return open_ || passes_ > 0; });
+    --waiting_;
     if (!open_) --passes_;
   }
   void let_through(int passes) {
     change([&] { passes_ += passes; });
+  }
+  // Whether somebody waits whom nobody lets through.
+  bool blocks() {
+    const std::lock_guard lock(mutex_);
+    return waiting_ > 0 && !open_ && passes_ == 0;
   }
   void set_open(bool open) {
     change([&] {
@@ -41,7 +48,7 @@ class Gate {
   std::mutex mutex_;
   std::condition_variable opened_;
   bool open_ = true;
-  int passes_ = 0;
+  int passes_ = 0, waiting_ = 0;
 };
 
 // A model type whose synthesis in a modeler waits at a gate.
@@ -112,6 +119,13 @@ inline Settings gated_settings() {
 struct GatedScene {
   explicit GatedScene(const Settings& settings) : scene(slow_scene(settings, gate)) {}
   ~GatedScene() { gate.set_open(true); }
+  // Waits until the only modeler has made so many of the meshes that wait at the gate, and those
+  // in between, or has nothing more to do.
+  void make(int meshes) {
+    gate.let_through(meshes);
+    while (scene->state().synthesis.manager->outstanding() > 0 && !gate.blocks())
+      std::this_thread::yield();
+  }
   GatedScene(const GatedScene&) = delete;
   GatedScene& operator=(const GatedScene&) = delete;
 

@@ -1,0 +1,85 @@
+// The paper's walk with a single modeler that is no faster than it need be, and how little more a
+// wide view takes than a narrow one.
+#include <algorithm>
+
+#include "engine/world/camera_path.hpp"
+#include "tests/engine/scene/gate.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// From an empty cache on. One that takes 0.4 ms for each piece of ground and for each tree, many
+// times as long as a core of today.
+TEST(Flights, OnThePapersWalkOneModelerIsEnoughForNoHoles) {
+  constexpr int kMeshesPerTick = 40, kWarmupTicks = 60;
+  const auto path = world::load_camera_path(PSYGEN_SOURCE_DIR "/game/paths/walk27.toml");
+  ASSERT_TRUE(path) << path.error().message;
+  Settings settings = gated_settings();
+  settings.plan_seconds_ahead = 1e6;  // nothing that depends on what the machine takes
+  GatedScene gated(settings);
+  gated.gate.set_open(false);
+  const State& s = gated.scene->state();
+  ASSERT_EQ(s.settings.modelers, 1u);
+  std::size_t holes_before = 0, made = 0, most_in_view = 0;
+  for (int tick = 0; tick / 60.0 < path->duration_seconds(); ++tick) {
+    tick_at(*gated.scene, path->pose_at(tick / 60.0, s.facts.world));
+    if (tick >= kWarmupTicks) {
+      EXPECT_EQ(s.counters.holes, 0u) << "tick " << tick;
+    } else {
+      holes_before += s.counters.holes;
+    }
+    made += s.counters.models_synthesised;
+    most_in_view = std::max<std::size_t>(most_in_view, s.counters.nodes_in_view);
+    gated.make(kMeshesPerTick);
+  }
+  EXPECT_GT(holes_before, 0u);
+  EXPECT_GT(made, 5000u);
+  EXPECT_GT(most_in_view, 300u);
+}
+
+// What a settled scene takes.
+struct Size {
+  double entities, nodes, cut, terrain_draws, model_draws, megabytes;
+};
+
+Size size_at(double view_distance_m) {
+  Settings settings = gated_settings();
+  settings.view_distance_m = view_distance_m;
+  settings.max_error_pixels = 4;
+  settings.budget_bytes = 512ull << 20;
+  settings.plan_seconds_ahead = 1e6;
+  const auto scene =
+      make_scene_of(settings, [](world::World& world) { world.blocks_x = world.blocks_z = 0; });
+  core::CameraPose pose = pose_at(256, 256, 0.3);
+  pose.position.local.y = 200;
+  scene->settle(pose);
+  tick_at(*scene, pose);
+  const State& s = scene->state();
+  EXPECT_EQ(s.counters.holes, 0u);
+  const auto number = [](std::size_t count) { return static_cast<double>(count); };
+  return {number(s.entities.size()),       number(s.entities.count<Node>()),
+          number(s.view.cut.nodes.size()), number(s.draws.terrain.size()),
+          number(s.draws.models.size()),   number(s.synthesis.cache->stats().bytes) / (1 << 20)};
+}
+
+// If it grew with the distance, each doubling would add twice as much as the one before.
+TEST(Flights, EachDoublingOfTheViewDistanceAddsNoMoreThanTheFirst) {
+  std::vector<Size> sizes;
+  for (const double view_km : {2, 4, 8, 16, 32})
+    sizes.push_back(size_at(1000 * view_km));
+  for (const auto& [name, what] :
+       {std::pair("entities", &Size::entities), std::pair("nodes", &Size::nodes),
+        std::pair("nodes of the cut", &Size::cut),
+        std::pair("draws of ground", &Size::terrain_draws),
+        std::pair("draws of models", &Size::model_draws),
+        std::pair("megabytes", &Size::megabytes)}) {
+    const double first = sizes[1].*what - sizes[0].*what;
+    EXPECT_GT(sizes[0].*what, 0) << name;
+    EXPECT_LT(first, 0.6 * (sizes[0].*what)) << name;
+    for (std::size_t i = 2; i < sizes.size(); ++i)
+      EXPECT_LE(sizes[i].*what - sizes[i - 1].*what, 1.2 * first) << name << ", doubling " << i;
+  }
+}
+
+}  // namespace
+}  // namespace psygen::scene
