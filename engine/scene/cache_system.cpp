@@ -31,7 +31,7 @@ constexpr std::uint32_t kFewestHidden = 48;
 constexpr double kHolePatienceSeconds = 0.02;
 // So long pictures may be too coarse before the main thread helps: modelers get only what others
 // leave of the processors, and that can be nothing.
-constexpr double kCoarsePatienceSeconds = 0.1;
+constexpr double kCoarsePatienceSeconds = 0.03;
 
 // Where a node stands in the order of importance, in this tick.
 struct NodeView {
