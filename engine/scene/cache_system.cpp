@@ -66,10 +66,11 @@ bool is_roomy(const synthesis::CacheStats& stats) {
 
 // Whether what is seen leaves room for finer levels of it and for what is around. What is kept only
 // because it was there gives way, and says nothing of how much is needed.
-bool leaves_room(const synthesis::CacheStats& stats) {
-  constexpr double kSeenShare = 0.5;
+// Lazy evaluation makes every picture while the last one may still be read: two must fit with ease.
+bool leaves_room(const synthesis::CacheStats& stats, Paradigm paradigm) {
+  const double seen_share = paradigm == Paradigm::kLazyEvaluation ? 0.4 : 0.5;
   return static_cast<double>(stats.visible_bytes) <
-         kSeenShare * static_cast<double>(stats.limit_bytes);
+         seen_share * static_cast<double>(stats.limit_bytes);
 }
 
 class Chooser {
@@ -375,7 +376,7 @@ void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& repo
               : "the geometry budget is too small for this view at full detail; some of it is "
                 "missing");
     }
-  } else if (leaves_room(synthesis.cache->stats())) {
+  } else if (leaves_room(synthesis.cache->stats(), settings.paradigm)) {
     synthesis.coarsening = std::max(synthesis.coarsening * kDown, 1.0F);
   }
 }
