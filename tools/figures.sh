@@ -1,7 +1,7 @@
 #!/bin/sh
 # Measures what docs/performance.md lists under "What was to be reached": the flights, where they
 # end in the middle, far away and in a huge world, and the benchmarks of PLP and of the tick without
-# drawing. Wants a machine with nothing else running, and some fourteen minutes.
+# drawing. Wants a machine with nothing else running, and some twelve minutes.
 #
 # usage: tools/figures.sh [OUT]        (a folder, default out/figures; needs preset release built)
 set -eu
@@ -14,16 +14,18 @@ worlds=game/worlds
 paths=game/paths
 walk="--world $worlds/paper.toml --path $paths/walk27.toml"
 
-fly() { # name, then options; prints nothing but what went wrong
+failed=0
+fly() { # name, then options; prints the command, and what went wrong
   name=$1
   shift
-  echo "== $name: psygen fly --headless $*"
-  $psygen fly --headless --out "$out/$name" "$@" >"$out/$name.log" 2>&1 || cat "$out/$name.log"
+  rm -rf "${out:?}/$name"
+  echo "== $name: $psygen fly --headless $*"
+  $psygen fly --headless --out "$out/$name" "$@" >"$out/$name.log" 2>&1 || { cat "$out/$name.log"; failed=1; }
 }
 laps() { # name: the same path twice, the second time from the cache
   # shellcheck disable=SC2086
   fly "$1" $walk --error 12 --loop --seconds 54
-  python3 tools/lap_table.py 27 "$out/$1/frames.csv"
+  python3 tools/lap_table.py 27 "$out/$1/frames.csv" || failed=1
 }
 
 # shellcheck disable=SC2086
@@ -38,7 +40,7 @@ laps() { # name: the same path twice, the second time from the cache
 for path in dash whirl leaps jumps; do
   fly "$path" --world $worlds/paper.toml --path "$paths/$path.toml" --target-fps 60
 done
-python3 tools/lap_table.py 4 "$out/jumps/frames.csv" # each jump, its first second left out
+python3 tools/lap_table.py 4 "$out/jumps/frames.csv" || failed=1 # each jump, its first second left out
 laps laps
 if command -v taskset >/dev/null; then
   first=$(taskset -pc $$ | sed 's/.*: *//; s/[-,].*//')
@@ -56,7 +58,8 @@ for place in origin:0,0 far_away:1073741824,-1073741824; do
   fly "$name" --world $worlds/endless.toml --path "$out/$name.toml" --error 12
 done
 
+python3 tools/flight_table.py "$out"/*/summary.json
 echo "== PLP over 100,489 blocks, and the tick without drawing"
 build/release/tests/bench/visibility/psygen_bench_visibility --benchmark_filter='plp' --benchmark_min_time=0.2
 build/release/tests/bench/scene/psygen_bench_scene
-python3 tools/flight_table.py "$out"/*/summary.json
+exit $failed

@@ -41,8 +41,12 @@ def cell(summary, place, form, unit):
 
 
 def percentile(values, share):
+    """As those of summary.json (engine/telemetry/statistics.hpp): between the two nearest values."""
     values = sorted(values)
-    return values[max(0, math.ceil(share * len(values)) - 1)]
+    at = share * (len(values) - 1)
+    below = math.floor(at)
+    above = min(below + 1, len(values) - 1)
+    return values[below] + (at - below) * (values[above] - values[below])
 
 
 def of_frames(file, warm_up_s):

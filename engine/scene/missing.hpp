@@ -17,12 +17,14 @@ inline double covered_percent(const Camera& camera, glm::vec3 center, float radi
   return std::min(100.0, 100.0 * std::numbers::pi * radius_px * radius_px / picture);
 }
 
-// Something in the picture that is drawn at no level (`hole`), or by more than one too coarse.
+// Something in the picture that is drawn at no level (`hole`), or by more than one too coarse;
+// `failed`: some of its levels cannot be synthesised.
 inline void count_seen(const Camera& camera, glm::vec3 center, float radius_m, bool hole,
-                       bool coarse, Counters& counters) {
+                       bool coarse, bool failed, Counters& counters) {
   ++counters.nodes_in_view;
   if (hole) ++counters.holes;
   if (coarse) ++counters.coarse;
+  if ((hole || coarse) && !failed) ++counters.awaited;
   if (hole || coarse) counters.missing_pixels_percent += covered_percent(camera, center, radius_m);
 }
 

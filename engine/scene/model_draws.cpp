@@ -102,7 +102,8 @@ void ModelDraws::add(const ecs::Children& children, Node how, const DrawFacts& n
     const bool fades_in = appears || how == Node::kReplaces;
     if (!hole && !add_coming(model, demand, fading, fades_in, node)) return;
     count_seen(camera_, model.foot + model.placed.middle, model.placed.radius_m, hole,
-               !hole && demand.drawn_level > demand.wanted_level + 1, counters_);
+               !hole && demand.drawn_level > demand.wanted_level + 1, demand.failed_levels != 0,
+               counters_);
   });
 }
 

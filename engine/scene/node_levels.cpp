@@ -103,7 +103,7 @@ void split_distances(std::span<const NodeLevel> levels, const Settings& settings
   distances.resize(levels.size());
   std::vector<double> errors;
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    const bool leaves_out = k > 1 && levels[k - 1].merged && !levels[k].merged;
+    const bool leaves_out = k == world::kMaxMergedLevel + 1 && levels[k - 1].merged;
     const double least = leaves_out ? kForestsSeenM * error_pixels / pixels_per_radian : 0.0;
     errors.push_back(std::max(levels[k].error_m, least));
   }

@@ -37,7 +37,7 @@ bool contains(const world::World& world, const visibility::NodeCoord& node);
 bool overhangs(const world::World& world, const visibility::NodeCoord& node);
 
 // Replaces `distances`, one for each level: where an error covers `error_pixels`, but at 0.6 … 3
-// sides of the node; what has no trees any more is split at 3 km or 3 sides at least. Blocks take
+// sides of the node; beyond the last merged meshes at 3 km or 3 sides at least. Blocks take
 // their finest mesh as near as their error says, at most at 3 sides.
 void split_distances(std::span<const NodeLevel> levels, const Settings& settings,
                      double pixels_per_radian, double error_pixels,

@@ -117,7 +117,8 @@ class Drawing {
         corner + glm::vec3(node.side_m / 2, (at.low_m + at.high_m) / 2, node.side_m / 2);
     const bool hole = demand->drawn_level == kNoLevel;
     const std::uint32_t coarser = node.leaf ? 0 : coarser_by(index);
-    count_seen(camera_, middle, placed->radius_m, hole, coarser > 1, counters_);
+    count_seen(camera_, middle, placed->radius_m, hole, coarser > 1, demand->failed_levels != 0,
+               counters_);
     DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
     if (!hole) add_ground(node, entity, at, facts, corner);

@@ -188,6 +188,7 @@ struct Counters {
   std::uint32_t nodes_hidden = 0;  // of the cut, behind ridges
   std::uint32_t holes = 0;         // nodes in view that are drawn at no level
   std::uint32_t coarse = 0;        // nodes in view coarser than wanted by more than one level
+  std::uint32_t awaited = 0;       // of both, what does not lack because its synthesis failed
   double missing_pixels_percent = 0;
   std::uint32_t requests = 0;  // wanted, but not there
   std::uint32_t refused = 0;   // of these, for want of memory
@@ -206,8 +207,8 @@ struct Counters {
 // What is counted from tick to tick.
 struct Totals {
   std::uint64_t failed = 0;
-  // Real seconds since which every picture lacked something or had it more than one level too
-  // coarse; +inf: the last one did not.
+  // Real seconds since which every picture awaited something (Counters::awaited); +inf: the last
+  // one did not, or there was none.
   double lacking_since_s = std::numeric_limits<double>::infinity();
   bool warned_budget = false;
   synthesis::CacheStats cache;  // at the end of the last tick

@@ -122,7 +122,7 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     request.owner = want.owner;
     request.predicted_seconds = item.order.predicted_seconds;
     cache.adopt(request.handle, want.owner, want.rank);
-    list_for(want, cache).push_back(request);
+    append(request, want, cache);
     ++report.carried;
     report.predicted_seconds += item.order.predicted_seconds;
     return;
@@ -149,27 +149,28 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     return;
   }
   const MeshRecord& record = *cache.get(*handle);
-  list_for(want, cache)
-      .push_back({*handle, want.key, *want.parameters, record.destination, record.size, item.work,
-                  item.order.predicted_seconds, want.owner});
+  append({*handle, want.key, *want.parameters, record.destination, record.size, item.work,
+          item.order.predicted_seconds, want.owner},
+         want, cache);
   ++report.reserved;
   report.predicted_seconds += item.order.predicted_seconds;
 }
 
-// Executes what is urgent until the time is over; the others go to the front of the plan. A model
+// Executes what is urgent until the time is over; the others keep their places in the plan. A model
 // that is predicted to take longer than the time that is left is never started here.
 void Planner::execute_here(SynthesisManager& manager, double seconds, PlanReport& report) {
   double left_s = seconds;
-  std::erase_if(here_, [&](const Request& request) {
-    if (request.predicted_seconds >= left_s) return false;
+  for (const std::size_t at : here_) {
+    Request& request = plan_[at];
+    if (request.predicted_seconds >= left_s) continue;
     const double start_s = core::monotonic_seconds();
     manager.execute_here(request);
     left_s -= core::monotonic_seconds() - start_s;
+    request.handle = {};
     ++report.executed;
-    return true;
-  });
-  plan_.insert(plan_.begin(), here_.begin(), here_.end());
-  here_.clear();
+  }
+  if (report.executed > 0)
+    std::erase_if(plan_, [](const Request& request) { return !request.handle; });
 }
 
 PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
@@ -181,6 +182,7 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   give_back_unwanted(cache, report);
 
   plan_.clear();
+  here_.clear();
   waiting_seconds_ = 0;
   here_up_to_.reset();
   if (limits.seconds_here > 0) here_up_to_ = limits.here_up_to;
@@ -188,8 +190,7 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   std::size_t next = 0;
   for (; next < items_.size(); ++next) {
     if (report.predicted_seconds + waiting_seconds_ >= enough ||
-        plan_.size() + here_.size() >= limits.max_requests ||
-        report.refused >= limits.max_refusals) {
+        plan_.size() >= limits.max_requests || report.refused >= limits.max_refusals) {
       break;
     }
     add(items_[next], wants[items_[next].want], cache, report);

@@ -83,10 +83,11 @@ class Planner {
   void give_back_unwanted(GeometryCache& cache, PlanReport& report);
   bool give_back_last(GeometryCache& cache, PlanReport& report);
   void add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report);
-  std::vector<Request>& list_for(const Want& want, const GeometryCache& cache) {
+  void append(const Request& request, const Want& want, const GeometryCache& cache) {
     const bool here = here_up_to_ && want.rank.group() <= *here_up_to_ &&
                       cache.registry()[want.key.model].may_run_on_main_thread();
-    return here ? here_ : plan_;
+    if (here) here_.push_back(plan_.size());
+    plan_.push_back(request);
   }
   void execute_here(SynthesisManager& manager, double seconds, PlanReport& report);
 
@@ -99,7 +100,7 @@ class Planner {
   std::vector<Request> plan_;
   double waiting_seconds_ = 0;  // predicted, of requests that wait for room
   std::optional<RankGroup> here_up_to_;
-  std::vector<Request> here_;  // executed by this thread as far as time allows
+  std::vector<std::size_t> here_;  // of plan_: executed by this thread as far as time allows
 };
 
 }  // namespace psygen::synthesis

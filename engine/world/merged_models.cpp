@@ -110,7 +110,7 @@ class MergedType final : public models::ModelType {
   std::uint64_t identity() const override { return identity_; }
   bool may_run_on_main_thread() const override {
     return std::ranges::all_of(scatters_, [](const FarScatter& scatter) {
-      return scatter.type().may_run_on_main_thread();
+      return scatter.empty() || scatter.type().may_run_on_main_thread();
     });
   }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {

@@ -2,6 +2,7 @@
 // speed of the machine.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -22,6 +23,10 @@ class Gate {
   }
   void let_through(int passes) {
     change([&] { passes_ += passes; });
+  }
+  // So many from now on: who was let through before and did not come is not.
+  void let_only(int passes) {
+    change([&] { passes_ = passes; });
   }
   // Whether somebody waits whom nobody lets through.
   bool blocks() {
@@ -122,9 +127,9 @@ struct GatedScene {
   // Waits until the only modeler has made so many of the meshes that wait at the gate, and those
   // in between, or has nothing more to do.
   void make(int meshes) {
-    gate.let_through(meshes);
+    gate.let_only(meshes);
     while (scene->state().synthesis.manager->outstanding() > 0 && !gate.blocks())
-      std::this_thread::yield();
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
   }
   GatedScene(const GatedScene&) = delete;
   GatedScene& operator=(const GatedScene&) = delete;

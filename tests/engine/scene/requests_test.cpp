@@ -49,6 +49,7 @@ TEST(Requests, WhereModelersGetNoProcessorTheMainThreadHelpsWithWhatIsSeenAfterA
   for (const double budget_ms : {0.0, 1000.0}) {
     Settings settings = gated_settings();
     settings.main_thread_budget_ms = budget_ms;
+    settings.plan_seconds_ahead = 1e6;  // nothing that depends on what the machine takes
     GatedScene gated(settings);
     Scene& scene = *gated.scene;
     const Counters& counters = scene.state().counters;

@@ -310,6 +310,41 @@ TEST_F(PlannerTest, AHoleThatIsPredictedToTakeTooLongIsLeftToTheModelers) {
   EXPECT_EQ(report.published, 1u);
 }
 
+// A hole that only a modeler may fill is not put behind what this thread had no time for.
+TEST(PlannerOrder, WhatIsNotMadeAtOnceKeepsItsPlaceInThePlan) {
+  Gate gate;
+  const auto wait = [&gate](const models::Parameters&, int) { gate.wait(); };
+  models::Registry registry = registry_of(std::make_unique<ScriptedModel>("gated", wait));
+  const auto wild = registry.add(std::make_unique<ScriptedModel>("wild", wait));
+  ASSERT_TRUE(wild);
+  core::HeapGeometryMemory memory{1 << 20};
+  GeometryCache cache{memory, registry, 16 * kMeshBytes};
+  CostModel cost{registry};
+  SynthesisManager manager{registry, {.modelers = 1, .watchdog_seconds = 0}};
+  Planner planner;
+  std::vector<std::unique_ptr<models::Parameters>> parameters;
+  const auto want = [&](std::uint32_t index, models::ModelIndex model, Rank rank) {
+    parameters.push_back(std::make_unique<models::Parameters>(parameters_of(index, 80)));
+    return Want{key_of(index, *parameters.back(), model), parameters.back().get(), index, rank, 0};
+  };
+  const std::vector<Want> first{want(9, *wild, hole(0))};
+  planner.plan(first, cache, cost, manager);
+  gate.await(1);  // the modeler hangs on it, so that it takes nothing else
+  PlanLimits limits;
+  limits.seconds_here = 1e-12;
+  limits.here_up_to = RankGroup::kVisibleCoarse;
+  const Rank coarse = Rank::by_layer(RankGroup::kVisibleCoarse, 0, 5);
+  const std::vector<Want> wants{want(1, 0, coarse), want(2, *wild, hole(30)), want(3, 0, hole(10)),
+                                first[0]};
+  EXPECT_EQ(planner.plan(wants, cache, cost, manager, limits).executed, 0u);
+  std::vector<std::uint64_t> owners;
+  for (const Request& request : manager.reclaim())
+    owners.push_back(request.owner);
+  EXPECT_EQ(owners, (std::vector<std::uint64_t>{3, 2, 1}));
+  gate.open();
+  manager.wait_all();
+}
+
 // Counts how often it is asked for its size: for trees that is hashing every branch.
 class AskedModel : public testing::FakeModel {
  public:

@@ -498,6 +498,15 @@ TEST(MergedModels, DoWithoutATypeThatThrows) {
   EXPECT_EQ(with.mesh({0, 0}, 1).vertex_bytes, without.mesh({0, 0}, 1).vertex_bytes);
 }
 
+TEST(MergedModels, MayRunOnTheMainThreadWhereAllThatTheyAreMadeOfMay) {
+  for (const char* file : kWorldFiles)
+    EXPECT_TRUE(Scenery(text_of(file)).type->may_run_on_main_thread())
+        << file << ": grass is no part";
+  const std::string fences = trees() + "\n[[scatter]]\nmodel = \"fence\"\ncount = 12\n";
+  const Scenery with(fences, std::make_unique<my_game::FenceType>());
+  EXPECT_FALSE(with.type->may_run_on_main_thread()) << "a user's type may hang";
+}
+
 TEST(MergedModels, OfTheMostModelsThatABlockMayHaveStillFitAMesh) {
   const Scenery crowd(replaced(trees(), "count = 3", "count = 16000"));
   for (int level = 1; level <= kMaxMergedLevel; ++level) {
