@@ -181,6 +181,33 @@ TEST(NodeLevels, EveryNodeThatIsWantedExistsAsSoonAsThereWasTime) {
   }
 }
 
+// The camera stands still, so that nothing but the error says that more is wanted.
+TEST(NodeLevels, EveryNodeThatIsWantedExistsWhileTheErrorFalls) {
+  for (const double view_m : {2000.0, 6000.0, 16000.0}) {
+    Settings settings = small_settings();
+    settings.view_distance_m = view_m;
+    settings.max_error_pixels = 16;
+    settings.main_thread_budget_ms = 0;
+    const auto scene = make_scene_of(settings, [](world::World& world) {
+      world.blocks_x = world.blocks_z = 0;
+      world.scatter.clear();
+    });
+    State& s = scene->state();
+    std::size_t missing = 0, before = 0;
+    for (; s.settings.max_error_pixels > 2; s.settings.max_error_pixels *= 0.99) {
+      tick_at(*scene, pose_at(100, 200));
+      if (before == 0) before = s.view.cut.nodes.size();
+      for (const visibility::CutNode& node : s.view.cut.nodes) {
+        const NodeGrid& grid = s.streaming.grids[node.node.level];
+        missing +=
+            !grid.contains(node.node.coord) || !s.entities.alive(grid.entity_of(node.node.coord));
+      }
+    }
+    EXPECT_EQ(missing, 0u) << view_m << " m";
+    EXPECT_GT(s.view.cut.nodes.size(), 2 * before);
+  }
+}
+
 TEST(NodeLevels, WorldsOfAnySizeAndShapeAreDrawnWithoutAHole) {
   struct Case {
     std::int64_t x, z;
