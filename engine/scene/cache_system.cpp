@@ -66,11 +66,15 @@ bool is_roomy(const synthesis::CacheStats& stats) {
 
 // Whether what is seen leaves room for finer levels of it and for what is around. What is kept only
 // because it was there gives way, and says nothing of how much is needed.
-// Lazy evaluation makes every picture while the last one may still be read: two must fit with ease.
+// Lazy evaluation makes every picture anew, and may have to while the last two, which are still in
+// flight, hold their memory: three must fit.
 bool leaves_room(const synthesis::CacheStats& stats, Paradigm paradigm) {
-  const double seen_share = paradigm == Paradigm::kLazyEvaluation ? 0.4 : 0.5;
+  const double seen_share = paradigm == Paradigm::kLazyEvaluation ? 0.28 : 0.5;
   return static_cast<double>(stats.visible_bytes) <
          seen_share * static_cast<double>(stats.limit_bytes);
+}
+bool three_fit(const synthesis::CacheStats& stats) {
+  return 3 * stats.visible_bytes <= stats.limit_bytes;
 }
 
 class Chooser {
@@ -364,8 +368,10 @@ void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
 void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& report,
                      Synthesis& synthesis, Totals& totals) {
   constexpr float kUp = 1.15F, kDown = 0.99F, kCoarsest = 64.0F;
+  const synthesis::CacheStats stats = synthesis.cache->stats();
   // Lazy evaluation has no next tick in which to come again.
-  const bool too_late = settings.paradigm == Paradigm::kLazyEvaluation && report.waiting > 0;
+  const bool too_late =
+      settings.paradigm == Paradigm::kLazyEvaluation && (report.waiting > 0 || !three_fit(stats));
   if (report.refused_visible > 0 || too_late) {
     synthesis.coarsening = std::min(synthesis.coarsening * kUp, kCoarsest);
     if (!totals.warned_budget) {
@@ -376,7 +382,7 @@ void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& repo
               : "the geometry budget is too small for this view at full detail; some of it is "
                 "missing");
     }
-  } else if (leaves_room(synthesis.cache->stats(), settings.paradigm)) {
+  } else if (leaves_room(stats, settings.paradigm)) {
     synthesis.coarsening = std::max(synthesis.coarsening * kDown, 1.0F);
   }
 }
