@@ -64,17 +64,10 @@ bool is_roomy(const synthesis::CacheStats& stats) {
          kRoomyShare * static_cast<double>(stats.limit_bytes);
 }
 
-// Whether what is seen leaves room for finer levels of it and for what is around. What is kept only
-// because it was there gives way, and says nothing of how much is needed.
-// Lazy evaluation makes every picture anew, and may have to while the last two, which are still in
-// flight, hold their memory: three must fit.
-bool leaves_room(const synthesis::CacheStats& stats, Paradigm paradigm) {
-  const double seen_share = paradigm == Paradigm::kLazyEvaluation ? 0.28 : 0.5;
-  return static_cast<double>(stats.visible_bytes) <
-         seen_share * static_cast<double>(stats.limit_bytes);
-}
-bool three_fit(const synthesis::CacheStats& stats) {
-  return 3 * stats.visible_bytes <= stats.limit_bytes;
+// What is seen, as a share of what there is room for. What is kept only because it was there gives
+// way, and says nothing of how much is needed.
+double seen_share(const synthesis::CacheStats& stats) {
+  return static_cast<double>(stats.visible_bytes) / static_cast<double>(stats.limit_bytes);
 }
 
 class Chooser {
@@ -368,10 +361,12 @@ void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
 void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& report,
                      Synthesis& synthesis, Totals& totals) {
   constexpr float kUp = 1.15F, kDown = 0.99F, kCoarsest = 64.0F;
-  const synthesis::CacheStats stats = synthesis.cache->stats();
-  // Lazy evaluation has no next tick in which to come again.
-  const bool too_late =
-      settings.paradigm == Paradigm::kLazyEvaluation && (report.waiting > 0 || !three_fit(stats));
+  const bool lazy = settings.paradigm == Paradigm::kLazyEvaluation;
+  // Finer levels of what is seen need room, and so does what is around. Lazy evaluation has no next
+  // tick in which to come again, and may make a picture while the last two, still in flight, hold
+  // their memory: three must fit.
+  const double seen = seen_share(synthesis.cache->stats()), roomy = lazy ? 0.28 : 0.5;
+  const bool too_late = lazy && (report.waiting > 0 || seen > 1.0 / 3);
   if (report.refused_visible > 0 || too_late) {
     synthesis.coarsening = std::min(synthesis.coarsening * kUp, kCoarsest);
     if (!totals.warned_budget) {
@@ -382,7 +377,7 @@ void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& repo
               : "the geometry budget is too small for this view at full detail; some of it is "
                 "missing");
     }
-  } else if (leaves_room(stats, settings.paradigm)) {
+  } else if (seen < roomy) {
     synthesis.coarsening = std::max(synthesis.coarsening * kDown, 1.0F);
   }
 }
@@ -416,7 +411,7 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
   if (!wait && !synthesis.settling)
     limits.max_new_hidden = std::max(settings.plan_max_new / synthesis.spread_ticks, kFewestHidden);
   limits.seconds_here = wait ? 0.0 : settings.main_thread_budget_ms / 1000.0;
-  if (synthesis.waiting == 0 && clock.real_s - totals.lacking_since_s > kCoarsePatienceSeconds)
+  if (synthesis.waiting == 0 && clock.real_s - totals.awaiting_since_s > kCoarsePatienceSeconds)
     limits.here_up_to = RankGroup::kVisibleCoarse;
   const synthesis::PlanReport report =
       synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,

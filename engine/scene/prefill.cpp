@@ -88,7 +88,7 @@ void Scene::tick_without_drawing(const core::CameraPose& pose) {
   s.input.pose = pose;
   s.clock.real_s = core::monotonic_seconds() - s.clock.origin_s;
   s.counters = {};
-  s.totals.lacking_since_s = std::numeric_limits<double>::infinity();
+  s.totals.awaiting_since_s = std::numeric_limits<double>::infinity();
   input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
   streaming_system(s.settings, s.camera, s.quality, s.facts, s.daylight, s.streaming, s.entities,

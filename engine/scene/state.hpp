@@ -209,7 +209,7 @@ struct Totals {
   std::uint64_t failed = 0;
   // Real seconds since which every picture awaited something (Counters::awaited); +inf: the last
   // one did not, or there was none.
-  double lacking_since_s = std::numeric_limits<double>::infinity();
+  double awaiting_since_s = std::numeric_limits<double>::infinity();
   bool warned_budget = false;
   synthesis::CacheStats cache;  // at the end of the last tick
 };

@@ -35,8 +35,8 @@ void telemetry_system(const Clock& clock, const Quality& quality, const Counters
   record.bytes_synthesised = counters.bytes_synthesised;
   record.synthesis_seconds = counters.synthesis_seconds;
   totals.cache = cache;
-  totals.lacking_since_s = counters.awaited > 0 ? std::min(totals.lacking_since_s, clock.real_s)
-                                                : std::numeric_limits<double>::infinity();
+  totals.awaiting_since_s = counters.awaited > 0 ? std::min(totals.awaiting_since_s, clock.real_s)
+                                                 : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace psygen::scene

@@ -75,6 +75,9 @@ class MergedType final : public models::ModelType {
     for (const Scatter& scatter : world_->scatter) {
       scatters_.emplace_back(*world_, registry[scatter.model], scatter, first);
       first += scatter.count;
+      may_run_on_main_thread_ =
+          may_run_on_main_thread_ &&
+          (scatters_.back().empty() || scatters_.back().type().may_run_on_main_thread());
     }
     for (int level = 1; level <= kMaxMergedLevel; ++level)
       make_plans(level);
@@ -108,11 +111,7 @@ class MergedType final : public models::ModelType {
   }
   core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
   std::uint64_t identity() const override { return identity_; }
-  bool may_run_on_main_thread() const override {
-    return std::ranges::all_of(scatters_, [](const FarScatter& scatter) {
-      return scatter.empty() || scatter.type().may_run_on_main_thread();
-    });
-  }
+  bool may_run_on_main_thread() const override { return may_run_on_main_thread_; }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
     PSYGEN_CHECK(false, "vegetation shares no indices");
   }
@@ -138,6 +137,7 @@ class MergedType final : public models::ModelType {
   std::shared_ptr<const World> world_;
   std::uint64_t identity_;
   std::vector<FarScatter> scatters_;
+  bool may_run_on_main_thread_ = true;  // as all may that it is made of
   // By node level, of which 0 is not used, and level of detail; boxes of one node level are equal.
   std::array<std::array<LevelPlan, kDetails>, kMaxMergedLevel + 1> plans_;
 };

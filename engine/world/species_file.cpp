@@ -32,12 +32,7 @@ void read_colour(TableReader& reader, std::string_view key, std::array<double, 3
 void read_kind(TableReader& reader, models::SpeciesKind& kind) {
   reader.read("symbol", kind.symbol, kMaxTextBytes, Presence::kRequired);
   reader.read("leaves", kind.leaves, kMaxTextBytes);
-  if (const Member* leader = reader.find("leader"); leader != nullptr) {
-    if (leader->value.kind == Node::Kind::kBoolean)
-      kind.leader = leader->value.boolean;
-    else
-      reader.problem(leader->value.line, "leader", "it must be true or false");
-  }
+  reader.read("leader", kind.leader);
   models::visit_kind_numbers(kind, [&](std::string_view key, double& value, double, double) {
     read_number(reader, key, value);
   });

@@ -88,9 +88,6 @@ TEST(FarPlaces, LazyEvaluationMissesNothingForLongWhereOnlyOnePictureFits) {
   for (int i = 0; i < 80; ++i)
     studio.draw(pose);
   EXPECT_GT(studio.state().synthesis.coarsening, 1.0F);
-  const synthesis::CacheStats stats = studio.state().synthesis.cache->stats();
-  EXPECT_LE(3 * stats.visible_bytes, stats.limit_bytes + stats.limit_bytes / 20)
-      << "two pictures may be in flight while this one is made";
   for (int i = 0; i < 8; ++i) {
     studio.draw(pose);
     EXPECT_EQ(studio.state().counters.holes, 0u) << i;

@@ -31,7 +31,10 @@ TEST_P(GoldenLakes, LieBetweenTheirHills) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, GoldenLakes,
-                         testing::Values(render::Preset::kLow, render::Preset::kHigh));
+                         testing::Values(render::Preset::kLow, render::Preset::kHigh),
+                         [](const auto& info) {
+                           return std::string(render::to_string(info.param));
+                         });
 
 }  // namespace
 }  // namespace psygen::app

@@ -62,6 +62,29 @@ TEST(Paradigms, LazyEvaluationDrawsEverythingAndKeepsNothing) {
   EXPECT_EQ(stats.ready, scene->state().counters.models_synthesised);
 }
 
+// Though each picture would fit, and here nothing is in flight.
+TEST(Paradigms, LazyEvaluationLeavesRoomForTwoPicturesThatMayBeInFlight) {
+  Settings settings = small_settings();
+  settings.paradigm = Paradigm::kLazyEvaluation;
+  settings.view_distance_m = 600;
+  settings.max_error_pixels = 1;
+  const auto visible = [](const Scene& scene) {
+    return scene.state().synthesis.cache->stats().visible_bytes;
+  };
+  const auto ample = make_scene(settings);
+  for (int i = 0; i < 3; ++i)
+    tick_at(*ample, pose_at(256, 256));
+  EXPECT_EQ(ample->state().synthesis.coarsening, 1.0F);
+  settings.budget_bytes = visible(*ample) * 2;
+  const auto scene = make_scene(settings);
+  for (int i = 0; i < 25; ++i)
+    tick_at(*scene, pose_at(256, 256));
+  EXPECT_GT(scene->state().synthesis.coarsening, 1.0F);
+  EXPECT_LE(3 * visible(*scene), settings.budget_bytes);
+  EXPECT_GT(8 * visible(*scene), settings.budget_bytes) << "but no coarser than that";
+  EXPECT_EQ(scene->state().counters.holes, 0u);
+}
+
 TEST(Paradigms, FullDetailEverywhereDrawsLevelZeroOnly) {
   Settings settings = small_settings();
   settings.levels_of_detail = false;

@@ -15,6 +15,7 @@ using testing::registry_of;
 using testing::ScriptedModel;
 
 constexpr std::uint64_t kMeshBytes = 1760;  // 80 vertices
+constexpr models::ModelIndex kWild = 1;
 
 Rank hole(float distance) {
   return Rank::by_layer(RankGroup::kVisibleHole, 0, distance);
@@ -27,9 +28,11 @@ Rank prefetch(float distance) {
 class PlannerTest : public ::testing::Test {
  protected:
   ~PlannerTest() override { gate.open(); }
-  Want want(std::uint32_t index, Rank rank, float deadline_s = 0, std::uint32_t vertices = 80) {
+  Want want(std::uint32_t index, Rank rank, float deadline_s = 0, std::uint32_t vertices = 80,
+            models::ModelIndex model = 0) {
     parameters.push_back(std::make_unique<models::Parameters>(parameters_of(index, vertices)));
-    return {key_of(index, *parameters.back()), parameters.back().get(), index, rank, deadline_s};
+    return {key_of(index, *parameters.back(), model), parameters.back().get(), index, rank,
+            deadline_s};
   }
   std::vector<Want> wants_of(std::initializer_list<std::uint32_t> indices) {
     std::vector<Want> wants;
@@ -53,21 +56,31 @@ class PlannerTest : public ::testing::Test {
     plan({want(9999, hole(0))});
     gate.await(1);
   }
-  void finish_all() {
-    gate.open();
+  std::vector<Completion> completions() {
     manager.wait_all();
     std::vector<Completion> done;
     manager.collect(done);
+    return done;
+  }
+  void finish_all() {
+    gate.open();
+    std::vector<Completion> done = completions();
     land(done, cache, &cost);
   }
 
   Gate gate;
   std::vector<std::unique_ptr<models::Parameters>> parameters;
-  models::Registry registry =
-      registry_of(std::make_unique<ScriptedModel>("gated", [this](const auto& p, int) {
-        if (p.integer(0) == 666) throw std::runtime_error("the beast");
-        gate.wait();
-      }));
+  // Model 0 may run on the main thread, kWild may not.
+  models::Registry gated_and_wild() {
+    const auto script = [this](const models::Parameters& p, int) {
+      if (p.integer(0) == 666) throw std::runtime_error("the beast");
+      gate.wait();
+    };
+    models::Registry both = registry_of(std::make_unique<ScriptedModel>("gated", script));
+    EXPECT_EQ(both.add(std::make_unique<ScriptedModel>("wild", script)).value(), kWild);
+    return both;
+  }
+  models::Registry registry = gated_and_wild();
   core::HeapGeometryMemory memory{1 << 20};
   GeometryCache cache{memory, registry, 6 * kMeshBytes};
   CostModel cost{registry};
@@ -249,9 +262,7 @@ TEST_F(PlannerTest, VisibleHolesAreMadeAtOnceWithinTheirTimeAndNothingElseIs) {
   const PlanReport report = plan({want(1, hole(10)), want(2, prefetch(10)), want(3, hole(20))});
   EXPECT_EQ(report.executed, 2u);
   EXPECT_EQ(report.published, 1u);
-  manager.wait_all();
-  std::vector<Completion> done;
-  manager.collect(done);
+  std::vector<Completion> done = completions();
   ASSERT_EQ(done.size(), 3u);
   EXPECT_EQ(done[0].owner, 1u);
   EXPECT_EQ(done[0].modeler, kMainThreadModeler);
@@ -271,9 +282,7 @@ TEST_F(PlannerTest, WhereTheCallerSaysSoMoreOfWhatIsSeenIsMadeAtOnceInItsOrder) 
   const PlanReport report = plan(wants);
   EXPECT_EQ(report.executed, 2u);
   EXPECT_EQ(report.published, 2u);
-  manager.wait_all();
-  std::vector<Completion> done;
-  manager.collect(done);
+  std::vector<Completion> done = completions();
   ASSERT_EQ(done.size(), 4u);
   EXPECT_EQ(done[0].owner, 3u);
   EXPECT_EQ(done[1].owner, 2u);
@@ -292,9 +301,7 @@ TEST_F(PlannerTest, OneThatIsPredictedToTakeTooLongDoesNotKeepTheNextFromBeingMa
   GeometryCache roomy{memory, registry, 1 << 18};
   const PlanReport report = planner.plan(wants, roomy, cost, manager, limits, policy);
   EXPECT_EQ(report.executed, 1u);
-  manager.wait_all();
-  std::vector<Completion> done;
-  manager.collect(done);
+  std::vector<Completion> done = completions();
   ASSERT_EQ(done.size(), 2u);
   EXPECT_EQ(done[0].owner, 2u);
   EXPECT_EQ(done[0].modeler, kMainThreadModeler);
@@ -311,38 +318,14 @@ TEST_F(PlannerTest, AHoleThatIsPredictedToTakeTooLongIsLeftToTheModelers) {
 }
 
 // A hole that only a modeler may fill is not put behind what this thread had no time for.
-TEST(PlannerOrder, WhatIsNotMadeAtOnceKeepsItsPlaceInThePlan) {
-  Gate gate;
-  const auto wait = [&gate](const models::Parameters&, int) { gate.wait(); };
-  models::Registry registry = registry_of(std::make_unique<ScriptedModel>("gated", wait));
-  const auto wild = registry.add(std::make_unique<ScriptedModel>("wild", wait));
-  ASSERT_TRUE(wild);
-  core::HeapGeometryMemory memory{1 << 20};
-  GeometryCache cache{memory, registry, 16 * kMeshBytes};
-  CostModel cost{registry};
-  SynthesisManager manager{registry, {.modelers = 1, .watchdog_seconds = 0}};
-  Planner planner;
-  std::vector<std::unique_ptr<models::Parameters>> parameters;
-  const auto want = [&](std::uint32_t index, models::ModelIndex model, Rank rank) {
-    parameters.push_back(std::make_unique<models::Parameters>(parameters_of(index, 80)));
-    return Want{key_of(index, *parameters.back(), model), parameters.back().get(), index, rank, 0};
-  };
-  const std::vector<Want> first{want(9, *wild, hole(0))};
-  planner.plan(first, cache, cost, manager);
-  gate.await(1);  // the modeler hangs on it, so that it takes nothing else
-  PlanLimits limits;
+TEST_F(PlannerTest, WhatIsNotMadeAtOnceKeepsItsPlaceInThePlan) {
+  block_modeler();
   limits.seconds_here = 1e-12;
   limits.here_up_to = RankGroup::kVisibleCoarse;
-  const Rank coarse = Rank::by_layer(RankGroup::kVisibleCoarse, 0, 5);
-  const std::vector<Want> wants{want(1, 0, coarse), want(2, *wild, hole(30)), want(3, 0, hole(10)),
-                                first[0]};
-  EXPECT_EQ(planner.plan(wants, cache, cost, manager, limits).executed, 0u);
-  std::vector<std::uint64_t> owners;
-  for (const Request& request : manager.reclaim())
-    owners.push_back(request.owner);
-  EXPECT_EQ(owners, (std::vector<std::uint64_t>{3, 2, 1}));
-  gate.open();
-  manager.wait_all();
+  const PlanReport report = plan({want(1, Rank::by_layer(RankGroup::kVisibleCoarse, 0, 5)),
+                                  want(2, hole(30), 0, 80, kWild), want(3, hole(10))});
+  EXPECT_EQ(report.executed, 0u);
+  EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{3, 2, 1}));
 }
 
 // Counts how often it is asked for its size: for trees that is hashing every branch.
