@@ -32,8 +32,8 @@ TEST_P(GoldenLakes, LieBetweenTheirHills) {
 
 INSTANTIATE_TEST_SUITE_P(Presets, GoldenLakes,
                          testing::Values(render::Preset::kLow, render::Preset::kHigh),
-                         [](const auto& info) {
-                           return std::string(render::to_string(info.param));
+                         [](const auto& preset) {
+                           return std::string(render::to_string(preset.param));
                          });
 
 }  // namespace

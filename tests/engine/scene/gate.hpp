@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/engine/scene/fixture.hpp"
+#include "tests/engine/scene/forwarding_type.hpp"
 
 namespace psygen::scene {
 
@@ -57,38 +58,18 @@ class Gate {
 };
 
 // A model type whose synthesis in a modeler waits at a gate.
-class SlowType final : public models::ModelType {
+class SlowType final : public ForwardingType {
  public:
   SlowType(std::string name, const models::ModelType& fast, Gate& gate)
-      : name_(std::move(name)), fast_(fast), gate_(gate) {}
-  std::string_view name() const override { return name_; }
-  std::string_view doc() const override { return "waits at a gate"; }
-  std::span<const models::ParameterSpec> parameters() const override { return fast_.parameters(); }
-  int level_count() const override { return fast_.level_count(); }
-  double level_error_m(const models::Parameters& p, int level) const override {
-    return fast_.level_error_m(p, level);
-  }
-  core::Bounds bounds(const models::Parameters& p) const override { return fast_.bounds(p); }
-  models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
-    return fast_.mesh_size(p, level);
-  }
-  double complexity(const models::Parameters& p, int level) const override {
-    return fast_.complexity(p, level);
-  }
-  double log2_cost(const models::Parameters& p) const override { return fast_.log2_cost(p); }
-  void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {
-    fast_.write_shared_indices(id, out);
-  }
+      : ForwardingType(std::move(name), fast), gate_(gate) {}
   core::Bounds synthesize(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     if (std::this_thread::get_id() != main_thread_) gate_.pass();
-    return fast_.synthesize(p, level, out);
+    return of().synthesize(p, level, out);
   }
-  bool may_run_on_main_thread() const override { return fast_.may_run_on_main_thread(); }
+  bool may_run_on_main_thread() const override { return of().may_run_on_main_thread(); }
 
  private:
-  std::string name_;
-  const models::ModelType& fast_;
   Gate& gate_;
   const std::thread::id main_thread_ = std::this_thread::get_id();
 };

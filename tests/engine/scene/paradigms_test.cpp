@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tests/engine/scene/fixture.hpp"
+#include "tests/engine/scene/forwarding_type.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -107,30 +108,9 @@ TEST(Paradigms, FullDetailEverywhereDrawsLevelZeroOnly) {
 }
 
 // The standard rock with a synthesis of its own.
-class TestRock : public models::ModelType {
+class TestRock : public ForwardingType {
  public:
-  explicit TestRock(const models::ModelType& rock) : rock_(rock) {}
-  std::string_view name() const override { return "test_rock"; }
-  std::string_view doc() const override { return "a rock that is hard to make"; }
-  std::span<const models::ParameterSpec> parameters() const override { return rock_.parameters(); }
-  int level_count() const override { return rock_.level_count(); }
-  double level_error_m(const models::Parameters& p, int level) const override {
-    return rock_.level_error_m(p, level);
-  }
-  core::Bounds bounds(const models::Parameters& p) const override { return rock_.bounds(p); }
-  models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
-    return rock_.mesh_size(p, level);
-  }
-  double complexity(const models::Parameters& p, int level) const override {
-    return rock_.complexity(p, level);
-  }
-  double log2_cost(const models::Parameters& p) const override { return rock_.log2_cost(p); }
-  void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {
-    rock_.write_shared_indices(id, out);
-  }
-
- protected:
-  const models::ModelType& rock_;
+  explicit TestRock(const models::ModelType& rock) : ForwardingType("test_rock", rock) {}
 };
 
 // Its synthesis always throws.
@@ -150,7 +130,7 @@ class HangingRock final : public TestRock {
   core::Bounds synthesize(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     if (std::this_thread::get_id() != main_thread_ && !hung_.exchange(true)) release_.wait(false);
-    return rock_.synthesize(p, level, out);
+    return of().synthesize(p, level, out);
   }
 
  private:
