@@ -9,6 +9,7 @@
 #include "engine/core/assert.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/render/frame_data.hpp"
+#include "engine/render/software_tuning.hpp"
 
 namespace psygen::render {
 
@@ -153,7 +154,10 @@ Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
                   staged_ ? MemoryUse::kDevice : MemoryUse::kWrite);
   if (!block) return core::fail(ErrorCode::kOutOfMemory, block.error().message);
   pool_blocks_.push_back(std::move(*block));
-  return staged_ ? staged_->add_block(bytes) : pool_blocks_.back().mapped;
+  Result<std::byte*> written = pool_blocks_.back().mapped;
+  if (staged_) written = staged_->add_block(bytes);
+  if (written) prefer_huge_pages({*written, bytes});
+  return written;
 }
 
 Result<void> RendererImpl::create_targets(core::Extent extent) {
@@ -226,10 +230,9 @@ Result<void> RendererImpl::wait_for(FrameSlot& slot) {
   info.pValues = &slot.submitted_value;
   const VkResult waited = device_->vk.vkWaitSemaphores(device_->handle, &info, kDeviceTimeoutNs);
   if (waited != VK_SUCCESS) return vulkan_failure(waited, "waiting for a frame");
-  std::uint64_t passed = 0;
-  const VkResult asked = device_->vk.vkGetSemaphoreCounterValue(device_->handle, timeline, &passed);
-  if (asked != VK_SUCCESS) return vulkan_failure(asked, "asking for the finished frames");
-  pool_->frames_finished(passed);
+  // Only what was waited for, though the device may be further: which ranges are free must not
+  // depend on its speed.
+  pool_->frames_finished(slot.submitted_value);
   return {};
 }
 
