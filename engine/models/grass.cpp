@@ -83,6 +83,8 @@ class GrassType final : public ModelType {
   double level_error_m(const Parameters& p, int level) const override;
   core::Bounds bounds(const Parameters& p) const override;
   MeshSize mesh_size(const Parameters& p, int level) const override;
+  bool may_run_on_main_thread() const override { return true; }
+  double step_seconds() const override { return 40e-9; }
   double complexity(const Parameters& p, int level) const override {
     return 0.2 * mesh_size(p, level).vertex_count;
   }

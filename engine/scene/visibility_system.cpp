@@ -228,6 +228,7 @@ void list_chosen(const Camera& camera, const Streaming& streaming, const Visibil
   const std::vector<visibility::CutNode>& cut = view.cut.nodes;
   view.chosen.clear();
   std::vector<std::uint8_t> covered(cut.size(), 0);  // an ancestor or the node itself is complete
+  std::size_t next = 0;                              // of view.drawn
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const visibility::CutNode& node = cut[i];
     const NodeGrid& grid = streaming.grids[node.node.level];
@@ -238,10 +239,14 @@ void list_chosen(const Camera& camera, const Streaming& streaming, const Visibil
     const ecs::Entity entity = grid.entity_of(node.node.coord);
     const bool alive = nodes.alive(entity);
     covered[i] = covered_above || (alive && nodes.get<Lacking>(entity)->meshes == 0) ? 1 : 0;
+    while (next < view.drawn.size() && view.drawn[next] < i)
+      ++next;
+    // What is drawn in this tick is not covered, whatever stands ready: what it lacks is seen.
+    const bool drawn = next < view.drawn.size() && view.drawn[next] == i;
     if (view.in_view[i] == 0 && (root || view.in_view[node.parent] == 0)) continue;
     if (alive) {
-      view.chosen.push_back(
-          {entity, node.node.level, node.leaf, node.fine, view.in_view[i] != 0, covered_above});
+      view.chosen.push_back({entity, node.node.level, node.leaf, node.fine, view.in_view[i] != 0,
+                             covered_above && !drawn});
       level.chosen[cell] = view.in_view[i] != 0 ? kInView : kBeside;
     } else if (node.leaf && view.in_view[i] != 0 && !covered_above) {
       count_missing_node(camera, level.bounds[cell], counters);

@@ -59,6 +59,13 @@ TEST(Registry, StandardOneHoldsTerrainRockTreeAndGrassInThisOrder) {
   EXPECT_EQ(registry.find("house"), -1);
 }
 
+// Otherwise a hole of it stays one for as long as modelers get no processor.
+TEST(Registry, EveryStandardTypeMayFillAHoleOnTheMainThread) {
+  const Registry registry = make_standard_registry();
+  for (ModelIndex i = 0; i < registry.size(); ++i)
+    EXPECT_TRUE(registry[i].may_run_on_main_thread()) << registry[i].name();
+}
+
 TEST(Registry, TakesTypesOfUsersAndRefusesASecondOfTheSameName) {
   Registry registry;
   const auto first =
