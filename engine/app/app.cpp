@@ -111,9 +111,10 @@ core::Result<void> App::open() {
   if (!scene) return tl::unexpected(scene.error());
   scene_ = std::move(*scene);
   scene_->state().input.size = picture_size();  // levels of detail depend on it
-  const synthesis::CalibrationReport& costs = scene_->calibration();
-  core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
-                             costs.seconds, costs.fit_error_percent_p50));
+  if (const synthesis::CalibrationReport& costs = scene_->calibration(); costs.measurements > 0) {
+    core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
+                               costs.seconds, costs.fit_error_percent_p50));
+  }
   scene_->state().input.view = options_.view;
   pose_ = home();
 

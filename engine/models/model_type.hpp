@@ -102,6 +102,9 @@ class ModelType {
   // of terrain, vertices of rocks), counted for this very seed: beside the triangles of the level
   // what its time is predicted from. 0: as many as level 0 has triangles. Without synthesis.
   virtual double steps(const Parameters&, int) const { return 0; }
+  // About what a step takes on a core of today, in seconds: what is predicted before anything was
+  // measured, and always where nothing may be (a virtual clock).
+  virtual double step_seconds() const { return 10e-9; }
   // Upper bound of the triangles of level 0 over all seeds, as log2, computed without overflow for
   // any parameters inside or outside their hard ranges. Used to refuse hostile values.
   virtual double log2_cost(const Parameters& p) const = 0;

@@ -26,6 +26,7 @@ class PlannedTree : public ModelType {
     return tree_mesh_size(plan(p), level);
   }
   double steps(const Parameters& p, int level) const final { return tree_steps(plan(p), level); }
+  double step_seconds() const final { return 18e-9; }
   core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const final {
     return synthesize_tree(plan(p), level, out);
   }

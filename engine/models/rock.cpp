@@ -110,6 +110,7 @@ class RockType final : public ModelType {
   MeshSize mesh_size(const Parameters& p, int level) const override;
   double complexity(const Parameters& p, int level) const override;
   double steps(const Parameters& p, int level) const override;
+  double step_seconds() const override { return 8e-9; }
   double log2_cost(const Parameters& p) const override {
     return 2 + 2 * static_cast<double>(p.integer(kRockSubdivisions));
   }

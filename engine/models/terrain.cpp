@@ -84,6 +84,7 @@ class TerrainType final : public ModelType {
   MeshSize mesh_size(const Parameters& p, int level) const override;
   double complexity(const Parameters& p, int level) const override;
   double steps(const Parameters& p, int level) const override;
+  double step_seconds() const override { return 0.6e-9; }
   double log2_cost(const Parameters& p) const override;
   core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
   void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {

@@ -86,7 +86,7 @@ void create_all_nodes(State& s) {
 void Scene::tick_without_drawing(const core::CameraPose& pose) {
   State& s = state_;
   s.input.pose = pose;
-  s.clock.real_s = core::monotonic_seconds() - s.clock.origin_s;
+  s.clock.real_s = s.clock.read_real_s();
   s.counters = {};
   s.totals.awaiting_since_s = std::numeric_limits<double>::infinity();
   input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);

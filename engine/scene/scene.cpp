@@ -8,6 +8,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
+#include "engine/scene/cost_samples.hpp"
 #include "engine/scene/lighting.hpp"
 #include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/node_solidity.hpp"
@@ -121,38 +122,6 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
   return {};
 }
 
-// Of the models of a block, and of all that nodes draw.
-std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
-  std::vector<world::Placement> placements;
-  const core::BlockCoord block{};
-  world::place_models(facts.world, facts.registry, block, placements);
-  std::vector<synthesis::CostSample> samples;
-  for (std::size_t k = 0; k < facts.levels.size(); ++k) {
-    const visibility::NodeCoord node{block, static_cast<std::uint8_t>(k)};
-    samples.push_back({facts.world.terrain_model, node_terrain(facts.world, node)});
-    if (facts.levels[k].merged)
-      samples.push_back({facts.merged_model, world::merged_parameters(block, static_cast<int>(k))});
-  }
-  constexpr std::size_t kPerType = 24;
-  std::vector<std::size_t> taken(facts.registry.size(), 0);
-  for (const world::Placement& placement : placements) {
-    if (taken[placement.model]++ < kPerType) {
-      samples.push_back({placement.model, placement.parameters});
-    }
-  }
-  return samples;
-}
-
-// Without ground and what is merged, of which it is known how near they are.
-std::vector<synthesis::CostSample> single_models(const WorldFacts& facts,
-                                                 std::vector<synthesis::CostSample> samples) {
-  std::erase_if(samples, [&](const synthesis::CostSample& sample) {
-    return sample.model == facts.world.terrain_model ||
-           (facts.merged_model != 0 && sample.model == facts.merged_model);
-  });
-  return samples;
-}
-
 Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
                    const models::Registry& registry, const ecs::Schedule& tick) {
   Tracing tracing;
@@ -191,7 +160,10 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   std::unique_ptr<Scene> scene(new Scene);
   State& s = scene->state_;
   s.settings = settings;
-  s.clock.origin_s = core::monotonic_seconds();
+  s.clock.read_real_s = [origin_s = core::monotonic_seconds()] {
+    return core::monotonic_seconds() - origin_s;
+  };
+  if (settings.virtual_time) s.clock.read_real_s = [&s] { return s.clock.now_s; };
   WorldFacts& facts = s.facts;
   facts.world = std::move(world);
   facts.registry = std::move(registry);
@@ -217,16 +189,19 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   synthesis.cache =
       std::make_unique<synthesis::GeometryCache>(*s.memory, facts.registry, settings.budget_bytes);
   synthesis.cost = std::make_unique<synthesis::CostModel>(facts.registry);
-  const std::vector<synthesis::CostSample> samples = cost_samples(facts);
-  facts.usual_boxes = usual_boxes(facts.registry, single_models(facts, samples));
-  scene->calibration_ = synthesis.cost->calibrate(samples, {}, [&](double fraction) {
-    if (progress) (void)progress("calibrating", fraction);
-  });
+  facts.usual_boxes = usual_boxes(facts.registry, models_on(facts, {}));
+  if (!settings.virtual_time) {
+    scene->calibration_ = synthesis.cost->calibrate(cost_samples(facts), {}, [&](double fraction) {
+      if (progress) (void)progress("calibrating", fraction);
+    });
+  }
   synthesis.planner = std::make_unique<synthesis::Planner>();
   synthesis::SynthesisOptions options;
-  options.modelers = settings.modelers;
+  // How many processors there are changes nothing on a virtual clock.
+  options.modelers = settings.virtual_time ? std::max(settings.modelers, 1U) : settings.modelers;
   options.watchdog_seconds = settings.watchdog_seconds;
   options.annotate = mesh_notes(facts);
+  if (settings.virtual_time) options.virtual_clock = [&s] { return s.clock.real_s; };
   synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
   s.settings.modelers = synthesis.manager->modeler_count();
   s.quality.governor =

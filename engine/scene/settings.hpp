@@ -27,7 +27,7 @@ struct Settings {
   Paradigm paradigm = Paradigm::kParallelLazyAmplification;
   synthesis::Policy policy = synthesis::Policy::kDeadline;
   visibility::PlpMode plp_mode = visibility::PlpMode::kLayers;
-  std::uint32_t modelers = 0;                 // 0: cores − 1, at least 1
+  std::uint32_t modelers = 0;                 // 0: cores − 1, at least 1; in virtual time 1
   std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
   double view_distance_m = 16'000;            // nothing farther away is drawn
   double max_error_pixels = 4.0;              // of the level of detail that is chosen
@@ -45,6 +45,9 @@ struct Settings {
   double streaming_budget_ms = 2.0;   // per tick, for creating nodes
   std::uint32_t streaming_ticks = 8;  // over which new nodes and their meshes are spread at most
   std::uint64_t upload_budget_bytes = 16ull << 20;  // per tick
+  // The flight's clock is the only one: synthesis and streaming take what is predicted of them, and
+  // everything is the same to the bit on any machine. Nothing is calibrated.
+  bool virtual_time = false;
 };
 
 }  // namespace psygen::scene

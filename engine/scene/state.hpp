@@ -2,6 +2,7 @@
 // systems get only the parts they name (tick.cpp). Main thread only.
 #pragma once
 
+#include <functional>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <memory>
@@ -57,9 +58,9 @@ struct Quality {
 };
 
 struct Clock {
-  double now_s = 0;     // of the flight: real, or frame / rate with a fixed step
-  double origin_s = 0;  // core::monotonic_seconds() when the scene was made
-  double real_s = 0;    // real seconds since then, for latencies; set by the tick
+  double now_s = 0;   // of the flight: real, or frame / rate with a fixed step
+  double real_s = 0;  // real seconds since the scene was made, for latencies; set by the tick
+  std::function<double()> read_real_s;  // where real_s comes from; in virtual time that is now_s
   std::uint32_t tick = 1;
 };
 
@@ -129,7 +130,7 @@ struct ChosenNode {
   bool leaf = true;      // the level that is wanted here; else an ancestor of such
   bool fine = false;     // of the finest mesh
   bool in_view = false;  // else the sibling of one in view, without which the parent stays
-  bool covered = false;  // an ancestor could be drawn instead
+  bool covered = false;  // an ancestor is drawn instead, or could be
 };
 
 // The visibility of this tick.

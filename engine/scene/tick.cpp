@@ -43,7 +43,7 @@ void trace_tick(const State& state) {
 void tick(State& state) {
   state.counters = {};
   state.output.error.reset();
-  state.clock.real_s = core::monotonic_seconds() - state.clock.origin_s;
+  state.clock.real_s = state.clock.read_real_s();
   state.record = {};
   state.synthesis.manager->lower_priority();
   state.tick.run();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <typeindex>
 #include <utility>
 
 #include "engine/core/clock.hpp"
@@ -14,10 +15,26 @@
 
 namespace psygen::synthesis {
 namespace {
-constexpr CostFit kUnknown{.per_operation_s = 5e-9};
-constexpr double kLearningRate = 0.05;    // of one observation, in the logarithm of the factor
-constexpr double kLargestSurprise = 4.0;  // one observation counts as at most this factor
+// Of types before calibration, and of those that are not registered.
+constexpr CostFit kUnknown{.fixed_s = 0.3e-6, .per_triangle_s = 5e-9, .per_step_s = 10e-9};
 constexpr std::size_t kErrorWindow = 4096;
+
+// Of [model][level]; the nearest level of a type.
+template <class T>
+const T& at(const std::vector<std::vector<T>>& table, models::ModelIndex model, int level) {
+  const std::vector<T>& levels = table[model];
+  return levels[static_cast<std::size_t>(
+      std::clamp(level, 0, static_cast<int>(levels.size()) - 1))];
+}
+
+// What reading the clock takes: every request does.
+double clock_seconds(const std::function<double()>& clock) {
+  constexpr int kCalls = 64;
+  const double start_s = clock();
+  for (int i = 1; i < kCalls; ++i)
+    (void)clock();
+  return (clock() - start_s) / kCalls;
+}
 }  // namespace
 
 double quantile(std::span<double> values, double p) {
@@ -30,18 +47,28 @@ double quantile(std::span<double> values, double p) {
 }
 
 CostModel::CostModel(const models::Registry& registry) : registry_(registry) {
-  fits_.resize(registry.size());
+  std::vector<std::type_index> codes;
   for (std::size_t m = 0; m < registry.size(); ++m) {
-    const int levels = registry[static_cast<models::ModelIndex>(m)].level_count();
-    fits_[m].assign(static_cast<std::size_t>(std::max(levels, 1)), kUnknown);
+    const models::ModelType& type = registry[static_cast<models::ModelIndex>(m)];
+    const auto levels = static_cast<std::size_t>(std::max(type.level_count(), 1));
+    CostFit guess = kUnknown;
+    if (const double step_s = type.step_seconds(); std::isfinite(step_s) && step_s >= 0)
+      guess.per_step_s = step_s;
+    fits_.emplace_back(levels, guess);
+    corrections_.emplace_back(levels);
+    const std::type_index code(typeid(type));
+    codes_.push_back(static_cast<std::size_t>(std::ranges::find(codes, code) - codes.begin()));
+    if (codes_.back() == codes.size()) codes.push_back(code);
   }
+  cold_by_code_.resize(std::max<std::size_t>(codes.size(), 1));
 }
 
 const CostFit& CostModel::fit(models::ModelIndex model, int level) const {
-  if (model >= fits_.size()) return kUnknown;
-  const auto& levels = fits_[model];
-  return levels[static_cast<std::size_t>(
-      std::clamp(level, 0, static_cast<int>(levels.size()) - 1))];
+  return model < fits_.size() ? at(fits_, model, level) : kUnknown;
+}
+
+std::size_t CostModel::code_of(models::ModelIndex model) const {
+  return model < codes_.size() ? codes_[model] : 0;
 }
 
 Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters, int level,
@@ -73,20 +100,30 @@ double CostModel::predict(models::ModelIndex model, const models::Parameters& pa
   return predict_from(model, level, work(model, parameters, level));
 }
 
-void CostModel::observe(models::ModelIndex model, int level, const Work& work,
+RequestCost CostModel::predict_request(models::ModelIndex model, int level,
+                                       const Work& work) const {
+  const double curve_s = request_s_ + predict_from(model, level, work);
+  RequestCost cost;
+  cost.seconds.fill(curve_s);
+  if (model >= corrections_.size()) return cost;
+  cost.code = codes_[model];
+  const CostCorrection& correction = at(corrections_, model, level);
+  for (std::size_t warmth = 0; warmth < kWarmths; ++warmth) {
+    cost.seconds[warmth] =
+        correction.seconds(curve_s, static_cast<Warmth>(warmth), cold_by_code_[cost.code]);
+  }
+  return cost;
+}
+
+void CostModel::observe(models::ModelIndex model, int level, const Work& work, Warmth warmth,
                         double predicted_seconds, double seconds) {
   if (model >= fits_.size() || level < 0 ||
       static_cast<std::size_t>(level) >= fits_[model].size() || !(seconds > 0) ||
       !(work.operations > 0)) {
     return;
   }
-  CostFit& line = fits_[model][static_cast<std::size_t>(level)];
-  const double surprise = std::clamp(seconds / predict_from(model, level, work),
-                                     1 / kLargestSurprise, kLargestSurprise);
-  const double factor = std::pow(surprise, kLearningRate);
-  for (double* term :
-       {&line.fixed_s, &line.per_operation_s, &line.per_triangle_s, &line.per_step_s})
-    *term *= factor;
+  corrections_[model][static_cast<std::size_t>(level)].observe(
+      request_s_ + predict_from(model, level, work), warmth, seconds, cold_by_code_[codes_[model]]);
   const auto error = static_cast<float>(std::abs(predicted_seconds - seconds) / seconds * 100);
   if (recent_errors_.size() < kErrorWindow) {
     recent_errors_.push_back(error);
@@ -179,7 +216,10 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
       if (again) measured[i].seconds = std::min(measured[i].seconds, again->seconds);
     }
   }
-  if (measured.size() >= kMinForTerms) set(fit_cost(measured));
+  if (measured.size() >= kMinForTerms) {
+    set(fit_cost(measured));
+    corrections_[model][static_cast<std::size_t>(level)].trust_curve();
+  }
   LevelCalibration result{model, level, fit(model, level), 0,
                           static_cast<std::uint32_t>(measured.size())};
   if (measured.empty()) return result;
@@ -206,6 +246,7 @@ CalibrationReport CostModel::calibrate(std::span<const CostSample> samples,
     samples = defaults;
   }
   const double start = options.wall_clock();
+  request_s_ = clock_seconds(options.cpu_clock);
   std::size_t total = 0, done = 0;
   for (const auto& levels : fits_)
     total += levels.size();

@@ -1,7 +1,8 @@
 // How long a synthesis takes: one measured curve over operations, triangles and steps
 // (cost_fit.hpp) per model type and level (paper, sections 5.2 and 6: the constants are computed at
-// start-up). Calibrated in well under a second, then refined by every finished request; the error
-// of its own predictions is kept, so that a schedule never rests on a figure that nobody checked.
+// start-up). Calibrated in well under a second, then corrected by every finished request, which
+// meets colder caches (cost_correction.hpp); the error of its own predictions is kept, so that a
+// schedule never rests on a figure that nobody checked.
 // One thread. Not a profiler. predict() and observe() are O(1) beside the type's complexity(),
 // mesh_size() and steps().
 #pragma once
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "engine/models/registry.hpp"
+#include "engine/synthesis/cost_correction.hpp"
 #include "engine/synthesis/cost_fit.hpp"
 
 namespace psygen::synthesis {
@@ -61,7 +63,7 @@ struct CostError {
 
 class CostModel {
  public:
-  // Before calibration an operation takes 5 ns for every type.
+  // Before calibration every step takes what its type says, and a triangle 5 ns.
   explicit CostModel(const models::Registry& registry);
 
   // Measures the samples (or, without any, each type's defaults) at every level, coarsest first.
@@ -75,14 +77,19 @@ class CostModel {
   // mesh, so that nobody need count it again; to nothing where the type does not tell it.
   Work work(models::ModelIndex model, const models::Parameters& parameters, int level,
             std::optional<models::MeshSize>* size = nullptr) const;
-  // Seconds of one core. Finite and positive for any model and level.
+  // Seconds of one core with warm caches, by the calibrated curve. Finite and positive for any
+  // model and level.
   double predict(models::ModelIndex model, const models::Parameters& parameters, int level) const;
   double predict_from(models::ModelIndex model, int level, const Work& work) const;
 
-  // A finished synthesis: what had been predicted, what it took (seconds of one core). Moves the
-  // level's whole curve by a factor.
-  void observe(models::ModelIndex model, int level, const Work& work, double predicted_seconds,
-               double seconds);
+  // The same of a request to a modeler: with what claiming and timing it takes, corrected by what
+  // was observed.
+  RequestCost predict_request(models::ModelIndex model, int level, const Work& work) const;
+  // A finished request: what had been predicted, what it took (seconds of one core).
+  void observe(models::ModelIndex model, int level, const Work& work, Warmth warmth,
+               double predicted_seconds, double seconds);
+  // Types that run the same code, and so warm each other's caches, have the same number.
+  std::size_t code_of(models::ModelIndex model) const;
 
   // The least CPU time of a few repetitions; nothing if the type failed or the time is up.
   std::optional<Measurement> measure(const CostSample& sample, int level,
@@ -98,8 +105,12 @@ class CostModel {
                                    CalibrationReport& report, std::vector<double>& errors);
 
   const models::Registry& registry_;
-  std::vector<std::vector<CostFit>> fits_;  // [model][level]
-  std::vector<float> recent_errors_;        // ring, in percent
+  std::vector<std::vector<CostFit>> fits_;                // [model][level]
+  std::vector<std::vector<CostCorrection>> corrections_;  // [model][level]
+  std::vector<std::size_t> codes_;                        // [model]
+  std::vector<ColdSeconds> cold_by_code_;
+  double request_s_ = 0;              // that every request takes beside its synthesis
+  std::vector<float> recent_errors_;  // ring, in percent
   std::size_t next_error_ = 0;
 };
 

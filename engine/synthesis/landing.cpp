@@ -15,7 +15,7 @@ LandingReport land(std::span<Completion> completions, GeometryCache& cache, Cost
       ++report.failed;
     } else {
       if (cost != nullptr) {
-        cost->observe(c.key.model, c.key.level, c.work, c.predicted_seconds, c.seconds);
+        cost->observe(c.key.model, c.key.level, c.work, c.warmth, c.predicted_seconds, c.seconds);
       }
       cache.complete(c.handle, c.tight, std::move(c.note));
       const MeshRecord* record = cache.get(c.handle);  // may be evicted or released already

@@ -32,6 +32,13 @@ constexpr std::uint64_t hash_of(const MeshKey& key) {
   return core::combine(core::combine(block, model), key.parameters_hash);
 }
 
+// A second name of the same mesh, for when somebody else holds the first and must not be waited
+// for.
+constexpr MeshKey spare_of(MeshKey key) {
+  key.parameters_hash = core::combine(key.parameters_hash, 0x5BA2E);
+  return key;
+}
+
 // empty → requested → ready, or failed. A key that the cache does not know is empty.
 enum class MeshState : std::uint8_t { kEmpty, kRequested, kReady, kFailed };
 std::string_view name_of(MeshState state);

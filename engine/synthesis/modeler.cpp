@@ -26,7 +26,6 @@ Completion completion_of(const Request& request, std::uint32_t modeler) {
   c.owner = request.owner;
   c.modeler = modeler;
   c.work = request.work;
-  c.predicted_seconds = request.predicted_seconds;
   return c;
 }
 }  // namespace
@@ -34,7 +33,6 @@ Completion completion_of(const Request& request, std::uint32_t modeler) {
 void Modeler::run(Workshop& workshop) {
   name_this_thread(fmt::format("modeler-{}", number_));
   bool lowered = false;
-  double cpu_mark = core::thread_cpu_seconds();
   while (!workshop.stop.load(std::memory_order_acquire)) {
     const std::uint32_t epoch = workshop.board.epoch();
     std::uint64_t retries = 0;
@@ -45,12 +43,11 @@ void Modeler::run(Workshop& workshop) {
       lowered = true;
     }
     if (claimed) {
-      if (!execute(workshop, cpu_mark)) break;
+      if (!execute(workshop)) break;
     } else {
       wake_waiting(workshop);
       // stop is set before the epoch moves, so that it cannot be missed here.
       if (!workshop.stop.load(std::memory_order_acquire)) workshop.board.wait(epoch);
-      cpu_mark = core::thread_cpu_seconds();
     }
   }
   exited_.store(true, std::memory_order_release);
@@ -58,8 +55,7 @@ void Modeler::run(Workshop& workshop) {
 
 void Modeler::perform(Workshop& workshop, const Request& request) {
   current_ = request;
-  double cpu_mark = core::thread_cpu_seconds();
-  execute(workshop, cpu_mark);
+  execute(workshop);
 }
 
 // Then what the request and the hook refer to may be gone.
@@ -101,27 +97,36 @@ models::MeshView Modeler::scratch_for(const models::MeshView& destination) {
            destination.indices.size()}};
 }
 
-bool Modeler::execute(Workshop& workshop, double& cpu_mark) {
+// Of what the present request needs. Who does nothing for a while, whether it slept or others had
+// its processor, comes back to caches that are full of something else.
+Warmth Modeler::warmth_at(double now_s) {
+  constexpr double kForgotten_s = 100e-6;
+  if (now_s - finished_s_ > kForgotten_s) warm_.clear();
+  if (std::ranges::find(warm_, current_.cost.code) != warm_.end()) return Warmth::kWarm;
+  warm_.push_back(current_.cost.code);
+  return warm_.size() == 1 ? Warmth::kWoken : Warmth::kCold;
+}
+
+bool Modeler::execute(Workshop& workshop) {
   Completion c = completion_of(current_, number_);
   c.started_s = workshop.clock();
+  c.warmth = warmth_at(c.started_s);
+  c.predicted_seconds = current_.cost.of(c.warmth);
   started_s_.store(c.started_s, std::memory_order_relaxed);
   ++serial_;
   state_.store(serial_ * 4 + kWorking, std::memory_order_release);
 
   const models::ModelIndex model = current_.key.model;
+  const double cpu_start_s = core::thread_cpu_seconds();
   if (model < workshop.annotate.size() && workshop.annotate[model]) {
     write_noted_mesh(workshop, workshop.annotate[model], c);
   } else {
     write_mesh(workshop, current_.destination, c);
   }
-  const double cpu = core::thread_cpu_seconds();
-  c.seconds = cpu - cpu_mark;
-  cpu_mark = cpu;
-  c.finished_s = workshop.clock();
-  if (workshop.hash_content && c.ok) {
+  c.seconds = core::thread_cpu_seconds() - cpu_start_s;
+  finished_s_ = c.finished_s = workshop.clock();
+  if (workshop.hash_content && c.ok)
     c.content_hash = content_hash(current_.key, current_.destination);
-    cpu_mark = core::thread_cpu_seconds();
-  }
 
   std::uint64_t expected = serial_ * 4 + kWorking;
   if (!state_.compare_exchange_strong(expected, serial_ * 4 + kIdle, std::memory_order_acq_rel)) {

@@ -81,7 +81,8 @@ class Modeler {
  private:
   enum Phase : std::uint64_t { kIdle = 0, kWorking = 1, kGivenUp = 2, kPhaseMask = 3 };
   // False if the request was given up meanwhile.
-  bool execute(Workshop& workshop, double& cpu_mark);
+  bool execute(Workshop& workshop);
+  Warmth warmth_at(double now_s);
   bool is_given_up() const;
   bool write_mesh(const Workshop& workshop, const models::MeshView& mesh, Completion& c);
   void write_noted_mesh(const Workshop& workshop, const Annotate& annotate, Completion& c);
@@ -93,7 +94,9 @@ class Modeler {
   const std::shared_ptr<PlanBoard::Reader> reader_;
   Request current_;  // written while idle only
   std::uint64_t serial_ = 0;
-  std::vector<std::byte> scratch_;                       // where meshes are made that are noted
+  std::vector<std::size_t> warm_;   // codes that were run since it last did nothing
+  double finished_s_ = 0;           // the last request, by the workshop's clock
+  std::vector<std::byte> scratch_;  // where meshes are made that are noted
   alignas(64) std::atomic<std::uint64_t> state_{kIdle};  // serial number of the request · 4 + phase
   std::atomic<double> started_s_{0};
   std::atomic<std::uint64_t> finished_{0};

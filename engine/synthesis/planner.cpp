@@ -38,9 +38,19 @@ void Planner::leave_for_later(const PlanLimits& limits, Policy policy, PlanRepor
   keep_first(0, limits.max_new, policy, report);
 }
 
+// Whether a modeler has claimed what is urgent and has not come back with it. It may hold it for
+// long, because modelers get only what others leave of the processors: then this thread makes the
+// mesh once more.
+bool Planner::is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache,
+                         const SynthesisManager& manager) const {
+  return handle && is_urgent(want, cache) && cache.get(handle)->state == MeshState::kRequested &&
+         reclaimed_position(handle) == kNone && !manager.has_arrived(handle);
+}
+
 // Fills items_ with the wants that need a request, in serving order, and marks what is kept.
 void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
-                       const PlanLimits& limits, Policy policy, PlanReport& report) {
+                       const SynthesisManager& manager, const PlanLimits& limits, Policy policy,
+                       PlanReport& report) {
   by_slot_.resize(reclaimed_.size());
   std::iota(by_slot_.begin(), by_slot_.end(), 0u);
   std::sort(by_slot_.begin(), by_slot_.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -52,36 +62,43 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
   for (std::uint32_t i = 0; i < wants.size(); ++i) {
     const Want& want = wants[i];
     PSYGEN_ASSERT(want.parameters != nullptr, "a want needs parameters");
-    const MeshHandle handle = cache.find(want.key);
-    std::uint32_t reclaimed = kNone;
+    // First come, first served: what was requested before comes before what is new.
+    Item item{{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, want.key, {}, {}, {}};
+    MeshHandle handle = cache.find(item.key);
+    if (is_held_up(want, handle, cache, manager)) {
+      ++report.in_flight;
+      cache.adopt(handle, want.owner, want.rank);
+      item.key = spare_of(item.key);
+      handle = cache.find(item.key);
+    }
     if (handle) {
       const MeshState state = cache.get(handle)->state;
-      if (state == MeshState::kRequested) reclaimed = reclaimed_position(handle);
-      if (reclaimed == kNone) {
+      if (state == MeshState::kRequested) item.reclaimed = reclaimed_position(handle);
+      if (item.reclaimed == kNone) {
         ++(state == MeshState::kReady    ? report.ready
            : state == MeshState::kFailed ? report.failed
                                          : report.in_flight);
-        if (state == MeshState::kRequested) {
-          cache.adopt(handle, want.owner, want.rank);
-        }
+        if (state == MeshState::kRequested) cache.adopt(handle, want.owner, want.rank);
         continue;
       }
-      kept_[reclaimed] = true;
+      kept_[item.reclaimed] = true;
     }
-    if (reclaimed == kNone) {
-      // First come, first served: what was requested before comes before what is new.
-      new_.push_back({{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, {}, {}, kNone});
+    if (item.reclaimed == kNone) {
+      new_.push_back(item);
       continue;
     }
-    const Work& work = reclaimed_[reclaimed].work;
-    const double predicted = cost.predict_from(want.key.model, want.key.level, work);
-    items_.push_back({{want.rank, want.deadline_s, predicted, reclaimed}, i, work, {}, reclaimed});
+    item.work = reclaimed_[item.reclaimed].work;
+    item.cost = cost.predict_request(want.key.model, want.key.level, item.work);
+    item.order.predicted_seconds = item.cost.warm_s();
+    item.order.arrival = item.reclaimed;
+    items_.push_back(item);
   }
   leave_for_later(limits, policy, report);
   for (Item& item : new_) {
     const Want& want = wants[item.want];
     item.work = cost.work(want.key.model, *want.parameters, want.key.level, &item.size);
-    item.order.predicted_seconds = cost.predict_from(want.key.model, want.key.level, item.work);
+    item.cost = cost.predict_request(want.key.model, want.key.level, item.work);
+    item.order.predicted_seconds = item.cost.warm_s();
     items_.push_back(item);
   }
   std::sort(items_.begin(), items_.end(), [policy](const Item& a, const Item& b) {
@@ -120,22 +137,22 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     kept_[item.reclaimed] = false;  // from now on it is the plan's
     Request& request = reclaimed_[item.reclaimed];
     request.owner = want.owner;
-    request.predicted_seconds = item.order.predicted_seconds;
+    request.cost = item.cost;
     cache.adopt(request.handle, want.owner, want.rank);
     append(request, want, cache);
     ++report.carried;
     report.predicted_seconds += item.order.predicted_seconds;
     return;
   }
-  if (cache.find(want.key)) return;  // a second want of the same mesh
-  auto handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
+  if (cache.find(item.key)) return;  // a second want of the same mesh
+  auto handle = cache.reserve(item.key, *want.parameters, want.owner, want.rank, item.size);
   const bool hole = want.rank.group() == RankGroup::kVisibleHole;
   const auto gives_way = [&] {  // a reservation's room is free at once
     return handle.error().code == core::ErrorCode::kOverBudget ||
            (hole && handle.error().code == core::ErrorCode::kNotYet);
   };
   while (!handle && gives_way() && give_back_last(cache, report)) {
-    handle = cache.reserve(want.key, *want.parameters, want.owner, want.rank, item.size);
+    handle = cache.reserve(item.key, *want.parameters, want.owner, want.rank, item.size);
   }
   if (!handle) {
     const core::ErrorCode code = handle.error().code;
@@ -149,23 +166,25 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     return;
   }
   const MeshRecord& record = *cache.get(*handle);
-  append({*handle, want.key, *want.parameters, record.destination, record.size, item.work,
-          item.order.predicted_seconds, want.owner},
+  append({*handle, item.key, *want.parameters, record.destination, record.size, item.work,
+          item.cost, want.owner},
          want, cache);
   ++report.reserved;
   report.predicted_seconds += item.order.predicted_seconds;
 }
 
 // Executes what is urgent until the time is over; the others keep their places in the plan. A model
-// that is predicted to take longer than the time that is left is never started here.
+// that is predicted to take longer than the time that is left is never started here. What counts is
+// the prediction: memory that is touched for the first time can take as long as a hundred models,
+// and must not leave the next of them undone.
 void Planner::execute_here(SynthesisManager& manager, double seconds, PlanReport& report) {
   double left_s = seconds;
   for (const std::size_t at : here_) {
     Request& request = plan_[at];
-    if (request.predicted_seconds >= left_s) continue;
-    const double start_s = core::monotonic_seconds();
+    const double predicted_s = request.cost.of(Warmth::kWoken);
+    if (predicted_s >= left_s) continue;
     manager.execute_here(request);
-    left_s -= core::monotonic_seconds() - start_s;
+    left_s -= predicted_s;
     request.handle = {};
     ++report.executed;
   }
@@ -178,14 +197,14 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   PlanReport report;
   reclaimed_ = manager.reclaim();
   cache.begin_batch();
-  sort_out(wants, cache, cost, limits, policy, report);
+  here_up_to_.reset();
+  if (limits.seconds_here > 0) here_up_to_ = limits.here_up_to;
+  sort_out(wants, cache, cost, manager, limits, policy, report);
   give_back_unwanted(cache, report);
 
   plan_.clear();
   here_.clear();
   waiting_seconds_ = 0;
-  here_up_to_.reset();
-  if (limits.seconds_here > 0) here_up_to_ = limits.here_up_to;
   const double enough = limits.seconds_ahead * std::max(manager.modeler_count(), 1u);
   std::size_t next = 0;
   for (; next < items_.size(); ++next) {

@@ -32,7 +32,8 @@ struct PlanLimits {
   std::uint32_t max_requests = 4096;
   std::uint32_t max_refusals = 16;  // reservations refused by the budget before giving up
   // For what is wanted in the groups up to `here_up_to` and whose type may run on the main thread:
-  // as much of it as fits is executed, in order, before plan() returns.
+  // as much of it as fits is executed, in order, before plan() returns. What a modeler holds is
+  // made a second time, under another key (spare_of).
   double seconds_here = 0;
   RankGroup here_up_to = RankGroup::kVisibleHole;
   // New reservations in one plan. Where the policy is led by rank, no others are looked at: each
@@ -66,17 +67,27 @@ class Planner {
                   Policy policy = Policy::kDeadline);
 
  private:
+  static constexpr std::uint32_t kNone = UINT32_MAX;
   struct Item {
     ScheduleKey order;
     std::uint32_t want;
+    MeshKey key;  // of the want, or its spare
     Work work;
+    RequestCost cost;
     std::optional<models::MeshSize> size;  // of new ones, if their type told it
-    std::uint32_t reclaimed;               // position in reclaimed_, or kNone
+    std::uint32_t reclaimed = kNone;       // position in reclaimed_
   };
-  static constexpr std::uint32_t kNone = UINT32_MAX;
 
   void sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
-                const PlanLimits& limits, Policy policy, PlanReport& report);
+                const SynthesisManager& manager, const PlanLimits& limits, Policy policy,
+                PlanReport& report);
+  bool is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache,
+                  const SynthesisManager& manager) const;
+  // Whether this thread may make it itself.
+  bool is_urgent(const Want& want, const GeometryCache& cache) const {
+    return here_up_to_ && want.rank.group() <= *here_up_to_ &&
+           cache.registry()[want.key.model].may_run_on_main_thread();
+  }
   void leave_for_later(const PlanLimits& limits, Policy policy, PlanReport& report);
   void keep_first(std::size_t first, std::size_t count, Policy policy, PlanReport& report);
   std::uint32_t reclaimed_position(MeshHandle handle) const;
@@ -84,9 +95,7 @@ class Planner {
   bool give_back_last(GeometryCache& cache, PlanReport& report);
   void add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report);
   void append(const Request& request, const Want& want, const GeometryCache& cache) {
-    const bool here = here_up_to_ && want.rank.group() <= *here_up_to_ &&
-                      cache.registry()[want.key.model].may_run_on_main_thread();
-    if (here) here_.push_back(plan_.size());
+    if (is_urgent(want, cache)) here_.push_back(plan_.size());
     plan_.push_back(request);
   }
   void execute_here(SynthesisManager& manager, double seconds, PlanReport& report);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/models/registry.hpp"
+#include "engine/synthesis/cost_correction.hpp"
 #include "engine/synthesis/cost_fit.hpp"
 #include "engine/synthesis/mesh_key.hpp"
 
@@ -19,8 +20,8 @@ struct Request {
   models::Parameters parameters;
   models::MeshView destination;  // reserved for this request; written by whoever claims it
   models::MeshSize size;
-  Work work;                     // for the cost model
-  double predicted_seconds = 0;  // of one core
+  Work work;  // for the cost model
+  RequestCost cost;
   std::uint64_t owner = 0;
 };
 
@@ -40,10 +41,11 @@ struct Completion {
   bool late = false;
   std::uint32_t modeler = 0;
   std::string error;   // if not ok: one sentence that names the model and the level
-  double seconds = 0;  // CPU time of the modeler's thread, claiming included
+  double seconds = 0;  // CPU time of the modeler's thread in the synthesis and its note
   double started_s = 0, finished_s = 0;  // by the manager's clock, for traces
   Work work;                             // as requested, for CostModel::observe()
-  double predicted_seconds = 0;
+  Warmth warmth = Warmth::kWarm;         // of its modeler when it claimed the request
+  double predicted_seconds = 0;          // for that warmth
   core::Bounds tight;
   std::any note;                   // by the Annotate of its model, if ok and there is one
   std::uint64_t content_hash = 0;  // if the manager hashes content, else 0

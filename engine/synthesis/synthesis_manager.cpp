@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -38,13 +40,16 @@ unsigned modeler_count_for(unsigned requested) {
 SynthesisManager::SynthesisManager(const models::Registry& registry,
                                    const SynthesisOptions& options)
     : workshop_(std::make_shared<Workshop>()),
+      virtual_clock_(options.virtual_clock),
       watchdog_seconds_(options.watchdog_seconds),
       replacements_left_(options.max_replacements) {
   workshop_->registry = &registry;
   workshop_->clock = options.clock ? options.clock : core::monotonic_seconds;
   workshop_->hash_content = options.hash_content;
   workshop_->annotate = options.annotate;
-  for (unsigned i = 0; i < modeler_count_for(options.modelers); ++i) {
+  if (virtual_clock_) virtual_.emplace(modeler_count_for(options.modelers));
+  const unsigned threads = modeler_count_for(virtual_ ? 0 : options.modelers);
+  for (unsigned i = 0; i < threads; ++i) {
     if (!start_modeler()) break;
   }
 }
@@ -89,6 +94,14 @@ bool SynthesisManager::start_modeler() {
 }
 
 void SynthesisManager::publish(std::vector<Request>&& plan) {
+  if (virtual_) {
+    virtual_->publish(std::move(plan), virtual_clock_());
+  } else {
+    publish_to_threads(std::move(plan));
+  }
+}
+
+void SynthesisManager::publish_to_threads(std::vector<Request>&& plan) {
   close_plan();
   published_ += plan.size();
   workshop_->board.publish(std::move(plan));
@@ -105,20 +118,75 @@ void SynthesisManager::close_plan() {
 }
 
 std::vector<Request> SynthesisManager::reclaim() {
+  if (virtual_) {
+    std::vector<Request> unclaimed = virtual_->reclaim(virtual_clock_());
+    drain();
+    return unclaimed;
+  }
   close_plan();
+  drain();
   return std::exchange(unclaimed_, {});
+}
+
+bool SynthesisManager::has_arrived(MeshHandle handle) const {
+  return std::ranges::any_of(arrived_, [&](const Completion& c) { return c.handle == handle; });
 }
 
 std::size_t SynthesisManager::collect(std::vector<Completion>& out) {
   const std::size_t before = out.size();
+  drain();
+  std::ranges::move(std::exchange(arrived_, {}), std::back_inserter(out));
+  return out.size() - before;
+}
+
+void SynthesisManager::drain() {
+  if (virtual_) {
+    execute_jobs(virtual_->take_finished(virtual_clock_()));
+  } else {
+    drain_threads(arrived_);
+  }
+}
+
+void SynthesisManager::drain_threads(std::vector<Completion>& out) {
   run_watchdog();
-  std::move(abandoned_.begin(), abandoned_.end(), std::back_inserter(out));
-  abandoned_.clear();
+  std::ranges::move(std::exchange(abandoned_, {}), std::back_inserter(out));
   here_.queue().drain(out);
   for (Worker& w : active_)
     w.modeler->queue().drain(out);
   drain_retired(out);
-  return out.size() - before;
+}
+
+// Which thread executes what, and when, is nobody's business: completions come in the order of the
+// virtual clock, behind those of execute_here(), and say what they took by it.
+void SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& jobs) {
+  std::vector<Request> plan;
+  std::map<Slot, std::size_t> order;
+  for (const VirtualModelers::Job& job : jobs) {
+    plan.push_back(job.request);
+    order[job.request.handle.slot] = plan.size();
+  }
+  if (!plan.empty()) publish_to_threads(std::move(plan));
+  wait_for_threads();
+  std::vector<Completion> done;
+  drain_threads(done);
+  const auto place = [&order](const Completion& c) {
+    const auto found = order.find(c.handle.slot);
+    return found == order.end() ? 0 : found->second;
+  };
+  std::ranges::stable_sort(done, {}, place);
+  for (Completion& c : done) {
+    c.started_s = c.finished_s = virtual_clock_();
+    if (const std::size_t number = place(c); number > 0) {
+      const VirtualModelers::Job& job = jobs[number - 1];
+      c.modeler = job.modeler;
+      c.started_s = job.started_s;
+      c.finished_s = job.finished_s;
+      c.predicted_seconds = job.request.cost.warm_s();
+    }
+    c.warmth = Warmth::kWarm;
+    c.seconds = c.predicted_seconds;
+  }
+  std::ranges::move(done, std::back_inserter(arrived_));
 }
 
 void SynthesisManager::run_watchdog() {
@@ -157,6 +225,10 @@ void SynthesisManager::drain_retired(std::vector<Completion>& out) {
 }
 
 std::uint64_t SynthesisManager::outstanding() const {
+  return virtual_ ? virtual_->outstanding() : outstanding_in_threads();
+}
+
+std::uint64_t SynthesisManager::outstanding_in_threads() const {
   std::uint64_t done = reclaimed_ + given_up_ + buried_finished_;
   for (const Worker& w : active_)
     done += w.modeler->finished();
@@ -166,9 +238,15 @@ std::uint64_t SynthesisManager::outstanding() const {
 }
 
 bool SynthesisManager::wait_all() {
+  if (!virtual_) return wait_for_threads();
+  execute_jobs(virtual_->finish_all(virtual_clock_()));
+  return true;
+}
+
+bool SynthesisManager::wait_for_threads() {
   workshop_->waiting.store(true, std::memory_order_seq_cst);
   bool all = true;
-  while (outstanding() > 0) {
+  while (outstanding_in_threads() > 0) {
     if (active_.empty()) {
       all = false;
       break;
@@ -177,7 +255,7 @@ bool SynthesisManager::wait_all() {
       // A modeler that finds no more work notifies under the lock, so nothing is missed between
       // looking and sleeping.
       std::unique_lock lock(workshop_->mutex);
-      if (outstanding() == 0) break;
+      if (outstanding_in_threads() == 0) break;
       workshop_->finished.wait_until(lock, std::chrono::system_clock::now() + kWatchdogPeriod);
     }
     run_watchdog();

@@ -10,11 +10,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "engine/synthesis/modeler.hpp"
 #include "engine/synthesis/request.hpp"
+#include "engine/synthesis/virtual_modelers.hpp"
 
 namespace psygen::synthesis {
 
@@ -24,6 +26,9 @@ struct SynthesisOptions {
   double watchdog_seconds = 10;        // a request that runs longer is given up; 0: never
   unsigned max_replacements = 8;       // modelers started in place of hung ones, altogether
   std::function<double()> clock = {};  // thread-safe; default: core::monotonic_seconds
+  // If given, modelers take what is predicted of requests by this clock, which the caller moves
+  // (virtual_modelers.hpp), and as many threads as there are processors execute what they claim.
+  std::function<double()> virtual_clock = {};
   // What is noted of meshes, by model index; empty ones and those beyond the end note nothing. What
   // they refer to outlives the manager as the registry does. Meshes of these models are synthesised
   // in memory of the modeler's own and copied to their destinations, which may be slow to read.
@@ -77,21 +82,29 @@ class SynthesisManager {
   void execute_here(const Request& request);
   // From now on modelers take only what other threads leave of the processors: nice 19 per thread,
   // where the system can. For when frames begin; before, whoever waits for meshes has nothing else
-  // to do.
-  void lower_priority() { workshop_->lowest_priority.store(true, std::memory_order_relaxed); }
+  // to do. With a virtual clock the caller waits for them, and they stay as they are.
+  void lower_priority() {
+    if (!virtual_) workshop_->lowest_priority.store(true, std::memory_order_relaxed);
+  }
   // Closes the plan; returns what nobody claimed, in order. Everything else was or will be
   // collected.
   std::vector<Request> reclaim();
+  // Whether what was claimed had been finished when the plan was last closed: it is about to be
+  // collected.
+  bool has_arrived(MeshHandle handle) const;
   // Appends the completions that have arrived, in order per modeler; returns how many. Runs the
   // watchdog. Each claimed request has exactly one completion (plus a `late` one if abandoned).
   std::size_t collect(std::vector<Completion>& out);
-  // Blocks until every published request is finished or given up. For tools, tests and the lazy
-  // paradigm; the tick never calls it. False if no modeler is left to finish them.
+  // Blocks until every published request is finished or given up; the virtual clock stands still
+  // meanwhile. For tools, tests and the lazy paradigm; the tick never calls it. False if no modeler
+  // is left to finish them.
   bool wait_all();
 
   // Requests published and neither reclaimed nor finished.
   std::uint64_t outstanding() const;
-  unsigned modeler_count() const { return static_cast<unsigned>(active_.size()); }
+  unsigned modeler_count() const {
+    return virtual_ ? virtual_->count() : static_cast<unsigned>(active_.size());
+  }
   const std::vector<HungRequest>& hung() const { return hung_; }
   SynthesisStats stats() const;
 
@@ -100,6 +113,12 @@ class SynthesisManager {
     std::shared_ptr<Modeler> modeler;
     std::thread thread;
   };
+  void publish_to_threads(std::vector<Request>&& plan);
+  void drain();
+  void drain_threads(std::vector<Completion>& out);
+  bool wait_for_threads();
+  std::uint64_t outstanding_in_threads() const;
+  void execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
   bool start_modeler();
   void run_watchdog();
   void drain_retired(std::vector<Completion>& out);
@@ -107,6 +126,8 @@ class SynthesisManager {
   void leave(Worker& worker);
 
   std::shared_ptr<Workshop> workshop_;
+  std::optional<VirtualModelers> virtual_;
+  std::function<double()> virtual_clock_;
   Modeler here_{kMainThreadModeler, nullptr};
   double watchdog_seconds_;
   unsigned replacements_left_;
@@ -115,6 +136,7 @@ class SynthesisManager {
   std::vector<Worker> retired_;  // hung, or back from it and not yet joined
   std::vector<HungRequest> hung_;
   std::vector<Completion> abandoned_;  // not yet collected
+  std::vector<Completion> arrived_;    // not yet collected
   std::vector<Request> unclaimed_;     // of closed plans, not yet returned
   std::vector<ModelerStats> buried_;   // figures of modelers that are gone
   std::uint64_t published_ = 0, reclaimed_ = 0, given_up_ = 0, buried_finished_ = 0;

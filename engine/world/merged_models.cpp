@@ -103,6 +103,7 @@ class MergedType final : public models::ModelType {
     return {static_cast<std::uint32_t>(made.vertices),
             static_cast<std::uint32_t>(3 * made.triangles), 0, core::VertexLayout::kModel};
   }
+  double step_seconds() const override { return 350e-9; }
   double complexity(const Parameters& p, int level) const override {
     return work_of(*world_, scatters_, plan(p, level));
   }

@@ -28,6 +28,7 @@ inline Options short_flight() {
   options.frames = 40;
   options.fixed_step_hz = 30;
   options.warmup_seconds = 0.2;
+  options.scene.virtual_time = true;  // tests do not depend on what the machine has left over
   options.scene.view_distance_m = 200;
   options.scene.budget_bytes = 128ull << 20;
   return options;

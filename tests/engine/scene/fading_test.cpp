@@ -285,7 +285,7 @@ TEST(FadingScene, WhatWasEvictedIsNotReplacedByWhatLands) {
   ASSERT_TRUE(first);
   const synthesis::MeshRecord record = *cache.get(*first);
   s.synthesis.manager->execute_here(
-      {*first, key, source.parameters, record.destination, record.size, {}, 0, owner_of(model)});
+      {*first, key, source.parameters, record.destination, record.size, {}, {}, owner_of(model)});
   s.synthesis.manager->wait_all();
   const synthesis::MeshHandle drawn = s.entities.get<Mesh>(model)->handle;
   cache.set_rank(drawn, synthesis::Rank::unwanted());

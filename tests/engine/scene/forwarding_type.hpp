@@ -24,6 +24,7 @@ class ForwardingType : public models::ModelType {
   double complexity(const models::Parameters& p, int level) const override {
     return of_.complexity(p, level);
   }
+  double step_seconds() const override { return of_.step_seconds(); }
   double log2_cost(const models::Parameters& p) const override { return of_.log2_cost(p); }
   void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {
     of_.write_shared_indices(id, out);

@@ -74,7 +74,7 @@ class SlowType final : public ForwardingType {
   const std::thread::id main_thread_ = std::this_thread::get_id();
 };
 
-// The paper's world whose ground and trees wait at a gate.
+// The paper's world whose ground and trees wait at a gate. Latencies are those of the flight.
 inline std::unique_ptr<Scene> slow_scene(const Settings& settings, Gate& gate) {
   models::Registry registry = models::make_standard_registry();
   world::World world = paper_world(registry);
@@ -86,13 +86,17 @@ inline std::unique_ptr<Scene> slow_scene(const Settings& settings, Gate& gate) {
   };
   world.terrain_model = slow(world.terrain_model);
   world.scatter[0].model = slow(world.scatter[0].model);
-  return make_scene(world, settings, std::move(registry));
+  std::unique_ptr<Scene> scene = make_scene(world, settings, std::move(registry));
+  Clock& clock = scene->state().clock;
+  clock.read_real_s = [&clock] { return clock.now_s; };
+  return scene;
 }
 
 // A view of a kilometre for slow_scene(): the main thread helps nobody, and nobody who waits at the
 // gate is given up.
 inline Settings gated_settings() {
   Settings settings = small_settings();
+  settings.virtual_time = false;  // modelers are real, and wait at the gate
   settings.view_distance_m = 1000;
   settings.max_error_pixels = 12;
   settings.budget_bytes = 128ull << 20;

@@ -59,7 +59,7 @@ TEST(Requests, WhereModelersGetNoProcessorTheMainThreadHelpsWithWhatIsSeenAfterA
     ASSERT_GT(counters.coarse, 0u);
     EXPECT_EQ(made_here(scene), before) << "no hole, and it has only just become too coarse";
     const double missing_percent = counters.missing_pixels_percent;
-    scene.state().clock.origin_s -= 0.12;  // so much real time has passed
+    scene.state().clock.now_s += 0.12;
     for (int i = 0; i < 5; ++i)
       tick_at(scene, pose_at(256, 248, 0.3));
     if (budget_ms > 0) {
@@ -70,6 +70,55 @@ TEST(Requests, WhereModelersGetNoProcessorTheMainThreadHelpsWithWhatIsSeenAfterA
       EXPECT_EQ(counters.missing_pixels_percent, missing_percent);
     }
   }
+}
+
+// Nodes in view that are drawn though one above them could be.
+std::vector<ecs::Entity> drawn_below_complete_ones(const State& s) {
+  std::vector<ecs::Entity> found;
+  for (const std::uint32_t drawn : s.draws.nodes) {
+    const std::vector<visibility::CutNode>& cut = s.view.cut.nodes;
+    const auto entity_of_cut = [&](std::uint32_t at) {
+      return s.streaming.grids[cut[at].node.level].entity_of(cut[at].node.coord);
+    };
+    bool complete_above = false;
+    for (std::uint32_t at = cut[drawn].parent; at != visibility::kNoNode; at = cut[at].parent) {
+      const Lacking* lacking = s.entities.get<Lacking>(entity_of_cut(at));
+      complete_above = complete_above || (lacking != nullptr && lacking->meshes == 0);
+    }
+    if (complete_above && s.view.in_view[drawn] != 0) found.push_back(entity_of_cut(drawn));
+  }
+  return found;
+}
+
+// A model that has just grown large enough to be seen: the node stays drawn for this tick, so that
+// nothing stands for the model.
+TEST(Requests, WhatADrawnNodeLacksIsAHoleThoughOneAboveItIsComplete) {
+  GatedScene gated(gated_settings());
+  Scene& scene = *gated.scene;
+  State& s = scene.state();
+  scene.settle(pose_at(256, 262, 0));
+  for (const int block : {261, 260, 259, 258})
+    scene.settle(pose_at(256, block, 0));
+  tick_at(scene, pose_at(256, 258, 0));
+  gated.gate.set_open(false);
+  std::set<std::uint64_t> taken;
+  for (const ecs::Entity node : drawn_below_complete_ones(s)) {
+    for (const ecs::Entity model : s.entities.children(node)) {
+      Demand& demand = *s.entities.get<Demand>(model);
+      if (demand.drawn_level == kNoLevel || demand.in_view_tick + 1 != s.clock.tick) continue;
+      demand.drawn_level = kNoLevel;
+      s.synthesis.cache->release(s.entities.get<Mesh>(model)->handle);
+      taken.insert(owner_of(model));
+    }
+  }
+  tick_at(scene, pose_at(256, 258, 0));
+  std::size_t holes = 0;
+  for (const Want& want : s.synthesis.wants) {
+    if (!taken.contains(want.owner)) continue;
+    EXPECT_EQ(want.rank.group(), RankGroup::kVisibleHole);
+    ++holes;
+  }
+  EXPECT_GT(holes, 10u);
 }
 
 // By Want::owner: the node that is wanted, or on which stands what is.

@@ -113,6 +113,7 @@ template <class Pose, class Passes>
 void fly_starved(const Pose& pose_of, const Passes& passes) {
   Gate gate;
   Settings settings = far_settings();
+  settings.virtual_time = false;  // modelers are real, and wait at the gate
   settings.main_thread_budget_ms = 0;
   settings.watchdog_seconds = 1e6;
   const auto scene = slow_scene(settings, gate);

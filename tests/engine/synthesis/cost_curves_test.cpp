@@ -70,9 +70,9 @@ TEST(CostCurves, PredictionsThatAreExactHaveNoErrorAndOthersHaveTheirs) {
   EXPECT_EQ(exact.levels.size(), 3u);
   EXPECT_EQ(exact.all.count, 90u);
   EXPECT_LT(exact.all.p95_percent, 1e-3);
-  const CostModel uncalibrated(registry);  // 5 ns an operation instead of 1 µs
+  const CostModel uncalibrated(registry);  // some 20 ns a vertex instead of 1 µs
   const Accuracy far = accuracy_of(registry, uncalibrated, samples, options);
-  EXPECT_GT(far.all.p50_percent, 99);
+  EXPECT_GT(far.all.p50_percent, 95);
 }
 
 TEST(CostCurves, ThePassesEndInTimeAndSayWhatWasNotMeasured) {
@@ -104,13 +104,13 @@ TEST(CostCurves, TheWorstTypeIsNamedAndThoseThatThrowAreNotAmongTheMeasured) {
       now += each * static_cast<double>(1 + (p.integer(1) >> level));
     };
   };
-  add("near", proportional(6e-9));
-  add("far", proportional(5e-6));
+  add("near", proportional(20e-9));
+  add("far", proportional(5e-12));
   add("thrower", [](const models::Parameters&, int) { throw std::runtime_error("no"); });
   CalibrationOptions options;
   options.wall_clock = options.cpu_clock = [&now] { return now; };
   options.seconds_limit = 1e9;
-  const CostModel cost(registry);  // 5 ns an operation
+  const CostModel cost(registry);  // some 20 ns a vertex
   const Accuracy accuracy = accuracy_of(registry, cost, random_samples(registry, 8, 1), options);
   ASSERT_TRUE(accuracy.worst);
   EXPECT_EQ(accuracy.worst->model, 1);

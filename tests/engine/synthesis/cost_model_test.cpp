@@ -132,25 +132,55 @@ TEST(CostModel, TypesThatMisbehaveAreNamedAndDoNotStopTheOthers) {
   }
 }
 
-TEST(CostModel, ObservationsMoveTheConstantToTheTruthWithoutOvershooting) {
-  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
-  CostModel cost(registry);
-  const auto p = parameters_of(1, 100);
-  const double stale = cost.predict(0, p, 0);
-  const double truth = stale * 3;
-  for (int i = 0; i < 500; ++i)  // all were predicted long ago
-    cost.observe(0, 0, cost.work(0, p, 0), stale, truth);
-  EXPECT_NEAR(cost.predict(0, p, 0) / truth, 1, 0.01);
-  EXPECT_NEAR(cost.predict(0, p, 1) / (stale / 2), 1, 1e-9);  // other levels keep theirs
+// What is predicted of a request for a mesh of 100 vertices.
+RequestCost request_of(const CostModel& cost, int level) {
+  return cost.predict_request(0, level, cost.work(0, parameters_of(1, 100), level));
 }
 
-TEST(CostModel, OneOutlierMovesTheConstantLittle) {
+TEST(CostModel, ObservationsMoveRequestsToTheTruthAndLeaveTheCurveAlone) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   CostModel cost(registry);
   const auto p = parameters_of(1, 100);
-  const double before = cost.predict(0, p, 0);
-  cost.observe(0, 0, {100, 0, 0}, before, 1000.0);
-  EXPECT_LT(cost.predict(0, p, 0) / before, 1.1);
+  const double curve = cost.predict(0, p, 0), coarser = cost.predict(0, p, 1);
+  EXPECT_EQ(request_of(cost, 0).warm_s(), curve);
+  const double truth = curve * 3;
+  for (int i = 0; i < 500; ++i)  // all were predicted long ago
+    cost.observe(0, 0, cost.work(0, p, 0), Warmth::kWarm, curve, truth);
+  EXPECT_NEAR(request_of(cost, 0).warm_s() / truth, 1, 0.01);
+  EXPECT_EQ(request_of(cost, 1).warm_s(), coarser);  // other levels keep theirs
+  EXPECT_EQ(cost.predict(0, p, 0), curve);
+}
+
+TEST(CostModel, WhatColdCachesAddIsSharedByTypesThatRunTheSameCode) {
+  models::Registry registry;
+  ASSERT_TRUE(registry.add(std::make_unique<FakeModel>("a")));
+  ASSERT_TRUE(registry.add(std::make_unique<FakeModel>("b")));
+  ASSERT_TRUE(registry.add(std::make_unique<testing::LyingModel>()));
+  CostModel cost(registry);
+  EXPECT_EQ(cost.code_of(0), cost.code_of(1));
+  EXPECT_NE(cost.code_of(0), cost.code_of(2));
+  const Work work = cost.work(0, parameters_of(1, 100), 0);
+  for (int i = 0; i < 100; ++i)
+    cost.observe(0, 0, work, Warmth::kCold, 1, cost.predict_from(0, 0, work) + 20e-6);
+  const auto added = [&](models::ModelIndex model) {
+    const RequestCost request = cost.predict_request(model, 0, work);
+    return request.of(Warmth::kCold) - request.warm_s();
+  };
+  EXPECT_NEAR(added(0), 20e-6, 1e-6);
+  EXPECT_NEAR(added(1), 20e-6, 1e-6);
+  EXPECT_EQ(added(2), 0);
+}
+
+TEST(CostModel, ARequestTakesReadingTheClockBesideItsSynthesis) {
+  VirtualTime time;
+  const models::Registry registry = time.registry();
+  CostModel cost(registry);
+  CalibrationOptions options = time.options();
+  options.cpu_clock = [&time] { return time.now += 1e-6; };
+  cost.calibrate(samples_of({4000, 8000}), options);
+  const Work work = cost.work(0, parameters_of(1, 5000), 0);
+  EXPECT_NEAR(cost.predict_request(0, 0, work).warm_s() - cost.predict_from(0, 0, work), 1e-6,
+              1e-9);
 }
 
 TEST(CostModel, ErrorPercentilesAreThoseOfItsPredictions) {
@@ -158,12 +188,12 @@ TEST(CostModel, ErrorPercentilesAreThoseOfItsPredictions) {
   CostModel cost(registry);
   EXPECT_EQ(cost.error().count, 0u);
   for (int percent = 0; percent <= 100; ++percent)
-    cost.observe(0, 0, {100, 0, 0}, 1.0 + percent / 100.0, 1.0);
+    cost.observe(0, 0, {100, 0, 0}, Warmth::kWarm, 1.0 + percent / 100.0, 1.0);
   EXPECT_EQ(cost.error().count, 101u);
   EXPECT_NEAR(cost.error().p50_percent, 50, 1e-4);
   EXPECT_NEAR(cost.error().p95_percent, 95, 1e-4);
   for (int i = 0; i < 5000; ++i)
-    cost.observe(0, 0, {100, 0, 0}, 1.2, 1.0);
+    cost.observe(0, 0, {100, 0, 0}, Warmth::kWarm, 1.2, 1.0);
   EXPECT_EQ(cost.error().count, 4096u);
   EXPECT_NEAR(cost.error().p50_percent, 20, 1e-4);
 }
@@ -171,11 +201,11 @@ TEST(CostModel, ErrorPercentilesAreThoseOfItsPredictions) {
 TEST(CostModel, NonsenseIsNotObserved) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   CostModel cost(registry);
-  cost.observe(5, 0, {1, 0, 0}, 1, 1);
-  cost.observe(0, -1, {1, 0, 0}, 1, 1);
-  cost.observe(0, 99, {1, 0, 0}, 1, 1);
-  cost.observe(0, 0, {0, 0, 0}, 1, 1);
-  cost.observe(0, 0, {1, 0, 0}, 1, std::nan(""));
+  cost.observe(5, 0, {1, 0, 0}, Warmth::kWarm, 1, 1);
+  cost.observe(0, -1, {1, 0, 0}, Warmth::kWarm, 1, 1);
+  cost.observe(0, 99, {1, 0, 0}, Warmth::kWarm, 1, 1);
+  cost.observe(0, 0, {0, 0, 0}, Warmth::kWarm, 1, 1);
+  cost.observe(0, 0, {1, 0, 0}, Warmth::kWarm, 1, std::nan(""));
   EXPECT_EQ(cost.error().count, 0u);
 }
 
@@ -203,6 +233,26 @@ TEST(CostModel, TakesTheStepsOfATypeOrTheTrianglesOfItsFullDetail) {
   EXPECT_EQ(steps_of(-1, 0), 80) << "as many as triangles";
   EXPECT_EQ(steps_of(-1, 1), 80);
   EXPECT_EQ(steps_of(std::nan(""), 2), 80);
+}
+
+// Says what its steps take.
+class TimedModel : public FakeModel {
+ public:
+  explicit TimedModel(double step_s) : step_s_(step_s) {}
+  double step_seconds() const override { return step_s_; }
+
+ private:
+  double step_s_;
+};
+
+TEST(CostModel, BeforeAnythingIsMeasuredTypesSayWhatTheirStepsTake) {
+  const auto seconds_of = [](double step_s) {
+    const models::Registry registry = registry_of(std::make_unique<TimedModel>(step_s));
+    return CostModel(registry).predict(0, parameters_of(1, 1000), 0);
+  };
+  EXPECT_NEAR(seconds_of(1e-6) - seconds_of(0), 1e-3, 1e-9);
+  EXPECT_EQ(seconds_of(std::nan("")), seconds_of(FakeModel().step_seconds()));
+  EXPECT_EQ(seconds_of(-1), seconds_of(FakeModel().step_seconds()));
 }
 
 TEST(CostModel, QuantilesInterpolateLinearly) {

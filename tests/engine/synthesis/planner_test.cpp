@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
+#include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/synthesis/landing.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
@@ -24,7 +27,7 @@ Rank prefetch(float distance) {
   return Rank::by_layer(RankGroup::kPrefetch, 0, distance);
 }
 
-// One modeler that works only while the gate is open.
+// One modeler that works only while the gate is open. This thread always does.
 class PlannerTest : public ::testing::Test {
  protected:
   ~PlannerTest() override { gate.open(); }
@@ -68,13 +71,22 @@ class PlannerTest : public ::testing::Test {
     land(done, cache, &cost);
   }
 
+  static void burn(double seconds) {
+    const double start_s = core::thread_cpu_seconds();
+    while (core::thread_cpu_seconds() - start_s < seconds) {
+    }
+  }
+
+  const std::thread::id main_thread = std::this_thread::get_id();
+  double burned_seconds = 0;
   Gate gate;
   std::vector<std::unique_ptr<models::Parameters>> parameters;
   // Model 0 may run on the main thread, kWild may not.
   models::Registry gated_and_wild() {
     const auto script = [this](const models::Parameters& p, int) {
       if (p.integer(0) == 666) throw std::runtime_error("the beast");
-      gate.wait();
+      if (std::this_thread::get_id() != main_thread) gate.wait();
+      burn(p.integer(0) == 888 ? burned_seconds : 0);
     };
     models::Registry both = registry_of(std::make_unique<ScriptedModel>("gated", script));
     EXPECT_EQ(both.add(std::make_unique<ScriptedModel>("wild", script)).value(), kWild);
@@ -315,6 +327,49 @@ TEST_F(PlannerTest, AHoleThatIsPredictedToTakeTooLongIsLeftToTheModelers) {
   const PlanReport report = plan({want(1, hole(10))});
   EXPECT_EQ(report.executed, 0u);
   EXPECT_EQ(report.published, 1u);
+}
+
+// Memory that is touched for the first time takes long whatever is predicted. The next hole is not
+// left open for it.
+TEST_F(PlannerTest, AHoleThatTookLongerThanPredictedDoesNotKeepTheNextFromBeingFilled) {
+  gate.open();
+  const std::vector<Want> wants{want(888, hole(10)), want(2, hole(20))};
+  limits.seconds_here =
+      3 * cost.predict_request(0, 0, cost.work(0, *wants[0].parameters, 0)).of(Warmth::kWoken);
+  burned_seconds = 2 * limits.seconds_here;
+  EXPECT_EQ(plan(wants).executed, 2u);
+}
+
+// A modeler that has claimed the mesh of a hole may not get a processor for long.
+TEST_F(PlannerTest, AHoleIsFilledHereThoughAModelerHoldsItsMesh) {
+  block_modeler();
+  const Want held = want(9999, hole(0));
+  EXPECT_EQ(plan({held}).executed, 0u) << "no time is given to this thread";
+  limits.seconds_here = 10;
+  const PlanReport report = plan({held});
+  EXPECT_EQ(report.in_flight, 1u);
+  EXPECT_EQ(report.executed, 1u);
+  std::vector<Completion> done;
+  manager.collect(done);
+  ASSERT_EQ(done.size(), 1u);
+  EXPECT_EQ(done[0].modeler, kMainThreadModeler);
+  EXPECT_EQ(done[0].owner, held.owner);
+  EXPECT_NE(done[0].handle, cache.find(held.key)) << "that is the modeler's to fill";
+  EXPECT_EQ(land(done, cache, &cost).ready, 1u);
+  EXPECT_EQ(plan({held}).executed, 0u) << "it is there";
+  finish_all();
+  EXPECT_EQ(cache.get(cache.find(held.key))->state, MeshState::kReady);
+}
+
+TEST_F(PlannerTest, WhatAModelerHasBroughtBackIsNotMadeAgain) {
+  gate.open();
+  const Want want_it = want(1, hole(0));
+  plan({want_it});
+  manager.wait_all();
+  limits.seconds_here = 10;
+  const PlanReport report = plan({want_it});
+  EXPECT_EQ(report.in_flight, 1u);
+  EXPECT_EQ(report.executed, 0u);
 }
 
 // A hole that only a modeler may fill is not put behind what this thread had no time for.

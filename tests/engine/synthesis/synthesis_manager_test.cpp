@@ -126,7 +126,7 @@ TEST(SynthesisManager, ACompletionSaysWhatWasAskedAndWhatItTook) {
   Jobs jobs(registry);
   Request request = jobs.make(42);
   request.work = {7, 8, 9};
-  request.predicted_seconds = 0.5;
+  request.cost.seconds = {0.25, 0.375, 0.5};
   const auto done = run(registry, 1, {request});
   ASSERT_EQ(done.size(), 1u);
   const Completion& c = done[0];
@@ -140,6 +140,75 @@ TEST(SynthesisManager, ACompletionSaysWhatWasAskedAndWhatItTook) {
   EXPECT_LE(c.started_s, c.finished_s);
   EXPECT_EQ(c.tight.max, glm::vec3(0.5F));
   EXPECT_EQ(c.content_hash, content_hash(request.key, request.destination));
+}
+
+TEST(SynthesisManager, ACompletionSaysHowWarmTheCachesWere) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  double now_s = 1;
+  SynthesisOptions options = with(1);
+  options.clock = [&now_s] { return now_s; };
+  SynthesisManager manager(registry, options);
+  std::vector<Completion> done;
+  for (const std::vector<std::size_t>& codes : {std::vector<std::size_t>{0, 0, 1, 0}, {1}, {0}}) {
+    std::vector<Request> plan;
+    for (const std::size_t code : codes) {
+      plan.push_back(jobs.make(static_cast<std::uint32_t>(done.size() + plan.size())));
+      plan.back().cost.code = code;
+    }
+    manager.publish(std::move(plan));
+    ASSERT_TRUE(manager.wait_all());
+    manager.collect(done);
+    if (done.size() == 5) now_s += 1e-3;  // the modeler does nothing for a millisecond
+  }
+  std::vector<Warmth> warmths;
+  for (const Completion& c : done)
+    warmths.push_back(c.warmth);
+  using enum Warmth;
+  EXPECT_EQ(warmths, (std::vector{kWoken, kWarm, kCold, kWarm, kWarm, kWoken}));
+}
+
+TEST(SynthesisManager, OnAVirtualClockWhatIsMadeByWhenFollowsFromPredictionsAlone) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  double now_s = 100;
+  SynthesisOptions options = with(2);
+  options.virtual_clock = [&now_s] { return now_s; };
+  SynthesisManager manager(registry, options);
+  EXPECT_EQ(manager.modeler_count(), 2u);
+  Jobs jobs(registry);
+  std::vector<Request> plan = jobs.make_many(0, 6);
+  const std::array<double, 6> seconds{3, 1, 1, 5, 1, 1};
+  for (std::size_t i = 0; i < plan.size(); ++i)
+    plan[i].cost.seconds.fill(seconds[i]);
+  const auto owners_at = [&](double at_s) {
+    now_s = at_s;
+    std::vector<Completion> done;
+    manager.collect(done);
+    std::vector<std::uint64_t> owners;
+    for (const Completion& c : done) {
+      EXPECT_TRUE(c.ok);
+      EXPECT_NE(c.content_hash, 0u);
+      EXPECT_EQ(c.seconds, c.predicted_seconds);
+      owners.push_back(c.owner);
+    }
+    return owners;
+  };
+  using Owners = std::vector<std::uint64_t>;
+  manager.publish(std::move(plan));
+  EXPECT_EQ(owners_at(100.5), Owners{});
+  EXPECT_EQ(owners_at(103), (Owners{1, 2, 0}));
+  EXPECT_EQ(manager.outstanding(), 3u);
+  now_s = 103.5;
+  const std::vector<Request> unclaimed = manager.reclaim();
+  ASSERT_EQ(unclaimed.size(), 1u);
+  EXPECT_EQ(unclaimed[0].owner, 5u);
+  Request here = jobs.make(9);
+  here.cost.seconds.fill(0.25);
+  manager.execute_here(here);
+  EXPECT_EQ(owners_at(103.5), (Owners{9})) << "at once";
+  EXPECT_EQ(owners_at(104), (Owners{4}));
+  EXPECT_TRUE(manager.wait_all());
+  EXPECT_EQ(owners_at(104), (Owners{3})) << "whoever waits gets everything";
 }
 
 TEST(SynthesisManager, RequestsAreClaimedInTheOrderOfThePlan) {

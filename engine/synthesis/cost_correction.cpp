@@ -1,0 +1,50 @@
+#include "engine/synthesis/cost_correction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace psygen::synthesis {
+namespace {
+constexpr double kLeastRate = 0.05;       // of one observation, however many there were
+constexpr double kLargestSurprise = 2.0;  // one observation counts as off by this factor at most
+// Steps towards an observation of what cold caches add: some microseconds at first, whatever it
+// says, because the very first requests of a thread take milliseconds.
+constexpr double kFirstStep_s = 20e-6, kLeastStep_s = 1e-6;
+constexpr std::uint32_t kFirst = 4;
+
+double rate_of(std::uint32_t count) {
+  return std::max(kLeastRate, 1.0 / (1.0 + count));
+}
+}  // namespace
+
+void LearnedSeconds::observe(double seconds, double beside_s) {
+  ++count_;
+  const double limit =
+      std::max(count_ < kFirst ? kFirstStep_s : kLeastStep_s, 0.5 * (beside_s + value_));
+  const double off = std::clamp(seconds - value_, -limit, limit);
+  value_ = std::max(0.0, value_ + rate_of(count_) * off);
+}
+
+void CostCorrection::observe(double curve_s, Warmth warmth, double seconds, ColdSeconds& shared) {
+  const double warm_s = factor_ * curve_s;
+  if (warmth == Warmth::kWarm) {
+    const double surprise = std::clamp(seconds / warm_s, 1 / kLargestSurprise, kLargestSurprise);
+    factor_ *= std::pow(surprise, rate_of(count_));
+    ++count_;
+    return;
+  }
+  LearnedSeconds& own = cold_.of(warmth);
+  LearnedSeconds& all = shared.of(warmth);
+  if (own.count() == 0) own.guess(all.value());
+  own.observe(seconds - warm_s, warm_s);
+  all.observe(seconds - warm_s, warm_s);
+}
+
+double CostCorrection::seconds(double curve_s, Warmth warmth, const ColdSeconds& shared) const {
+  const double warm_s = factor_ * curve_s;
+  if (warmth == Warmth::kWarm) return warm_s;
+  const LearnedSeconds& own = cold_.of(warmth);
+  return warm_s + (own.count() >= ColdSeconds::kEnough ? own.value() : shared.of(warmth).value());
+}
+
+}  // namespace psygen::synthesis
