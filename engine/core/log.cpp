@@ -3,6 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "engine/core/utf8.hpp"
+
 namespace psygen::core {
 namespace {
 spdlog::logger& logger() {
@@ -16,13 +18,13 @@ spdlog::logger& logger() {
 }  // namespace
 
 void log_info(std::string_view message) {
-  logger().info(message);
+  logger().info(shown(message));
 }
 void log_warning(std::string_view message) {
-  logger().warn(message);
+  logger().warn(shown(message));
 }
 void log_error(std::string_view message) {
-  logger().error(message);
+  logger().error(shown(message));
 }
 void set_log_quiet(bool quiet) {
   logger().set_level(quiet ? spdlog::level::warn : spdlog::level::info);

@@ -1,4 +1,5 @@
-// Messages for people, on stderr; data goes to stdout. Thread-safe. Format with fmt at the caller.
+// Messages for people, on stderr, one printable line each (utf8.hpp); data goes to stdout.
+// Thread-safe. Format with fmt at the caller.
 #pragma once
 
 #include <string_view>

@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "engine/core/nearest_word.hpp"
+#include "engine/core/utf8.hpp"
 
 namespace psygen::world {
 namespace {
+
+constexpr std::size_t kMostShownBytes = 60;  // of a key that a stranger wrote
 
 // What may be written: "an integer from 1 to 9".
 std::string allowed_text(Limits limits, bool integer) {
@@ -19,38 +23,18 @@ std::string allowed_text(Limits limits, bool integer) {
                      limits.high);
 }
 
-std::string value_text(const Node& node) {
-  if (node.kind == Node::Kind::kInteger) return fmt::format("{}", node.integer);
-  if (node.kind == Node::Kind::kReal) return fmt::format("{:g}", node.real);
-  return std::string(kind_name(node.kind));
-}
-
 bool is_number(const Node& node) {
   return node.kind == Node::Kind::kInteger || node.kind == Node::Kind::kReal;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
+// Those of ASCII and of Latin-1.
+bool has_control_characters(std::string_view text) {
+  while (!text.empty()) {
+    const core::CodePoint point = core::first_code_point(text);
+    if (point.value < ' ' || (point.value >= 0x7F && point.value < 0xA0)) return true;
+    text.remove_prefix(point.bytes);
   }
-  return row.back();
-}
-
-// Keys come from strangers: cut short, and only what any terminal shows.
-std::string shown_key(std::string_view key) {
-  std::string shown(key.substr(0, 60));
-  for (char& c : shown) {
-    if (c < ' ' || c > '~') c = '?';
-  }
-  return key.size() > shown.size() ? shown + "..." : shown;
+  return false;
 }
 
 }  // namespace
@@ -58,7 +42,9 @@ std::string shown_key(std::string_view key) {
 void Problems::keep_first(int line, int rank, std::string_view field, std::string_view sentence,
                           core::ErrorCode code) {
   if (first_ && rank >= first_rank_) return;
-  first_ = core::Error{code, fmt::format("{}:{}: {}: {}", file_, line, field, sentence)};
+  // Words of the file may be part of the sentence.
+  first_ = core::Error{code, fmt::format("{}:{}: {}", file_, line,
+                                         core::shown(fmt::format("{}: {}", field, sentence)))};
   first_rank_ = rank;
 }
 
@@ -80,7 +66,7 @@ std::string TableReader::field(std::string_view key) const {
 }
 
 const Member* TableReader::find(std::string_view key, Presence presence) {
-  known_.emplace_back(key);
+  if (std::ranges::find(known_, key) == known_.end()) known_.emplace_back(key);
   for (const Member& member : table_.members) {
     if (member.key == key) return &member;
   }
@@ -137,10 +123,8 @@ bool TableReader::read(std::string_view key, std::string& value, std::size_t max
   const Member* member = find(key, presence);
   if (member == nullptr) return false;
   const Node& node = member->value;
-  const bool plain = std::ranges::none_of(
-      node.text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; });
   if (node.kind == Node::Kind::kText && !node.text.empty() && node.text.size() <= max_bytes &&
-      plain) {
+      !has_control_characters(node.text)) {
     value = node.text;
     return true;
   }
@@ -246,15 +230,21 @@ std::vector<const Node*> TableReader::tables(std::string_view key, std::size_t m
 void TableReader::finish() {
   for (const Member& member : table_.members) {
     if (std::ranges::find(known_, member.key) != known_.end()) continue;
-    const std::string_view nearest = nearest_word(member.key, known_);
+    const std::string_view nearest = core::nearest_word(member.key, known_);
     std::string sentence = "this key is unknown";
     if (!nearest.empty()) {
       sentence += fmt::format("; did you mean {}?", nearest);
     } else {
       sentence += fmt::format("; known here: {}", fmt::join(known_, ", "));
     }
-    problem(member.line, shown_key(member.key), sentence);
+    problem(member.line, core::shown(member.key, kMostShownBytes), sentence);
   }
+}
+
+std::string value_text(const Node& node) {
+  if (node.kind == Node::Kind::kInteger) return fmt::format("{}", node.integer);
+  if (node.kind == Node::Kind::kReal) return fmt::format("{:g}", node.real);
+  return std::string(kind_name(node.kind));
 }
 
 void read_format(TableReader& root, int current) {
@@ -269,21 +259,6 @@ void read_format(TableReader& root, int current) {
                                  "allowed: {}",
                                  node.integer, current)
                    : fmt::format("it must be {}", current));
-}
-
-std::string_view nearest_word(std::string_view word, const std::vector<std::string>& known) {
-  // Far longer words than any key are near to none; this also bounds the time.
-  if (word.size() > 64) return {};
-  std::string_view nearest;
-  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < fewest) {
-      fewest = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest;
 }
 
 }  // namespace psygen::world

@@ -100,10 +100,10 @@ class TableReader {
   std::vector<std::string> known_;
 };
 
+// A number as it was written, or what else the value is: "7", "a string".
+std::string value_text(const Node& node);
+
 // Reads the field `format` of a root table, which must be exactly `current`.
 void read_format(TableReader& root, int current);
-
-// The one of `known` that needs the fewest changes to become `word`, if it is near; else empty.
-std::string_view nearest_word(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace psygen::world

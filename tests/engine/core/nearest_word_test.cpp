@@ -1,0 +1,24 @@
+#include "engine/core/nearest_word.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace psygen::core {
+namespace {
+
+TEST(NearestWord, FindsTyposAndNothingForOtherWords) {
+  const std::vector<std::string> known{"count", "max_height_m", "min_height_m", "model"};
+  EXPECT_EQ(nearest_word("cuont", known), "count");
+  EXPECT_EQ(nearest_word("max_heigth_m", known), "max_height_m");
+  EXPECT_EQ(nearest_word("modle", known), "model");
+  EXPECT_EQ(nearest_word("zebra", known), "");
+}
+
+TEST(NearestWord, NothingIsNearToAVeryLongWordOrAmongNoWords) {
+  EXPECT_EQ(nearest_word(std::string(100'000, 'x'), std::vector<std::string>{"x"}), "");
+  EXPECT_EQ(nearest_word("count", {}), "");
+}
+
+}  // namespace
+}  // namespace psygen::core
