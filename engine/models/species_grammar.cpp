@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "engine/core/utf8.hpp"
+
 namespace psygen::models {
 namespace {
 
@@ -53,7 +55,9 @@ ParsedRule parse_rule(const Species& species, std::string_view to) {
   GrammarRule& rule = result.rule;
   std::uint32_t total = 0;
   for (std::size_t i = 0; i < to.size();) {
-    const std::string_view letter = to.substr(i++, 1);
+    const std::string_view letter =
+        to.substr(i, core::first_code_point(to.substr(i)).bytes);  // whole in what is said of it
+    i += letter.size();
     if (letter == " ") continue;
     const std::uint8_t kind = kind_of(species, letter);
     if (kind == kNoKind) {

@@ -91,6 +91,7 @@ TEST(SpeciesFile, RefusesWithFileLineAndField) {
   EXPECT_THAT(
       error_with("to = \"S2\"", "to = \"Q2\""),
       AllOf(StartsWith("w.toml:40: species[0].rule[1].to: "), HasSubstr("symbol Q is unknown")));
+  EXPECT_THAT(error_with("to = \"S2\"", "to = \"ö2\""), HasSubstr("symbol ö is unknown"));
   EXPECT_THAT(error_with("axiom = \"T\"", "axiom = \"X\""),
               AllOf(StartsWith("w.toml:27: species[0].axiom: "), HasSubstr("unknown")));
   EXPECT_THAT(error_with("probability = 0.5", "probability = 0.4"),
