@@ -112,7 +112,7 @@ struct Palette {
 struct World {
   int format = kWorldFormat;
   std::string name;
-  std::uint64_t seed = 1;                       // below 2^63, which is what files can hold
+  std::uint64_t seed = 1;
   std::int64_t blocks_x = 512, blocks_z = 512;  // 0: endless; else blocks 0 … n − 1 exist
   models::ModelIndex terrain_model = 0;
   models::Parameters terrain;            // of the block (0, 0)

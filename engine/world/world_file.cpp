@@ -2,6 +2,9 @@
 // species_file.cpp. Writing is in write_world.cpp, the format in docs/world-files.md.
 #include <fmt/format.h>
 
+#include <charconv>
+
+#include "engine/core/utf8.hpp"
 #include "engine/world/document.hpp"
 #include "engine/world/fields.hpp"
 #include "engine/world/model_fields.hpp"
@@ -16,17 +19,39 @@ namespace psygen::world {
 namespace {
 
 constexpr std::size_t kMaxNameBytes = 128;
-constexpr double kMaxSeed = 0x1.0p63;
 constexpr double kMaxBlocks = 0x1.0p31;
+
+// Seeds have 64 bits. TOML has integers below 2^63, so that larger ones are strings of digits.
+void read_seed(TableReader& reader, std::uint64_t& seed) {
+  const Member* member = reader.find("seed", Presence::kRequired);
+  if (member == nullptr) return;
+  const Node& node = member->value;
+  const std::string digits =
+      node.kind == Node::Kind::kInteger ? fmt::format("{}", node.integer) : node.text;
+  const char* const end = digits.data() + digits.size();
+  std::uint64_t value = 0;
+  const auto parsed = std::from_chars(digits.data(), end, value);
+  if (parsed.ec == std::errc() && parsed.ptr == end) {
+    seed = value;
+    return;
+  }
+  constexpr std::size_t kMostShownBytes = 40;
+  reader.problem(
+      node.line, "seed",
+      fmt::format("{} is not allowed: it must be an integer from 0 to {}, or a string of digits up "
+                  "to \"{}\"",
+                  node.kind == Node::Kind::kText
+                      ? fmt::format("\"{}\"", core::shown(node.text, kMostShownBytes))
+                      : value_text(node),
+                  INT64_MAX, UINT64_MAX));
+}
 
 void read_world_table(TableReader& root, World& world, ModelFields& terrain, Problems& problems) {
   const Member* member = root.table("world", Presence::kRequired);
   if (member == nullptr) return;
   TableReader reader(member->value, "world", member->line, problems);
   reader.read("name", world.name, kMaxNameBytes, Presence::kRequired);
-  std::int64_t seed = 0;
-  if (reader.read("seed", seed, {0, kMaxSeed}, Presence::kRequired))
-    world.seed = static_cast<std::uint64_t>(seed);
+  read_seed(reader, world.seed);
   std::int64_t blocks[2] = {0, 0};
   if (reader.read_pair("blocks", blocks, {0, kMaxBlocks}, Presence::kRequired)) {
     world.blocks_x = blocks[0];

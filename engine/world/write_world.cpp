@@ -22,6 +22,11 @@ std::string toml_string(std::string_view text) {
   return out + '"';
 }
 
+// TOML has no integers from 2^63 on.
+std::string seed_text(std::uint64_t seed) {
+  return seed <= INT64_MAX ? fmt::format("{}", seed) : fmt::format("\"{}\"", seed);
+}
+
 std::string number(double value, models::ParameterType type) {
   return type == models::ParameterType::kInteger ? fmt::format("{}", std::llround(value))
                                                  : fmt::format("{}", value);
@@ -89,7 +94,8 @@ std::string write_world(const World& world, const models::Registry& registry) {
   std::string text;
   const Text out(text);
   fmt::format_to(out, "format = {}\n\n[world]\nname = {}\nseed = {}\nblocks = [{}, {}]\n",
-                 world.format, toml_string(world.name), world.seed, world.blocks_x, world.blocks_z);
+                 world.format, toml_string(world.name), seed_text(world.seed), world.blocks_x,
+                 world.blocks_z);
   write_terrain(out, world, registry[world.terrain_model]);
   write_species(world.species, text);
   for (const Scatter& scatter : world.scatter)

@@ -52,6 +52,19 @@ TEST(WorldFile, ReadsWhatItSays) {
   EXPECT_EQ(world.scatter[1].ranges[models::kRockSubdivisions], (ParameterRange{1, 1}));
 }
 
+TEST(WorldFile, ASeedHasAll64Bits) {
+  const auto seed_of = [](const std::string& seed) {
+    const World world = parsed(replaced(kSmallWorld, "seed = 5", "seed = " + seed));
+    EXPECT_EQ(static_cast<std::uint64_t>(world.terrain.integer(models::kTerrainSeed)), world.seed);
+    return world.seed;
+  };
+  EXPECT_EQ(seed_of("0"), 0u);
+  EXPECT_EQ(seed_of("9223372036854775807"), 9223372036854775807u);
+  EXPECT_EQ(seed_of("\"5\""), 5u);
+  EXPECT_EQ(seed_of("\"15585416654101124857\""), 15585416654101124857u);
+  EXPECT_EQ(seed_of("'18446744073709551615'"), UINT64_MAX);
+}
+
 TEST(WorldFile, WhatIsLeftOutHasTheDefaultsOfTheSchema) {
   const World world = parsed("format = 1\n[world]\nname = \"w\"\nseed = 1\nblocks = [1, 1]\n");
   const models::ModelType& terrain = registry()[world.terrain_model];
@@ -168,7 +181,14 @@ TEST(WorldFile, NegativesNanInfinitiesAndWrongTypesAreRefused) {
   EXPECT_THAT(error_with("relief_m = 60", "relief_m = [50, 60]"), HasSubstr("one number"));
   EXPECT_THAT(error_with("octaves = 4", "octaves = 4.5"), HasSubstr("integer"));
   EXPECT_THAT(error_with("seed = 5", "seed = -5"), HasSubstr("world.seed"));
-  EXPECT_THAT(error_with("seed = 5", "seed = 9223372036854775808"), StartsWith("w.toml:5:"));
+  const std::string large = error_with("seed = 5", "seed = 9223372036854775808");
+  EXPECT_THAT(large, StartsWith("w.toml:5:"));
+  EXPECT_THAT(large, HasSubstr("a larger seed is written in quotes"));
+  for (const char* seed : {"\"18446744073709551616\"", "\"-1\"", "\"0x1\"", "\" 1\"", "\"\"",
+                           "\"1 \"", "1.0", "true", "[1]"})
+    EXPECT_THAT(error_with("seed = 5", "seed = " + std::string(seed)),
+                HasSubstr("a string of digits up to \"18446744073709551615\""))
+        << seed;
   EXPECT_THAT(error_with("count = 3", "count = -3"), HasSubstr("scatter[0].count"));
   EXPECT_THAT(error_with("count = 3", "count = 3.0"), HasSubstr("an integer from 0 to"));
   EXPECT_THAT(error_with("[8, 4]", "[8, -4]"), HasSubstr("world.blocks[1]"));

@@ -26,6 +26,16 @@ TEST(WriteWorld, EveryWorldOfTheGameReadsBackEqual) {
   }
 }
 
+TEST(WriteWorld, SeedsOfAll64BitsReadBackEqual) {
+  World world = parsed(kSmallWorld);
+  for (const std::uint64_t seed :
+       {std::uint64_t{0}, std::uint64_t{INT64_MAX}, std::uint64_t{INT64_MAX} + 1,
+        15585416654101124857u, UINT64_MAX}) {
+    world.seed = seed;
+    EXPECT_EQ(parsed(write_world(world, registry())).seed, seed);
+  }
+}
+
 TEST(WriteWorld, OddNamesNumbersAndColoursReadBackEqual) {
   World world = parsed(kSmallWorld);
   world.name = "a \"quoted\" \\ name, ümlaut";
