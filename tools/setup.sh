@@ -2,6 +2,7 @@
 # Installs what psygen needs on Debian 12, and only what is missing.
 #   tools/setup.sh          to build, run and test
 #   tools/setup.sh --ci     also what the complete check needs (clang-format)
+#   tools/setup.sh --fuzz   also what tools/fuzz.sh needs (clang with libFuzzer)
 set -euo pipefail
 
 packages=(
@@ -14,6 +15,7 @@ packages=(
   xvfb openbox xdotool x11-utils
 )
 [ "${1:-}" = "--ci" ] && packages+=(clang-format)
+[ "${1:-}" = "--fuzz" ] && packages+=(clang libclang-rt-dev)
 
 missing=()
 for package in "${packages[@]}"; do
