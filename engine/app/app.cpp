@@ -69,6 +69,7 @@ core::Result<void> App::open() {
   if (!options_.out_folder.empty()) {
     if (auto ok = telemetry::create_output_folder(options_.out_folder); !ok) return ok;
   }
+  if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
   if (!registry) return tl::unexpected(registry.error());
   auto world = world::load_world(options_.world_file, *registry);

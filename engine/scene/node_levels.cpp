@@ -53,6 +53,14 @@ models::Parameters node_terrain(const world::World& world, const visibility::Nod
   return p;
 }
 
+core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block) {
+  const auto nearest = [](std::int32_t index, std::int64_t count) {
+    return count == 0 ? index
+                      : static_cast<std::int32_t>(std::clamp<std::int64_t>(index, 0, count - 1));
+  };
+  return {nearest(block.x, world.blocks_x), nearest(block.z, world.blocks_z)};
+}
+
 bool contains(const world::World& world, const visibility::NodeCoord& node) {
   const core::BlockCoord corner = visibility::corner_block(node);
   const std::int64_t side = std::int64_t{1} << node.level;

@@ -28,8 +28,16 @@ struct NodeLevel {
 std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
                                    const Settings& settings, const models::ModelType* merged);
 
+// How many nodes of a level a world has along an axis with so many blocks; 0: endless.
+constexpr std::int64_t nodes_along(std::int64_t blocks, std::size_t level) {
+  return (blocks + (std::int64_t{1} << level) - 1) >> level;
+}
+
 // The ground of a node.
 models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node);
+
+// The block of the world that is nearest to `block`: itself, if it exists.
+core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block);
 
 // Whether any block of the node exists.
 bool contains(const world::World& world, const visibility::NodeCoord& node);
@@ -50,7 +58,8 @@ double existing_distance_m(std::span<const NodeLevel> levels, const Settings& se
                            std::size_t level,
                            std::span<const visibility::LevelDistances> distances);
 
-// Nodes to each side of the camera's that can exist at most.
+// Nodes to each side of the camera's that can exist at most; from the nearest node of the world, if
+// the camera is outside of it.
 std::uint32_t window_radius(std::span<const NodeLevel> levels, const Settings& settings,
                             std::size_t level);
 // The same where nodes are split at these distances.

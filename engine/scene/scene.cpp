@@ -22,45 +22,46 @@ namespace {
 // Of the parameters with a range, so many are tried at both ends together.
 constexpr std::size_t kMaxVaried = 12;
 
-core::Result<void> check(const Settings& settings) {
-  const auto refuse = [](std::string sentence) {
-    return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
-  };
-  if (!(settings.view_distance_m >= 32 && settings.view_distance_m <= 65536)) {
-    return refuse("view distance must be between 32 and 65536 m");
-  }
-  if (!(settings.max_error_pixels > 0 && settings.max_error_pixels <= 1000)) {
-    return refuse("the error of levels of detail must be above 0 and at most 1000 pixels");
-  }
-  if (!(settings.target_frame_ms >= 0 && settings.target_frame_ms <= 10'000)) {
-    return refuse("the target of the frame time must be between 0 and 10000 ms");
-  }
-  if (!(settings.max_error_factor >= 1 && settings.max_error_factor <= 100)) {
-    return refuse("the error may grow by a factor between 1 and 100");
-  }
-  if (!(settings.fade_seconds >= 0 && settings.fade_seconds <= 60)) {
-    return refuse("models come and go within 0 to 60 seconds");
-  }
-  if (settings.streaming_ticks < 1) return refuse("nodes are created over at least one tick");
-  if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
-  if (settings.budget_bytes < Scene::kMinBudgetBytes) {
-    return core::fail(core::ErrorCode::kOverBudget,
-                      fmt::format("a budget of {} bytes is too small; at least {} bytes are needed",
-                                  settings.budget_bytes, Scene::kMinBudgetBytes));
-  }
-  return {};
+// Of the window of a level: a square that holds all nodes of the world within reach.
+std::uint32_t largest_radius(const world::World& world, std::span<const NodeLevel> levels,
+                             const Settings& settings, std::size_t level) {
+  const std::int64_t radius = window_radius(levels, settings, level);
+  if (world.is_endless()) return static_cast<std::uint32_t>(radius);
+  const std::int64_t most =
+      nodes_along(std::max(world.blocks_x, world.blocks_z), level) - 1;  // to the other end
+  return static_cast<std::uint32_t>(std::min(radius, most));
 }
 
-// Nodes and models that exist at once at most, before anything is allocated for them. Nodes of a
-// level lie in a disc.
+// How many nodes of a level can exist at most: they lie in a disc, and in the world.
+double most_nodes(const world::World& world, double radius, std::size_t level) {
+  const auto along = [&](std::int64_t blocks) {
+    const double window = 2 * radius + 1;
+    return blocks == 0 ? window : std::min(window, static_cast<double>(nodes_along(blocks, level)));
+  };
+  return std::min(std::numbers::pi * radius * radius,
+                  along(world.blocks_x) * along(world.blocks_z));
+}
+
+// Nodes and models that exist at once at most, and the windows in which nodes are kept, before
+// anything is allocated for them.
 core::Result<void> check_size(const world::World& world, const models::Registry& registry,
                               const Settings& settings) {
   const std::vector<NodeLevel> levels = node_levels(world, registry, settings, nullptr);
   const double models = static_cast<double>(world::models_per_block(world));
-  double entities = 0;
+  double entities = 0, places = 0;
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double radius = window_radius(levels, settings, k);
-    entities += std::numbers::pi * radius * radius * (k == 0 ? 1 + models : 2);
+    entities += most_nodes(world, radius, k) * (k == 0 ? 1 + models : 2);
+    const double side = 2.0 * largest_radius(world, levels, settings, k) + 1;
+    places += side * side;
+  }
+  if (places > Scene::kMaxPlaces) {
+    return core::fail(
+        core::ErrorCode::kOverBudget,
+        fmt::format(
+            "a view of {:.0f} m over blocks of {:g} m (block_vertices, cell_m) needs places "
+            "for {:.3g} nodes; at most {:.0f} are allowed",
+            settings.view_distance_m, world.block_size_m(), places, Scene::kMaxPlaces));
   }
   if (entities <= Scene::kMaxEntities) return {};
   return core::fail(
@@ -150,6 +151,35 @@ Scene::~Scene() {
   state_.synthesis.cache.reset();
 }
 
+core::Result<void> Scene::check(const Settings& settings) {
+  const auto refuse = [](std::string sentence) {
+    return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
+  };
+  if (!(settings.view_distance_m >= 32 && settings.view_distance_m <= 65536)) {
+    return refuse("view distance must be between 32 and 65536 m");
+  }
+  if (!(settings.max_error_pixels > 0 && settings.max_error_pixels <= 1000)) {
+    return refuse("the error of levels of detail must be above 0 and at most 1000 pixels");
+  }
+  if (!(settings.target_frame_ms >= 0 && settings.target_frame_ms <= 10'000)) {
+    return refuse("the target of the frame time must be between 0 and 10000 ms");
+  }
+  if (!(settings.max_error_factor >= 1 && settings.max_error_factor <= 100)) {
+    return refuse("the error may grow by a factor between 1 and 100");
+  }
+  if (!(settings.fade_seconds >= 0 && settings.fade_seconds <= 60)) {
+    return refuse("models come and go within 0 to 60 seconds");
+  }
+  if (settings.streaming_ticks < 1) return refuse("nodes are created over at least one tick");
+  if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
+  if (settings.budget_bytes < kMinBudgetBytes || settings.budget_bytes > kMaxBudgetBytes) {
+    return core::fail(core::ErrorCode::kOverBudget,
+                      fmt::format("a budget of {} bytes is not allowed: it must be {} to {} bytes",
+                                  settings.budget_bytes, kMinBudgetBytes, kMaxBudgetBytes));
+  }
+  return {};
+}
+
 core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::Registry registry,
                                                    const Settings& settings,
                                                    render::Renderer* renderer,
@@ -177,7 +207,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   if (auto ok = find_levels(settings, facts); !ok) return tl::unexpected(ok.error());
   for (std::size_t k = 0; k < facts.levels.size(); ++k) {
     s.streaming.grids.emplace_back(static_cast<std::uint8_t>(k),
-                                   window_radius(facts.levels, settings, k));
+                                   largest_radius(facts.world, facts.levels, settings, k));
   }
   s.output.renderer = renderer;
   facts.shadows = renderer != nullptr && renderer->casts_shadows();

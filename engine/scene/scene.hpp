@@ -17,9 +17,8 @@ using Progress = std::function<bool(std::string_view, double)>;
 class Scene {
  public:
   // `renderer` (may be null) and `trace` (may be null) outlive the scene. Starts the modelers and
-  // calibrates the cost model (below 0.5 s). Fails with kInvalidArgument for settings that make no
-  // sense, with kOverBudget for a budget below kMinBudgetBytes and for a view with more than
-  // kMaxEntities blocks and models.
+  // calibrates the cost model (below 0.5 s). Fails as check(), and with kOverBudget for a view with
+  // more than kMaxEntities nodes and models or kMaxPlaces places for nodes.
   static core::Result<std::unique_ptr<Scene>> create(world::World world, models::Registry registry,
                                                      const Settings& settings,
                                                      render::Renderer* renderer,
@@ -42,8 +41,14 @@ class Scene {
   // a flight can want, once and for all. Fails with kOverBudget, saying how much it would need.
   core::Result<std::uint64_t> amplify(const core::CameraPose& pose, const Progress& progress = {});
 
+  // Fails with kInvalidArgument for settings that make no sense, and with kOverBudget for a budget
+  // below kMinBudgetBytes or above kMaxBudgetBytes.
+  static core::Result<void> check(const Settings& settings);
+
   static constexpr std::uint64_t kMinBudgetBytes = 4ull << 20;
+  static constexpr std::uint64_t kMaxBudgetBytes = 1ull << 40;
   static constexpr double kMaxEntities = 2e6;
+  static constexpr double kMaxPlaces = 4e6;  // of nodes around the camera that may exist
 
  private:
   Scene() = default;

@@ -111,7 +111,8 @@ struct Streaming {
   std::vector<visibility::NodeCoord> missing;         // most important last
   std::uint32_t ticks_since_listed = 0;               // the window, for what it lacks
   std::size_t per_tick = 0;                           // of what it lacked, nodes created in a tick
-  double listed_split_m = 0;  // of the coarsest level, when the window was last looked at
+  double listed_split_m = 0;   // of the coarsest level, when the window was last looked at
+  core::BlockCoord listed_at;  // where the camera was then
 };
 
 // The nodes of one level in this tick. Cells are those of its window, row by row.

@@ -220,16 +220,17 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
                       ecs::World& entities, Synthesis& synthesis, Counters& counters) {
   split_distances(facts.levels, settings, camera.pixels_per_radian, quality.error_pixels,
                   streaming.distances);
-  const core::BlockCoord centre = camera.pose.position.block;
+  const core::BlockCoord place = camera.pose.position.block;
   const double reach = streaming.distances.back().split_m;
-  if (centre != streaming.grids[0].centre().coord ||
+  if (place != streaming.listed_at ||
       std::abs(reach - streaming.listed_split_m) > kRelistedChange * reach ||
       windows_too_small(facts, settings, streaming)) {
     for (NodeGrid& grid : streaming.grids) {
-      grid.set_centre(centre);
+      grid.set_centre(nearest_block(facts.world, place));
       grid.set_radius(needed_radius(facts, settings, streaming, grid));
     }
     streaming.listed_split_m = reach;
+    streaming.listed_at = place;
     const Window window(settings, camera, facts, streaming);
     destroy_leaving_nodes(window, streaming, entities, *synthesis.cache, counters);
     list_missing_nodes(window, camera, facts, entities, streaming);

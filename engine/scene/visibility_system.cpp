@@ -137,17 +137,17 @@ void expect(const Camera& camera, const WorldFacts& facts, const Streaming& stre
 void choose_cut(const Settings& settings, const Camera& camera, const WorldFacts& facts,
                 const Streaming& streaming, bool settling, View& view) {
   const auto top = static_cast<std::uint8_t>(facts.levels.size() - 1);
-  visibility::roots_around(camera.pose.position, facts.world.block_size_m(),
-                           settings.view_distance_m, top, view.roots);
   visibility::CutInput input;
   input.camera = camera.pose.position;
   input.block_size_m = facts.world.block_size_m();
-  input.roots = view.roots;
   input.levels = streaming.distances;
   input.view_distance_m = settings.view_distance_m;
   input.world = {{},
                  static_cast<std::uint32_t>(facts.world.blocks_x),
                  static_cast<std::uint32_t>(facts.world.blocks_z)};
+  visibility::roots_around(camera.pose.position, facts.world.block_size_m(),
+                           settings.view_distance_m, top, view.roots, input.world);
+  input.roots = view.roots;
   if (settling) view.cut.split.clear();  // no hysteresis
   visibility::select_cut(input, view.cut);
 }

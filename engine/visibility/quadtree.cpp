@@ -32,6 +32,25 @@ bool exists(const BlockArea& world, const NodeCoord& node) {
          (world.blocks_z == 0 || meet(corner.z, side, world.corner.z, world.blocks_z));
 }
 
+// Along one axis, from the first node of a square to those of it that exist.
+struct Steps {
+  std::int64_t first, last;
+};
+
+Steps steps_to_roots(std::int32_t first, std::int32_t last, std::int32_t world_block,
+                     std::uint32_t blocks, std::uint8_t level) {
+  const auto steps = [first, level](std::int32_t to) {
+    return canonical(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(first), level);
+  };
+  const std::int64_t all = steps(last);
+  PSYGEN_ASSERT(all >= 0, "the roots do not surround the world");
+  if (blocks == 0) return {0, all};
+  const std::int64_t begin = steps(world_block >> level);
+  const std::int64_t nodes =
+      ((std::int64_t{world_block} + blocks - 1) >> level) - (world_block >> level) + 1;
+  return {std::max<std::int64_t>(begin, 0), std::min(begin + nodes - 1, all)};
+}
+
 // How far 0 is outside [low, low + length].
 double outside(double low, double length) {
   return std::max({low, -(low + length), 0.0});
@@ -156,7 +175,7 @@ void select_cut(const CutInput& input, Cut& cut) {
 }
 
 void roots_around(const core::WorldPosition& camera, double block_size_m, double view_distance_m,
-                  std::uint8_t level, std::vector<NodeCoord>& roots) {
+                  std::uint8_t level, std::vector<NodeCoord>& roots, const BlockArea& world) {
   const auto node_at = [&](double reach_m) {
     core::WorldPosition place = camera;
     place.local.x += reach_m;
@@ -164,16 +183,15 @@ void roots_around(const core::WorldPosition& camera, double block_size_m, double
     return node_of(core::normalised(place, block_size_m).block, level);
   };
   const NodeCoord first = node_at(-view_distance_m), last = node_at(view_distance_m);
-  const auto steps = [level](std::int32_t from, std::int32_t to) {
-    return canonical(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from), level);
-  };
-  const std::int32_t steps_x = steps(first.coord.x, last.coord.x),
-                     steps_z = steps(first.coord.z, last.coord.z);
-  PSYGEN_ASSERT(steps_x >= 0 && steps_z >= 0, "the roots do not surround the world");
+  const Steps x = steps_to_roots(first.coord.x, last.coord.x, world.corner.x, world.blocks_x,
+                                 level),
+              z = steps_to_roots(first.coord.z, last.coord.z, world.corner.z, world.blocks_z,
+                                 level);
   roots.clear();
-  for (std::int32_t z = 0; z <= steps_z; ++z) {
-    for (std::int32_t x = 0; x <= steps_x; ++x)
-      roots.push_back(neighbour_of(first, x, z));
+  for (std::int64_t dz = z.first; dz <= z.last; ++dz) {
+    for (std::int64_t dx = x.first; dx <= x.last; ++dx)
+      roots.push_back(
+          neighbour_of(first, static_cast<std::int32_t>(dx), static_cast<std::int32_t>(dz)));
   }
 }
 

@@ -153,9 +153,10 @@ struct Cut {
 void select_cut(const CutInput& input, Cut& cut);
 
 // Canonical nodes of a level that cover everything up to `view_distance_m` around the camera along
-// both axes. Replaces the contents of `roots`. The square must be less than 2^31 blocks wide.
+// both axes, as far as they reach into `world`. Replaces the contents of `roots`. The square must
+// be less than 2^31 blocks wide.
 void roots_around(const core::WorldPosition& camera, double block_size_m, double view_distance_m,
-                  std::uint8_t level, std::vector<NodeCoord>& roots);
+                  std::uint8_t level, std::vector<NodeCoord>& roots, const BlockArea& world = {});
 
 // What to draw while meshes are missing: ready[i] says whether cut.nodes[i] has one. A node is
 // drawn if it is ready and either a leaf or one of its leaves can not be covered by what is ready

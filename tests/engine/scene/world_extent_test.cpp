@@ -164,5 +164,80 @@ TEST(Extent, AWorldOfAMillionBlocksASideTakesNoMoreThanOneOf512) {
   EXPECT_GT(sizes[0].entities, 1000u);
 }
 
+void make_small(world::World& world, std::int64_t blocks) {
+  world.blocks_x = world.blocks_z = blocks;
+  world.terrain.set_integer(models::kTerrainSize, 4);
+  world.terrain.set_real(models::kTerrainCellM, 0.01);  // blocks of 3 cm
+  world.scatter.resize(1);
+}
+
+std::size_t places_of(const Scene& scene) {
+  std::size_t places = 0;
+  for (const NodeGrid& grid : scene.state().streaming.grids)
+    places += std::size_t{grid.side()} * grid.side();
+  return places;
+}
+
+TEST(Extent, AWorldOfAFewCentimetresIsDrawnFromInsideAndFromAfar) {
+  for (const std::int64_t blocks : {1, 30}) {
+    Settings settings = small_settings();
+    settings.view_distance_m = 16'000;
+    const auto scene =
+        make_scene_of(settings, [blocks](world::World& world) { make_small(world, blocks); });
+    EXPECT_LT(places_of(*scene), 10'000u);
+    const State& s = scene->state();
+    for (const std::int32_t x : {0, -3000, 3000}) {  // 90 m to the west and to the east
+      const core::CameraPose pose = pose_at(x, 0);
+      scene->settle(pose);
+      tick_at(*scene, pose);
+      EXPECT_FALSE(s.view.cut.nodes.empty()) << blocks << " blocks, from " << x;
+      EXPECT_GT(s.entities.count<Node>(), 0u) << blocks << " blocks, from " << x;
+      EXPECT_TRUE(s.streaming.missing.empty());
+    }
+  }
+}
+
+// Without levels of detail every block has a place of its own.
+TEST(Extent, AStripOfTinyBlocksThatIsFarLongerThanWideIsRefused) {
+  Settings settings = small_settings();
+  settings.view_distance_m = 16'000;
+  settings.levels_of_detail = false;
+  for (const std::int64_t depth : {0, 1 << 30}) {
+    models::Registry registry = models::make_standard_registry();
+    world::World world = paper_world(registry);
+    make_small(world, 1);
+    world.blocks_z = depth;
+    world.scatter.clear();
+    const auto scene = Scene::create(world, std::move(registry), settings, nullptr);
+    ASSERT_FALSE(scene.has_value());
+    EXPECT_EQ(scene.error().code, core::ErrorCode::kOverBudget);
+    EXPECT_NE(scene.error().message.find("blocks of 0.03 m"), std::string::npos)
+        << scene.error().message;
+  }
+}
+
+// Inside, on the edge, just outside, and so far outside that the world is as far as one sees.
+TEST(Extent, EveryNodeOfASmallWorldThatIsWantedExistsWhereverTheCameraIs) {
+  Settings settings = small_settings();
+  settings.view_distance_m = 1000;
+  const auto scene = make_scene_of(settings, [](world::World& world) {
+    world.blocks_x = 6;
+    world.blocks_z = 3;
+    world.scatter.clear();
+  });
+  const State& s = scene->state();
+  for (const core::BlockCoord block :
+       {core::BlockCoord{2, 1}, {5, 2}, {6, 0}, {-1, -1}, {12, 1}, {1, -14}, {-15, 2}, {2, 1}}) {
+    tick_at(*scene, pose_at(block.x, block.z));
+    EXPECT_FALSE(s.view.cut.nodes.empty());
+    for (const visibility::CutNode& node : s.view.cut.nodes) {
+      const NodeGrid& grid = s.streaming.grids[node.node.level];
+      EXPECT_TRUE(grid.contains(node.node.coord) &&
+                  s.entities.alive(grid.entity_of(node.node.coord)))
+          << "from " << block.x << ", " << block.z;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace psygen::scene

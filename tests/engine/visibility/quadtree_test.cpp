@@ -153,6 +153,51 @@ TEST(SplitDistances, ReachBeyondWhatTouchesNodesTwoLevelsBelow) {
   EXPECT_NEAR(levels[2].split_m, 10 + 64 * std::sqrt(2.0), 1e-3);
 }
 
+TEST(Roots, OfAFiniteWorldAreThoseThatReachIntoIt) {
+  core::RandomStream random = stream(7);
+  std::size_t some = 0, none = 0, all = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto level = static_cast<std::uint8_t>(random.next_integer(0, 12));
+    const auto blocks = [&random] {
+      const std::int64_t most = std::int64_t{1} << random.next_integer(0, 31);
+      return static_cast<std::uint32_t>(random.next_integer(0, most));
+    };
+    const BlockArea world{{}, blocks(), blocks()};
+    // At the world's corners, at the seam of the indices, anywhere.
+    const auto index = [&](std::uint32_t count) {
+      const std::int64_t places[] = {0, count, INT32_MIN, INT32_MAX,
+                                     random.next_integer(INT32_MIN, INT32_MAX)};
+      return static_cast<std::int32_t>(places[random.next_integer(0, 4)] +
+                                       random.next_integer(-20, 20));
+    };
+    const core::WorldPosition camera{{index(world.blocks_x), index(world.blocks_z)}, {1, 0, 2}};
+    const double view_m = kBlock_m * static_cast<double>(5 << level);
+    std::vector<NodeCoord> square, roots;
+    roots_around(camera, kBlock_m, view_m, level, square);
+    roots_around(camera, kBlock_m, view_m, level, roots, world);
+    const auto reaches = [level](std::int64_t corner, std::int64_t count) {
+      return count == 0 || (corner + (std::int64_t{1} << level) > 0 && corner < count);
+    };
+    std::erase_if(square, [&](const NodeCoord& node) {
+      const core::BlockCoord corner = corner_block(node);
+      return !reaches(corner.x, world.blocks_x) || !reaches(corner.z, world.blocks_z);
+    });
+    ASSERT_EQ(roots, square) << world.blocks_x << " x " << world.blocks_z << " blocks, level "
+                             << int{level} << ", camera " << camera.block.x << ", "
+                             << camera.block.z;
+    ++(roots.empty() ? none : roots.size() < 50 ? some : all);
+  }
+  EXPECT_GT(some, 100u);
+  EXPECT_GT(none, 100u);
+  EXPECT_GT(all, 50u);
+}
+
+TEST(Roots, OfATinyWorldAreFewHoweverFarTheViewReaches) {
+  std::vector<NodeCoord> roots;
+  roots_around({{3000, -5}, {}}, 0.03, 65536, 0, roots, {{}, 1, 1});
+  EXPECT_EQ(roots, (std::vector<NodeCoord>{{{0, 0}, 0}}));
+}
+
 TEST(Cut, LeavesTileTheRootsExactlyAndDifferByTwoLevelsAtMost) {
   core::RandomStream random = stream(1);
   std::set<int> levels_seen;
