@@ -1,5 +1,6 @@
 #include "engine/telemetry/output_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -22,8 +23,10 @@ core::Result<void> create_output_folder(const std::filesystem::path& folder) {
   return {};
 }
 
-OutputFile::OutputFile(const std::filesystem::path& path)
-    : path_(path), file_(std::fopen(path.c_str(), "wb")) {
+// A pipe that nobody reads is an error rather than a wait without an end.
+OutputFile::OutputFile(const std::filesystem::path& path) : path_(path) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
+  if (file >= 0) file_.reset(fdopen(file, "wb"));
   if (!file_) first_error_ = errno;
 }
 

@@ -1,6 +1,7 @@
 #include "engine/telemetry/output_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/engine/telemetry/synthetic_flight.hpp"
 
@@ -22,6 +23,12 @@ TEST(OutputFile, TellsAboutAFullDiskEvenWhenEverythingFitsIntoItsBuffer) {
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, core::ErrorCode::kIo);
   EXPECT_EQ(result.error().message.rfind("/dev/full: cannot be written: ", 0), 0U);
+}
+
+TEST(OutputFile, DoesNotWaitForAReaderOfAPipe) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_FALSE(write_text_file(folder / "pipe", "x"));
 }
 
 TEST(OutputFile, GoesOnQuietlyAfterAnErrorUntilItIsClosed) {
