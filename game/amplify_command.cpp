@@ -97,7 +97,7 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
       "Blocks X0,Z0,X1,Z1 without X1 and Z1; default: the whole world");
   region->check(valid_if(amplify::parse_region, "REGION"));
   c.add_option("--threads", threads_, "Threads; default: one per processor")
-      ->check(number_between(1, amplify::kMaxThreads));
+      ->transform(integer_between(1, amplify::kMaxThreads));
   c.add_option_function<std::vector<std::string>>(
        "--sample",
        [this](const std::vector<std::string>& texts) {

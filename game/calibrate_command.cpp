@@ -41,7 +41,7 @@ CalibrateCommand::CalibrateCommand(CLI::App& cli)
       ->excludes(world);
   c.add_option("--samples", samples_, "Parameter sets of each type to fit, and others to predict")
       ->capture_default_str()
-      ->check(number_between(4, 10000));
+      ->transform(integer_between(4, 10000));
   c.add_flag("--json", json_, "Print the figures as JSON");
 }
 

@@ -11,15 +11,15 @@
 #include "engine/app/app.hpp"
 #include "engine/exchange/write_document.hpp"
 #include "game/request_recorder.hpp"
+#include "game/standard_streams.hpp"
 
 namespace psygen::game {
 
 enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
 
-int exit_code_of(const core::Error& error);
-
-// Writes data to stdout. kFailed, with a message, when it does not get there.
-int print(const std::string& text);
+inline int exit_code_of(const core::Error& error) {
+  return error.code == core::ErrorCode::kNoDevice ? kNoDevice : kFailed;
+}
 
 class FlyCommand {
  public:

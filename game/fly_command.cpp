@@ -33,7 +33,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->check(number_between(0, 86400));
   c.add_flag("--loop", options_.loop, "Fly the path again and again, until --seconds are over");
   c.add_option("--frames", options_.frames, "End after so many frames; 0: no limit")
-      ->check(number_between(0, 1e9));
+      ->transform(integer_between(0, 1'000'000'000));
   c.add_option("--fixed-step", options_.fixed_step_hz,
                "Every frame advances the flight by 1/HZ seconds, however long it took")
       ->check(number_between(1, 1000));
@@ -41,14 +41,14 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->capture_default_str()
       ->check(number_between(0, 3600));
   c.add_option("--images", options_.images_every, "Write every so manieth frame as a PNG")
-      ->check(number_between(0, 1e9));
+      ->transform(integer_between(0, 1'000'000'000));
   c.add_option("--modelers", scene.modelers, "Synthesis threads; 0: one less than cores")
-      ->check(number_between(0, 256));
+      ->transform(integer_between(0, 256));
   c.add_option_function<std::string>(
        "--budget",
        [this](const std::string& text) { options_.scene.budget_bytes = *parse_bytes(text); },
        "Bytes for all geometry, e.g. 512M")
-      ->check(valid_if(parse_bytes, "BYTES"))
+      ->check(bytes_between(scene::Scene::kMinBudgetBytes, scene::Scene::kMaxBudgetBytes))
       ->default_str("512M");
   c.add_option_function<std::string>(
        "--paradigm",
@@ -83,7 +83,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
        "--target-fps", [this](double hz) { options_.target_hz = hz; },
        "Hold this frame rate with a larger error (up to 4 times); 0: fixed error")
       ->default_str("60 in a window, 0 headless")
-      ->check(number_between(0, 1000));
+      ->check(zero_or_between(0.1, 1000));
   c.add_option("--fade", scene.fade_seconds, "Seconds in which models come and go; 0: at once")
       ->capture_default_str()
       ->check(number_between(0, 60));

@@ -2,47 +2,31 @@
 // messages and progress to stderr.
 // Exit codes: 0 ok, 1 failed, 2 usage, 4 no usable device or display.
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <iostream>
 
 #include "engine/core/log.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "game/commands.hpp"
-
-namespace psygen::game {
-
-int exit_code_of(const core::Error& error) {
-  return error.code == core::ErrorCode::kNoDevice ? kNoDevice : kFailed;
-}
-
-int print(const std::string& text) {
-  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return kOk;
-  core::log_error("standard output cannot be written");
-  return kFailed;
-}
-
-}  // namespace psygen::game
+#include "game/standard_streams.hpp"
+#include "game/usage.hpp"
 
 int main(int argc, char** argv) {
+  psygen::game::hold_standard_streams();
   psygen::render::tune_allocator_for_software_rendering();  // before the first allocation of size
 
   CLI::App cli("psygen: fly through worlds that are far larger than memory", "psygen");
   cli.set_version_flag("--version", "psygen " PSYGEN_VERSION);
   cli.require_subcommand(1);
+  cli.footer(
+      "For example:\n"
+      "  psygen fly --headless --world game/worlds/paper.toml --out out\n"
+      "psygen COMMAND --help lists the options of a command.");
   psygen::game::FlyCommand fly(cli);
   psygen::game::ModelsCommand models(cli);
   psygen::game::AmplifyCommand amplify(cli);
   psygen::game::ExportCommand exporter(cli);
   psygen::game::CalibrateCommand calibrate(cli);
   psygen::game::ScheduleCommand schedule(cli);
-  try {
-    cli.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const bool asked_for = error.get_exit_code() == 0;  // --help, --version
-    cli.exit(error, std::cout, std::cerr);
-    if (asked_for) return std::cout.flush() ? psygen::game::kOk : psygen::game::kFailed;
-    return psygen::game::kUsage;
-  }
+  if (const auto code = psygen::game::read_command_line(cli, argc, argv)) return *code;
   // Nothing of ours throws, but libraries do when memory ends.
   try {
     if (fly.chosen()) return fly.run();

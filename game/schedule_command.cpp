@@ -58,7 +58,7 @@ ScheduleCommand::ScheduleCommand(CLI::App& cli)
   c.add_option("--requests", file_, "What `psygen fly --record-requests` wrote")->required();
   c.add_option("--modelers", modelers_, "Simulated modelers")
       ->capture_default_str()
-      ->check(number_between(1, 256));
+      ->transform(integer_between(1, 256));
   c.add_option("--slower", slower_, "Every synthesis takes so many times as long")
       ->capture_default_str()
       ->check(number_between(0.001, 1e6));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <iterator>
@@ -15,8 +16,10 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    // Another build may run the same test at the same time.
     path_ = std::filesystem::path(testing::TempDir()) /
-            ("psygen_" + std::string(test->test_suite_name()) + "_" + test->name());
+            ("psygen_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" +
+             std::to_string(getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

@@ -1,0 +1,15 @@
+// The three streams that a program starts with, and writing data to the second. Main thread.
+#pragma once
+
+#include <string>
+
+namespace psygen::game {
+
+// Takes the place of streams that are closed (`>&-`), so that no file that is opened later gets
+// their numbers and with them what is meant for them. Writing to such a stdout fails, as it should.
+void hold_standard_streams();
+
+// Writes data to stdout. kOk, or kFailed with a message when it does not get there.
+int print(const std::string& text);
+
+}  // namespace psygen::game
