@@ -122,7 +122,7 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
 int AmplifyCommand::run() {
   if (!simd_.empty()) models::pin_simd_target(simd_);
   models::Registry registry = models::make_standard_registry();
-  const auto world = world::load_world(world_, registry);
+  const auto world = load_world(world_, registry);
   if (!world) {
     core::log_error(world.error().message);
     return exit_code_of(world.error());

@@ -56,7 +56,7 @@ int CalibrateCommand::run() const {
   models::Registry registry = models::make_standard_registry();
   std::optional<world::World> world;
   if (!ranges_) {
-    auto loaded = world::load_world(world_, registry);
+    auto loaded = load_world(world_, registry);
     if (!loaded) return fail(loaded.error());
     world = std::move(*loaded);
   }

@@ -11,6 +11,7 @@
 #include "engine/app/app.hpp"
 #include "engine/exchange/write_document.hpp"
 #include "game/request_recorder.hpp"
+#include "game/shipped_files.hpp"
 #include "game/standard_streams.hpp"
 
 namespace psygen::game {
@@ -33,7 +34,7 @@ class FlyCommand {
 
   CLI::App* command_;
   app::Options options_;
-  std::string world_ = "game/worlds/paper.toml";
+  std::string world_ = kDefaultWorld;
   std::string requests_;  // file; empty: they are not recorded
   RequestRecorder recorder_;
   bool json_ = false;
@@ -64,7 +65,7 @@ class AmplifyCommand {
   int print_report(const amplify::Report& report) const;
 
   CLI::App* command_;
-  std::string world_ = "game/worlds/paper.toml";
+  std::string world_ = kDefaultWorld;
   std::optional<amplify::Region> region_;
   unsigned threads_ = 0;
   std::vector<glm::dvec2> samples_;  // x and z in metres
@@ -88,7 +89,7 @@ class ExportCommand {
                                                   const models::Registry& registry) const;
 
   CLI::App* command_;
-  std::string model_, world_ = "game/worlds/paper.toml", out_;
+  std::string model_, world_ = kDefaultWorld, out_;
   std::vector<std::string> settings_;  // name=value
   std::optional<core::BlockCoord> block_;
   int level_ = 0;
@@ -102,7 +103,7 @@ class CalibrateCommand {
 
  private:
   CLI::App* command_;
-  std::string out_, world_ = "game/worlds/paper.toml";
+  std::string out_, world_ = kDefaultWorld;
   bool ranges_ = false;
   std::size_t samples_ = 64;
   bool json_ = false;

@@ -105,7 +105,7 @@ int ExportCommand::run() const {
   models::Registry registry = models::make_standard_registry();
   std::optional<world::World> world;
   if (block_ || command_->count("--world") > 0) {
-    auto loaded = world::load_world(world_, registry);
+    auto loaded = load_world(world_, registry);
     if (!loaded) {
       core::log_error(loaded.error().message);
       return exit_code_of(loaded.error());

@@ -119,7 +119,10 @@ FlyCommand::FlyCommand(CLI::App& cli)
 }
 
 int FlyCommand::run() {
-  options_.world_file = world_;
+  if (auto ok = find_files(world_, options_); !ok) {
+    core::log_error(ok.error().message);
+    return exit_code_of(ok.error());
+  }
   options_.stop = &stop_at_interrupt();
   if (!requests_.empty()) {
     options_.prefill = false;  // the initial fill is part of the flight

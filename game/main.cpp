@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   cli.require_subcommand(1);
   cli.footer(
       "For example:\n"
-      "  psygen fly --headless --world game/worlds/paper.toml --out out\n"
+      "  psygen fly --headless --world silver_combe --path combe --out out\n"
       "psygen COMMAND --help lists the options of a command.");
   psygen::game::FlyCommand fly(cli);
   psygen::game::ModelsCommand models(cli);

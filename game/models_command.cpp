@@ -76,7 +76,7 @@ ModelsCommand::ModelsCommand(CLI::App& cli)
 int ModelsCommand::run() const {
   models::Registry registry = models::make_standard_registry();
   if (!world_.empty()) {
-    if (const auto world = world::load_world(world_, registry); !world) {
+    if (const auto world = load_world(world_, registry); !world) {
       core::log_error(world.error().message);
       return exit_code_of(world.error());
     }
