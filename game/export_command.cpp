@@ -1,12 +1,14 @@
 // psygen export: one model or one block as glTF or OBJ.
 #include <fmt/format.h>
 
+#include <bit>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "engine/amplify/block_files.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/utf8.hpp"
 #include "engine/exchange/unpack.hpp"
 #include "engine/synthesis/synthesize.hpp"
 #include "game/commands.hpp"
@@ -15,6 +17,8 @@
 
 namespace psygen::game {
 namespace {
+
+constexpr std::size_t kMostShownBytes = 60;  // of a value
 
 tl::unexpected<core::Error> refuse(std::string sentence) {
   return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
@@ -42,34 +46,73 @@ std::string parameter_names(const models::ModelType& type) {
   return names;
 }
 
+template <class Number>
+bool parse(std::string_view text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  return parsed.ec == std::errc() && parsed.ptr == end;
+}
+
+// One that may have any 64 bits may have them without a sign, so that seeds read as they are
+// printed.
+bool has_any_bits(const models::ParameterSpec& spec) {
+  return spec.hard_min <= -0x1.0p63 && spec.hard_max >= 0x1.0p63;
+}
+
+bool set_value(const models::ParameterSpec& spec, std::string_view text, models::Parameters& p,
+               std::size_t i) {
+  std::int64_t integer = 0;
+  std::uint64_t bits = 0;
+  double real = 0;
+  if (spec.type == models::ParameterType::kReal) {
+    if (!parse(text, real)) return false;
+    p.set_real(i, real);
+  } else if (parse(text, integer)) {
+    p.set_integer(i, integer);
+  } else {
+    if (!has_any_bits(spec) || !parse(text, bits)) return false;
+    p.set_integer(i, std::bit_cast<std::int64_t>(bits));
+  }
+  return true;
+}
+
+std::string wanted_by(const models::ParameterSpec& spec) {
+  if (spec.type == models::ParameterType::kReal)
+    return fmt::format("a number from {:g} to {:g}", spec.hard_min, spec.hard_max);
+  if (has_any_bits(spec)) return fmt::format("an integer from {} to {}", INT64_MIN, UINT64_MAX);
+  return fmt::format("an integer from {:.0f} to {:.0f}", spec.hard_min, spec.hard_max);
+}
+
 // "name=value" into `p`.
 core::Result<void> set(const models::ModelType& type, models::Parameters& p,
                        const std::string& setting) {
+  const auto shown = [](std::string_view text) { return core::shown(text, kMostShownBytes); };
   const std::size_t equals = setting.find('=');
-  if (equals == std::string::npos) return refuse(fmt::format("'{}' is not name=value", setting));
-  const std::string name = setting.substr(0, equals);
+  if (equals == std::string::npos)
+    return refuse(fmt::format("'{}' is not name=value", shown(setting)));
+  const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
   const int index = models::parameter_index(type, name);
   if (index < 0) {
-    return refuse(fmt::format("{} has no parameter '{}'; it has {}", type.name(), name,
+    return refuse(fmt::format("{} has no parameter '{}'; it has {}", type.name(), shown(name),
                               parameter_names(type)));
   }
   const auto i = static_cast<std::size_t>(index);
-  const char* const first = setting.data() + equals + 1;
-  const char* const end = setting.data() + setting.size();
-  std::from_chars_result parsed{};
-  const bool integer = type.parameters()[i].type == models::ParameterType::kInteger;
-  if (integer) {
-    std::int64_t value = 0;
-    parsed = std::from_chars(first, end, value);
-    p.set_integer(i, value);
-  } else {
-    double value = 0;
-    parsed = std::from_chars(first, end, value);
-    p.set_real(i, value);
+  const models::ParameterSpec& spec = type.parameters()[i];
+  if (set_value(spec, text, p, i)) return {};
+  return refuse(
+      fmt::format("{}: {} must be {}, not '{}'", type.name(), name, wanted_by(spec), shown(text)));
+}
+
+core::Result<void> set_all(const models::ModelType& type, models::Parameters& p,
+                           const std::vector<std::string>& settings) {
+  std::set<std::string> names;
+  for (const std::string& setting : settings) {
+    if (auto ok = set(type, p, setting); !ok) return ok;
+    const std::string name = setting.substr(0, setting.find('='));
+    if (!names.insert(name).second)
+      return refuse(fmt::format("{}: {} is set twice", type.name(), name));
   }
-  if (parsed.ec == std::errc() && parsed.ptr == end) return {};
-  return refuse(fmt::format("{}: {} must be {}, not '{}'", type.name(), name,
-                            integer ? "an integer" : "a number", std::string(first, end)));
+  return models::validate(type, p);
 }
 
 core::Result<void> check_level(const models::ModelType& type, int level) {
@@ -91,7 +134,7 @@ ExportCommand::ExportCommand(CLI::App& cli)
   block->check(valid_if(parse_block, "X,Z"))->excludes(model);
   c.add_option("--world", world_, "World file (TOML) of the block, or with the model's species")
       ->capture_default_str();
-  c.add_option("--level", level_, "Level of detail; 0 is full")->check(number_between(0, 31));
+  c.add_option("--level", level_, "Level of detail; 0 is full")->transform(integer_between(0, 31));
   c.add_option("--out", out_, "File to write: .glb or .obj")
       ->required()
       ->check(valid_if(format_of, "FILE"));
@@ -134,15 +177,12 @@ core::Result<exchange::Document> ExportCommand::model_document(
     const models::Registry& registry, const world::Palette& palette) const {
   const int found = registry.find(model_);
   if (found < 0) {
-    return refuse(
-        fmt::format("there is no model '{}'; there are {}", model_, model_names(registry)));
+    return refuse(fmt::format("there is no model '{}'; there are {}",
+                              core::shown(model_, kMostShownBytes), model_names(registry)));
   }
   const models::ModelType& type = registry[static_cast<models::ModelIndex>(found)];
   models::Parameters p = models::default_parameters(type);
-  for (const std::string& setting : settings_) {
-    if (auto ok = set(type, p, setting); !ok) return tl::unexpected(ok.error());
-  }
-  if (auto ok = models::validate(type, p); !ok) return tl::unexpected(ok.error());
+  if (auto ok = set_all(type, p, settings_); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_level(type, level_); !ok) return tl::unexpected(ok.error());
   const auto mesh = synthesis::HeapDestination::make(type, p, level_);
   if (!mesh) return tl::unexpected(mesh.error());

@@ -52,6 +52,7 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
                                 "export --model rock --set subdivisions=40 --out a.glb",
                                 "export --model rock --set subdivisions --out a.glb",
                                 "export --model rock --set '' --out a.glb",
+                                "export --model rock --set seed=1 --set seed=1 --out a.glb",
                                 "export --model rock --level 9 --out a.glb",
                                 "export --model rock --block 1,1 --out a.glb",
                                 "export --model oak --out a.glb",
@@ -206,6 +207,10 @@ TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
   EXPECT_TRUE(mentions(model.err, "terrain, rock, tree")) << model.err;
   const Outcome parameter = run_psygen("export --model rock --set size=3 --out a.glb");
   EXPECT_TRUE(mentions(parameter.err, "subdivisions, radius_m")) << parameter.err;
+  const Outcome value = run_psygen("export --model terrain --set size=99999999999 --out a.glb");
+  EXPECT_TRUE(mentions(value.err, "size = 99999999999 is not allowed")) << value.err;
+  const Outcome large = run_psygen("export --model terrain --set size=1e3 --out a.glb");
+  EXPECT_TRUE(mentions(large.err, "an integer from 4 to 128, not '1e3'")) << large.err;
   const Outcome block = run_psygen("export --block 600,1 --out a.glb");
   EXPECT_EQ(block.code, 1);
   EXPECT_TRUE(mentions(block.err, "0 to 511")) << block.err;
@@ -213,6 +218,35 @@ TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
   const Outcome world = run_psygen("export --model rock --world missing.toml --out a.glb");
   EXPECT_EQ(world.code, 1);
   EXPECT_TRUE(mentions(world.err, "missing.toml")) << world.err;
+}
+
+TEST(CommandLine, SeedsOfAll64BitsAreTakenAndPrintedAsTheyWereGiven) {
+  const TemporaryFolder folder;
+  const auto exported = [&](const std::string& seed) {
+    const std::string file = (folder / "seed.obj").string();
+    const Outcome outcome = run_psygen("export --model rock --set seed=" + seed + " --out " + file);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return read(file);
+  };
+  EXPECT_NE(exported("15585416654101124857"), exported("15585416654101124856"));
+  EXPECT_EQ(exported("18446744073709551615"), exported("-1"));
+  const Outcome beyond =
+      run_psygen("export --model rock --set seed=18446744073709551616 --out a.glb");
+  EXPECT_EQ(beyond.code, 2);
+  EXPECT_TRUE(mentions(beyond.err, "from -9223372036854775808 to 18446744073709551615, not"))
+      << beyond.err;
+
+  const std::string seed = "15585416654101124857";
+  const std::string world = (folder / "world.toml").string();
+  std::ofstream(world) << "format = 1\n[world]\nname = \"Größe\"\nseed = \"" << seed
+                       << "\"\nblocks = [1, 1]\n";
+  const Outcome flight = run_psygen(
+      "fly --headless --frames 1 --size 64x36 --view-distance 64 --json --world " + world);
+  EXPECT_TRUE(mentions(flight.out, "\"seed\": " + seed)) << flight.out << flight.err;
+  const Outcome blocks =
+      run_psygen("amplify --world " + world + " --out " + (folder / "b").string());
+  EXPECT_EQ(blocks.code, 0) << blocks.err;
+  EXPECT_TRUE(mentions(read(folder / "b/world.toml"), "seed = \"" + seed + "\"\n"));
 }
 
 TEST(CommandLine, ExportWritesASpeciesOfAWorld) {
