@@ -76,6 +76,8 @@ CameraPath::CameraPath(Settings settings, std::vector<PathPoint> points)
 
 CameraPath::Run::Run(std::span<const PathPoint> points)
     : start_s(points.front().time_s),
+      clearance_m(
+          std::min(kClearance_m, std::ranges::min(points, {}, &PathPoint::height_m).height_m)),
       x(spline_of(points, [](const PathPoint& p) { return p.at_m.x; })),
       z(spline_of(points, [](const PathPoint& p) { return p.at_m.y; })),
       height(spline_of(points, [](const PathPoint& p) { return p.height_m; })),
@@ -136,7 +138,7 @@ core::CameraPose CameraPath::pose_at(double t, const World& world) const {
       {settings_.origin_block, {run.x.value(time), 0, run.z.value(time)}}, world.block_size_m());
   double ground_m = 0;
   const double smooth_m = smooth_ground_m(time, run, world, pose.position.block, ground_m);
-  pose.position.local.y = std::max(smooth_m + run.height.value(time), ground_m + kClearance_m);
+  pose.position.local.y = std::max(smooth_m + run.height.value(time), ground_m + run.clearance_m);
   pose.yaw = run.yaw.value(time);
   pose.pitch = std::clamp(run.pitch.value(time), -std::numbers::pi / 2, std::numbers::pi / 2);
   return pose;

@@ -34,7 +34,10 @@ struct PathPoint {
 
 class CameraPath {
  public:
-  // The camera never comes nearer to the ground than this.
+  // Of a point above the ground. Lower, and the nearest that is drawn cuts into slopes.
+  static constexpr double kLeastHeightM = 0.5, kMostHeightM = 1e5;
+  // The camera never comes nearer to the ground than this, or than its lowest point where that is
+  // lower.
   static constexpr double kClearance_m = 2;
 
   struct Settings {
@@ -62,6 +65,7 @@ class CameraPath {
   struct Run {
     explicit Run(std::span<const PathPoint> points);
     double start_s;
+    double clearance_m;  // from the ground
     Spline x, z, height, yaw, pitch;
   };
   const Run& run_at(double t) const;

@@ -196,13 +196,38 @@ TEST(CameraPath, IsTheSameFarFromTheOriginAndAcrossTheSeamOfTheIndices) {
   EXPECT_GE(clearance_m(pose, world), 2);
 }
 
-TEST(CameraPath, KeepsItsDistanceOnTheRoughestGround) {
-  const World world = parsed(
+World rough() {
+  return parsed(
       "format = 1\n[world]\nname = \"rough\"\nseed = 1\nblocks = [0, 0]\ncell_m = 0.5\n"
       "[terrain]\noctaves = 12\nheight = 0.4\nrelief_m = 400\nfeature_m = 60\n");
+}
+
+TEST(CameraPath, KeepsItsDistanceOnTheRoughestGround) {
+  const World world = rough();
   const CameraPath path({"p", {}, 0.1}, {point(0, {0, 0}, 2), point(20, {1000, 300}, 2)});
   for (double t = 0; t <= 20; t += 0.01)
     EXPECT_GE(clearance_m(path.pose_at(t, world), world), CameraPath::kClearance_m - 1e-9);
+}
+
+TEST(CameraPath, WalksAtTheHeightOfAnEye) {
+  const World world = rough();
+  const CameraPath standing({"p", {}, 1}, {point(0, {5, 6}, 1.7)});
+  EXPECT_NEAR(clearance_m(standing.pose_at(0, world), world), 1.7, 1e-6);
+  const CameraPath path({"p", {}, 0.1}, {point(0, {0, 0}, 1.7), point(20, {28, 0}, 1.7)});
+  double lowest = 100;
+  for (double t = 0; t <= 20; t += 0.01)
+    lowest = std::min(lowest, clearance_m(path.pose_at(t, world), world));
+  EXPECT_GE(lowest, 1.7 - 1e-9);
+  EXPECT_LT(lowest, 1.75);
+}
+
+TEST(CameraPath, NeverComesNearerToTheGroundThanItsLowestPoint) {
+  const World world = rough();
+  const std::vector<PathPoint> points{point(0, {0, 0}, 1.7), point(4, {20, 0}, 1.7),
+                                      point(5, {25, 0}, 90), point(9, {45, 0}, 1.7)};
+  const CameraPath path({"p", {}, 0.1}, points);
+  for (double t = 0; t <= 9; t += 0.01)
+    EXPECT_GE(clearance_m(path.pose_at(t, world), world), 1.7 - 1e-9) << t;
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ TEST(PathFile, NumbersOutOfRangeAndWrongTypesAreRefused) {
   EXPECT_THAT(error_with("at_m = [1, 2]", "at_m = [1e30, 2]"), HasSubstr("point[0].at_m[0]"));
   EXPECT_THAT(error_with("at_m = [1, 2]", "at_m = [1, inf]"), HasSubstr("point[0].at_m[1]"));
   EXPECT_THAT(error_with("at_m = [1, 2]", "at_m = [1, 2, 3]"), HasSubstr("array of 2"));
-  EXPECT_THAT(error_with("height_m = 5", "height_m = 1"), HasSubstr("a number from 2 to"));
+  EXPECT_THAT(error_with("height_m = 5", "height_m = 0.4"), HasSubstr("a number from 0.5 to"));
+  EXPECT_EQ(error_with("height_m = 5", "height_m = 1.7"), "accepted") << "the height of an eye";
   EXPECT_THAT(error_with("height_m = 5", "height_m = \"5\""), HasSubstr("point[0].height_m"));
   EXPECT_THAT(error_with("pitch_deg = -10", "pitch_deg = 90"), HasSubstr("point[1].pitch_deg"));
   EXPECT_THAT(error_with("smoothing_s = 2", "smoothing_s = 0"), HasSubstr("path.smoothing_s"));
