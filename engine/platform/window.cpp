@@ -66,10 +66,40 @@ std::optional<Key> key_of(int glfw_key) {
   return found == kOthers.end() ? std::nullopt : std::optional(found->second);
 }
 
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+std::int64_t common_area(const Rectangle& a, const Rectangle& b) {
+  const int width = std::min(a.x + a.width, b.x + b.width) - std::max(a.x, b.x);
+  const int height = std::min(a.y + a.height, b.y + b.height) - std::max(a.y, b.y);
+  return std::int64_t{std::max(width, 0)} * std::max(height, 0);
+}
+
+// The monitor that shows most of a place, the first one if none does; null without monitors.
+GLFWmonitor* monitor_of(const Rectangle& place) {
+  int count = 0;
+  GLFWmonitor** const monitors = glfwGetMonitors(&count);
+  GLFWmonitor* best = nullptr;
+  std::int64_t most = -1;
+  for (int i = 0; i < count; ++i) {
+    const GLFWvidmode* const mode = glfwGetVideoMode(monitors[i]);
+    if (mode == nullptr) continue;
+    Rectangle shown{0, 0, mode->width, mode->height};
+    glfwGetMonitorPos(monitors[i], &shown.x, &shown.y);
+    const std::int64_t area = common_area(place, shown);
+    if (area <= most) continue;
+    most = area;
+    best = monitors[i];
+  }
+  return best;
+}
+
 }  // namespace
 
 struct Window::Implementation {
   GLFWwindow* window = nullptr;
+  Rectangle windowed;       // where it was before it covered a monitor
   InputState input;         // collected since the last poll
   glm::dvec2 pointer{0.0};  // where it was last told to be; beyond the window while looking
 
@@ -136,6 +166,7 @@ core::Result<std::unique_ptr<Window>> Window::create(const WindowSettings& setti
   }
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+  glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // a full screen stays when another window is used
   glfwWindowHint(GLFW_VISIBLE, settings.visible ? GLFW_TRUE : GLFW_FALSE);
   GLFWwindow* window = glfwCreateWindow(static_cast<int>(settings.size.width),
                                         static_cast<int>(settings.size.height),
@@ -190,6 +221,10 @@ InputState Window::poll() {
   return result;
 }
 
+void Window::keep_alive() {
+  glfwPollEvents();
+}
+
 void Window::wait_events(double timeout_s) {
   if (std::isfinite(timeout_s) && timeout_s > 0) glfwWaitEventsTimeout(timeout_s);
 }
@@ -204,6 +239,38 @@ void Window::request_close() {
 
 bool Window::minimised() const {
   return glfwGetWindowAttrib(implementation_->window, GLFW_ICONIFIED) == GLFW_TRUE;
+}
+
+core::Result<void> Window::set_fullscreen(bool fullscreen) {
+  if (fullscreen == this->fullscreen()) return {};
+  GLFWwindow* const window = implementation_->window;
+  Rectangle& place = implementation_->windowed;
+  if (!fullscreen) {
+    glfwSetWindowMonitor(window, nullptr, place.x, place.y, place.width, place.height, 0);
+    return {};
+  }
+  Rectangle now;
+  glfwGetWindowPos(window, &now.x, &now.y);
+  glfwGetWindowSize(window, &now.width, &now.height);
+  GLFWmonitor* const monitor = monitor_of(now);
+  if (monitor == nullptr) {
+    return core::fail(core::ErrorCode::kNoDevice,
+                      fmt::format("there is no monitor to fill: {}", glfw_error()));
+  }
+  place = now;
+  const GLFWvidmode* const mode = glfwGetVideoMode(monitor);
+  glfwSetWindowMonitor(window, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+  return {};
+}
+
+bool Window::fullscreen() const {
+  return glfwGetWindowMonitor(implementation_->window) != nullptr;
+}
+
+float Window::content_scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(implementation_->window, &x, &y);
+  return std::isfinite(y) && y > 0 ? y : 1.0F;
 }
 
 void Window::set_title(const std::string& title) {

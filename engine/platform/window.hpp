@@ -31,6 +31,9 @@ class Window final : public core::SurfaceProvider {
 
   // Handles everything that happened and tells what it was. Call once per frame.
   InputState poll();
+  // Handles everything that happened, for while the program is busy; the next poll() tells what it
+  // was.
+  void keep_alive();
   // Sleeps until something happens, at most `timeout_s` seconds; the next poll() tells what it was.
   // For windows that are minimised, so that they do not spin.
   void wait_events(double timeout_s);
@@ -39,6 +42,15 @@ class Window final : public core::SurfaceProvider {
   bool should_close() const;
   void request_close();
   bool minimised() const;
+
+  // Covers the monitor that shows most of the window, in the monitor's present mode; leaving that
+  // brings the window back to its size and place. Fails with kNoDevice where the window system has
+  // no monitor; then the window stays as it is.
+  core::Result<void> set_fullscreen(bool fullscreen);
+  bool fullscreen() const;
+  // Pixels per unit that text and controls are drawn with: 1 on usual displays, 2 on fine ones.
+  float content_scale() const;
+
   void set_title(const std::string& title);
   void set_size(core::Extent size);  // in screen coordinates
   void minimise();

@@ -105,4 +105,17 @@ bool VirtualDisplay::xdotool(std::vector<std::string> arguments) const {
   return child > 0 && waitpid(child, &status, 0) == child && status == 0;
 }
 
+std::string VirtualDisplay::output(std::vector<std::string> command) const {
+  std::string printed;
+  pid_t child = -1;
+  line_from(
+      child, [&](int writer) { return spawn(std::move(command), writer); },
+      [&](const std::string& line) {
+        printed += line + "\n";
+        return false;
+      });
+  if (child > 0) waitpid(child, nullptr, 0);
+  return printed;
+}
+
 }  // namespace psygen::platform

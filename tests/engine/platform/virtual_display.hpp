@@ -20,6 +20,8 @@ class VirtualDisplay {
 
   // Runs xdotool with these arguments and waits for it; true when it succeeded.
   bool xdotool(std::vector<std::string> arguments) const;
+  // What a command on this display prints; waits for its end.
+  std::string output(std::vector<std::string> command) const;
 
  private:
   VirtualDisplay() = default;

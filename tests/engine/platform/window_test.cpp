@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #include "tests/engine/platform/virtual_display.hpp"
 
@@ -64,6 +65,66 @@ TEST_F(WindowOnADisplay, TellsWhenAndToWhatItWasResized) {
   }));
 }
 
+TEST_F(WindowOnADisplay, CoversTheScreenAndComesBackToItsSizeAndPlace) {
+  ASSERT_TRUE(display_->xdotool({"search", "--sync", "--onlyvisible", "--name",
+                                 "psygen window test", "windowmove", "%1", "210", "130"}));
+  window_->set_size({700, 400});
+  const auto has = [&](core::Extent size) {
+    return eventually(*window_,
+                      [&](const InputState&) { return window_->framebuffer_size() == size; });
+  };
+  ASSERT_TRUE(has({700, 400}));
+  const auto geometry = [&] {
+    return display_->output({"xdotool", "search", "--onlyvisible", "--name", "psygen window test",
+                             "getwindowgeometry", "--shell", "%1"});
+  };
+  std::string before = geometry(), last;
+  ASSERT_TRUE(eventually(*window_, [&](const InputState&) {  // the window manager is done with it
+    last = std::exchange(before, geometry());
+    return before == last && before.find("X=2") != std::string::npos;
+  })) << before;
+  for (int time = 0; time < 2; ++time) {
+    EXPECT_FALSE(window_->fullscreen());
+    ASSERT_TRUE(window_->set_fullscreen(true));
+    EXPECT_TRUE(window_->fullscreen());
+    EXPECT_TRUE(window_->set_fullscreen(true)) << "it is already";
+    EXPECT_TRUE(has({1280, 1024}));
+    ASSERT_TRUE(window_->set_fullscreen(false));
+    EXPECT_TRUE(has({700, 400}));
+    EXPECT_TRUE(eventually(*window_, [&](const InputState&) { return geometry() == before; }))
+        << before << geometry();
+  }
+}
+
+TEST_F(WindowOnADisplay, StaysOnTheScreenWhenAnotherWindowIsUsed) {
+  take_focus();
+  ASSERT_TRUE(window_->set_fullscreen(true));
+  ASSERT_TRUE(eventually(*window_, [&](const InputState&) {
+    return window_->framebuffer_size() == core::Extent{1280, 1024};
+  }));
+  auto other = Window::create({"another window", {100, 100}, true});
+  ASSERT_TRUE(other) << other.error().message;
+  ASSERT_TRUE(display_->xdotool({"search", "--sync", "--onlyvisible", "--name", "another window",
+                                 "windowactivate", "--sync"}));
+  for (int i = 0; i < 10; ++i) {
+    window_->poll();
+    window_->wait_events(0.01);
+  }
+  EXPECT_FALSE(window_->minimised());
+  EXPECT_TRUE(window_->fullscreen());
+}
+
+TEST_F(WindowOnADisplay, TellsHowFineTheDisplayIs) {
+  EXPECT_EQ(window_->content_scale(), 1.0F);
+  window_.reset();  // the window system is asked when the first window is made
+  display_->output({"xprop", "-root", "-format", "RESOURCE_MANAGER", "8s", "-set",
+                    "RESOURCE_MANAGER", "Xft.dpi: 192"});
+  auto created = Window::create({"psygen window test", {640, 360}, true});
+  ASSERT_TRUE(created) << created.error().message;
+  window_ = std::move(*created);
+  EXPECT_NEAR(window_->content_scale(), 2.0F, 0.05F);
+}
+
 TEST_F(WindowOnADisplay, HasNoPixelsWhileItIsMinimised) {
   window_->minimise();
   EXPECT_TRUE(eventually(*window_, [&](const InputState&) { return window_->minimised(); }));
@@ -101,6 +162,17 @@ TEST_F(WindowOnADisplay, TellsWhichKeysAreHeldAndWhichWentDown) {
   ASSERT_TRUE(display_->xdotool({"key", "F12"}));
   EXPECT_TRUE(
       eventually(*window_, [](const InputState& input) { return input.was_pressed(Key::kF12); }));
+}
+
+TEST_F(WindowOnADisplay, TellsWhatHappenedWhileTheProgramWasBusy) {
+  take_focus();
+  ASSERT_TRUE(display_->xdotool({"key", "F3"}));
+  for (int i = 0; i < 20; ++i) {
+    window_->wait_events(0.01);
+    window_->keep_alive();
+  }
+  EXPECT_TRUE(
+      eventually(*window_, [](const InputState& input) { return input.was_pressed(Key::kF3); }));
 }
 
 TEST_F(WindowOnADisplay, MouseTurnsTheCameraOnlyWhileTheRightButtonIsDown) {
