@@ -74,16 +74,19 @@ void land_everything(State& s) {
                 s.counters, s.totals);
 }
 
-void create_all_nodes(State& s) {
+// False if it was ended early.
+bool create_all_nodes(State& s, const std::function<bool()>& go_on) {
   do {
     streaming_system(s.settings, s.camera, s.quality, s.facts, s.daylight, s.streaming, s.entities,
                      s.synthesis, s.counters);
+    if (!go_on()) return false;
   } while (!s.streaming.missing.empty());
+  return true;
 }
 
 }  // namespace
 
-void Scene::tick_without_drawing(const core::CameraPose& pose) {
+void Scene::tick_without_drawing(const core::CameraPose& pose, const std::function<bool()>& go_on) {
   State& s = state_;
   s.input.pose = pose;
   s.clock.real_s = s.clock.read_real_s();
@@ -97,7 +100,7 @@ void Scene::tick_without_drawing(const core::CameraPose& pose) {
                     VisibilityQuery(s.entities), s.view, s.counters);
   cache_system(s.settings, s.clock, s.camera, s.quality, s.facts, s.view, CacheQuery(s.entities),
                s.synthesis, s.counters, s.totals);
-  s.synthesis.manager->wait_all();
+  s.synthesis.manager->wait_all(go_on);
   synthesis_system(s.settings, s.synthesis, s.counters, s.trace);
   upload_system(s.settings, s.clock, s.facts, UploadQuery(s.entities), s.synthesis, s.output,
                 s.counters, s.totals);
@@ -108,13 +111,15 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   State& s = state_;
   std::uint64_t synthesised = 0;
   int quiet = 0, idle = 0, refused = 0;
+  double fraction = 0;
+  const auto go_on = [&] { return !progress || progress("filling the cache", fraction); };
   s.synthesis.settling = true;
   s.synthesis.coarsening = 1;
   // What frames in flight may read cannot be given back before they are done, and none follows.
   if (s.output.renderer != nullptr) s.output.renderer->wait_idle();
   while (quiet < kQuietTicks && idle < kIdleTicks && refused < kRefusedTicks) {
     const float coarsening = s.synthesis.coarsening;
-    tick_without_drawing(pose);
+    tick_without_drawing(pose, go_on);
     synthesised += s.counters.models_synthesised;
     const bool moved = s.counters.models_synthesised > 0 || s.counters.failed > 0 ||
                        s.counters.nodes_created > 0 || s.synthesis.coarsening != coarsening;
@@ -125,7 +130,8 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
     const double missing = s.counters.requests + static_cast<double>(s.streaming.missing.size()) *
                                                      (1.0 + s.facts.models_per_block);
     const double made = static_cast<double>(synthesised);
-    if (progress && !progress("filling the cache", made / (made + missing + 1.0))) break;
+    fraction = made / (made + missing + 1.0);
+    if (!go_on()) break;
   }
   s.synthesis.settling = false;
   return synthesised;
@@ -148,7 +154,9 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
   s.input.pose = pose;
   input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
-  create_all_nodes(s);
+  double fraction = 0;
+  const auto go_on = [&] { return !progress || progress("amplifying", fraction); };
+  if (!create_all_nodes(s, go_on)) return 0;
   if (auto fits = check_region(); !fits) return tl::unexpected(fits.error());
   want_everything(s);
   const std::vector<synthesis::Want> all = std::move(s.synthesis.wants);
@@ -160,13 +168,13 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
                               *s.synthesis.cost, *s.synthesis.manager,
                               {std::numeric_limits<double>::infinity(), UINT32_MAX},
                               synthesis::Policy::kLongest);
-    s.synthesis.manager->wait_all();
+    s.synthesis.manager->wait_all(go_on);
     s.counters = {};
     land_everything(s);
     done += s.counters.models_synthesised;
     failed += s.counters.failed;
-    const double fraction = static_cast<double>(first + count) / static_cast<double>(all.size());
-    if (progress && !progress("amplifying", fraction)) return done;
+    fraction = static_cast<double>(first + count) / static_cast<double>(all.size());
+    if (!go_on()) return done;
   }
   if (done + failed < all.size()) {
     return core::fail(core::ErrorCode::kOverBudget,

@@ -11,7 +11,8 @@
 
 namespace psygen::scene {
 
-// Told how far something long has come: a label and a fraction in [0, 1]. False ends it early.
+// Told how far something long has come: a label and a fraction in [0, 1]; often enough for a window
+// to stay alive. False ends it early.
 using Progress = std::function<bool(std::string_view, double)>;
 
 class Scene {
@@ -53,7 +54,7 @@ class Scene {
  private:
   Scene() = default;
   core::Result<void> check_region() const;
-  void tick_without_drawing(const core::CameraPose& pose);
+  void tick_without_drawing(const core::CameraPose& pose, const std::function<bool()>& go_on);
 
   State state_;
   synthesis::CalibrationReport calibration_;

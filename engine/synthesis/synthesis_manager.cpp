@@ -237,13 +237,13 @@ std::uint64_t SynthesisManager::outstanding_in_threads() const {
   return published_ - done;
 }
 
-bool SynthesisManager::wait_all() {
-  if (!virtual_) return wait_for_threads();
+bool SynthesisManager::wait_all(const std::function<bool()>& go_on) {
+  if (!virtual_) return wait_for_threads(go_on);
   execute_jobs(virtual_->finish_all(virtual_clock_()));
   return true;
 }
 
-bool SynthesisManager::wait_for_threads() {
+bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on) {
   workshop_->waiting.store(true, std::memory_order_seq_cst);
   bool all = true;
   while (outstanding_in_threads() > 0) {
@@ -259,6 +259,10 @@ bool SynthesisManager::wait_for_threads() {
       workshop_->finished.wait_until(lock, std::chrono::system_clock::now() + kWatchdogPeriod);
     }
     run_watchdog();
+    if (go_on && !go_on()) {
+      all = false;
+      break;
+    }
   }
   workshop_->waiting.store(false, std::memory_order_seq_cst);
   return all;

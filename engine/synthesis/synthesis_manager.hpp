@@ -95,10 +95,10 @@ class SynthesisManager {
   // Appends the completions that have arrived, in order per modeler; returns how many. Runs the
   // watchdog. Each claimed request has exactly one completion (plus a `late` one if abandoned).
   std::size_t collect(std::vector<Completion>& out);
-  // Blocks until every published request is finished or given up; the virtual clock stands still
+  // Blocks until every published request is finished or given up; a virtual clock stands still
   // meanwhile. For tools, tests and the lazy paradigm; the tick never calls it. False if no modeler
-  // is left to finish them.
-  bool wait_all();
+  // is left to finish them, and once `go_on`, called some 50 times a second by a real clock, says so.
+  bool wait_all(const std::function<bool()>& go_on = {});
 
   // Requests published and neither reclaimed nor finished.
   std::uint64_t outstanding() const;
@@ -116,7 +116,7 @@ class SynthesisManager {
   void publish_to_threads(std::vector<Request>&& plan);
   void drain();
   void drain_threads(std::vector<Completion>& out);
-  bool wait_for_threads();
+  bool wait_for_threads(const std::function<bool()>& go_on = {});
   std::uint64_t outstanding_in_threads() const;
   void execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
   bool start_modeler();

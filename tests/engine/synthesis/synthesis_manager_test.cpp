@@ -220,6 +220,23 @@ TEST(SynthesisManager, RequestsAreClaimedInTheOrderOfThePlan) {
   EXPECT_EQ(order, (std::vector<std::int64_t>{5, 3, 9}));
 }
 
+TEST(SynthesisManager, WaitingAsksWhetherItShallGoOn) {
+  Gate gate;
+  const models::Registry registry = registry_of(std::make_unique<ScriptedModel>(
+      "gated", [&](const models::Parameters&, int) { gate.wait(); }));
+  Jobs jobs(registry);
+  SynthesisManager manager(registry, with(1));
+  manager.publish(jobs.make_many(0, 2));
+  int asked = 0;
+  EXPECT_FALSE(manager.wait_all([&] { return ++asked < 3; }));
+  EXPECT_EQ(asked, 3);
+  EXPECT_TRUE(manager.wait_all([&] {
+    if (++asked == 6) gate.open();
+    return true;
+  }));
+  EXPECT_GE(asked, 6);
+}
+
 #ifdef __linux__
 TEST(SynthesisManager, ModelersGiveUpTheirPriorityWhenTheyAreToldTo) {
   std::vector<int> nice;  // of the modeler, in each request
