@@ -103,9 +103,12 @@ bool App::saves_picture(std::uint64_t frame) const {
 core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double dt_s) {
   scene::State& state = scene_->state();
   state.clock.now_s = flight_s;
-  state.input.overlay_lines.clear();
+  state.input.panels.clear();
   if (window_ && overlay_) {
-    state.input.overlay_lines = overlay_figures_.lines(state, renderer_->device());
+    render::TextPanel panel;
+    for (std::string& line : overlay_figures_.lines(state, renderer_->device()))
+      panel.lines.push_back({std::move(line)});
+    state.input.panels.push_back(std::move(panel));
   }
   const double start_s = core::monotonic_seconds();
   const double cpu_start_s = core::thread_cpu_seconds();

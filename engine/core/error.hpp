@@ -18,6 +18,7 @@ enum class ErrorCode : std::uint8_t {
   kNoDevice,         // no usable Vulkan device or no display
   kDeviceLost,
   kSynthesisFailed,  // a model's synthesis threw or was given up
+  kInterrupted,      // given up because the caller asked for it
   kInternal,
 };
 

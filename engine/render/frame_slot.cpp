@@ -32,7 +32,7 @@ Result<UniqueQueryPool> make_queries(const Device& device) {
 
 }  // namespace
 
-Result<void> FrameSlot::create(const Device& device, Pipelines& pipelines) {
+Result<void> FrameSlot::create(const Device& device) {
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
@@ -64,14 +64,15 @@ Result<void> FrameSlot::create(const Device& device, Pipelines& pipelines) {
   Result<Buffer> glyphs =
       storage_buffer(device, Overlay::kMaxQuads * 6 * sizeof(shaders::OverlayVertex));
   if (!glyphs) return tl::unexpected(glyphs.error());
-  Result<VkDescriptorSet> set = pipelines.make_set(device);
-  if (!set) return tl::unexpected(set.error());
   frame_ = std::move(*frame);
   draws_ = std::move(*draws);
   glyphs_ = std::move(*glyphs);
-  set_ = *set;
-  pipelines.write_set(device, set_, frame_, draws_, glyphs_);
   return {};
+}
+
+void FrameSlot::use(const Device& device, const Pipelines& pipelines, std::size_t number) {
+  set_ = pipelines.set(number);
+  pipelines.write_set(device, set_, frame_, draws_, glyphs_);
 }
 
 Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,

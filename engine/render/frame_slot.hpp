@@ -15,7 +15,9 @@ namespace psygen::render {
 
 class FrameSlot {
  public:
-  core::Result<void> create(const Device& device, Pipelines& pipelines);
+  core::Result<void> create(const Device& device);
+  // Frames are recorded with these pipelines from now on; `number` of the slot, from 0.
+  void use(const Device& device, const Pipelines& pipelines, std::size_t number);
 
   // Copies a frame's data into the slot's buffers; they grow where needed (kOutOfMemory).
   core::Result<void> write(const Device& device, const Pipelines& pipelines,

@@ -1,23 +1,38 @@
 #include "engine/render/overlay.hpp"
 
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace psygen::render {
 
-struct Overlay::Font {
+struct Overlay::Fonts {
   ImFontAtlas atlas;
-  ImFont* font = nullptr;
+  std::array<ImFont*, kMaxScale> by_scale{};
   unsigned char* pixels = nullptr;  // owned by the atlas
   int width = 0, height = 0;
 };
 
 namespace {
 
-constexpr float kMargin = 8.0F;
+// In pixels of scale 1.
+constexpr float kFontSize = 13.0F;
+constexpr float kMargin = 8.0F;  // around a panel, and between it and its text
+constexpr float kBarHeight = 10.0F;
+constexpr float kSwatch = 9.0F;
+
+constexpr std::size_t kLeastColumns = 8, kBarColumns = 40;
+constexpr std::size_t kSwatchColumns = 2;     // that a swatch takes before its text
+constexpr std::size_t kContinuedColumns = 2;  // by which rows that go on are indented
+
 constexpr glm::vec4 kTextColour{0.96F, 0.97F, 0.94F, 1.0F};
-constexpr glm::vec4 kPanelColour{0.03F, 0.04F, 0.06F, 0.55F};
+constexpr glm::vec4 kPanelColour{0.03F, 0.04F, 0.06F, 0.70F};
+constexpr glm::vec4 kGroundColour{0.06F, 0.08F, 0.11F, 1.0F};
+constexpr glm::vec4 kBarColour{0.45F, 0.66F, 0.85F, 1.0F};
+constexpr glm::vec4 kBarGroundColour{0.25F, 0.27F, 0.30F, 1.0F};
 
 struct Box {
   float x0, y0, x1, y1;
@@ -25,6 +40,7 @@ struct Box {
 
 void add_quad(std::vector<shaders::OverlayVertex>& out, const Box& at, const Box& uv,
               const glm::vec4& colour) {
+  if (out.size() >= Overlay::kMaxQuads * 6) return;
   const auto corner = [&](bool right, bool bottom) {
     return shaders::OverlayVertex{{right ? at.x1 : at.x0, bottom ? at.y1 : at.y0,
                                    right ? uv.x1 : uv.x0, bottom ? uv.y1 : uv.y0},
@@ -40,50 +56,195 @@ void add_quad(std::vector<shaders::OverlayVertex>& out, const Box& at, const Box
   }
 }
 
+void add_area(std::vector<shaders::OverlayVertex>& out, const Box& at, const ImFontAtlas& atlas,
+              const glm::vec4& colour) {
+  const ImVec2 white = atlas.TexUvWhitePixel;
+  add_quad(out, at, {white.x, white.y, white.x, white.y}, colour);
+}
+
+glm::vec4 colour_of(std::uint32_t rgb) {
+  const auto part = [rgb](unsigned shift) {
+    return static_cast<float>(rgb >> shift & 0xFF) / 255.0F;
+  };
+  return {part(16), part(8), part(0), 1.0F};
+}
+
+// Bytes that are no UTF-8 become the font's replacement character.
+std::vector<ImWchar> characters_of(const std::string& text) {
+  std::vector<ImWchar> characters;
+  const char* const end = text.data() + text.size();
+  for (const char* at = text.data(); at < end;) {
+    unsigned character = 0;
+    at += std::max(ImTextCharFromUtf8(&character, at, end), 1);
+    constexpr unsigned kReplacement = 0xFFFD;
+    characters.push_back(static_cast<ImWchar>(character <= 0xFFFF ? character : kReplacement));
+  }
+  return characters;
+}
+
+// One row of a panel as it is shown: a line, or a part of one.
+struct Row {
+  std::vector<ImWchar> characters = {};
+  std::size_t indent = 0;  // columns before it
+  std::optional<std::uint32_t> swatch = {};
+  std::optional<float> bar = {};
+
+  std::size_t columns() const {
+    return std::max(indent + characters.size(), bar ? kBarColumns : 0);
+  }
+};
+
+// Breaks at the last space that fits, or within a word that is longer than a row.
+void add_rows(const TextLine& line, std::size_t columns, std::vector<Row>& rows) {
+  std::vector<ImWchar> rest = characters_of(line.text);
+  Row row{.indent = line.swatch ? kSwatchColumns : 0, .swatch = line.swatch};
+  while (row.indent + rest.size() > columns) {
+    const auto room = static_cast<std::ptrdiff_t>(columns - row.indent);
+    const auto space = std::find(std::make_reverse_iterator(rest.begin() + room + 1),
+                                 std::make_reverse_iterator(rest.begin() + 1), ImWchar{' '});
+    const bool found = space.base() != rest.begin() + 1;
+    const auto end = found ? space.base() - 1 : rest.begin() + room;
+    row.characters.assign(rest.begin(), end);
+    rows.push_back(row);
+    rest.erase(rest.begin(), found ? end + 1 : end);
+    row = {.indent = kContinuedColumns + (line.swatch ? kSwatchColumns : 0)};
+  }
+  row.characters = std::move(rest);
+  row.bar = line.bar;
+  rows.push_back(std::move(row));
+}
+
+// Lays out panel after panel, each where the ones before leave it room.
+class Layout {
+ public:
+  Layout(const ImFontAtlas& atlas, const ImFont& font, float scale, core::Extent picture,
+         std::vector<shaders::OverlayVertex>& out)
+      : atlas_(atlas),
+        font_(font),
+        scale_(scale),
+        advance_(font.FindGlyph(' ')->AdvanceX),
+        width_(static_cast<float>(picture.width)),
+        height_(static_cast<float>(picture.height)),
+        out_(out) {}
+
+  void add(const TextPanel& panel) {
+    const float room = (width_ - 4 * margin()) / advance_;
+    const std::size_t columns =
+        std::max(kLeastColumns, static_cast<std::size_t>(std::max(room, 0.0F)));
+    std::vector<Row> rows;
+    for (const TextLine& line : panel.lines)
+      add_rows(line, columns, rows);
+    if (rows.empty()) return;
+    std::size_t widest = 0;
+    float height = 2 * margin();
+    for (const Row& row : rows) {
+      widest = std::max(widest, std::min(row.columns(), columns));
+      height += row_height(row);
+    }
+    const float width = 2 * margin() + static_cast<float>(widest) * advance_;
+    const Box box = place(panel.anchor, width, height);
+    add_area(out_, box, atlas_, kPanelColour);
+    float y = box.y0 + margin();
+    for (const Row& row : rows) {
+      draw(row, box.x0 + margin(), box.x1 - margin(), y);
+      y += row_height(row);
+    }
+  }
+
+ private:
+  float margin() const { return kMargin * scale_; }
+  float line_height() const { return (kFontSize + 2) * scale_; }
+  float row_height(const Row& row) const {
+    return line_height() + (row.bar ? (kBarHeight + 4) * scale_ : 0);
+  }
+
+  Box place(Anchor anchor, float width, float height) {
+    float x = margin(), y = margin();
+    if (anchor == Anchor::kTopRight) x = width_ - margin() - width;
+    if (anchor == Anchor::kBottom || anchor == Anchor::kMiddle) x = (width_ - width) / 2;
+    if (anchor == Anchor::kBottom) y = height_ - margin() - height;
+    if (anchor == Anchor::kMiddle) y = (height_ - height) / 2;
+    x = std::floor(std::max(x, 0.0F));
+    y = std::floor(std::max(y, 0.0F));
+    if (anchor == Anchor::kTopRight && x < left_.x1 + margin())
+      y = std::max(y, left_.y1 + margin());
+    const Box box{x, y, x + width, y + height};
+    if (anchor == Anchor::kTopLeft) left_ = box;
+    return box;
+  }
+
+  void draw(const Row& row, float x, float right, float y) {
+    if (row.swatch) {
+      const float top = y + 2 * scale_, size = kSwatch * scale_;
+      add_area(out_, {x, top, x + size, top + size}, atlas_, kTextColour);
+      add_area(out_, {x + scale_, top + scale_, x + size - scale_, top + size - scale_}, atlas_,
+               colour_of(*row.swatch));
+    }
+    float at = x + static_cast<float>(row.indent) * advance_;
+    for (const ImWchar character : row.characters) {
+      const ImFontGlyph* glyph = font_.FindGlyph(character);
+      if (glyph->Visible) {
+        add_quad(out_, {at + glyph->X0, y + glyph->Y0, at + glyph->X1, y + glyph->Y1},
+                 {glyph->U0, glyph->V0, glyph->U1, glyph->V1}, kTextColour);
+      }
+      at += advance_;
+    }
+    if (!row.bar) return;
+    const float top = y + line_height() + 2 * scale_, bottom = top + kBarHeight * scale_;
+    const float done = std::isfinite(*row.bar) ? std::clamp(*row.bar, 0.0F, 1.0F) : 0.0F;
+    add_area(out_, {x, top, right, bottom}, atlas_, kBarGroundColour);
+    add_area(out_, {x, top, std::round(x + (right - x) * done), bottom}, atlas_, kBarColour);
+  }
+
+  const ImFontAtlas& atlas_;
+  const ImFont& font_;
+  const float scale_, advance_;  // every character of the font is as wide
+  const float width_, height_;   // of the picture
+  Box left_{0, 0, -1e9F, 0};     // the last panel on the left
+  std::vector<shaders::OverlayVertex>& out_;
+};
+
 }  // namespace
 
-Overlay::Overlay() : font_(std::make_unique<Font>()) {
-  font_->font = font_->atlas.AddFontDefault();
-  font_->atlas.GetTexDataAsAlpha8(&font_->pixels, &font_->width, &font_->height);
+Overlay::Overlay() : fonts_(std::make_unique<Fonts>()) {
+  for (std::size_t i = 0; i < fonts_->by_scale.size(); ++i) {
+    ImFontConfig config;
+    config.OversampleH = config.OversampleV = 1;
+    config.PixelSnapH = true;
+    config.SizePixels = kFontSize * static_cast<float>(i + 1);
+    fonts_->by_scale[i] = fonts_->atlas.AddFontDefault(&config);
+  }
+  fonts_->atlas.GetTexDataAsAlpha8(&fonts_->pixels, &fonts_->width, &fonts_->height);
 }
 
 Overlay::~Overlay() = default;
 
 core::Extent Overlay::atlas_size() const {
-  return {static_cast<std::uint32_t>(font_->width), static_cast<std::uint32_t>(font_->height)};
+  return {static_cast<std::uint32_t>(fonts_->width), static_cast<std::uint32_t>(fonts_->height)};
 }
 
 std::span<const std::byte> Overlay::atlas() const {
-  return {reinterpret_cast<const std::byte*>(font_->pixels),
-          static_cast<std::size_t>(font_->width) * static_cast<std::size_t>(font_->height)};
+  return {reinterpret_cast<const std::byte*>(fonts_->pixels),
+          static_cast<std::size_t>(fonts_->width) * static_cast<std::size_t>(fonts_->height)};
 }
 
-void Overlay::lay_out(std::span<const std::string> lines,
+void Overlay::lay_out(std::span<const TextPanel> panels, core::Extent picture, float scale,
                       std::vector<shaders::OverlayVertex>& out) const {
   out.clear();
-  if (lines.empty()) return;
-  const ImVec2 white = font_->atlas.TexUvWhitePixel;
-  add_quad(out, {}, {white.x, white.y, white.x, white.y}, kPanelColour);
-  const float line_height = font_->font->FontSize + 2.0F;
-  float y = 2.0F * kMargin, widest = 0.0F;
-  for (const std::string& line : lines) {
-    float x = 2.0F * kMargin;
-    for (const char c : line) {
-      const ImFontGlyph* glyph =
-          font_->font->FindGlyph(static_cast<ImWchar>(static_cast<unsigned char>(c)));
-      if (glyph->Visible && out.size() < kMaxQuads * 6) {
-        add_quad(out, {x + glyph->X0, y + glyph->Y0, x + glyph->X1, y + glyph->Y1},
-                 {glyph->U0, glyph->V0, glyph->U1, glyph->V1}, kTextColour);
-      }
-      x += glyph->AdvanceX;
-    }
-    widest = std::max(widest, x);
-    y += line_height;
-  }
-  const Box panel{kMargin, kMargin, widest + kMargin, y + kMargin - 2.0F};
-  std::vector<shaders::OverlayVertex> quad;
-  add_quad(quad, panel, {white.x, white.y, white.x, white.y}, kPanelColour);
-  std::copy(quad.begin(), quad.end(), out.begin());
+  const float whole =
+      std::isfinite(scale) ? std::clamp(std::round(scale), 1.0F, float{kMaxScale}) : 1.0F;
+  const ImFont& font = *fonts_->by_scale[static_cast<std::size_t>(whole) - 1];
+  Layout layout(fonts_->atlas, font, whole, picture, out);
+  for (const TextPanel& panel : panels)
+    layout.add(panel);
+}
+
+void Overlay::put_ground_under(core::Extent picture,
+                               std::vector<shaders::OverlayVertex>& out) const {
+  std::vector<shaders::OverlayVertex> ground;
+  add_area(ground, {0, 0, static_cast<float>(picture.width), static_cast<float>(picture.height)},
+           fonts_->atlas, kGroundColour);
+  out.insert(out.begin(), ground.begin(), ground.end());
 }
 
 }  // namespace psygen::render

@@ -6,6 +6,7 @@
 
 #include "engine/render/cloud_texture.hpp"
 #include "engine/render/pipeline_build.hpp"
+#include "engine/render/progress.hpp"
 #include "shaders/shared.h"
 
 namespace psygen::render {
@@ -13,6 +14,9 @@ namespace psygen::render {
 using core::Result;
 
 namespace {
+
+// That a preset has.
+constexpr double kMostPipelines = 25;
 
 Result<UniqueSampler> make_sampler(const Device& device, VkSamplerAddressMode mode) {
   VkSamplerCreateInfo info{};
@@ -47,10 +51,20 @@ Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
                                std::uint32_t sets) {
   traits_ = traits;
   samples_ = device.samples_for(traits.samples);
+  colour_format_ = colour_format;
   return create_textures(device, overlay)
       .and_then([&] { return shadows_.create(device, traits); })
       .and_then([&] { return create_layouts(device, sets); })
-      .and_then([&] { return create_pipelines(device, colour_format); });
+      .and_then([&] { return create_sets(device, sets); })
+      .and_then([&] {
+        const Progress nobody;
+        Making alone{device, nobody};
+        PipelineShape shape = usual_shape();
+        shape.kind = PipelineKind::kOverlay;
+        shape.vert = other_code().overlay_vert;
+        shape.frag = other_code().overlay_frag;
+        return make(alone, shape, overlay_);
+      });
 }
 
 Result<void> Pipelines::create_textures(const Device& device, const Overlay& overlay) {
@@ -127,23 +141,37 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
   return {};
 }
 
-Result<void> Pipelines::create_meshes(const Device& device, PipelineShape shape, MeshLook look,
+PipelineShape Pipelines::usual_shape() const {
+  PipelineShape shape;
+  shape.colour_format = colour_format_;
+  shape.samples = samples_;
+  return shape;
+}
+
+Result<void> Pipelines::make(Making& making, const PipelineShape& shape, UniquePipeline& out) {
+  Result<UniquePipeline> made = make_pipeline(making.device, layout_.get(), shape);
+  if (!made) return tl::unexpected(made.error());
+  out = std::move(*made);
+  const double fraction = static_cast<double>(++making.count) / kMostPipelines;
+  return go_on(making.progress, fraction);
+}
+
+Result<void> Pipelines::create_meshes(Making& making, PipelineShape shape, MeshLook look,
                                       MeshPipelines& out) {
   for (const auto layout : {core::VertexLayout::kTerrain, core::VertexLayout::kModel}) {
     const bool terrain = layout == core::VertexLayout::kTerrain;
     shape.kind = terrain ? PipelineKind::kTerrain : PipelineKind::kModel;
     for (const bool pushed : {false, true}) {
       shape.vert = mesh_vertex_code(layout, look, pushed);
-      Result<UniquePipeline> made = make_pipeline(device, layout_.get(), shape);
-      if (!made) return tl::unexpected(made.error());
-      out.whole[terrain ? 0 : 1][pushed ? 1 : 0] = std::move(*made);
+      const Result<void> made = make(making, shape, out.whole[terrain ? 0 : 1][pushed ? 1 : 0]);
+      if (!made) return made;
     }
   }
   return {};
 }
 
 // `shape` is that of the same models as a whole.
-Result<void> Pipelines::create_fading(const Device& device, PipelineShape shape, MeshLook look,
+Result<void> Pipelines::create_fading(Making& making, PipelineShape shape, MeshLook look,
                                       MeshPipelines& out) {
   const OtherCode& code = other_code();
   shape.kind = PipelineKind::kModel;
@@ -152,96 +180,78 @@ Result<void> Pipelines::create_fading(const Device& device, PipelineShape shape,
                                            : code.surface_fading_frag;
   for (const bool pushed : {false, true}) {
     shape.vert = fading_vertex_code(look, pushed);
-    Result<UniquePipeline> made = make_pipeline(device, layout_.get(), shape);
-    if (!made) return tl::unexpected(made.error());
-    out.fading[pushed ? 1 : 0] = std::move(*made);
+    if (Result<void> made = make(making, shape, out.fading[pushed ? 1 : 0]); !made) return made;
   }
   return {};
 }
 
-Result<void> Pipelines::create_pipelines(const Device& device, VkFormat colour_format) {
+Result<void> Pipelines::create_others(const Device& device, const Progress& progress) {
+  Making making{device, progress};
+  return create_landscape(making)
+      .and_then([&] { return create_views(making); })
+      .and_then([&]() -> Result<void> {
+        if (traits_.cascades == 0) return {};
+        PipelineShape shadow = usual_shape();
+        shadow.shadow = true;
+        return create_meshes(making, shadow, MeshLook::kShadow, shadow_).and_then([&] {
+          return create_fading(making, shadow, MeshLook::kShadow, shadow_);
+        });
+      })
+      .and_then([&] { return create_sky(making); });
+}
+
+// Ground, models and water.
+Result<void> Pipelines::create_landscape(Making& making) {
   const OtherCode& code = other_code();
   const bool lit = traits_.pixel_light;
   const auto on = [](bool yes) -> VkBool32 { return yes ? VK_TRUE : VK_FALSE; };
-  PipelineShape shape;
-  shape.colour_format = colour_format;
-  shape.samples = samples_;
-  const auto make = [&](UniquePipeline& place, PipelineKind kind, ShaderCode vert,
-                        ShaderCode frag) -> Result<void> {
-    shape.kind = kind;
-    shape.vert = vert;
-    shape.frag = frag;
-    Result<UniquePipeline> made = make_pipeline(device, layout_.get(), shape);
-    if (!made) return tl::unexpected(made.error());
-    place = std::move(*made);
-    return {};
-  };
-  return Result<void>{}
-      .and_then([&] {
-        PipelineShape meshes = shape;
-        meshes.frag = lit ? code.surface_lit_frag : code.surface_frag;
-        meshes.constants = {on(traits_.fine_grain), on(traits_.cascades > 0)};
-        const MeshLook look = lit ? MeshLook::kLit : MeshLook::kColour;
-        return create_meshes(device, meshes, look, landscape_).and_then([&] {
-          return create_fading(device, meshes, look, landscape_);
-        });
-      })
-      .and_then([&] { return create_views(device, shape); })
-      .and_then([&]() -> Result<void> {
-        if (traits_.cascades == 0) return {};
-        PipelineShape shadow = shape;
-        shadow.shadow = true;
-        return create_meshes(device, shadow, MeshLook::kShadow, shadow_).and_then([&] {
-          return create_fading(device, shadow, MeshLook::kShadow, shadow_);
-        });
-      })
-      .and_then([&] { return create_sky(device, shape); })
-      .and_then(
-          [&] { return make(lines_, PipelineKind::kLines, code.line_vert, code.surface_frag); })
-      .and_then([&] {
-        return make(overlay_, PipelineKind::kOverlay, code.overlay_vert, code.overlay_frag);
-      })
-      .and_then([&] {
-        shape.constants = {on(traits_.waves), VK_FALSE};
-        return make(water_, PipelineKind::kWater, lit ? code.water_lit_vert : code.water_vert,
-                    lit ? code.water_frag : code.surface_frag);
-      });
+  PipelineShape meshes = usual_shape();
+  meshes.frag = lit ? code.surface_lit_frag : code.surface_frag;
+  meshes.constants = {on(traits_.fine_grain), on(traits_.cascades > 0)};
+  const MeshLook look = lit ? MeshLook::kLit : MeshLook::kColour;
+  PipelineShape water = usual_shape();
+  water.kind = PipelineKind::kWater;
+  water.vert = lit ? code.water_lit_vert : code.water_vert;
+  water.frag = lit ? code.water_frag : code.surface_frag;
+  water.constants = {on(traits_.waves), VK_FALSE};
+  return create_meshes(making, meshes, look, landscape_)
+      .and_then([&] { return create_fading(making, meshes, look, landscape_); })
+      .and_then([&] { return make(making, water, water_); });
 }
 
-Result<void> Pipelines::create_sky(const Device& device, PipelineShape shape) {
+Result<void> Pipelines::create_sky(Making& making) {
   const OtherCode& code = other_code();
   const bool dome = !traits_.pixel_light;
+  PipelineShape shape = usual_shape();
   shape.kind = dome ? PipelineKind::kDome : PipelineKind::kSky;
   shape.vert = dome ? code.sky_dome_vert : code.sky_vert;
   shape.frag = dome ? code.sky_dome_frag : code.sky_frag;
-  Result<UniquePipeline> sky = make_pipeline(device, layout_.get(), shape);
-  if (!sky) return tl::unexpected(sky.error());
-  sky_ = std::move(*sky);
-  if (!dome) return {};
+  if (Result<void> made = make(making, shape, sky_); !made || !dome) return made;
   shape.vert = code.sky_below_vert;
   shape.frag = code.sky_frag;
-  Result<UniquePipeline> below = make_pipeline(device, layout_.get(), shape);
-  if (!below) return tl::unexpected(below.error());
-  sky_below_ = std::move(*below);
+  if (Result<void> made = make(making, shape, sky_below_); !made) return made;
   shape.kind = PipelineKind::kSun;
   shape.vert = code.sun_vert;
-  shape.frag = code.sky_frag;
   shape.constants = {VK_TRUE, VK_FALSE};
-  Result<UniquePipeline> sun = make_pipeline(device, layout_.get(), shape);
-  if (!sun) return tl::unexpected(sun.error());
-  sun_ = std::move(*sun);
-  return {};
+  return make(making, shape, sun_);
 }
 
-// Those for understanding: draws in their own colour, and edges.
-Result<void> Pipelines::create_views(const Device& device, PipelineShape shape) {
+// Those for understanding: draws in their own colour, edges, lines.
+Result<void> Pipelines::create_views(Making& making) {
+  PipelineShape shape = usual_shape();
   shape.frag = other_code().surface_frag;
-  return create_meshes(device, shape, MeshLook::kDrawColour, coloured_)
-      .and_then([&] { return create_fading(device, shape, MeshLook::kDrawColour, coloured_); })
+  return create_meshes(making, shape, MeshLook::kDrawColour, coloured_)
+      .and_then([&] { return create_fading(making, shape, MeshLook::kDrawColour, coloured_); })
+      .and_then([&] {
+        PipelineShape lines = shape;
+        lines.kind = PipelineKind::kLines;
+        lines.vert = other_code().line_vert;
+        return make(making, lines, lines_);
+      })
       .and_then([&]() -> Result<void> {
-        if (!device.info.wireframe) return {};
+        if (!making.device.info.wireframe) return {};
         shape.wireframe = true;
-        return create_meshes(device, shape, MeshLook::kColour, wireframe_);
+        return create_meshes(making, shape, MeshLook::kColour, wireframe_);
       });
 }
 
@@ -251,16 +261,17 @@ VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, 
   return all.of(layout, pushed, fading && !edges);
 }
 
-Result<VkDescriptorSet> Pipelines::make_set(const Device& device) {
+Result<void> Pipelines::create_sets(const Device& device, std::uint32_t count) {
+  const std::vector<VkDescriptorSetLayout> layouts(count, set_layout_.get());
+  sets_.resize(count);
   VkDescriptorSetAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
   info.descriptorPool = descriptor_pool_.get();
-  info.descriptorSetCount = 1;
-  info.pSetLayouts = set_layout_.address();
-  VkDescriptorSet set = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkAllocateDescriptorSets(device.handle, &info, &set);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a descriptor set");
-  return set;
+  info.descriptorSetCount = count;
+  info.pSetLayouts = layouts.data();
+  const VkResult result = device.vk.vkAllocateDescriptorSets(device.handle, &info, sets_.data());
+  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating descriptor sets");
+  return {};
 }
 
 void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,

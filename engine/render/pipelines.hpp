@@ -1,6 +1,8 @@
-// Every pipeline, the one descriptor set layout and the textures that never change. All are made on
-// one thread at start-up. Private to engine/render.
+// Every pipeline of a preset, the one descriptor set layout and the textures that never change. All
+// are made on one thread, before the first frame of the preset. Private to engine/render.
 #pragma once
+
+#include <vector>
 
 #include "engine/render/overlay.hpp"
 #include "engine/render/pipeline_build.hpp"
@@ -11,9 +13,11 @@ namespace psygen::render {
 
 class Pipelines {
  public:
-  // `sets` descriptor sets can be made.
+  // What text needs, and so many descriptor sets.
   core::Result<void> create(const Device& device, VkFormat colour_format,
                             const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets);
+  // Once, after that: what everything else needs. `progress` is called after each pipeline.
+  core::Result<void> create_others(const Device& device, const Progress& progress);
 
   const PresetTraits& traits() const { return traits_; }
   VkSampleCountFlagBits samples() const { return samples_; }
@@ -35,13 +39,14 @@ class Pipelines {
   VkPipeline sun() const { return sun_.get(); }
   VkPipeline overlay() const { return overlay_.get(); }
 
-  // A set that reads the given buffers and the textures.
-  core::Result<VkDescriptorSet> make_set(const Device& device);
+  VkDescriptorSet set(std::size_t number) const { return sets_[number]; }
+  // Lets a set read the given buffers, and the textures.
   void write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,
                  const Buffer& draws, const Buffer& glyphs) const;
 
  private:
   core::Result<void> create_layouts(const Device& device, std::uint32_t sets);
+  core::Result<void> create_sets(const Device& device, std::uint32_t count);
   core::Result<void> create_textures(const Device& device, const Overlay& overlay);
   struct MeshPipelines {
     // By layout (terrain, model) and by whether the data is pushed.
@@ -54,21 +59,31 @@ class Pipelines {
       return whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed].get();
     }
   };
-  core::Result<void> create_pipelines(const Device& device, VkFormat colour_format);
-  core::Result<void> create_sky(const Device& device, PipelineShape shape);
-  core::Result<void> create_views(const Device& device, PipelineShape shape);
-  core::Result<void> create_meshes(const Device& device, PipelineShape shape, MeshLook look,
+  // While pipelines are made.
+  struct Making {
+    const Device& device;
+    const Progress& progress;
+    int count = 0;
+  };
+  PipelineShape usual_shape() const;
+  core::Result<void> make(Making& making, const PipelineShape& shape, UniquePipeline& out);
+  core::Result<void> create_landscape(Making& making);
+  core::Result<void> create_sky(Making& making);
+  core::Result<void> create_views(Making& making);
+  core::Result<void> create_meshes(Making& making, PipelineShape shape, MeshLook look,
                                    MeshPipelines& out);
-  core::Result<void> create_fading(const Device& device, PipelineShape shape, MeshLook look,
+  core::Result<void> create_fading(Making& making, PipelineShape shape, MeshLook look,
                                    MeshPipelines& out);
 
   PresetTraits traits_;
   VkSampleCountFlagBits samples_ = VK_SAMPLE_COUNT_1_BIT;
+  VkFormat colour_format_ = VK_FORMAT_UNDEFINED;
   UniqueSampler cloud_sampler_, font_sampler_;
   ShadowMaps shadows_;
   Image clouds_, font_;
   UniqueSetLayout set_layout_;
   UniqueDescriptorPool descriptor_pool_;
+  std::vector<VkDescriptorSet> sets_;
   UniquePipelineLayout layout_;
   MeshPipelines landscape_, coloured_, wireframe_, shadow_;
   UniquePipeline water_, sky_, sky_below_, sun_, lines_, overlay_;

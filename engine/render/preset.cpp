@@ -44,6 +44,9 @@ std::string_view to_string(Preset preset) {
 core::Result<Preset> preset_from(std::string_view name) {
   return named<Preset>(kPresets, name, "preset");
 }
+Preset next_preset(Preset preset) {
+  return static_cast<Preset>((static_cast<std::size_t>(preset) + 1) % kPresets.size());
+}
 
 std::string_view to_string(View view) {
   return kViews[static_cast<std::size_t>(view)];

@@ -23,6 +23,7 @@ PresetTraits traits_of(Preset preset);
 
 std::string_view to_string(Preset preset);  // "low", "medium", "high", "ultra"
 core::Result<Preset> preset_from(std::string_view name);
+Preset next_preset(Preset preset);  // after the last comes kLow
 
 std::string_view to_string(View view);  // "normal", "levels", "layers", "bounds", …
 core::Result<View> view_from(std::string_view name);

@@ -10,9 +10,13 @@ Renderer::Renderer(std::unique_ptr<RendererImpl> impl) : impl_(std::move(impl)) 
 Renderer::~Renderer() = default;
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
-  auto impl = std::make_unique<RendererImpl>(options);
-  if (Result<void> made = impl->create(); !made) return tl::unexpected(made.error());
-  return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
+  std::unique_ptr<Renderer> renderer(new Renderer(std::make_unique<RendererImpl>(options)));
+  Progress progress;
+  if (options.progress)
+    progress = [&](double fraction) { return options.progress(*renderer, fraction); };
+  if (Result<void> made = renderer->impl_->create(progress); !made)
+    return tl::unexpected(made.error());
+  return renderer;
 }
 
 core::GeometryMemory& Renderer::geometry() {
@@ -25,6 +29,15 @@ Result<std::uint32_t> Renderer::upload_shared_indices(std::span<const std::uint1
 
 Result<FrameResult> Renderer::render(const FrameInput& input) {
   return impl_->render(input);
+}
+Result<void> Renderer::show(std::span<const TextPanel> panels, float text_scale) {
+  return impl_->show(panels, text_scale);
+}
+Result<void> Renderer::set_preset(Preset preset, const Progress& progress) {
+  return impl_->set_preset(preset, progress);
+}
+Preset Renderer::preset() const {
+  return impl_->preset();
 }
 Result<Picture> Renderer::capture() {
   return impl_->capture();

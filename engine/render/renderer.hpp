@@ -21,8 +21,8 @@ class RendererImpl;
 class Renderer {
  public:
   // Fails with kNoDevice (no loader, no device, unknown name: the sentence lists the names there
-  // are; or that has no GPU path where that is demanded), kOutOfMemory, or kInvalidArgument. All
-  // pipelines exist and have drawn once afterwards.
+  // are; or that has no GPU path where that is demanded), kOutOfMemory, kInvalidArgument, or
+  // kInterrupted. All pipelines exist afterwards, and those of the landscape have drawn once.
   static core::Result<std::unique_ptr<Renderer>> create(const RendererOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -39,6 +39,17 @@ class Renderer {
   // no work done) while the window is minimised. An invalid camera keeps the last valid one.
   // Fails with kDeviceLost, and with kOutOfMemory when a draw list cannot be held.
   core::Result<FrameResult> render(const FrameInput& input);
+
+  // A picture that is nothing but text, for when there is no scene to be drawn yet; waits until it
+  // is there. Nothing is shown while the window is minimised. Fails as render() does.
+  core::Result<void> show(std::span<const TextPanel> panels, float text_scale = 1);
+
+  // Makes everything anew that depends on the preset, and waits for it: seconds where the driver
+  // has not kept it from before. Meshes stay. There is no picture to capture until the next frame.
+  // Where it fails (kOutOfMemory, kDeviceLost; kInterrupted by `progress`, in which only show() may
+  // be called) the old preset stays.
+  core::Result<void> set_preset(Preset preset, const Progress& progress = {});
+  Preset preset() const;  // the one in use
 
   // The last frame's picture; waits for it. Fails with kInvalidArgument before the first frame.
   core::Result<Picture> capture();

@@ -54,13 +54,6 @@ RendererImpl::~RendererImpl() {
   if (device_) wait_idle();
 }
 
-// Remembers that the device was lost, after which nothing is submitted any more.
-template <class T>
-Result<T> RendererImpl::noted(Result<T> result) {
-  if (!result && result.error().code == ErrorCode::kDeviceLost) lost_ = true;
-  return result;
-}
-
 Result<void> RendererImpl::create_device() {
   Result<std::unique_ptr<Instance>> instance =
       Instance::create(options_.application_name, options_.validation, options_.surface);
@@ -86,7 +79,7 @@ Result<void> RendererImpl::create_device() {
   return {};
 }
 
-Result<void> RendererImpl::create() {
+Result<void> RendererImpl::create(const Progress& progress) {
   const std::uint64_t largest = std::uint64_t{1} << 40;
   if (options_.surface == nullptr && is_empty(options_.size)) {
     return core::fail(ErrorCode::kInvalidArgument, "a picture needs at least one pixel");
@@ -101,19 +94,11 @@ Result<void> RendererImpl::create() {
   if (!timeline) return tl::unexpected(timeline.error());
   timeline_ = std::move(*timeline);
   if (Result<void> made = shared_.create(*device_); !made) return made;
-  const Preset usual = device_->info.software ? Preset::kLow : Preset::kHigh;
-  if (Result<void> made =
-          pipelines_.create(*device_, colour_format_, traits_of(options_.preset.value_or(usual)),
-                            overlay_, static_cast<std::uint32_t>(kFramesInFlight));
-      !made) {
-    return made;
-  }
   for (FrameSlot& slot : slots_) {
-    if (Result<void> made = slot.create(*device_, pipelines_); !made) return made;
+    if (Result<void> made = slot.create(*device_); !made) return made;
   }
-  if (Result<void> made = create_culling(); !made) return made;
-  if (Result<void> warmed = warm_up(); !warmed) return warmed;
-  return options_.surface == nullptr ? create_targets(options_.size) : Result<void>{};
+  return create_looks(
+      options_.preset.value_or(device_->info.software ? Preset::kLow : Preset::kHigh), progress);
 }
 
 Result<void> RendererImpl::create_geometry() {
@@ -183,42 +168,6 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
   }
   targets_ = std::move(targets);
   return {};
-}
-
-Result<void> RendererImpl::warm_up() {
-  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
-  if (!small) return tl::unexpected(small.error());
-  FrameSlot& slot = slots_[0];
-  const FrameInput nothing;
-  if (Result<void> written =
-          slot.write(*device_, pipelines_, frame_data(nothing, {16, 16}),
-                     std::vector<shaders::DrawData>(1), std::vector<shaders::OverlayVertex>(3));
-      !written) {
-    return written;
-  }
-  if (Result<void> begun = slot.begin(*device_); !begun) return begun;
-  record_warm_up(*device_, pipelines_, slot, *small, shared_.buffer());
-  if (Result<void> ended = slot.end(*device_); !ended) return ended;
-  if (Result<void> submitted = submit(slot, false); !submitted) return submitted;
-  if (Result<void> waited = wait_for(slot); !waited) return waited;
-  return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
-}
-
-// An empty frame with every dispatch.
-Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
-  return culling_->resize(*device_, small.extent, small.depth)
-      .and_then([&] {
-        culling_->set_frame({}, {}, {}, small.extent, {});
-        return write_frame(slot);
-      })
-      .and_then([&] { return slot.begin(*device_); })
-      .and_then([&] {
-        record_scene(*device_, pipelines_, slot, small,
-                     {.list = list_, .buffers = {}, .culled = {culling_.get(), index_of(slot)}});
-        return slot.end(*device_);
-      })
-      .and_then([&] { return submit(slot, false); })
-      .and_then([&] { return wait_for(slot); });
 }
 
 Result<void> RendererImpl::wait_for(FrameSlot& slot) {
@@ -364,7 +313,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   FrameInput checked = input;
   checked.pose = last_pose_.value_or(core::CameraPose{});
   checked.projection = last_projection_.value_or(core::Projection{});
-  overlay_.lay_out(input.overlay_lines, glyphs_);
+  overlay_.lay_out(input.panels, size(), input.text_scale, glyphs_);
   add_lines(input.lines);
   view_ = input.view;
   water_ = input.water.has_value();

@@ -29,8 +29,9 @@ class RendererImpl {
   RendererImpl(const RendererImpl&) = delete;
   RendererImpl& operator=(const RendererImpl&) = delete;
 
-  // To be called once, before everything else; after a failure only destruction is allowed.
-  core::Result<void> create();
+  // To be called once, before everything else but show() in `progress`; after a failure only
+  // destruction is allowed.
+  core::Result<void> create(const Progress& progress);
 
   core::GeometryMemory& geometry() {
     return staged_ ? static_cast<core::GeometryMemory&>(*staged_) : *pool_;
@@ -39,6 +40,9 @@ class RendererImpl {
     return shared_.add(indices);
   }
   core::Result<FrameResult> render(const FrameInput& input);
+  core::Result<void> show(std::span<const TextPanel> panels, float text_scale);
+  core::Result<void> set_preset(Preset preset, const Progress& progress);
+  Preset preset() const { return preset_; }
   core::Result<Picture> capture();
   core::Result<void> resize(core::Extent size);
   core::Extent size() const { return targets_.empty() ? core::Extent{} : targets_[0].extent; }
@@ -57,7 +61,9 @@ class RendererImpl {
   core::Result<void> create_targets(core::Extent extent);
   core::Result<void> create_geometry();
   core::Result<void> create_culling();
-  core::Result<void> warm_up();
+  core::Result<void> create_looks(Preset preset, const Progress& progress);
+  void use_pipelines();
+  core::Result<void> warm_up(const Progress& progress);
   core::Result<void> warm_up_culling(FrameSlot& slot, Targets& small);
   core::Result<void> write_frame(FrameSlot& slot);
   void list_draws(const FrameInput& input);
@@ -79,8 +85,12 @@ class RendererImpl {
   core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
   void add_lines(std::span<const Line> lines);
   void remember_valid(const FrameInput& input);
+  // Remembers that the device was lost, after which nothing is submitted any more.
   template <class T>
-  core::Result<T> noted(core::Result<T> result);
+  core::Result<T> noted(core::Result<T> result) {
+    if (!result && result.error().code == core::ErrorCode::kDeviceLost) lost_ = true;
+    return result;
+  }
 
   RendererOptions options_;
   Overlay overlay_;
@@ -93,6 +103,7 @@ class RendererImpl {
   std::unique_ptr<GeometryPool> pool_;
   std::unique_ptr<StagedGeometry> staged_;  // null where the CPU writes the blocks themselves
   SharedIndexLists shared_;
+  Preset preset_ = Preset::kLow;
   Pipelines pipelines_;
   std::array<FrameSlot, kFramesInFlight> slots_;
   std::unique_ptr<GpuCulling> culling_;  // null on the CPU path

@@ -292,6 +292,14 @@ Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent
   return targets;
 }
 
+void record_text(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                 Targets& targets, std::uint32_t glyph_vertex_count) {
+  begin_pass(device, slot.commands(), targets);
+  bind_set(device, pipelines, slot);
+  draw_lines_and_text(device, pipelines, slot.commands(), glyph_vertex_count, 0);
+  device.vk.vkCmdEndRendering(slot.commands());
+}
+
 void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                   Targets& targets, const ScenePass& pass) {
   slot.write_timestamp(device, false);
@@ -316,7 +324,7 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
 }
 
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
-                    Targets& targets, VkBuffer blank) {
+                    Targets& targets, VkBuffer blank, int step) {
   const VkCommandBuffer commands = slot.commands();
   begin_pass(device, commands, targets);
   bind_set(device, pipelines, slot);
@@ -326,17 +334,17 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
   const shaders::DrawData data{};
   device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT, 0,
                                sizeof(data), &data);
-  const auto draw_once = [&](core::VertexLayout layout, bool pushed, bool fading) {
-    bind_pipeline(device, commands, pipelines.mesh(layout, pushed, fading, View::kNormal));
-    device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
+  const auto draw_twice = [&](core::VertexLayout layout, bool fading) {
+    for (const bool pushed : {false, true}) {
+      bind_pipeline(device, commands, pipelines.mesh(layout, pushed, fading, View::kNormal));
+      device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
+    }
   };
-  for (const bool pushed : {false, true}) {
-    draw_once(core::VertexLayout::kTerrain, pushed, false);
-    draw_once(core::VertexLayout::kModel, pushed, false);
-    draw_once(core::VertexLayout::kModel, pushed, true);
-  }
-  draw_water_and_sky(device, pipelines, commands, true);
-  draw_lines_and_text(device, pipelines, commands, 3, 0);
+  if (step == 0) draw_twice(core::VertexLayout::kTerrain, false);
+  if (step == 1) draw_twice(core::VertexLayout::kModel, false);
+  if (step == 2) draw_twice(core::VertexLayout::kModel, true);
+  if (step == 3) draw_water_and_sky(device, pipelines, commands, true);
+  if (step == 4) draw_lines_and_text(device, pipelines, commands, 3, 0);
   device.vk.vkCmdEndRendering(commands);
 }
 

@@ -54,9 +54,15 @@ struct ScenePass {
 void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                   Targets& targets, const ScenePass& pass);
 
-// Every pipeline once with triangles that cover nothing, so that the driver has compiled them.
+// The same of a picture that is text alone, with a ground below it.
+void record_text(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                 Targets& targets, std::uint32_t glyph_vertex_count);
+
+// The pipelines of the landscape once with triangles that cover nothing, so that the driver has
+// compiled them; in steps from 0, a submission each, because that may take long.
+inline constexpr int kWarmUpSteps = 5;
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
-                    Targets& targets, VkBuffer blank);
+                    Targets& targets, VkBuffer blank, int step);
 
 // Copies the colour target to a swapchain image and leaves that ready to be shown.
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "engine/core/camera.hpp"
 #include "engine/core/geometry_memory.hpp"
 #include "engine/core/surface_provider.hpp"
+#include "engine/render/text_panel.hpp"
 
 namespace psygen::render {
 
@@ -43,6 +45,11 @@ enum class View : std::uint8_t {
   kCache,      // the same, for what it takes of the geometry cache
 };
 
+// Told how far something long has come, as a fraction in [0, 1]; false gives it up. May be empty.
+using Progress = std::function<bool(double)>;
+
+class Renderer;
+
 struct RendererOptions {
   std::string application_name = "psygen";
   std::string device_name;  // part of the device's name; empty: the best there is
@@ -56,6 +63,9 @@ struct RendererOptions {
   Upload upload = Upload::kAuto;
   bool occlusion = true;  // on the GPU path: leave out what was hidden in the last frame and is
   std::optional<Preset> preset;  // none: kLow on software devices, kHigh on others
+  // Called while the pipelines are made, which takes seconds where the driver has not kept them
+  // from before. Of the renderer only show() may be called; false: create() fails (kInterrupted).
+  std::function<bool(Renderer&, double)> progress;
 };
 
 struct DeviceInfo {
@@ -197,8 +207,9 @@ struct FrameInput {
   // on either path, the coarsest level that is at most so many pixels off.
   bool choose = false;
   float max_error_pixels = 1.0F;
-  std::span<const Line> lines;                 // at most kMaxLines are drawn, in every view
-  std::span<const std::string> overlay_lines;  // text in the top left; empty: none
+  std::span<const Line> lines;        // at most kMaxLines are drawn, in every view
+  std::span<const TextPanel> panels;  // over the picture
+  float text_scale = 1;               // of their text, 1 to 4, rounded
 };
 
 struct FrameResult {

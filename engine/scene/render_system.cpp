@@ -243,7 +243,8 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   frame.canopy = facts.canopy;
   frame.morph = morph;
   frame.edge = edge_of(facts.world, camera.pose.position);
-  frame.overlay_lines = input.overlay_lines;
+  frame.panels = input.panels;
+  frame.text_scale = input.text_scale;
   const auto result = output.renderer->render(frame);
   if (result) {
     counters.frame = *result;

@@ -180,6 +180,11 @@ core::Result<void> Scene::check(const Settings& settings) {
   return {};
 }
 
+void Scene::take_over_preset() {
+  const render::Renderer* const renderer = state_.output.renderer;
+  state_.facts.shadows = renderer != nullptr && renderer->casts_shadows();
+}
+
 core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::Registry registry,
                                                    const Settings& settings,
                                                    render::Renderer* renderer,
@@ -210,7 +215,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
                                    largest_radius(facts.world, facts.levels, settings, k));
   }
   s.output.renderer = renderer;
-  facts.shadows = renderer != nullptr && renderer->casts_shadows();
+  scene->take_over_preset();
   if (renderer == nullptr) {
     s.heap = std::make_unique<core::HeapGeometryMemory>(settings.budget_bytes);
   }

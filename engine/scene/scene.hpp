@@ -46,6 +46,9 @@ class Scene {
   // below kMinBudgetBytes or above kMaxBudgetBytes.
   static core::Result<void> check(const Settings& settings);
 
+  // To be called after Renderer::set_preset(): with shadows what is out of the picture matters too.
+  void take_over_preset();
+
   static constexpr std::uint64_t kMinBudgetBytes = 4ull << 20;
   static constexpr std::uint64_t kMaxBudgetBytes = 1ull << 40;
   static constexpr double kMaxEntities = 2e6;

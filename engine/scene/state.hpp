@@ -42,7 +42,8 @@ namespace psygen::scene {
 struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
-  std::vector<std::string> overlay_lines;
+  std::vector<render::TextPanel> panels;  // over the picture
+  float text_scale = 1;                   // of their text
   render::View view = render::View::kNormal;
   // What the last frame took, without waiting for a display, and drew; 0: unknown.
   double frame_ms = 0, frame_triangles = 0;

@@ -205,12 +205,12 @@ TEST_P(RendererTest, sways_leaves_with_the_time_and_nothing_else) {
       << "a box without sway stands still";
 }
 
-TEST_P(RendererTest, writes_overlay_lines_into_the_top_left_only) {
+TEST_P(RendererTest, writes_a_panel_into_its_corner_only) {
   add_ground();
   const Picture plain = draw(input());
-  const std::vector<std::string> lines{"16.7 ms", "123 draws"};
+  const TextPanel panel{Anchor::kTopLeft, {{"16.7 ms"}, {"123 draws"}}};
   FrameInput frame = input();
-  frame.overlay_lines = lines;
+  frame.panels = {&panel, 1};
   const Picture written = draw(frame);
   int changed_left = 0, changed_right = 0;
   for (std::uint32_t y = 0; y < kSize.height; ++y) {

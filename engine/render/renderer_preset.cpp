@@ -1,0 +1,164 @@
+// What the renderer has for one preset: pipelines, culling, targets. Made at the start, and anew
+// for another preset. And the picture that is shown meanwhile.
+#include <utility>
+
+#include "engine/render/frame_data.hpp"
+#include "engine/render/progress.hpp"
+#include "engine/render/renderer_impl.hpp"
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+
+// Of the time until everything has been drawn once, the share that making the pipelines takes.
+constexpr double kPipelinesShare = 0.3;
+
+Progress part_of(const Progress& whole, double from, double to) {
+  if (!whole) return {};
+  return [&whole, from, to](double fraction) { return whole(from + (to - from) * fraction); };
+}
+
+}  // namespace
+
+Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress) {
+  preset_ = preset;
+  return pipelines_
+      .create(*device_, colour_format_, traits_of(preset), overlay_,
+              static_cast<std::uint32_t>(kFramesInFlight))
+      .and_then([&] {
+        use_pipelines();
+        return create_culling();
+      })
+      .and_then([&]() -> Result<void> {
+        if (options_.surface == nullptr) return create_targets(options_.size);
+        return swapchain_.exists() ? create_targets(swapchain_.extent()) : Result<void>{};
+      })
+      .and_then([&] { return go_on(progress, 0); })
+      .and_then(
+          [&] { return pipelines_.create_others(*device_, part_of(progress, 0, kPipelinesShare)); })
+      .and_then([&] { return warm_up(part_of(progress, kPipelinesShare, 1)); });
+}
+
+void RendererImpl::use_pipelines() {
+  for (FrameSlot& slot : slots_)
+    slot.use(*device_, pipelines_, index_of(slot));
+}
+
+Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
+  if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
+  if (preset == preset_) return {};
+  wait_idle();
+  if (!targets_.empty()) options_.size = size();
+  Preset other_preset = preset_;
+  Pipelines other_pipelines;
+  std::unique_ptr<GpuCulling> other_culling;
+  std::vector<Targets> other_targets;
+  const auto exchange = [&] {
+    std::swap(other_preset, preset_);
+    std::swap(other_pipelines, pipelines_);
+    std::swap(other_culling, culling_);
+    std::swap(other_targets, targets_);
+  };
+  exchange();  // the old ones are kept until the new ones are there
+  Result<void> made = noted(create_looks(preset, progress));
+  wait_idle();
+  if (!made) {
+    exchange();
+    use_pipelines();
+    swapchain_stale_ = true;  // the window may have changed meanwhile
+    return made;
+  }
+  has_list_ = has_picture_ = false;
+  gpu_ms_.reset();
+  return {};
+}
+
+Result<void> RendererImpl::warm_up(const Progress& progress) {
+  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
+  if (!small) return tl::unexpected(small.error());
+  FrameSlot& slot = slots_[0];
+  const FrameInput nothing;
+  for (int step = 0; step < kWarmUpSteps; ++step) {
+    const Result<void> drawn =
+        slot.write(*device_, pipelines_, frame_data(nothing, small->extent),
+                   std::vector<shaders::DrawData>(1), std::vector<shaders::OverlayVertex>(3))
+            .and_then([&] { return slot.begin(*device_); })
+            .and_then([&] {
+              record_warm_up(*device_, pipelines_, slot, *small, shared_.buffer(), step);
+              return slot.end(*device_);
+            })
+            .and_then([&] { return submit(slot, false); })
+            .and_then([&] { return wait_for(slot); })
+            .and_then([&] { return go_on(progress, (step + 1.0) / kWarmUpSteps); });
+    if (!drawn) return drawn;
+  }
+  return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
+}
+
+// An empty frame with every dispatch.
+Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
+  return culling_->resize(*device_, small.extent, small.depth)
+      .and_then([&] {
+        culling_->set_frame({}, {}, {}, small.extent, {});
+        return write_frame(slot);
+      })
+      .and_then([&] { return slot.begin(*device_); })
+      .and_then([&] {
+        record_scene(*device_, pipelines_, slot, small,
+                     {.list = list_, .buffers = {}, .culled = {culling_.get(), index_of(slot)}});
+        return slot.end(*device_);
+      })
+      .and_then([&] { return submit(slot, false); })
+      .and_then([&] { return wait_for(slot); })
+      .and_then([&]() -> Result<void> {
+        if (targets_.empty()) return {};
+        return culling_->resize(*device_, size(), targets_[0].depth);
+      });
+}
+
+Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_scale) {
+  if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
+  const bool windowed = options_.surface != nullptr;
+  if (windowed) {
+    const Result<bool> shown = noted(prepare_window());
+    if (!shown) return tl::unexpected(shown.error());
+    if (!*shown) return {};
+  }
+  if (targets_.empty()) {
+    return core::fail(core::ErrorCode::kOutOfMemory,
+                      "there was no memory for a picture of this size");
+  }
+  FrameSlot& slot = slot_of(frame_value_ + 1);
+  if (Result<void> waited = noted(wait_for(slot)); !waited) return waited;
+  overlay_.lay_out(panels, size(), text_scale, glyphs_);
+  overlay_.put_ground_under(size(), glyphs_);
+  if (windowed) {
+    const Result<WindowState> acquired = noted(acquire_window(slot));
+    if (!acquired) return tl::unexpected(acquired.error());
+    if (*acquired == WindowState::kNotNow) return {};
+  }
+  const Result<void> drawn =
+      noted(slot.write(*device_, pipelines_, frame_data({}, size()), {}, glyphs_)
+                .and_then([&] { return slot.begin(*device_); })
+                .and_then([&] {
+                  record_text(*device_, pipelines_, slot, targets_of(slot),
+                              static_cast<std::uint32_t>(glyphs_.size()));
+                  if (windowed) {
+                    record_copy_to_window(*device_, slot.commands(), targets_of(slot),
+                                          swapchain_.image(), swapchain_.extent());
+                  }
+                  return slot.end(*device_);
+                })
+                .and_then([&] { return submit(slot, windowed); }));
+  if (!drawn) return drawn;
+  has_picture_ = true;
+  if (windowed) {
+    if (const Result<bool> presented = noted(present()); !presented)
+      return tl::unexpected(presented.error());
+  }
+  return noted(wait_for(slot));
+}
+
+}  // namespace psygen::render
