@@ -1,5 +1,5 @@
-// The views for understanding: what colour a draw has when it shows how the picture is made, and
-// lines around what is drawn. Pure.
+// The views for understanding: what colour a draw has when it shows how the picture is made, the
+// legend that says what the colours mean, and lines around what is drawn. Pure.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +23,10 @@ struct DrawFacts {
 // Cache: dark blue below 1/16 byte per square metre, over green to red from 64 on, each step a
 // factor of four.
 std::uint32_t colour_of(render::View view, const DrawFacts& facts);
+
+// The view's name, what it shows and its colours, in lines of at most 40 characters; none for
+// kNormal. `levels` of the quadtree; `edges`: the device can draw them (DeviceInfo::wireframe).
+std::vector<render::TextLine> legend_of(render::View view, std::size_t levels, bool edges);
 
 // The twelve edges of a box.
 void add_box(const core::Bounds& box, std::uint32_t colour, std::vector<render::Line>& lines);
