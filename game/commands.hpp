@@ -29,12 +29,15 @@ class FlyCommand {
   int run();
 
  private:
-  int fly(app::App& app) const;
+  static int code_of(const core::Error& error);
+  int fly(app::App& app);
+  int tell(const app::FlightReport& report) const;
   core::Result<void> write_requests() const;
 
   CLI::App* command_;
   app::Options options_;
   std::string world_ = kDefaultWorld;
+  int told_ = 0;          // exit code of what the end of the flight wrote
   std::string requests_;  // file; empty: they are not recorded
   RequestRecorder recorder_;
   bool json_ = false;

@@ -124,42 +124,51 @@ int FlyCommand::run() {
     return exit_code_of(ok.error());
   }
   options_.stop = &stop_at_interrupt();
+  app::Plugin reporter;
+  reporter.name = "report";
   if (!requests_.empty()) {
     options_.prefill = false;  // the initial fill is part of the flight
-    options_.plugins.push_back({"requests", {}, {}, [this](app::App& flown, double) {
-                                  recorder_.observe(flown.scene().state());
-                                }});
+    reporter.on_frame = [this](app::App& flown, double) {
+      if (flown.flying()) recorder_.observe(flown.scene().state());
+    };
   }
+  // At the end of the flight, not only when its window is closed.
+  reporter.on_end = [this](app::App&, const app::FlightReport& report) { told_ = tell(report); };
+  options_.plugins.push_back(std::move(reporter));
   auto app = app::App::create(options_);
-  if (!app) {
-    core::log_error(app.error().message);
-    return exit_code_of(app.error());
-  }
-  const int code = fly(**app);
-  if ((*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
+  const int code = app ? fly(**app) : code_of(app.error());
+  if (app && (*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
   return code;
 }
 
-int FlyCommand::fly(app::App& app) const {
-  const auto report = app.run();
-  if (!report) {
-    core::log_error(report.error().message);
-    return exit_code_of(report.error());
+// A window that is closed before the flight begins is no failure.
+int FlyCommand::code_of(const core::Error& error) {
+  if (error.code == core::ErrorCode::kInterrupted) {
+    core::log_info(error.message);
+    return kOk;
   }
+  core::log_error(error.message);
+  return exit_code_of(error);
+}
+
+int FlyCommand::fly(app::App& app) {
+  const auto report = app.run();
+  if (!report) return code_of(report.error());
+  for (const std::string& message : report->validation_messages)
+    core::log_error(message);
+  return report->validation_messages.empty() ? told_ : kFailed;
+}
+
+int FlyCommand::tell(const app::FlightReport& report) const {
   if (!requests_.empty()) {
-    if (auto ok = write_requests(); !ok) {
-      core::log_error(ok.error().message);
-      return exit_code_of(ok.error());
-    }
+    if (auto ok = write_requests(); !ok) return code_of(ok.error());
     core::log_info(fmt::format("wrote {}", requests_));
   }
   const int printed =
-      print(json_ ? telemetry::to_json(report->summary) : telemetry::to_text(report->summary));
-  for (const auto& file : report->files)
+      print(json_ ? telemetry::to_json(report.summary) : telemetry::to_text(report.summary));
+  for (const auto& file : report.files)
     core::log_info(fmt::format("wrote {}", file.string()));
-  for (const std::string& message : report->validation_messages)
-    core::log_error(message);
-  return report->validation_messages.empty() ? printed : kFailed;
+  return printed;
 }
 
 core::Result<void> FlyCommand::write_requests() const {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Flies for 27 seconds through the eight-terabyte world: in a window when there is a display,
-# headless otherwise. Sets up a fresh Debian 12 first (packages through apt).
+# headless otherwise. Sets up a fresh Debian 12 first (packages through apt). The window stays until
+# it is closed, unless nobody watches a terminal.
 #   tools/demo.sh [psygen fly options...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -14,8 +15,10 @@ fly() {
     --out "${PSYGEN_DEMO_OUT:-out/demo}" --images 300 "$@"
 }
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
+  limit=()
+  [ -t 2 ] || limit=(--seconds 27)
   code=0
-  fly "$@" || code=$?
+  fly "${limit[@]}" "$@" || code=$?
   [ "$code" -eq 4 ] || exit "$code"  # 4: the display cannot be used
 fi
 fly --headless "$@"

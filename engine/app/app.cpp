@@ -8,7 +8,6 @@
 #include "engine/models/terrain.hpp"
 #include "engine/render/render_path.hpp"
 #include "engine/telemetry/output_file.hpp"
-#include "engine/telemetry/progress_bar.hpp"
 
 namespace psygen::app {
 namespace {
@@ -16,26 +15,9 @@ namespace {
 constexpr double kEyeHeightM = 25.0;
 constexpr double kWindowHz = 60;  // held in windows unless the options say otherwise
 
-// One progress bar for each label that comes along; nothing where stderr is no terminal. False, to
-// end what is going on, once `stop` is set.
-class Bars {
- public:
-  explicit Bars(const std::atomic<bool>* stop) : stop_(stop) {}
-  bool operator()(std::string_view label, double fraction) {
-    if (!bar_ || label != label_) {
-      label_ = label;
-      bar_ = std::make_unique<telemetry::ProgressBar>(telemetry::stderr_terminal(), label_, 1.0);
-    }
-    bar_->update(fraction);
-    return stop_ == nullptr || !stop_->load();
-  }
-  void finish() { bar_.reset(); }
-
- private:
-  const std::atomic<bool>* stop_;
-  std::string label_;
-  std::unique_ptr<telemetry::ProgressBar> bar_;
-};
+tl::unexpected<core::Error> closed_early() {
+  return core::fail(core::ErrorCode::kInterrupted, "the window was closed before the first frame");
+}
 
 core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins) {
   models::Registry registry = models::make_standard_registry();
@@ -79,14 +61,25 @@ core::Result<void> App::open() {
     if (!path) return tl::unexpected(path.error());
     path_ = std::move(*path);
   }
-  if (!options_.headless) {
-    auto window = platform::Window::create({"psygen: " + world->name, options_.size, true});
-    if (!window) {
-      return core::fail(window.error().code,
-                        window.error().message + " (a headless flight needs no display)");
-    }
-    window_ = std::move(*window);
+  const std::string title = "psygen: " + world->name;
+  if (auto ok = open_window(title); !ok) return ok;
+  Loading loading(title, window_.get(), options_.stop);
+  if (auto ok = open_renderer(loading); !ok) return loading.closed() ? closed_early() : ok;
+  return open_scene(std::move(*world), std::move(*registry), loading);
+}
+
+core::Result<void> App::open_window(const std::string& title) {
+  if (options_.headless) return {};
+  auto window = platform::Window::create({title, options_.size, true});
+  if (!window) {
+    return core::fail(window.error().code,
+                      window.error().message + " (a headless flight needs no display)");
   }
+  window_ = std::move(*window);
+  return {};
+}
+
+core::Result<void> App::open_renderer(Loading& loading) {
   render::RendererOptions render_options;
   render_options.device_name = options_.device_name;
   render_options.validation = options_.validation;
@@ -96,20 +89,33 @@ core::Result<void> App::open() {
   render_options.vsync = options_.vsync;
   render_options.path = options_.render_path;
   render_options.preset = options_.preset;
+  if (window_) {
+    render_options.progress = [&loading](render::Renderer& renderer, double fraction) {
+      loading.update("preparing the renderer", fraction, &renderer);
+      return !loading.closed();
+    };
+  }
   auto renderer = render::Renderer::create(render_options);
   if (!renderer) return tl::unexpected(renderer.error());
   renderer_ = std::move(*renderer);
   core::log_info(fmt::format("drawing with {} on the {} path", renderer_->device().name,
                              render::to_string(renderer_->path())));
+  return {};
+}
 
+core::Result<void> App::open_scene(world::World world, models::Registry registry,
+                                   Loading& loading) {
   const double target_hz = options_.target_hz.value_or(options_.headless ? 0 : kWindowHz);
   options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;
   trace_ = std::make_unique<telemetry::TraceLog>();
-  Bars bars(options_.stop);
-  auto scene = scene::Scene::create(std::move(*world), std::move(*registry), options_.scene,
-                                    renderer_.get(), trace_.get(), std::ref(bars));
-  bars.finish();
+  auto scene =
+      scene::Scene::create(std::move(world), std::move(registry), options_.scene, renderer_.get(),
+                           trace_.get(), [&](std::string_view label, double fraction) {
+                             return loading.update(label, fraction, renderer_.get());
+                           });
+  loading.finish();
   if (!scene) return tl::unexpected(scene.error());
+  if (loading.closed()) return closed_early();
   scene_ = std::move(*scene);
   scene_->state().input.size = picture_size();  // levels of detail depend on it
   if (const synthesis::CalibrationReport& costs = scene_->calibration(); costs.measurements > 0) {
@@ -140,19 +146,23 @@ core::CameraPose App::home() const {
 }
 
 core::Result<void> App::prepare(const core::CameraPose& first) {
-  Bars bars(options_.stop);
+  Loading loading("psygen: " + scene_->state().facts.world.name, window_.get(), options_.stop);
+  const auto progress = [&](std::string_view label, double fraction) {
+    return loading.update(label, fraction, renderer_.get());
+  };
   const double start_s = core::monotonic_seconds();
   std::uint64_t meshes = 0;
   scene_->state().input.size = picture_size();  // a window may have changed
   if (options_.scene.paradigm == scene::Paradigm::kDataAmplification) {
-    auto amplified = scene_->amplify(first, std::ref(bars));
+    auto amplified = scene_->amplify(first, progress);
     if (!amplified) return tl::unexpected(amplified.error());
     meshes = *amplified;
   } else if (options_.prefill &&
              options_.scene.paradigm == scene::Paradigm::kParallelLazyAmplification) {
-    meshes = scene_->settle(first, std::ref(bars));
+    meshes = scene_->settle(first, progress);
   }
-  bars.finish();
+  loading.finish();
+  if (loading.closed() || (window_ && window_->should_close())) return closed_early();
   if (meshes > 0) {
     core::log_info(fmt::format("{} meshes synthesised before the first frame in {:.2f} s", meshes,
                                core::monotonic_seconds() - start_s));
@@ -182,12 +192,18 @@ core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
   return {};
 }
 
-core::Result<void> App::save_picture(const std::filesystem::path& file) {
+// Returns the picture's hash.
+core::Result<std::uint64_t> App::write_picture(const std::filesystem::path& file) {
   auto picture = renderer_->capture();
   if (!picture) return tl::unexpected(picture.error());
   const image::Image image{picture->width, picture->height, std::move(picture->rgba)};
-  if (auto ok = image::write_png(file, image); !ok) return ok;
-  last_image_hash_ = image::hash(image);
+  if (auto ok = image::write_png(file, image); !ok) return tl::unexpected(ok.error());
+  return image::hash(image);
+}
+
+core::Result<void> App::save_picture(const std::filesystem::path& file) {
+  const auto written = write_picture(file);
+  if (!written) return tl::unexpected(written.error());
   files_.push_back(file);
   return {};
 }

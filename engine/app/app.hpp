@@ -6,8 +6,9 @@
 #include <memory>
 #include <optional>
 
+#include "engine/app/hud.hpp"
+#include "engine/app/loading.hpp"
 #include "engine/app/options.hpp"
-#include "engine/app/overlay.hpp"
 #include "engine/platform/fly_camera.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/render/renderer.hpp"
@@ -29,13 +30,20 @@ class App {
  public:
   // Reads the files, opens device and window, starts the modelers. Every failure is a sentence:
   // kParse for files, kNoDevice for a missing device or display, kOverBudget, kInvalidArgument,
-  // kIo.
+  // kIo; kInterrupted where the window was closed meanwhile.
   static core::Result<std::unique_ptr<App>> create(Options options);
   ~App();
 
-  // Flies until the path, the time or the user ends it, then writes the outputs.
+  // Flies until the path, the time or the user ends it, then writes the outputs. Where the path
+  // has ended in a window, the user flies on until the window is closed; the report is that of the
+  // flight alone. Fails with kInterrupted where the window was closed before the first frame.
   core::Result<FlightReport> run();
+  // Whether what happens now belongs to the flight of run().
+  bool flying() const { return flying_; }
 
+  // Makes what the first frame with this pose needs, as the paradigm says: fills the cache, or
+  // amplifies. Ends early once Options::stop is set; kInterrupted once the window was closed.
+  core::Result<void> prepare(const core::CameraPose& first);
   // One frame with a pose, for programs that have a loop of their own.
   core::Result<void> frame(const core::CameraPose& pose, double dt_s);
   // The last frame as a PNG.
@@ -54,18 +62,31 @@ class App {
  private:
   explicit App(Options options);
   core::Result<void> open();
-  core::Result<void> prepare(const core::CameraPose& first);
-  core::Result<void> loop();
-  core::Result<void> fly_frame(std::uint64_t index, double flight_s, double dt_s);
-  bool saves_picture(std::uint64_t frame) const;
-  void wait_while_minimised();
+  core::Result<void> open_window(const std::string& title);
+  core::Result<void> open_renderer(Loading& loading);
+  core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   core::Extent picture_size() const;
-  void save_screenshot();
-  bool wants_more(double flight_s, std::uint64_t frames) const;
-  core::CameraPose next_pose(double flight_s, double dt_s);
+  core::Result<std::uint64_t> write_picture(const std::filesystem::path& file);
+
+  core::Result<void> loop();
+  core::Result<void> fly_frame(double dt_s);
+  core::CameraPose next_pose(double dt_s);
+  bool wants_more() const;
+  bool stays_open() const;
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+  bool saves_picture() const;
+  core::Result<void> save_numbered_picture();
+  void record_frame(double frame_ms, double cpu_ms);
+  core::Result<FlightReport> land();
+
   void handle_window();
-  core::Result<void> save_numbered_picture(std::uint64_t frame);
-  void record_frame(std::uint64_t index, double flight_s, double frame_ms, double cpu_ms);
+  void handle_keys();
+  void wait_while_minimised();
+  void write_over_picture();
+  void save_screenshot();
+  void change_preset();
+  void tell_end(const core::Result<FlightReport>& report);
+
   telemetry::RunFacts run_facts();
   core::Result<void> write_outputs(const telemetry::Summary& summary);
 
@@ -79,12 +100,15 @@ class App {
   platform::FlyCamera fly_camera_;
   platform::InputState input_;
   core::CameraPose pose_;
+  double flight_s_ = 0;  // the flight's clock, which goes on after its end
+  std::uint64_t frames_ = 0;
+  bool flying_ = false;
   bool user_flies_ = false;
-  bool overlay_ = true;
   bool closed_ = false;
-  Overlay overlay_figures_;
-  std::uint64_t last_image_hash_ = 0;
-  std::uint64_t images_hash_ = 0;  // of the numbered pictures, in order
+  Hud hud_;
+  bool photograph_ = false;                      // the next frame, for the user
+  std::optional<render::Preset> wanted_preset_;  // after the next frame
+  std::uint64_t images_hash_ = 0;                // of the numbered pictures, in order
   std::uint64_t images_ = 0;
   std::vector<std::filesystem::path> files_;
 };

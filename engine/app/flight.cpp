@@ -1,4 +1,4 @@
-// The main loop: from the first pose to the end of the flight.
+// The main loop: from the first pose to the end of the flight, and on in a window.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,37 +9,32 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/models/terrain.hpp"
-#include "engine/render/preset.hpp"
-#include "engine/telemetry/progress_bar.hpp"
 
 namespace psygen::app {
 namespace {
 
-constexpr double kDefaultSeconds = 27.0;       // the paper's walk
-constexpr double kEyeHeightM = 1.7;            // a flying user stays above the ground
-constexpr double kMinimisedWaitSeconds = 0.1;  // between looks at a minimised window
-
-// Whether the person wants to fly rather than watch.
-bool moves_camera(const platform::InputState& input) {
-  using enum platform::Key;
-  for (const platform::Key key : {kW, kA, kS, kD, kQ, kE, kUp, kDown, kLeft, kRight}) {
-    if (input.is_held(key)) return true;
-  }
-  return input.looking && (input.look_px.x != 0 || input.look_px.y != 0);
-}
+constexpr double kDefaultSeconds = 27.0;  // the paper's walk
+constexpr double kEyeHeightM = 1.7;       // a flying user stays above the ground
 
 }  // namespace
 
-bool App::wants_more(double flight_s, std::uint64_t frames) const {
-  if (closed_ || (options_.stop != nullptr && options_.stop->load())) return false;
-  if (options_.frames > 0 && frames >= options_.frames) return false;
-  if (options_.seconds > 0) return flight_s < options_.seconds;
+bool App::wants_more() const {
+  if (closed_ || stopped()) return false;
+  if (!flying_) return true;
+  if (options_.frames > 0 && frames_ >= options_.frames) return false;
+  if (options_.seconds > 0) return flight_s_ < options_.seconds;
   if (options_.frames > 0 || user_flies_) return true;
-  if (path_ && !options_.loop) return flight_s < path_->duration_seconds();
-  return window_ != nullptr || flight_s < kDefaultSeconds;
+  if (path_ && !options_.loop) return flight_s_ < path_->duration_seconds();
+  return window_ != nullptr || flight_s_ < kDefaultSeconds;
 }
 
-core::CameraPose App::next_pose(double flight_s, double dt_s) {
+// Where only the path has ended the user goes on.
+bool App::stays_open() const {
+  const bool limited = options_.frames > 0 || options_.seconds > 0;
+  return window_ != nullptr && !limited && !closed_ && !stopped();
+}
+
+core::CameraPose App::next_pose(double dt_s) {
   const world::World& world = scene_->state().facts.world;
   if (user_flies_) {
     pose_ = fly_camera_.update(pose_, input_, dt_s);
@@ -51,73 +46,30 @@ core::CameraPose App::next_pose(double flight_s, double dt_s) {
   } else if (path_) {
     const double end_s = path_->duration_seconds();
     const bool again = options_.loop && end_s > 0;
-    pose_ = path_->pose_at(again ? std::fmod(flight_s, end_s) : std::min(flight_s, end_s), world);
+    pose_ = path_->pose_at(again ? std::fmod(flight_s_, end_s) : std::min(flight_s_, end_s), world);
   } else {
     pose_ = home();
-    pose_.yaw += 2 * std::numbers::pi * flight_s / kDefaultSeconds;
+    pose_.yaw += 2 * std::numbers::pi * flight_s_ / kDefaultSeconds;
   }
   return pose_;
 }
 
-// Keys that the application itself knows; everything else belongs to the camera.
-void App::handle_window() {
-  input_ = window_->poll();
-  if (input_.resized) {
-    if (auto ok = renderer_->resize(window_->framebuffer_size()); !ok) {
-      core::log_error(ok.error().message);
-      closed_ = true;
-    }
-  }
-  if (window_->should_close() || input_.was_pressed(platform::Key::kEscape)) closed_ = true;
-  if (input_.was_pressed(platform::Key::kF1)) overlay_ = !overlay_;
-  if (input_.was_pressed(platform::Key::kF2)) {
-    render::View& view = scene_->state().input.view;
-    view = render::next_view(view);
-  }
-  if (input_.was_pressed(platform::Key::kF12)) save_screenshot();
-  if (moves_camera(input_)) user_flies_ = true;  // from here on the path is left
+bool App::saves_picture() const {
+  return flying_ && options_.images_every > 0 && frames_ % options_.images_every == 0;
 }
 
-// A picture for the user: the first free name, and no part of the run's hash.
-void App::save_screenshot() {
-  std::filesystem::path file;
-  std::error_code ignored;
-  for (int number = 0; file.empty() || std::filesystem::exists(file, ignored); ++number) {
-    file = options_.out_folder / fmt::format("screenshot_{:04}.png", number);
-  }
-  if (auto ok = save_picture(file); !ok) core::log_error(ok.error().message);
-}
-
-void App::wait_while_minimised() {
-  while (picture_size() == core::Extent{} && !closed_) {
-    window_->wait_events(kMinimisedWaitSeconds);
-    handle_window();
-    if (options_.stop != nullptr && options_.stop->load()) return;
-  }
-}
-
-bool App::saves_picture(std::uint64_t frame) const {
-  return options_.images_every > 0 && frame % options_.images_every == 0;
-}
-
-core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double dt_s) {
+core::Result<void> App::fly_frame(double dt_s) {
   scene::State& state = scene_->state();
-  state.clock.now_s = flight_s;
-  state.input.panels.clear();
-  if (window_ && overlay_) {
-    render::TextPanel panel;
-    for (std::string& line : overlay_figures_.lines(state, renderer_->device()))
-      panel.lines.push_back({std::move(line)});
-    state.input.panels.push_back(std::move(panel));
-  }
+  state.clock.now_s = flight_s_;
+  if (window_) write_over_picture();
   const double start_s = core::monotonic_seconds();
   const double cpu_start_s = core::thread_cpu_seconds();
-  if (auto ok = frame(next_pose(flight_s, dt_s), dt_s); !ok) return ok;
+  if (auto ok = frame(next_pose(dt_s), dt_s); !ok) return ok;
   // A picture waits for the device; unmeasured, that wait would make the next frames look fast.
-  if (saves_picture(index)) renderer_->wait_idle();
+  if (saves_picture()) renderer_->wait_idle();
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
-  record_frame(index, flight_s, frame_ms, (core::thread_cpu_seconds() - cpu_start_s) * 1000.0);
-  overlay_figures_.add_frame(frame_ms);
+  if (flying_) record_frame(frame_ms, (core::thread_cpu_seconds() - cpu_start_s) * 1000.0);
+  hud_.add_frame(frame_ms);
   // The device's time counts where it is the longer one; waiting, for it or a display, does not.
   // A software device's time is this machine's own.
   const render::FrameResult& drawn = state.counters.frame;
@@ -135,9 +87,9 @@ core::Result<void> App::loop() {
                                                  : kDefaultSeconds;
   telemetry::ProgressBar bar(window_ ? telemetry::Terminal{} : telemetry::stderr_terminal(),
                              "flying", expected_s);
-  const double hz = options_.fixed_step_hz;
-  double flight_s = 0, dt_s = hz > 0 ? 1.0 / hz : 1.0 / 60.0;
-  for (std::uint64_t frames = 0; wants_more(flight_s, frames);) {
+  const double hz = flying_ ? options_.fixed_step_hz : 0;
+  double dt_s = hz > 0 ? 1.0 / hz : 1.0 / 60.0;
+  while (wants_more()) {
     // The flight's clock stands still while the window is minimised and while pictures are written.
     if (window_) {
       handle_window();
@@ -145,44 +97,61 @@ core::Result<void> App::loop() {
       if (closed_) break;
     }
     const double start_s = core::monotonic_seconds();
-    if (auto ok = fly_frame(frames, flight_s, dt_s); !ok) return ok;
+    if (auto ok = fly_frame(dt_s); !ok) return ok;
     if (hz <= 0) dt_s = core::monotonic_seconds() - start_s;
-    bar.update(flight_s);
-    if (saves_picture(frames)) {
-      if (auto ok = save_numbered_picture(frames); !ok) return ok;
+    bar.update(flight_s_);
+    if (saves_picture()) {
+      if (auto ok = save_numbered_picture(); !ok) return ok;
     }
-    ++frames;
-    flight_s = hz > 0 ? static_cast<double>(frames) / hz : flight_s + dt_s;
+    if (photograph_) save_screenshot();
+    if (wanted_preset_) change_preset();
+    ++frames_;
+    flight_s_ = hz > 0 ? static_cast<double>(frames_) / hz : flight_s_ + dt_s;
   }
   return {};
 }
 
 // A window that is being resized may have no picture in this frame; that is no failure.
-core::Result<void> App::save_numbered_picture(std::uint64_t frame) {
-  auto saved = save_picture(options_.out_folder / fmt::format("frame_{:05}.png", frame));
-  if (saved) {
-    images_hash_ = core::combine(images_hash_, last_image_hash_);
+core::Result<void> App::save_numbered_picture() {
+  const auto file = options_.out_folder / fmt::format("frame_{:05}.png", frames_);
+  const auto hash = write_picture(file);
+  if (hash) {
+    files_.push_back(file);
+    images_hash_ = core::combine(images_hash_, *hash);
     ++images_;
-  } else if (window_ && saved.error().code != core::ErrorCode::kIo) {
-    core::log_warning(fmt::format("no picture of frame {}: {}", frame, saved.error().message));
     return {};
   }
-  return saved;
+  if (window_ == nullptr || hash.error().code == core::ErrorCode::kIo)
+    return tl::unexpected(hash.error());
+  core::log_warning(fmt::format("no picture of frame {}: {}", frames_, hash.error().message));
+  return {};
 }
 
-void App::record_frame(std::uint64_t index, double flight_s, double frame_ms, double cpu_ms) {
+void App::record_frame(double frame_ms, double cpu_ms) {
   scene::State& state = scene_->state();
   telemetry::FrameRecord record = state.record;
-  record.index = index;
-  record.time_s = flight_s;
+  record.index = frames_;
+  record.time_s = flight_s_;
   record.frame_ms = frame_ms;
   record.main_cpu_ms = cpu_ms;
   log_->add(record);
   for (const float ms : state.counters.time_to_visible_ms)
-    log_->add_time_to_visible(flight_s, ms);
+    log_->add_time_to_visible(flight_s_, ms);
   for (const auto& cost : state.counters.costs) {
-    log_->add_cost_error(flight_s, cost.predicted_s, cost.actual_s);
+    log_->add_cost_error(flight_s_, cost.predicted_s, cost.actual_s);
   }
+}
+
+// The end of the flight: what was measured is written down, also when it ended early.
+core::Result<FlightReport> App::land() {
+  flying_ = false;
+  FlightReport report;
+  report.summary = telemetry::summarise(*log_, run_facts(), options_.warmup_seconds);
+  scene_->state().trace.log = nullptr;  // what comes now is none of the flight
+  if (auto ok = write_outputs(report.summary); !ok) return tl::unexpected(ok.error());
+  report.files = files_;
+  report.validation_messages = renderer_->validation_messages();
+  return report;
 }
 
 core::Result<FlightReport> App::run() {
@@ -192,14 +161,22 @@ core::Result<FlightReport> App::run() {
   for (const Plugin& plugin : options_.plugins) {
     if (plugin.on_start) plugin.on_start(*this);
   }
-  // What was measured is written also when the flight ended early.
+  frames_ = 0;
+  flight_s_ = 0;
+  flying_ = true;
   const auto flown = loop();
-  FlightReport report;
-  report.summary = telemetry::summarise(*log_, run_facts(), options_.warmup_seconds);
-  if (auto ok = write_outputs(report.summary); !ok) return tl::unexpected(ok.error());
-  if (!flown) return tl::unexpected(flown.error());
-  report.files = files_;
-  report.validation_messages = renderer_->validation_messages();
+  auto report = land();
+  if (report && !flown) return tl::unexpected(flown.error());
+  if (report) {
+    for (const Plugin& plugin : options_.plugins) {
+      if (plugin.on_end) plugin.on_end(*this, *report);
+    }
+  }
+  if (!flown || !stays_open()) return report;
+  tell_end(report);
+  user_flies_ = true;
+  if (auto ok = loop(); !ok) return tl::unexpected(ok.error());
+  if (report) report->validation_messages = renderer_->validation_messages();
   return report;
 }
 

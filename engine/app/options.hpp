@@ -18,6 +18,7 @@
 namespace psygen::app {
 
 class App;
+struct FlightReport;
 
 // Code that a game adds. Every member may be empty.
 struct Plugin {
@@ -27,6 +28,8 @@ struct Plugin {
   // Called once before the first frame and after every tick with the time step in seconds.
   std::function<void(App&)> on_start;
   std::function<void(App&, double)> on_frame;
+  // Called once when the flight has ended and its outputs are written. A window may stay open.
+  std::function<void(App&, const FlightReport&)> on_end = {};
 };
 
 struct Options {
@@ -41,8 +44,10 @@ struct Options {
   std::optional<render::Preset> preset;  // none: what suits the device
   render::RenderPath render_path = render::RenderPath::kAuto;
   render::View view = render::View::kNormal;  // F2 goes on to the next
-  double seconds = 0;        // 0: as long as the path; without one 27 s headless, else endless
-  std::uint64_t frames = 0;  // 0: no limit
+  // Both 0: as long as the path; without one 27 s headless, else until the window is closed. Where
+  // one is given a window closes at the end of the flight, otherwise it stays.
+  double seconds = 0;
+  std::uint64_t frames = 0;
   // Frames a second that are held by a larger error of levels of detail; 0: the error is fixed.
   // Not set: 60 in a window, 0 headless.
   std::optional<double> target_hz;

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""A flight in a window under Xvfb: resize, minimise, restore, press keys, close.
+"""Flights in a window under Xvfb: resize, minimise, restore, press keys, close; and what the end of a
+path leaves behind while the window stays.
 
 usage: window_test.py PSYGEN SOURCE_DIR
 
 Fails on a wrong exit code, a validation message, or a picture that was not written.
 """
+import json
 import os
 import pathlib
 import subprocess
@@ -12,6 +14,19 @@ import sys
 import tempfile
 import time
 
+SHORT_PATH = """format = 1
+[path]
+name = "half a second"
+origin_block = [256, 256]
+[[point]]
+time_s = 0
+at_m = [0, 0]
+height_m = 1.7
+[[point]]
+time_s = 0.5
+at_m = [1, 0]
+height_m = 1.7
+"""
 PATIENCE_S = 120  # for a slow machine; nothing below depends on how fast it is
 
 
@@ -55,12 +70,32 @@ class Display:
         return result.stdout.strip() if result.returncode == 0 else None
 
 
-def fly(display, psygen, source, out):
+def fly(display, psygen, source, out, *options, stdout=subprocess.PIPE):
     return subprocess.Popen(
-        [psygen, "fly", "--world", source / "game/worlds/paper.toml", "--path",
-         source / "game/paths/walk27.toml", "--size", "320x180", "--view-distance", "130",
-         "--seconds", "3600", "--no-vsync", "--validation", "--out", out],
-        env=display.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        [psygen, "fly", "--world", source / "game/worlds/paper.toml", "--size", "320x180",
+         "--view-distance", "130", "--no-vsync", "--validation", "--out", out, *options],
+        env=display.environment, stdout=stdout, stderr=subprocess.PIPE, text=True)
+
+
+def fly_for_an_hour(display, psygen, source, out, *options):
+    return fly(display, psygen, source, out, "--path", source / "game/paths/walk27.toml",
+               "--seconds", "3600", *options)
+
+
+def find_window(display):
+    return wait_for("window", lambda: display.tool("search", "--onlyvisible", "--name", "psygen")
+                    ).split()[0]
+
+
+def close(display, process):
+    """Lets the window manager ask the window to close, until the process ends."""
+    display.tool("windowactivate", "--sync", find_window(display))
+
+    def ended():
+        display.tool("key", "alt+F4")
+        return process.poll() is not None
+
+    wait_for("end after closing the window", ended)
 
 
 def finish(process):
@@ -68,6 +103,15 @@ def finish(process):
     assert process.returncode == 0, f"exit code {process.returncode}\n{err}"
     assert "frame" in out, "no summary on stdout"
     return err
+
+
+def screenshot_in(display, folder):
+    """Presses the key, and says which pictures there are."""
+    def screenshot():
+        display.tool("key", "--window", find_window(display), "F12")
+        display.tool("key", "F12")
+        return list(folder.glob("screenshot_*.png"))
+    return screenshot
 
 
 def cpu_seconds(process):
@@ -88,10 +132,9 @@ def run(processes):
     psygen, source = sys.argv[1], pathlib.Path(sys.argv[2])
     with Display() as display, tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
-        process = fly(display, psygen, source, out)
+        process = fly_for_an_hour(display, psygen, source, out)
         processes.append(process)
-        window = wait_for("window", lambda: display.tool("search", "--onlyvisible", "--name", "psygen")
-                          ).split()[0]
+        window = find_window(display)
         display.tool("windowfocus", "--sync", window)
         for width in range(200, 520, 16):
             display.tool("windowsize", window, width, 460 - width // 2)
@@ -110,30 +153,47 @@ def run(processes):
         display.tool("windowactivate", "--sync", window)
         display.tool("windowsize", "--sync", window, 400, 225)
 
-        def screenshot():
-            display.tool("key", "--window", window, "F12")
-            display.tool("key", "F12")
-            return list(out.glob("screenshot_*.png"))
-
-        wait_for("screenshot", screenshot)
+        wait_for("screenshot", screenshot_in(display, out))
         display.tool("key", "--repeat", "10", "w")
         display.tool("key", "Escape")
         wait_for("end after Escape", lambda: process.poll() is not None)
         finish(process)
         assert (out / "summary.json").exists(), "no summary was written"
 
-        process = fly(display, psygen, source, out)
+        out = pathlib.Path(folder, "closed")
+        process = fly_for_an_hour(display, psygen, source, out, "--images", "1000000")
         processes.append(process)
-        window = wait_for("second window",
-                          lambda: display.tool("search", "--onlyvisible", "--name", "psygen")).split()[0]
-        display.tool("windowactivate", "--sync", window)
-
-        def ended():
-            display.tool("key", "alt+F4")  # the window manager asks the window to close
-            return process.poll() is not None
-
-        wait_for("end after closing the window", ended)
+        wait_for("first frame", lambda: (out / "frame_00000.png").exists())
+        close(display, process)
         finish(process)
+        assert (out / "summary.json").exists(), "no summary was written"
+
+        # Closed as soon as there is a window, most probably while it loads.
+        process = fly_for_an_hour(display, psygen, source, out)
+        processes.append(process)
+        close(display, process)
+        process.communicate(timeout=PATIENCE_S)
+        assert process.returncode == 0, f"exit code {process.returncode}"
+
+        out = pathlib.Path(folder, "short")
+        out.mkdir()
+        path = out / "path.toml"
+        path.write_text(SHORT_PATH, encoding="utf-8")
+        printed = out / "stdout"
+        with printed.open("w") as stdout:
+            process = fly(display, psygen, source, out, "--path", path, "--fixed-step", "30",
+                          stdout=stdout)
+        processes.append(process)
+        # Everything is printed and written when the path ends; the window stays and obeys its keys.
+        wait_for("summary", lambda: "memory" in printed.read_text(encoding="utf-8"))
+        assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["run"]["frames"] == 15
+        display.tool("windowactivate", "--sync", find_window(display))
+        wait_for("screenshot after the flight", screenshot_in(display, out))
+        assert process.poll() is None, "the window did not stay"
+        close(display, process)
+        process.communicate(timeout=PATIENCE_S)
+        assert process.returncode == 0, f"exit code {process.returncode}"
+        assert printed.read_text(encoding="utf-8").count("memory") == 1, "printed twice"
     print("window: resized, minimised, flown, photographed and closed")
 
 

@@ -1,0 +1,30 @@
+// The keys of a window and what they do: one list for the help on the screen and for whoever
+// documents them (docs/cli.md). What they do is in controls.cpp and platform/fly_camera.cpp.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace psygen::app {
+
+struct KeyHelp {
+  std::string_view keys, meaning;
+};
+
+inline constexpr std::array kKeyHelp{
+    KeyHelp{"W A S D", "fly forward, left, back, right"},
+    KeyHelp{"E Q", "fly up, down"},
+    KeyHelp{"arrows", "turn"},
+    KeyHelp{"mouse", "look around, with the right button"},
+    KeyHelp{"wheel", "faster, slower"},
+    KeyHelp{"Shift", "5 times as fast, while held"},
+    KeyHelp{"Ctrl", "a fifth as fast, while held"},
+    KeyHelp{"F1", "figures, this help, nothing"},
+    KeyHelp{"F2", "next view, with its legend"},
+    KeyHelp{"F3", "next preset"},
+    KeyHelp{"F11", "full screen and back"},
+    KeyHelp{"F12", "write a picture"},
+    KeyHelp{"Esc", "end"},
+};
+
+}  // namespace psygen::app

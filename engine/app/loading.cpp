@@ -1,0 +1,52 @@
+#include "engine/app/loading.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/core/clock.hpp"
+
+namespace psygen::app {
+namespace {
+
+constexpr double kPauseSeconds = 0.05;     // between two pictures
+constexpr float kHeightOfScaleOne = 1080;  // pixels of a picture
+
+}  // namespace
+
+float text_scale(float content_scale, core::Extent picture) {
+  return std::max(content_scale, static_cast<float>(picture.height) / kHeightOfScaleOne);
+}
+
+Loading::Loading(std::string title, platform::Window* window, const std::atomic<bool>* stop)
+    : title_(std::move(title)), window_(window), stop_(stop) {}
+
+bool Loading::update(std::string_view label, double fraction, render::Renderer* renderer) {
+  if (!bar_ || label != label_) {
+    label_ = label;
+    fraction_ = 0;
+    bar_ = std::make_unique<telemetry::ProgressBar>(telemetry::stderr_terminal(), label_, 1.0);
+  }
+  fraction_ = std::max(fraction_, fraction);
+  bar_->update(fraction_);
+  if (window_ != nullptr) watch_window(renderer);
+  return !closed_ && (stop_ == nullptr || !stop_->load());
+}
+
+void Loading::watch_window(render::Renderer* renderer) {
+  const platform::InputState input = window_->poll();
+  if (window_->should_close() || input.was_pressed(platform::Key::kEscape)) closed_ = true;
+  if (input.was_pressed(platform::Key::kF11)) (void)window_->set_fullscreen(!window_->fullscreen());
+  const double now_s = core::monotonic_seconds();
+  if (closed_ || renderer == nullptr || (shown_s_ >= 0 && now_s - shown_s_ < kPauseSeconds)) return;
+  shown_s_ = now_s;
+  const render::TextPanel panel{
+      render::Anchor::kMiddle,
+      {{title_},
+       {fmt::format("{} {:.0f} %", label_, fraction_ * 100), {}, static_cast<float>(fraction_)}}};
+  // A picture that cannot be drawn is told by the first frame.
+  (void)renderer->show({&panel, 1},
+                       text_scale(window_->content_scale(), window_->framebuffer_size()));
+}
+
+}  // namespace psygen::app
