@@ -36,7 +36,6 @@ class FlyCommand {
 
   CLI::App* command_;
   app::Options options_;
-  std::string world_ = kDefaultWorld;
   int told_ = 0;          // exit code of what the end of the flight wrote
   std::string requests_;  // file; empty: they are not recorded
   RequestRecorder recorder_;

@@ -6,28 +6,21 @@
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
-#include "engine/render/preset.hpp"
-#include "engine/render/render_path.hpp"
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
 #include "game/option_checks.hpp"
-#include "game/text_values.hpp"
+#include "game/scene_options.hpp"
 
 namespace psygen::game {
 FlyCommand::FlyCommand(CLI::App& cli)
     : command_(cli.add_subcommand("fly", "Fly through a world, in a window or headless")) {
   CLI::App& c = *command_;
   scene::Settings& scene = options_.scene;
-  c.add_option("--world", world_, "World file (TOML)")->capture_default_str();
+  add_scene_options(c, options_);
   c.add_option("--path", options_.path_file,
                "Camera path (TOML); without one the camera turns, or you fly");
   c.add_option("--out", options_.out_folder,
                "Folder for frames.csv, summary.json, trace.json, report.html and pictures");
-  c.add_option_function<std::string>(
-       "--size", [this](const std::string& text) { options_.size = *parse_size(text); },
-       "Picture in pixels, WIDTHxHEIGHT")
-      ->check(valid_if(parse_size, "WxH"))
-      ->default_str("1280x720");
   c.add_flag("--headless", options_.headless, "No window; needs no display");
   c.add_option("--seconds", options_.seconds, "Length of the flight; 0: that of the path")
       ->check(number_between(0, 86400));
@@ -40,16 +33,8 @@ FlyCommand::FlyCommand(CLI::App& cli)
   c.add_option("--warmup", options_.warmup_seconds, "Seconds that are left out of the figures")
       ->capture_default_str()
       ->check(number_between(0, 3600));
-  c.add_option("--images", options_.images_every, "Write every so manieth frame as a PNG")
+  c.add_option("--images", options_.images_every, "Write every Nth frame as a PNG")
       ->transform(integer_between(0, 1'000'000'000));
-  c.add_option("--modelers", scene.modelers, "Synthesis threads; 0: one less than cores")
-      ->transform(integer_between(0, 256));
-  c.add_option_function<std::string>(
-       "--budget",
-       [this](const std::string& text) { options_.scene.budget_bytes = *parse_bytes(text); },
-       "Bytes for all geometry, e.g. 512M")
-      ->check(bytes_between(scene::Scene::kMinBudgetBytes, scene::Scene::kMaxBudgetBytes))
-      ->default_str("512M");
   c.add_option_function<std::string>(
        "--paradigm",
        [this](const std::string& text) { options_.scene.paradigm = *scene::paradigm_from(text); },
@@ -68,17 +53,6 @@ FlyCommand::FlyCommand(CLI::App& cli)
        "Order of nodes: layers around the camera, or what little solidity hides first")
       ->check(valid_if(scene::plp_mode_from, "layers|solidity"))
       ->default_str("layers");
-  c.add_option_function<std::string>(
-       "--lod", [this](const std::string& text) { options_.scene.levels_of_detail = text == "on"; },
-       "Levels of detail: on, or off for full detail everywhere")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->default_str("on");
-  c.add_option("--view-distance", scene.view_distance_m, "Metres; nothing beyond exists")
-      ->capture_default_str()
-      ->check(number_between(32, 65536));
-  c.add_option("--error", scene.max_error_pixels, "Allowed error of a level of detail in pixels")
-      ->capture_default_str()
-      ->check(number_between(0.1, 1000));
   c.add_option_function<double>(
        "--target-fps", [this](double hz) { options_.target_hz = hz; },
        "Hold this frame rate with a larger error (up to 4 times); 0: fixed error")
@@ -87,30 +61,6 @@ FlyCommand::FlyCommand(CLI::App& cli)
   c.add_option("--fade", scene.fade_seconds, "Seconds in which models come and go; 0: at once")
       ->capture_default_str()
       ->check(number_between(0, 60));
-  c.add_option_function<std::string>(
-       "--occlusion", [this](const std::string& text) { options_.scene.occlusion = text == "on"; },
-       "Leave out what lies behind ridges: on, off")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->default_str("on");
-  c.add_option_function<std::string>(
-       "--preset",
-       [this](const std::string& text) { options_.preset = *render::preset_from(text); },
-       "Light and detail: low, medium, high, ultra; without it what suits the device")
-      ->check(valid_if(render::preset_from, "low|medium|high|ultra"));
-  c.add_option_function<std::string>(
-       "--view", [this](const std::string& text) { options_.view = *render::view_from(text); },
-       "What is shown: normal, levels, layers, bounds, wireframe, missing, cache")
-      ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing|cache"))
-      ->default_str("normal");
-  c.add_option("--device", options_.device_name, "Part of the name of the Vulkan device");
-  c.add_option_function<std::string>(
-       "--render-path",
-       [this](const std::string& text) { options_.render_path = *render::render_path_from(text); },
-       "Who decides what is drawn: cpu, gpu, or auto for what suits the device")
-      ->check(valid_if(render::render_path_from, "auto|cpu|gpu"))
-      ->default_str("auto");
-  c.add_flag("--validation", options_.validation,
-             "Vulkan validation; any message makes the run fail");
   c.add_flag("!--no-vsync", options_.vsync, "Do not wait for the display");
   c.add_flag("!--no-prefill", options_.prefill, "Start with an empty cache");
   c.add_option("--record-requests", requests_,
@@ -119,7 +69,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
 }
 
 int FlyCommand::run() {
-  if (auto ok = find_files(world_, options_); !ok) {
+  if (auto ok = find_files(options_); !ok) {
     core::log_error(ok.error().message);
     return exit_code_of(ok.error());
   }

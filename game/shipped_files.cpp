@@ -93,8 +93,8 @@ core::Result<world::World> load_world(const std::string& name, models::Registry&
   return world::load_world(*file, registry);
 }
 
-core::Result<void> find_files(const std::string& world, app::Options& options) {
-  auto world_file = find_file(Shipped::kWorld, world);
+core::Result<void> find_files(app::Options& options) {
+  auto world_file = find_file(Shipped::kWorld, options.world_file.string());
   if (!world_file) return tl::unexpected(world_file.error());
   options.world_file = std::move(*world_file);
   if (options.path_file.empty()) return {};

@@ -22,7 +22,7 @@ core::Result<std::filesystem::path> find_file(Shipped kind, const std::string& n
 // Reads the world that an option means. Fails as find_file() and world::load_world().
 core::Result<world::World> load_world(const std::string& name, models::Registry& registry);
 
-// Sets the world of a flight, and its path (none: stays none), to the files that are meant.
-core::Result<void> find_files(const std::string& world, app::Options& options);
+// Sets world and path (none: stays none), which are what was typed, to the files that are meant.
+core::Result<void> find_files(app::Options& options);
 
 }  // namespace psygen::game

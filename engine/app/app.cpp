@@ -19,6 +19,20 @@ tl::unexpected<core::Error> closed_early() {
   return core::fail(core::ErrorCode::kInterrupted, "the window was closed before the first frame");
 }
 
+core::Result<void> set_hour(const Options& options, world::World& world) {
+  if (!options.start_hour) return {};
+  if (!(*options.start_hour >= 0 && *options.start_hour <= 24))
+    return core::fail(core::ErrorCode::kInvalidArgument, "an hour of the day is between 0 and 24");
+  if (!(world.sky.day_length_s > 0)) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{}: this world has no hours: sky.day_length_s is 0, and the sun "
+                                  "stands still",
+                                  options.world_file.string()));
+  }
+  world.sky.start_hour = *options.start_hour;
+  return {};
+}
+
 core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins) {
   models::Registry registry = models::make_standard_registry();
   for (const Plugin& plugin : plugins) {
@@ -56,6 +70,7 @@ core::Result<void> App::open() {
   if (!registry) return tl::unexpected(registry.error());
   auto world = world::load_world(options_.world_file, *registry);
   if (!world) return tl::unexpected(world.error());
+  if (auto ok = set_hour(options_, *world); !ok) return ok;
   if (!options_.path_file.empty()) {
     auto path = world::load_camera_path(options_.path_file);
     if (!path) return tl::unexpected(path.error());

@@ -48,6 +48,7 @@ struct Options {
   // one is given a window closes at the end of the flight, otherwise it stays.
   double seconds = 0;
   std::uint64_t frames = 0;
+  std::optional<double> start_hour;  // of the day, 0 to 24; the world must have one
   // Frames a second that are held by a larger error of levels of detail; 0: the error is fixed.
   // Not set: 60 in a window, 0 headless.
   std::optional<double> target_hz;
