@@ -14,27 +14,11 @@
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
 #include "game/option_checks.hpp"
+#include "game/places.hpp"
 #include "game/text_values.hpp"
 
 namespace psygen::game {
 namespace {
-
-// The block under a place in metres of the world. Fails outside of the world.
-core::Result<core::WorldPosition> position_of(const world::World& world, glm::dvec2 place) {
-  const double size_m = world.block_size_m();
-  const double x = std::floor(place.x / size_m), z = std::floor(place.y / size_m);
-  const auto exists = [](double block) { return block >= INT32_MIN && block <= INT32_MAX; };
-  const bool some = exists(x) && exists(z);
-  core::WorldPosition at;
-  if (some) at.block = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
-  if (!some || !world.contains(at.block)) {
-    return core::fail(
-        core::ErrorCode::kInvalidArgument,
-        fmt::format("the place {},{} is outside of the world {}", place.x, place.y, world.name));
-  }
-  at.local = {place.x - x * size_m, 0.0, place.y - z * size_m};
-  return at;
-}
 
 struct Files {
   std::uint64_t written, skipped;
@@ -140,7 +124,7 @@ int AmplifyCommand::print_heights(const world::World& world) const {
   auto list = nlohmann::ordered_json::array();
   std::string text;
   for (const glm::dvec2& place : samples_) {
-    const auto at = position_of(world, place);
+    const auto at = position_at(world, place);
     if (!at) {
       core::log_error(at.error().message);
       return exit_code_of(at.error());

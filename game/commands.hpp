@@ -42,6 +42,22 @@ class FlyCommand {
   bool json_ = false;
 };
 
+class PictureCommand {
+ public:
+  explicit PictureCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run();
+
+ private:
+  core::Result<void> take(app::App& app) const;
+
+  CLI::App* command_;
+  app::Options options_;
+  std::string out_;
+  std::optional<glm::dvec2> at_;  // metres; none: the middle of the world
+  double height_m_ = 1.7, yaw_deg_ = 0, pitch_deg_ = 0;
+};
+
 class ModelsCommand {
  public:
   explicit ModelsCommand(CLI::App& cli);

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
       "  psygen fly --headless --world silver_combe --path combe --out out\n"
       "psygen COMMAND --help lists the options of a command.");
   psygen::game::FlyCommand fly(cli);
+  psygen::game::PictureCommand picture(cli);
   psygen::game::ModelsCommand models(cli);
   psygen::game::AmplifyCommand amplify(cli);
   psygen::game::ExportCommand exporter(cli);
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
   // Nothing of ours throws, but libraries do when memory ends.
   try {
     if (fly.chosen()) return fly.run();
+    if (picture.chosen()) return picture.run();
     if (amplify.chosen()) return amplify.run();
     if (exporter.chosen()) return exporter.run();
     if (calibrate.chosen()) return calibrate.run();

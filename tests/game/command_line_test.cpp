@@ -23,10 +23,14 @@ TEST(CommandLine, HelpAndVersionGoToStdoutAndAreNoFailure) {
   EXPECT_EQ(help.code, 0);
   EXPECT_TRUE(mentions(help.out, "fly"));
   EXPECT_TRUE(mentions(help.out, "models"));
+  EXPECT_TRUE(mentions(help.out, "picture"));
   const Outcome version = run_psygen("--version");
   EXPECT_EQ(version.code, 0);
   EXPECT_TRUE(mentions(version.out, "psygen "));
   EXPECT_EQ(run_psygen("fly --help").code, 0);
+  const Outcome picture = run_psygen("picture --help");
+  EXPECT_EQ(picture.code, 0);
+  EXPECT_TRUE(mentions(picture.out, "=1.7")) << "defaults are named";
 }
 
 TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
@@ -39,6 +43,21 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
                                 "fly --budget 1K",
                                 "fly --paradigm eager",
                                 "fly --policy random",
+                                "fly --hour 25",
+                                "picture",
+                                "picture --out a.jpg",
+                                "picture --out a.png --at 1",
+                                "picture --out a.png --at nan,0",
+                                "picture --out a.png --height 0.4",
+                                "picture --out a.png --height inf",
+                                "picture --out a.png --yaw north",
+                                "picture --out a.png --pitch -91",
+                                "picture --out a.png --hour -1",
+                                "picture --out a.png --size 0x1",
+                                "picture --out a.png --preset best",
+                                "picture --out a.png --view depth",
+                                "picture --out a.png --error 0",
+                                "picture --out a.png --seconds 3",
                                 "amplify --region 0,0,0,1",
                                 "amplify --simd mmx",
                                 "amplify --sample 1,1 --region 0,0,1,1",
@@ -102,6 +121,110 @@ TEST(CommandLine, AFlightPrintsItsSummaryAndNoProgressBarIntoAPipe) {
   EXPECT_EQ(outcome.out.front(), '{');
   EXPECT_TRUE(mentions(outcome.out, "\"frame_ms\""));
   EXPECT_FALSE(mentions(outcome.err, "\r"));
+}
+
+const std::string kSmallPicture = "picture --size 96x54 ";
+
+// The bytes of the picture that the options give; empty, with a failure, where there is none.
+std::string picture(const TemporaryFolder& folder, const std::string& options,
+                    const std::string& quick = " --view-distance 200 --preset low") {
+  const auto file = folder / "picture.png";
+  std::filesystem::remove(file);
+  const Outcome outcome = run_psygen(kSmallPicture + options + quick + " --out " + file.string());
+  EXPECT_EQ(outcome.code, 0) << options << "\n" << outcome.err;
+  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  EXPECT_TRUE(mentions(outcome.err, file.string())) << outcome.err;
+  return read(file);
+}
+
+TEST(CommandLine, APictureIsTheSameEveryTime) {
+  const TemporaryFolder folder;
+  const std::string others =
+      " --world game/worlds/five_species.toml --view-distance 200 --validation";
+  const std::string first = picture(folder, "--modelers 1", others);
+  EXPECT_FALSE(first.empty());
+  EXPECT_EQ(picture(folder, "--modelers 3", others), first);
+  EXPECT_EQ(picture(folder, "--modelers 2 --render-path gpu", others), first);
+  EXPECT_EQ(picture(folder, "--preset high", others), first) << "it is what stills have";
+  EXPECT_NE(picture(folder, "--yaw 40", others), first);
+}
+
+TEST(CommandLine, APictureIsTakenAtEyeHeightInTheMiddleOfTheWorldUnlessItIsToldOtherwise) {
+  const TemporaryFolder folder;
+  const std::string usual = picture(folder, "");
+  // The middle of block 256, 256.
+  EXPECT_EQ(picture(folder, "--at 16159.5,16159.5 --height 1.7 --yaw 0 --pitch 0"), usual);
+  for (const char* other : {"--at 16160.5,16159.5", "--height 2", "--yaw 1", "--pitch 1",
+                            "--error 20", "--view levels"}) {
+    EXPECT_NE(picture(folder, other), usual) << other;
+  }
+  EXPECT_NE(picture(folder, "", " --view-distance 90 --preset low"), usual);
+  EXPECT_NE(picture(folder, "", " --view-distance 200 --preset medium"), usual);
+}
+
+TEST(CommandLine, APictureOverWaterIsTakenAboveIt) {
+  const TemporaryFolder folder;
+  const std::string flooded = (folder / "flooded.toml").string();
+  std::ofstream(flooded) << read(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml")
+                         << "\n[water]\nlevel_m = 5000\n";
+  const std::string sky = " --pitch 60 --world " + flooded;
+  // Wherever the ground is, the same sky is above.
+  EXPECT_EQ(picture(folder, "--at 16159.5,16159.5" + sky),
+            picture(folder, "--at 16222.5,16159.5" + sky));
+}
+
+TEST(CommandLine, APictureOfAnHourNeedsAWorldThatHasOne) {
+  const TemporaryFolder folder;
+  const std::string day = " --world " + (folder / "day.toml").string();
+  std::ofstream(folder / "day.toml") << read(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml")
+                                     << "\n[sky]\nday_length_s = 3600\nstart_hour = 12\n";
+  const std::string noon = picture(folder, "--hour 12" + day);
+  EXPECT_EQ(picture(folder, day), noon);
+  EXPECT_NE(picture(folder, "--hour 18" + day), noon);
+  for (const std::string& command : {kSmallPicture + "--hour 12 --out a.png",
+                                     std::string("fly --headless --frames 1 --hour 12")}) {
+    const Outcome outcome = run_psygen(command);
+    EXPECT_EQ(outcome.code, 1) << command;
+    EXPECT_TRUE(mentions(outcome.err, "game/worlds/paper.toml: this world has no hours"))
+        << outcome.err;
+  }
+}
+
+TEST(CommandLine, APictureThatCannotBeTakenSaysWhy) {
+  const TemporaryFolder folder;
+  const auto failure = [&](const std::string& options, const std::string& environment = "") {
+    return run_psygen(kSmallPicture + options, environment);
+  };
+  const std::string out = " --out " + (folder / "a.png").string();
+  for (const auto& [options, words] :
+       {std::pair<std::string, std::string>{"--at 5,32256" + out, "Z is 0 to 32256 m"},
+        {"--at=-1,5" + out, "outside of the world paper"},
+        {"--at 1e300,0" + out, "outside of the world paper"},
+        {"--world missing.toml" + out, "missing.toml"},
+        {"--out /proc/nowhere/a.png", "/proc/nowhere"},
+        {"--budget 1K" + out, "budget"},
+        {"--budget 4M --view-distance 1000" + out, "raise --budget or --error"}}) {
+    const Outcome outcome = failure(options);
+    EXPECT_EQ(outcome.code, 1) << options << "\n" << outcome.err;
+    EXPECT_TRUE(mentions(outcome.err, words)) << outcome.err;
+  }
+  EXPECT_EQ(failure("--device 'Voodoo 2'" + out).code, 4);
+  EXPECT_EQ(failure(out, "VK_ICD_FILENAMES=/nonexistent.json").code, 4);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST(CommandLine, APictureThatIsInterruptedIsNotWritten) {
+  const TemporaryFolder folder;
+  // Interrupts it as soon as one of its modelers works.
+  const std::string interrupted =
+      "run() { \"$@\" & p=$!; until grep -qs ^modeler /proc/$p/task/*/comm; do kill -0 $p || "
+      "break; done; kill -INT $p; wait $p; }; run";
+  const auto file = folder / "a.png";
+  const Outcome outcome = run_psygen(
+      "picture --error 0.1 --budget 4G --preset low --out " + file.string(), interrupted);
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(mentions(outcome.err, "interrupted")) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST(CommandLine, AmplifyingWhatDoesNotFitSaysSo) {
