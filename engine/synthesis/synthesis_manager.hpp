@@ -97,7 +97,8 @@ class SynthesisManager {
   std::size_t collect(std::vector<Completion>& out);
   // Blocks until every published request is finished or given up; a virtual clock stands still
   // meanwhile. For tools, tests and the lazy paradigm; the tick never calls it. False if no modeler
-  // is left to finish them, and once `go_on`, called some 50 times a second by a real clock, says so.
+  // is left to finish them, and once `go_on`, called some 50 times a second by a real clock, says
+  // so.
   bool wait_all(const std::function<bool()>& go_on = {});
 
   // Requests published and neither reclaimed nor finished.
