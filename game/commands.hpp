@@ -18,7 +18,8 @@ enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
 
 int exit_code_of(const core::Error& error);
 
-// Writes data to stdout. kFailed, with a message, when it does not get there.
+// Writes data to stdout. kFailed when it does not get there, with a message unless its reader has
+// closed the pipe.
 int print(const std::string& text);
 
 class FlyCommand {

@@ -143,26 +143,28 @@ int FlyCommand::fly(app::App& app) const {
     core::log_error(report.error().message);
     return exit_code_of(report.error());
   }
-  if (!requests_.empty()) {
-    if (auto ok = write_requests(); !ok) {
-      core::log_error(ok.error().message);
-      return exit_code_of(ok.error());
-    }
-    core::log_info(fmt::format("wrote {}", requests_));
-  }
-  const int printed =
+  int code =
       print(json_ ? telemetry::to_json(report->summary) : telemetry::to_text(report->summary));
   for (const auto& file : report->files)
     core::log_info(fmt::format("wrote {}", file.string()));
+  const auto fail = [&code](const std::string& sentence) {
+    core::log_error(sentence);
+    code = kFailed;
+  };
+  for (const core::Error& failure : report->failures)
+    fail(failure.message);
+  if (!requests_.empty()) {
+    if (auto ok = write_requests(); !ok) fail(ok.error().message);
+  }
   for (const std::string& message : report->validation_messages)
-    core::log_error(message);
-  return report->validation_messages.empty() ? printed : kFailed;
+    fail(message);
+  return code;
 }
 
 core::Result<void> FlyCommand::write_requests() const {
-  const std::string text = synthesis::stream_text(recorder_.jobs());
-  return core::replace_file(requests_,
-                            {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  auto written = core::replace_file(requests_, synthesis::stream_text(recorder_.jobs()));
+  if (written) core::log_info(fmt::format("wrote {}", requests_));
+  return written;
 }
 
 }  // namespace psygen::game

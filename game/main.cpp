@@ -1,13 +1,18 @@
 // psygen: the command line. One subcommand a file; this one only chooses. Data goes to stdout,
 // messages and progress to stderr.
 // Exit codes: 0 ok, 1 failed, 2 usage, 4 no usable device or display.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 
 #include "engine/core/log.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "game/commands.hpp"
+#include "game/interrupt.hpp"
 
 namespace psygen::game {
 
@@ -17,7 +22,8 @@ int exit_code_of(const core::Error& error) {
 
 int print(const std::string& text) {
   if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return kOk;
-  core::log_error("standard output cannot be written");
+  if (errno != EPIPE)
+    core::log_error(fmt::format("standard output cannot be written: {}", std::strerror(errno)));
   return kFailed;
 }
 
@@ -25,6 +31,7 @@ int print(const std::string& text) {
 
 int main(int argc, char** argv) {
   psygen::render::tune_allocator_for_software_rendering();  // before the first allocation of size
+  psygen::game::ignore_what_write_errors_say();
 
   CLI::App cli("psygen: fly through worlds that are far larger than memory", "psygen");
   cli.set_version_flag("--version", "psygen " PSYGEN_VERSION);

@@ -180,12 +180,16 @@ core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
   return {};
 }
 
-core::Result<void> App::save_picture(const std::filesystem::path& file) {
+core::Result<image::Image> App::last_picture() {
   auto picture = renderer_->capture();
   if (!picture) return tl::unexpected(picture.error());
-  const image::Image image{picture->width, picture->height, std::move(picture->rgba)};
-  if (auto ok = image::write_png(file, image); !ok) return ok;
-  last_image_hash_ = image::hash(image);
+  return image::Image{picture->width, picture->height, std::move(picture->rgba)};
+}
+
+core::Result<void> App::save_picture(const std::filesystem::path& file) {
+  const auto image = last_picture();
+  if (!image) return tl::unexpected(image.error());
+  if (auto ok = image::write_png(file, *image); !ok) return ok;
   files_.push_back(file);
   return {};
 }

@@ -8,6 +8,7 @@
 
 #include "engine/app/options.hpp"
 #include "engine/app/overlay.hpp"
+#include "engine/image/image.hpp"
 #include "engine/platform/fly_camera.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/render/renderer.hpp"
@@ -22,6 +23,9 @@ namespace psygen::app {
 struct FlightReport {
   telemetry::Summary summary;
   std::vector<std::filesystem::path> files;  // what was written
+  // What could not be written: each file with the reason. The flight went on, without any more
+  // pictures after the first one that failed.
+  std::vector<core::Error> failures;
   std::vector<std::string> validation_messages;
 };
 
@@ -33,7 +37,7 @@ class App {
   static core::Result<std::unique_ptr<App>> create(Options options);
   ~App();
 
-  // Flies until the path, the time or the user ends it, then writes the outputs.
+  // Flies until the path, the time or the user ends it, then writes the outputs: each that can be.
   core::Result<FlightReport> run();
 
   // One frame with a pose, for programs that have a loop of their own.
@@ -64,10 +68,12 @@ class App {
   bool wants_more(double flight_s, std::uint64_t frames) const;
   core::CameraPose next_pose(double flight_s, double dt_s);
   void handle_window();
+  core::Result<image::Image> last_picture();
   core::Result<void> save_numbered_picture(std::uint64_t frame);
   void record_frame(std::uint64_t index, double flight_s, double frame_ms, double cpu_ms);
   telemetry::RunFacts run_facts();
-  core::Result<void> write_outputs(const telemetry::Summary& summary);
+  void write_outputs(const telemetry::Summary& summary);
+  void note_written(const std::filesystem::path& file, const core::Result<void>& result);
 
   Options options_;
   std::unique_ptr<platform::Window> window_;
@@ -83,10 +89,11 @@ class App {
   bool overlay_ = true;
   bool closed_ = false;
   Overlay overlay_figures_;
-  std::uint64_t last_image_hash_ = 0;
   std::uint64_t images_hash_ = 0;  // of the numbered pictures, in order
   std::uint64_t images_ = 0;
   std::vector<std::filesystem::path> files_;
+  std::vector<core::Error> failures_;
+  bool pictures_failed_ = false;
 };
 
 }  // namespace psygen::app

@@ -8,6 +8,7 @@
 #include "engine/app/app.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/image/image_io.hpp"
 #include "engine/models/terrain.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/telemetry/progress_bar.hpp"
@@ -97,7 +98,7 @@ void App::wait_while_minimised() {
 }
 
 bool App::saves_picture(std::uint64_t frame) const {
-  return options_.images_every > 0 && frame % options_.images_every == 0;
+  return options_.images_every > 0 && frame % options_.images_every == 0 && !pictures_failed_;
 }
 
 core::Result<void> App::fly_frame(std::uint64_t index, double flight_s, double dt_s) {
@@ -154,17 +155,26 @@ core::Result<void> App::loop() {
   return {};
 }
 
-// A window that is being resized may have no picture in this frame; that is no failure.
+// A window that is being resized may have no picture in this frame; that is no failure. A file that
+// cannot be written is one, but not the end of the flight.
 core::Result<void> App::save_numbered_picture(std::uint64_t frame) {
-  auto saved = save_picture(options_.out_folder / fmt::format("frame_{:05}.png", frame));
-  if (saved) {
-    images_hash_ = core::combine(images_hash_, last_image_hash_);
-    ++images_;
-  } else if (window_ && saved.error().code != core::ErrorCode::kIo) {
-    core::log_warning(fmt::format("no picture of frame {}: {}", frame, saved.error().message));
+  const auto file = options_.out_folder / fmt::format("frame_{:05}.png", frame);
+  const auto image = last_picture();
+  if (!image) {
+    if (!window_) return tl::unexpected(image.error());
+    core::log_warning(fmt::format("no picture of frame {}: {}", frame, image.error().message));
     return {};
   }
-  return saved;
+  const auto written = image::write_png(file, *image);
+  note_written(file, written);
+  if (written) {
+    images_hash_ = core::combine(images_hash_, image::hash(*image));
+    ++images_;
+  } else {
+    pictures_failed_ = true;
+    core::log_warning(fmt::format("no more pictures are written: {}", written.error().message));
+  }
+  return {};
 }
 
 void App::record_frame(std::uint64_t index, double flight_s, double frame_ms, double cpu_ms) {
@@ -193,9 +203,14 @@ core::Result<FlightReport> App::run() {
   const auto flown = loop();
   FlightReport report;
   report.summary = telemetry::summarise(*log_, run_facts(), options_.warmup_seconds);
-  if (auto ok = write_outputs(report.summary); !ok) return tl::unexpected(ok.error());
-  if (!flown) return tl::unexpected(flown.error());
+  write_outputs(report.summary);
+  if (!flown) {
+    for (const core::Error& failure : failures_)
+      core::log_error(failure.message);
+    return tl::unexpected(flown.error());
+  }
   report.files = files_;
+  report.failures = failures_;
   report.validation_messages = renderer_->validation_messages();
   return report;
 }

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "engine/core/assert.hpp"
-#include "engine/telemetry/output_file.hpp"
+#include "engine/core/replace_file.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -65,14 +65,14 @@ std::span<const FrameRecord> FrameLog::frames_since(double warmup_s) const {
 }
 
 core::Result<void> write_frames_csv(const std::filesystem::path& path, const FrameLog& log) {
-  OutputFile file(path);
+  core::FileReplacement file(path);
   file.write(kColumnsBeforeSystems);
   for (const std::string& system : log.systems())
     file.write("," + system + "_ms");
   file.write(fmt::format(",{}\n", kColumnsAfterSystems));
   for (const FrameRecord& record : log.frames())
     file.write(row(record, log.systems().size()));
-  return file.close();
+  return file.commit();
 }
 
 }  // namespace psygen::telemetry

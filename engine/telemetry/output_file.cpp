@@ -4,7 +4,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+
+#include "engine/core/replace_file.hpp"
 
 namespace psygen::telemetry {
 
@@ -19,30 +20,12 @@ core::Result<void> create_output_folder(const std::filesystem::path& folder) {
                       fmt::format("{}: cannot be used as the output folder: {}", folder.string(),
                                   error.message()));
   }
+  core::remove_stale_partials(folder);
   return {};
 }
 
-OutputFile::OutputFile(const std::filesystem::path& path)
-    : path_(path), file_(std::fopen(path.c_str(), "wb")) {
-  if (!file_) first_error_ = errno;
-}
-
-void OutputFile::write(std::string_view text) {
-  if (first_error_ != 0) return;
-  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) first_error_ = errno;
-}
-
-core::Result<void> OutputFile::close() {
-  if (file_ && std::fclose(file_.release()) != 0 && first_error_ == 0) first_error_ = errno;
-  if (first_error_ == 0) return {};
-  return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be written: {}", path_.string(),
-                                                      std::strerror(first_error_)));
-}
-
 core::Result<void> write_text_file(const std::filesystem::path& path, std::string_view text) {
-  OutputFile file(path);
-  file.write(text);
-  return file.close();
+  return core::replace_file(path, text);
 }
 
 }  // namespace psygen::telemetry

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/assert.hpp"
-#include "engine/telemetry/output_file.hpp"
+#include "engine/core/replace_file.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -94,7 +94,7 @@ double TraceLog::earliest_s() const {
   return std::isfinite(earliest) ? earliest : 0.0;
 }
 
-void TraceLog::write_ring(OutputFile& file, std::size_t track, double origin_s,
+void TraceLog::write_ring(core::FileReplacement& file, std::size_t track, double origin_s,
                           std::span<const std::string> quoted_names) const {
   constexpr double kMicroseconds = 1e6;
   const Ring& ring = rings_[track];
@@ -133,7 +133,7 @@ core::Result<void> TraceLog::write(const std::filesystem::path& path) const {
   for (const std::string& name : names_)
     names.push_back(quoted(name));
   const double origin_s = earliest_s();
-  OutputFile file(path);
+  core::FileReplacement file(path);
   file.write(
       fmt::format("{{\"displayTimeUnit\":\"ms\",\"otherData\":{{\"spans_dropped\":\"{}\"}},\n"
                   "\"traceEvents\":[\n",
@@ -142,7 +142,7 @@ core::Result<void> TraceLog::write(const std::filesystem::path& path) const {
   for (std::size_t track = 0; track < rings_.size(); ++track)
     write_ring(file, track, origin_s, names);
   file.write("\n]}\n");
-  return file.close();
+  return file.commit();
 }
 
 }  // namespace psygen::telemetry

@@ -1,48 +1,20 @@
 // psygen as a process: exit codes, and what stands on which stream.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
+#include "tests/game/run_psygen.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace {
 
+using psygen::mentions;
+using psygen::Outcome;
+using psygen::read;
+using psygen::run_psygen;
 using psygen::TemporaryFolder;
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string read(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-// Runs psygen in the source folder; `environment` is put before the command. Leaks are looked for
-// in the tests of the libraries, which keep drivers loaded so that reports have names.
-Outcome run_psygen(const std::string& arguments, const std::string& environment = "") {
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(testing::TempDir());
-  const auto out = folder / (std::string(test->name()) + ".out");
-  const auto err = folder / (std::string(test->name()) + ".err");
-  const std::string command = "cd " PSYGEN_SOURCE_DIR " && export ASAN_OPTIONS=detect_leaks=0 && " +
-                              environment + " " PSYGEN_EXECUTABLE " " + arguments + " >" +
-                              out.string() + " 2>" + err.string() + " </dev/null";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
-}
-
-bool mentions(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos;
-}
 
 // The world's hash in what amplify --json printed; empty where there is none.
 std::string hash_in(const std::string& json) {
