@@ -21,6 +21,7 @@ constexpr long kUnlimited = LONG_MAX;
 char full_folder[PATH_MAX] = "";
 std::atomic<long> calls_left{kUnlimited};
 std::atomic<long> threads_left{kUnlimited};
+std::atomic<const char*> threads_of{"libstdc++"};
 
 // The function of this name that would have been called: the C library's, or a sanitizer's.
 template <class Function>
@@ -49,10 +50,9 @@ bool disk_refuses(int file) {
   return readlink(link, path, sizeof(path) - 1) > 0 && disk_refuses(path);
 }
 
-// Threads of ours are std::threads, which the standard library starts.
-bool is_standard_library(const void* caller) {
+bool is_concerned(const void* caller) {
   Dl_info info{};
-  return dladdr(caller, &info) != 0 && std::strstr(info.dli_fname, "libstdc++") != nullptr;
+  return dladdr(caller, &info) != 0 && std::strstr(info.dli_fname, threads_of.load()) != nullptr;
 }
 
 void fill_disk(const char* folder, long calls) {
@@ -83,7 +83,8 @@ bool FullDisk::was_met() const {
   return calls_left.load() < 0;
 }
 
-FewThreads::FewThreads(std::size_t threads) {
+FewThreads::FewThreads(std::size_t threads, const char* library) {
+  threads_of = library;
   threads_left = static_cast<long>(threads);
 }
 FewThreads::~FewThreads() {
@@ -129,7 +130,10 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
                    void* argument) noexcept {
   static const auto real =
       next<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)>("pthread_create");
-  if (is_standard_library(__builtin_return_address(0)) && runs_out(threads_left)) return EAGAIN;
+  if (threads_left.load() != kUnlimited && is_concerned(__builtin_return_address(0)) &&
+      runs_out(threads_left)) {
+    return EAGAIN;
+  }
   return real(thread, attributes, start, argument);
 }
 

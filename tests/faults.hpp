@@ -24,11 +24,11 @@ class FullDisk {
   bool was_met() const;
 };
 
-// While it lives, only so many std::threads more can be started in the program; starting another
-// one throws. Threads of the drivers are not concerned. One at a time.
+// While it lives, only so many threads more can be started from one library: std::threads, or with
+// a part of its name those of another one, as of a driver. One at a time.
 class FewThreads {
  public:
-  explicit FewThreads(std::size_t threads_left);
+  explicit FewThreads(std::size_t threads_left, const char* library = "libstdc++");
   ~FewThreads();
   FewThreads(const FewThreads&) = delete;
   FewThreads& operator=(const FewThreads&) = delete;

@@ -8,6 +8,7 @@
 #include <new>
 #include <string>
 
+#include "engine/core/out_of_memory.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/image/picture_codec.hpp"
 #include "engine/image/picture_header.hpp"
@@ -76,7 +77,7 @@ auto without_exceptions(const std::filesystem::path& path, const Function& funct
   try {
     return function();
   } catch (const std::bad_alloc&) {
-    return fail_at(ErrorCode::kOutOfMemory, path, "not enough memory for the picture");
+    return core::fail(ErrorCode::kOutOfMemory, core::out_of_memory(path.string()));
   } catch (const std::exception& exception) {
     return fail_at(ErrorCode::kParse, path,
                    std::string("cannot be processed: ") + exception.what());
@@ -84,6 +85,10 @@ auto without_exceptions(const std::filesystem::path& path, const Function& funct
 }
 
 }  // namespace
+
+core::Result<void> load_picture_libraries() {
+  return picture_codec().map([](const PictureCodec*) {});
+}
 
 core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits) {
   return without_exceptions(path, [&]() -> core::Result<Image> {
