@@ -29,6 +29,7 @@ class FlyCommand {
   int run();
 
  private:
+  core::Result<void> load_what_pictures_take() const;
   int fly(app::App& app) const;
   core::Result<void> write_requests() const;
 

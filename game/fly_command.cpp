@@ -6,8 +6,10 @@
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/image/image_io.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/render_path.hpp"
+#include "engine/render/software_tuning.hpp"
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
 #include "game/option_checks.hpp"
@@ -127,7 +129,9 @@ int FlyCommand::run() {
                                   recorder_.observe(flown.scene().state());
                                 }});
   }
-  auto app = app::App::create(options_);
+  auto app = load_what_pictures_take()
+                 .and_then(render::fit_software_rendering_to_threads)
+                 .and_then([this] { return app::App::create(options_); });
   if (!app) {
     core::log_error(app.error().message);
     return exit_code_of(app.error());
@@ -135,6 +139,11 @@ int FlyCommand::run() {
   const int code = fly(**app);
   if ((*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
   return code;
+}
+
+// Before the driver and the modelers take the threads that are left.
+core::Result<void> FlyCommand::load_what_pictures_take() const {
+  return options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
 }
 
 int FlyCommand::fly(app::App& app) const {

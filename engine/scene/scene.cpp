@@ -8,6 +8,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/log.hpp"
 #include "engine/scene/lighting.hpp"
 #include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/node_solidity.hpp"
@@ -153,6 +154,21 @@ std::vector<synthesis::CostSample> single_models(const WorldFacts& facts,
   return samples;
 }
 
+// As many as there are from now on. Without any no mesh would ever be made.
+core::Result<void> take_modelers(const synthesis::SynthesisManager& manager, Settings& settings) {
+  const unsigned wanted = synthesis::modeler_count_for(settings.modelers);
+  settings.modelers = manager.modeler_count();
+  if (settings.modelers == 0) {
+    return core::fail(core::ErrorCode::kInternal,
+                      fmt::format("no modeler can be started: {}", manager.shortage()));
+  }
+  if (settings.modelers < wanted) {
+    core::log_warning(fmt::format("only {} of {} modelers can be started: {}", settings.modelers,
+                                  wanted, manager.shortage()));
+  }
+  return {};
+}
+
 Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
                    const models::Registry& registry, const ecs::Schedule& tick) {
   Tracing tracing;
@@ -228,7 +244,8 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   options.watchdog_seconds = settings.watchdog_seconds;
   options.annotate = mesh_notes(facts);
   synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
-  s.settings.modelers = synthesis.manager->modeler_count();
+  if (auto ok = take_modelers(*synthesis.manager, s.settings); !ok)
+    return tl::unexpected(ok.error());
   s.quality.governor =
       Governor({.target_ms = settings.target_frame_ms, .max_factor = settings.max_error_factor});
   build_tick(s);

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -59,6 +60,7 @@ struct HungRequest {
 
 class SynthesisManager {
  public:
+  // Starts as many modelers as it gets threads and memory for; with none nothing is ever finished.
   // `registry` outlives the manager, and any modeler that hangs at the end of the program.
   explicit SynthesisManager(const models::Registry& registry, const SynthesisOptions& options = {});
   // Joins within the time of the requests that run now; what is unclaimed is dropped. A modeler
@@ -92,6 +94,8 @@ class SynthesisManager {
   // Requests published and neither reclaimed nor finished.
   std::uint64_t outstanding() const;
   unsigned modeler_count() const { return static_cast<unsigned>(active_.size()); }
+  // Why not all modelers that were asked for could be started; empty if they were.
+  const std::string& shortage() const { return shortage_; }
   const std::vector<HungRequest>& hung() const { return hung_; }
   SynthesisStats stats() const;
 
@@ -100,7 +104,9 @@ class SynthesisManager {
     std::shared_ptr<Modeler> modeler;
     std::thread thread;
   };
-  bool start_modeler();
+  SynthesisManager(const models::Registry& registry, const SynthesisOptions& options,
+                   unsigned most);
+  core::Result<void> start_modeler();
   void run_watchdog();
   void drain_retired(std::vector<Completion>& out);
   void close_plan();
@@ -111,6 +117,7 @@ class SynthesisManager {
   double watchdog_seconds_;
   unsigned replacements_left_;
   std::uint32_t next_number_ = 0;
+  std::string shortage_;
   std::vector<Worker> active_;
   std::vector<Worker> retired_;  // hung, or back from it and not yet joined
   std::vector<HungRequest> hung_;
