@@ -7,11 +7,22 @@ namespace psygen::render {
 using core::Result;
 
 Renderer::Renderer(std::unique_ptr<RendererImpl> impl) : impl_(std::move(impl)) {}
-Renderer::~Renderer() = default;
+
+// Whatever of a driver that hangs would be ended would hang as well.
+void Renderer::leave(std::unique_ptr<RendererImpl> impl) {
+  if (impl && impl->hangs()) (void)impl.release();
+}
+
+Renderer::~Renderer() {
+  leave(std::move(impl_));
+}
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
   auto impl = std::make_unique<RendererImpl>(options);
-  if (Result<void> made = impl->create(); !made) return tl::unexpected(made.error());
+  if (Result<void> made = impl->create(); !made) {
+    leave(std::move(impl));
+    return tl::unexpected(made.error());
+  }
   return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
 }
 

@@ -8,6 +8,8 @@
 
 #include "engine/core/assert.hpp"
 #include "engine/core/clock.hpp"
+#include "engine/core/headroom.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/render/frame_data.hpp"
 
 namespace psygen::render {
@@ -35,6 +37,18 @@ VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
   return info;
 }
 
+// What a software driver takes from here to the first frame, besides pictures. It ends the program
+// in many ways where it does not get it, so it is asked for first. Addresses are its libraries'
+// too.
+constexpr std::uint64_t kStartBytes = std::uint64_t{96} << 20;
+constexpr std::uint64_t kStartAddressBytes = std::uint64_t{512} << 20;
+// What geometry leaves to everything else: the scene, the modelers, and a software driver's bins,
+// which grow with the picture (measured: 80 MiB at 1280 x 720, 190 MiB at 3840 x 2160).
+std::uint64_t headroom_bytes(core::Extent size) {
+  const std::uint64_t bins = std::uint64_t{size.width} * size.height * 80;
+  return (std::uint64_t{32} << 20) + std::min(bins, std::uint64_t{192} << 20);
+}
+
 // On lavapipe a pushed draw costs about 800 ns more than one of a multi-draw, and the data of a
 // multi-draw costs about 20 ns per triangle more (psygen_bench_render): even at some 40 triangles.
 constexpr std::uint32_t kWorthPushingIndices = 48 * 3;
@@ -51,6 +65,10 @@ RendererImpl::RendererImpl(const RendererOptions& options) : options_(options) {
 
 RendererImpl::~RendererImpl() {
   if (device_) wait_idle();
+}
+
+bool RendererImpl::hangs() const {
+  return device_ && device_->hangs();
 }
 
 // Remembers that the device was lost, after which nothing is submitted any more.
@@ -73,7 +91,8 @@ Result<void> RendererImpl::create_device() {
   Result<DeviceCandidate> chosen =
       choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
   if (!chosen) return tl::unexpected(chosen.error());
-  Result<std::unique_ptr<Device>> device = Device::create(*chosen, options_.surface != nullptr);
+  Result<std::unique_ptr<Device>> device =
+      Device::create(*chosen, options_.surface != nullptr, options_.device_timeout_seconds);
   if (!device) return tl::unexpected(device.error());
   device_ = std::move(*device);
   if (options_.surface != nullptr) {
@@ -94,6 +113,9 @@ Result<void> RendererImpl::create() {
     return core::fail(ErrorCode::kInvalidArgument,
                       "the geometry budget must be between 1 byte and 1 TiB");
   }
+  if (!core::memory_left(kStartBytes) || !core::addresses_left(kStartAddressBytes)) {
+    return core::fail(ErrorCode::kOutOfMemory, core::out_of_memory("starting the renderer"));
+  }
   if (Result<void> made = create_device(); !made) return made;
   if (Result<void> made = create_geometry(); !made) return made;
   Result<UniqueSemaphore> timeline = make_timeline(*device_);
@@ -112,7 +134,10 @@ Result<void> RendererImpl::create() {
   }
   if (Result<void> made = create_culling(); !made) return made;
   if (Result<void> warmed = warm_up(); !warmed) return warmed;
-  return options_.surface == nullptr ? create_targets(options_.size) : Result<void>{};
+  if (options_.surface == nullptr) {
+    if (Result<void> made = create_targets(options_.size); !made) return made;
+  }
+  return pool_->make_first_block();
 }
 
 Result<void> RendererImpl::create_geometry() {
@@ -122,10 +147,11 @@ Result<void> RendererImpl::create_geometry() {
   // A heap that does not hold twice the budget is the small window of a device without more.
   const bool writable =
       device_->info.software || device_->writable_bytes() / 2 >= options_.geometry_budget_bytes;
-  if (options_.upload == Upload::kDirect || (options_.upload == Upload::kAuto && writable))
-    return {};
-  staged_ = std::make_unique<StagedGeometry>(*pool_);
-  return staged_->create(*device_);
+  if (options_.upload == Upload::kStaged || (options_.upload == Upload::kAuto && !writable)) {
+    staged_ = std::make_unique<StagedGeometry>(*pool_);
+    return staged_->create(*device_);
+  }
+  return {};
 }
 
 Result<void> RendererImpl::create_culling() {
@@ -146,14 +172,23 @@ Result<void> RendererImpl::create_culling() {
 }
 
 Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
+  // What is the program's own memory is not taken to its end.
+  if ((staged_ || device_->info.software) &&
+      !core::memory_left(bytes + headroom_bytes(options_.size))) {
+    return core::fail(ErrorCode::kOutOfMemory,
+                      core::out_of_memory(fmt::format(
+                          "{} MiB of geometry and what it takes to draw it", bytes >> 20)));
+  }
   const VkBufferUsageFlags copied = staged_ ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
   Result<Buffer> block =
       make_buffer(*device_, bytes,
                   VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | copied,
                   staged_ ? MemoryUse::kDevice : MemoryUse::kWrite);
   if (!block) return core::fail(ErrorCode::kOutOfMemory, block.error().message);
-  pool_blocks_.push_back(std::move(*block));
-  return staged_ ? staged_->add_block(bytes) : pool_blocks_.back().mapped;
+  Result<std::byte*> written = block->mapped;
+  if (staged_) written = staged_->add_block(bytes);
+  if (written) pool_blocks_.push_back(std::move(*block));
+  return written;
 }
 
 Result<void> RendererImpl::create_targets(core::Extent extent) {
@@ -219,13 +254,8 @@ Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
 
 Result<void> RendererImpl::wait_for(FrameSlot& slot) {
   const VkSemaphore timeline = timeline_.get();
-  VkSemaphoreWaitInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
-  info.semaphoreCount = 1;
-  info.pSemaphores = &timeline;
-  info.pValues = &slot.submitted_value;
-  const VkResult waited = device_->vk.vkWaitSemaphores(device_->handle, &info, kDeviceTimeoutNs);
-  if (waited != VK_SUCCESS) return vulkan_failure(waited, "waiting for a frame");
+  if (auto ok = device_->wait(timeline, slot.submitted_value, "waiting for a frame"); !ok)
+    return ok;
   std::uint64_t passed = 0;
   const VkResult asked = device_->vk.vkGetSemaphoreCounterValue(device_->handle, timeline, &passed);
   if (asked != VK_SUCCESS) return vulkan_failure(asked, "asking for the finished frames");

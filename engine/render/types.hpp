@@ -55,7 +55,8 @@ struct RendererOptions {
   RenderPath path = RenderPath::kAuto;
   Upload upload = Upload::kAuto;
   bool occlusion = true;  // on the GPU path: leave out what was hidden in the last frame and is
-  std::optional<Preset> preset;  // none: kLow on software devices, kHigh on others
+  std::optional<Preset> preset;        // none: kLow on software devices, kHigh on others
+  double device_timeout_seconds = 60;  // longest wait for the device; then it counts as lost
 };
 
 struct DeviceInfo {
