@@ -12,11 +12,13 @@ void interrupt(int) {
   interrupted = true;
 }
 
-// Whoever started the program may have asked for a signal to be ignored: nohup does, and shells do
-// for SIGINT of what runs in the background.
+bool is_ignored(int signal_number) {
+  struct sigaction action {};
+  return sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 void handle(int signal_number, int flags) {
   struct sigaction action {};
-  if (sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) return;
   action.sa_handler = interrupt;
   action.sa_flags = SA_RESTART | flags;
   sigaction(signal_number, &action, nullptr);
@@ -26,10 +28,10 @@ void handle(int signal_number, int flags) {
 
 const std::atomic<bool>& stop_at_interrupt() {
   // A person who presses Ctrl+C again does not want to wait. The end of a terminal comes twice by
-  // itself, from the kernel and from the shell.
+  // itself, from the kernel and from the shell; under nohup it is ignored.
   handle(SIGINT, SA_RESETHAND);
   handle(SIGTERM, SA_RESETHAND);
-  handle(SIGHUP, 0);
+  if (!is_ignored(SIGHUP)) handle(SIGHUP, 0);
   return interrupted;
 }
 

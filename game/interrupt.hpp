@@ -6,8 +6,8 @@
 
 namespace psygen::game {
 
-// Installs the handlers of SIGINT, SIGTERM and SIGHUP, but not of those that are ignored; true once
-// one came. A second SIGINT or SIGTERM ends the program at once.
+// Installs the handlers of SIGINT, SIGTERM and, unless it is ignored, SIGHUP; true once one came. A
+// second SIGINT or SIGTERM ends the program at once.
 const std::atomic<bool>& stop_at_interrupt();
 
 // A pipe that nobody reads any more (SIGPIPE) and a file beyond `ulimit -f` (SIGXFSZ) do not end
