@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <new>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/core/replace_file.hpp"
 
 namespace psygen::telemetry {
@@ -42,15 +44,20 @@ std::string row(const FrameRecord& r, std::size_t system_count) {
 FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
     : systems_(std::move(systems)), max_frames_(max_frames) {
   PSYGEN_CHECK(systems_.size() <= kMaxSystems, "more systems than a frame record has room for");
-  frames_.reserve(max_frames_);
+  constexpr std::size_t kSmallPart = 4;  // of the memory that is left
+  if (core::memory_left(kSmallPart * max_frames_ * sizeof(FrameRecord)))
+    frames_.reserve(max_frames_);
 }
 
 void FrameLog::add(const FrameRecord& record) {
   if (frames_.size() < max_frames_) {
-    frames_.push_back(record);
-  } else {
-    ++dropped_;
+    try {
+      return frames_.push_back(record);
+    } catch (const std::bad_alloc&) {
+      max_frames_ = frames_.size();
+    }
   }
+  ++dropped_;
 }
 
 void FrameLog::add_cost_error(double time_s, double predicted_s, double actual_s) {

@@ -26,7 +26,6 @@ TraceLog::TraceLog(std::size_t max_spans_per_track) : max_spans_(max_spans_per_t
 TraceLog::Track TraceLog::add_ring(std::string_view name, bool is_counter) {
   PSYGEN_CHECK(rings_.size() < UINT16_MAX, "too many tracks in a trace");
   rings_.push_back({std::string(name), is_counter, {}, 0});
-  rings_.back().spans.reserve(max_spans_);
   return static_cast<Track>(rings_.size() - 1);
 }
 

@@ -1,7 +1,7 @@
 // What happened when: spans on named tracks (the main thread's systems, each modeler's jobs) and
 // counters over time, written as Chrome trace events that Perfetto and chrome://tracing open.
-// Adding costs a few stores. Memory is bounded: each track keeps its newest spans. Main thread
-// only: modelers hand their times over in their results.
+// Adding costs a few stores, and memory only when a track doubles. Memory is bounded: each track
+// keeps its newest spans. Main thread only: modelers hand their times over in their results.
 #pragma once
 
 #include <cstdint>
