@@ -12,6 +12,7 @@
 #include "engine/core/log.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "game/commands.hpp"
+#include "game/fatal.hpp"
 #include "game/interrupt.hpp"
 
 namespace psygen::game {
@@ -31,6 +32,7 @@ int print(const std::string& text) {
 
 int main(int argc, char** argv) {
   psygen::render::tune_allocator_for_software_rendering();  // before the first allocation of size
+  psygen::game::say_why_at_terminate();
   psygen::game::ignore_what_write_errors_say();
 
   CLI::App cli("psygen: fly through worlds that are far larger than memory", "psygen");
@@ -58,8 +60,7 @@ int main(int argc, char** argv) {
     if (calibrate.chosen()) return calibrate.run();
     if (schedule.chosen()) return schedule.run();
     return models.run();
-  } catch (const std::exception& error) {
-    psygen::core::log_error(error.what());
-    return psygen::game::kFailed;
+  } catch (...) {
+    return psygen::game::say_what_was_thrown();
   }
 }

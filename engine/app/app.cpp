@@ -4,6 +4,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain.hpp"
 #include "engine/render/render_path.hpp"
@@ -61,7 +62,8 @@ App::~App() {
 
 core::Result<std::unique_ptr<App>> App::create(Options options) {
   std::unique_ptr<App> app(new App(std::move(options)));
-  if (auto ok = app->open(); !ok) return tl::unexpected(ok.error());
+  const auto opened = core::within_memory("starting the flight", [&app] { return app->open(); });
+  if (!opened) return tl::unexpected(opened.error());
   return app;
 }
 

@@ -71,7 +71,7 @@ class App {
   core::Result<image::Image> last_picture();
   core::Result<void> save_numbered_picture(std::uint64_t frame);
   void record_frame(std::uint64_t index, double flight_s, double frame_ms, double cpu_ms);
-  telemetry::RunFacts run_facts();
+  telemetry::RunFacts run_facts(bool whole);
   void write_outputs(const telemetry::Summary& summary);
   void note_written(const std::filesystem::path& file, const core::Result<void>& result);
 

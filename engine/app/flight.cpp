@@ -8,6 +8,7 @@
 #include "engine/app/app.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain.hpp"
 #include "engine/render/preset.hpp"
@@ -200,10 +201,16 @@ core::Result<FlightReport> App::run() {
     if (plugin.on_start) plugin.on_start(*this);
   }
   // What was measured is written also when the flight ended early.
-  const auto flown = loop();
+  const auto flown = core::within_memory("the flight", [this] { return loop(); });
   FlightReport report;
-  report.summary = telemetry::summarise(*log_, run_facts(), options_.warmup_seconds);
-  write_outputs(report.summary);
+  const auto written =
+      core::within_memory("the outputs of the flight", [&]() -> core::Result<void> {
+        report.summary =
+            telemetry::summarise(*log_, run_facts(flown.has_value()), options_.warmup_seconds);
+        write_outputs(report.summary);
+        return {};
+      });
+  if (!written) failures_.push_back(written.error());
   if (!flown) {
     for (const core::Error& failure : failures_)
       core::log_error(failure.message);

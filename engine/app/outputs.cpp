@@ -58,7 +58,9 @@ telemetry::Count sample_hash(const scene::State& state, core::BlockCoord block) 
 
 }  // namespace
 
-telemetry::RunFacts App::run_facts() {
+// `whole`: the flight came to its end. Otherwise nothing more is drawn and no model made for
+// figures.
+telemetry::RunFacts App::run_facts(bool whole) {
   const scene::State& state = scene_->state();
   telemetry::RunFacts facts;
   facts.world = world_facts(state.facts.world, state.facts.registry);
@@ -85,11 +87,15 @@ telemetry::RunFacts App::run_facts() {
                           ? telemetry::Figure(static_cast<double>(cache.triangles_drawn) /
                                               static_cast<double>(cache.triangles))
                           : telemetry::Figure::missing("nothing was synthesised");
-  state.synthesis.manager->wait_all();  // nothing else runs while the floor is measured
-  facts.floor_ratio = floor_ratio(*log_, *renderer_);
+  facts.floor_ratio = telemetry::Figure::missing("the flight failed");
+  if (whole) {
+    state.synthesis.manager->wait_all();  // nothing else runs while the floor is measured
+    facts.floor_ratio = floor_ratio(*log_, *renderer_);
+  }
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
-  facts.world_hash = options_.hash_world ? sample_hash(state, home().position.block)
-                                         : telemetry::Count::missing("switched off");
+  facts.world_hash = !options_.hash_world ? telemetry::Count::missing("switched off")
+                     : whole              ? sample_hash(state, home().position.block)
+                                          : telemetry::Count::missing("the flight failed");
   facts.images_hash = pictures_failed_ ? telemetry::Count::missing("a picture was not written")
                       : images_ > 0    ? telemetry::Count(images_hash_)
                                        : telemetry::Count::missing("no pictures were written");

@@ -97,5 +97,25 @@ TEST(Outputs, ALargeFileThatDoesNotFitTakesNoSmallerOneWithIt) {
   EXPECT_TRUE(nlohmann::json::accept(summary));
 }
 
+// Nothing of ours throws, but libraries do when memory ends, and so does a plugin here.
+TEST(Outputs, WhereMemoryEndsTheFlightFailsAndWhatWasMeasuredIsWritten) {
+  const TemporaryFolder folder;
+  Options options = flight_into(folder.path());
+  options.plugins.push_back({"hungry", {}, {}, [frame = 0](App&, double) mutable {
+                               if (++frame == 4) throw std::bad_alloc();
+                             }});
+  auto app = App::create(options);
+  ASSERT_TRUE(app) << app.error().message;
+  const auto report = (*app)->run();
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, core::ErrorCode::kOutOfMemory);
+  EXPECT_EQ(report.error().message.find("the flight: memory ran out ("), 0u);
+  std::ifstream file(folder / "summary.json");
+  const auto summary = nlohmann::json::parse(file);
+  EXPECT_EQ(summary["run"]["frames"], 3);
+  EXPECT_EQ(summary["reasons"]["hash.world"], "the flight failed");
+  EXPECT_TRUE(std::filesystem::exists(folder / "trace.json"));
+}
+
 }  // namespace
 }  // namespace psygen::app
