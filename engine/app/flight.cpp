@@ -196,7 +196,9 @@ void App::record_frame(std::uint64_t index, double flight_s, double frame_ms, do
 core::Result<FlightReport> App::run() {
   const world::World& world = scene_->state().facts.world;
   pose_ = path_ ? path_->pose_at(0, world) : home();
-  if (auto ok = prepare(pose_); !ok) return tl::unexpected(ok.error());
+  const auto prepared =
+      core::within_memory("what is seen first", [this] { return prepare(pose_); });
+  if (!prepared) return tl::unexpected(prepared.error());
   for (const Plugin& plugin : options_.plugins) {
     if (plugin.on_start) plugin.on_start(*this);
   }

@@ -12,8 +12,8 @@
 
 namespace psygen::core {
 
-// An allocation of so many bytes has failed in this thread. For whoever makes it, and for the
-// operator new of a program.
+// An allocation of so many bytes has failed in this thread; 0 forgets it. For whoever makes it, and
+// for the operator new of a program.
 void note_refused_bytes(std::size_t bytes);
 
 // "<what>: memory ran out (N bytes more were wanted; M MiB are in use, ulimit -d allows L MiB)". N

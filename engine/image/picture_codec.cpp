@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "engine/core/headroom.hpp"
+#include "engine/core/out_of_memory.hpp"
 
 namespace psygen::image {
 namespace {
@@ -21,8 +22,7 @@ constexpr std::size_t kThreads = 6;
 // as much first.
 core::Result<void> check_room_for_codec() {
   if (!core::addresses_left(kAddressBytes) || !core::memory_left(kMemoryBytes)) {
-    return core::fail(core::ErrorCode::kOutOfMemory,
-                      fmt::format("OpenImageIO needs {} MiB of memory", kMemoryBytes >> 20));
+    return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory("loading OpenImageIO"));
   }
   if (core::threads_left(kThreads) == kThreads) return {};
   return core::fail(core::ErrorCode::kOutOfMemory,

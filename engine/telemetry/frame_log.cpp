@@ -9,6 +9,7 @@
 
 #include "engine/core/assert.hpp"
 #include "engine/core/headroom.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/core/replace_file.hpp"
 
 namespace psygen::telemetry {
@@ -45,8 +46,11 @@ FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
     : systems_(std::move(systems)), max_frames_(max_frames) {
   PSYGEN_CHECK(systems_.size() <= kMaxSystems, "more systems than a frame record has room for");
   constexpr std::size_t kSmallPart = 4;  // of the memory that is left
-  if (core::memory_left(kSmallPart * max_frames_ * sizeof(FrameRecord)))
+  if (core::memory_left(kSmallPart * max_frames_ * sizeof(FrameRecord))) {
     frames_.reserve(max_frames_);
+  } else {
+    core::note_refused_bytes(0);  // the log does without
+  }
 }
 
 void FrameLog::add(const FrameRecord& record) {

@@ -185,7 +185,7 @@ TEST(Faults, WhateverTheLimitOfMemoryEveryCommandEndsOrderly) {
 }
 
 TEST(Faults, WhateverTheLimitOfMemoryAFlightEndsOrderlyAndItsFilesAreWhole) {
-  for (const int mib : {8, 60, 100, 130, 150, 180, 220, 260, 300}) {
+  for (const int mib : {8, 60, 80, 90, 100, 130, 150, 180, 220, 260, 300}) {
     const TemporaryFolder folder;
     const Outcome flight =
         run_psygen(kTwoModelers + "--out " + folder.path().string(), limit('d', mib));
