@@ -54,4 +54,9 @@ function(psygen_executable name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PRIVATE" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE psygen::settings psygen_warnings ${ARG_PRIVATE})
+  # Where psygen::image finds its library; with old tags also from below a sanitizer's dlopen().
+  set_target_properties(${name} PROPERTIES
+    BUILD_RPATH ${PROJECT_BINARY_DIR}/engine/image
+    INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR}/psygen)
+  target_link_options(${name} PRIVATE LINKER:--disable-new-dtags)
 endfunction()

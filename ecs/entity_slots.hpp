@@ -37,6 +37,8 @@ class EntitySlots {
     if (entity.index < count_) __builtin_prefetch(slots() + entity.index);
   }
 
+  // Makes room for so many more entities. Throws std::bad_alloc when there is none.
+  void reserve_more(std::size_t count);
   // Handles for the rows at first_location, first_location + 1, ..., written to `out`.
   void issue(std::span<Entity> out, std::uint32_t first_location);
   // The entity of a living slot dies.

@@ -1,9 +1,13 @@
 #include "ecs/reserved_memory.hpp"
 
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
+#include <new>
 #include <utility>
 
 #include "ecs/check.hpp"
@@ -19,6 +23,21 @@ constexpr std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
+// What one reservation may take where the process's addresses are limited (ulimit -v): a small part
+// of those that are left, so that there are enough for all the others and for everybody else.
+std::size_t fair_share_bytes() {
+  constexpr std::size_t kPart = 64;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return SIZE_MAX;
+  std::size_t pages = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(file, "%zu", &pages) != 1) pages = 0;
+    std::fclose(file);
+  }
+  const std::size_t used = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  return (limit.rlim_cur - std::min<std::size_t>(used, limit.rlim_cur)) / kPart;
+}
+
 void* reserve_address_space(std::size_t bytes) {
   void* address =
       ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -29,12 +48,12 @@ void* reserve_address_space(std::size_t bytes) {
 
 ReservedMemory::ReservedMemory(std::size_t bytes, std::size_t skew_bytes) {
   PSYGEN_ECS_ASSERT(skew_bytes % 64 == 0 && skew_bytes < 4096, "skew is 0, 64, ... 4032");
-  std::size_t wanted = std::max(bytes, kSmallestReservationBytes);
+  std::size_t wanted = std::max(std::min(bytes, fair_share_bytes()), kSmallestReservationBytes);
   for (; mapping_ == nullptr && wanted >= kSmallestReservationBytes; wanted /= 2) {
     mapping_bytes_ = round_up(wanted + skew_bytes, kHugePageBytes) + kHugePageBytes;
     mapping_ = static_cast<std::byte*>(reserve_address_space(mapping_bytes_));
   }
-  if (mapping_ == nullptr) give_up("no address space is left for a column");
+  if (mapping_ == nullptr) throw std::bad_alloc();
   const auto address = reinterpret_cast<std::uintptr_t>(mapping_);
   const std::size_t lead = round_up(address, kHugePageBytes) - address;
   data_ = mapping_ + lead + skew_bytes;
@@ -60,14 +79,14 @@ ReservedMemory& ReservedMemory::operator=(ReservedMemory&& other) noexcept {
 }
 
 void ReservedMemory::grow(std::size_t bytes) {
-  if (bytes > capacity_bytes_) give_up("a table or the handles are full; raise WorldLimits");
+  if (bytes > capacity_bytes_) throw std::bad_alloc();
   const std::size_t step = bytes >= kHugePageBytes ? kHugePageBytes : kSmallestStepBytes;
   const std::size_t skew_bytes = reinterpret_cast<std::uintptr_t>(data_) % kHugePageBytes;
   std::byte* base = data_ - skew_bytes;
   const std::size_t usable = round_up(bytes + skew_bytes, step);
   const std::size_t clamped = std::min(usable, capacity_bytes_ + skew_bytes);
   if (::mprotect(base, clamped, PROT_READ | PROT_WRITE) != 0) {
-    give_up("the system has no more memory for a column");
+    throw std::bad_alloc();
   }
   committed_bytes_ = clamped - skew_bytes;
 }

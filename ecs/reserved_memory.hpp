@@ -11,14 +11,16 @@ class ReservedMemory {
  public:
   ReservedMemory() = default;
   // Reserves `bytes` of address space, or, where the system refuses, the largest half, quarter, ...
-  // of it down to 1 MiB. `skew_bytes` (a multiple of 64, below 4096) shifts the first byte, so that
-  // columns that are walked together do not compete for the same cache sets.
+  // of it down to 1 MiB; where the process's addresses are limited (ulimit -v), a 64th of those
+  // that are left. Throws std::bad_alloc where there is none. `skew_bytes` (a multiple of 64, below
+  // 4096) shifts the first byte, so that columns that are walked together do not compete for the
+  // same cache sets.
   explicit ReservedMemory(std::size_t bytes, std::size_t skew_bytes = 0);
   ~ReservedMemory();
   ReservedMemory(ReservedMemory&& other) noexcept;
   ReservedMemory& operator=(ReservedMemory&& other) noexcept;
 
-  // Makes at least the first `bytes` usable. Gives up with a message when the system has no more.
+  // Makes at least the first `bytes` usable. Throws std::bad_alloc when the system has no more.
   void commit(std::size_t bytes) {
     if (bytes > committed_bytes_) grow(bytes);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -158,11 +159,16 @@ struct Schedule::Parts {
 Schedule::Schedule(World& world, std::size_t threads)
     : world_(world), parts_(std::make_unique<Parts>(world)) {
   constexpr std::size_t kMostThreads = 64;
-  for (std::size_t i = 1; i < std::min(threads, kMostThreads); ++i) {
-    parts_->workers.emplace_back([parts = parts_.get()] {
-      std::unique_lock lock(parts->mutex);
-      parts->work(lock, false, [parts] { return parts->stopping; });
-    });
+  const std::size_t wanted = std::clamp<std::size_t>(threads, 1, kMostThreads) - 1;
+  parts_->workers.reserve(wanted);
+  try {
+    while (parts_->workers.size() < wanted) {
+      parts_->workers.emplace_back([parts = parts_.get()] {
+        std::unique_lock lock(parts->mutex);
+        parts->work(lock, false, [parts] { return parts->stopping; });
+      });
+    }
+  } catch (const std::exception&) {  // the system gives no more: those that there are do it
   }
 }
 

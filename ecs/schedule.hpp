@@ -58,7 +58,8 @@ bool conflict(const SystemInfo& a, const SystemInfo& b);
 
 class Schedule {
  public:
-  // `threads` (at most 64) counts the calling one: 1 runs everything there, in order.
+  // `threads` (at most 64) counts the calling one: 1 runs everything there, in order. Where the
+  // system does not give them all, threads() tells how many there are.
   explicit Schedule(World& world, std::size_t threads = 1);
   ~Schedule();
   Schedule(const Schedule&) = delete;

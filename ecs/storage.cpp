@@ -154,6 +154,7 @@ Storage::Batch Storage::create(const Signature& kind, std::size_t count) {
   expect_no_iteration("create");
   Table& table = table_for(kind);
   make_room(table, count);
+  slots_.reserve_more(count);
   table.construct_new_rows(count, Signature{});
   const std::uint32_t first = table.add_rows(count);
   for (std::size_t done = 0; done < count;) {  // neighbours within a chunk have neighbouring names

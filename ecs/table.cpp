@@ -80,15 +80,16 @@ void Table::reserve_more(std::size_t count) {
   }
   const std::size_t need = rows_ + count;
   if (need <= capacity_) return;
-  capacity_ = std::min(std::max({need, capacity_ * 2, kFirstRows}), max_rows_);
+  std::size_t capacity = std::min(std::max({need, capacity_ * 2, kFirstRows}), max_rows_);
   const auto commit = [&](ReservedMemory& memory, std::size_t row_bytes) {
-    const std::size_t ahead = std::min(capacity_ * row_bytes, memory.capacity_bytes());
+    const std::size_t ahead = std::min(capacity * row_bytes, memory.capacity_bytes());
     memory.commit(std::max(need * row_bytes, ahead));
-    capacity_ = std::min(capacity_, memory.committed_bytes() / row_bytes);
+    capacity = std::min(capacity, memory.committed_bytes() / row_bytes);
   };
   commit(entities_, sizeof(Entity));
   for (Column& column : columns_)
     commit(column.memory, column.info->size_bytes);
+  capacity_ = capacity;
 }
 
 void Table::construct_new_rows(std::size_t count, const Signature& except) {

@@ -30,6 +30,7 @@ class FlyCommand {
 
  private:
   static int code_of(const core::Error& error);
+  core::Result<void> load_what_pictures_take() const;
   int fly(app::App& app);
   int tell(const app::FlightReport& report) const;
   core::Result<void> write_requests() const;

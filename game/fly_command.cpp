@@ -6,6 +6,8 @@
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/image/image_io.hpp"
+#include "engine/render/software_tuning.hpp"
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
 #include "game/option_checks.hpp"
@@ -85,10 +87,17 @@ int FlyCommand::run() {
   // At the end of the flight, not only when its window is closed.
   reporter.on_end = [this](app::App&, const app::FlightReport& report) { told_ = tell(report); };
   options_.plugins.push_back(std::move(reporter));
-  auto app = app::App::create(options_);
+  auto app = load_what_pictures_take()
+                 .and_then(render::fit_software_rendering_to_threads)
+                 .and_then([this] { return app::App::create(options_); });
   const int code = app ? fly(**app) : code_of(app.error());
   if (app && (*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
   return code;
+}
+
+// Before the driver and the modelers take the threads that are left.
+core::Result<void> FlyCommand::load_what_pictures_take() const {
+  return options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
 }
 
 // A window that is closed before the flight begins is no failure.
@@ -110,21 +119,28 @@ int FlyCommand::fly(app::App& app) {
 }
 
 int FlyCommand::tell(const app::FlightReport& report) const {
-  if (!requests_.empty()) {
-    if (auto ok = write_requests(); !ok) return code_of(ok.error());
-    core::log_info(fmt::format("wrote {}", requests_));
-  }
-  const int printed =
-      print(json_ ? telemetry::to_json(report.summary) : telemetry::to_text(report.summary));
+  int code = print(json_ ? telemetry::to_json(report.summary) : telemetry::to_text(report.summary));
   for (const auto& file : report.files)
     core::log_info(fmt::format("wrote {}", file.string()));
-  return printed;
+  const auto fail = [&code](const std::string& sentence) {
+    core::log_error(sentence);
+    code = kFailed;
+  };
+  for (const core::Error& failure : report.failures)
+    fail(failure.message);
+  if (requests_.empty()) return code;
+  if (auto ok = write_requests(); !ok) {
+    fail(ok.error().message);
+  } else {
+    core::log_info(fmt::format("wrote {}", requests_));
+  }
+  return code;
 }
 
 core::Result<void> FlyCommand::write_requests() const {
-  const std::string text = synthesis::stream_text(recorder_.jobs());
-  return core::replace_file(requests_,
-                            {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  auto written = core::replace_file(requests_, synthesis::stream_text(recorder_.jobs()));
+  if (written) core::log_info(fmt::format("wrote {}", requests_));
+  return written;
 }
 
 }  // namespace psygen::game

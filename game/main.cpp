@@ -1,17 +1,23 @@
 // psygen: the command line. One subcommand a file; this one only chooses. Data goes to stdout,
 // messages and progress to stderr.
 // Exit codes: 0 ok, 1 failed, 2 usage, 4 no usable device or display.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "engine/core/log.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "game/commands.hpp"
+#include "game/fatal.hpp"
+#include "game/interrupt.hpp"
 #include "game/standard_streams.hpp"
 #include "game/usage.hpp"
 
 int main(int argc, char** argv) {
   psygen::game::hold_standard_streams();
   psygen::render::tune_allocator_for_software_rendering();  // before the first allocation of size
+  psygen::game::say_why_at_terminate();
+  psygen::game::ignore_what_write_errors_say();
 
   CLI::App cli("psygen: fly through worlds that are far larger than memory", "psygen");
   cli.set_version_flag("--version", "psygen " PSYGEN_VERSION);
@@ -37,8 +43,7 @@ int main(int argc, char** argv) {
     if (calibrate.chosen()) return calibrate.run();
     if (schedule.chosen()) return schedule.run();
     return models.run();
-  } catch (const std::exception& error) {
-    psygen::core::log_error(error.what());
-    return psygen::game::kFailed;
+  } catch (...) {
+    return psygen::game::say_what_was_thrown();
   }
 }

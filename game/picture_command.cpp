@@ -8,7 +8,9 @@
 
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
+#include "engine/image/image_io.hpp"
 #include "engine/models/terrain.hpp"
+#include "engine/render/software_tuning.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/camera_path.hpp"
 #include "game/commands.hpp"
@@ -84,8 +86,9 @@ int PictureCommand::run() {
   const auto folder = std::filesystem::path(out_).parent_path();
   // What cannot be written is told before all the work.
   const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
-  auto app = writable ? app::App::create(options_)
-                      : core::Result<std::unique_ptr<app::App>>(tl::unexpected(writable.error()));
+  auto app = writable.and_then(image::load_picture_libraries)
+                 .and_then(render::fit_software_rendering_to_threads)
+                 .and_then([this] { return app::App::create(options_); });
   const auto taken = app ? take(**app) : core::Result<void>(tl::unexpected(app.error()));
   if (taken) {
     core::log_info(fmt::format("wrote {}", out_));

@@ -24,7 +24,8 @@ void hold_standard_streams() {
 int print(const std::string& text) {
   errno = 0;
   if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return kOk;
-  core::log_error(fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+  if (errno != EPIPE)
+    core::log_error(fmt::format("standard output cannot be written: {}", std::strerror(errno)));
   return kFailed;
 }
 

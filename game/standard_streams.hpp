@@ -9,7 +9,8 @@ namespace psygen::game {
 // their numbers and with them what is meant for them. Writing to such a stdout fails, as it should.
 void hold_standard_streams();
 
-// Writes data to stdout. kOk, or kFailed with a message when it does not get there.
+// Writes data to stdout. kOk, or kFailed when it does not get there, with a message
+// unless its reader has closed the pipe.
 int print(const std::string& text);
 
 }  // namespace psygen::game

@@ -10,6 +10,9 @@
 #include <thread>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/out_of_memory.hpp"
+#include "engine/core/start_thread.hpp"
 #include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::amplify {
@@ -28,7 +31,7 @@ struct Shared {
   alignas(64) std::atomic<bool> failed{false};
   std::mutex mutex{};
   std::condition_variable ended{};
-  unsigned running = 0;
+  int running = 0;
 };
 
 struct alignas(64) Worker {
@@ -75,7 +78,8 @@ void Worker::work(Shared& shared) {
   try {  // types and sinks of users may throw; nothing of ours does unless memory ends
     if (auto ok = make_blocks(shared); !ok) error = ok.error();
   } catch (const std::bad_alloc&) {
-    error = core::Error{core::ErrorCode::kOutOfMemory, "the heap has no memory for a block"};
+    error =
+        core::Error{core::ErrorCode::kOutOfMemory, core::out_of_memory("the meshes of a block")};
   } catch (const std::exception& e) {
     error =
         core::Error{core::ErrorCode::kSynthesisFailed, fmt::format("a block failed: {}", e.what())};
@@ -104,32 +108,50 @@ void wait_for(Shared& shared, std::span<const std::unique_ptr<Worker>> workers) 
   }
 }
 
-// False where the system allows no more threads or memory: those that there are do it.
-bool start_one(Shared& shared, std::vector<std::unique_ptr<Worker>>& workers) {
-  const auto set_running = [&shared](bool one_more) {
-    const std::lock_guard lock(shared.mutex);
-    one_more ? ++shared.running : --shared.running;
-  };
-  std::unique_ptr<Worker> worker(new (std::nothrow) Worker);
-  if (!worker) return false;
-  set_running(true);
-  try {
-    worker->thread = std::thread([&shared, w = worker.get()] { w->work(shared); });
-  } catch (const std::exception&) {  // system_error or bad_alloc
-    set_running(false);
-    return false;
-  }
-  workers.push_back(std::move(worker));
-  return true;
-}
+// The threads of a run. However it ends, they end with it.
+struct Crew {
+  Shared& shared;
+  std::vector<std::unique_ptr<Worker>> workers{};
 
-void start(Shared& shared, std::vector<std::unique_ptr<Worker>>& workers) {
-  // No more threads than blocks.
-  const std::uint64_t threads = std::min<std::uint64_t>(shared.options.threads, shared.block_count);
-  workers.reserve(threads);  // nothing may throw while threads run that nobody joins
-  for (std::uint64_t i = 0; i < threads; ++i) {
-    if (!start_one(shared, workers)) return;
+  core::Result<void> add_one() {
+    Worker& worker = *workers.emplace_back(std::make_unique<Worker>());
+    set_running(1);
+    auto thread = core::start_thread([this, &worker] { worker.work(shared); });
+    if (thread) {
+      worker.thread = std::move(*thread);
+      return {};
+    }
+    set_running(-1);
+    workers.pop_back();
+    return tl::unexpected(thread.error());
   }
+  void set_running(int change) {
+    const std::lock_guard lock(shared.mutex);
+    shared.running += change;
+  }
+  void join() {
+    for (const auto& worker : workers)
+      if (worker->thread.joinable()) worker->thread.join();
+  }
+  ~Crew() {
+    shared.failed.store(true, std::memory_order_relaxed);
+    join();
+  }
+};
+
+// As many threads as the system gives, none in vain. Fails where it gives none.
+core::Result<void> start(Crew& crew) {
+  const std::uint64_t wanted =
+      std::min<std::uint64_t>(crew.shared.options.threads, crew.shared.block_count);
+  while (crew.workers.size() < wanted) {
+    const auto added = crew.add_one();
+    if (added) continue;
+    if (crew.workers.empty()) return added;
+    core::log_warning(fmt::format("only {} of {} threads can be started: {}", crew.workers.size(),
+                                  wanted, added.error().message));
+    break;
+  }
+  return {};
 }
 
 }  // namespace
@@ -142,15 +164,15 @@ core::Result<Report> amplify(const world::World& world, const models::Registry& 
                       fmt::format("there may be 1 to {} threads", kMaxThreads));
   }
   Shared shared{world, registry, region, options, region.block_count()};
-  std::vector<std::unique_ptr<Worker>> workers;
+  Crew crew{shared};
+  const std::vector<std::unique_ptr<Worker>>& workers = crew.workers;
   const double start_s = core::monotonic_seconds();
-  start(shared, workers);
-  if (workers.empty()) return core::fail(core::ErrorCode::kInternal, "no thread can be started");
+  if (auto ok = start(crew); !ok) return tl::unexpected(ok.error());
   wait_for(shared, workers);
+  crew.join();
   Report report;
   report.threads = static_cast<unsigned>(workers.size());
   for (const auto& worker : workers) {
-    worker->thread.join();
     report.totals.add(worker->totals);
     report.cpu_seconds += worker->cpu_seconds;
   }

@@ -56,8 +56,9 @@ struct Report {
   }
 };
 
-// Fails with kInvalidArgument for a region or a number of threads that is not allowed, with
-// kInternal if no thread starts, and with what a sink failed with. A mesh that fails is counted; an
+// Goes on with fewer threads where the system gives no more, and warns of it. Fails with
+// kInvalidArgument for a region or a number of threads that is not allowed, with kInternal where
+// there is not one thread, and with what a sink failed with. A mesh that fails is counted; an
 // exception from anywhere else is kSynthesisFailed, or kOutOfMemory where memory ended.
 core::Result<Report> amplify(const world::World& world, const models::Registry& registry,
                              const Region& region, const Options& options);

@@ -123,7 +123,6 @@ core::Result<std::unique_ptr<BlockFolder>> BlockFolder::open(std::filesystem::pa
   if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<BlockFolder> opened(new BlockFolder(std::move(folder), world, registry, format));
   if (auto ok = opened->claim(); !ok) return tl::unexpected(ok.error());
-  core::remove_stale_partials(opened->folder_);
   return opened;
 }
 
@@ -149,8 +148,7 @@ core::Result<void> BlockFolder::claim(const char* file, const std::string& text,
     return refuse("holds blocks, and nothing tells whose they are");
   const bool rest = theirs.size() >= kTelling && text.starts_with(theirs);
   if (!theirs.empty() && !rest) return refuse(fmt::format("holds the blocks of {}", others));
-  return core::replace_file(path,
-                            {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return core::replace_file(path, text);
 }
 
 // Whether there are blocks of this format.

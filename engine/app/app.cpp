@@ -4,6 +4,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain.hpp"
 #include "engine/render/render_path.hpp"
@@ -57,7 +58,8 @@ App::~App() {
 
 core::Result<std::unique_ptr<App>> App::create(Options options) {
   std::unique_ptr<App> app(new App(std::move(options)));
-  if (auto ok = app->open(); !ok) return tl::unexpected(ok.error());
+  const auto opened = core::within_memory("starting the flight", [&app] { return app->open(); });
+  if (!opened) return tl::unexpected(opened.error());
   return app;
 }
 
@@ -207,18 +209,16 @@ core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
   return {};
 }
 
-// Returns the picture's hash.
-core::Result<std::uint64_t> App::write_picture(const std::filesystem::path& file) {
+core::Result<image::Image> App::last_picture() {
   auto picture = renderer_->capture();
   if (!picture) return tl::unexpected(picture.error());
-  const image::Image image{picture->width, picture->height, std::move(picture->rgba)};
-  if (auto ok = image::write_png(file, image); !ok) return tl::unexpected(ok.error());
-  return image::hash(image);
+  return image::Image{picture->width, picture->height, std::move(picture->rgba)};
 }
 
 core::Result<void> App::save_picture(const std::filesystem::path& file) {
-  const auto written = write_picture(file);
-  if (!written) return tl::unexpected(written.error());
+  const auto image = last_picture();
+  if (!image) return tl::unexpected(image.error());
+  if (auto ok = image::write_png(file, *image); !ok) return ok;
   files_.push_back(file);
   return {};
 }

@@ -9,6 +9,7 @@
 #include "engine/app/hud.hpp"
 #include "engine/app/loading.hpp"
 #include "engine/app/options.hpp"
+#include "engine/image/image.hpp"
 #include "engine/platform/fly_camera.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/render/renderer.hpp"
@@ -23,6 +24,9 @@ namespace psygen::app {
 struct FlightReport {
   telemetry::Summary summary;
   std::vector<std::filesystem::path> files;  // what was written
+  // What could not be written: each file with the reason. The flight went on, without any more
+  // pictures after the first one that failed.
+  std::vector<core::Error> failures;
   std::vector<std::string> validation_messages;
 };
 
@@ -34,9 +38,10 @@ class App {
   static core::Result<std::unique_ptr<App>> create(Options options);
   ~App();
 
-  // Flies until the path, the time or the user ends it, then writes the outputs. Where the path
-  // has ended in a window, the user flies on until the window is closed; the report is that of the
-  // flight alone. Fails with kInterrupted where the window was closed before the first frame.
+  // Flies until the path, the time or the user ends it, then writes the outputs: each that can be.
+  // Where the path has ended in a window, the user flies on until the window is closed; the report
+  // is that of the flight alone. Fails with kInterrupted where the window was closed before the
+  // first frame.
   core::Result<FlightReport> run();
   // Whether what happens now belongs to the flight of run().
   bool flying() const { return flying_; }
@@ -66,7 +71,6 @@ class App {
   core::Result<void> open_renderer(Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   core::Extent picture_size() const;
-  core::Result<std::uint64_t> write_picture(const std::filesystem::path& file);
 
   core::Result<void> loop();
   core::Result<void> fly_frame(double dt_s);
@@ -77,7 +81,7 @@ class App {
   bool saves_picture() const;
   core::Result<void> save_numbered_picture();
   void record_frame(double frame_ms, double cpu_ms);
-  core::Result<FlightReport> land();
+  FlightReport land(bool whole);
 
   void handle_window();
   void handle_keys();
@@ -85,10 +89,12 @@ class App {
   void write_over_picture();
   void save_screenshot();
   void change_preset();
-  void tell_end(const core::Result<FlightReport>& report);
+  void tell_end(const FlightReport& report);
 
-  telemetry::RunFacts run_facts();
-  core::Result<void> write_outputs(const telemetry::Summary& summary);
+  core::Result<image::Image> last_picture();
+  telemetry::RunFacts run_facts(bool whole);
+  void write_outputs(const telemetry::Summary& summary);
+  void note_written(const std::filesystem::path& file, const core::Result<void>& result);
 
   Options options_;
   std::unique_ptr<platform::Window> window_;
@@ -111,6 +117,8 @@ class App {
   std::uint64_t images_hash_ = 0;                // of the numbered pictures, in order
   std::uint64_t images_ = 0;
   std::vector<std::filesystem::path> files_;
+  std::vector<core::Error> failures_;
+  bool pictures_failed_ = false;
 };
 
 }  // namespace psygen::app

@@ -88,7 +88,7 @@ void App::save_screenshot() {
   for (int number = 0; file.empty() || std::filesystem::exists(file, ignored); ++number) {
     file = options_.out_folder / fmt::format("screenshot_{:04}.png", number);
   }
-  const auto written = write_picture(file);
+  const auto written = save_picture(file);
   const std::string text = written ? fmt::format("wrote {}", file.string())
                                    : "no picture was written: " + written.error().message;
   if (written) {
@@ -115,11 +115,11 @@ void App::change_preset() {
               core::monotonic_seconds());
 }
 
-void App::tell_end(const core::Result<FlightReport>& report) {
+void App::tell_end(const FlightReport& report) {
   std::string text =
       fmt::format("The flight has ended after {:.1f} s and {} frames. ", flight_s_, frames_);
-  if (!report) {
-    text += report.error().message;
+  if (!report.failures.empty()) {
+    text += report.failures.front().message;
   } else if (options_.out_folder.empty()) {
     text += "Its figures are on the terminal.";
   } else {

@@ -8,6 +8,8 @@
 #include "engine/app/app.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/out_of_memory.hpp"
+#include "engine/image/image_io.hpp"
 #include "engine/models/terrain.hpp"
 
 namespace psygen::app {
@@ -55,7 +57,8 @@ core::CameraPose App::next_pose(double dt_s) {
 }
 
 bool App::saves_picture() const {
-  return flying_ && options_.images_every > 0 && frames_ % options_.images_every == 0;
+  return flying_ && !pictures_failed_ && options_.images_every > 0 &&
+         frames_ % options_.images_every == 0;
 }
 
 core::Result<void> App::fly_frame(double dt_s) {
@@ -111,19 +114,25 @@ core::Result<void> App::loop() {
   return {};
 }
 
-// A window that is being resized may have no picture in this frame; that is no failure.
+// A window that is being resized may have no picture in this frame; that is no failure. A file that
+// cannot be written is one, but not the end of the flight.
 core::Result<void> App::save_numbered_picture() {
   const auto file = options_.out_folder / fmt::format("frame_{:05}.png", frames_);
-  const auto hash = write_picture(file);
-  if (hash) {
-    files_.push_back(file);
-    images_hash_ = core::combine(images_hash_, *hash);
-    ++images_;
+  const auto image = last_picture();
+  if (!image) {
+    if (!window_) return tl::unexpected(image.error());
+    core::log_warning(fmt::format("no picture of frame {}: {}", frames_, image.error().message));
     return {};
   }
-  if (window_ == nullptr || hash.error().code == core::ErrorCode::kIo)
-    return tl::unexpected(hash.error());
-  core::log_warning(fmt::format("no picture of frame {}: {}", frames_, hash.error().message));
+  const auto written = image::write_png(file, *image);
+  note_written(file, written);
+  if (written) {
+    images_hash_ = core::combine(images_hash_, image::hash(*image));
+    ++images_;
+  } else {
+    pictures_failed_ = true;
+    core::log_warning(fmt::format("no more pictures are written: {}", written.error().message));
+  }
   return {};
 }
 
@@ -143,13 +152,19 @@ void App::record_frame(double frame_ms, double cpu_ms) {
 }
 
 // The end of the flight: what was measured is written down, also when it ended early.
-core::Result<FlightReport> App::land() {
+FlightReport App::land(bool whole) {
   flying_ = false;
   FlightReport report;
-  report.summary = telemetry::summarise(*log_, run_facts(), options_.warmup_seconds);
+  const auto written =
+      core::within_memory("the outputs of the flight", [&]() -> core::Result<void> {
+        report.summary = telemetry::summarise(*log_, run_facts(whole), options_.warmup_seconds);
+        write_outputs(report.summary);
+        return {};
+      });
+  if (!written) failures_.push_back(written.error());
   scene_->state().trace.log = nullptr;  // what comes now is none of the flight
-  if (auto ok = write_outputs(report.summary); !ok) return tl::unexpected(ok.error());
   report.files = files_;
+  report.failures = failures_;
   report.validation_messages = renderer_->validation_messages();
   return report;
 }
@@ -157,26 +172,30 @@ core::Result<FlightReport> App::land() {
 core::Result<FlightReport> App::run() {
   const world::World& world = scene_->state().facts.world;
   pose_ = path_ ? path_->pose_at(0, world) : home();
-  if (auto ok = prepare(pose_); !ok) return tl::unexpected(ok.error());
+  const auto prepared =
+      core::within_memory("what is seen first", [this] { return prepare(pose_); });
+  if (!prepared) return tl::unexpected(prepared.error());
   for (const Plugin& plugin : options_.plugins) {
     if (plugin.on_start) plugin.on_start(*this);
   }
   frames_ = 0;
   flight_s_ = 0;
   flying_ = true;
-  const auto flown = loop();
-  auto report = land();
-  if (report && !flown) return tl::unexpected(flown.error());
-  if (report) {
-    for (const Plugin& plugin : options_.plugins) {
-      if (plugin.on_end) plugin.on_end(*this, *report);
-    }
+  const auto flown = core::within_memory("the flight", [this] { return loop(); });
+  FlightReport report = land(flown.has_value());
+  if (!flown) {
+    for (const core::Error& failure : failures_)
+      core::log_error(failure.message);
+    return tl::unexpected(flown.error());
   }
-  if (!flown || !stays_open()) return report;
+  for (const Plugin& plugin : options_.plugins) {
+    if (plugin.on_end) plugin.on_end(*this, report);
+  }
+  if (!stays_open()) return report;
   tell_end(report);
   user_flies_ = true;
   if (auto ok = loop(); !ok) return tl::unexpected(ok.error());
-  if (report) report->validation_messages = renderer_->validation_messages();
+  report.validation_messages = renderer_->validation_messages();
   return report;
 }
 

@@ -58,7 +58,9 @@ telemetry::Count sample_hash(const scene::State& state, core::BlockCoord block) 
 
 }  // namespace
 
-telemetry::RunFacts App::run_facts() {
+// `whole`: the flight came to its end. Otherwise nothing more is drawn and no model made for
+// figures.
+telemetry::RunFacts App::run_facts(bool whole) {
   const scene::State& state = scene_->state();
   telemetry::RunFacts facts;
   facts.world = world_facts(state.facts.world, state.facts.registry);
@@ -85,36 +87,37 @@ telemetry::RunFacts App::run_facts() {
                           ? telemetry::Figure(static_cast<double>(cache.triangles_drawn) /
                                               static_cast<double>(cache.triangles))
                           : telemetry::Figure::missing("nothing was synthesised");
-  state.synthesis.manager->wait_all();  // nothing else runs while the floor is measured
-  facts.floor_ratio = floor_ratio(*log_, *renderer_);
+  facts.floor_ratio = telemetry::Figure::missing("the flight failed");
+  if (whole) {
+    state.synthesis.manager->wait_all();  // nothing else runs while the floor is measured
+    facts.floor_ratio = floor_ratio(*log_, *renderer_);
+  }
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
-  facts.world_hash = options_.hash_world ? sample_hash(state, home().position.block)
-                                         : telemetry::Count::missing("switched off");
-  facts.images_hash = images_ > 0 ? telemetry::Count(images_hash_)
-                                  : telemetry::Count::missing("no pictures were written");
+  facts.world_hash = !options_.hash_world ? telemetry::Count::missing("switched off")
+                     : whole              ? sample_hash(state, home().position.block)
+                                          : telemetry::Count::missing("the flight failed");
+  facts.images_hash = pictures_failed_ ? telemetry::Count::missing("a picture was not written")
+                      : images_ > 0    ? telemetry::Count(images_hash_)
+                                       : telemetry::Count::missing("no pictures were written");
   return facts;
 }
 
-core::Result<void> App::write_outputs(const telemetry::Summary& summary) {
-  if (options_.out_folder.empty()) return {};
-  const auto& folder = options_.out_folder;
-  const auto note = [this](const std::filesystem::path& file, core::Result<void> result) {
-    if (result) files_.push_back(file);
-    return result;
-  };
-  if (auto ok =
-          note(folder / "frames.csv", telemetry::write_frames_csv(folder / "frames.csv", *log_));
-      !ok) {
-    return ok;
+void App::note_written(const std::filesystem::path& file, const core::Result<void>& result) {
+  if (result) {
+    files_.push_back(file);
+  } else {
+    failures_.push_back(result.error());
   }
-  if (auto ok = note(folder / "summary.json",
-                     telemetry::write_summary_json(folder / "summary.json", summary));
-      !ok) {
-    return ok;
-  }
-  if (auto ok = note(folder / "trace.json", trace_->write(folder / "trace.json")); !ok) return ok;
-  return note(folder / "report.html",
-              telemetry::write_report_html(folder / "report.html", *log_, summary));
+}
+
+// What is asked for most comes first, and what is largest last: a full disk takes the rest.
+void App::write_outputs(const telemetry::Summary& summary) {
+  if (options_.out_folder.empty()) return;
+  const auto file = [this](const char* name) { return options_.out_folder / name; };
+  note_written(file("summary.json"), write_summary_json(file("summary.json"), summary));
+  note_written(file("report.html"), write_report_html(file("report.html"), *log_, summary));
+  note_written(file("frames.csv"), write_frames_csv(file("frames.csv"), *log_));
+  note_written(file("trace.json"), trace_->write(file("trace.json")));
 }
 
 }  // namespace psygen::app

@@ -56,6 +56,7 @@ class GeometryMemory {
                                       std::uint32_t index_count) const = 0;
   // Bytes reserved, committed, or released but still read by a frame in flight.
   virtual std::uint64_t used_bytes() const = 0;
+  // What used_bytes() may become: less than was asked for where the system has no more memory.
   virtual std::uint64_t capacity_bytes() const = 0;
   // True where GPU (or, on a software device, the CPU) reads the very memory that was written.
   virtual bool zero_copy() const = 0;

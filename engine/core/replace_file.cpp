@@ -9,14 +9,12 @@
 #include <csignal>
 #include <cstring>
 #include <string>
+#include <utility>
 
 namespace psygen::core {
 namespace {
 
-tl::unexpected<Error> io_error(const std::filesystem::path& path, const char* action, int error) {
-  return fail(ErrorCode::kIo,
-              fmt::format("{}: {}: {}", path.string(), action, std::strerror(error)));
-}
+constexpr std::size_t kBufferBytes = std::size_t{64} << 10;
 
 // Opens a new file beside `path` and stores its name; -1 with errno when that is not possible.
 int open_temporary(const std::filesystem::path& path, std::filesystem::path& temporary) {
@@ -28,17 +26,6 @@ int open_temporary(const std::filesystem::path& path, std::filesystem::path& tem
     if (file < 0 && errno != EEXIST) break;
   }
   return file;
-}
-
-// 0 or the errno of what failed.
-int write_all(int file, std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = write(file, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  return fsync(file) == 0 ? 0 : errno;
 }
 
 void flush_folder(const std::filesystem::path& path) {
@@ -74,25 +61,80 @@ void remove_stale_partials(const std::filesystem::path& folder) {
   }
 }
 
-Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+FileReplacement::FileReplacement(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code error;
-  const auto status = std::filesystem::status(path, error);
+  const auto status = std::filesystem::status(path_, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return fail(ErrorCode::kIo,
-                fmt::format("{}: is not a regular file; it is left alone", path.string()));
+    failure_ = fmt::format("{}: is not a regular file; it is left alone", path_.string());
+    return;
   }
-  std::filesystem::path temporary;
-  const int file = open_temporary(path, temporary);
-  if (file < 0) return io_error(path, "cannot create a file in its folder", errno);
-  int failure = write_all(file, bytes);
-  if (close(file) != 0 && failure == 0) failure = errno;
-  if (failure == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) failure = errno;
-  if (failure != 0) {
-    unlink(temporary.c_str());
-    return io_error(path, "cannot write", failure);
+  file_ = open_temporary(path_, temporary_);
+  if (file_ >= 0) return;
+  fail_with("cannot create a file in its folder", errno);
+  temporary_.clear();
+}
+
+FileReplacement::~FileReplacement() {
+  if (file_ >= 0) close(file_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+void FileReplacement::fail_with(const char* action, int error) {
+  if (failure_.empty())
+    failure_ = fmt::format("{}: {}: {}", path_.string(), action, std::strerror(error));
+}
+
+void FileReplacement::write_out(std::string_view bytes) {
+  while (!bytes.empty() && failure_.empty()) {
+    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+    if (written >= 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    } else if (errno != EINTR) {
+      fail_with("cannot write", errno);
+    }
   }
-  flush_folder(path);
+}
+
+void FileReplacement::write(std::string_view bytes) {
+  if (buffer_.size() + bytes.size() > kBufferBytes) {
+    write_out(buffer_);
+    buffer_.clear();
+  }
+  if (bytes.size() > kBufferBytes) {
+    write_out(bytes);
+  } else {
+    buffer_ += bytes;
+  }
+}
+
+Result<void> FileReplacement::flush() {
+  write_out(buffer_);
+  buffer_.clear();
+  if (failure_.empty() && file_ >= 0 && fsync(file_) != 0) fail_with("cannot write", errno);
+  if (file_ >= 0 && close(std::exchange(file_, -1)) != 0) fail_with("cannot write", errno);
+  if (!failure_.empty()) return fail(ErrorCode::kIo, failure_);
   return {};
+}
+
+Result<void> FileReplacement::commit() {
+  if (auto ok = flush(); !ok) return ok;
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    fail_with("cannot write", errno);
+    return fail(ErrorCode::kIo, failure_);
+  }
+  temporary_.clear();
+  flush_folder(path_);
+  return {};
+}
+
+Result<void> replace_file(const std::filesystem::path& path, std::string_view text) {
+  FileReplacement file(path);
+  file.write(text);
+  return file.commit();
+}
+
+Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  return replace_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace psygen::core

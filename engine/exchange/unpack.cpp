@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "engine/core/out_of_memory.hpp"
 #include "engine/exchange/ground_colour.hpp"
 #include "engine/models/packing.hpp"
 #include "engine/models/terrain.hpp"
@@ -165,7 +166,8 @@ core::Result<Object> unpack(const models::ModelType& type, const models::Paramet
   try {  // types of users may throw; nothing of ours does unless memory ends
     return object_of(type, p, level, size, mesh, palette);
   } catch (const std::bad_alloc&) {
-    return core::fail(core::ErrorCode::kOutOfMemory, "the heap has no memory for an object");
+    return core::fail(core::ErrorCode::kOutOfMemory,
+                      core::out_of_memory(fmt::format("{} level {}", type.name(), level)));
   } catch (const std::exception& e) {
     return fail(fmt::format(": {}", e.what()));
   } catch (...) {

@@ -2,18 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <span>
-
 #include "engine/core/replace_file.hpp"
 
 namespace psygen::exchange {
-namespace {
-
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-}  // namespace
 
 std::string material_name(std::uint8_t material) {
   switch (material) {
@@ -66,8 +57,12 @@ core::Result<void> write_document(const std::filesystem::path& path, Format form
   std::filesystem::path mtl = path;
   mtl.replace_extension(".mtl");
   const ObjText text = obj_text(document, mtl.filename().string());
-  if (auto ok = core::replace_file(mtl, bytes_of(text.mtl)); !ok) return ok;
-  return core::replace_file(path, bytes_of(text.obj));
+  core::FileReplacement materials(mtl), objects(path);
+  materials.write(text.mtl);
+  objects.write(text.obj);
+  if (auto ok = objects.flush(); !ok) return ok;
+  if (auto ok = materials.commit(); !ok) return ok;
+  return objects.commit();
 }
 
 }  // namespace psygen::exchange

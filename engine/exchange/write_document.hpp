@@ -32,7 +32,8 @@ ObjText obj_text(const Document& document, std::string_view mtl_file_name);
 inline constexpr std::string_view kObjLastLine = "# end\n";
 std::string obj_first_line(std::string_view document_name);
 
-// Writes `path`, and for kObj the .mtl of the same stem before it. Fails with kIo.
+// Writes `path`, and for kObj the .mtl of the same stem before it; where the disk has no room for
+// both it leaves both as they were. Fails with kIo.
 core::Result<void> write_document(const std::filesystem::path& path, Format format,
                                   const Document& document);
 

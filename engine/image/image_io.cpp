@@ -1,7 +1,5 @@
 #include "engine/image/image_io.hpp"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -10,7 +8,9 @@
 #include <new>
 #include <string>
 
+#include "engine/core/out_of_memory.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/image/picture_codec.hpp"
 #include "engine/image/picture_header.hpp"
 
 namespace psygen::image {
@@ -64,60 +64,10 @@ core::Result<PictureHeader> checked_header(const std::filesystem::path& path, co
   return *header;
 }
 
-// 1 to 4 channels to red, green, blue, alpha.
-void expand_channels(const Bytes& source, std::size_t channels, Bytes& rgba) {
-  const bool grey = channels <= 2;
-  const bool has_alpha = channels == 2 || channels == 4;
-  for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
-    const std::uint8_t* from = source.data() + i * channels;
-    rgba[i * 4] = from[0];
-    rgba[i * 4 + 1] = grey ? from[0] : from[1];
-    rgba[i * 4 + 2] = grey ? from[0] : from[2];
-    rgba[i * 4 + 3] = has_alpha ? from[channels - 1] : std::uint8_t{255};
-  }
-}
-
-core::Result<Image> decode(const std::filesystem::path& path, const Bytes& bytes,
-                           const PictureHeader& header) {
-  OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
-  const char* format = header.format == PictureFormat::kPng ? "png" : "jpeg";
-  const auto input = OIIO::ImageInput::create(format);
-  if (!input) return fail_at(ErrorCode::kInternal, path, OIIO::geterror());
-  input->threads(1);
-  OIIO::ImageSpec spec;
-  OIIO::ImageSpec configuration;
-  configuration.attribute("oiio:UnassociatedAlpha", 1);
-  if (!input->set_ioproxy(&reader) || !input->open("picture", spec, configuration)) {
-    return fail_at(ErrorCode::kParse, path, "cannot be decoded: " + input->geterror());
-  }
-  const auto channels = static_cast<std::size_t>(spec.nchannels);
-  if (std::cmp_not_equal(spec.width, header.width) ||
-      std::cmp_not_equal(spec.height, header.height) || channels < 1 || channels > 4) {
-    return fail_at(ErrorCode::kParse, path, "its headers contradict each other");
-  }
-  Image image = make_image(header.width, header.height);
-  Bytes source(image.rgba.size() / 4 * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, source.data())) {
-    return fail_at(ErrorCode::kParse, path, "cannot be decoded: " + input->geterror());
-  }
-  expand_channels(source, channels, image.rgba);
-  return image;
-}
-
-core::Result<Bytes> encode_png(const std::filesystem::path& path, const Image& image) {
-  Bytes bytes;
-  OIIO::Filesystem::IOVecOutput writer(bytes);
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output) return fail_at(ErrorCode::kInternal, path, OIIO::geterror());
-  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 4,
-                       OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  if (!output->set_ioproxy(&writer) || !output->open("picture.png", spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, image.rgba.data()) || !output->close()) {
-    return fail_at(ErrorCode::kIo, path, "cannot be encoded: " + output->geterror());
-  }
-  return bytes;
+template <class T>
+core::Result<T> with_path(const std::filesystem::path& path, core::Result<T> result) {
+  if (result) return result;
+  return fail_at(result.error().code, path, result.error().message);
 }
 
 // OpenImageIO and the decoders below it may throw; nothing of that leaves this file.
@@ -127,7 +77,7 @@ auto without_exceptions(const std::filesystem::path& path, const Function& funct
   try {
     return function();
   } catch (const std::bad_alloc&) {
-    return fail_at(ErrorCode::kOutOfMemory, path, "not enough memory for the picture");
+    return core::fail(ErrorCode::kOutOfMemory, core::out_of_memory(path.string()));
   } catch (const std::exception& exception) {
     return fail_at(ErrorCode::kParse, path,
                    std::string("cannot be processed: ") + exception.what());
@@ -136,11 +86,17 @@ auto without_exceptions(const std::filesystem::path& path, const Function& funct
 
 }  // namespace
 
+core::Result<void> load_picture_libraries() {
+  return picture_codec().map([](const PictureCodec*) {});
+}
+
 core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits) {
   return without_exceptions(path, [&]() -> core::Result<Image> {
     return read_file(path, limits.max_file_bytes).and_then([&](const Bytes& bytes) {
       return checked_header(path, bytes, limits).and_then([&](const PictureHeader& header) {
-        return decode(path, bytes, header);
+        return with_path(path, picture_codec().and_then([&](const PictureCodec* codec) {
+          return codec->decode(bytes, header);
+        }));
       });
     });
   });
@@ -155,9 +111,9 @@ core::Result<void> write_png(const std::filesystem::path& path, const Image& ima
                                image.width, image.height, image.rgba.size()));
   }
   return without_exceptions(path, [&]() -> core::Result<void> {
-    return encode_png(path, image).and_then([&](const Bytes& bytes) {
-      return core::replace_file(path, bytes);
-    });
+    return with_path(path, picture_codec().and_then(
+                               [&](const PictureCodec* codec) { return codec->encode_png(image); }))
+        .and_then([&](const Bytes& bytes) { return core::replace_file(path, bytes); });
   });
 }
 

@@ -19,6 +19,10 @@ struct ImageLimits {
   std::uint64_t max_file_bytes = std::uint64_t{256} << 20;  // encoded
 };
 
+// Loads what reading and writing takes, 0.2 s of work, which otherwise the first picture does.
+// Fails with kOutOfMemory or kInternal.
+core::Result<void> load_picture_libraries();
+
 // Any PNG or JPEG as four channels: grey is repeated, a missing alpha is 255, 16 bits become 8.
 // Fails with kIo (not readable), kParse (not a picture, truncated, damaged), kOverBudget (larger
 // than the limits) or kOutOfMemory; the message starts with the path.

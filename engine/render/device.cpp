@@ -189,8 +189,9 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
 }
 
 core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& candidate,
-                                                     bool windowed) {
+                                                     bool windowed, double timeout_seconds) {
   std::unique_ptr<Device> self(new Device());
+  self->timeout_ns_ = static_cast<std::uint64_t>(timeout_seconds * 1e9);
   self->physical = candidate.physical;
   self->queue_family = candidate.queue_family;
   self->transfer_family = transfer_family_of(self->physical, self->queue_family);
@@ -252,6 +253,19 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
     self->timestamp_period_ns = static_cast<double>(properties.properties.limits.timestampPeriod);
   }
   return self;
+}
+
+core::Result<void> Device::wait(VkSemaphore semaphore, std::uint64_t value,
+                                const char* what) const {
+  VkSemaphoreWaitInfo waited{};
+  waited.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+  waited.semaphoreCount = 1;
+  waited.pSemaphores = &semaphore;
+  waited.pValues = &value;
+  const VkResult result = vk.vkWaitSemaphores(handle, &waited, timeout_ns_);
+  if (result == VK_SUCCESS) return {};
+  hangs_ = result == VK_TIMEOUT;
+  return vulkan_failure(result, what);
 }
 
 std::uint64_t Device::writable_bytes() const {

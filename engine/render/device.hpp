@@ -30,8 +30,9 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
 
 class Device {
  public:
+  // `timeout_seconds`: the longest wait for the device; then it counts as lost.
   static core::Result<std::unique_ptr<Device>> create(const DeviceCandidate& candidate,
-                                                      bool windowed);
+                                                      bool windowed, double timeout_seconds);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -54,11 +55,20 @@ class Device {
   double timestamp_period_ns = 0;                                   // 0: no timestamps on the queue
   DeviceInfo info;
 
+  // Returns when a semaphore that counts has come to `value`; `what` is "waiting for ...". Fails
+  // with kDeviceLost.
+  core::Result<void> wait(VkSemaphore semaphore, std::uint64_t value, const char* what) const;
+  // A wait came to no end: then the driver must not be asked to end anything either.
+  bool hangs() const { return hangs_; }
+
   // Bytes of the largest heap of its own memory that the CPU can write.
   std::uint64_t writable_bytes() const;
 
  private:
   Device() = default;
+
+  std::uint64_t timeout_ns_ = 0;
+  mutable bool hangs_ = false;
 };
 
 }  // namespace psygen::render

@@ -42,12 +42,18 @@ std::uint32_t GeometryPool::charged_bytes(VertexLayout layout, std::uint32_t ver
 }
 
 Result<void> GeometryPool::add_block(std::uint32_t least_bytes) {
-  const std::uint64_t bytes = std::min(kBlockBytes, budget_bytes_ - block_bytes_total_);
+  std::uint64_t bytes = std::min(kBlockBytes, budget_bytes_ - block_bytes_total_);
   if (bytes < least_bytes) {
     return core::fail(ErrorCode::kOutOfMemory,
                       "the geometry budget is used up or too fragmented for this mesh");
   }
   Result<std::byte*> mapped = source_(bytes);
+  while (!mapped && mapped.error().code == ErrorCode::kOutOfMemory &&
+         bytes / 2 >= std::max<std::uint64_t>(kLeastBlockBytes, least_bytes)) {
+    bytes /= 2;
+    mapped = source_(bytes);
+  }
+  no_more_blocks_ = !mapped;
   if (!mapped) return tl::unexpected(mapped.error());
   blocks_.push_back({*mapped, OffsetAllocator(static_cast<std::uint32_t>(bytes / kUnitBytes))});
   block_bytes_total_ += bytes;

@@ -1,8 +1,9 @@
 // The renderer's geometry memory: a few large blocks, each one buffer that holds vertices and
 // indices, with an offset allocator per block. What is written is that buffer, mapped, or its
 // mirror on the heap (staged_geometry.hpp). Blocks are made when first needed and kept; their sum
-// never exceeds the budget. A released range is reused only when the device has passed the last
-// frame submitted before the release. Main thread; knows no Vulkan: a BlockSource makes the blocks.
+// never exceeds the budget. Where no more can be had the capacity is what there is. A released
+// range is reused only when the device has passed the last frame submitted before the release. Main
+// thread; knows no Vulkan: a BlockSource makes the blocks.
 #pragma once
 
 #include <cstddef>
@@ -20,6 +21,8 @@ namespace psygen::render {
 class GeometryPool final : public core::GeometryMemory {
  public:
   static constexpr std::uint64_t kBlockBytes = 64ull << 20;
+  // Where there is no memory for a whole block smaller ones are tried, down to this.
+  static constexpr std::uint64_t kLeastBlockBytes = 4ull << 20;
   static constexpr std::uint32_t kUnitBytes = 16;
 
   // Makes the memory of the next block of `bytes` and returns where it is written, 16-byte aligned.
@@ -28,6 +31,8 @@ class GeometryPool final : public core::GeometryMemory {
 
   // `budget_bytes` is rounded down to 16.
   GeometryPool(std::uint64_t budget_bytes, BlockSource source);
+  // Makes the first block ahead of need. Fails as its source does: then there is no memory at all.
+  core::Result<void> make_first_block() { return add_block(kUnitBytes); }
 
   core::Result<core::GeometryReservation> reserve(core::VertexLayout layout,
                                                   std::uint32_t vertex_count,
@@ -37,7 +42,9 @@ class GeometryPool final : public core::GeometryMemory {
   std::uint32_t charged_bytes(core::VertexLayout layout, std::uint32_t vertex_count,
                               std::uint32_t index_count) const override;
   std::uint64_t used_bytes() const override { return used_bytes_; }
-  std::uint64_t capacity_bytes() const override { return budget_bytes_; }
+  std::uint64_t capacity_bytes() const override {
+    return no_more_blocks_ ? block_bytes_total_ : budget_bytes_;
+  }
   bool zero_copy() const override { return true; }
   std::span<const std::byte> vertex_bytes(const core::GeometryRange& range) const override;
   std::span<const std::uint16_t> indices(const core::GeometryRange& range) const override;
@@ -75,6 +82,7 @@ class GeometryPool final : public core::GeometryMemory {
   BlockSource source_;
   std::uint64_t used_bytes_ = 0;
   std::uint64_t block_bytes_total_ = 0;
+  bool no_more_blocks_ = false;  // the source had none when it was asked last
   std::uint64_t submitted_ = 0;
   std::uint64_t finished_ = 0;
   std::vector<Block> blocks_;

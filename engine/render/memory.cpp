@@ -1,5 +1,7 @@
 #include "engine/render/memory.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <initializer_list>
 
@@ -28,7 +30,8 @@ Result<UniqueMemory> allocate(const Device& device, const VkMemoryRequirements& 
       if (result == VK_SUCCESS) return UniqueMemory(device.vk, device.handle, memory);
     }
   }
-  return vulkan_failure(result, "allocating device memory");
+  return vulkan_failure(result,
+                        fmt::format("allocating {} bytes of device memory", needs.size).c_str());
 }
 
 constexpr VkMemoryPropertyFlags kMapped =
@@ -231,14 +234,7 @@ Result<void> finish_once(const Device& device, OneTimeCommands& once) {
   result = device.vk.vkQueueSubmit2(device.queue, 1, &submit, VK_NULL_HANDLE);
   if (result != VK_SUCCESS) return vulkan_failure(result, "submitting commands");
 
-  VkSemaphoreWaitInfo wait{};
-  wait.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
-  wait.semaphoreCount = 1;
-  wait.pSemaphores = &semaphore;
-  wait.pValues = &signal.value;
-  result = device.vk.vkWaitSemaphores(device.handle, &wait, kDeviceTimeoutNs);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "waiting for the device");
-  return {};
+  return device.wait(semaphore, signal.value, "waiting for the device");
 }
 
 Result<void> upload_image(const Device& device, const Image& image, core::Extent size,

@@ -7,7 +7,15 @@ namespace psygen::render {
 using core::Result;
 
 Renderer::Renderer(std::unique_ptr<RendererImpl> impl) : impl_(std::move(impl)) {}
-Renderer::~Renderer() = default;
+
+// Whatever of a driver that hangs would be ended would hang as well.
+void Renderer::leave(std::unique_ptr<RendererImpl> impl) {
+  if (impl && impl->hangs()) (void)impl.release();
+}
+
+Renderer::~Renderer() {
+  leave(std::move(impl_));
+}
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
   std::unique_ptr<Renderer> renderer(new Renderer(std::make_unique<RendererImpl>(options)));

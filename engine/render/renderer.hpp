@@ -81,6 +81,7 @@ class Renderer {
 
  private:
   explicit Renderer(std::unique_ptr<RendererImpl> impl);
+  static void leave(std::unique_ptr<RendererImpl> impl);
   std::unique_ptr<RendererImpl> impl_;
 };
 

@@ -8,6 +8,8 @@
 
 #include "engine/core/assert.hpp"
 #include "engine/core/clock.hpp"
+#include "engine/core/headroom.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/render/frame_data.hpp"
 #include "engine/render/software_tuning.hpp"
 
@@ -36,6 +38,18 @@ VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
   return info;
 }
 
+// What a software driver takes from here to the first frame, besides pictures. It ends the program
+// in many ways where it does not get it, so it is asked for first. Addresses are its libraries'
+// too.
+constexpr std::uint64_t kStartBytes = std::uint64_t{96} << 20;
+constexpr std::uint64_t kStartAddressBytes = std::uint64_t{512} << 20;
+// What geometry leaves to everything else: the scene, the modelers, and a software driver's bins,
+// which grow with the picture (measured: 80 MiB at 1280 x 720, 190 MiB at 3840 x 2160).
+std::uint64_t headroom_bytes(core::Extent size) {
+  const std::uint64_t bins = std::uint64_t{size.width} * size.height * 80;
+  return (std::uint64_t{32} << 20) + std::min(bins, std::uint64_t{192} << 20);
+}
+
 // On lavapipe a pushed draw costs about 800 ns more than one of a multi-draw, and the data of a
 // multi-draw costs about 20 ns per triangle more (psygen_bench_render): even at some 40 triangles.
 constexpr std::uint32_t kWorthPushingIndices = 48 * 3;
@@ -54,6 +68,10 @@ RendererImpl::~RendererImpl() {
   if (device_) wait_idle();
 }
 
+bool RendererImpl::hangs() const {
+  return device_ && device_->hangs();
+}
+
 Result<void> RendererImpl::create_device() {
   Result<std::unique_ptr<Instance>> instance =
       Instance::create(options_.application_name, options_.validation, options_.surface);
@@ -67,7 +85,8 @@ Result<void> RendererImpl::create_device() {
   Result<DeviceCandidate> chosen =
       choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
   if (!chosen) return tl::unexpected(chosen.error());
-  Result<std::unique_ptr<Device>> device = Device::create(*chosen, options_.surface != nullptr);
+  Result<std::unique_ptr<Device>> device =
+      Device::create(*chosen, options_.surface != nullptr, options_.device_timeout_seconds);
   if (!device) return tl::unexpected(device.error());
   device_ = std::move(*device);
   if (options_.surface != nullptr) {
@@ -88,6 +107,9 @@ Result<void> RendererImpl::create(const Progress& progress) {
     return core::fail(ErrorCode::kInvalidArgument,
                       "the geometry budget must be between 1 byte and 1 TiB");
   }
+  if (!core::memory_left(kStartBytes) || !core::addresses_left(kStartAddressBytes)) {
+    return core::fail(ErrorCode::kOutOfMemory, core::out_of_memory("starting the renderer"));
+  }
   if (Result<void> made = create_device(); !made) return made;
   if (Result<void> made = create_geometry(); !made) return made;
   Result<UniqueSemaphore> timeline = make_timeline(*device_);
@@ -97,8 +119,10 @@ Result<void> RendererImpl::create(const Progress& progress) {
   for (FrameSlot& slot : slots_) {
     if (Result<void> made = slot.create(*device_); !made) return made;
   }
-  return create_looks(
-      options_.preset.value_or(device_->info.software ? Preset::kLow : Preset::kHigh), progress);
+  const Preset preset =
+      options_.preset.value_or(device_->info.software ? Preset::kLow : Preset::kHigh);
+  if (Result<void> made = create_looks(preset, progress); !made) return made;
+  return pool_->make_first_block();
 }
 
 Result<void> RendererImpl::create_geometry() {
@@ -108,10 +132,11 @@ Result<void> RendererImpl::create_geometry() {
   // A heap that does not hold twice the budget is the small window of a device without more.
   const bool writable =
       device_->info.software || device_->writable_bytes() / 2 >= options_.geometry_budget_bytes;
-  if (options_.upload == Upload::kDirect || (options_.upload == Upload::kAuto && writable))
-    return {};
-  staged_ = std::make_unique<StagedGeometry>(*pool_);
-  return staged_->create(*device_);
+  if (options_.upload == Upload::kStaged || (options_.upload == Upload::kAuto && !writable)) {
+    staged_ = std::make_unique<StagedGeometry>(*pool_);
+    return staged_->create(*device_);
+  }
+  return {};
 }
 
 Result<void> RendererImpl::create_culling() {
@@ -132,16 +157,24 @@ Result<void> RendererImpl::create_culling() {
 }
 
 Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
+  // What is the program's own memory is not taken to its end.
+  if ((staged_ || device_->info.software) &&
+      !core::memory_left(bytes + headroom_bytes(options_.size))) {
+    return core::fail(ErrorCode::kOutOfMemory,
+                      core::out_of_memory(fmt::format(
+                          "{} MiB of geometry and what it takes to draw it", bytes >> 20)));
+  }
   const VkBufferUsageFlags copied = staged_ ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
   Result<Buffer> block =
       make_buffer(*device_, bytes,
                   VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | copied,
                   staged_ ? MemoryUse::kDevice : MemoryUse::kWrite);
   if (!block) return core::fail(ErrorCode::kOutOfMemory, block.error().message);
-  pool_blocks_.push_back(std::move(*block));
-  Result<std::byte*> written = pool_blocks_.back().mapped;
+  Result<std::byte*> written = block->mapped;
   if (staged_) written = staged_->add_block(bytes);
-  if (written) prefer_huge_pages({*written, bytes});
+  if (!written) return written;
+  pool_blocks_.push_back(std::move(*block));
+  prefer_huge_pages({*written, bytes});
   return written;
 }
 
@@ -172,13 +205,8 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
 
 Result<void> RendererImpl::wait_for(FrameSlot& slot) {
   const VkSemaphore timeline = timeline_.get();
-  VkSemaphoreWaitInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
-  info.semaphoreCount = 1;
-  info.pSemaphores = &timeline;
-  info.pValues = &slot.submitted_value;
-  const VkResult waited = device_->vk.vkWaitSemaphores(device_->handle, &info, kDeviceTimeoutNs);
-  if (waited != VK_SUCCESS) return vulkan_failure(waited, "waiting for a frame");
+  if (auto ok = device_->wait(timeline, slot.submitted_value, "waiting for a frame"); !ok)
+    return ok;
   // Only what was waited for, though the device may be further: which ranges are free must not
   // depend on its speed.
   pool_->frames_finished(slot.submitted_value);

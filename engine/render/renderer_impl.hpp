@@ -53,6 +53,7 @@ class RendererImpl {
   RenderPath path() const { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
   bool casts_shadows() const { return pipelines_.traits().cascades > 0; }
   void wait_idle();
+  bool hangs() const;
 
  private:
   enum class WindowState : std::uint8_t { kReady, kNotNow };

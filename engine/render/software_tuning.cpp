@@ -1,19 +1,41 @@
 #include "engine/render/software_tuning.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>  // defines __GLIBC__ where there is glibc
+#include <thread>
+
+#include "engine/core/headroom.hpp"
 
 #ifdef __GLIBC__
 #include <malloc.h>
+#include <sys/resource.h>
+
+#include <initializer_list>
 #endif
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
 
 namespace psygen::render {
+namespace {
+
+// llvmpipe's own threads are as many as processors, at most so many.
+constexpr std::size_t kMostRasterThreads = 32;
+// Beside them: the driver's queue and a modeler, without which there is no picture, and two of the
+// driver's cache of shaders.
+constexpr std::size_t kLeastThreads = 2, kOtherThreads = 4;
+
+}  // namespace
 
 void tune_allocator_for_software_rendering() {
 #ifdef __GLIBC__
+  for (const auto resource : {RLIMIT_DATA, RLIMIT_AS}) {
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY) return;
+  }
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   mallopt(M_TOP_PAD, 64 << 20);
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
@@ -28,6 +50,20 @@ void prefer_huge_pages([[maybe_unused]] std::span<std::byte> memory) {
   const std::uintptr_t end = (first + memory.size()) / kHugePage * kHugePage;
   if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
 #endif
+}
+
+core::Result<void> fit_software_rendering_to_threads() {
+  const std::size_t processors = std::max(std::thread::hardware_concurrency(), 1u);
+  const std::size_t wanted = std::min(processors, kMostRasterThreads) + kOtherThreads;
+  const std::size_t left = core::threads_left(wanted);
+  if (left < kLeastThreads) {
+    return core::fail(core::ErrorCode::kInternal,
+                      fmt::format("a flight takes {} threads at least; the system gives {} more",
+                                  kLeastThreads, left));
+  }
+  const std::size_t raster = left - std::min(left, kOtherThreads);
+  if (left < wanted) setenv("LP_NUM_THREADS", std::to_string(raster).c_str(), /*overwrite=*/0);
+  return {};
 }
 
 }  // namespace psygen::render

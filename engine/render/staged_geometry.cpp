@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
+
+#include "engine/core/out_of_memory.hpp"
 
 namespace psygen::render {
 
+using core::ErrorCode;
 using core::Result;
 
 namespace {
@@ -65,9 +69,14 @@ Result<void> StagedGeometry::create(const Device& device) {
   return {};
 }
 
-std::byte* StagedGeometry::add_block(std::uint64_t bytes) {
+Result<std::byte*> StagedGeometry::add_block(std::uint64_t bytes) {
   // Not initialised: pages that are never written are never there.
-  mirrors_.emplace_back(new std::byte[bytes]);
+  std::unique_ptr<std::byte[]> mirror(new (std::nothrow) std::byte[bytes]);
+  if (!mirror) {
+    return core::fail(ErrorCode::kOutOfMemory,
+                      core::out_of_memory("the mirror of geometry memory"));
+  }
+  mirrors_.push_back(std::move(mirror));
   return mirrors_.back().get();
 }
 
@@ -86,14 +95,7 @@ void StagedGeometry::release(const core::GeometryRange& range) {
 }
 
 Result<void> StagedGeometry::wait_for(const Device& device, const Part& part) const {
-  VkSemaphoreWaitInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
-  info.semaphoreCount = 1;
-  info.pSemaphores = timeline_.address();
-  info.pValues = &part.value;
-  const VkResult result = device.vk.vkWaitSemaphores(device.handle, &info, kDeviceTimeoutNs);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "waiting for copies of meshes");
-  return {};
+  return device.wait(timeline_.get(), part.value, "waiting for copies of meshes");
 }
 
 // As many pending bytes as the part holds, in order; the last mesh may be cut.

@@ -24,8 +24,8 @@ class StagedGeometry final : public core::GeometryMemory {
   explicit StagedGeometry(GeometryPool& pool) : pool_(pool) {}
 
   core::Result<void> create(const Device& device);
-  // The mirror of the next block, which is written instead of it.
-  std::byte* add_block(std::uint64_t bytes);
+  // The mirror of the next block, which is written instead of it. Fails with kOutOfMemory.
+  core::Result<std::byte*> add_block(std::uint64_t bytes);
 
   // Submits the copies of what was committed since the last call and records into `commands`, of
   // the frame to come, what makes them readable there. The frame waits for `timeline()` to pass

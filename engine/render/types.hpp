@@ -66,6 +66,7 @@ struct RendererOptions {
   // Called while the pipelines are made, which takes seconds where the driver has not kept them
   // from before. Of the renderer only show() may be called; false: create() fails (kInterrupted).
   std::function<bool(Renderer&, double)> progress;
+  double device_timeout_seconds = 60;  // longest wait for the device; then it counts as lost
 };
 
 struct DeviceInfo {

@@ -20,9 +20,6 @@ inline tl::unexpected<core::Error> vulkan_failure(VkResult result, const char* w
   return tl::unexpected(vulkan_error(result, what));
 }
 
-// Longest wait for the device; then it counts as lost.
-inline constexpr std::uint64_t kDeviceTimeoutNs = 60'000'000'000;
-
 // An object of a VkDevice that ends with its owner. `Destroy` is the table's function for it.
 template <class T, auto Destroy>
 class DeviceHandle {

@@ -1,6 +1,8 @@
 // Decides what every mesh entity should show, takes from the cache what it has, ranks what it
 // keeps, and plans what is missing. Nodes that the picture depends on are looked at in every tick,
 // front to back; those around the camera in turns.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -356,6 +358,12 @@ void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
   }
 }
 
+std::string what_is_small(const synthesis::CacheStats& stats) {
+  const std::uint64_t capacity_mib = stats.capacity_bytes >> 20;
+  if (capacity_mib >= stats.budget_bytes >> 20) return "the geometry budget";
+  return fmt::format("the memory that the system has for geometry ({} MiB)", capacity_mib);
+}
+
 // Under pressure everything gets coarser, and finer again when there is room: quickly up, slowly
 // down.
 void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& report,
@@ -372,10 +380,9 @@ void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& repo
     if (!totals.warned_budget) {
       totals.warned_budget = true;
       core::log_warning(
-          settings.levels_of_detail
-              ? "the geometry budget is too small for this view; drawing coarser levels"
-              : "the geometry budget is too small for this view at full detail; some of it is "
-                "missing");
+          fmt::format("{} is too small for this view{}", what_is_small(synthesis.cache->stats()),
+                      settings.levels_of_detail ? "; drawing coarser levels"
+                                                : " at full detail; some of it is missing"));
     }
   } else if (seen < roomy) {
     synthesis.coarsening = std::max(synthesis.coarsening * kDown, 1.0F);

@@ -8,6 +8,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/log.hpp"
 #include "engine/scene/cost_samples.hpp"
 #include "engine/scene/lighting.hpp"
 #include "engine/scene/mesh_notes.hpp"
@@ -123,6 +124,21 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
   return {};
 }
 
+// As many as there are from now on. Without any no mesh would ever be made.
+core::Result<void> take_modelers(const synthesis::SynthesisManager& manager, Settings& settings) {
+  const unsigned wanted = synthesis::modeler_count_for(settings.modelers);
+  settings.modelers = manager.modeler_count();
+  if (settings.modelers == 0) {
+    return core::fail(core::ErrorCode::kInternal,
+                      fmt::format("no modeler can be started: {}", manager.shortage()));
+  }
+  if (settings.modelers < wanted) {
+    core::log_warning(fmt::format("only {} of {} modelers can be started: {}", settings.modelers,
+                                  wanted, manager.shortage()));
+  }
+  return {};
+}
+
 Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
                    const models::Registry& registry, const ecs::Schedule& tick) {
   Tracing tracing;
@@ -233,12 +249,14 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   synthesis.planner = std::make_unique<synthesis::Planner>();
   synthesis::SynthesisOptions options;
   // How many processors there are changes nothing on a virtual clock.
-  options.modelers = settings.virtual_time ? std::max(settings.modelers, 1U) : settings.modelers;
+  if (settings.virtual_time) s.settings.modelers = std::max(settings.modelers, 1U);
+  options.modelers = s.settings.modelers;
   options.watchdog_seconds = settings.watchdog_seconds;
   options.annotate = mesh_notes(facts);
   if (settings.virtual_time) options.virtual_clock = [&s] { return s.clock.real_s; };
   synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
-  s.settings.modelers = synthesis.manager->modeler_count();
+  if (auto ok = take_modelers(*synthesis.manager, s.settings); !ok)
+    return tl::unexpected(ok.error());
   s.quality.governor =
       Governor({.target_ms = settings.target_frame_ms, .max_factor = settings.max_error_factor});
   build_tick(s);

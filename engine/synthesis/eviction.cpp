@@ -17,7 +17,8 @@ constexpr std::uint64_t kLeastFreePart = 64, kFreePart = 24, kPiecesPart = 8;
 void GeometryCache::begin_batch() {
   waiting_bytes_ = promised_bytes_ = 0;
   pieces_ = Room::kNow;
-  limit_bytes_ = std::min(budget_bytes_, limit_bytes_ + budget_bytes_ / 64 + 1);
+  limit_bytes_ =
+      std::min({budget_bytes_, memory_.capacity_bytes(), limit_bytes_ + budget_bytes_ / 64 + 1});
   enforce_budget();
   keep_room_free();
 }

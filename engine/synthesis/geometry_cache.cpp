@@ -286,6 +286,7 @@ std::span<const Eviction> GeometryCache::take_evictions() {
 CacheStats GeometryCache::stats() const {
   CacheStats s = stats_;
   s.budget_bytes = budget_bytes_;
+  s.capacity_bytes = memory_.capacity_bytes();
   s.limit_bytes = limit_bytes_;
   s.bytes = memory_.used_bytes();
   return s;

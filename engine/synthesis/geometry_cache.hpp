@@ -51,6 +51,7 @@ struct Eviction {
 
 struct CacheStats {
   std::uint64_t budget_bytes = 0;
+  std::uint64_t capacity_bytes = 0;  // of the memory: below the budget where the system has no more
   std::uint64_t limit_bytes = 0;     // the budget, or less for a while after memory ran out
   std::uint64_t bytes = 0;           // used now, everything counted
   std::uint64_t visible_bytes = 0;   // of meshes whose rank is that of something visible

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/synthesize.hpp"
 #include "engine/synthesis/thread_priority.hpp"
@@ -82,6 +84,9 @@ void Modeler::write_noted_mesh(const Workshop& workshop, const Annotate& annotat
     c.note = annotate(current_, mesh);
     std::ranges::copy(mesh.vertices, destination.vertices.begin());
     std::ranges::copy(mesh.indices, destination.indices.begin());
+  } catch (const std::bad_alloc&) {
+    c.ok = false;
+    c.error = core::out_of_memory("what is noted of a mesh");
   } catch (const std::exception& e) {
     c.ok = false;
     c.error = fmt::format("nothing could be noted of a mesh: {}", e.what());

@@ -6,11 +6,11 @@
 #include <chrono>
 #include <iterator>
 #include <map>
-#include <system_error>
 #include <utility>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/start_thread.hpp"
 
 namespace psygen::synthesis {
 namespace {
@@ -37,8 +37,25 @@ unsigned modeler_count_for(unsigned requested) {
   return std::max(std::thread::hardware_concurrency(), 2u) - 1;
 }
 
+// Virtual modelers are executed by as many threads as there are processors.
+static unsigned threads_for(const SynthesisOptions& options) {
+  return modeler_count_for(options.virtual_clock ? 0 : options.modelers);
+}
+
+// Delegates, so that an exception in it meets the destructor and not running threads.
 SynthesisManager::SynthesisManager(const models::Registry& registry,
                                    const SynthesisOptions& options)
+    : SynthesisManager(registry, options, threads_for(options)) {
+  while (active_.size() < threads_for(options)) {
+    if (auto ok = start_modeler(); !ok) {
+      shortage_ = ok.error().message;
+      break;
+    }
+  }
+}
+
+SynthesisManager::SynthesisManager(const models::Registry& registry,
+                                   const SynthesisOptions& options, unsigned most)
     : workshop_(std::make_shared<Workshop>()),
       virtual_clock_(options.virtual_clock),
       watchdog_seconds_(options.watchdog_seconds),
@@ -48,10 +65,7 @@ SynthesisManager::SynthesisManager(const models::Registry& registry,
   workshop_->hash_content = options.hash_content;
   workshop_->annotate = options.annotate;
   if (virtual_clock_) virtual_.emplace(modeler_count_for(options.modelers));
-  const unsigned threads = modeler_count_for(virtual_ ? 0 : options.modelers);
-  for (unsigned i = 0; i < threads; ++i) {
-    if (!start_modeler()) break;
-  }
+  active_.reserve(most);
 }
 
 SynthesisManager::~SynthesisManager() {
@@ -77,20 +91,20 @@ void SynthesisManager::leave(Worker& worker) {
   worker.thread.join();
 }
 
-bool SynthesisManager::start_modeler() {
+// There is room for one in active_.
+core::Result<void> SynthesisManager::start_modeler() {
   Worker worker;
   worker.modeler = std::make_shared<Modeler>(next_number_, workshop_->board.add_reader());
-  try {
-    worker.thread =
-        std::thread([workshop = workshop_, modeler = worker.modeler] { modeler->run(*workshop); });
-  } catch (const std::system_error& e) {
+  auto thread = core::start_thread(
+      [workshop = workshop_, modeler = worker.modeler] { modeler->run(*workshop); });
+  if (!thread) {
     workshop_->board.remove_reader(worker.modeler->reader());
-    core::log_error(fmt::format("no thread for modeler {}: {}", next_number_, e.what()));
-    return false;
+    return tl::unexpected(thread.error());
   }
+  worker.thread = std::move(*thread);
   ++next_number_;
   active_.push_back(std::move(worker));
-  return true;
+  return {};
 }
 
 void SynthesisManager::publish(std::vector<Request>&& plan) {
@@ -205,7 +219,12 @@ void SynthesisManager::run_watchdog() {
     ++given_up_;
     retired_.push_back(std::move(active_[i]));
     active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
-    if (replacements_left_ > 0 && start_modeler()) --replacements_left_;
+    if (replacements_left_ == 0) continue;
+    if (auto ok = start_modeler(); !ok) {
+      core::log_warning(fmt::format("no modeler takes its place: {}", ok.error().message));
+    } else {
+      --replacements_left_;
+    }
   }
 }
 

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -64,6 +65,7 @@ struct HungRequest {
 
 class SynthesisManager {
  public:
+  // Starts as many modelers as it gets threads and memory for; with none nothing is ever finished.
   // `registry` outlives the manager, and any modeler that hangs at the end of the program.
   explicit SynthesisManager(const models::Registry& registry, const SynthesisOptions& options = {});
   // Joins within the time of the requests that run now; what is unclaimed is dropped. A modeler
@@ -104,8 +106,10 @@ class SynthesisManager {
   // Requests published and neither reclaimed nor finished.
   std::uint64_t outstanding() const;
   unsigned modeler_count() const {
-    return virtual_ ? virtual_->count() : static_cast<unsigned>(active_.size());
+    return virtual_ && !active_.empty() ? virtual_->count() : static_cast<unsigned>(active_.size());
   }
+  // Why not all modelers that were asked for could be started; empty if they were.
+  const std::string& shortage() const { return shortage_; }
   const std::vector<HungRequest>& hung() const { return hung_; }
   SynthesisStats stats() const;
 
@@ -114,13 +118,15 @@ class SynthesisManager {
     std::shared_ptr<Modeler> modeler;
     std::thread thread;
   };
+  SynthesisManager(const models::Registry& registry, const SynthesisOptions& options,
+                   unsigned most);
   void publish_to_threads(std::vector<Request>&& plan);
   void drain();
   void drain_threads(std::vector<Completion>& out);
   bool wait_for_threads(const std::function<bool()>& go_on = {});
   std::uint64_t outstanding_in_threads() const;
   void execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
-  bool start_modeler();
+  core::Result<void> start_modeler();
   void run_watchdog();
   void drain_retired(std::vector<Completion>& out);
   void close_plan();
@@ -133,6 +139,7 @@ class SynthesisManager {
   double watchdog_seconds_;
   unsigned replacements_left_;
   std::uint32_t next_number_ = 0;
+  std::string shortage_;
   std::vector<Worker> active_;
   std::vector<Worker> retired_;  // hung, or back from it and not yet joined
   std::vector<HungRequest> hung_;

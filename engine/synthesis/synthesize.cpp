@@ -6,6 +6,8 @@
 #include <exception>
 #include <new>
 
+#include "engine/core/out_of_memory.hpp"
+
 namespace psygen::synthesis {
 namespace {
 bool is_box(const core::Bounds& b) {
@@ -16,20 +18,33 @@ bool is_box(const core::Bounds& b) {
 }
 
 std::string named(const models::ModelType& type, int level, std::string_view what) {
-  return fmt::format("{} level {} {}", type.name(), level, what);
+  return fmt::format("{} level {}{}", type.name(), level, what);
+}
+
+// Where memory has ended there may be none for the sentence either.
+template <class Sentence>
+SynthesisOutcome failed(const Sentence& sentence) noexcept {
+  SynthesisOutcome outcome;
+  try {
+    outcome.error = sentence();
+  } catch (...) {
+  }
+  return outcome;
 }
 }  // namespace
 
 SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models::Parameters& p,
                                     int level, const models::MeshView& out) {
-  try {  // types of users may throw; nothing of ours does
+  try {  // types of users may throw; nothing of ours does unless memory ends
     const core::Bounds tight = type.synthesize(p, level, out);
     if (is_box(tight)) return {true, tight, {}};
-    return {false, {}, named(type, level, "returned bounds that are not a box")};
+    return {false, {}, named(type, level, " returned bounds that are not a box")};
+  } catch (const std::bad_alloc&) {
+    return failed([&] { return core::out_of_memory(named(type, level, "")); });
   } catch (const std::exception& e) {
-    return {false, {}, named(type, level, fmt::format("threw: {}", e.what()))};
+    return failed([&] { return named(type, level, fmt::format(" threw: {}", e.what())); });
   } catch (...) {
-    return {false, {}, named(type, level, "threw something that is no std::exception")};
+    return failed([&] { return named(type, level, " threw something that is no std::exception"); });
   }
 }
 
@@ -40,11 +55,11 @@ core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
     size = type.mesh_size(p, level);
   } catch (...) {
     return core::fail(core::ErrorCode::kSynthesisFailed,
-                      named(type, level, "threw while telling its size"));
+                      named(type, level, " threw while telling its size"));
   }
   if (size.vertex_count > 65536 || size.index_count > (1u << 26)) {
     return core::fail(core::ErrorCode::kOverBudget,
-                      named(type, level, "is larger than a mesh with 16-bit indices can be"));
+                      named(type, level, " is larger than a mesh with 16-bit indices can be"));
   }
   return size;
 }
@@ -59,7 +74,7 @@ core::Result<HeapDestination> HeapDestination::make(const models::ModelType& typ
   d.own_indices_ = d.size_.shared_indices == 0 ? d.size_.index_count : 0;
   d.memory_.reset(new (std::nothrow) std::byte[d.vertex_bytes_ + d.own_indices_ * 2]);
   if (!d.memory_) {
-    return core::fail(core::ErrorCode::kOutOfMemory, "the heap has no memory for a mesh");
+    return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory(named(type, level, "")));
   }
   return d;
 }

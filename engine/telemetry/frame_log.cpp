@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <new>
 
 #include "engine/core/assert.hpp"
-#include "engine/telemetry/output_file.hpp"
+#include "engine/core/headroom.hpp"
+#include "engine/core/out_of_memory.hpp"
+#include "engine/core/replace_file.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -42,15 +45,23 @@ std::string row(const FrameRecord& r, std::size_t system_count) {
 FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
     : systems_(std::move(systems)), max_frames_(max_frames) {
   PSYGEN_CHECK(systems_.size() <= kMaxSystems, "more systems than a frame record has room for");
-  frames_.reserve(max_frames_);
+  constexpr std::size_t kSmallPart = 4;  // of the memory that is left
+  if (core::memory_left(kSmallPart * max_frames_ * sizeof(FrameRecord))) {
+    frames_.reserve(max_frames_);
+  } else {
+    core::note_refused_bytes(0);  // the log does without
+  }
 }
 
 void FrameLog::add(const FrameRecord& record) {
   if (frames_.size() < max_frames_) {
-    frames_.push_back(record);
-  } else {
-    ++dropped_;
+    try {
+      return frames_.push_back(record);
+    } catch (const std::bad_alloc&) {
+      max_frames_ = frames_.size();
+    }
   }
+  ++dropped_;
 }
 
 void FrameLog::add_cost_error(double time_s, double predicted_s, double actual_s) {
@@ -65,14 +76,14 @@ std::span<const FrameRecord> FrameLog::frames_since(double warmup_s) const {
 }
 
 core::Result<void> write_frames_csv(const std::filesystem::path& path, const FrameLog& log) {
-  OutputFile file(path);
+  core::FileReplacement file(path);
   file.write(kColumnsBeforeSystems);
   for (const std::string& system : log.systems())
     file.write("," + system + "_ms");
   file.write(fmt::format(",{}\n", kColumnsAfterSystems));
   for (const FrameRecord& record : log.frames())
     file.write(row(record, log.systems().size()));
-  return file.close();
+  return file.commit();
 }
 
 }  // namespace psygen::telemetry

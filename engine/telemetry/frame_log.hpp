@@ -1,5 +1,6 @@
 // What each frame cost and showed: one row per frame, filled by the tick's last system, timed and
-// added by App::record_frame, read when the run ends. Adding does not allocate. Main thread only.
+// added by App::record_frame, read when the run ends. Adding allocates only where memory is
+// limited. Main thread only.
 #pragma once
 
 #include <array>
@@ -51,7 +52,8 @@ struct FrameRecord {
 class FrameLog {
  public:
   // Names of the systems in the order of the tick, at most kMaxSystems. Space for `max_frames` rows
-  // is reserved (not touched); later frames are counted but not kept.
+  // is reserved (not touched) where that is a small part of the memory that the system has left.
+  // Frames beyond it, or beyond what there is memory for, are counted but not kept.
   explicit FrameLog(std::vector<std::string> systems,
                     std::size_t max_frames = std::size_t{1} << 18);
 

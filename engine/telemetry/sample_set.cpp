@@ -10,7 +10,6 @@ namespace psygen::telemetry {
 
 SampleSet::SampleSet(std::size_t capacity) : capacity_(capacity) {
   PSYGEN_CHECK(capacity > 0, "a sample set needs room for a sample");
-  samples_.reserve(capacity);
 }
 
 void SampleSet::add(double time_s, double value) {

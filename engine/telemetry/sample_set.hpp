@@ -1,7 +1,7 @@
 // Samples of one quantity that arrive too often to keep them all: thousands per second, each with
 // the moment it was taken. Keeps all of them up to its capacity and a uniform choice of them beyond
 // (reservoir sampling, Vitter 1985, algorithm R), deterministically. Memory is bounded; adding is
-// O(1) and does not allocate. One thread.
+// O(1) and allocates only when the set doubles. One thread.
 #pragma once
 
 #include <cstdint>

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/assert.hpp"
-#include "engine/telemetry/output_file.hpp"
+#include "engine/core/replace_file.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -26,7 +26,6 @@ TraceLog::TraceLog(std::size_t max_spans_per_track) : max_spans_(max_spans_per_t
 TraceLog::Track TraceLog::add_ring(std::string_view name, bool is_counter) {
   PSYGEN_CHECK(rings_.size() < UINT16_MAX, "too many tracks in a trace");
   rings_.push_back({std::string(name), is_counter, {}, 0});
-  rings_.back().spans.reserve(max_spans_);
   return static_cast<Track>(rings_.size() - 1);
 }
 
@@ -94,7 +93,7 @@ double TraceLog::earliest_s() const {
   return std::isfinite(earliest) ? earliest : 0.0;
 }
 
-void TraceLog::write_ring(OutputFile& file, std::size_t track, double origin_s,
+void TraceLog::write_ring(core::FileReplacement& file, std::size_t track, double origin_s,
                           std::span<const std::string> quoted_names) const {
   constexpr double kMicroseconds = 1e6;
   const Ring& ring = rings_[track];
@@ -133,7 +132,7 @@ core::Result<void> TraceLog::write(const std::filesystem::path& path) const {
   for (const std::string& name : names_)
     names.push_back(quoted(name));
   const double origin_s = earliest_s();
-  OutputFile file(path);
+  core::FileReplacement file(path);
   file.write(
       fmt::format("{{\"displayTimeUnit\":\"ms\",\"otherData\":{{\"spans_dropped\":\"{}\"}},\n"
                   "\"traceEvents\":[\n",
@@ -142,7 +141,7 @@ core::Result<void> TraceLog::write(const std::filesystem::path& path) const {
   for (std::size_t track = 0; track < rings_.size(); ++track)
     write_ring(file, track, origin_s, names);
   file.write("\n]}\n");
-  return file.close();
+  return file.commit();
 }
 
 }  // namespace psygen::telemetry

@@ -1,7 +1,7 @@
 // What happened when: spans on named tracks (the main thread's systems, each modeler's jobs) and
 // counters over time, written as Chrome trace events that Perfetto and chrome://tracing open.
-// Adding costs a few stores. Memory is bounded: each track keeps its newest spans. Main thread
-// only: modelers hand their times over in their results.
+// Adding costs a few stores, and memory only when a track doubles. Memory is bounded: each track
+// keeps its newest spans. Main thread only: modelers hand their times over in their results.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,11 @@
 
 #include "engine/core/error.hpp"
 
-namespace psygen::telemetry {
+namespace psygen::core {
+class FileReplacement;
+}
 
-class OutputFile;
+namespace psygen::telemetry {
 
 class TraceLog {
  public:
@@ -59,7 +61,7 @@ class TraceLog {
   Track add_ring(std::string_view name, bool is_counter);
   void add(Ring& ring, const Span& span);
   double earliest_s() const;
-  void write_ring(OutputFile& file, std::size_t track, double origin_s,
+  void write_ring(core::FileReplacement& file, std::size_t track, double origin_s,
                   std::span<const std::string> quoted_names) const;
 
   std::size_t max_spans_;

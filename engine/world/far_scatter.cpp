@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "engine/world/placement.hpp"
 
@@ -52,8 +53,10 @@ FarScatter::FarScatter(const World& world, const models::ModelType& type, const 
                        std::uint32_t first)
     : type_(&type), scatter_(&scatter), first_(first) {
   if (scatter.count == 0 || !type.is_seen_from_far()) return;
-  try {  // types of users may throw; nothing of ours does
+  try {  // types of users may throw; nothing of ours does unless memory ends
     measure(world);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (...) {
     representatives_.clear();
   }

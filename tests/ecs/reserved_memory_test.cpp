@@ -1,9 +1,13 @@
 #include "ecs/reserved_memory.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 
 #include <cstdint>
+#include <new>
 #include <utility>
+#include <vector>
 
 namespace psygen::ecs::detail {
 namespace {
@@ -36,6 +40,37 @@ TEST(ReservedMemory, an_absurd_reservation_is_cut_to_what_the_system_gives) {
   memory.commit(4096);
   memory.data()[4095] = std::byte{1};
 }
+
+TEST(ReservedMemory, more_than_was_reserved_is_no_memory) {
+  ReservedMemory memory(std::size_t{1} << 20);
+  memory.commit(4096);
+  EXPECT_THROW(memory.commit(memory.capacity_bytes() + 1), std::bad_alloc);
+  EXPECT_GE(memory.committed_bytes(), 4096U);
+  memory.data()[4095] = std::byte{1};
+}
+
+#ifdef PSYGEN_LIMITS_OF_MEMORY
+
+TEST(ReservedMemory, where_addresses_are_limited_a_reservation_leaves_the_most_of_them) {
+  constexpr std::size_t kGiB = std::size_t{1} << 30;
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  const rlimit limited{3 * kGiB, before.rlim_max};
+  setrlimit(RLIMIT_AS, &limited);
+  std::vector<ReservedMemory> columns;
+  for (int i = 0; i < 40; ++i)
+    columns.emplace_back(std::size_t{1} << 36);
+  void* const rest = mmap(nullptr, kGiB, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  setrlimit(RLIMIT_AS, &before);
+  EXPECT_NE(rest, MAP_FAILED);
+  munmap(rest, kGiB);
+  for (ReservedMemory& column : columns) {
+    EXPECT_GE(column.capacity_bytes(), std::size_t{16} << 20);
+    column.commit(column.capacity_bytes());
+  }
+}
+
+#endif
 
 TEST(ReservedMemory, moving_hands_the_range_over) {
   ReservedMemory memory(std::size_t{1} << 20);

@@ -10,6 +10,7 @@
 
 #include "ecs/snapshot.hpp"
 #include "tests/ecs/described.hpp"
+#include "tests/faults.hpp"
 
 namespace psygen::ecs::test {
 namespace {
@@ -222,6 +223,19 @@ TEST(Schedule, any_number_of_threads_gives_the_state_of_one) {
     World parallel;
     simulate(parallel, threads);
     EXPECT_EQ(state_hash(parallel), state_hash(serial)) << threads;
+  }
+}
+
+TEST(Schedule, threads_that_cannot_be_started_are_done_without) {
+  World serial;
+  simulate(serial, 1);
+  for (const std::size_t left : {0U, 1U, 2U}) {
+    const FewThreads few(left);
+    World parallel;
+    EXPECT_EQ(Schedule(parallel, 8).threads(), left + 1);
+    const FewThreads as_few(left);
+    simulate(parallel, 8);
+    EXPECT_EQ(state_hash(parallel), state_hash(serial)) << left;
   }
 }
 

@@ -2,6 +2,7 @@
 // a wrong command line is in usage_test.cpp.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 

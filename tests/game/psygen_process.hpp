@@ -36,10 +36,11 @@ inline Outcome run_psygen(const std::string& arguments, const std::string& envir
   const std::string name = std::string(test->test_suite_name()) + "_" + test->name() + "_" +
                            std::to_string(getpid());  // of another build, maybe, at the same time
   const auto out = outputs / (name + ".out"), err = outputs / (name + ".err");
-  const std::string command = "cd " + folder.string() +
-                              " && export ASAN_OPTIONS=detect_leaks=0 && " + environment +
-                              " " PSYGEN_EXECUTABLE " " + arguments + " >" + out.string() + " 2>" +
-                              err.string() + " </dev/null " + redirection;
+  const std::string command =
+      "cd " + folder.string() +
+      " && export ASAN_OPTIONS=detect_leaks=0:verify_asan_link_order=0 && " + environment +
+      " " PSYGEN_EXECUTABLE " " + arguments + " >" + out.string() + " 2>" + err.string() +
+      " </dev/null " + redirection;
   const int status = std::system(command.c_str());
   Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   std::filesystem::remove(out);

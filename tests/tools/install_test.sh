@@ -11,9 +11,13 @@ cmake --install "$build" --prefix "$folder/psygen" >/dev/null
 cmake -S "$source/tests/tools/consumer" -B "$folder/build" -G Ninja \
   -DCMAKE_PREFIX_PATH="$folder/psygen" -DCMAKE_BUILD_TYPE=Debug >/dev/null
 cmake --build "$folder/build" >/dev/null
-height="$("$folder/build/consumer" "$folder/psygen/share/psygen/worlds/paper.toml")"
+height="$("$folder/build/consumer" "$folder/psygen/share/psygen/worlds/paper.toml" "$folder/picture.png")"
 echo "ground height $height"
 [[ "$height" =~ ^[0-9]+\.[0-9]{6}$ ]]
+# What both load later lies in the installed folder.
+for program in "$folder/build/consumer" "$folder/psygen/bin/psygen"; do
+  readelf -d "$program" | grep -E 'RPATH.*(ORIGIN/\.\.|psygen)/lib[^]]*/psygen' >/dev/null
+done
 
 mkdir "$folder/elsewhere" "$folder/bin"
 mv "$folder/psygen" "$folder/elsewhere/moved here"

@@ -7,6 +7,7 @@
 
 #include "tests/engine/amplify/throwing_type.hpp"
 #include "tests/engine/world/files.hpp"
+#include "tests/faults.hpp"
 
 namespace psygen::amplify {
 namespace {
@@ -37,6 +38,24 @@ TEST(Amplify, TheHashIsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(many->totals.triangles, one->totals.triangles);
     EXPECT_EQ(many->totals.bytes, one->totals.bytes);
   }
+}
+
+TEST(Amplify, GoesOnWithTheThreadsThatThereAreAndFailsWithoutAny) {
+  const world::World world = parsed(kSmallWorld);
+  const Region region = *whole(world);
+  const auto all = amplify(world, registry(), region, with_threads(8));
+  for (const unsigned left : {1u, 3u}) {
+    const FewThreads few(left);
+    const auto report = amplify(world, registry(), region, with_threads(8));
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->threads, left);
+    EXPECT_TRUE(report->complete);
+    EXPECT_EQ(report->totals.hash.value(), all->totals.hash.value());
+  }
+  const FewThreads none(0);
+  const auto report = amplify(world, registry(), region, with_threads(8));
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("no more threads"), std::string::npos);
 }
 
 TEST(Amplify, PartsOfARegionAddUpToIt) {
@@ -179,6 +198,21 @@ TEST(Amplify, ExceptionsEndItAndOnlyThoseOfMemoryAreCalledSo) {
   EXPECT_NE(any.message.find("a broken type"), std::string::npos);
   EXPECT_EQ(error_of([] { throw 7; }).code, core::ErrorCode::kSynthesisFailed);
   EXPECT_EQ(error_of([] { throw std::bad_alloc(); }).code, core::ErrorCode::kOutOfMemory);
+}
+
+// What is called while threads run may throw as well: they end, and the exception comes through.
+TEST(Amplify, EndsItsThreadsWhenItsCallerThrows) {
+  const world::World world = parsed(kSmallWorld);
+  std::atomic<bool> thrown{false};
+  const std::function<void()> until_thrown = [&thrown] { thrown.wait(false); };
+  Options options = with_threads(2);
+  options.make_sink = [&] { return std::make_unique<ThrowingSink>(until_thrown); };
+  options.progress = [&thrown](std::uint64_t) {
+    thrown = true;
+    thrown.notify_all();
+    throw std::bad_alloc();
+  };
+  EXPECT_THROW((void)amplify(world, registry(), *whole(world), options), std::bad_alloc);
 }
 
 TEST(Amplify, TakesNoMoreThreadsByItselfThanItAllows) {

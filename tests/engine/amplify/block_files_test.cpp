@@ -7,7 +7,7 @@
 
 #include "tests/engine/amplify/throwing_type.hpp"
 #include "tests/engine/world/files.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/full_disk.hpp"
 
 namespace psygen::amplify {
 namespace {
@@ -220,6 +220,33 @@ TEST(BlockFiles, GroundAtTheWaterIsSandAsItIsDrawn) {
   const double dry = red();
   world.water.level_m = 200;  // above everything
   EXPECT_GT(red(), 1.5 * dry);
+}
+
+// Each number of calls is another place where the disk fills; a later run finishes what is missing.
+TEST(BlockFiles, WhereverTheDiskFillsFilesAreWholeAndALaterRunWritesTheRest) {
+  const TemporaryFolder top;
+  const world::World world = parsed(kSmallWorld);
+  for (const Format format : {Format::kGlb, Format::kObj}) {
+    std::filesystem::remove_all(top / "whole");
+    ASSERT_TRUE(make_files(world, top / "whole", format));
+    const FileContents whole = contents_of(top / "whole");
+    bool all_fits = false;
+    for (std::size_t calls = 0; !all_fits; calls += 7) {
+      std::filesystem::remove_all(top / "cut");
+      {
+        const FullDisk full(top / "cut", calls);
+        const auto made = make_files(world, top / "cut", format);
+        all_fits = !full.was_met();
+        if (!made) {
+          EXPECT_EQ(made.error().message.find((top / "cut").string()), 0u) << made.error().message;
+        }
+      }
+      for (const auto& [name, content] : contents_of(top / "cut"))
+        EXPECT_TRUE(whole.contains(name) && whole.at(name) == content) << name << ", " << calls;
+      ASSERT_TRUE(make_files(world, top / "cut", format));
+      EXPECT_TRUE(contents_of(top / "cut") == whole) << calls;
+    }
+  }
 }
 
 }  // namespace

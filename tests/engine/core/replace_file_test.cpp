@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/faults.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::core {
@@ -63,7 +64,28 @@ TEST(ReplaceFile, LeavesDevicesAndFoldersAlone) {
   EXPECT_EQ(replace_file(folder.path(), text("x")).error().code, ErrorCode::kIo);
 }
 
-TEST(ReplaceFile, KeepsTheOldContentWhenTheDiskHasNoRoomForTheNewOne) {
+// Once with room for each number of calls, until there is room for all of them.
+TEST(ReplaceFile, WhereverTheDiskFillsTheOldContentStaysAndTheFailureHasItsReason) {
+  const TemporaryFolder folder;
+  const auto path = folder / "a.bin";
+  bool all_fits = false;
+  for (std::size_t calls = 0; !all_fits; ++calls) {
+    ASSERT_TRUE(replace_file(path, text("old")));
+    const FullDisk full(folder.path(), calls);
+    const auto result = replace_file(path, std::vector<std::uint8_t>(100'000, 1));
+    EXPECT_EQ(bytes_of(path).size(), result ? 100'000u : 3u) << calls;
+    EXPECT_EQ(folder.file_count(), 1U) << calls;
+    if (!result) {
+      EXPECT_EQ(result.error().code, ErrorCode::kIo);
+      EXPECT_EQ(result.error().message.find(path.string() + ": cannot "), 0U);
+      EXPECT_NE(result.error().message.find("No space left on device"), std::string::npos);
+    }
+    all_fits = !full.was_met();
+  }
+  EXPECT_EQ(bytes_of(path).size(), 100'000u);
+}
+
+TEST(ReplaceFile, KeepsTheOldContentWhenAFileMayNotBecomeThatLarge) {
   const TemporaryFolder folder;
   ASSERT_TRUE(replace_file(folder / "a.bin", text("old")));
   rlimit before{};
@@ -78,6 +100,37 @@ TEST(ReplaceFile, KeepsTheOldContentWhenTheDiskHasNoRoomForTheNewOne) {
   EXPECT_EQ(result.error().code, ErrorCode::kIo);
   EXPECT_EQ(bytes_of(folder / "a.bin"), text("old"));
   EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(FileReplacement, HoldsEveryPieceInOrderWhateverTheirSizes) {
+  const TemporaryFolder folder;
+  std::string expected;
+  FileReplacement file(folder / "a.txt");
+  for (const std::size_t size : {0u, 1u, 40'000u, 65'536u, 65'537u, 7u, 200'000u, 3u}) {
+    const std::string piece(size, static_cast<char>('a' + expected.size() % 26));
+    file.write(piece);
+    expected += piece;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+  ASSERT_TRUE(file.commit());
+  const auto bytes = bytes_of(folder / "a.txt");
+  EXPECT_TRUE(std::string(bytes.begin(), bytes.end()) == expected);
+}
+
+TEST(FileReplacement, WithoutACommitThereIsNothing) {
+  const TemporaryFolder folder;
+  {
+    FileReplacement file(folder / "a.txt");
+    file.write("half");
+    ASSERT_TRUE(file.flush());
+  }
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
+TEST(FileReplacement, GoesOnQuietlyAfterAnErrorUntilItIsCommitted) {
+  FileReplacement file("/nowhere/a.txt");
+  file.write("lost");
+  EXPECT_FALSE(file.commit());
 }
 
 TEST(ReplaceFile, WhatAKilledProcessLeftBehindIsCleanedUpAndNothingElse) {

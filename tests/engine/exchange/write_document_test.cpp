@@ -4,7 +4,7 @@
 
 #include "tests/engine/exchange/read_back.hpp"
 #include "tests/engine/exchange/synthesised.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/full_disk.hpp"
 
 namespace psygen::exchange {
 namespace {
@@ -137,6 +137,26 @@ TEST(WriteDocument, AFolderThatDoesNotExistIsNamed) {
   const auto written = write_document("/nonexistent/a.glb", Format::kGlb, grove());
   ASSERT_FALSE(written);
   EXPECT_NE(written.error().message.find("/nonexistent/a.glb"), std::string::npos);
+}
+
+TEST(WriteDocument, WhereverTheDiskFillsEachFileIsWholeOrNotThere) {
+  const Document document{"rock", {synthesised("rock", 0)}};
+  for (const Format format : {Format::kGlb, Format::kObj}) {
+    expect_whole_files([&](const auto& folder) {
+      return write_document(folder / (format == Format::kGlb ? "a.glb" : "a.obj"), format,
+                            document);
+    });
+  }
+}
+
+TEST(WriteDocument, AnObjThatDoesNotFitLeavesTheMaterialsOfTheOldOne) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_document(folder / "a.obj", Format::kObj, {"rock", {synthesised("rock", 0)}}));
+  const FileContents before = contents_of(folder.path());
+  constexpr std::size_t kFirstFile = 5;  // two files are made, one is written, flushed and closed
+  const FullDisk full(folder.path(), kFirstFile);
+  EXPECT_FALSE(write_document(folder / "a.obj", Format::kObj, {"tree", {synthesised("tree", 0)}}));
+  EXPECT_EQ(contents_of(folder.path()), before);
 }
 
 }  // namespace

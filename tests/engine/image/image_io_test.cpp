@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "tests/engine/image/test_files.hpp"
+#include "tests/full_disk.hpp"
 
 namespace psygen::image {
 namespace {
@@ -175,6 +176,11 @@ TEST(ImageIo, AnUnwritablePlaceIsAnIoErrorWithThePath) {
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::kIo);
   EXPECT_NE(result.error().message.find("/proc/psygen/a.png"), std::string::npos);
+}
+
+TEST(ImageIo, APngIsWholeOrNotThereWhereverTheDiskFills) {
+  expect_whole_files(
+      [](const auto& folder) { return write_png(folder / "noise.png", noise_image(67, 31)); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "engine/render/renderer.hpp"
+#include "tests/faults.hpp"
 
 namespace psygen::render {
 namespace {
@@ -60,6 +61,25 @@ void create_without_drivers() {
 TEST(RendererFailureDeathTest, a_machine_without_a_driver_gets_one_clear_sentence) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(create_without_drivers(), testing::ExitedWithCode(4), "no Vulkan driver");
+}
+
+// llvmpipe that gets only some of its threads waits for the others for ever.
+void create_with_few_threads_of_the_driver() {
+  for (std::size_t left = 0; left < 6; ++left) {
+    const FewThreads few(left, "libvulkan_");
+    RendererOptions options;
+    options.size = {16, 16};
+    options.device_timeout_seconds = 0.2;
+    const auto renderer = Renderer::create(options);
+    if (!renderer) std::fprintf(stderr, "%s\n", renderer.error().message.c_str());
+  }
+  std::_Exit(0);
+}
+
+TEST(RendererFailureDeathTest,
+     a_driver_that_never_answers_is_given_up_and_not_waited_for_at_the_end) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(create_with_few_threads_of_the_driver(), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

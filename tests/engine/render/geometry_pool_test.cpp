@@ -134,6 +134,35 @@ TEST(GeometryPool, reports_a_device_without_memory_and_goes_on) {
   EXPECT_TRUE(pool.reserve(VertexLayout::kModel, 10, 30));
 }
 
+TEST(GeometryPool, takes_smaller_blocks_where_there_is_no_memory_for_whole_ones) {
+  std::uint64_t left = 100ull << 20;
+  std::vector<std::unique_ptr<std::byte[]>> blocks;
+  GeometryPool pool(256ull << 20, [&](std::uint64_t bytes) -> core::Result<std::byte*> {
+    if (bytes > left) return core::fail(core::ErrorCode::kOutOfMemory, "no memory left");
+    left -= bytes;
+    return blocks.emplace_back(new std::byte[bytes]).get();
+  });
+  ASSERT_TRUE(pool.make_first_block());
+  EXPECT_EQ(pool.capacity_bytes(), 256ull << 20);
+  while (pool.reserve(VertexLayout::kModel, 60'000, 60'000)) {
+  }
+  EXPECT_EQ(pool.block_bytes_total(), (64ull + 32 + 4) << 20);
+  EXPECT_EQ(pool.capacity_bytes(), pool.block_bytes_total());  // and not what was hoped for
+  left = 64ull << 20;
+  while (pool.reserve(VertexLayout::kModel, 60'000, 60'000)) {
+  }
+  EXPECT_EQ(pool.block_bytes_total(), (64ull + 32 + 4 + 64) << 20);
+}
+
+TEST(GeometryPool, without_any_memory_the_first_block_is_an_error) {
+  HeapBlocks heap;
+  heap.limit = 0;
+  GeometryPool pool(256ull << 20, heap.source());
+  const auto made = pool.make_first_block();
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().message, "no block left");
+}
+
 TEST(GeometryPool, refuses_a_mesh_larger_than_a_block_without_overflow) {
   HeapBlocks heap;
   GeometryPool pool(1ull << 32, heap.source());

@@ -9,6 +9,7 @@
 #include "engine/scene/mesh_parts.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "tests/engine/scene/fixture.hpp"
+#include "tests/faults.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -390,6 +391,24 @@ TEST(Scene, HalvingTheBudgetWhileFlyingIsMet) {
     scene->state().synthesis.manager->wait_all();
   }
   EXPECT_LE(scene->state().memory->used_bytes(), half);
+}
+
+TEST(Scene, HasTheModelersThatThereAreThreadsForAndIsRefusedWithoutAny) {
+  Settings settings = small_settings();
+  settings.modelers = 8;
+  {
+    const FewThreads few(2);
+    const auto scene = make_scene(settings);
+    EXPECT_EQ(scene->state().settings.modelers, 2u);
+    scene->settle(pose_at(100, 100));
+    EXPECT_EQ(scene->state().counters.holes, 0u);
+  }
+  const FewThreads none(0);
+  models::Registry registry = models::make_standard_registry();
+  const world::World world = paper_world(registry);
+  const auto scene = Scene::create(world, std::move(registry), settings, nullptr);
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().message.find("no modeler can be started: "), 0u) << scene.error().message;
 }
 
 TEST(Scene, SettingsThatMakeNoSenseAreRefused) {

@@ -321,6 +321,21 @@ TEST_F(PressureTest, MemoryThatRunsOutOnceIsSurvivedAndTheLimitRecovers) {
   EXPECT_EQ(other.stats().limit_bytes, 8 * kMeshBytes);
 }
 
+TEST_F(PressureTest, MemoryThatHasLessThanTheBudgetIsTheLimit) {
+  FakeMemory immediate(1 << 20, 0);
+  GeometryCache other(immediate, registry, 8 * kMeshBytes);
+  const auto p = parameters_of(1, 80);
+  for (std::uint32_t i = 0; i < 4; ++i)
+    other.complete(*other.reserve(key_of(i, p), p, i, prefetch(100)), {});
+  immediate.limit_capacity(5 * kMeshBytes);
+  immediate.fail_next_reservations(1);
+  EXPECT_TRUE(other.reserve(key_of(50, p), p, 50, prefetch(0)));
+  for (int tick = 0; tick < 64; ++tick)
+    other.begin_batch();
+  EXPECT_EQ(other.stats().limit_bytes, 5 * kMeshBytes);
+  EXPECT_EQ(other.stats().capacity_bytes, 5 * kMeshBytes);
+}
+
 TEST_F(PressureTest, MemoryThatAlwaysFailsCostsOneEvictionATickAndIsAnError) {
   FakeMemory immediate(1 << 20, 0);
   GeometryCache other(immediate, registry, 16 * kMeshBytes);

@@ -2,6 +2,8 @@
 // fails to reserve when told.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <deque>
 
 #include "engine/core/heap_geometry_memory.hpp"
@@ -14,6 +16,8 @@ class FakeMemory final : public core::GeometryMemory {
       : heap_(capacity_bytes), frames_in_flight_(frames_in_flight) {}
 
   void fail_next_reservations(int count) { failures_ = count; }
+  // From now on it says that it has no more than this.
+  void limit_capacity(std::uint64_t bytes) { capacity_bytes_ = bytes; }
   void end_frame() {
     for (Pending& p : pending_)
       --p.frames;
@@ -41,7 +45,9 @@ class FakeMemory final : public core::GeometryMemory {
     return heap_.charged_bytes(layout, vertices, indices);
   }
   std::uint64_t used_bytes() const override { return heap_.used_bytes(); }
-  std::uint64_t capacity_bytes() const override { return heap_.capacity_bytes(); }
+  std::uint64_t capacity_bytes() const override {
+    return std::min(capacity_bytes_, heap_.capacity_bytes());
+  }
   bool zero_copy() const override { return true; }
   std::span<const std::byte> vertex_bytes(const core::GeometryRange& range) const override {
     return heap_.vertex_bytes(range);
@@ -58,6 +64,7 @@ class FakeMemory final : public core::GeometryMemory {
   core::HeapGeometryMemory heap_;
   int frames_in_flight_;
   int failures_ = 0;
+  std::uint64_t capacity_bytes_ = UINT64_MAX;
   std::deque<Pending> pending_;
 };
 

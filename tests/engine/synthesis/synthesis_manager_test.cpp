@@ -11,6 +11,7 @@
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/synthesize.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
+#include "tests/faults.hpp"
 
 namespace psygen::synthesis {
 namespace {
@@ -93,6 +94,30 @@ TEST(SynthesisManager, OneToEightModelersAndAnyOrderMakeTheSameWorld) {
     EXPECT_EQ(done.size(), 200u);
     EXPECT_EQ(world_hash(done), serial.value()) << modelers;
   }
+}
+
+TEST(SynthesisManager, GoesOnWithTheModelersThatThereAreThreadsFor) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  const FewThreads few(2);
+  SynthesisManager manager(registry, with(8));
+  EXPECT_EQ(manager.modeler_count(), 2u);
+  EXPECT_NE(manager.shortage().find("no more threads"), std::string::npos) << manager.shortage();
+  manager.publish(jobs.make_many(0, 50));
+  EXPECT_TRUE(manager.wait_all());
+  std::vector<Completion> done;
+  EXPECT_EQ(manager.collect(done), 50u);
+}
+
+TEST(SynthesisManager, WithoutASingleThreadItSaysSoAndWaitsForNothing) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  const FewThreads few(0);
+  SynthesisManager manager(registry, with(8));
+  EXPECT_EQ(manager.modeler_count(), 0u);
+  EXPECT_FALSE(manager.shortage().empty());
+  manager.publish(jobs.make_many(0, 5));
+  EXPECT_FALSE(manager.wait_all());
 }
 
 // Counted, not timed: what could make modelers wait for each other happens once in a while, not
@@ -406,6 +431,19 @@ TEST_F(HangingTest, TheWatchdogGivesUpAHungRequestAndTheOthersGoOnWithANewModele
     manager.collect(done);
   EXPECT_EQ(manager.stats().given_up, 1u);
   EXPECT_EQ(manager.stats().models, 2u);
+}
+
+TEST_F(HangingTest, WhereNoThreadCanTakeThePlaceOfAHungOneTheOthersGoOn) {
+  SynthesisManager manager(registry, options(2));
+  const FewThreads few(0);
+  manager.publish({jobs.make(0), jobs.make(1), jobs.make(3)});
+  gate.await(1);
+  now = 111;
+  EXPECT_TRUE(manager.wait_all());
+  EXPECT_EQ(manager.modeler_count(), 1u);
+  manager.collect(done);
+  EXPECT_EQ(done.size(), 3u);
+  gate.open();
 }
 
 TEST_F(HangingTest, WhenEveryModelerHangsAndNoneIsLeftWaitingEnds) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/engine/telemetry/synthetic_flight.hpp"
+#include "tests/full_disk.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -91,13 +92,17 @@ TEST(FramesCsv, HoldsTheValuesUnderTheirNames) {
       "0,0,0,0,0,0,0,0,0,0.000000");
 }
 
-TEST(FramesCsv, ReportsAFullDiskAndAMissingFolderWithThePath) {
+TEST(FramesCsv, IsWholeOrNotThereWhereverTheDiskFills) {
   const FrameLog log = synthetic_flight(1000);
-  const auto full = write_frames_csv("/dev/full", log);
-  ASSERT_FALSE(full);
-  EXPECT_EQ(full.error().code, core::ErrorCode::kIo);
-  EXPECT_NE(full.error().message.find("/dev/full"), std::string::npos);
-  EXPECT_EQ(write_frames_csv("/nowhere/frames.csv", log).error().code, core::ErrorCode::kIo);
+  expect_whole_files(
+      [&log](const auto& folder) { return write_frames_csv(folder / "frames.csv", log); });
+}
+
+TEST(FramesCsv, NamesAMissingFolder) {
+  const auto result = write_frames_csv("/nowhere/frames.csv", synthetic_flight(1));
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, core::ErrorCode::kIo);
+  EXPECT_NE(result.error().message.find("/nowhere/frames.csv"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+#include "engine/core/headroom.hpp"
+
+#include <sys/mman.h>
+
+#include <exception>
+#include <latch>
+#include <thread>
+#include <vector>
+
+#include "engine/core/out_of_memory.hpp"
+
+namespace psygen::core {
+namespace {
+
+bool can_map(std::uint64_t bytes, int protection) {
+  void* memory = mmap(nullptr, bytes, protection, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) {
+    note_refused_bytes(bytes);
+    return false;
+  }
+  munmap(memory, bytes);
+  return true;
+}
+
+}  // namespace
+
+bool memory_left(std::uint64_t bytes) {
+  return can_map(bytes, PROT_READ | PROT_WRITE);
+}
+
+bool addresses_left(std::uint64_t bytes) {
+  return can_map(bytes, PROT_NONE);
+}
+
+std::size_t threads_left(std::size_t most) {
+  std::vector<std::thread> threads;
+  std::latch counted(1);
+  try {
+    threads.reserve(most);
+    while (threads.size() < most)
+      threads.emplace_back([&counted] { counted.wait(); });
+  } catch (const std::exception&) {  // no thread or no memory for one
+  }
+  counted.count_down();
+  for (std::thread& thread : threads)
+    thread.join();
+  return threads.size();
+}
+
+}  // namespace psygen::core

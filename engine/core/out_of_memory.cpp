@@ -1,0 +1,80 @@
+#include "engine/core/out_of_memory.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <utility>
+
+namespace psygen::core {
+namespace {
+
+thread_local std::size_t refused_bytes = 0;
+
+constexpr unsigned long kMiB = 1ul << 20;
+
+// A text in memory that is there already.
+struct Text {
+  std::span<char> buffer;
+  std::size_t length = 0;
+
+  __attribute__((format(printf, 2, 3))) void add(const char* format, ...) {
+    std::va_list list;
+    va_start(list, format);
+    const int wanted = std::vsnprintf(buffer.data() + length, buffer.size() - length, format, list);
+    va_end(list);
+    if (wanted > 0) length = std::min(length + static_cast<std::size_t>(wanted), buffer.size() - 1);
+  }
+};
+
+// Memory of this process that is not a file's, in MiB; 0 where the system does not tell.
+unsigned long memory_in_use_mib() {
+  std::array<char, 256> text{};
+  const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  const ssize_t size = read(file, text.data(), text.size() - 1);
+  close(file);
+  unsigned long data_pages = 0;
+  if (size <= 0 || std::sscanf(text.data(), "%*u %*u %*u %*u %*u %lu", &data_pages) != 1) return 0;
+  return data_pages * static_cast<unsigned long>(sysconf(_SC_PAGESIZE)) / kMiB;
+}
+
+void add_limit(Text& text, decltype(RLIMIT_DATA) resource, const char* name) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  text.add(", %s allows %lu MiB", name, static_cast<unsigned long>(limit.rlim_cur) / kMiB);
+}
+
+}  // namespace
+
+void note_refused_bytes(std::size_t bytes) {
+  refused_bytes = bytes;
+}
+
+std::string_view out_of_memory(std::string_view what, std::span<char> buffer) {
+  Text text{buffer};
+  if (!what.empty()) text.add("%.*s: ", static_cast<int>(what.size()), what.data());
+  text.add("memory ran out (");
+  const std::size_t wanted = std::exchange(refused_bytes, 0);
+  if (wanted >= 10 * kMiB) {
+    text.add("%zu MiB more were wanted; ", wanted / kMiB);
+  } else if (wanted > 0) {
+    text.add("%zu bytes more were wanted; ", wanted);
+  }
+  text.add("%lu MiB are in use", memory_in_use_mib());
+  add_limit(text, RLIMIT_DATA, "ulimit -d");
+  add_limit(text, RLIMIT_AS, "ulimit -v");
+  text.add(")");
+  return {buffer.data(), text.length};
+}
+
+std::string out_of_memory(std::string_view what) {
+  std::array<char, 512> buffer;
+  return std::string(out_of_memory(what, buffer));
+}
+
+}  // namespace psygen::core

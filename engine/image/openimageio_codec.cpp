@@ -1,0 +1,78 @@
+// The library that picture_codec() loads. Nothing else links OpenImageIO.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <string>
+#include <utility>
+
+#include "engine/image/picture_codec.hpp"
+
+namespace psygen::image {
+namespace {
+
+using core::ErrorCode;
+using Bytes = std::vector<std::uint8_t>;
+
+// 1 to 4 channels to red, green, blue, alpha.
+void expand_channels(const Bytes& source, std::size_t channels, Bytes& rgba) {
+  const bool grey = channels <= 2;
+  const bool has_alpha = channels == 2 || channels == 4;
+  for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
+    const std::uint8_t* from = source.data() + i * channels;
+    rgba[i * 4] = from[0];
+    rgba[i * 4 + 1] = grey ? from[0] : from[1];
+    rgba[i * 4 + 2] = grey ? from[0] : from[2];
+    rgba[i * 4 + 3] = has_alpha ? from[channels - 1] : std::uint8_t{255};
+  }
+}
+
+core::Result<Image> decode(std::span<const std::uint8_t> bytes, const PictureHeader& header) {
+  OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
+  const char* format = header.format == PictureFormat::kPng ? "png" : "jpeg";
+  const auto input = OIIO::ImageInput::create(format);
+  if (!input) return core::fail(ErrorCode::kInternal, OIIO::geterror());
+  input->threads(1);
+  OIIO::ImageSpec spec;
+  OIIO::ImageSpec configuration;
+  configuration.attribute("oiio:UnassociatedAlpha", 1);
+  if (!input->set_ioproxy(&reader) || !input->open("picture", spec, configuration)) {
+    return core::fail(ErrorCode::kParse, "cannot be decoded: " + input->geterror());
+  }
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  if (std::cmp_not_equal(spec.width, header.width) ||
+      std::cmp_not_equal(spec.height, header.height) || channels < 1 || channels > 4) {
+    return core::fail(ErrorCode::kParse, "its headers contradict each other");
+  }
+  const std::size_t pixels = std::size_t{header.width} * header.height;
+  Image image{header.width, header.height, Bytes(pixels * 4)};
+  Bytes source(pixels * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, source.data())) {
+    return core::fail(ErrorCode::kParse, "cannot be decoded: " + input->geterror());
+  }
+  expand_channels(source, channels, image.rgba);
+  return image;
+}
+
+core::Result<Bytes> encode_png(const Image& image) {
+  Bytes bytes;
+  OIIO::Filesystem::IOVecOutput writer(bytes);
+  const auto output = OIIO::ImageOutput::create("png");
+  if (!output) return core::fail(ErrorCode::kInternal, OIIO::geterror());
+  output->threads(1);
+  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 4,
+                       OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  if (!output->set_ioproxy(&writer) || !output->open("picture.png", spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, image.rgba.data()) || !output->close()) {
+    return core::fail(ErrorCode::kIo, "cannot be encoded: " + output->geterror());
+  }
+  return bytes;
+}
+
+}  // namespace
+}  // namespace psygen::image
+
+extern "C" __attribute__((visibility("default")))
+const psygen::image::PictureCodec psygen_picture_codec = {psygen::image::decode,
+                                                          psygen::image::encode_png};

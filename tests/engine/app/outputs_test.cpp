@@ -1,0 +1,121 @@
+// What a flight leaves behind where not everything can be written.
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/engine/app/fixture.hpp"
+#include "tests/full_disk.hpp"
+
+namespace psygen::app {
+namespace {
+
+// While it lives no file may become larger.
+class FileLimit {
+ public:
+  explicit FileLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~FileLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileLimit(const FileLimit&) = delete;
+  FileLimit& operator=(const FileLimit&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+Options flight_into(const std::filesystem::path& folder) {
+  Options options = short_flight();
+  options.out_folder = folder;
+  options.images_every = 2;
+  options.frames = 7;
+  return options;
+}
+
+std::vector<std::string> names_of(const FlightReport& report, const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const core::Error& failure : report.failures) {
+    const std::string& sentence = failure.message;
+    EXPECT_EQ(sentence.find(folder.string() + "/"), 0u) << sentence;
+    const std::size_t first = folder.string().size() + 1;
+    names.push_back(sentence.substr(first, sentence.find(": cannot ") - first));
+  }
+  return names;
+}
+
+TEST(Outputs, APictureThatCannotBeWrittenIsNamedAndTheFlightGoesOnWithoutAnyMore) {
+  const TemporaryFolder folder;
+  auto app = App::create(flight_into(folder.path()));
+  ASSERT_TRUE(app) << app.error().message;
+  const FileLimit limit(5000);  // less than any picture
+  const auto report = (*app)->run();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->summary.run.frames, 7u);
+  EXPECT_EQ(names_of(*report, folder.path()).front(), "frame_00000.png");
+  EXPECT_EQ(std::ranges::count_if(names_of(*report, folder.path()),
+                                  [](const std::string& name) { return name.ends_with(".png"); }),
+            1);
+  EXPECT_FALSE(report->summary.hash.images.value);
+  EXPECT_EQ(report->summary.hash.images.reason, "a picture was not written");
+}
+
+TEST(Outputs, WhatFitsIsWrittenWhereTheRestDoesNotAndNothingIsCut) {
+  const TemporaryFolder folder;
+  auto app = App::create(flight_into(folder.path()));
+  ASSERT_TRUE(app) << app.error().message;
+  // Room for the first picture (made, written, flushed, closed, renamed, the folder flushed and
+  // closed) and the begin of the next.
+  const FullDisk full(folder.path(), 8);
+  const auto report = (*app)->run();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->files, (std::vector{folder / "frame_00000.png"}));
+  EXPECT_THAT(names_of(*report, folder.path()),
+              testing::ElementsAre("frame_00002.png", "summary.json", "report.html", "frames.csv",
+                                   "trace.json"));
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(Outputs, ALargeFileThatDoesNotFitTakesNoSmallerOneWithIt) {
+  const TemporaryFolder folder;
+  Options options = flight_into(folder.path());
+  options.images_every = 0;
+  auto app = App::create(options);
+  ASSERT_TRUE(app) << app.error().message;
+  const FileLimit limit(12'000);
+  const auto report = (*app)->run();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_THAT(names_of(*report, folder.path()), testing::ElementsAre("report.html", "trace.json"));
+  EXPECT_EQ(folder.file_count(), 2u);
+  std::ifstream summary(folder / "summary.json");
+  EXPECT_TRUE(nlohmann::json::accept(summary));
+}
+
+// Nothing of ours throws, but libraries do when memory ends, and so does a plugin here.
+TEST(Outputs, WhereMemoryEndsTheFlightFailsAndWhatWasMeasuredIsWritten) {
+  const TemporaryFolder folder;
+  Options options = flight_into(folder.path());
+  options.plugins.push_back({"hungry", {}, {}, [frame = 0](App&, double) mutable {
+                               if (++frame == 4) throw std::bad_alloc();
+                             }});
+  auto app = App::create(options);
+  ASSERT_TRUE(app) << app.error().message;
+  const auto report = (*app)->run();
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, core::ErrorCode::kOutOfMemory);
+  EXPECT_EQ(report.error().message.find("the flight: memory ran out ("), 0u);
+  std::ifstream file(folder / "summary.json");
+  const auto summary = nlohmann::json::parse(file);
+  EXPECT_EQ(summary["run"]["frames"], 3);
+  EXPECT_EQ(summary["reasons"]["hash.world"], "the flight failed");
+  EXPECT_TRUE(std::filesystem::exists(folder / "trace.json"));
+}
+
+}  // namespace
+}  // namespace psygen::app

@@ -1,0 +1,140 @@
+#include "tests/faults.hpp"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+namespace {
+
+constexpr long kUnlimited = LONG_MAX;
+
+char full_folder[PATH_MAX] = "";
+std::atomic<long> calls_left{kUnlimited};
+std::atomic<long> threads_left{kUnlimited};
+std::atomic<const char*> threads_of{"libstdc++"};
+
+// The function of this name that would have been called: the C library's, or a sanitizer's.
+template <class Function>
+Function* next(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+// Whether this call is one too many for what is left.
+bool runs_out(std::atomic<long>& left) {
+  return left.load() != kUnlimited && left.fetch_sub(1) <= 0;
+}
+
+bool disk_refuses(const char* path) {
+  if (calls_left.load() == kUnlimited) return false;
+  if (std::strncmp(path, full_folder, std::strlen(full_folder)) != 0) return false;
+  if (!runs_out(calls_left)) return false;
+  errno = ENOSPC;
+  return true;
+}
+
+bool disk_refuses(int file) {
+  if (calls_left.load() == kUnlimited) return false;
+  char link[64];
+  std::snprintf(link, sizeof(link), "/proc/self/fd/%d", file);
+  char path[PATH_MAX] = "";
+  return readlink(link, path, sizeof(path) - 1) > 0 && disk_refuses(path);
+}
+
+bool is_concerned(const void* caller) {
+  Dl_info info{};
+  return dladdr(caller, &info) != 0 && std::strstr(info.dli_fname, threads_of.load()) != nullptr;
+}
+
+void fill_disk(const char* folder, long calls) {
+  std::snprintf(full_folder, sizeof(full_folder), "%s", folder);
+  calls_left = calls;
+}
+
+[[maybe_unused]] const bool kFromEnvironment = [] {
+  if (const char* folder = std::getenv("PSYGEN_FULL_DISK")) {
+    const char* calls = std::getenv("PSYGEN_CALLS_LEFT");
+    fill_disk(folder, calls != nullptr ? std::atol(calls) : 0);
+  }
+  if (const char* threads = std::getenv("PSYGEN_THREADS_LEFT")) threads_left = std::atol(threads);
+  return true;
+}();
+
+}  // namespace
+
+namespace psygen {
+
+FullDisk::FullDisk(const std::filesystem::path& folder, std::size_t calls) {
+  fill_disk(folder.c_str(), static_cast<long>(calls));
+}
+FullDisk::~FullDisk() {
+  calls_left = kUnlimited;
+}
+bool FullDisk::was_met() const {
+  return calls_left.load() < 0;
+}
+
+FewThreads::FewThreads(std::size_t threads, const char* library) {
+  threads_of = library;
+  threads_left = static_cast<long>(threads);
+}
+FewThreads::~FewThreads() {
+  threads_left = kUnlimited;
+}
+
+}  // namespace psygen
+
+extern "C" {
+
+int open(const char* path, int flags, ...) {
+  static const auto real = next<int(const char*, int, ...)>("open");
+  mode_t mode = 0;
+  if ((flags & O_CREAT) != 0) {
+    va_list list;
+    va_start(list, flags);
+    mode = static_cast<mode_t>(va_arg(list, unsigned));
+    va_end(list);
+    if (disk_refuses(path)) return -1;
+  }
+  return real(path, flags, mode);
+}
+ssize_t write(int file, const void* bytes, size_t count) {
+  static const auto real = next<ssize_t(int, const void*, size_t)>("write");
+  return disk_refuses(file) ? -1 : real(file, bytes, count);
+}
+int fsync(int file) {
+  static const auto real = next<int(int)>("fsync");
+  return disk_refuses(file) ? -1 : real(file);
+}
+int close(int file) {
+  static const auto real = next<int(int)>("close");
+  const bool refused = disk_refuses(file);
+  const int result = real(file);  // also a close that fails has closed it
+  if (refused) errno = ENOSPC;
+  return refused ? -1 : result;
+}
+int rename(const char* from, const char* to) noexcept {
+  static const auto real = next<int(const char*, const char*)>("rename");
+  return disk_refuses(to) ? -1 : real(from, to);
+}
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                   void* argument) noexcept {
+  static const auto real =
+      next<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)>("pthread_create");
+  if (threads_left.load() != kUnlimited && is_concerned(__builtin_return_address(0)) &&
+      runs_out(threads_left)) {
+    return EAGAIN;
+  }
+  return real(thread, attributes, start, argument);
+}
+
+}  // extern "C"
