@@ -18,7 +18,25 @@ constexpr CostFit kUnknown{.per_operation_s = 5e-9};
 constexpr double kLearningRate = 0.05;    // of one observation, in the logarithm of the factor
 constexpr double kLargestSurprise = 4.0;  // one observation counts as at most this factor
 constexpr std::size_t kErrorWindow = 4096;
+
+WorkRange range_of(std::span<const Measurement> measured) {
+  WorkRange range{measured[0].work, measured[0].work};
+  for (const Measurement& m : measured) {
+    for (double Work::*part : {&Work::operations, &Work::triangles, &Work::steps}) {
+      range.least.*part = std::min(range.least.*part, m.work.*part);
+      range.most.*part = std::max(range.most.*part, m.work.*part);
+    }
+  }
+  return range;
+}
 }  // namespace
+
+bool WorkRange::holds(const Work& work) const {
+  for (double Work::*part : {&Work::operations, &Work::triangles, &Work::steps}) {
+    if (work.*part * kSlack < least.*part || work.*part > most.*part * kSlack) return false;
+  }
+  return true;
+}
 
 double quantile(std::span<double> values, double p) {
   if (values.empty()) return 0;
@@ -34,6 +52,7 @@ CostModel::CostModel(const models::Registry& registry) : registry_(registry) {
   for (std::size_t m = 0; m < registry.size(); ++m) {
     const int levels = registry[static_cast<models::ModelIndex>(m)].level_count();
     fits_[m].assign(static_cast<std::size_t>(std::max(levels, 1)), kUnknown);
+    ranges_.emplace_back(fits_[m].size());
   }
 }
 
@@ -42,6 +61,13 @@ const CostFit& CostModel::fit(models::ModelIndex model, int level) const {
   const auto& levels = fits_[model];
   return levels[static_cast<std::size_t>(
       std::clamp(level, 0, static_cast<int>(levels.size()) - 1))];
+}
+
+bool CostModel::covers(models::ModelIndex model, int level, const Work& work) const {
+  if (model >= ranges_.size() || level < 0) return false;
+  const auto at = static_cast<std::size_t>(level);
+  const auto& levels = ranges_[model];
+  return at < levels.size() && levels[at] && levels[at]->holds(work);
 }
 
 Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters, int level,
@@ -182,7 +208,10 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
   if (measured.size() >= kMinForTerms) set(fit_cost(measured));
   LevelCalibration result{model, level, fit(model, level), 0,
                           static_cast<std::uint32_t>(measured.size())};
+  auto& range = ranges_[model][static_cast<std::size_t>(level)];
+  range.reset();
   if (measured.empty()) return result;
+  range = range_of(measured);
   std::vector<double> level_errors;
   for (const Measurement& m : measured)
     level_errors.push_back(std::abs(m.seconds - result.fit.seconds(m.work)) / m.seconds * 100);

@@ -44,6 +44,14 @@ struct LevelCalibration {
   std::uint32_t samples = 0;     // 0: skipped, the fit was carried over from a coarser level
 };
 
+// What the measurements of a level had to do, from the least to the most of each.
+struct WorkRange {
+  static constexpr double kSlack = 1.25;  // beyond either end
+  Work least, most;
+  // Whether as little and as much was measured: what lies beyond is predicted, but nobody checked.
+  bool holds(const Work& work) const;
+};
+
 struct CalibrationReport {
   std::vector<LevelCalibration> levels;
   double seconds = 0;                // wall-clock time spent
@@ -89,6 +97,8 @@ class CostModel {
                                      const CalibrationOptions& options, double deadline_s,
                                      CalibrationReport& report) const;
   CostError error() const;
+  // Whether calibration measured the like at this very level; false before it.
+  bool covers(models::ModelIndex model, int level, const Work& work) const;
   const CostFit& fit(models::ModelIndex model, int level) const;
 
  private:
@@ -98,8 +108,9 @@ class CostModel {
                                    CalibrationReport& report, std::vector<double>& errors);
 
   const models::Registry& registry_;
-  std::vector<std::vector<CostFit>> fits_;  // [model][level]
-  std::vector<float> recent_errors_;        // ring, in percent
+  std::vector<std::vector<CostFit>> fits_;                     // [model][level]
+  std::vector<std::vector<std::optional<WorkRange>>> ranges_;  // the same; none: not measured
+  std::vector<float> recent_errors_;                           // ring, in percent
   std::size_t next_error_ = 0;
 };
 

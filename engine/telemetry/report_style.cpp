@@ -44,6 +44,7 @@ text.level { fill:var(--level); font-weight:600; paint-order:stroke; stroke:var(
 line.level { stroke:var(--level); stroke-dasharray:5 4 }
 .cursor { stroke:var(--soft); pointer-events:none }
 .line { fill:none; stroke-width:1.4; stroke-linejoin:round } .band { opacity:.28 }
+.dashed { stroke-dasharray:5 4 } .ring { fill:none; stroke-width:2 }
 .stack { opacity:.88 }
 .note { margin:2px 0 4px; color:var(--soft); font-size:13px }
 .readout { position:absolute; pointer-events:none; background:var(--card); border:1px solid
