@@ -354,8 +354,11 @@ TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {
   EXPECT_EQ(flight.code, 0) << flight.err;
   const Outcome table = run_psygen("schedule --modelers 3 --requests " + file);
   EXPECT_EQ(table.code, 0) << table.err;
-  for (const char* policy : {"fifo", "plp", "shortest", "longest", "deadline"})
-    EXPECT_TRUE(mentions(table.out, policy)) << table.out;
+  for (const char* row : {"\nfifo ", "\nplp ", "\nshortest ", "\nlongest ", "\ndeadline "})
+    EXPECT_TRUE(mentions(table.out, row)) << table.out;
+  EXPECT_TRUE(mentions(table.out, "of what 3 modelers can do\n")) << table.out;
+  for (const std::string& text : {table.out, run_psygen("schedule --help").out})
+    EXPECT_TRUE(mentions(text, "\nlateness  how late that was")) << text;
   EXPECT_TRUE(mentions(run_psygen("schedule --json --requests " + file).out, "\"late_percent\""));
   const Outcome missing = run_psygen("schedule --requests nowhere.requests");
   EXPECT_EQ(missing.code, 1);
