@@ -181,10 +181,14 @@ core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
 }
 
 core::Result<void> App::save_picture(const std::filesystem::path& file) {
+  pictured_ = true;
+  const double start_s = core::monotonic_seconds();
   auto picture = renderer_->capture();
   if (!picture) return tl::unexpected(picture.error());
   const image::Image image{picture->width, picture->height, std::move(picture->rgba)};
   if (auto ok = image::write_png(file, image); !ok) return ok;
+  trace_->add_span(scene_->state().trace.main, trace_->intern("write a picture"), start_s,
+                   core::monotonic_seconds());
   last_image_hash_ = image::hash(image);
   files_.push_back(file);
   return {};

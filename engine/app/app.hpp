@@ -65,7 +65,8 @@ class App {
   core::CameraPose next_pose(double flight_s, double dt_s);
   void handle_window();
   core::Result<void> save_numbered_picture(std::uint64_t frame);
-  void record_frame(std::uint64_t index, double flight_s, double frame_ms, double cpu_ms);
+  double governed_ms(double frame_ms) const;
+  void log_frame();
   telemetry::RunFacts run_facts();
   core::Result<void> write_outputs(const telemetry::Summary& summary);
 
@@ -82,6 +83,7 @@ class App {
   bool user_flies_ = false;
   bool overlay_ = true;
   bool closed_ = false;
+  bool pictured_ = false;  // the frame that goes on, by a plugin
   Overlay overlay_figures_;
   std::uint64_t last_image_hash_ = 0;
   std::uint64_t images_hash_ = 0;  // of the numbered pictures, in order

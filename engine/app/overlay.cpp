@@ -20,9 +20,11 @@ std::vector<std::string> Overlay::lines(const scene::State& state,
   const telemetry::FrameRecord& record = state.record;
   constexpr double kMiB = 1 << 20;
   const core::WorldPosition& at = state.camera.pose.position;
+  const std::optional<render::GpuTime>& gpu = state.counters.frame.gpu;
+  const std::string device_ms = gpu ? fmt::format("   device {:5.1f} ms", gpu->ms) : "";
   return {
-      fmt::format("{:5.1f} fps   {:5.1f} ms median   {:5.1f} ms worst", 1000.0 / median_ms,
-                  median_ms, worst_ms),
+      fmt::format("{:5.1f} fps   {:5.1f} ms median   {:5.1f} ms worst   waits {:5.1f} ms{}",
+                  1000.0 / median_ms, median_ms, worst_ms, record.wait_ms(), device_ms),
       fmt::format("{} triangles   {} draws   {} nodes in view   {:.1f} px error", record.triangles,
                   record.draws, record.nodes_in_view, record.error_pixels),
       fmt::format("cache {:.0f} of {:.0f} MiB   {} missing   {} coarse",

@@ -30,8 +30,9 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
 
 class Device {
  public:
+  // `timestamps`: where its queue has any.
   static core::Result<std::unique_ptr<Device>> create(const DeviceCandidate& candidate,
-                                                      bool windowed);
+                                                      bool windowed, bool timestamps);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -51,7 +52,8 @@ class Device {
   VkSampleCountFlags sampled_depth_counts = VK_SAMPLE_COUNT_1_BIT;  // of depth that shaders read
   VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;         // of colour and depth
   std::uint32_t max_multi_draw = 0;                                 // 0: no VK_EXT_multi_draw
-  double timestamp_period_ns = 0;                                   // 0: no timestamps on the queue
+  std::uint64_t timestamp_mask = 0;  // the bits that count; 0: no timestamps on the queue
+  double timestamp_period_ns = 0;
   DeviceInfo info;
 
   // Bytes of the largest heap of its own memory that the CPU can write.

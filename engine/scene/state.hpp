@@ -231,10 +231,12 @@ struct Output {
 // The trace of a run with its names looked up once; `log` may be null.
 struct Tracing {
   telemetry::TraceLog* log = nullptr;
-  telemetry::TraceLog::Track main = 0, cache_bytes = 0, requests = 0;
-  std::vector<telemetry::TraceLog::Name> systems;    // in the order of the tick
-  std::vector<telemetry::TraceLog::Track> modelers;  // by number
-  std::vector<telemetry::TraceLog::Name> models;     // by index in the registry
+  telemetry::TraceLog::Track main = 0, cache_bytes = 0, requests = 0, gpu_ms = 0;
+  std::uint64_t gpu_frame = 0;                                          // the last one in gpu_ms
+  std::vector<telemetry::TraceLog::Name> systems;                       // in the order of the tick
+  telemetry::TraceLog::Name device_wait = 0, acquire = 0, present = 0;  // within a system
+  std::vector<telemetry::TraceLog::Track> modelers;                     // by number
+  std::vector<telemetry::TraceLog::Name> models;                        // by index in the registry
 };
 
 struct State {
