@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kStyle =
     ".plots { display:grid; gap:0 14px;"
     " grid-template-columns:repeat(auto-fit,minmax(min(420px,100%),1fr)) }\n"
+    "@media (max-width:700px) { .plots svg { min-width:420px } }\n"
     ".costs section { background:var(--card); border:1px solid var(--edge); border-radius:10px;"
     " margin-top:14px; padding:14px 16px; overflow-x:auto }\n"
     ".costs td { padding-left:14px; white-space:nowrap }\n";
