@@ -72,6 +72,7 @@ int CalibrateCommand::run() const {
   options.sweeps = 5;  // what else runs on the machine comes and goes
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "calibrating", 3.0);
   Calibration found;
+  if (world) found.world = world->name;
   synthesis::CostModel cost(registry);
   found.fits =
       cost.calibrate(sets(kFittedSets), options, [&bar](double fraction) { bar.update(fraction); });

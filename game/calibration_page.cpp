@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "engine/models/species.hpp"
@@ -15,6 +18,15 @@ namespace psygen::game {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// Beside the style of reports. The table is wide: it scrolls where a window is not.
+constexpr std::string_view kStyle =
+    ".plots { display:grid; gap:0 14px;"
+    " grid-template-columns:repeat(auto-fit,minmax(min(420px,100%),1fr)) }\n"
+    "@media (max-width:700px) { .plots svg { min-width:420px } }\n"
+    ".costs section { background:var(--card); border:1px solid var(--edge); border-radius:10px;"
+    " margin-top:14px; padding:14px 16px; overflow-x:auto }\n"
+    ".costs td { padding-left:14px; white-space:nowrap }\n";
 
 // The paper's formulas (equations 1, 3 and 4), as what complexity() computes. That of a species is
 // the mean number of branches that its grammar grows.
@@ -41,10 +53,17 @@ std::string seconds_text(double seconds) {
   return fmt::format("{:.3g} ms", seconds * 1e3);
 }
 
+// The terms that are there.
 std::string fit_text(const synthesis::CostFit& fit) {
-  return fmt::format("{} + {}·operations + {}·triangles + {}·steps", seconds_text(fit.fixed_s),
-                     seconds_text(fit.per_operation_s), seconds_text(fit.per_triangle_s),
-                     seconds_text(fit.per_step_s));
+  std::string text = fit.fixed_s > 0 ? seconds_text(fit.fixed_s) : "";
+  const auto add = [&text](double seconds, std::string_view unit) {
+    if (!(seconds > 0)) return;
+    text += fmt::format("{}{} · {}", text.empty() ? "" : " + ", seconds_text(seconds), unit);
+  };
+  add(fit.per_operation_s, "operations");
+  add(fit.per_triangle_s, "triangles");
+  add(fit.per_step_s, "steps");
+  return fit.knot_count > 0 ? text + ", bent by size" : text;
 }
 
 Json error_json(const synthesis::CostError& error) {
@@ -58,12 +77,34 @@ std::string error_text(const synthesis::CostError& error) {
                      error.count);
 }
 
-// Of the page's first sentence.
-std::string worst_text(const Calibration& found, const models::Registry& registry) {
-  if (!found.held_out.worst) return "";
-  return fmt::format("; worst for {}: {}",
-                     telemetry::escaped(registry[found.held_out.worst->model].name()),
-                     error_text(found.held_out.worst->error));
+std::string error_sentence(const synthesis::CostError& error) {
+  return fmt::format("{:.1f} % in the median, {:.1f} % at the 95th percentile of {}",
+                     error.p50_percent, error.p95_percent, error.count);
+}
+
+// What the page says first.
+std::string lead_of(const Calibration& found, const models::Registry& registry) {
+  std::string text =
+      "Time of one core at full detail over each parameter of the paper's formulas; all other "
+      "parameters at their defaults, types with a seed as the mean of several.";
+  if (found.held_out.all.count == 0) return text + " No prediction was measured.";
+  text += fmt::format(
+      " Predictions for {} other parameter sets of each type at all levels are off by {}",
+      found.held_out_sets, error_sentence(found.held_out.all));
+  if (found.held_out.worst) {
+    text +=
+        fmt::format("; the worst type is {} with {}", registry[found.held_out.worst->model].name(),
+                    error_sentence(found.held_out.worst->error));
+  }
+  return text + ".";
+}
+
+const synthesis::LevelCalibration* calibration_of(const Calibration& found,
+                                                  models::ModelIndex model, int level) {
+  for (const synthesis::LevelCalibration& line : found.fits.levels) {
+    if (line.model == model && line.level == level) return &line;
+  }
+  return nullptr;
 }
 
 // [log2 of 1 + steps, factor] of each knot.
@@ -77,44 +118,110 @@ Json correction_json(const synthesis::CostFit& fit) {
 Json curve_json(const synthesis::CostCurve& curve, const models::Registry& registry) {
   auto points = Json::array();
   for (const synthesis::CurvePoint& point : curve.points) {
-    points.push_back({{"value", point.value},
-                      {"operations", point.operations},
-                      {"seconds", point.seconds},
-                      {"predicted_seconds", point.predicted_s}});
+    points.push_back(
+        {{"value", point.value},
+         {"operations", point.operations},
+         {"seconds", point.seconds},
+         {"predicted_seconds", point.predicted_s ? Json(*point.predicted_s) : Json(nullptr)}});
   }
   const models::ModelType& type = registry[curve.model];
+  const bool measured = !curve.points.empty();
+  const auto known = [measured](double value) { return measured ? Json(value) : Json(nullptr); };
   return {{"model", type.name()},
           {"parameter", curve.parameter},
           {"formula", formula_of(type)},
-          {"c_seconds", curve.formula.seconds_per_operation},
-          {"r_squared", curve.formula.r_squared},
+          {"c_seconds", known(curve.formula.seconds_per_operation)},
+          {"r_squared", known(curve.formula.r_squared)},
           {"with_fixed",
-           {{"a_seconds", curve.formula.fixed_s},
-            {"c_seconds", curve.formula.seconds_per_operation_above},
-            {"r_squared", curve.formula.r_squared_above}}},
+           {{"a_seconds", known(curve.formula.fixed_s)},
+            {"c_seconds", known(curve.formula.seconds_per_operation_above)},
+            {"r_squared", known(curve.formula.r_squared_above)}}},
           {"points", points}};
 }
 
-std::string plot_of(const synthesis::CostCurve& curve, const models::Registry& registry) {
+Json fit_json(const synthesis::LevelCalibration& level, const models::Registry& registry) {
+  const bool measured = level.samples > 0;
+  const auto known = [measured](const Json& value) { return measured ? value : Json(nullptr); };
+  return {{"model", registry[level.model].name()},
+          {"level", level.level},
+          {"fixed_seconds", known(level.fit.fixed_s)},
+          {"seconds_per_operation", known(level.fit.per_operation_s)},
+          {"seconds_per_triangle", known(level.fit.per_triangle_s)},
+          {"seconds_per_step", known(level.fit.per_step_s)},
+          {"correction", known(correction_json(level.fit))},
+          {"samples", level.samples},
+          {"error_percent_p50", known(level.fit_error_percent)}};
+}
+
+// What stands below a plot: the constants of its formulas, and where the cost model is drawn.
+std::string note_of(const synthesis::CostCurve& curve, const Calibration& found,
+                    const models::ModelType& type) {
+  if (curve.points.empty()) return "Not measured: it failed, or the time was over.";
+  const synthesis::FormulaFit& f = curve.formula;
+  const std::string formulas = fmt::format(
+      "{}: c = {}, R² = {:.4f}. Above a fixed time: a = {}, c = {}, R² = {:.4f}. ",
+      formula_of(type), seconds_text(f.seconds_per_operation), f.r_squared, seconds_text(f.fixed_s),
+      seconds_text(f.seconds_per_operation_above), f.r_squared_above);
+  const auto predicted = std::count_if(
+      curve.points.begin(), curve.points.end(),
+      [](const synthesis::CurvePoint& point) { return point.predicted_s.has_value(); });
+  const std::string from = found.world.empty() ? "the parameter sets that were drawn"
+                                               : fmt::format("models of the world {}", found.world);
+  if (predicted == static_cast<std::ptrdiff_t>(curve.points.size())) {
+    return formulas + "The cost model is calibrated with " + from + ".";
+  }
+  if (predicted > 0) {
+    return formulas + "The cost model is calibrated with " + from +
+           " and drawn where they are about as large.";
+  }
+  const synthesis::LevelCalibration* fit = calibration_of(found, curve.model, 0);
+  return formulas +
+         (fit != nullptr && fit->samples > 0
+              ? "No cost model here: " + from + " are larger or smaller than all of these."
+              : std::string("No cost model: there was nothing to calibrate it with."));
+}
+
+std::string plot_of(const synthesis::CostCurve& curve, const Calibration& found,
+                    const models::Registry& registry) {
   const models::ModelType& type = registry[curve.model];
+  const synthesis::FormulaFit& f = curve.formula;
   telemetry::CurvePlot plot;
   plot.title = fmt::format("{}: time over {}", type.name(), curve.parameter);
   plot.x_name = curve.parameter;
   plot.unit = "µs";
-  plot.note =
-      fmt::format("c = {}, R² = {:.4f}; above a = {} R² = {:.4f}",
-                  seconds_text(curve.formula.seconds_per_operation), curve.formula.r_squared,
-                  seconds_text(curve.formula.fixed_s), curve.formula.r_squared_above);
-  plot.curves = {{formula_of(type), 2, telemetry::CurveKind::kLine, {}},
-                 {"cost model", 3, telemetry::CurveKind::kLine, {}},
-                 {"measured", 1, telemetry::CurveKind::kPoints, {}}};
+  plot.note = note_of(curve, found, type);
+  using enum telemetry::CurveKind;
+  plot.curves = {{formula_of(type), 2, kLine, {}},
+                 {"a + " + formula_of(type), 5, kDashed, {}},
+                 {"cost model", 3, kLine, {}},
+                 {"measured", 1, kPoints, {}}};
+  constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
   for (const synthesis::CurvePoint& point : curve.points) {
     plot.x.push_back(point.value);
-    plot.curves[0].values.push_back(curve.formula.seconds_per_operation * point.operations * 1e6);
-    plot.curves[1].values.push_back(point.predicted_s * 1e6);
-    plot.curves[2].values.push_back(point.seconds * 1e6);
+    const std::array<double, 4> seconds = {
+        f.seconds_per_operation * point.operations,
+        f.fixed_s + f.seconds_per_operation_above * point.operations,
+        point.predicted_s.value_or(kNothing), point.seconds};
+    for (std::size_t i = 0; i < seconds.size(); ++i)
+      plot.curves[i].values.push_back(seconds[i] * 1e6);
   }
   return telemetry::curve_plot_html(plot);
+}
+
+// Of one type at one level: what it is predicted by, and how good that is.
+std::string accuracy_row(const synthesis::LevelAccuracy& level, const Calibration& found,
+                         const models::Registry& registry) {
+  const synthesis::LevelCalibration* line = calibration_of(found, level.model, level.level);
+  const bool calibrated = line != nullptr && line->samples > 0;
+  const std::string errors =
+      level.error.count == 0
+          ? "<td>not measured</td><td></td><td></td>"
+          : fmt::format("<td>{:.1f}</td><td>{:.1f}</td><td>{}</td>", level.error.p50_percent,
+                        level.error.p95_percent, level.error.count);
+  return fmt::format("<tr><th>{} level {}</th><td>{}</td>{}</tr>\n",
+                     telemetry::escaped(registry[level.model].name()), level.level,
+                     calibrated ? telemetry::escaped(fit_text(line->fit)) : "not calibrated",
+                     errors);
 }
 
 }  // namespace
@@ -127,6 +234,11 @@ std::string calibration_text(const Calibration& found, const models::Registry& r
   for (const synthesis::CostCurve& curve : found.curves) {
     const models::ModelType& type = registry[curve.model];
     const synthesis::FormulaFit& f = curve.formula;
+    if (curve.points.empty()) {
+      fmt::format_to(out, "  {:<{}} {:<13} {:<13} not measured\n", type.name(), width,
+                     curve.parameter, formula_of(type));
+      continue;
+    }
     fmt::format_to(
         out, "  {:<{}} {:<13} {:<13} c = {:<9} R² = {:.4f}; a = {:<9} c = {:<9} R² = {:.4f}\n",
         type.name(), width, curve.parameter, formula_of(type),
@@ -153,18 +265,8 @@ std::string calibration_json(const Calibration& found, const models::Registry& r
   for (const synthesis::CostCurve& curve : found.curves)
     json["curves"].push_back(curve_json(curve, registry));
   json["fits"] = Json::array();
-  for (const synthesis::LevelCalibration& level : found.fits.levels) {
-    json["fits"].push_back(
-        {{"model", registry[level.model].name()},
-         {"level", level.level},
-         {"fixed_seconds", level.fit.fixed_s},
-         {"seconds_per_operation", level.fit.per_operation_s},
-         {"seconds_per_triangle", level.fit.per_triangle_s},
-         {"seconds_per_step", level.fit.per_step_s},
-         {"correction", correction_json(level.fit)},
-         {"samples", level.samples},
-         {"error_percent_p50", level.samples > 0 ? Json(level.fit_error_percent) : Json(nullptr)}});
-  }
+  for (const synthesis::LevelCalibration& level : found.fits.levels)
+    json["fits"].push_back(fit_json(level, registry));
   Json& held_out = json["held_out"];
   held_out["sets_of_each_model"] = found.held_out_sets;
   held_out["error_percent"] = error_json(found.held_out.all);
@@ -185,33 +287,21 @@ std::string calibration_json(const Calibration& found, const models::Registry& r
 }
 
 std::string calibration_page(const Calibration& found, const models::Registry& registry) {
+  const std::string title =
+      found.world.empty() ? "What synthesis costs" : "What synthesis costs: " + found.world;
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
-  html += fmt::format("<title>psygen: what synthesis costs</title><style>{}",
-                      telemetry::report_style());
-  html +=
-      ".plots { display:grid; grid-template-columns:repeat(auto-fit,minmax(420px,1fr)); gap:0 14px "
-      "}";
-  html += "</style></head><body><main>\n<h1>What synthesis costs</h1>\n";
-  html += fmt::format(
-      "<p class=\"lead\">Time of one core at full detail over each parameter of the paper's "
-      "formulas. "
-      "Error of predictions for {} other parameter sets of each type, all levels, in %: {}{}."
-      "</p>\n<div class=\"plots\">\n",
-      found.held_out_sets, error_text(found.held_out.all), worst_text(found, registry));
+  html += fmt::format("<title>psygen: {}</title><style>{}{}</style></head><body><main>\n",
+                      telemetry::escaped(title), telemetry::report_style(), kStyle);
+  html += fmt::format("<h1>{}</h1>\n<p class=\"lead\">{}</p>\n<div class=\"plots\">\n",
+                      telemetry::escaped(title), telemetry::escaped(lead_of(found, registry)));
   for (const synthesis::CostCurve& curve : found.curves)
-    html += plot_of(curve, registry);
-  html += "</div>\n<div class=\"facts\"><section><h2>Cost model and error in %</h2><table>";
-  for (std::size_t i = 0; i < found.held_out.levels.size(); ++i) {
-    const synthesis::LevelAccuracy& level = found.held_out.levels[i];
-    std::string fit;
-    for (const synthesis::LevelCalibration& line : found.fits.levels) {
-      if (line.model == level.model && line.level == level.level) fit = fit_text(line.fit);
-    }
-    fmt::format_to(std::back_inserter(html), "<tr><th>{} level {}</th><td>{}</td><td>{}</td></tr>",
-                   telemetry::escaped(registry[level.model].name()), level.level, fit,
-                   error_text(level.error));
-  }
+    html += plot_of(curve, found, registry);
+  html +=
+      "</div>\n<div class=\"costs\"><section><h2>Cost model, and its error in %</h2><table>"
+      "<tr><th>type</th><td>predicted time</td><td>p50</td><td>p95</td><td>measured</td></tr>\n";
+  for (const synthesis::LevelAccuracy& level : found.held_out.levels)
+    html += accuracy_row(level, found, registry);
   return html + "</table></section></div>\n</main></body></html>\n";
 }
 

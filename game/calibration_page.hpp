@@ -8,6 +8,7 @@
 namespace psygen::game {
 
 struct Calibration {
+  std::string world;  // whose models were fitted; empty: parameters drawn from all usual ranges
   synthesis::CalibrationReport fits;
   std::vector<synthesis::CostCurve> curves;
   synthesis::Accuracy held_out;

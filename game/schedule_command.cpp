@@ -14,14 +14,33 @@
 namespace psygen::game {
 namespace {
 
+constexpr double kOverloadPercent = 100;
+
 core::Result<std::vector<synthesis::SimulatedJob>> read_stream(const std::string& file) {
   const auto text = world::read_text_file(file, synthesis::kMaxStreamBytes);
   if (!text) return tl::unexpected(text.error());
   return synthesis::parse_stream(*text, file);
 }
 
-std::string table_of(std::span<const synthesis::PolicyFigures> rows) {
-  std::string text =
+constexpr const char* kColumns =
+    "fill      what the first frame wanted, alone: until all of it is finished, and the share of\n"
+    "          the modelers' time in which they had nothing to do\n"
+    "visible   from wanted in view to finished: how long a hole or a coarse model is seen\n"
+    "late      of what was predicted to come into view later: the share not finished by then\n"
+    "lateness  how late that was, 0 for what was in time: mean and largest\n"
+    "deadline, the default, aims at the least of the largest latenesses. Where not everything can "
+    "be\n"
+    "in time, shortest may be late less often and less in the mean, but lets some wait much "
+    "longer.";
+
+std::string table_of(std::span<const synthesis::PolicyFigures> rows,
+                     const synthesis::StreamLoad& load, unsigned modelers) {
+  std::string text = fmt::format(
+      "{} requests in {:.2f} s, {:.3g} s of work: {:.3g} % of what {} modeler{} can do\n",
+      load.requests, load.span_s, load.work_s, load.percent, modelers, modelers == 1 ? "" : "s");
+  if (load.percent > kOverloadPercent)
+    text += "That is more than they can do meanwhile: some of it has to wait, in any order.\n";
+  text +=
       "           fill    idle   visible p50       p99       max    late  lateness       max\n"
       "             ms       %            ms        ms        ms       %        ms        ms\n";
   for (const synthesis::PolicyFigures& row : rows) {
@@ -32,7 +51,7 @@ std::string table_of(std::span<const synthesis::PolicyFigures> rows) {
         row.visible_p50_s * 1e3, row.visible_p99_s * 1e3, row.visible_max_s * 1e3, row.late_percent,
         row.lateness_mean_s * 1e3, row.lateness_max_s * 1e3);
   }
-  return text;
+  return text + "\n" + kColumns + "\n";
 }
 
 std::string json_of(std::span<const synthesis::PolicyFigures> rows) {
@@ -63,6 +82,7 @@ ScheduleCommand::ScheduleCommand(CLI::App& cli)
       ->capture_default_str()
       ->check(number_between(0.001, 1e6));
   c.add_flag("--json", json_, "Print the figures as JSON");
+  c.footer(std::string("The columns:\n") + kColumns);
 }
 
 int ScheduleCommand::run() const {
@@ -74,7 +94,8 @@ int ScheduleCommand::run() const {
   for (synthesis::SimulatedJob& job : *jobs)
     job.seconds *= slower_;
   const auto rows = synthesis::compare_policies(*jobs, modelers_);
-  return print(json_ ? json_of(rows) : table_of(rows));
+  return print(json_ ? json_of(rows)
+                     : table_of(rows, synthesis::load_of(*jobs, modelers_), modelers_));
 }
 
 }  // namespace psygen::game

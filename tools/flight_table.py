@@ -50,11 +50,12 @@ def percentile(values, share):
 
 
 def of_frames(file, warm_up_s):
-    """p99 of what no summary sums up, of the frames after the warm-up."""
+    """p99 of what no summary sums up, of the frames after the warm-up that are not apart."""
     if not file.exists():
         return ["-"] * len(OF_FRAMES)
     with open(file, encoding="utf-8", newline="") as lines:
-        frames = [row for row in csv.DictReader(lines) if float(row["time_s"]) >= warm_up_s]
+        frames = [row for row in csv.DictReader(lines)
+                  if float(row["time_s"]) >= warm_up_s and not row.get("apart")]
     if not frames:
         return ["-"] * len(OF_FRAMES)
     systems = [sum(float(row[f"{name}_ms"]) for name in SYSTEMS) for row in frames]

@@ -3,7 +3,7 @@
 
 usage: lap_table.py LAP_SECONDS FRAMES_CSV
 
-LAP_SECONDS is the length of the path. The first second of each lap is left out: it begins with a
+Frames that are apart (docs/cli.md), such as those that were written, are left out. LAP_SECONDS is the length of the path. The first second of each lap is left out: it begins with a
 jump. The last column is p50 and p99 of the first lap over those of the second.
 """
 import csv
@@ -22,7 +22,7 @@ def laps_of(frames, lap_s):
     laps = {}
     for frame in frames:
         lap, at_s = divmod(float(frame["time_s"]), lap_s)
-        if at_s >= WARM_UP_S:
+        if at_s >= WARM_UP_S and not frame.get("apart"):
             laps.setdefault(int(lap), []).append(frame)
     return [laps[lap] for lap in sorted(laps)]
 

@@ -52,8 +52,10 @@ core::Result<Region> parse_region(std::string_view text) {
 
 core::Result<Region> whole(const world::World& world) {
   if (world.is_endless()) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the world {} is endless: name a region", world.name));
+    return core::fail(
+        core::ErrorCode::kInvalidArgument,
+        fmt::format("the world {} has no end: choose a region, such as --region 0,0,16,16",
+                    world.name));
   }
   return Region{0, 0, world.blocks_x, world.blocks_z};
 }

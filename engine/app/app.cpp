@@ -215,10 +215,20 @@ core::Result<image::Image> App::last_picture() {
   return image::Image{picture->width, picture->height, std::move(picture->rgba)};
 }
 
+core::Result<void> App::write_picture(const std::filesystem::path& file,
+                                      const image::Image& image) {
+  const double start_s = core::monotonic_seconds();
+  auto written = image::write_png(file, image);
+  trace_->add_span(scene_->state().trace.main, trace_->intern("write a picture"), start_s,
+                   core::monotonic_seconds());
+  return written;
+}
+
 core::Result<void> App::save_picture(const std::filesystem::path& file) {
+  pictured_ = true;
   const auto image = last_picture();
   if (!image) return tl::unexpected(image.error());
-  if (auto ok = image::write_png(file, *image); !ok) return ok;
+  if (auto ok = write_picture(file, *image); !ok) return ok;
   files_.push_back(file);
   return {};
 }

@@ -80,7 +80,6 @@ class App {
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
   bool saves_picture() const;
   core::Result<void> save_numbered_picture();
-  void record_frame(double frame_ms, double cpu_ms);
   FlightReport land(bool whole);
 
   void handle_window();
@@ -92,6 +91,9 @@ class App {
   void tell_end(const FlightReport& report);
 
   core::Result<image::Image> last_picture();
+  core::Result<void> write_picture(const std::filesystem::path& file, const image::Image& image);
+  double governed_ms(double frame_ms) const;
+  void log_frame();
   telemetry::RunFacts run_facts(bool whole);
   void write_outputs(const telemetry::Summary& summary);
   void note_written(const std::filesystem::path& file, const core::Result<void>& result);
@@ -112,6 +114,7 @@ class App {
   bool user_flies_ = false;
   bool closed_ = false;
   Hud hud_;
+  bool pictured_ = false;                        // the frame that goes on, by a plugin
   bool photograph_ = false;                      // the next frame, for the user
   std::optional<render::Preset> wanted_preset_;  // after the next frame
   std::uint64_t images_hash_ = 0;                // of the numbered pictures, in order

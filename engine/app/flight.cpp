@@ -65,23 +65,35 @@ core::Result<void> App::fly_frame(double dt_s) {
   scene::State& state = scene_->state();
   state.clock.now_s = flight_s_;
   if (window_) write_over_picture();
+  pictured_ = false;
   const double start_s = core::monotonic_seconds();
   const double cpu_start_s = core::thread_cpu_seconds();
   if (auto ok = frame(next_pose(dt_s), dt_s); !ok) return ok;
-  // A picture waits for the device; unmeasured, that wait would make the next frames look fast.
+  // The flight's clock goes on while a picture waits for the device, as if the next frames had.
   if (saves_picture()) renderer_->wait_idle();
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
-  if (flying_) record_frame(frame_ms, (core::thread_cpu_seconds() - cpu_start_s) * 1000.0);
-  hud_.add_frame(frame_ms);
-  // The device's time counts where it is the longer one; waiting, for it or a display, does not.
-  // A software device's time is this machine's own.
-  const render::FrameResult& drawn = state.counters.frame;
-  state.input.frame_ms = renderer_->device().software
-                             ? frame_ms - drawn.display_ms
-                             : std::max(frame_ms - drawn.wait_ms, drawn.gpu_ms.value_or(0.0));
-  // On a device of its own the time is that of a frame or two before.
-  state.input.frame_triangles = static_cast<double>(drawn.triangles);
+  telemetry::FrameRecord& record = state.record;
+  if (pictured_ || saves_picture()) record.apart = telemetry::Apart::kPicture;
+  record.index = frames_;
+  record.time_s = flight_s_;
+  record.frame_ms = frame_ms;
+  record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
+  if (flying_) log_frame();
+  const bool like_others = record.apart == telemetry::Apart::kNo;
+  if (like_others) hud_.add_frame(frame_ms);
+  state.input.frame_ms = like_others ? governed_ms(frame_ms) : 0.0;
+  // On a device of its own the time is that of some frames before.
+  state.input.frame_triangles = static_cast<double>(state.counters.frame.triangles);
   return {};
+}
+
+// What the error of levels of detail is governed by. The device's time counts where it is the
+// longer one; waiting, for it or a display, does not. A software device's time is this machine's
+// own.
+double App::governed_ms(double frame_ms) const {
+  const render::FrameResult& drawn = scene_->state().counters.frame;
+  if (renderer_->device().software) return frame_ms - drawn.acquire.ms;
+  return std::max(frame_ms - drawn.wait_ms(), drawn.gpu ? drawn.gpu->ms : 0.0);
 }
 
 core::Result<void> App::loop() {
@@ -124,7 +136,7 @@ core::Result<void> App::save_numbered_picture() {
     core::log_warning(fmt::format("no picture of frame {}: {}", frames_, image.error().message));
     return {};
   }
-  const auto written = image::write_png(file, *image);
+  const auto written = write_picture(file, *image);
   note_written(file, written);
   if (written) {
     images_hash_ = core::combine(images_hash_, image::hash(*image));
@@ -136,14 +148,12 @@ core::Result<void> App::save_numbered_picture() {
   return {};
 }
 
-void App::record_frame(double frame_ms, double cpu_ms) {
-  scene::State& state = scene_->state();
-  telemetry::FrameRecord record = state.record;
-  record.index = frames_;
-  record.time_s = flight_s_;
-  record.frame_ms = frame_ms;
-  record.main_cpu_ms = cpu_ms;
-  log_->add(record);
+// The last frame, and what is known now of earlier ones.
+void App::log_frame() {
+  const scene::State& state = scene_->state();
+  log_->add(state.record);
+  if (const auto& gpu = state.counters.frame.gpu)
+    log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
   for (const float ms : state.counters.time_to_visible_ms)
     log_->add_time_to_visible(flight_s_, ms);
   for (const auto& cost : state.counters.costs) {

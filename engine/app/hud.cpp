@@ -64,11 +64,14 @@ std::vector<render::TextLine> Hud::figures(const scene::State& state, const HudF
   std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
   const double median_ms = sorted[count / 2], worst_ms = sorted[count - 1];
   const telemetry::FrameRecord& record = state.record;
+  const std::optional<render::GpuTime>& gpu = state.counters.frame.gpu;
   const core::WorldPosition& at = state.camera.pose.position;
   const double speed_m_s = glm::length(state.camera.predictor.velocity_m_s());
   return {
       {fmt::format("{:5.1f} fps   {:5.1f} ms median   {:5.1f} ms worst", 1000.0 / median_ms,
                    median_ms, worst_ms)},
+      {fmt::format("waits {:.1f} ms{}", record.wait_ms(),
+                   gpu ? fmt::format("   device {:.1f} ms", gpu->ms) : "")},
       {fmt::format("preset {}   level-of-detail error {:.1f} pixels", to_string(facts.preset),
                    record.error_pixels)},
       {fmt::format("speed {:.1f} m/s   keys fly at {:.3g} m/s", speed_m_s, facts.key_speed_m_s)},

@@ -25,6 +25,10 @@ telemetry::WorldFacts world_facts(const world::World& world, const models::Regis
   facts.blocks = {static_cast<std::int64_t>(world.blocks_x),
                   static_cast<std::int64_t>(world.blocks_z)};
   const world::WorldSize size = world::world_size(world, registry);
+  facts.block_m = world.block_size_m();
+  facts.block_models = size.block_models;
+  facts.block_triangles = size.block_triangles;
+  facts.block_bytes = size.block_bytes;
   if (size.endless) {
     const auto endless = telemetry::Count::missing("the world is endless");
     facts.triangles = facts.bytes_paper = facts.bytes = endless;
@@ -36,17 +40,17 @@ telemetry::WorldFacts world_facts(const world::World& world, const models::Regis
   return facts;
 }
 
-// Median time of the last frames over the time of the last frame's draw lists alone.
+// Median time of the last frames that are timed over the time of the last frame's draw lists alone.
 telemetry::Figure floor_ratio(const telemetry::FrameLog& log, render::Renderer& renderer) {
   const auto frames = log.frames();
-  if (frames.size() < kFloorFrames) {
-    return telemetry::Figure::missing(fmt::format("fewer than {} frames", kFloorFrames));
+  std::vector<double> last;
+  for (auto frame = frames.rbegin(); frame != frames.rend() && last.size() < kFloorFrames; ++frame)
+    if (frame->apart == telemetry::Apart::kNo) last.push_back(frame->frame_ms);
+  if (last.size() < kFloorFrames) {
+    return telemetry::Figure::missing(fmt::format("fewer than {} timed frames", kFloorFrames));
   }
   const auto floor_ms = renderer.replay_floor_ms(kFloorRepeats);
   if (!floor_ms) return telemetry::Figure::missing(floor_ms.error().message);
-  std::vector<double> last;
-  for (const auto& frame : frames.last(kFloorFrames))
-    last.push_back(frame.frame_ms);
   std::ranges::nth_element(last, last.begin() + kFloorFrames / 2);
   return last[kFloorFrames / 2] / *floor_ms;
 }
@@ -65,7 +69,7 @@ telemetry::RunFacts App::run_facts(bool whole) {
   telemetry::RunFacts facts;
   facts.world = world_facts(state.facts.world, state.facts.registry);
   const render::DeviceInfo& device = renderer_->device();
-  facts.device = {device.name, device.driver, device.api_version};
+  facts.device = {device.name, device.driver, device.api_version, device.timestamps};
   const core::Extent size = renderer_->size();
   facts.run.paradigm = scene::to_string(options_.scene.paradigm);
   facts.run.policy = synthesis::name_of(options_.scene.policy);
@@ -76,6 +80,10 @@ telemetry::RunFacts App::run_facts(bool whole) {
   facts.run.fixed_step = options_.fixed_step_hz > 0
                              ? telemetry::Figure(options_.fixed_step_hz)
                              : telemetry::Figure::missing("the flight follows the wall clock");
+  facts.run.error_pixels = options_.scene.max_error_pixels;
+  const double target_ms = options_.scene.target_frame_ms;
+  facts.run.target_fps = target_ms > 0 ? telemetry::Figure(1000 / target_ms)
+                                       : telemetry::Figure::missing("no frame rate is held");
   const synthesis::CacheStats cache = state.synthesis.cache->stats();
   facts.cache_budget_bytes = cache.budget_bytes;
   facts.cache_peak_bytes = cache.peak_bytes;

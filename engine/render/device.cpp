@@ -101,12 +101,22 @@ std::uint32_t transfer_family_of(VkPhysicalDevice physical, std::uint32_t graphi
   return graphics;
 }
 
-bool can_compute(VkPhysicalDevice physical, std::uint32_t family) {
+VkQueueFamilyProperties family_properties(VkPhysicalDevice physical, std::uint32_t family) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-  return (families[family].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
+  return families[family];
+}
+
+bool can_compute(VkPhysicalDevice physical, std::uint32_t family) {
+  return (family_properties(physical, family).queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
+}
+
+// The bits of a timestamp that count; 0: there are none.
+std::uint64_t timestamp_mask_of(VkPhysicalDevice physical, std::uint32_t family) {
+  const std::uint32_t bits = family_properties(physical, family).timestampValidBits;
+  return bits == 0 ? 0 : UINT64_MAX >> (64 - std::min(bits, 64U));
 }
 
 int rank_of(VkPhysicalDeviceType type) {
@@ -189,7 +199,8 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
 }
 
 core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& candidate,
-                                                     bool windowed, double timeout_seconds) {
+                                                     bool windowed, bool timestamps,
+                                                     double timeout_seconds) {
   std::unique_ptr<Device> self(new Device());
   self->timeout_ns_ = static_cast<std::uint64_t>(timeout_seconds * 1e9);
   self->physical = candidate.physical;
@@ -249,9 +260,9 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   self->sampled_depth_counts = limits.sampledImageDepthSampleCounts;
   self->sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;
   self->max_multi_draw = multi_draw.maxMultiDrawCount;
-  if (properties.properties.limits.timestampComputeAndGraphics && !self->info.software) {
-    self->timestamp_period_ns = static_cast<double>(properties.properties.limits.timestampPeriod);
-  }
+  self->timestamp_period_ns = static_cast<double>(limits.timestampPeriod);
+  if (timestamps) self->timestamp_mask = timestamp_mask_of(self->physical, self->queue_family);
+  self->info.timestamps = self->timestamp_mask != 0;
   return self;
 }
 

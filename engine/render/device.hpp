@@ -30,9 +30,11 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
 
 class Device {
  public:
-  // `timeout_seconds`: the longest wait for the device; then it counts as lost.
+  // `timestamps`: where its queue has any. `timeout_seconds`: the longest wait for the device; then
+  // it counts as lost.
   static core::Result<std::unique_ptr<Device>> create(const DeviceCandidate& candidate,
-                                                      bool windowed, double timeout_seconds);
+                                                      bool windowed, bool timestamps,
+                                                      double timeout_seconds);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -52,7 +54,8 @@ class Device {
   VkSampleCountFlags sampled_depth_counts = VK_SAMPLE_COUNT_1_BIT;  // of depth that shaders read
   VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;         // of colour and depth
   std::uint32_t max_multi_draw = 0;                                 // 0: no VK_EXT_multi_draw
-  double timestamp_period_ns = 0;                                   // 0: no timestamps on the queue
+  std::uint64_t timestamp_mask = 0;  // the bits that count; 0: no timestamps on the queue
+  double timestamp_period_ns = 0;
   DeviceInfo info;
 
   // Returns when a semaphore that counts has come to `value`; `what` is "waiting for ...". Fails

@@ -1,7 +1,6 @@
 #include "engine/render/frame_slot.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 
@@ -17,17 +16,6 @@ constexpr std::uint64_t kFirstDraws = 4096;
 
 Result<Buffer> storage_buffer(const Device& device, std::uint64_t bytes) {
   return make_buffer(device, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite);
-}
-
-Result<UniqueQueryPool> make_queries(const Device& device) {
-  VkQueryPoolCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-  info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-  info.queryCount = 2;
-  VkQueryPool made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateQueryPool(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a query pool");
-  return UniqueQueryPool(device.vk, device.handle, made);
 }
 
 }  // namespace
@@ -51,11 +39,7 @@ Result<void> FrameSlot::create(const Device& device) {
   Result<UniqueSemaphore> acquired = make_semaphore(device);
   if (!acquired) return tl::unexpected(acquired.error());
   acquired_ = std::move(*acquired);
-  if (device.timestamp_period_ns > 0) {
-    Result<UniqueQueryPool> queries = make_queries(device);
-    if (!queries) return tl::unexpected(queries.error());
-    queries_ = std::move(*queries);
-  }
+  if (Result<void> timed = timer_.create(device); !timed) return timed;
   Result<Buffer> frame = make_buffer(device, sizeof(shaders::FrameData),
                                      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::kWrite);
   if (!frame) return tl::unexpected(frame.error());
@@ -103,9 +87,7 @@ Result<void> FrameSlot::begin(const Device& device) {
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   result = device.vk.vkBeginCommandBuffer(commands_, &info);
   if (result != VK_SUCCESS) return vulkan_failure(result, "beginning a command buffer");
-  if (queries_.get() != VK_NULL_HANDLE) {
-    device.vk.vkCmdResetQueryPool(commands_, queries_.get(), 0, 2);
-  }
+  timer_.begin(device, commands_);
   return {};
 }
 
@@ -113,24 +95,6 @@ Result<void> FrameSlot::end(const Device& device) {
   const VkResult result = device.vk.vkEndCommandBuffer(commands_);
   if (result != VK_SUCCESS) return vulkan_failure(result, "ending a command buffer");
   return {};
-}
-
-void FrameSlot::write_timestamp(const Device& device, bool last) {
-  if (queries_.get() == VK_NULL_HANDLE) return;
-  device.vk.vkCmdWriteTimestamp2(
-      commands_,
-      last ? VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT : VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT,
-      queries_.get(), last ? 1 : 0);
-}
-
-std::optional<double> FrameSlot::read_gpu_ms(const Device& device) const {
-  if (queries_.get() == VK_NULL_HANDLE || submitted_value == 0) return std::nullopt;
-  std::array<std::uint64_t, 2> ticks{};
-  const VkResult result =
-      device.vk.vkGetQueryPoolResults(device.handle, queries_.get(), 0, 2, sizeof(ticks),
-                                      ticks.data(), sizeof(ticks[0]), VK_QUERY_RESULT_64_BIT);
-  if (result != VK_SUCCESS || ticks[1] < ticks[0]) return std::nullopt;
-  return static_cast<double>(ticks[1] - ticks[0]) * device.timestamp_period_ns * 1e-6;
 }
 
 }  // namespace psygen::render

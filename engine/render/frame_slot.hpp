@@ -3,10 +3,10 @@
 // engine/render.
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "engine/render/draw_list.hpp"
+#include "engine/render/gpu_timer.hpp"
 #include "engine/render/memory.hpp"
 #include "engine/render/pipelines.hpp"
 #include "shaders/shared.h"
@@ -37,9 +37,7 @@ class FrameSlot {
   }
   VkSemaphore acquired() const { return acquired_.get(); }
 
-  // Timestamps at the edges of the pass; device time of the last finished frame of this slot.
-  void write_timestamp(const Device& device, bool last);
-  std::optional<double> read_gpu_ms(const Device& device) const;
+  GpuTimer& timer() { return timer_; }
 
   std::uint64_t submitted_value = 0;  // of the timeline; 0: never
 
@@ -49,7 +47,7 @@ class FrameSlot {
   Buffer frame_, draws_, glyphs_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
   UniqueSemaphore acquired_;
-  UniqueQueryPool queries_;
+  GpuTimer timer_;
 };
 
 }  // namespace psygen::render

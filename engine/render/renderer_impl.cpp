@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "engine/core/assert.hpp"
@@ -22,6 +23,10 @@ namespace {
 
 double ms_since(double start_seconds) {
   return (core::monotonic_seconds() - start_seconds) * 1e3;
+}
+
+Wait ended(const Wait& wait) {
+  return {wait.start_s, ms_since(wait.start_s)};
 }
 
 bool is_empty(core::Extent extent) {
@@ -85,8 +90,8 @@ Result<void> RendererImpl::create_device() {
   Result<DeviceCandidate> chosen =
       choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
   if (!chosen) return tl::unexpected(chosen.error());
-  Result<std::unique_ptr<Device>> device =
-      Device::create(*chosen, options_.surface != nullptr, options_.device_timeout_seconds);
+  Result<std::unique_ptr<Device>> device = Device::create(
+      *chosen, options_.surface != nullptr, options_.timestamps, options_.device_timeout_seconds);
   if (!device) return tl::unexpected(device.error());
   device_ = std::move(*device);
   if (options_.surface != nullptr) {
@@ -122,6 +127,8 @@ Result<void> RendererImpl::create(const Progress& progress) {
   const Preset preset =
       options_.preset.value_or(device_->info.software ? Preset::kLow : Preset::kHigh);
   if (Result<void> made = create_looks(preset, progress); !made) return made;
+  idle_value_ = warm_up_value_ = frame_value_;
+  if (options_.surface == nullptr) resized_ = false;
   return pool_->make_first_block();
 }
 
@@ -186,6 +193,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
                                   side, extent.width, extent.height));
   }
   wait_idle();
+  resized_ = true;
   targets_.clear();
   has_picture_ = false;
   std::vector<Targets> targets;
@@ -242,6 +250,7 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
   const VkResult result = device_->vk.vkQueueSubmit2(device_->queue, 1, &info, VK_NULL_HANDLE);
   if (result != VK_SUCCESS) return vulkan_failure(result, "submitting a frame");
   slot.submitted_value = ++frame_value_;
+  slot.timer().submitted(frame_value_, core::monotonic_seconds());
   pool_->frame_submitted(frame_value_);
   return {};
 }
@@ -283,7 +292,11 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   if (options_.surface != nullptr) {
     const Result<bool> shown = noted(prepare_window());
     if (!shown) return tl::unexpected(shown.error());
-    if (!*shown) return FrameResult{};
+    if (!*shown) {
+      FrameResult nothing;
+      nothing.apart = Apart::kNotDrawn;
+      return nothing;
+    }
   }
   if (targets_.empty()) {
     return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
@@ -321,6 +334,12 @@ Result<void> RendererImpl::write_frame(FrameSlot& slot) {
   return written;
 }
 
+// How the frame that begins differs from others, apart from what it finds out itself.
+Apart RendererImpl::apart_now() {
+  if (std::exchange(resized_, false)) return Apart::kResized;
+  return frame_value_ - idle_value_ < kFramesInFlight ? Apart::kAfterIdle : Apart::kNo;
+}
+
 void RendererImpl::add_lines(std::span<const Line> lines) {
   line_vertices_ = static_cast<std::uint32_t>(2 * std::min(lines.size(), kMaxLines));
   for (const Line& line : lines.first(line_vertices_ / 2)) {
@@ -332,10 +351,11 @@ void RendererImpl::add_lines(std::span<const Line> lines) {
 Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot& slot) {
   const bool windowed = options_.surface != nullptr;
   FrameResult out;
-  const double wait_start = core::monotonic_seconds();
+  out.apart = apart_now();
+  const Wait device{core::monotonic_seconds(), 0};
   if (Result<void> waited = wait_for(slot); !waited) return tl::unexpected(waited.error());
-  if (const std::optional<double> gpu = slot.read_gpu_ms(*device_); gpu && has_list_) gpu_ms_ = gpu;
-  const double waited_ms = ms_since(wait_start);
+  out.device = ended(device);
+  if (const auto gpu = slot.timer().read(*device_); gpu && gpu->frame > warm_up_value_) gpu_ = gpu;
 
   const double build_start = core::monotonic_seconds();
   FrameInput checked = input;
@@ -350,14 +370,17 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
   list_draws(checked);
   if (Result<void> written = write_frame(slot); !written) return tl::unexpected(written.error());
-  double cpu_ms = ms_since(build_start);
+  out.cpu_ms = ms_since(build_start);
 
   if (windowed) {
-    const double acquire_start = core::monotonic_seconds();
+    const Wait acquire{core::monotonic_seconds(), 0};
     const Result<WindowState> acquired = acquire_window(slot);
     if (!acquired) return tl::unexpected(acquired.error());
-    if (*acquired == WindowState::kNotNow) return out;
-    out.display_ms = ms_since(acquire_start);
+    out.acquire = ended(acquire);
+    if (*acquired == WindowState::kNotNow) {
+      out.apart = Apart::kNotDrawn;
+      return out;
+    }
   }
   const double record_start = core::monotonic_seconds();
   if (Result<void> recorded = record(slot, windowed); !recorded) {
@@ -366,45 +389,21 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   if (Result<void> submitted = submit(slot, windowed); !submitted) {
     return tl::unexpected(submitted.error());
   }
-  cpu_ms += ms_since(record_start);
+  out.cpu_ms += ms_since(record_start);
+  out.frame = frame_value_;
   has_picture_ = has_list_ = true;
   out.presented = true;
   if (windowed) {
-    const Result<bool> presented = present();
+    const Wait present{core::monotonic_seconds(), 0};
+    const Result<bool> presented = this->present();
     if (!presented) return tl::unexpected(presented.error());
+    out.present = ended(present);
     out.presented = *presented;
   }
   out.draws = culling_ ? counted.draws : static_cast<std::uint32_t>(list_.draws().size());
   out.triangles = culling_ ? counted.triangles : list_.triangle_count();
-  out.cpu_ms = cpu_ms;
-  out.wait_ms = waited_ms + out.display_ms;
-  out.gpu_ms = gpu_ms_;
+  out.gpu = gpu_;
   return out;
-}
-
-Result<Picture> RendererImpl::capture() {
-  if (!has_picture_ || lost_) {
-    return core::fail(ErrorCode::kInvalidArgument,
-                      "there is no picture before the first frame of this size");
-  }
-  Picture picture;
-  Targets& drawn = targets_of(slot_of(frame_value_));
-  picture.width = drawn.extent.width;
-  picture.height = drawn.extent.height;
-  picture.rgba.resize(std::size_t{picture.width} * picture.height * 4);
-  Result<Buffer> buffer = make_buffer(*device_, picture.rgba.size(),
-                                      VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::kRead);
-  if (!buffer) return tl::unexpected(buffer.error());
-  const Result<void> copied = noted(run_once(*device_, [&](VkCommandBuffer commands) {
-    record_copy_to_buffer(*device_, commands, drawn, buffer->buffer.get());
-  }));
-  if (!copied) return tl::unexpected(copied.error());
-  std::memcpy(picture.rgba.data(), buffer->mapped, picture.rgba.size());
-  if (colour_format_ == VK_FORMAT_B8G8R8A8_UNORM) {
-    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
-      std::swap(picture.rgba[i], picture.rgba[i + 2]);
-  }
-  return picture;
 }
 
 Result<void> RendererImpl::resize(core::Extent size) {
@@ -416,51 +415,9 @@ Result<void> RendererImpl::resize(core::Extent size) {
   return noted(create_targets(size));
 }
 
-Result<double> RendererImpl::replay_floor_ms(int repeats) {
-  PSYGEN_CHECK(repeats >= 1, "the floor needs at least one repeat");
-  if (!has_picture_ || lost_) {
-    return core::fail(ErrorCode::kInvalidArgument, "there is no frame to draw again");
-  }
-  wait_idle();
-  // Both slots are filled once; then every interval is one frame with the next one in flight.
-  const int lead = static_cast<int>(kFramesInFlight);
-  std::vector<double> intervals;
-  double last = core::monotonic_seconds();
-  for (int i = 0; i < repeats + lead; ++i) {
-    FrameSlot& slot = slot_of(frame_value_ + 1);
-    const Result<void> drawn = noted(wait_for(slot)
-                                         .and_then([&] { return write_frame(slot); })
-                                         .and_then([&] { return record(slot, false); })
-                                         .and_then([&] { return submit(slot, false); }));
-    if (!drawn) return tl::unexpected(drawn.error());
-    const double now = core::monotonic_seconds();
-    if (i >= lead) intervals.push_back((now - last) * 1e3);
-    last = now;
-  }
-  wait_idle();
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
-}
-
-Result<std::vector<DrawnMesh>> RendererImpl::drawn_meshes() {
-  if (!has_list_ || lost_) {
-    return core::fail(ErrorCode::kInvalidArgument, "there is no frame whose meshes could be named");
-  }
-  if (culling_) return noted(culling_->read_drawn(*device_, frame_value_ % kFramesInFlight));
-  std::vector<DrawnMesh> drawn;
-  for (const DrawRun& run : list_.runs()) {
-    for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
-      const IndexedDraw& draw = list_.draws()[i];
-      drawn.push_back({run.layout, run.pool_block, run.shared, draw.first_index, draw.index_count,
-                       draw.vertex_offset, glm::vec3(list_.data()[i].origin)});
-    }
-  }
-  return drawn;
-}
-
 void RendererImpl::wait_idle() {
   if (lost_ || device_->vk.vkDeviceWaitIdle(device_->handle) != VK_SUCCESS) return;
+  idle_value_ = frame_value_;
   if (pool_) pool_->frames_finished(frame_value_);
 }
 

@@ -84,6 +84,7 @@ class RendererImpl {
   core::Result<void> submit(FrameSlot& slot, bool windowed);
   core::Result<bool> present();
   core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
+  Apart apart_now();
   void add_lines(std::span<const Line> lines);
   void remember_valid(const FrameInput& input);
   // Remembers that the device was lost, after which nothing is submitted any more.
@@ -114,7 +115,10 @@ class RendererImpl {
   core::Extent seen_framebuffer_;  // the window's size when the swapchain was made
   bool swapchain_stale_ = true;
 
-  std::uint64_t frame_value_ = 0;  // last value submitted to the timeline
+  std::uint64_t frame_value_ = 0;    // last value submitted to the timeline
+  std::uint64_t idle_value_ = 0;     // the last one when the device was last known to be idle
+  std::uint64_t warm_up_value_ = 0;  // the last one before the first frame
+  bool resized_ = false;             // since the last frame
   bool has_picture_ = false;
   bool has_list_ = false;
   bool lost_ = false;
@@ -128,7 +132,7 @@ class RendererImpl {
   std::uint32_t line_vertices_ = 0;
   View view_ = View::kNormal;
   bool water_ = false;
-  std::optional<double> gpu_ms_;
+  std::optional<GpuTime> gpu_;
 };
 
 }  // namespace psygen::render

@@ -71,7 +71,8 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
     return made;
   }
   has_list_ = has_picture_ = false;
-  gpu_ms_.reset();
+  gpu_.reset();
+  idle_value_ = warm_up_value_ = frame_value_;
   return {};
 }
 
@@ -158,7 +159,9 @@ Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_sc
     if (const Result<bool> presented = noted(present()); !presented)
       return tl::unexpected(presented.error());
   }
-  return noted(wait_for(slot));
+  const Result<void> waited = noted(wait_for(slot));
+  idle_value_ = warm_up_value_ = frame_value_;
+  return waited;
 }
 
 }  // namespace psygen::render

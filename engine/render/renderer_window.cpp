@@ -11,6 +11,7 @@ Result<bool> RendererImpl::prepare_window() {
   if (size.width == 0 || size.height == 0) return false;
   if (swapchain_.exists() && !swapchain_stale_ && size == seen_framebuffer_) return true;
   wait_idle();
+  resized_ = true;
   Result<SwapchainState> made = swapchain_.create(*device_, surface_, size, options_.vsync);
   if (made && *made == SwapchainState::kSurfaceLost) {
     if (Result<void> again = recreate_surface(); !again) return tl::unexpected(again.error());

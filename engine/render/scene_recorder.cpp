@@ -302,9 +302,12 @@ void record_text(const Device& device, const Pipelines& pipelines, FrameSlot& sl
 
 void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                   Targets& targets, const ScenePass& pass) {
-  slot.write_timestamp(device, false);
-  if (pass.shadows) draw_shadows(device, pipelines, slot, pass);
   const VkCommandBuffer commands = slot.commands();
+  slot.timer().mark(device, commands, GpuTimer::Mark::kBegin);
+  if (pass.shadows) {
+    draw_shadows(device, pipelines, slot, pass);
+    slot.timer().mark(device, commands, GpuTimer::Mark::kShadows);
+  }
   if (pass.culled.culling != nullptr) {
     draw_culled_passes(device, pipelines, slot, targets, pass);
   } else {
@@ -316,8 +319,8 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
   }
   draw_water_and_sky(device, pipelines, commands, pass.water);
   draw_lines_and_text(device, pipelines, commands, pass.glyph_vertex_count, pass.line_vertex_count);
-  device.vk.vkCmdEndRendering(slot.commands());
-  slot.write_timestamp(device, true);
+  device.vk.vkCmdEndRendering(commands);
+  slot.timer().mark(device, commands, GpuTimer::Mark::kEnd);
   if (pass.culled.culling != nullptr) {
     pass.culled.culling->record_counts(device, slot.commands(), pass.culled.slot);
   }

@@ -67,6 +67,7 @@ struct RendererOptions {
   // from before. Of the renderer only show() may be called; false: create() fails (kInterrupted).
   std::function<bool(Renderer&, double)> progress;
   double device_timeout_seconds = 60;  // longest wait for the device; then it counts as lost
+  bool timestamps = true;              // FrameResult::gpu, where the device can
 };
 
 struct DeviceInfo {
@@ -77,6 +78,7 @@ struct DeviceInfo {
   bool multi_draw = false;  // many meshes in one call
   bool gpu_path = false;    // RenderPath::kGpu can be used
   bool wireframe = false;   // View::kWireframe can be drawn
+  bool timestamps = false;  // FrameResult::gpu is known
 };
 
 // Sun, sky and air. Colours are linear radiance before `exposure`.
@@ -213,16 +215,42 @@ struct FrameInput {
   float text_scale = 1;               // of their text, 1 to 4, rounded
 };
 
+// What the device itself took for a frame, from its first pass to the end of its last one. On a
+// software device it is processor time of this machine, spread over its threads.
+struct GpuTime {
+  std::uint64_t frame = 0;  // FrameResult::frame
+  double submitted_s = 0;   // when, by core::monotonic_seconds()
+  double ms = 0;
+  double shadows_ms = 0;  // of these, for cascades of the sun's shadow
+};
+
+// Time in which the main thread could do nothing.
+struct Wait {
+  double start_s = 0;  // core::monotonic_seconds()
+  double ms = 0;
+};
+
+// What sets a frame apart from others, so that its time says nothing of theirs.
+enum class Apart : std::uint8_t {
+  kNo,
+  kAfterIdle,  // the device had been waited for and had nothing to do: no wait for an older frame
+  kResized,    // the picture or the window's images were made anew
+  kNotDrawn,   // the window takes no picture now
+};
+
 struct FrameResult {
+  std::uint64_t frame = 0;  // numbers frames, ascending; 0: none was submitted
   std::uint32_t draws = 0;  // on the GPU path of the latest finished frame, 0 until there is one
   std::uint64_t triangles = 0;  // the same
   double cpu_ms = 0;            // recording and submission
-  double wait_ms = 0;           // for the frame before the last, and for a swapchain image
-  double display_ms = 0;        // of these, for a swapchain image
-  // Latest finished frame; none until there is one, and on software devices, where the time is the
-  // host's own and asking for it would hold up the next frame.
-  std::optional<double> gpu_ms;
+  Wait device;                  // for the frame before the last
+  Wait acquire;                 // for an image of the window
+  Wait present;                 // handing it over; software devices finish the frame here
+  std::optional<GpuTime> gpu;   // of the latest frame that is known, as a rule four frames ago
+  Apart apart = Apart::kNo;
   bool presented = false;  // windowed: shown; headless: drawn
+
+  double wait_ms() const { return device.ms + acquire.ms + present.ms; }
 };
 
 // A mesh as it was submitted.

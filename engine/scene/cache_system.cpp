@@ -424,7 +424,8 @@ void cache_system(const Settings& settings, const Clock& clock, const Camera& ca
       synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,
                               *synthesis.manager, limits, settings.policy);
   counters.requests = static_cast<std::uint32_t>(synthesis.wants.size());
-  counters.refused = static_cast<std::uint32_t>(report.refused);
+  counters.refused = report.refused;
+  counters.refused_visible = report.refused_visible;
   synthesis.waiting = report.waiting;
   drop_evicted(entities, synthesis);
   adapt_to_budget(settings, report, synthesis, totals);

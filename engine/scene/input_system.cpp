@@ -32,7 +32,8 @@ void input_system(const Settings& settings, const Input& input, const Clock& clo
   }
 
   quality.governor.observe(input.frame_ms, input.frame_triangles);
-  const double unhurried = settings.max_error_pixels * synthesis.coarsening;
+  quality.memory_factor = synthesis.coarsening;
+  const double unhurried = settings.max_error_pixels * quality.memory_factor;
   quality.error_pixels = unhurried * quality.governor.error_factor();
   quality.model_error_pixels = unhurried * std::sqrt(quality.governor.error_factor());
 }

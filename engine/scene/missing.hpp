@@ -17,15 +17,26 @@ inline double covered_percent(const Camera& camera, glm::vec3 center, float radi
   return std::min(100.0, 100.0 * std::numbers::pi * radius_px * radius_px / picture);
 }
 
-// Something in the picture that is drawn at no level (`hole`), or by more than one too coarse;
-// `failed`: some of its levels cannot be synthesised.
-inline void count_seen(const Camera& camera, glm::vec3 center, float radius_m, bool hole,
-                       bool coarse, bool failed, Counters& counters) {
+// Something that is in the picture, or should be.
+struct SeenPiece {
+  glm::vec3 center{0.0F};  // metres from the camera
+  float radius_m = 0;
+  bool hole = false;    // drawn at no level
+  bool coarse = false;  // … by more than one level too coarse
+  bool twice = false;   // … with more than twice the error that it might have
+  bool awaits = true;   // … until what is better has been synthesised
+};
+
+inline void count_seen(const Camera& camera, const SeenPiece& piece, Counters& counters) {
+  const double percent = covered_percent(camera, piece.center, piece.radius_m);
+  const bool lacks = piece.hole || piece.coarse;
   ++counters.nodes_in_view;
-  if (hole) ++counters.holes;
-  if (coarse) ++counters.coarse;
-  if ((hole || coarse) && !failed) ++counters.awaited;
-  if (hole || coarse) counters.missing_pixels_percent += covered_percent(camera, center, radius_m);
+  if (piece.hole) ++counters.holes;
+  if (piece.coarse) ++counters.coarse;
+  if ((lacks || piece.twice) && piece.awaits) ++counters.awaited;
+  if (lacks) counters.missing_pixels_percent += percent;
+  counters.seen_area += percent;
+  if (lacks || piece.twice) counters.too_coarse_area += percent;
 }
 
 }  // namespace psygen::scene

@@ -90,7 +90,7 @@ void ModelDraws::each_model(const ecs::Children& children, const DrawFacts& node
 }
 
 void ModelDraws::add(const ecs::Children& children, Node how, const DrawFacts& node,
-                     const Ground& ground) {
+                     const Ground& ground, bool twice) {
   each_model(children, node, ground, [&](const Model& model, const Demand& demand, Fading& fading) {
     if (demand.in_view_tick != step_.tick) return;
     if (demand.wanted_level == kNoLevel) {  // too small by now
@@ -101,8 +101,13 @@ void ModelDraws::add(const ecs::Children& children, Node how, const DrawFacts& n
     const bool appears = how == Node::kStays && demand.entered_tick != step_.tick;
     const bool fades_in = appears || how == Node::kReplaces;
     if (!hole && !add_coming(model, demand, fading, fades_in, node)) return;
-    count_seen(camera_, model.foot + model.placed.middle, model.placed.radius_m, hole,
-               !hole && demand.drawn_level > demand.wanted_level + 1, demand.failed_levels != 0,
+    count_seen(camera_,
+               {.center = model.foot + model.placed.middle,
+                .radius_m = model.placed.radius_m,
+                .hole = hole,
+                .coarse = !hole && demand.drawn_level > demand.wanted_level + 1,
+                .twice = twice && model.merged,
+                .awaits = demand.failed_levels == 0},
                counters_);
   });
 }

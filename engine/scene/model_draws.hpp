@@ -35,8 +35,9 @@ class ModelDraws {
     float side_m;
     const GroundSun& sun;
   };
-  // The models of a node that is drawn.
-  void add(const ecs::Children& children, Node how, const DrawFacts& node, const Ground& ground);
+  // The models of a node that is drawn; `twice`: it has more than twice the error that it might.
+  void add(const ecs::Children& children, Node how, const DrawFacts& node, const Ground& ground,
+           bool twice);
   // Those of a node that is drawn no more. Returns whether anything of them is left.
   bool add_going(const ecs::Children& children, const DrawFacts& node, const Ground& ground);
 

@@ -2,6 +2,8 @@
 // and hands the lists to the renderer. Where nodes of the cut are not ready an ancestor is drawn
 // until all that replaces it is; where nothing is complete, the finest ground that closes the gap.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "engine/scene/ground_draws.hpp"
 #include "engine/scene/lighting.hpp"
@@ -17,11 +19,12 @@ namespace {
 class Drawing {
  public:
   Drawing(render::View shown, FadeStep step, const Camera& camera, const WorldFacts& facts,
-          const View& view, float fine_m, const RenderQuery& entities, DrawLists& draws,
-          Counters& counters)
+          const Streaming& streaming, const View& view, float fine_m, const RenderQuery& entities,
+          DrawLists& draws, Counters& counters)
       : shown_(shown),
         camera_(camera),
         facts_(facts),
+        distances_(streaming.distances),
         view_(view),
         fine_m_(fine_m),
         entities_(entities),
@@ -117,13 +120,21 @@ class Drawing {
         corner + glm::vec3(node.side_m / 2, (at.low_m + at.high_m) / 2, node.side_m / 2);
     const bool hole = demand->drawn_level == kNoLevel;
     const std::uint32_t coarser = node.leaf ? 0 : coarser_by(index);
-    count_seen(camera_, middle, placed->radius_m, hole, coarser > 1, demand->failed_levels != 0,
+    const float least_m = least_distance_m(node, *demand);
+    const bool twice = !hole && least_m > 0 && nearest_m(index, corner.y + at.high_m) < least_m;
+    count_seen(camera_,
+               {.center = middle,
+                .radius_m = placed->radius_m,
+                .hole = hole,
+                .coarse = coarser > 1,
+                .twice = twice,
+                .awaits = demand->failed_levels == 0},
                counters_);
     DrawFacts facts{node.node.level, entities_.get<Visibility>(entity)->layer, 0, coarser};
     if (shown_ == render::View::kCache) facts.bytes_per_m2 = bytes_per_m2(entity, node.side_m);
     if (!hole) add_ground(node, entity, at, facts, corner);
     models_.add(*entities_.get<ecs::Children>(entity), how_drawn(node.node), facts,
-                {corner, node.side_m, *entities_.get<GroundSun>(entity)});
+                {corner, node.side_m, *entities_.get<GroundSun>(entity)}, twice);
     if (shown_ == render::View::kBounds) {
       add_box({corner + glm::vec3(0, at.low_m, 0),
                corner + glm::vec3(node.side_m, at.high_m, node.side_m)},
@@ -143,6 +154,24 @@ class Drawing {
     entities_.each_of<const Demand, const Mesh>(
         entities_.children(*entities_.get<ecs::Children>(node)), add);
     return static_cast<float>(bytes) / (side_m * side_m);
+  }
+
+  // Half of the distance up to which a node's mesh is finer than what is drawn of it: nearer, that
+  // has more than twice the error that it might have. 0 for what is drawn as wanted.
+  float least_distance_m(const visibility::CutNode& node, const Demand& demand) const {
+    const bool as_wanted = node.leaf && (!node.fine || demand.drawn_level == 0);
+    return as_wanted ? 0.0F : static_cast<float>(distances_[node.node.level].split_m / 2);
+  }
+
+  // How near the camera comes to what is in view of a node whose ground is at most so high above
+  // it.
+  float nearest_m(std::uint32_t index, float highest_m) const {
+    const std::vector<visibility::CutNode>& cut = view_.cut.nodes;
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::uint32_t i = index; i < cut[index].end; ++i) {
+      if (cut[i].leaf && view_.in_view[i] != 0) nearest = std::min(nearest, cut[i].distance_m);
+    }
+    return std::hypot(nearest, std::max(-highest_m, 0.0F));
   }
 
   // By how many levels the finest node in view that it is drawn for is finer.
@@ -189,6 +218,7 @@ class Drawing {
   const render::View shown_;
   const Camera& camera_;
   const WorldFacts& facts_;
+  const std::span<const visibility::LevelDistances> distances_;
   const View& view_;
   const float fine_m_;  // blocks nearer than this have their finest ground
   const RenderQuery& entities_;
@@ -219,8 +249,8 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   for (const visibility::CutNode& node : view.cut.nodes)
     draws.entities.push_back(streaming.grids[node.node.level].entity_of(node.node.coord));
   const render::Morph morph = morph_of(streaming);
-  Drawing(input.view, fade_step(settings, clock, draws), camera, facts, view, morph.to_m, entities,
-          draws, counters)
+  Drawing(input.view, fade_step(settings, clock, draws), camera, facts, streaming, view, morph.to_m,
+          entities, draws, counters)
       .run(draws.entities, streaming, draws.tick + 1 == clock.tick);
   draws.tick = clock.tick;
   draws.now_s = clock.now_s;

@@ -147,6 +147,10 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
   tracing.main = log->add_track("main thread");
   tracing.cache_bytes = log->add_counter("cache bytes");
   tracing.requests = log->add_counter("requests");
+  tracing.gpu_ms = log->add_counter("device ms");
+  tracing.device_wait = log->intern("wait for the device");
+  tracing.acquire = log->intern("wait for the window");
+  tracing.present = log->intern("present");
   for (const ecs::SystemInfo& system : tick.systems())
     tracing.systems.push_back(log->intern(system.name));
   for (std::uint32_t i = 0; i < modelers; ++i) {

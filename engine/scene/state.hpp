@@ -56,6 +56,7 @@ struct Quality {
   // The same for single models. Of what the governor adds they take the root: they are near, where
   // one looks, and few of a frame's triangles.
   double model_error_pixels = 0;
+  double memory_factor = 1;  // of both, by how much the geometry budget raised them
 };
 
 struct Clock {
@@ -191,10 +192,13 @@ struct Counters {
   std::uint32_t nodes_hidden = 0;  // of the cut, behind ridges
   std::uint32_t holes = 0;         // nodes in view that are drawn at no level
   std::uint32_t coarse = 0;        // nodes in view coarser than wanted by more than one level
-  std::uint32_t awaited = 0;       // of both, what does not lack because its synthesis failed
+  // Of both, and of what has more than twice its error: what can still be synthesised.
+  std::uint32_t awaited = 0;
   double missing_pixels_percent = 0;
-  std::uint32_t requests = 0;  // wanted, but not there
-  std::uint32_t refused = 0;   // of these, for want of memory
+  double seen_area = 0, too_coarse_area = 0;  // of pieces (missing.hpp), in percent of the picture
+  std::uint32_t requests = 0;                 // wanted, but not there
+  std::uint32_t refused = 0;                  // of these, for want of memory
+  std::uint32_t refused_visible = 0;          // … of what is in view
   std::uint32_t completed = 0, failed = 0;
   std::uint32_t models_synthesised = 0;
   std::uint64_t triangles_synthesised = 0, bytes_synthesised = 0;
@@ -230,10 +234,12 @@ struct Output {
 // The trace of a run with its names looked up once; `log` may be null.
 struct Tracing {
   telemetry::TraceLog* log = nullptr;
-  telemetry::TraceLog::Track main = 0, cache_bytes = 0, requests = 0;
-  std::vector<telemetry::TraceLog::Name> systems;    // in the order of the tick
-  std::vector<telemetry::TraceLog::Track> modelers;  // by number
-  std::vector<telemetry::TraceLog::Name> models;     // by index in the registry
+  telemetry::TraceLog::Track main = 0, cache_bytes = 0, requests = 0, gpu_ms = 0;
+  std::uint64_t gpu_frame = 0;                                          // the last one in gpu_ms
+  std::vector<telemetry::TraceLog::Name> systems;                       // in the order of the tick
+  telemetry::TraceLog::Name device_wait = 0, acquire = 0, present = 0;  // within a system
+  std::vector<telemetry::TraceLog::Track> modelers;                     // by number
+  std::vector<telemetry::TraceLog::Name> models;                        // by index in the registry
 };
 
 struct State {

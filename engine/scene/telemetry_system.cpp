@@ -4,6 +4,35 @@
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
+namespace {
+
+telemetry::Apart apart_of(render::Apart apart) {
+  switch (apart) {
+    case render::Apart::kNo:
+      return telemetry::Apart::kNo;
+    case render::Apart::kAfterIdle:
+      return telemetry::Apart::kAfterIdle;
+    case render::Apart::kResized:
+      return telemetry::Apart::kResized;
+    case render::Apart::kNotDrawn:
+      return telemetry::Apart::kNotDrawn;
+  }
+  return telemetry::Apart::kNo;
+}
+
+// What the renderer says of the frame.
+void note_drawing(const render::FrameResult& frame, telemetry::FrameRecord& record) {
+  record.device_wait_ms = frame.device.ms;
+  record.acquire_ms = frame.acquire.ms;
+  record.present_ms = frame.present.ms;
+  record.record_ms = frame.cpu_ms;
+  record.device_frame = frame.frame;
+  record.apart = apart_of(frame.apart);
+  record.triangles = frame.triangles;
+  record.draws = frame.draws;
+}
+
+}  // namespace
 
 void telemetry_system(const Clock& clock, const Quality& quality, const Counters& counters,
                       const DrawLists& draws, Synthesis& synthesis, Totals& totals,
@@ -14,22 +43,24 @@ void telemetry_system(const Clock& clock, const Quality& quality, const Counters
     return static_cast<std::uint32_t>(now - before);
   };
   record.time_s = clock.now_s;
-  record.wait_ms = counters.frame.wait_ms;
-  record.gpu_ms = counters.frame.gpu_ms.value_or(0.0);
+  note_drawing(counters.frame, record);
   record.error_pixels = quality.error_pixels;
-  record.triangles = counters.frame.triangles;
-  record.draws = counters.frame.draws;
+  record.memory_factor = quality.memory_factor;
   record.nodes_in_view = counters.nodes_in_view;
   record.holes = counters.holes;
   record.coarse_nodes = counters.coarse;
   record.missing_pixels_percent = counters.missing_pixels_percent;
+  record.too_coarse_percent =
+      counters.seen_area > 0 ? 100 * counters.too_coarse_area / counters.seen_area : 0.0;
   record.cache_bytes = cache.bytes;
   record.cache_hits = since(cache.hits, totals.cache.hits);
   record.cache_misses = since(cache.misses, totals.cache.misses);
   record.cache_evictions = since(cache.evictions, totals.cache.evictions);
   record.cache_regenerations = since(cache.regenerations, totals.cache.regenerations);
   record.requests_queued = counters.requests;
+  record.requests_refused = counters.refused_visible;
   record.requests_completed = counters.completed;
+  record.models_failed = counters.failed;
   record.models_synthesised = counters.models_synthesised;
   record.triangles_synthesised = counters.triangles_synthesised;
   record.bytes_synthesised = counters.bytes_synthesised;

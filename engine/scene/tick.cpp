@@ -3,10 +3,16 @@
 // two together.
 #include "engine/scene/tick.hpp"
 
+#include <algorithm>
+#include <string_view>
+
 #include "engine/core/clock.hpp"
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
+namespace {
+constexpr std::string_view kRenderSystem = "render";
+}  // namespace
 
 void build_tick(State& s) {
   s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight,
@@ -19,13 +25,28 @@ void build_tick(State& s) {
   s.tick.add("cache", cache_system);
   s.tick.add("synthesis", synthesis_system);
   s.tick.add("upload", upload_system);
-  s.tick.add("render", render_system, ecs::RunsOn::kCallingThread);
+  s.tick.add(kRenderSystem, render_system, ecs::RunsOn::kCallingThread);
   s.tick.add("telemetry", telemetry_system);
 }
 
 namespace {
 
-void trace_tick(const State& state) {
+// What the renderer waited for, and what the device took for the latest frame that is known.
+void trace_frame(const render::FrameResult& frame, Tracing& trace) {
+  const auto add = [&](telemetry::TraceLog::Name name, const render::Wait& wait) {
+    if (wait.ms > 0)
+      trace.log->add_span(trace.main, name, wait.start_s, wait.start_s + wait.ms * 1e-3,
+                          frame.frame);
+  };
+  add(trace.device_wait, frame.device);
+  add(trace.acquire, frame.acquire);
+  add(trace.present, frame.present);
+  if (!frame.gpu || frame.gpu->frame == trace.gpu_frame) return;
+  trace.gpu_frame = frame.gpu->frame;
+  trace.log->add_value(trace.gpu_ms, frame.gpu->submitted_s, frame.gpu->ms);
+}
+
+void trace_tick(State& state) {
   telemetry::TraceLog& log = *state.trace.log;
   const auto systems = state.tick.systems();
   for (std::size_t i = 0; i < systems.size(); ++i) {
@@ -33,9 +54,20 @@ void trace_tick(const State& state) {
     log.add_span(state.trace.main, state.trace.systems[i], start_s,
                  start_s + systems[i].last_seconds, state.clock.tick);
   }
+  trace_frame(state.counters.frame, state.trace);
   const double now_s = core::monotonic_seconds();
   log.add_value(state.trace.cache_bytes, now_s, static_cast<double>(state.record.cache_bytes));
   log.add_value(state.trace.requests, now_s, state.record.requests_queued);
+}
+
+// Without waiting for the device and the display, which only drawing does.
+void note_system_times(State& state) {
+  const auto systems = state.tick.systems();
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    const double waited_ms = systems[i].name == kRenderSystem ? state.record.wait_ms() : 0.0;
+    const double ms = systems[i].last_seconds * 1000.0 - waited_ms;
+    state.record.system_ms[i] = static_cast<float>(std::max(ms, 0.0));
+  }
 }
 
 }  // namespace
@@ -47,9 +79,7 @@ void tick(State& state) {
   state.record = {};
   state.synthesis.manager->lower_priority();
   state.tick.run();
-  const auto systems = state.tick.systems();
-  for (std::size_t i = 0; i < systems.size(); ++i)
-    state.record.system_ms[i] = static_cast<float>(systems[i].last_seconds * 1000.0);
+  note_system_times(state);
   if (state.trace.log != nullptr) trace_tick(state);
   ++state.clock.tick;
 }

@@ -154,10 +154,12 @@ void choose_cut(const Settings& settings, const Camera& camera, const WorldFacts
 
 // A node in view that has no entity yet is a hole unless an ancestor stands for it.
 void count_missing_node(const Camera& camera, const core::Bounds& box, Counters& counters) {
-  ++counters.nodes_in_view;
-  ++counters.holes;
-  counters.missing_pixels_percent +=
-      covered_percent(camera, box.center(), glm::length(box.half_extent()));
+  count_seen(camera,
+             {.center = box.center(),
+              .radius_m = glm::length(box.half_extent()),
+              .hole = true,
+              .awaits = false},
+             counters);
 }
 
 // What of the cut could be drawn before this tick, and what of it is therefore drawn now, unless a

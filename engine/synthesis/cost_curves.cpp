@@ -41,22 +41,81 @@ std::vector<std::int64_t> values_of(const models::ParameterSpec& spec) {
   return values;
 }
 
-// The mean over the seeds of one set of parameters; no seconds if it cannot be synthesised.
-CurvePoint point_at(const CostModel& cost, CostSample sample, const models::ModelType& type,
-                    int seeds, const CalibrationOptions& options, double deadline_s) {
+void add(Work& sum, const Work& work, double share) {
+  sum.operations += share * work.operations;
+  sum.triangles += share * work.triangles;
+  sum.steps += share * work.steps;
+}
+
+// One sample and the least that it took; nothing while it was not measured.
+struct Run {
+  CostSample sample;
+  std::optional<Measurement> measured;
+};
+
+// What is measured for a value of a parameter: once, or once for each seed.
+std::vector<Run> runs_at(const models::ModelType& type, CostSample sample, int seeds) {
+  std::vector<Run> runs;
   const int seed = models::parameter_index(type, "seed");
-  const int runs = seed < 0 ? 1 : seeds;
-  CurvePoint point;
-  CalibrationReport ignored;
-  for (int s = 0; s < runs; ++s) {
+  for (int s = 0; s < (seed < 0 ? 1 : seeds); ++s) {
     if (seed >= 0) sample.parameters.set_integer(static_cast<std::size_t>(seed), s);
-    const auto m = cost.measure(sample, 0, options, deadline_s, ignored);
-    if (!m) return {};
-    point.seconds += m->seconds / runs;
-    point.operations += m->work.operations / runs;
-    point.predicted_s += cost.predict_from(sample.model, 0, m->work) / runs;
+    runs.push_back({sample, std::nullopt});
   }
+  return runs;
+}
+
+// False if one was never measured: it cannot be synthesised, or the time is up.
+bool measure_all(std::vector<Run>& runs, const CostModel& cost, const CalibrationOptions& options,
+                 double deadline_s) {
+  CalibrationReport ignored;
+  for (Run& run : runs) {
+    const auto now = cost.measure(run.sample, 0, options, deadline_s, ignored);
+    if (now && (!run.measured || now->seconds < run.measured->seconds)) run.measured = now;
+    if (!run.measured) return false;
+  }
+  return true;
+}
+
+// The mean over the runs, all of which are measured.
+CurvePoint point_of(std::span<const Run> runs, double value, const CostModel& cost) {
+  const double share = 1.0 / static_cast<double>(runs.size());
+  CurvePoint point{value, 0, 0, {}};
+  Work mean{0, 0, 0};
+  double predicted_s = 0;
+  for (const Run& run : runs) {
+    point.seconds += share * run.measured->seconds;
+    add(mean, run.measured->work, share);
+    predicted_s += share * cost.predict_from(run.sample.model, 0, run.measured->work);
+  }
+  point.operations = mean.operations;
+  if (cost.covers(runs[0].sample.model, 0, mean)) point.predicted_s = predicted_s;
   return point;
+}
+
+std::vector<CurvePoint> points_over(const models::ModelType& type, models::ModelIndex model,
+                                    std::size_t parameter, const CostModel& cost, int seeds,
+                                    const CalibrationOptions& options, double deadline_s) {
+  struct Value {
+    double value;
+    std::vector<Run> runs;
+  };
+  std::vector<Value> values;
+  for (const std::int64_t value : values_of(type.parameters()[parameter])) {
+    CostSample sample{model, models::default_parameters(type)};
+    sample.parameters.set_integer(parameter, value);
+    if (!models::validate(type, sample.parameters)) continue;
+    Value at{static_cast<double>(value), runs_at(type, sample, seeds)};
+    if (measure_all(at.runs, cost, options, deadline_s)) values.push_back(std::move(at));
+  }
+  // What else runs on the machine comes and goes; the least counts.
+  for (int sweep = 1; sweep < options.sweeps; ++sweep) {
+    for (Value& at : values)
+      measure_all(at.runs, cost, options, deadline_s);
+  }
+  std::vector<CurvePoint> points;
+  for (const Value& at : values)
+    points.push_back(point_of(at.runs, at.value, cost));
+  return points;
 }
 
 // How many levels the samples of a type have; all where there are none.
@@ -138,17 +197,10 @@ std::vector<CostCurve> cost_curves(const models::Registry& registry, const CostM
     for (std::size_t i = 0; i < type.parameters().size(); ++i) {
       if (!is_cost_parameter(type, i)) continue;
       CostCurve curve{model, std::string(type.parameters()[i].name), {}, {}};
+      curve.points = points_over(type, model, i, cost, seeds, options, deadline_s);
       std::vector<Measurement> measured;
-      for (const std::int64_t value : values_of(type.parameters()[i])) {
-        CostSample sample{model, models::default_parameters(type)};
-        sample.parameters.set_integer(i, value);
-        if (!models::validate(type, sample.parameters)) continue;
-        CurvePoint point = point_at(cost, sample, type, seeds, options, deadline_s);
-        if (!(point.seconds > 0)) continue;
-        point.value = static_cast<double>(value);
-        curve.points.push_back(point);
+      for (const CurvePoint& point : curve.points)
         measured.push_back({{point.operations, 0, 0}, point.seconds});
-      }
       curve.formula = fit_formula(measured);
       curves.push_back(std::move(curve));
     }

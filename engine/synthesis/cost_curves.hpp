@@ -16,15 +16,16 @@ struct CurvePoint {
   double value = 0;       // of the parameter
   double seconds = 0;     // mean over the seeds
   double operations = 0;  // by the formula
-  double predicted_s = 0;
+  // By the cost model; none where it was calibrated with nothing like it (CostModel::covers).
+  std::optional<double> predicted_s;
 };
 
-// Level 0 of one type over one parameter, everything else at its default.
+// Level 0 of one type over one parameter, everything else at its default. No points: not measured.
 struct CostCurve {
   models::ModelIndex model = 0;
   std::string parameter;
   std::vector<CurvePoint> points;
-  FormulaFit formula;  // seconds = c · operations
+  FormulaFit formula;  // of the points
 };
 
 // Curves of every type over every integer parameter that its formula depends on, within the

@@ -35,7 +35,25 @@ double clock_seconds(const std::function<double()>& clock) {
     (void)clock();
   return (clock() - start_s) / kCalls;
 }
+
+WorkRange range_of(std::span<const Measurement> measured) {
+  WorkRange range{measured[0].work, measured[0].work};
+  for (const Measurement& m : measured) {
+    for (double Work::*part : {&Work::operations, &Work::triangles, &Work::steps}) {
+      range.least.*part = std::min(range.least.*part, m.work.*part);
+      range.most.*part = std::max(range.most.*part, m.work.*part);
+    }
+  }
+  return range;
+}
 }  // namespace
+
+bool WorkRange::holds(const Work& work) const {
+  for (double Work::*part : {&Work::operations, &Work::triangles, &Work::steps}) {
+    if (work.*part * kSlack < least.*part || work.*part > most.*part * kSlack) return false;
+  }
+  return true;
+}
 
 double quantile(std::span<double> values, double p) {
   if (values.empty()) return 0;
@@ -55,6 +73,7 @@ CostModel::CostModel(const models::Registry& registry) : registry_(registry) {
     if (const double step_s = type.step_seconds(); std::isfinite(step_s) && step_s >= 0)
       guess.per_step_s = step_s;
     fits_.emplace_back(levels, guess);
+    ranges_.emplace_back(levels);
     corrections_.emplace_back(levels);
     const std::type_index code(typeid(type));
     codes_.push_back(static_cast<std::size_t>(std::ranges::find(codes, code) - codes.begin()));
@@ -69,6 +88,13 @@ const CostFit& CostModel::fit(models::ModelIndex model, int level) const {
 
 std::size_t CostModel::code_of(models::ModelIndex model) const {
   return model < codes_.size() ? codes_[model] : 0;
+}
+
+bool CostModel::covers(models::ModelIndex model, int level, const Work& work) const {
+  if (model >= ranges_.size() || level < 0) return false;
+  const auto at = static_cast<std::size_t>(level);
+  const auto& levels = ranges_[model];
+  return at < levels.size() && levels[at] && levels[at]->holds(work);
 }
 
 Work CostModel::work(models::ModelIndex model, const models::Parameters& parameters, int level,
@@ -222,7 +248,10 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
   }
   LevelCalibration result{model, level, fit(model, level), 0,
                           static_cast<std::uint32_t>(measured.size())};
+  auto& range = ranges_[model][static_cast<std::size_t>(level)];
+  range.reset();
   if (measured.empty()) return result;
+  range = range_of(measured);
   std::vector<double> level_errors;
   for (const Measurement& m : measured)
     level_errors.push_back(std::abs(m.seconds - result.fit.seconds(m.work)) / m.seconds * 100);

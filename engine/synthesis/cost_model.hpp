@@ -46,6 +46,14 @@ struct LevelCalibration {
   std::uint32_t samples = 0;     // 0: skipped, the fit was carried over from a coarser level
 };
 
+// What the measurements of a level had to do, from the least to the most of each.
+struct WorkRange {
+  static constexpr double kSlack = 1.25;  // beyond either end
+  Work least, most;
+  // Whether as little and as much was measured: what lies beyond is predicted, but nobody checked.
+  bool holds(const Work& work) const;
+};
+
 struct CalibrationReport {
   std::vector<LevelCalibration> levels;
   double seconds = 0;                // wall-clock time spent
@@ -96,6 +104,8 @@ class CostModel {
                                      const CalibrationOptions& options, double deadline_s,
                                      CalibrationReport& report) const;
   CostError error() const;
+  // Whether calibration measured the like at this very level; false before it.
+  bool covers(models::ModelIndex model, int level, const Work& work) const;
   const CostFit& fit(models::ModelIndex model, int level) const;
 
  private:
@@ -105,9 +115,10 @@ class CostModel {
                                    CalibrationReport& report, std::vector<double>& errors);
 
   const models::Registry& registry_;
-  std::vector<std::vector<CostFit>> fits_;                // [model][level]
-  std::vector<std::vector<CostCorrection>> corrections_;  // [model][level]
-  std::vector<std::size_t> codes_;                        // [model]
+  std::vector<std::vector<CostFit>> fits_;                     // [model][level]
+  std::vector<std::vector<std::optional<WorkRange>>> ranges_;  // the same; none: not measured
+  std::vector<std::vector<CostCorrection>> corrections_;       // the same
+  std::vector<std::size_t> codes_;                             // [model]
   std::vector<ColdSeconds> cold_by_code_;
   double request_s_ = 0;              // that every request takes beside its synthesis
   std::vector<float> recent_errors_;  // ring, in percent

@@ -13,6 +13,7 @@
 namespace psygen::synthesis {
 namespace {
 
+constexpr double kLeastNoticeSeconds = 0.002;  // deadlines are written in milliseconds
 constexpr std::string_view kHeader = "psygen requests 2";
 
 // The next word of a line, which it leaves.
@@ -56,6 +57,12 @@ std::vector<SimulatedJob> initial_fill(std::span<const SimulatedJob> jobs) {
   return fill;
 }
 
+// Whether it could be in time. What is due at once stands beside the picture, on ground that is in
+// view: no policy could have it by then.
+bool is_due_later(const SimulatedJob& job) {
+  return job.deadline_s < kNoDeadline && job.deadline_s > job.arrival_s + kLeastNoticeSeconds;
+}
+
 PolicyFigures figures_of(std::span<const SimulatedJob> jobs, unsigned modelers, Policy policy) {
   PolicyFigures figures;
   figures.policy = policy;
@@ -68,7 +75,7 @@ PolicyFigures figures_of(std::span<const SimulatedJob> jobs, unsigned modelers, 
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (is_visible(jobs[i].rank.group())) {
       waits.push_back(all.runs[i].finish_s - jobs[i].arrival_s);
-    } else if (jobs[i].deadline_s < kNoDeadline) {
+    } else if (is_due_later(jobs[i])) {
       lateness.push_back(std::max(0.0, all.runs[i].finish_s - jobs[i].deadline_s));
     }
   }
@@ -121,6 +128,20 @@ core::Result<std::vector<SimulatedJob>> parse_stream(std::string_view text, std:
   }
   if (jobs.empty()) return refuse(1, "there is no request");
   return jobs;
+}
+
+StreamLoad load_of(std::span<const SimulatedJob> jobs, unsigned modelers) {
+  StreamLoad load;
+  load.requests = jobs.size();
+  double first = kNoDeadline, last = 0;
+  for (const SimulatedJob& job : jobs) {
+    first = std::min(first, job.arrival_s);
+    last = std::max(last, job.arrival_s);
+    load.work_s += job.seconds;
+  }
+  load.span_s = std::max(last - first, 0.0);
+  load.percent = load.span_s > 0 ? 100 * load.work_s / (load.span_s * modelers) : 0.0;
+  return load;
 }
 
 std::vector<PolicyFigures> compare_policies(std::span<const SimulatedJob> jobs, unsigned modelers) {

@@ -29,10 +29,21 @@ struct PolicyFigures {
   // modelers had nothing to do.
   double fill_s = 0, fill_idle_percent = 0;
   double visible_p50_s = 0, visible_p99_s = 0,
-         visible_max_s = 0;                        // from wanted in view to finished
-  double late_percent = 0;                         // of what was predicted to come into view
-  double lateness_mean_s = 0, lateness_max_s = 0;  // of the same; 0 for what was in time
+         visible_max_s = 0;  // from wanted in view to finished
+  // Of what was predicted to come into view later than at once: the share that was not finished by
+  // then, and how late it was, 0 for what was in time.
+  double late_percent = 0;
+  double lateness_mean_s = 0, lateness_max_s = 0;
 };
+
+// How much there is to do for so many modelers.
+struct StreamLoad {
+  std::size_t requests = 0;
+  double span_s = 0;   // from the first to the last arrival
+  double work_s = 0;   // of one core
+  double percent = 0;  // of what the modelers can do in that time; 0 if it is none
+};
+StreamLoad load_of(std::span<const SimulatedJob> jobs, unsigned modelers);
 
 // One row for each policy. Deterministic. Requires modelers >= 1.
 std::vector<PolicyFigures> compare_policies(std::span<const SimulatedJob> jobs, unsigned modelers);

@@ -50,7 +50,7 @@ SimulationResult simulate(std::span<const SimulatedJob> jobs, unsigned modelers,
     result.mean_wait_s /= static_cast<double>(jobs.size());
     result.mean_lateness_s /= static_cast<double>(jobs.size());
   }
-  result.idle_seconds = result.makespan_s * modelers - busy_seconds;
+  result.idle_seconds = std::max(0.0, result.makespan_s * modelers - busy_seconds);
   return result;
 }
 

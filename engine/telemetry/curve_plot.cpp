@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "engine/telemetry/report_plot.hpp"
 
@@ -42,7 +43,7 @@ class Drawing {
                    kHeight, escaped(plot_.title));
     draw_axes();
     for (const Curve& curve : plot_.curves)
-      curve.kind == CurveKind::kLine ? draw_line(curve) : draw_points(curve);
+      curve.kind == CurveKind::kPoints ? draw_points(curve) : draw_line(curve);
     return std::move(text_) + "</svg>";
   }
 
@@ -75,23 +76,44 @@ class Drawing {
                    escaped(plot_.unit));
   }
 
-  template <class Each>
-  void each_point(const Curve& curve, Each each) {
-    for (std::size_t i = 0; i < std::min(curve.values.size(), plot_.x.size()); ++i)
-      if (std::isfinite(curve.values[i])) each(x_of(plot_.x[i]), y_of(curve.values[i]));
+  std::size_t value_count(const Curve& curve) const {
+    return std::min(curve.values.size(), plot_.x.size());
   }
 
+  // Each stretch without gaps.
   void draw_line(const Curve& curve) {
-    fmt::format_to(out(), "<polyline class=\"line stroke{}\" points=\"", curve.colour);
-    each_point(curve, [&](double x, double y) { fmt::format_to(out(), "{:.1f},{:.1f} ", x, y); });
-    text_ += "\"/>";
+    std::vector<std::pair<double, double>> stretch;
+    const auto end_stretch = [&] {
+      if (stretch.size() == 1) {
+        fmt::format_to(out(),
+                       "<circle class=\"ring stroke{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"6\"/>",
+                       curve.colour, stretch[0].first, stretch[0].second);
+      } else if (stretch.size() > 1) {
+        const char* dashed = curve.kind == CurveKind::kDashed ? " dashed" : "";
+        fmt::format_to(out(), "<polyline class=\"line{} stroke{}\" points=\"", dashed,
+                       curve.colour);
+        for (const auto& [x, y] : stretch)
+          fmt::format_to(out(), "{:.1f},{:.1f} ", x, y);
+        text_ += "\"/>";
+      }
+      stretch.clear();
+    };
+    for (std::size_t i = 0; i < value_count(curve); ++i) {
+      if (std::isfinite(curve.values[i])) {
+        stretch.emplace_back(x_of(plot_.x[i]), y_of(curve.values[i]));
+      } else {
+        end_stretch();
+      }
+    }
+    end_stretch();
   }
 
   void draw_points(const Curve& curve) {
-    each_point(curve, [&](double x, double y) {
+    for (std::size_t i = 0; i < value_count(curve); ++i) {
+      if (!std::isfinite(curve.values[i])) continue;
       fmt::format_to(out(), "<circle class=\"fill{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\"/>",
-                     curve.colour, x, y);
-    });
+                     curve.colour, x_of(plot_.x[i]), y_of(curve.values[i]));
+    }
   }
 
   const CurvePlot& plot_;
@@ -104,6 +126,10 @@ class Drawing {
 std::string curve_plot_html(const CurvePlot& plot) {
   std::string legend;
   for (const Curve& curve : plot.curves) {
+    if (std::none_of(curve.values.begin(), curve.values.end(),
+                     [](double value) { return std::isfinite(value); })) {
+      continue;
+    }
     legend +=
         fmt::format("<span><i class=\"swatch{}\"></i>{}</span>", curve.colour, escaped(curve.name));
   }

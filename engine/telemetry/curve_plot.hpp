@@ -7,13 +7,17 @@
 
 namespace psygen::telemetry {
 
-enum class CurveKind { kPoints, kLine };
+enum class CurveKind {
+  kPoints,
+  kLine,    // breaks where there is no value; a value without neighbours is a ring
+  kDashed,  // a line like that
+};
 
 struct Curve {
   std::string name;
   int colour = 1;  // of the palette, 1 … 8; 0 is grey
   CurveKind kind = CurveKind::kLine;
-  std::vector<double> values;  // one per entry of CurvePlot::x; what is not finite is left out
+  std::vector<double> values;  // one per entry of CurvePlot::x; not finite: nothing is drawn there
 };
 
 struct CurvePlot {

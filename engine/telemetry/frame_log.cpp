@@ -16,31 +16,47 @@ namespace psygen::telemetry {
 namespace {
 
 constexpr std::string_view kColumnsBeforeSystems =
-    "frame,time_s,frame_ms,main_cpu_ms,wait_ms,gpu_ms";
+    "frame,time_s,frame_ms,main_cpu_ms,wait_ms,device_wait_ms,acquire_ms,present_ms,record_ms,"
+    "gpu_ms,gpu_shadows_ms,apart";
 constexpr std::string_view kColumnsAfterSystems =
-    "error_pixels,triangles,draws,nodes_in_view,holes,coarse_nodes,missing_pixels_percent,cache_"
-    "bytes,cache_"
-    "hits,"
-    "cache_misses,cache_evictions,cache_regenerations,requests_queued,requests_completed,"
-    "models_synthesised,triangles_synthesised,bytes_synthesised,synthesis_seconds";
+    "error_pixels,memory_factor,triangles,draws,nodes_in_view,holes,coarse_nodes,"
+    "missing_pixels_percent,too_coarse_percent,cache_bytes,cache_hits,cache_misses,"
+    "cache_evictions,cache_regenerations,requests_queued,requests_refused,requests_completed,"
+    "models_failed,models_synthesised,triangles_synthesised,bytes_synthesised,synthesis_seconds";
+// The device's time of a frame is known this many frames later at most.
+constexpr std::size_t kLatestFrames = 16;
+
+std::string cell(const std::optional<double>& ms) {
+  return ms ? fmt::format("{:.4f}", *ms) : std::string();
+}
 
 std::string row(const FrameRecord& r, std::size_t system_count) {
   std::string text;
   const auto to = std::back_inserter(text);
-  fmt::format_to(to, "{},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f}", r.index, r.time_s, r.frame_ms,
-                 r.main_cpu_ms, r.wait_ms, r.gpu_ms);
+  fmt::format_to(to, "{},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{}", r.index,
+                 r.time_s, r.frame_ms, r.main_cpu_ms, r.wait_ms(), r.device_wait_ms, r.acquire_ms,
+                 r.present_ms, r.record_ms, cell(r.gpu_ms), cell(r.gpu_shadows_ms),
+                 name_of(r.apart));
   for (std::size_t i = 0; i < system_count; ++i)
     fmt::format_to(to, ",{:.4f}", r.system_ms[i]);
-  fmt::format_to(to, ",{:.3f},{},{},{},{},{},{:.4f},{},{},{},{},{},{},{},{},{},{},{:.6f}\n",
-                 r.error_pixels, r.triangles, r.draws, r.nodes_in_view, r.holes, r.coarse_nodes,
-                 r.missing_pixels_percent, r.cache_bytes, r.cache_hits, r.cache_misses,
-                 r.cache_evictions, r.cache_regenerations, r.requests_queued, r.requests_completed,
-                 r.models_synthesised, r.triangles_synthesised, r.bytes_synthesised,
-                 r.synthesis_seconds);
+  fmt::format_to(
+      to,
+      ",{:.3f},{:.3f},{},{},{},{},{},{:.4f},{:.4f},{},{},{},{},{},{},{},{},{},{},{},{},{:.6f}\n",
+      r.error_pixels, r.memory_factor, r.triangles, r.draws, r.nodes_in_view, r.holes,
+      r.coarse_nodes, r.missing_pixels_percent, r.too_coarse_percent, r.cache_bytes, r.cache_hits,
+      r.cache_misses, r.cache_evictions, r.cache_regenerations, r.requests_queued,
+      r.requests_refused, r.requests_completed, r.models_failed, r.models_synthesised,
+      r.triangles_synthesised, r.bytes_synthesised, r.synthesis_seconds);
   return text;
 }
 
 }  // namespace
+
+std::string_view name_of(Apart apart) {
+  constexpr std::array<std::string_view, kApartKinds> kNames = {"", "picture", "after_idle",
+                                                                "resized", "not_drawn"};
+  return kNames[static_cast<std::size_t>(apart)];
+}
 
 FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
     : systems_(std::move(systems)), max_frames_(max_frames) {
@@ -62,6 +78,16 @@ void FrameLog::add(const FrameRecord& record) {
     }
   }
   ++dropped_;
+}
+
+void FrameLog::set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_ms) {
+  const std::size_t looked_at = std::min(frames_.size(), kLatestFrames);
+  const auto found =
+      std::find_if(frames_.rbegin(), frames_.rbegin() + static_cast<std::ptrdiff_t>(looked_at),
+                   [&](const FrameRecord& r) { return r.device_frame == device_frame; });
+  if (found == frames_.rbegin() + static_cast<std::ptrdiff_t>(looked_at)) return;
+  found->gpu_ms = ms;
+  found->gpu_shadows_ms = shadows_ms;
 }
 
 void FrameLog::add_cost_error(double time_s, double predicted_s, double actual_s) {

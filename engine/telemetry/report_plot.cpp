@@ -28,20 +28,33 @@ struct Column {
   double mean() const { return count > 0 ? sum / count : 0; }
 };
 
+// Empty ones where no value is finite.
 std::vector<Column> columns_of(std::span<const double> times, std::span<const double> values) {
   const std::size_t count = std::min(times.size(), kMaxColumns);
   std::vector<Column> columns(count);
+  for (std::size_t i = times.size(); i-- > 0;)
+    columns[i * count / times.size()].time_s = times[i];
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
     Column& column = columns[i * count / times.size()];
-    if (column.count == 0) column.time_s = times[i];
     column.low = std::min(column.low, values[i]);
     column.high = std::max(column.high, values[i]);
     column.sum += values[i];
     ++column.count;
   }
-  std::erase_if(columns, [](const Column& column) { return column.count == 0; });
   return columns;
+}
+
+// visit(first, end) for each stretch of columns that have values.
+template <class Visit>
+void for_each_stretch(std::span<const Column> columns, const Visit& visit) {
+  for (std::size_t first = 0; first < columns.size();) {
+    std::size_t end = first;
+    while (end < columns.size() && columns[end].count > 0)
+      ++end;
+    if (end > first) visit(first, end);
+    first = end + 1;
+  }
 }
 
 // 1, 2 or 5 times a power of ten, so that `range` has about `steps` of them.
@@ -75,6 +88,7 @@ class Drawing {
     draw_warmup();
     draw_axes();
     draw_series();
+    draw_marks();
     for (const PlotLevel& level : plot_.levels)
       draw_level(level);
     text_ += "<line class=\"cursor\" visibility=\"hidden\" y1=\"14\" y2=\"206\"/></svg>";
@@ -95,8 +109,10 @@ class Drawing {
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       nlohmann::json values = nlohmann::json::array();
-      for (const Column& column : columns_[i])
-        values.push_back(std::round(shown(column) * 1000) / 1000);
+      for (const Column& column : columns_[i]) {
+        const double value = std::round(shown(column) * 1000) / 1000;
+        values.push_back(column.count > 0 ? nlohmann::json(value) : nlohmann::json(nullptr));
+      }
       json["series"].push_back({{"name", plot_.series[i].name}, {"v", values}});
     }
     return json;
@@ -163,50 +179,87 @@ class Drawing {
                    (kLeft + kRight) / 2, kBottom + 38, (kTop + kBottom) / 2, escaped(plot_.unit));
   }
 
-  // A closed path between two curves over the same columns.
+  // Closed paths between two curves over the same columns.
   template <class Low, class High>
   void draw_area(std::size_t series, const char* style, const Low& low, const High& high) {
     const std::vector<Column>& columns = columns_[series];
-    if (columns.empty()) return;
-    fmt::format_to(out(), "<path class=\"{} fill{}\" d=\"M", style, plot_.series[series].colour);
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      fmt::format_to(out(), " {:.1f},{:.1f}", x_of(columns[k].time_s), y_of(high(k)));
-    for (std::size_t k = columns.size(); k-- > 0;)
-      fmt::format_to(out(), " {:.1f},{:.1f}", x_of(columns[k].time_s), y_of(low(k)));
-    text_ += "Z\"/>";
+    std::string path;
+    const auto add = [&](double value, std::size_t k) {
+      fmt::format_to(std::back_inserter(path), " {:.1f},{:.1f}", x_of(columns[k].time_s),
+                     y_of(value));
+    };
+    for_each_stretch(columns, [&](std::size_t first, std::size_t end) {
+      path += "M";
+      for (std::size_t k = first; k < end; ++k)
+        add(high(k), k);
+      for (std::size_t k = end; k-- > first;)
+        add(low(k), k);
+      path += "Z";
+    });
+    if (path.empty()) return;
+    fmt::format_to(out(), "<path class=\"{} fill{}\" d=\"{}\"/>", style,
+                   plot_.series[series].colour, path);
   }
 
+  // A value without neighbours is a dot.
   void draw_line(std::size_t series) {
     const std::vector<Column>& columns = columns_[series];
-    if (columns.empty()) return;
-    fmt::format_to(out(), "<path class=\"line stroke{}\" d=\"M", plot_.series[series].colour);
-    for (const Column& column : columns)
-      fmt::format_to(out(), " {:.1f},{:.1f}", x_of(column.time_s), y_of(shown(column)));
-    text_ += "\"/>";
+    const int colour = plot_.series[series].colour;
+    std::string path;
+    for_each_stretch(columns, [&](std::size_t first, std::size_t end) {
+      if (end - first == 1) {
+        fmt::format_to(out(), "<circle class=\"fill{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>",
+                       colour, x_of(columns[first].time_s), y_of(shown(columns[first])));
+        return;
+      }
+      path += "M";
+      for (std::size_t k = first; k < end; ++k)
+        fmt::format_to(std::back_inserter(path), " {:.1f},{:.1f}", x_of(columns[k].time_s),
+                       y_of(shown(columns[k])));
+    });
+    if (!path.empty())
+      fmt::format_to(out(), "<path class=\"line stroke{}\" d=\"{}\"/>", colour, path);
+  }
+
+  void draw_stack() {
+    std::vector<double> below(columns_.empty() ? 0 : columns_.front().size(), 0.0);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      std::vector<double> above = below;
+      for (std::size_t k = 0; k < above.size(); ++k)
+        above[k] += columns_[i][k].mean();
+      draw_area(
+          i, "stack", [&](std::size_t k) { return below[k]; },
+          [&](std::size_t k) { return above[k]; });
+      below = std::move(above);
+    }
   }
 
   void draw_series() {
-    std::vector<double> below(columns_.empty() ? 0 : columns_.front().size(), 0.0);
+    if (plot_.kind == PlotKind::kStacked) return draw_stack();
+    const bool peaks = plot_.kind == PlotKind::kPeaks;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const std::vector<Column>& columns = columns_[i];
-      if (plot_.kind == PlotKind::kStacked) {
-        std::vector<double> above = below;
-        for (std::size_t k = 0; k < std::min(columns.size(), above.size()); ++k)
-          above[k] += columns[k].mean();
-        if (columns.size() == below.size()) {
-          draw_area(
-              i, "stack", [&](std::size_t k) { return below[k]; },
-              [&](std::size_t k) { return above[k]; });
-        }
-        below = std::move(above);
-        continue;
-      }
-      const bool peaks = plot_.kind == PlotKind::kPeaks;
       draw_area(
           i, "band", [&](std::size_t k) { return peaks ? 0.0 : columns[k].low; },
           [&](std::size_t k) { return columns[k].high; });
       draw_line(i);
     }
+  }
+
+  // One mark for what would lie on the same place.
+  void draw_marks() {
+    if (plot_.marks_s.empty()) return;
+    std::string path;
+    double last = -1;
+    for (const double time_s : plot_.marks_s) {
+      const double x = std::round(x_of(time_s));
+      if (x == last) continue;
+      fmt::format_to(std::back_inserter(path), "M{} {}v-8", x, kBottom);
+      last = x;
+    }
+    fmt::format_to(
+        out(), "<path class=\"mark\" d=\"{}\"><title>not in the figures of times</title></path>",
+        path);
   }
 
   // The label stands right of the drawing, so that curves do not run through it.

@@ -17,8 +17,8 @@ enum class PlotKind {
 
 struct PlotSeries {
   std::string name;
-  int colour = 0;              // of the palette in report_style.cpp, 1 … 8; 0 is grey
-  std::vector<double> values;  // one per entry of Plot::times_s
+  int colour = 0;              // of the palette in report_style.cpp, 1 … 8; 0 and 9 are greys
+  std::vector<double> values;  // one per entry of Plot::times_s; not finite: nothing is drawn
 };
 
 // A dashed horizontal line with a label right of it, just above or below its height.
@@ -36,8 +36,9 @@ struct Plot {
   std::span<const double> times_s;  // ascending
   std::vector<PlotSeries> series;
   std::vector<PlotLevel> levels;
-  double warmup_s = 0;  // shaded from the start to here
-  double top = 0;       // of the axis; 0 chooses it by the data. Higher values are cut off
+  std::vector<double> marks_s;  // times that are marked below the drawing
+  double warmup_s = 0;          // shaded from the start to here
+  double top = 0;               // of the axis; 0 chooses it by the data. Higher values are cut off
 };
 
 // A <figure> element. All text is escaped.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "engine/telemetry/statistics.hpp"
 #include "engine/telemetry/summary.hpp"
@@ -9,6 +10,7 @@ namespace {
 
 using Frames = std::span<const FrameRecord>;
 
+constexpr double kLeastBusySeconds = 0.25;  // below it says nothing of a share
 constexpr const char* kNoFrames = "no frame is left after the warm-up";
 
 // One value per frame.
@@ -33,7 +35,71 @@ Figure percentile_of_samples(const SampleSet& samples, double warmup_s, double p
   return percentile(samples.values_since(warmup_s), p);
 }
 
-void summarise_frames(Summary& s, Frames frames, const FrameLog& log) {
+// One value for each frame that has it.
+std::vector<double> known(Frames frames, std::optional<double> FrameRecord::*field) {
+  std::vector<double> values;
+  for (const FrameRecord& r : frames)
+    if (r.*field) values.push_back(*(r.*field));
+  return values;
+}
+
+template <class Field>
+Spread spread(Frames frames, const Field& field) {
+  constexpr std::array kTwo{0.5, 0.99};
+  const std::vector<Figure> p = percentiles(column(frames, field), kTwo);
+  return {p[0], p[1]};
+}
+
+// Those whose times can be compared.
+std::vector<FrameRecord> timed(Frames frames) {
+  std::vector<FrameRecord> kept;
+  std::copy_if(frames.begin(), frames.end(), std::back_inserter(kept),
+               [](const FrameRecord& r) { return r.apart == Apart::kNo; });
+  return kept;
+}
+
+// Of the picture, missing or too coarse.
+double coarse_percent(const FrameRecord& r) {
+  return std::max(r.missing_pixels_percent, r.too_coarse_percent);
+}
+
+// Flight time from each frame to the next; the last one takes its own.
+double length_s(Frames frames, std::size_t i) {
+  return i + 1 < frames.size() ? frames[i + 1].time_s - frames[i].time_s
+                               : frames[i].frame_ms * 1e-3;
+}
+
+void summarise_run(Summary& s, Frames frames, const FrameLog& log) {
+  s.run.frames = log.frames().size() + log.dropped_frames();
+  s.run.measured_frames = frames.size();
+  for (const FrameRecord& r : frames)
+    ++s.run.apart_frames[static_cast<std::size_t>(r.apart)];
+  s.run.timed_frames = s.run.apart_frames[0];
+  if (!log.frames().empty()) {
+    const FrameRecord& last = log.frames().back();
+    s.run.seconds = last.time_s + last.frame_ms * 1e-3;
+  }
+  double real_s = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    real_s += frames[i].frame_ms * 1e-3;
+    s.run.measured_seconds += length_s(frames, i);
+  }
+  s.run.real_seconds = frames.empty() ? Figure::missing(kNoFrames) : Figure(real_s);
+}
+
+void summarise_device(Summary& s, Frames frames) {
+  const std::vector<double> ms = known(frames, &FrameRecord::gpu_ms);
+  if (ms.empty() && !s.device.timestamps) {
+    const Figure none = Figure::missing("the device has no timestamps");
+    s.gpu_ms = {none, none, none, none};
+    return;
+  }
+  s.gpu_ms = {percentile(ms, 0.5), percentile(ms, 0.99), largest(ms),
+              percentile(known(frames, &FrameRecord::gpu_shadows_ms), 0.5)};
+}
+
+// `frames` are the timed ones.
+void summarise_times(Summary& s, Frames frames, const FrameLog& log) {
   const std::vector<double> ms = column(frames, [](const auto& r) { return r.frame_ms; });
   constexpr std::array kPercentiles{0.5, 0.95, 0.99, 0.999};
   const std::vector<Figure> p = percentiles(ms, kPercentiles);
@@ -42,15 +108,33 @@ void summarise_frames(Summary& s, Frames frames, const FrameLog& log) {
   s.hitches = hitches(ms);
   s.stutter_percent = stutter_percent(ms);
   for (std::size_t i = 0; i < log.systems().size(); ++i) {
-    const auto system = column(frames, [i](const auto& r) { return r.system_ms[i]; });
-    constexpr std::array kTwo{0.5, 0.99};
-    const std::vector<Figure> figures = percentiles(system, kTwo);
-    s.system_ms.push_back({log.systems()[i], figures[0], figures[1]});
+    const Spread system = spread(frames, [i](const auto& r) { return r.system_ms[i]; });
+    s.system_ms.push_back({log.systems()[i], system.p50, system.p99});
   }
-  const auto triangles = column(frames, [](const auto& r) { return r.triangles; });
-  const auto draws = column(frames, [](const auto& r) { return r.draws; });
-  s.draw.triangles_p50 = percentile(triangles, 0.5);
-  s.draw.draws_p50 = percentile(draws, 0.5);
+  s.wait_ms = {spread(frames, [](const auto& r) { return r.wait_ms(); }),
+               spread(frames, [](const auto& r) { return r.device_wait_ms; }),
+               spread(frames, [](const auto& r) { return r.acquire_ms; }),
+               spread(frames, [](const auto& r) { return r.present_ms; })};
+  s.record_ms = spread(frames, [](const auto& r) { return r.record_ms; });
+  summarise_device(s, frames);
+}
+
+// What was drawn, whatever it took.
+void summarise_drawing(Summary& s, Frames frames) {
+  s.draw.triangles_p50 = percentile(column(frames, [](const auto& r) { return r.triangles; }), 0.5);
+  s.draw.draws_p50 = percentile(column(frames, [](const auto& r) { return r.draws; }), 0.5);
+  constexpr double kRaised = 1.005;  // times what was asked for
+  const double asked = s.run.error_pixels * kRaised;
+  const auto error = column(frames, [](const auto& r) { return r.error_pixels; });
+  s.detail.p50_pixels = percentile(error, 0.5);
+  s.detail.max_pixels = largest(error);
+  s.detail.raised_by_memory =
+      total(frames, [](const auto& r) { return r.memory_factor > kRaised ? 1 : 0; });
+  s.detail.raised_for_target = total(frames, [asked](const auto& r) {
+    return asked > 0 && r.error_pixels > asked * r.memory_factor ? 1 : 0;
+  });
+  s.detail.refused_frames =
+      total(frames, [](const auto& r) { return r.requests_refused > 0 ? 1 : 0; });
 }
 
 void summarise_missing(Summary& s, Frames frames, const FrameLog& log, double warmup_s) {
@@ -61,6 +145,16 @@ void summarise_missing(Summary& s, Frames frames, const FrameLog& log, double wa
   s.missing.nodes_p99 = percentile(nodes, 0.99);
   s.missing.pixels_p99_percent = percentile(pixels, 0.99);
   s.missing.pixels_max_percent = largest(pixels);
+  const auto coarse = column(frames, coarse_percent);
+  s.missing.coarse_p99_percent = percentile(coarse, 0.99);
+  s.missing.coarse_max_percent = largest(coarse);
+  const auto many = std::ranges::count_if(coarse, [](double v) { return v > kCoarsePercent; });
+  s.missing.coarse_frames =
+      frames.empty() ? Count::missing(kNoFrames) : Count(static_cast<std::uint64_t>(many));
+  double seconds = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    seconds += coarse[i] > kCoarsePercent ? length_s(frames, i) : 0.0;
+  s.missing.coarse_seconds = frames.empty() ? Figure::missing(kNoFrames) : Figure(seconds);
   const std::vector<double> waits = log.time_to_visible_ms().values_since(warmup_s);
   constexpr std::array kTwo{0.5, 0.99};
   const std::vector<Figure> p = percentiles(waits, kTwo);
@@ -84,6 +178,23 @@ void summarise_cache(Summary& s, Frames frames, const FrameLog& log, const RunFa
   s.cache.prefetch_hit_percent = facts.prefetch_hit_percent;
 }
 
+// Of the processors of all modelers what synthesis took, in the frames that `counts` is true for.
+template <class Counts>
+Figure busy_percent(Frames frames, std::uint32_t modelers, const Counts& counts) {
+  double busy_s = 0, real_s = 0;
+  for (const FrameRecord& r : frames) {
+    if (r.apart == Apart::kPicture)
+      return Figure::missing(
+          "modelers go on while a picture is written, which is in no frame's time");
+    if (!counts(r)) continue;
+    busy_s += r.synthesis_seconds;
+    real_s += r.frame_ms * 1e-3;
+  }
+  if (!(real_s >= kLeastBusySeconds) || modelers == 0)
+    return Figure::missing("such frames took too little time together");
+  return 100 * busy_s / (real_s * modelers);
+}
+
 void summarise_synthesis(Summary& s, Frames frames, const FrameLog& log, double warmup_s) {
   auto& synthesis = s.synthesis;
   synthesis.models = total(frames, [](const auto& r) { return r.models_synthesised; });
@@ -93,6 +204,10 @@ void summarise_synthesis(Summary& s, Frames frames, const FrameLog& log, double 
   for (const FrameRecord& r : frames)
     seconds += r.synthesis_seconds;
   synthesis.seconds = frames.empty() ? Figure::missing(kNoFrames) : Figure(seconds);
+  synthesis.failed = total(log.frames(), [](const auto& r) { return r.models_failed; });
+  synthesis.busy_percent = busy_percent(frames, s.run.modelers, [](const auto&) { return true; });
+  synthesis.coarse_busy_percent = busy_percent(
+      frames, s.run.modelers, [](const auto& r) { return coarse_percent(r) > kCoarsePercent; });
   synthesis.triangles_per_second =
       seconds > 0 ? Figure(static_cast<double>(*synthesis.triangles) / seconds)
                   : Figure::missing("nothing was synthesised after the warm-up");
@@ -108,14 +223,10 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   s.world = facts.world;
   s.device = facts.device;
   static_cast<RunSettings&>(s.run) = facts.run;
-  s.run.frames = log.frames().size() + log.dropped_frames();
   s.run.warmup_seconds = warmup_s;
-  s.run.measured_frames = frames.size();
-  if (!log.frames().empty()) {
-    const FrameRecord& last = log.frames().back();
-    s.run.seconds = last.time_s + last.frame_ms * 1e-3;
-  }
-  summarise_frames(s, frames, log);
+  summarise_run(s, frames, log);
+  summarise_times(s, timed(frames), log);
+  summarise_drawing(s, frames);
   summarise_missing(s, frames, log, warmup_s);
   summarise_cache(s, frames, log, facts);
   summarise_synthesis(s, frames, log, warmup_s);

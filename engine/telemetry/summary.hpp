@@ -25,12 +25,21 @@ struct WorldFacts {
   Count triangles;
   Count bytes_paper;  // with the 256 bytes per triangle of the paper
   Count bytes;        // in the engine's formats
+  // Of a block of the world in the mean, with its side in metres; 0: not known.
+  double block_m = 0, block_models = 0, block_triangles = 0, block_bytes = 0;
+
+  bool endless() const { return blocks[0] == 0 || blocks[1] == 0; }
+  // Of a square kilometre, e.g. per_km2(block_triangles).
+  double per_km2(double of_a_block) const {
+    return block_m > 0 ? of_a_block * 1e6 / (block_m * block_m) : 0.0;
+  }
 };
 
 struct DeviceFacts {
   std::string name;
   std::string driver;
-  std::string api;  // "1.3.289"
+  std::string api;          // "1.3.289"
+  bool timestamps = false;  // it can tell its own time
 };
 
 struct RunSettings {
@@ -40,7 +49,9 @@ struct RunSettings {
   std::uint32_t width = 0;   // pixels
   std::uint32_t height = 0;  // pixels
   bool lod = true;
-  Figure fixed_step;  // Hz; missing when the flight follows the wall clock
+  Figure fixed_step;        // Hz; missing when the flight follows the wall clock
+  double error_pixels = 0;  // asked for: what levels of detail may be off
+  Figure target_fps;        // that is held by a larger error; missing when none is
 };
 
 struct RunFacts {
@@ -62,10 +73,17 @@ struct FrameTimes {
   Figure mean, p50, p95, p99, p999, max;
 };
 
-struct SystemTimes {
-  std::string name;
+struct Spread {
   Figure p50, p99;
 };
+
+struct SystemTimes {
+  std::string name;
+  Figure p50, p99;  // without waiting for the device or the display
+};
+
+// A frame counts as too coarse where more than this share of its picture is missing or too coarse.
+inline constexpr double kCoarsePercent = 1.0;
 
 struct Summary {
   WorldFacts world;
@@ -75,8 +93,21 @@ struct Summary {
     double seconds = 0;                 // of the whole run, on the flight's clock
     double warmup_seconds = 0;          // left out of all figures below
     std::uint64_t measured_frames = 0;  // what is left
+    // Of these, those that all figures of times are about; the others by what sets them apart.
+    std::uint64_t timed_frames = 0;
+    std::array<std::uint64_t, kApartKinds> apart_frames{};  // by Apart; [0] are the timed ones
+    Figure real_seconds;                                    // of the measured frames together
+    double measured_seconds = 0;                            // the same on the flight's clock
   } run;
+  // Times, of the timed frames alone.
   FrameTimes frame_ms;
+  struct {
+    Spread all, device, acquire, present;
+  } wait_ms;
+  Spread record_ms;  // of the render system: recording and submitting commands
+  struct {
+    Figure p50, p99, max, shadows_p50;
+  } gpu_ms;  // on the device
   Figure low1_fps;
   Count hitches;
   Figure stutter_percent;
@@ -85,10 +116,20 @@ struct Summary {
     Count frames;      // frames with at least one hole
     Figure nodes_p99;  // holes and coarse nodes of a frame
     Figure pixels_p99_percent, pixels_max_percent;
+    // Of the larger one of missing_pixels_percent and too_coarse_percent in each frame; frames with
+    // more than kCoarsePercent, and how long they were together on the flight's clock.
+    Figure coarse_p99_percent, coarse_max_percent;
+    Count coarse_frames;
+    Figure coarse_seconds;
     struct {
       Figure p50, p99, max;
     } time_to_visible_ms;
   } missing;
+  struct {
+    Figure p50_pixels, max_pixels;              // error that levels of detail might have
+    Count raised_by_memory, raised_for_target;  // frames in which it was above the one asked for
+    Count refused_frames;                       // in which something in view got no memory
+  } detail;
   struct {
     std::uint64_t budget_bytes = 0;
     Count peak_bytes;  // of the whole run: the budget holds during warm-up, too
@@ -97,7 +138,10 @@ struct Summary {
   } cache;
   struct {
     Count models, triangles, bytes;
+    Count failed;                 // models of the whole run that could not be synthesised
     Figure seconds;               // busy time of all modelers together
+    Figure busy_percent;          // the same, of the real time of as many processors
+    Figure coarse_busy_percent;   // … in frames with more than kCoarsePercent too coarse
     Figure share_drawn;           // of all triangles of the whole run, those ever drawn, in [0, 1]
     Figure triangles_per_second;  // per busy second of one modeler
     struct {

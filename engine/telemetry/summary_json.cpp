@@ -5,6 +5,7 @@
 
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/summary.hpp"
+#include "engine/telemetry/verdict.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -42,7 +43,32 @@ Json world_json(const WorldFacts& world, Writer& w) {
           {"blocks", world.blocks},
           {"triangles", w.count("world.triangles", world.triangles)},
           {"bytes_paper", w.count("world.bytes_paper", world.bytes_paper)},
-          {"bytes", w.count("world.bytes", world.bytes)}};
+          {"bytes", w.count("world.bytes", world.bytes)},
+          {"block",
+           {{"side_m", world.block_m},
+            {"models", w.number("world.block.models", world.block_models)},
+            {"triangles", w.number("world.block.triangles", world.block_triangles)},
+            {"bytes", w.number("world.block.bytes", world.block_bytes)}}}};
+}
+
+Json apart_json(const Summary& s) {
+  Json result = Json::object();
+  for (std::size_t kind = 1; kind < kApartKinds; ++kind)
+    result[std::string(name_of(static_cast<Apart>(kind)))] = s.run.apart_frames[kind];
+  return result;
+}
+
+Json spread_json(const std::string& path, const Spread& spread, Writer& w) {
+  return {{"p50", w.figure(path + ".p50", spread.p50)},
+          {"p99", w.figure(path + ".p99", spread.p99)}};
+}
+
+Json picture_json(const Summary& s) {
+  const Verdict verdict = picture_verdict(s);
+  return {{"grade", name_of(verdict.grade)},
+          {"headline", verdict.headline},
+          {"reasons", verdict.reasons},
+          {"advice", verdict.advice}};
 }
 
 Json run_json(const Summary& s, Writer& w) {
@@ -56,7 +82,12 @@ Json run_json(const Summary& s, Writer& w) {
           {"lod", s.run.lod},
           {"fixed_step", w.figure("run.fixed_step", s.run.fixed_step)},
           {"warmup_seconds", w.number("run.warmup_seconds", s.run.warmup_seconds)},
-          {"measured_frames", s.run.measured_frames}};
+          {"measured_frames", s.run.measured_frames},
+          {"timed_frames", s.run.timed_frames},
+          {"apart_frames", apart_json(s)},
+          {"real_seconds", w.figure("run.real_seconds", s.run.real_seconds)},
+          {"error_pixels", s.run.error_pixels},
+          {"target_fps", w.figure("run.target_fps", s.run.target_fps)}};
 }
 
 Json frame_json(const FrameTimes& t, Writer& w) {
@@ -67,12 +98,35 @@ Json frame_json(const FrameTimes& t, Writer& w) {
 
 Json systems_json(const std::vector<SystemTimes>& systems, Writer& w) {
   Json result = Json::object();
-  for (const SystemTimes& system : systems) {
-    const std::string path = "system_ms." + system.name;
-    result[system.name] = {{"p50", w.figure(path + ".p50", system.p50)},
-                           {"p99", w.figure(path + ".p99", system.p99)}};
-  }
+  for (const SystemTimes& system : systems)
+    result[system.name] = spread_json("system_ms." + system.name, {system.p50, system.p99}, w);
   return result;
+}
+
+Json wait_json(const Summary& s, Writer& w) {
+  Json result = spread_json("wait_ms", s.wait_ms.all, w);
+  result["device"] = spread_json("wait_ms.device", s.wait_ms.device, w);
+  result["acquire"] = spread_json("wait_ms.acquire", s.wait_ms.acquire, w);
+  result["present"] = spread_json("wait_ms.present", s.wait_ms.present, w);
+  return result;
+}
+
+Json gpu_json(const Summary& s, Writer& w) {
+  return {{"p50", w.figure("gpu_ms.p50", s.gpu_ms.p50)},
+          {"p99", w.figure("gpu_ms.p99", s.gpu_ms.p99)},
+          {"max", w.figure("gpu_ms.max", s.gpu_ms.max)},
+          {"shadows_p50", w.figure("gpu_ms.shadows_p50", s.gpu_ms.shadows_p50)}};
+}
+
+Json detail_json(const Summary& s, Writer& w) {
+  const auto& d = s.detail;
+  return {
+      {"asked_pixels", s.run.error_pixels},
+      {"p50_pixels", w.figure("detail.p50_pixels", d.p50_pixels)},
+      {"max_pixels", w.figure("detail.max_pixels", d.max_pixels)},
+      {"raised_by_memory_frames", w.count("detail.raised_by_memory_frames", d.raised_by_memory)},
+      {"raised_for_target_frames", w.count("detail.raised_for_target_frames", d.raised_for_target)},
+      {"refused_frames", w.count("detail.refused_frames", d.refused_frames)}};
 }
 
 Json missing_json(const Summary& s, Writer& w) {
@@ -83,6 +137,10 @@ Json missing_json(const Summary& s, Writer& w) {
       {"nodes_p99", w.figure("missing.nodes_p99", s.missing.nodes_p99)},
       {"pixels_p99_percent", w.figure("missing.pixels_p99_percent", s.missing.pixels_p99_percent)},
       {"pixels_max_percent", w.figure("missing.pixels_max_percent", s.missing.pixels_max_percent)},
+      {"coarse_p99_percent", w.figure("missing.coarse_p99_percent", s.missing.coarse_p99_percent)},
+      {"coarse_max_percent", w.figure("missing.coarse_max_percent", s.missing.coarse_max_percent)},
+      {"coarse_frames", w.count("missing.coarse_frames", s.missing.coarse_frames)},
+      {"coarse_seconds", w.figure("missing.coarse_seconds", s.missing.coarse_seconds)},
       {"time_to_visible_ms",
        {{"p50", w.figure(path + ".p50", wait.p50)},
         {"p99", w.figure(path + ".p99", wait.p99)},
@@ -107,7 +165,11 @@ Json synthesis_json(const Summary& s, Writer& w) {
   return {{"models", w.count("synthesis.models", synthesis.models)},
           {"triangles", w.count("synthesis.triangles", synthesis.triangles)},
           {"bytes", w.count("synthesis.bytes", synthesis.bytes)},
+          {"failed", w.count("synthesis.failed", synthesis.failed)},
           {"seconds", w.figure("synthesis.seconds", synthesis.seconds)},
+          {"busy_percent", w.figure("synthesis.busy_percent", synthesis.busy_percent)},
+          {"coarse_busy_percent",
+           w.figure("synthesis.coarse_busy_percent", synthesis.coarse_busy_percent)},
           {"share_drawn", w.figure("synthesis.share_drawn", synthesis.share_drawn)},
           {"triangles_per_second",
            w.figure("synthesis.triangles_per_second", synthesis.triangles_per_second)},
@@ -130,6 +192,11 @@ std::string to_json(const Summary& s) {
   json["hitches"] = w.count("hitches", s.hitches);
   json["stutter_percent"] = w.figure("stutter_percent", s.stutter_percent);
   json["system_ms"] = systems_json(s.system_ms, w);
+  json["wait_ms"] = wait_json(s, w);
+  json["record_ms"] = spread_json("record_ms", s.record_ms, w);
+  json["gpu_ms"] = gpu_json(s, w);
+  json["picture"] = picture_json(s);
+  json["detail"] = detail_json(s, w);
   json["missing"] = missing_json(s, w);
   json["cache"] = cache_json(s, w);
   json["synthesis"] = synthesis_json(s, w);

@@ -4,6 +4,7 @@
 
 #include "engine/telemetry/summary.hpp"
 #include "engine/telemetry/units.hpp"
+#include "engine/telemetry/verdict.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -25,42 +26,78 @@ std::string share(double value) {
   return percent(100 * value);
 }
 
-// Lines of a title, a label and a text.
+// Lines of a title, a label and a text, which goes on in lines of its own where it is long.
 class Table {
  public:
   void section(std::string_view title) { title_ = title; }
   void row(std::string_view label, std::string_view text) {
-    fmt::format_to(std::back_inserter(text_), "{:<10} {:<18} {}\n", title_, label, text);
-    title_ = "";
+    while (text.size() > kColumns) {
+      std::size_t end = text.rfind(' ', kColumns);
+      if (end == std::string_view::npos) end = text.find(' ');
+      if (end == std::string_view::npos) break;
+      line(label, text.substr(0, end));
+      label = "";
+      text.remove_prefix(end + 1);
+    }
+    line(label, text);
   }
   std::string take() { return std::move(text_); }
 
  private:
+  static constexpr std::size_t kColumns = 48;  // of the text; 78 of all
+
+  void line(std::string_view label, std::string_view text) {
+    fmt::format_to(std::back_inserter(text_), "{:<10} {:<18} {}\n", title_, label, text);
+    title_ = "";
+  }
+
   std::string text_;
   std::string_view title_;
 };
 
 std::string blocks_text(const WorldFacts& world) {
-  if (world.blocks[0] == 0 || world.blocks[1] == 0) return "endless";
+  if (world.endless()) return "endless";
   return fmt::format("{} x {} blocks", world.blocks[0], world.blocks[1]);
 }
 
-void add_run(Table& table, const Summary& s) {
+void add_world(Table& table, const WorldFacts& world) {
   table.section("world");
-  table.row("name",
-            fmt::format("{}, seed {}, {}", s.world.name, s.world.seed, blocks_text(s.world)));
-  table.row("if generated",
-            fmt::format("{} triangles, {} ({} in the paper's format)",
-                        or_dash(s.world.triangles, count_text), or_dash(s.world.bytes, size_text),
-                        or_dash(s.world.bytes_paper, size_text)));
+  table.row("name", fmt::format("{}, seed {}, {}", world.name, world.seed, blocks_text(world)));
+  if (world.triangles.has_value() || world.block_m <= 0) {
+    table.row("if generated",
+              fmt::format("{} triangles, {} ({} in the paper's format)",
+                          or_dash(world.triangles, count_text), or_dash(world.bytes, size_text),
+                          or_dash(world.bytes_paper, size_text)));
+  } else {
+    const double triangles = world.per_km2(world.block_triangles);
+    table.row("if generated",
+              fmt::format("{} triangles, {} a square kilometre, without end", count_text(triangles),
+                          size_text(world.per_km2(world.block_bytes))));
+  }
+}
+
+void add_run(Table& table, const Summary& s) {
+  add_world(table, s.world);
   table.section("run");
   table.row("device", s.device.name);
   table.row("how", fmt::format("{}, {}, {} modeler{}, {} x {}, levels of detail {}", s.run.paradigm,
                                s.run.policy, s.run.modelers, s.run.modelers == 1 ? "" : "s",
                                s.run.width, s.run.height, s.run.lod ? "on" : "off"));
-  table.row("length", fmt::format("{} frames in {} s, {} measured after {} s of warm-up",
-                                  s.run.frames, three_digits(s.run.seconds), s.run.measured_frames,
-                                  three_digits(s.run.warmup_seconds)));
+  table.row("length",
+            fmt::format("{} frame{} in {} s, {} measured after {:g} s of warm-up", s.run.frames,
+                        s.run.frames == 1 ? "" : "s", three_digits(s.run.seconds),
+                        s.run.measured_frames, s.run.warmup_seconds));
+  if (s.run.timed_frames < s.run.measured_frames) table.row("not timed", left_out_text(s));
+}
+
+void add_picture(Table& table, const Summary& s) {
+  const Verdict verdict = picture_verdict(s);
+  table.section("picture");
+  table.row("verdict", verdict.headline);
+  for (const std::string& reason : verdict.reasons)
+    table.row("why", reason);
+  for (const std::string& advice : verdict.advice)
+    table.row("what to do", advice);
 }
 
 void add_frames(Table& table, const Summary& s) {
@@ -77,6 +114,13 @@ void add_frames(Table& table, const Summary& s) {
   table.row("drawn (median)",
             fmt::format("{} triangles in {} draws", or_dash(s.draw.triangles_p50, count_text),
                         or_dash(s.draw.draws_p50, whole)));
+  const auto spread = [](const Spread& of) {
+    return fmt::format("p50 {}, p99 {}", or_dash(of.p50, milliseconds),
+                       or_dash(of.p99, milliseconds));
+  };
+  table.row("waiting", spread(s.wait_ms.all));
+  table.row("device's time", fmt::format("p50 {}, p99 {}", or_dash(s.gpu_ms.p50, milliseconds),
+                                         or_dash(s.gpu_ms.p99, milliseconds)));
   table.section("systems");
   for (const SystemTimes& system : s.system_ms) {
     table.row(system.name, fmt::format("p50 {}, p99 {}", or_dash(system.p50, milliseconds),
@@ -86,11 +130,15 @@ void add_frames(Table& table, const Summary& s) {
 
 void add_streaming(Table& table, const Summary& s) {
   const auto& wait = s.missing.time_to_visible_ms;
+  add_picture(table, s);
   table.section("missing");
   table.row("frames with holes", or_dash(s.missing.frames, whole));
   table.row("pixels",
             fmt::format("p99 {}, worst {}", or_dash(s.missing.pixels_p99_percent, percent),
                         or_dash(s.missing.pixels_max_percent, percent)));
+  table.row("too coarse", fmt::format("p99 {}, worst {} of the picture",
+                                      or_dash(s.missing.coarse_p99_percent, percent),
+                                      or_dash(s.missing.coarse_max_percent, percent)));
   table.row("time to visible", fmt::format("p50 {}, p99 {}", or_dash(wait.p50, milliseconds),
                                            or_dash(wait.p99, milliseconds)));
   table.section("cache");
@@ -108,6 +156,7 @@ void add_streaming(Table& table, const Summary& s) {
   table.row("ever drawn", or_dash(s.synthesis.share_drawn, share) + " of all triangles");
   table.row("speed",
             or_dash(s.synthesis.triangles_per_second, count_text) + " triangles per busy second");
+  table.row("modelers busy", or_dash(s.synthesis.busy_percent, percent));
   table.row("cost error",
             fmt::format("p50 {}, p95 {}", or_dash(s.synthesis.cost_error_percent.p50, percent),
                         or_dash(s.synthesis.cost_error_percent.p95, percent)));

@@ -268,7 +268,7 @@ TEST(CommandLine, AmplifyRefusesWhatIsOutsideOfTheWorld) {
   EXPECT_TRUE(mentions(region.err, "0 to 511")) << region.err;
   const Outcome endless = run_psygen("amplify --world game/worlds/silver_combe.toml");
   EXPECT_EQ(endless.code, 1);
-  EXPECT_TRUE(mentions(endless.err, "endless")) << endless.err;
+  EXPECT_TRUE(mentions(endless.err, "has no end: choose a region")) << endless.err;
   for (const char* place : {"-1,5", "1e300,0", "40000,1"}) {
     const Outcome sample = run_psygen(std::string("amplify --sample=") + place);
     EXPECT_EQ(sample.code, 1) << place;
@@ -445,8 +445,11 @@ TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {
   EXPECT_EQ(flight.code, 0) << flight.err;
   const Outcome table = run_psygen("schedule --modelers 3 --requests " + file);
   EXPECT_EQ(table.code, 0) << table.err;
-  for (const char* policy : {"fifo", "plp", "shortest", "longest", "deadline"})
-    EXPECT_TRUE(mentions(table.out, policy)) << table.out;
+  for (const char* row : {"\nfifo ", "\nplp ", "\nshortest ", "\nlongest ", "\ndeadline "})
+    EXPECT_TRUE(mentions(table.out, row)) << table.out;
+  EXPECT_TRUE(mentions(table.out, "of what 3 modelers can do\n")) << table.out;
+  for (const std::string& text : {table.out, run_psygen("schedule --help").out})
+    EXPECT_TRUE(mentions(text, "\nlateness  how late that was")) << text;
   EXPECT_TRUE(mentions(run_psygen("schedule --json --requests " + file).out, "\"late_percent\""));
   const Outcome missing = run_psygen("schedule --requests nowhere.requests");
   EXPECT_EQ(missing.code, 1);

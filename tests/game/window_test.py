@@ -6,6 +6,7 @@ usage: window_test.py PSYGEN SOURCE_DIR
 
 Fails on a wrong exit code, a validation message, or a picture that was not written.
 """
+import csv
 import json
 import os
 import pathlib
@@ -159,6 +160,9 @@ def run(processes):
         wait_for("end after Escape", lambda: process.poll() is not None)
         finish(process)
         assert (out / "summary.json").exists(), "no summary was written"
+        with open(out / "frames.csv", encoding="utf-8", newline="") as rows:
+            apart = {row["apart"] for row in csv.DictReader(rows)}
+        assert apart >= {"", "resized", "after_idle"}, f"frames are set apart by {apart}"
 
         out = pathlib.Path(folder, "closed")
         process = fly_for_an_hour(display, psygen, source, out, "--images", "1000000")

@@ -1,5 +1,7 @@
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/engine/app/fixture.hpp"
 
@@ -33,6 +35,99 @@ TEST(Flight, WritesEveryOutputWithoutAValidationMessage) {
   const auto lines = std::count(std::istreambuf_iterator<char>(csv), {}, '\n');
   EXPECT_EQ(lines, 41);
   EXPECT_TRUE(read_json(options.out_folder / "trace.json").contains("traceEvents"));
+}
+
+// Rows of frames.csv by the names of its columns.
+std::vector<std::map<std::string, std::string>> read_frames(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const auto cells_of = [](const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream text(line + ",");
+    for (std::string cell; std::getline(text, cell, ',');)
+      cells.push_back(cell);
+    return cells;
+  };
+  std::string line;
+  std::getline(stream, line);
+  const std::vector<std::string> names = cells_of(line);
+  std::vector<std::map<std::string, std::string>> rows;
+  while (std::getline(stream, line)) {
+    const std::vector<std::string> cells = cells_of(line);
+    EXPECT_EQ(cells.size(), names.size());
+    for (std::size_t i = 0; i < names.size(); ++i)
+      i == 0 ? rows.push_back({{names[0], cells[0]}}) : void(rows.back()[names[i]] = cells[i]);
+  }
+  return rows;
+}
+
+TEST(Flight, FramesThatAreWrittenAndTheTwoAfterThemAreInNoFigureOfTimes) {
+  Options options = short_flight();
+  options.out_folder = fresh_folder();
+  options.images_every = 10;
+  const FlightReport report = fly(options);
+  for (const auto& row : read_frames(options.out_folder / "frames.csv")) {
+    const int frame = std::stoi(row.at("frame"));
+    EXPECT_EQ(row.at("apart"), frame % 10 == 0  ? "picture"
+                               : frame % 10 < 3 ? "after_idle"
+                                                : "")
+        << frame;
+  }
+  // From 0.2 s on, with a step of 1/30 s: frames 6 to 39.
+  EXPECT_EQ(report.summary.run.measured_frames, 34u);
+  EXPECT_EQ(report.summary.run.timed_frames, 25u);
+  EXPECT_EQ(report.summary.run.apart_frames,
+            (std::array<std::uint64_t, telemetry::kApartKinds>{25, 3, 6, 0, 0}));
+}
+
+TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
+  Options options = short_flight();
+  options.out_folder = fresh_folder();
+  options.frames = 10;
+  options.target_hz = 30;
+  std::vector<double> governed_ms;
+  options.plugins.push_back({"photographer", {}, {}, [&](App& app, double) {
+                               governed_ms.push_back(app.scene().state().input.frame_ms);
+                               if (governed_ms.size() != 6) return;
+                               EXPECT_TRUE(app.save_picture(options.out_folder / "picture.png"));
+                             }});
+  fly(options);
+  const auto rows = read_frames(options.out_folder / "frames.csv");
+  ASSERT_EQ(rows.size(), 10u);
+  EXPECT_EQ(rows[4].at("apart"), "");
+  EXPECT_EQ(rows[5].at("apart"), "picture");
+  EXPECT_EQ(rows[6].at("apart"), "after_idle");
+  EXPECT_EQ(rows[7].at("apart"), "after_idle");
+  EXPECT_EQ(rows[8].at("apart"), "");
+  // What a frame is governed by is what the one before took.
+  for (std::size_t i = 1; i < governed_ms.size(); ++i)
+    EXPECT_EQ(governed_ms[i] > 0, rows[i - 1].at("apart").empty()) << i;
+}
+
+TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
+  Options options = short_flight();
+  options.out_folder = fresh_folder();
+  const FlightReport report = fly(options);
+  const auto rows = read_frames(options.out_folder / "frames.csv");
+  ASSERT_EQ(rows.size(), 40u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto ms = [&](const std::string& name) { return std::stod(rows[i].at(name)); };
+    double all_ms = ms("wait_ms");
+    for (const char* system : {"input", "daylight", "streaming", "visibility", "cache", "synthesis",
+                               "upload", "render", "telemetry"})
+      all_ms += ms(std::string(system) + "_ms");
+    EXPECT_LE(all_ms, ms("frame_ms") + 0.01) << i;
+    EXPECT_EQ(ms("wait_ms"), ms("device_wait_ms")) << "there is no window";
+    EXPECT_GT(ms("record_ms"), 0);
+    EXPECT_LE(ms("record_ms"), ms("render_ms") + 0.01);
+    // Known four frames later, so not of the last ones.
+    EXPECT_EQ(rows[i].at("gpu_ms").empty(), i >= 36) << i;
+    EXPECT_EQ(rows[i].at("gpu_shadows_ms").empty(), i >= 36) << i;
+  }
+  EXPECT_GT(report.summary.gpu_ms.p50.value.value_or(0), 0);
+  std::ifstream stream(options.out_folder / "trace.json");
+  const std::string trace((std::istreambuf_iterator<char>(stream)), {});
+  EXPECT_NE(trace.find("\"wait for the device\""), std::string::npos);
+  EXPECT_NE(trace.find("\"device ms\""), std::string::npos);
 }
 
 TEST(Flight, TheSummaryCarriesEveryFieldOrSaysWhyNot) {

@@ -58,6 +58,16 @@ TEST_F(HudTest, SaysNothingBeforeTheFirstFrameAndTheMedianAfterwards) {
   EXPECT_THAT(figures(), HasSubstr("50.0 ms worst"));
 }
 
+TEST_F(HudTest, ShowsWhatIsWaitedAndWhatTheDeviceTakesWhereThatIsKnown) {
+  scene::State& state = scene_->state();
+  hud_.add_frame(20);
+  state.record.device_wait_ms = 12;
+  state.record.present_ms = 0.5;
+  EXPECT_THAT(figures(), HasSubstr("waits 12.5 ms\n"));
+  state.counters.frame.gpu = render::GpuTime{1, 0, 17.25, 0};
+  EXPECT_THAT(figures(), HasSubstr("waits 12.5 ms   device 17.2 ms"));
+}
+
 TEST_F(HudTest, HasSpeedPresetAndErrorAmongItsFigures) {
   hud_.add_frame(20);
   EXPECT_THAT(figures(), HasSubstr("preset high"));

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "engine/core/clock.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
 
 namespace psygen::render {
@@ -270,16 +271,38 @@ TEST_P(RendererTest, refuses_index_lists_that_do_not_fit) {
   EXPECT_FALSE(renderer_->upload_shared_indices({}));
 }
 
-TEST_P(RendererTest, reports_device_time_once_a_frame_has_finished) {
+TEST_P(RendererTest, tells_which_frames_are_not_like_the_others) {
   add_ground();
-  std::optional<double> gpu_ms;
-  for (int i = 0; i < 4; ++i)
-    gpu_ms = renderer_->render(input()).value().gpu_ms;
-  if (renderer_->device().software) {
-    EXPECT_FALSE(gpu_ms);  // it would hold up the next frame
-  } else {
-    ASSERT_TRUE(gpu_ms);
-    EXPECT_GT(*gpu_ms, 0.0);
+  const auto apart = [&] { return renderer_->render(input()).value().apart; };
+  const auto expect_two_after_idle = [&](const char* what) {
+    EXPECT_EQ(apart(), Apart::kAfterIdle) << what;
+    EXPECT_EQ(apart(), Apart::kAfterIdle) << what;
+    for (int i = 0; i < 3; ++i)
+      EXPECT_EQ(apart(), Apart::kNo) << what;
+  };
+  expect_two_after_idle("the first frames");
+  renderer_->wait_idle();
+  expect_two_after_idle("a wait");
+  ASSERT_TRUE(renderer_->capture());
+  expect_two_after_idle("a picture");
+  ASSERT_TRUE(renderer_->replay_floor_ms(3));
+  expect_two_after_idle("a floor");
+  ASSERT_TRUE(renderer_->resize({80, 60}));
+  EXPECT_EQ(apart(), Apart::kResized);
+  EXPECT_EQ(apart(), Apart::kAfterIdle);
+  EXPECT_EQ(apart(), Apart::kNo);
+}
+
+TEST_P(RendererTest, waiting_is_not_among_the_time_of_recording) {
+  add_ground();
+  for (int i = 0; i < 6; ++i) {
+    const double start_s = core::monotonic_seconds();
+    const FrameResult result = renderer_->render(input()).value();
+    const double all_ms = (core::monotonic_seconds() - start_s) * 1e3;
+    EXPECT_GT(result.cpu_ms, 0.0);
+    EXPECT_GE(result.device.start_s, start_s);
+    EXPECT_EQ(result.wait_ms(), result.device.ms);  // there is no window
+    EXPECT_LE(result.cpu_ms + result.wait_ms(), all_ms);
   }
 }
 

@@ -74,6 +74,12 @@ class SlowType final : public ForwardingType {
   const std::thread::id main_thread_ = std::this_thread::get_id();
 };
 
+// Latencies are those of the flight, though modelers are real.
+inline void tell_time_of_flight(Scene& scene) {
+  Clock& clock = scene.state().clock;
+  clock.read_real_s = [&clock] { return clock.now_s; };
+}
+
 // The paper's world whose ground and trees wait at a gate. Latencies are those of the flight.
 inline std::unique_ptr<Scene> slow_scene(const Settings& settings, Gate& gate) {
   models::Registry registry = models::make_standard_registry();
@@ -87,8 +93,7 @@ inline std::unique_ptr<Scene> slow_scene(const Settings& settings, Gate& gate) {
   world.terrain_model = slow(world.terrain_model);
   world.scatter[0].model = slow(world.scatter[0].model);
   std::unique_ptr<Scene> scene = make_scene(world, settings, std::move(registry));
-  Clock& clock = scene->state().clock;
-  clock.read_real_s = [&clock] { return clock.now_s; };
+  tell_time_of_flight(*scene);
   return scene;
 }
 

@@ -121,6 +121,50 @@ TEST(Requests, WhatADrawnNodeLacksIsAHoleThoughOneAboveItIsComplete) {
   EXPECT_GT(holes, 10u);
 }
 
+// Of two levels of nodes nothing can be drawn by more than one too coarse, and there is nothing on
+// the ground.
+std::unique_ptr<Scene> bare_scene(Gate& gate) {
+  Settings settings = gated_settings();
+  settings.view_distance_m = 130;
+  settings.max_error_pixels = 4;
+  settings.plan_seconds_ahead = 1e6;  // nothing that depends on what the machine takes
+  models::Registry registry = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  world.scatter.clear();
+  const auto slow =
+      registry.add(std::make_unique<SlowType>("slow", registry[world.terrain_model], gate));
+  EXPECT_TRUE(slow);
+  world.terrain_model = *slow;
+  std::unique_ptr<Scene> scene = make_scene(world, settings, std::move(registry));
+  tell_time_of_flight(*scene);
+  return scene;
+}
+
+TEST(Requests, GroundNearTheCameraThatIsASingleLevelTooCoarseIsHelpedWithToo) {
+  Gate gate;
+  const auto scene = bare_scene(gate);
+  State& s = scene->state();
+  ASSERT_EQ(s.facts.levels.size(), 2u);
+  scene->settle(pose_at(256, 256, 0.3));
+  tick_at(*scene, pose_at(256, 256, 0.3));
+  EXPECT_EQ(s.record.too_coarse_percent, 0.0);
+  gate.set_open(false);
+  const core::CameraPose pose = pose_at(256, 254, 0.3);
+  tick_at(*scene, pose);
+  EXPECT_EQ(s.record.holes + s.record.coarse_nodes, 0u);
+  EXPECT_EQ(s.record.missing_pixels_percent, 0.0);
+  const double before_percent = s.record.too_coarse_percent;
+  EXPECT_GT(before_percent, 10.0);
+  s.clock.now_s += 0.12;
+  s.settings.main_thread_budget_ms = 1000;
+  const std::uint64_t before = made_here(*scene);
+  for (int i = 0; i < 5; ++i)
+    tick_at(*scene, pose);
+  EXPECT_GT(made_here(*scene), before);
+  EXPECT_LT(s.record.too_coarse_percent, 0.5 * before_percent);
+  gate.set_open(true);
+}
+
 // By Want::owner: the node that is wanted, or on which stands what is.
 std::unordered_map<std::uint64_t, ecs::Entity> nodes_of_owners(const State& s) {
   std::unordered_map<std::uint64_t, ecs::Entity> nodes;

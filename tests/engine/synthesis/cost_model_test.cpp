@@ -66,6 +66,36 @@ TEST(CostModel, WhatEverySynthesisTakesBesideItsFormulaIsFound) {
   EXPECT_NEAR(cost.predict(0, parameters_of(1, 200), 0), 400e-6, 1e-9);
 }
 
+TEST(CostModel, CoversWhatIsAboutAsLargeAsWhatWasMeasuredAtThisLevel) {
+  VirtualTime time;
+  const models::Registry registry = time.registry();
+  CostModel cost(registry);
+  const auto covers = [&](std::int64_t vertices, int level) {
+    return cost.covers(0, level, cost.work(0, parameters_of(1, vertices), level));
+  };
+  EXPECT_FALSE(covers(64, 0));
+  cost.calibrate(samples_of({64, 256}), time.options());
+  for (const std::int64_t vertices : {56, 64, 100, 256, 300})
+    EXPECT_TRUE(covers(vertices, 0)) << vertices;
+  for (const std::int64_t vertices : {16, 40, 400, 4096})
+    EXPECT_FALSE(covers(vertices, 0)) << vertices;
+  EXPECT_TRUE(covers(100, 2));
+  EXPECT_FALSE(cost.covers(0, -1, {64, 64, 64}));
+  EXPECT_FALSE(cost.covers(0, 3, {64, 64, 64}));
+  EXPECT_FALSE(cost.covers(1, 0, {64, 64, 64}));
+}
+
+TEST(CostModel, ALevelThatTookItsFitFromACoarserOneCoversNothing) {
+  VirtualTime time;
+  time.seconds_per_vertex = 1e-3;
+  const models::Registry registry = time.registry();
+  CostModel cost(registry);
+  const auto samples = samples_of({4096});
+  cost.calibrate(samples, time.options(5));  // of its finest level one synthesis takes 4 s
+  EXPECT_TRUE(cost.covers(0, 2, cost.work(0, samples[0].parameters, 2)));
+  EXPECT_FALSE(cost.covers(0, 0, cost.work(0, samples[0].parameters, 0)));
+}
+
 TEST(CostModel, AFormulaThatDoesNotFitIsReportedAsFitError) {
   VirtualTime time;
   time.seconds_fixed = 200e-6;

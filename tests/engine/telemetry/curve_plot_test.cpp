@@ -34,8 +34,28 @@ TEST(CurvePlot, DrawsAPointForEachValueAndALineThroughThem) {
 TEST(CurvePlot, LeavesOutWhatIsNotFinite) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   const std::string html = curve_plot_html(plot_of({1, 2, 3}, {5, nothing, 20}));
-  EXPECT_EQ(count(html, "<circle"), 2u);
+  EXPECT_EQ(count(html, "class=\"fill1"), 2u);
   EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+TEST(CurvePlot, ALineEndsWhereThereIsNoValueAndALoneValueIsARing) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  CurvePlot plot = plot_of({1, 2, 3, 4, 5, 6}, {5, 6, nothing, 7, nothing, nothing});
+  plot.curves.erase(plot.curves.begin());
+  const std::string html = curve_plot_html(plot);
+  EXPECT_EQ(count(html, "<polyline"), 1u);
+  EXPECT_EQ(count(html, "class=\"ring"), 1u);
+  const std::size_t points = html.find("points=\"") + 8;
+  EXPECT_EQ(count(html.substr(points, html.find("/>", points) - points), ","), 2u);
+}
+
+TEST(CurvePlot, ACurveWithoutValuesIsNotInTheLegend) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  CurvePlot plot = plot_of({1, 2}, {5, 6});
+  plot.curves.push_back({"cost model", 3, CurveKind::kLine, {nothing, nothing}});
+  const std::string html = curve_plot_html(plot);
+  EXPECT_EQ(count(html, "swatch"), 2u);
+  EXPECT_EQ(html.find("cost model"), std::string::npos);
 }
 
 TEST(CurvePlot, OfNothingOrOfOnePointIsStillAPicture) {

@@ -67,7 +67,7 @@ TEST(FramesCsv, HasAHeaderAndOneRowPerFrameWithTheSameNumberOfFields) {
   const std::vector<std::string> lines = lines_of(text_of(folder / "frames.csv"));
   ASSERT_EQ(lines.size(), 26U);
   for (const std::string& line : lines)
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 6 + 8 + 18 - 1) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 12 + 8 + 22 - 1) << line;
   EXPECT_EQ(lines[0].rfind("frame,time_s,frame_ms,", 0), 0U);
   EXPECT_NE(lines[0].find(",input_ms,streaming_ms,visibility_ms,"), std::string::npos);
   EXPECT_EQ(lines[25].rfind("24,", 0), 0U);
@@ -86,10 +86,44 @@ TEST(FramesCsv, HoldsTheValuesUnderTheirNames) {
   r.cache_bytes = 1ULL << 33;
   log.add(r);
   ASSERT_TRUE(write_frames_csv(folder / "frames.csv", log));
-  EXPECT_EQ(
-      lines_of(text_of(folder / "frames.csv"))[1],
-      "7,1.500000,16.2500,0.0000,0.0000,0.0000,12.5000,5.250,123456,0,0,0,0,0.0000,8589934592,"
-      "0,0,0,0,0,0,0,0,0,0.000000");
+  r.device_wait_ms = 2;
+  r.acquire_ms = 0.5;
+  r.present_ms = 0.25;
+  r.record_ms = 0.75;
+  r.gpu_ms = 14;
+  r.gpu_shadows_ms = 3;
+  r.apart = Apart::kPicture;
+  log.add(r);
+  ASSERT_TRUE(write_frames_csv(folder / "frames.csv", log));
+  const std::vector<std::string> lines = lines_of(text_of(folder / "frames.csv"));
+  const std::string after =
+      ",12.5000,5.250,1.000,123456,0,0,0,0,0.0000,0.0000,8589934592,0,0,0,0,0,0,0,0,0,0,0,0.000000";
+  EXPECT_EQ(lines[1], "7,1.500000,16.2500,0.0000,0.0000,0.0000,0.0000,0.0000,0.0000,,," + after)
+      << "the device's time is not known";
+  EXPECT_EQ(lines[2],
+            "7,1.500000,16.2500,0.0000,2.7500,2.0000,0.5000,0.2500,0.7500,14.0000,"
+            "3.0000,picture" +
+                after);
+}
+
+TEST(FrameLog, ADevicesTimeIsThatOfItsOwnFrameThoughItComesLater) {
+  FrameLog log({});
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    FrameRecord record;
+    record.index = i;
+    record.device_frame = i == 37 ? 0 : 100 + i;  // one was not drawn
+    log.add(record);
+    if (i >= 4) log.set_gpu_ms(100 + i - 4, 5.0 + static_cast<double>(i - 4), 1.0);
+  }
+  log.set_gpu_ms(101, 99.0, 99.0);  // too long ago to be looked for
+  log.set_gpu_ms(7, 99.0, 99.0);    // never drawn
+  for (std::uint64_t i = 0; i < 36; ++i) {
+    ASSERT_TRUE(log.frames()[i].gpu_ms) << i;
+    EXPECT_EQ(*log.frames()[i].gpu_ms, 5.0 + static_cast<double>(i));
+    EXPECT_EQ(*log.frames()[i].gpu_shadows_ms, 1.0);
+  }
+  for (std::uint64_t i = 36; i < 40; ++i)
+    EXPECT_FALSE(log.frames()[i].gpu_ms) << i;
 }
 
 TEST(FramesCsv, IsWholeOrNotThereWhereverTheDiskFills) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -78,6 +79,38 @@ TEST(ReportPlot, DrawsNothingOutsideItsFrameAndNoNumberThatIsNone) {
   EXPECT_EQ(html.find("nan"), std::string::npos);
   EXPECT_EQ(html.find("inf"), std::string::npos);
   EXPECT_EQ(html.find(",-"), std::string::npos);
+}
+
+TEST(ReportPlot, WhatHasNoValueIsAGapAndTheOtherSeriesStayWithTheirTimes) {
+  Ramp ramp(10);
+  ramp.plot.series.push_back(ramp.plot.series[0]);
+  for (const std::size_t i : {3U, 4U})
+    ramp.plot.series[0].values[i] = std::numeric_limits<double>::quiet_NaN();
+  const std::string html = plot_html(ramp.plot);
+  const auto data = data_of(html);
+  EXPECT_EQ(data["x"].size(), 10U);
+  EXPECT_TRUE(data["series"][0]["v"][3].is_null());
+  EXPECT_EQ(data["series"][0]["v"][5], 5.0);
+  EXPECT_EQ(data["series"][1]["v"][3], 3.0);
+  const std::string opening = "class=\"line stroke1\" d=\"";
+  const std::size_t line = html.find(opening) + opening.size();
+  const std::string path = html.substr(line, html.find('"', line) - line);
+  EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 2) << path;
+}
+
+TEST(ReportPlot, AValueWithoutNeighboursIsADot) {
+  const Ramp ramp(1);
+  EXPECT_NE(plot_html(ramp.plot).find("<circle class=\"fill1\""), std::string::npos);
+}
+
+TEST(ReportPlot, MarksThatLieOnTheSamePlaceAreOne) {
+  Ramp ramp(10'000);
+  ramp.plot.marks_s = {0, 0.1, 500, 500.05, 999};
+  const std::string html = plot_html(ramp.plot);
+  const std::size_t mark = html.find("class=\"mark\" d=\"");
+  ASSERT_NE(mark, std::string::npos);
+  const std::string path = html.substr(mark, html.find("/>", mark) - mark);
+  EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 3) << path;
 }
 
 TEST(ReportPlot, OfOneFrameOrNoneIsStillAPlot) {

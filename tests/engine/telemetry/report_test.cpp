@@ -17,12 +17,100 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 TEST(Report, HasAllPlotsAndTheHeadlineFigures) {
   const FrameLog log = synthetic_flight();
   const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
-  EXPECT_EQ(count_of(html, "<figure>"), 5U);
-  for (const char* part : {"Frame time", "Missing geometry", "Geometry cache", "budget 512 MiB",
-                           "Synthesis", "median 1", "p99 ", "32.8 billion", "llvmpipe",
-                           "Where the frame goes", "prefers-color-scheme: dark"}) {
+  EXPECT_EQ(count_of(html, "<figure>"), 6U);
+  for (const char* part :
+       {"Frame time", "Missing geometry", "what of it is missing or too coarse", "Geometry cache",
+        "budget 512 MiB", "Synthesis", "median 1", "p99 ", "32.8 billion", "llvmpipe",
+        "Where the frame goes", "prefers-color-scheme: dark"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
+}
+
+// The classes of the boxes whose label is `label`.
+std::string state_of(const std::string& html, const std::string& label) {
+  const std::size_t at = html.find("\"label\">" + label + "<");
+  if (at == std::string::npos) return "missing";
+  const std::size_t begin = html.rfind("class=\"card ", at) + 12;
+  return html.substr(begin, html.find('"', begin) - begin);
+}
+
+TEST(Report, IsGreenOnlyWhereThePictureIsWhatWasAskedFor) {
+  const FrameLog log = synthetic_flight();
+  const std::string good = report_html(log, summarise(log, synthetic_facts(), 3.0));
+  EXPECT_NE(good.find("class=\"verdict good\""), std::string::npos);
+  EXPECT_EQ(state_of(good, "Frames with a hole"), "good");
+  EXPECT_EQ(state_of(good, "Frames too coarse"), "good");
+
+  FrameLog coarse(tick_systems());
+  for (FrameRecord r : log.frames()) {
+    r.holes = 0;
+    r.missing_pixels_percent = 100;
+    coarse.add(r);
+  }
+  const std::string poor = report_html(coarse, summarise(coarse, synthetic_facts(), 3.0));
+  EXPECT_NE(poor.find("class=\"verdict bad\"><b>Picture: much too coarse"), std::string::npos);
+  EXPECT_EQ(count_of(poor, "card good"), 0U) << "a page that is green looks as if all were well";
+  EXPECT_EQ(state_of(poor, "Frames with a hole"), "");
+  EXPECT_EQ(state_of(poor, "Frames too coarse"), "bad");
+}
+
+TEST(Report, OptionsInAdviceAreNotBrokenOverTwoLines) {
+  FrameLog coarse(tick_systems());
+  const FrameLog flight = synthetic_flight();
+  for (FrameRecord r : flight.frames()) {
+    r.too_coarse_percent = 100;
+    r.synthesis_seconds = 0;
+    coarse.add(r);
+  }
+  const std::string html = report_html(coarse, summarise(coarse, synthetic_facts(), 3.0));
+  EXPECT_NE(html.find("A smaller <code>--size</code> or a lower <code>--preset</code> leaves"),
+            std::string::npos);
+}
+
+TEST(Report, WaitingIsShownAsWaitingAndNotAsAShareOfASystem) {
+  const FrameLog log = synthetic_flight();
+  const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
+  EXPECT_NE(html.find("<th>waiting for the device</th>"), std::string::npos);
+  EXPECT_NE(html.find("waiting for the device</span>"), std::string::npos)
+      << "in the plot's legend";
+  EXPECT_EQ(html.find("waiting for the window</span>"), std::string::npos) << "there is no window";
+  EXPECT_NE(html.find("on the device</span>"), std::string::npos);
+}
+
+TEST(Report, FramesThatWerePicturesAreMarkedAndNotInTheCurve) {
+  FrameLog log = synthetic_flight();
+  FrameRecord picture = log.frames().back();
+  picture.time_s += 0.02;
+  picture.frame_ms = 4321;
+  picture.apart = Apart::kPicture;
+  log.add(picture);
+  const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
+  EXPECT_EQ(html.find("4321"), std::string::npos);
+  EXPECT_EQ(count_of(html, "class=\"mark\""), 2U);
+  EXPECT_NE(html.find("1 written as pictures. They are marked."), std::string::npos);
+}
+
+TEST(Report, AnEndlessWorldHasTheFiguresOfAnAreaInsteadOfDashes) {
+  RunFacts facts = synthetic_facts();
+  facts.world.blocks = {0, 0};
+  facts.world.triangles = facts.world.bytes = facts.world.bytes_paper = Count::missing("no end");
+  const FrameLog log = synthetic_flight();
+  const std::string html = report_html(log, summarise(log, facts, 1.0));
+  EXPECT_NE(html.find("A square kilometre, triangles"), std::string::npos);
+  EXPECT_EQ(html.find("paper's format"), std::string::npos);
+}
+
+TEST(Report, RaisedErrorsAreDrawnAgainstTheOneAskedFor) {
+  FrameLog log(tick_systems());
+  const FrameLog flight = synthetic_flight();
+  for (FrameRecord r : flight.frames()) {
+    r.error_pixels = 9;
+    log.add(r);
+  }
+  const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
+  EXPECT_NE(html.find("Error that levels of detail might have"), std::string::npos);
+  EXPECT_NE(html.find(">asked for 4<"), std::string::npos);
+  EXPECT_EQ(state_of(html, "Error of levels of detail"), "fair");
 }
 
 TEST(Report, NeedsNothingFromOutside) {
@@ -52,6 +140,20 @@ TEST(Report, OfARunWithoutFramesSaysSoAndGivesReasons) {
   const std::string html = report_html(log, summarise(log, {}, 1.0));
   EXPECT_NE(html.find("No frame was drawn."), std::string::npos);
   EXPECT_NE(html.find("title=\"needs at least 2 values, there are 0\""), std::string::npos);
+  EXPECT_NE(html.find("Picture: not measured"), std::string::npos);
+  EXPECT_EQ(count_of(html, "card good"), 0U);
+}
+
+TEST(Report, OfAFewFramesOrOfAWarmUpAloneIsAPageWithoutNonsense) {
+  for (const std::uint64_t frames : {1U, 2U, 5U}) {
+    for (const double warmup_s : {0.0, 1e6}) {
+      const FrameLog log = synthetic_flight(frames);
+      const std::string html = report_html(log, summarise(log, synthetic_facts(), warmup_s));
+      EXPECT_EQ(html.find("nan"), std::string::npos) << frames;
+      EXPECT_EQ(html.find("inf,"), std::string::npos) << frames;
+      EXPECT_EQ(count_of(html, "<figure>"), 6U);
+    }
+  }
 }
 
 TEST(Report, StaysSmallForALongFlight) {

@@ -33,6 +33,133 @@ TEST(Summarise, FrameFiguresAreTheStatisticsOfTheMeasuredFrames) {
   EXPECT_NEAR(*s.system_ms[2].p50, 0.9, 1e-6);
 }
 
+// Frames of 10 ms of which the fifth of each ten is written, which takes 200 ms, and the next two
+// find an idle device, for 1 ms each.
+FrameLog flight_with_pictures(std::uint64_t frames) {
+  FrameLog log({"render"});
+  for (std::uint64_t i = 0; i < frames; ++i) {
+    FrameRecord r;
+    r.index = i;
+    r.time_s = 0.1 * static_cast<double>(i);
+    r.frame_ms = 10;
+    r.device_wait_ms = 8;
+    r.gpu_ms = 9;
+    r.system_ms[0] = 1;
+    r.triangles = 100 + i % 10;
+    if (i % 10 == 5) r.apart = Apart::kPicture;
+    if (i % 10 == 6 || i % 10 == 7) r.apart = Apart::kAfterIdle;
+    if (r.apart == Apart::kPicture) r.frame_ms = 200;
+    if (r.apart == Apart::kAfterIdle) r.frame_ms = r.device_wait_ms = 1;
+    log.add(r);
+  }
+  return log;
+}
+
+TEST(Summarise, FramesThatAreNotLikeTheOthersAreInNoFigureOfTimes) {
+  const Summary s = summarise(flight_with_pictures(1000), {}, 0.0);
+  EXPECT_EQ(s.run.measured_frames, 1000U);
+  EXPECT_EQ(s.run.timed_frames, 700U);
+  EXPECT_EQ(s.run.apart_frames, (std::array<std::uint64_t, kApartKinds>{700, 100, 200, 0, 0}));
+  EXPECT_EQ(*s.frame_ms.mean, 10);
+  EXPECT_EQ(*s.frame_ms.p50, 10);
+  EXPECT_EQ(*s.frame_ms.p99, 10);
+  EXPECT_EQ(*s.frame_ms.max, 10);
+  EXPECT_EQ(*s.low1_fps, 100);
+  EXPECT_EQ(*s.hitches, 0U);
+  EXPECT_EQ(*s.stutter_percent, 0);
+  EXPECT_EQ(*s.wait_ms.all.p50, 8);
+  EXPECT_EQ(*s.wait_ms.device.p99, 8);
+  EXPECT_EQ(*s.gpu_ms.max, 9);
+  // What was drawn is theirs, too.
+  EXPECT_EQ(*s.draw.triangles_p50, 104.5);
+  EXPECT_FALSE(s.synthesis.busy_percent.has_value());
+}
+
+TEST(Summarise, WhereEveryFrameIsWrittenThereAreNoTimes) {
+  FrameLog log({"render"});
+  for (int i = 0; i < 200; ++i) {
+    FrameRecord r;
+    r.time_s = i;
+    r.frame_ms = 50;
+    r.apart = Apart::kPicture;
+    log.add(r);
+  }
+  const Summary s = summarise(log, {}, 0.0);
+  EXPECT_EQ(s.run.timed_frames, 0U);
+  EXPECT_FALSE(s.frame_ms.mean.has_value());
+  EXPECT_FALSE(s.frame_ms.p50.has_value());
+  EXPECT_FALSE(s.hitches.has_value());
+  EXPECT_TRUE(s.missing.frames.has_value());
+}
+
+TEST(Summarise, TheDevicesTimeIsMissingWithTheReason) {
+  FrameLog log({});
+  for (int i = 0; i < 200; ++i)
+    log.add({});
+  RunFacts facts;
+  EXPECT_EQ(summarise(log, facts, 0.0).gpu_ms.p50.reason, "the device has no timestamps");
+  facts.device.timestamps = true;
+  EXPECT_EQ(summarise(log, facts, 0.0).gpu_ms.p50.reason, "needs at least 2 values, there are 0");
+}
+
+TEST(Summarise, AFrameIsTooCoarseByWhicheverMeasureIsLarger) {
+  FrameLog log({});
+  for (int i = 0; i < 200; ++i) {
+    FrameRecord r;
+    r.time_s = 0.1 * i;
+    r.frame_ms = 10;
+    if (i % 20 == 0) r.missing_pixels_percent = 3;
+    if (i % 20 == 1) r.too_coarse_percent = 20;
+    if (i % 20 == 2) r.too_coarse_percent = kCoarsePercent;  // not above
+    log.add(r);
+  }
+  const Summary s = summarise(log, {}, 0.0);
+  EXPECT_EQ(*s.missing.coarse_frames, 20U);
+  EXPECT_NEAR(*s.missing.coarse_seconds, 2.0, 1e-9);
+  EXPECT_EQ(*s.missing.coarse_p99_percent, 20);
+  EXPECT_EQ(*s.missing.coarse_max_percent, 20);
+  EXPECT_NEAR(s.run.measured_seconds, 19.91, 1e-9);
+  EXPECT_NEAR(*s.run.real_seconds, 2.0, 1e-9);
+}
+
+TEST(Summarise, TellsWhyTheErrorOfLevelsOfDetailWasRaised) {
+  FrameLog log({});
+  for (int i = 0; i < 100; ++i) {
+    FrameRecord r;
+    r.error_pixels = i < 10 ? 8 : i < 40 ? 6 : 4;  // for time; for memory; as asked for
+    r.memory_factor = i >= 10 && i < 40 ? 1.5 : 1;
+    r.requests_refused = i == 12 ? 3 : 0;
+    log.add(r);
+  }
+  RunFacts facts;
+  facts.run.error_pixels = 4;
+  const Summary s = summarise(log, facts, 0.0);
+  EXPECT_EQ(*s.detail.p50_pixels, 4);
+  EXPECT_EQ(*s.detail.max_pixels, 8);
+  EXPECT_EQ(*s.detail.raised_by_memory, 30U);
+  EXPECT_EQ(*s.detail.raised_for_target, 10U);
+  EXPECT_EQ(*s.detail.refused_frames, 1U);
+}
+
+TEST(Summarise, ModelersBusyIsTheirShareOfTheRealTimeOfAsManyProcessors) {
+  FrameLog log({});
+  for (int i = 0; i < 100; ++i) {
+    FrameRecord r;
+    r.time_s = i;  // a fixed step: the flight's clock does not count
+    r.frame_ms = 20;
+    r.synthesis_seconds = i < 50 ? 0.02 : 0.004;
+    r.too_coarse_percent = i < 50 ? 0 : 5;
+    log.add(r);
+  }
+  RunFacts facts;
+  facts.run.modelers = 2;
+  const Summary s = summarise(log, facts, 0.0);
+  EXPECT_NEAR(*s.synthesis.busy_percent, 30, 1e-9);
+  EXPECT_NEAR(*s.synthesis.coarse_busy_percent, 10, 1e-9);
+  EXPECT_FALSE(summarise(log, facts, 90.5).synthesis.coarse_busy_percent.has_value())
+      << "a fifth of a second says nothing";
+}
+
 TEST(Summarise, SumsCountsAndDividesTrianglesByBusySeconds) {
   FrameLog log({});
   for (int i = 0; i < 4; ++i) {

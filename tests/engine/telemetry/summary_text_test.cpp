@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "engine/telemetry/summary.hpp"
@@ -17,11 +18,47 @@ TEST(SummaryText, NamesTheFiguresThatPeopleAskForFirst) {
   }
 }
 
+// Bytes that begin a character: lines hold some that take more than one.
+std::ptrdiff_t columns_of(const std::string& line) {
+  return std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; });
+}
+
 TEST(SummaryText, FitsAnEightyColumnTerminal) {
-  const std::string text = to_text(summarise(synthetic_flight(), synthetic_facts(), 1.0));
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);)
-    EXPECT_LE(line.size(), 100U) << line;
+  RunFacts endless = synthetic_facts();
+  endless.world.blocks = {0, 0};
+  endless.world.triangles = endless.world.bytes = endless.world.bytes_paper = Count::missing("x");
+  for (const RunFacts& facts : {synthetic_facts(), endless}) {
+    std::istringstream lines(to_text(summarise(synthetic_flight(), facts, 0.0)));
+    for (std::string line; std::getline(lines, line);)
+      EXPECT_LE(columns_of(line), 78) << line;
+  }
+}
+
+TEST(SummaryText, AnEndlessWorldHasAnAreasFiguresInsteadOfDashes) {
+  RunFacts facts = synthetic_facts();
+  facts.world.blocks = {0, 0};
+  facts.world.triangles = facts.world.bytes = facts.world.bytes_paper = Count::missing("no end");
+  const std::string text = to_text(summarise(synthetic_flight(), facts, 1.0));
+  EXPECT_NE(text.find("if generated       31.5 million triangles, 680 MB a square\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find(" kilometre, without end\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("– triangles"), std::string::npos) << text;
+}
+
+TEST(SummaryText, SaysWhetherThePictureIsWhatWasAskedForAndWhatIsNotTimed) {
+  FrameLog log = synthetic_flight();
+  const std::string good = to_text(summarise(log, synthetic_facts(), 3.0));
+  EXPECT_NE(good.find("picture    verdict            as asked for\n"), std::string::npos) << good;
+  EXPECT_EQ(good.find("not timed"), std::string::npos);
+  FrameRecord picture = log.frames().back();
+  picture.time_s += 0.02;
+  picture.apart = Apart::kPicture;
+  picture.holes = 1;
+  log.add(picture);
+  const std::string poor = to_text(summarise(log, synthetic_facts(), 3.0));
+  EXPECT_NE(poor.find("verdict            incomplete\n"), std::string::npos) << poor;
+  EXPECT_NE(poor.find("not timed          1 of "), std::string::npos) << poor;
 }
 
 TEST(SummaryText, ShowsADashWhereAFigureIsMissing) {

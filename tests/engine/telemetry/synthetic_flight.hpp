@@ -37,9 +37,12 @@ inline FrameRecord synthetic_frame(std::uint64_t i, double time_s, double noise)
   r.frame_ms = 16.5 + 2.5 * std::sin(progress * 20.0) + 3.0 * noise * noise +
                (i < 12 ? 60.0 : 0.0) + (i == 700 ? 95.0 : 0.0);
   r.main_cpu_ms = r.frame_ms * 0.6;
-  r.wait_ms = 1.0;
-  r.system_ms = {0.02F, 0.35F, 0.9F, 0.4F, 0.25F, 0.2F, static_cast<float>(r.frame_ms * 0.8 - 2.2),
-                 0.01F};
+  r.device_wait_ms = r.frame_ms * 0.7;
+  r.record_ms = 0.4;
+  r.gpu_ms = r.frame_ms * 0.9;
+  r.gpu_shadows_ms = 0.5;
+  r.device_frame = i + 1;
+  r.system_ms = {0.02F, 0.35F, 0.9F, 0.4F, 0.25F, 0.2F, 0.6F, 0.01F};
   r.error_pixels = 4;
   r.triangles = 95'000 + static_cast<std::uint64_t>(20'000.0 * std::sin(progress * 9.0));
   r.draws = 900;
@@ -51,6 +54,7 @@ inline FrameRecord synthetic_frame(std::uint64_t i, double time_s, double noise)
     r.coarse_nodes = static_cast<std::uint32_t>(14.0 * noise);
   }
   r.missing_pixels_percent = 0.05 * r.holes + 0.02 * r.coarse_nodes;
+  r.too_coarse_percent = 0.01 * r.coarse_nodes;
   r.cache_bytes = static_cast<std::uint64_t>(std::min(505.0, 60.0 + progress * 900.0 + noise * 4.0))
                   << 20;
   r.cache_hits = 1850;
@@ -83,9 +87,20 @@ inline RunFacts synthetic_facts() {
   RunFacts facts;
   facts.world = {"paper",           42, {512, 512}, 32'832'000'000ULL, 8'404'992'000'000ULL,
                  700'000'000'000ULL};
-  facts.device = {"llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa 22.3.6", "1.3.230"};
-  facts.run = {
-      "pla", "deadline", 1, 1280, 720, true, Figure::missing("the flight follows the clock")};
+  facts.world.block_m = 63;
+  facts.world.block_models = 63;
+  facts.world.block_triangles = 125'000;
+  facts.world.block_bytes = 2'700'000;
+  facts.device = {"llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa 22.3.6", "1.3.230", true};
+  facts.run = {"pla",
+               "deadline",
+               1,
+               1280,
+               720,
+               true,
+               Figure::missing("the flight follows the clock"),
+               4,
+               Figure::missing("no frame rate is held")};
   facts.cache_budget_bytes = 512ULL << 20;
   facts.prefetch_hit_percent = 81.5;
   facts.share_drawn = 0.625;

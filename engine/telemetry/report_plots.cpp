@@ -1,0 +1,248 @@
+// The plots of report.html.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include "engine/telemetry/report_parts.hpp"
+#include "engine/telemetry/verdict.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+template <class Field>
+std::vector<double> column(const FrameLog& log, const Field& field) {
+  std::vector<double> values;
+  values.reserve(log.frames().size());
+  for (const FrameRecord& r : log.frames())
+    values.push_back(static_cast<double>(field(r)));
+  return values;
+}
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+Plot base_plot(const FrameLog& log, const Summary& s, std::span<const double> times) {
+  Plot plot;
+  plot.times_s = times;
+  plot.warmup_s = log.frames().empty() ? 0 : s.run.warmup_seconds;
+  return plot;
+}
+
+// Of the frames that are like the others; nothing for those that are not.
+template <class Field>
+std::vector<double> timed_column(const FrameLog& log, const Field& field) {
+  return column(log, [&](const FrameRecord& r) {
+    return r.apart == Apart::kNo ? static_cast<double>(field(r)) : kNothing;
+  });
+}
+
+// Frames whose time is not shown.
+void mark_apart(const FrameLog& log, const Summary& s, Plot& plot) {
+  for (const FrameRecord& r : log.frames())
+    if (r.apart != Apart::kNo) plot.marks_s.push_back(r.time_s);
+  if (plot.marks_s.empty()) return;
+  const std::string text = left_out_text(s);
+  plot.note = text.empty() ? "Marked frames are within the warm-up." : text + " They are marked.";
+}
+
+Plot frame_time_plot(const FrameLog& log, const Summary& s, Plot plot) {
+  plot.title = "Frame time";
+  plot.unit = "ms";
+  plot.series = {{"frame", 1, timed_column(log, [](const auto& r) { return r.frame_ms; })}};
+  if (s.gpu_ms.p50.has_value()) {
+    plot.series.push_back({"on the device", 2, timed_column(log, [](const auto& r) {
+                             return r.gpu_ms.value_or(kNothing);
+                           })});
+  }
+  mark_apart(log, s, plot);
+  if (s.frame_ms.p50.has_value()) {
+    plot.levels.push_back(
+        {fmt::format("median {}", ms_text(*s.frame_ms.p50)), *s.frame_ms.p50, true});
+  }
+  if (!s.frame_ms.p99.has_value()) return plot;
+  plot.levels.push_back({fmt::format("p99 {}", ms_text(*s.frame_ms.p99)), *s.frame_ms.p99, false});
+  // A few slow frames must not flatten the rest.
+  const double limit = std::max(1.6 * *s.frame_ms.p99, 2.5 * *s.frame_ms.p50);
+  double slowest = 0;
+  std::size_t above = 0;
+  for (const double ms : plot.series[0].values) {
+    if (!std::isfinite(ms)) continue;
+    slowest = std::max(slowest, ms);
+    above += ms > limit ? 1 : 0;
+  }
+  if (above == 0) return plot;
+  plot.top = limit;
+  plot.note +=
+      fmt::format("{}{} frame{} off the scale; the slowest took {}.", plot.note.empty() ? "" : " ",
+                  above, above == 1 ? " is" : "s are", ms_text(slowest));
+  return plot;
+}
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0,
+                         [](double sum, double v) { return std::isfinite(v) ? sum + v : sum; });
+}
+
+// The systems that take most, and all others as one.
+std::vector<PlotSeries> system_series(const FrameLog& log) {
+  constexpr std::size_t kShown = 5;
+  constexpr int kOthersColour = 8;
+  std::vector<PlotSeries> all;
+  for (std::size_t i = 0; i < log.systems().size(); ++i) {
+    all.push_back(
+        {log.systems()[i], 0, timed_column(log, [i](const auto& r) { return r.system_ms[i]; })});
+  }
+  std::ranges::stable_sort(all, std::greater{},
+                           [](const PlotSeries& series) { return sum_of(series.values); });
+  if (all.size() > kShown + 1) {
+    PlotSeries others{"other systems", kOthersColour, std::move(all[kShown].values)};
+    for (std::size_t i = kShown + 1; i < all.size(); ++i) {
+      for (std::size_t k = 0; k < others.values.size(); ++k)
+        others.values[k] += all[i].values[k];
+    }
+    all.resize(kShown);
+    all.push_back(std::move(others));
+  }
+  constexpr std::array kColours{1, 3, 4, 5, 6, 2};
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].colour == 0) all[i].colour = kColours[i % kColours.size()];
+  return all;
+}
+
+Plot systems_plot(const FrameLog& log, const Summary& s, Plot plot) {
+  plot.title = "Where the frame goes: systems of the tick, and waiting";
+  plot.unit = "ms";
+  plot.kind = PlotKind::kStacked;
+  plot.series = system_series(log);
+  std::vector<double> rest =
+      timed_column(log, [](const auto& r) { return r.frame_ms - r.wait_ms(); });
+  for (const PlotSeries& series : plot.series) {
+    for (std::size_t k = 0; k < rest.size(); ++k)
+      rest[k] -= series.values[k];
+  }
+  for (double& value : rest)
+    value = std::isfinite(value) ? std::max(value, 0.0) : value;
+  plot.series.push_back({"the rest (poses, plugins)", 7, std::move(rest)});
+  plot.series.push_back({"waiting for the device", 0,
+                         timed_column(log, [](const auto& r) { return r.device_wait_ms; })});
+  const auto window_ms = [](const FrameRecord& r) { return r.acquire_ms + r.present_ms; };
+  if (std::ranges::any_of(log.frames(), [&](const auto& r) { return window_ms(r) > 0; }))
+    plot.series.push_back({"presenting, waiting for the window", 9, timed_column(log, window_ms)});
+  // The axis follows nearly all frames, as in the plot above.
+  if (s.frame_ms.p99.has_value()) plot.top = 1.25 * *s.frame_ms.p99;
+  mark_apart(log, s, plot);
+  return plot;
+}
+
+Plot coarse_plot(const FrameLog& log, const Summary& s, Plot plot) {
+  plot.title = "Picture: what of it is missing or too coarse";
+  plot.unit = "% of the picture";
+  plot.kind = PlotKind::kPeaks;
+  plot.series = {
+      {"drawn too coarse", 4, column(log, [](const auto& r) { return r.too_coarse_percent; })},
+      {"missing, or over a level too coarse (estimate)", 6,
+       column(log, [](const auto& r) { return r.missing_pixels_percent; })}};
+  plot.levels = {{fmt::format("{:g} %", kCoarsePercent), kCoarsePercent, false}};
+  double largest = 0;
+  for (const PlotSeries& series : plot.series)
+    for (const double value : series.values)
+      largest = std::max(largest, value);
+  if (largest < 2) plot.top = 2;
+  if (s.run.measured_frames > 0) {
+    plot.note =
+        fmt::format("More than {:g} % in {} of {} frames after the warm-up.", kCoarsePercent,
+                    or_dash(s.missing.coarse_frames, whole), s.run.measured_frames);
+  }
+  return plot;
+}
+
+Plot missing_plot(const FrameLog& log, const Summary&, Plot plot) {
+  plot.title = "Missing geometry: nodes in view that are not drawn as wanted";
+  plot.unit = "nodes";
+  plot.kind = PlotKind::kPeaks;
+  plot.series = {{"too coarse", 4, column(log, [](const auto& r) { return r.coarse_nodes; })},
+                 {"holes", 6, column(log, [](const auto& r) { return r.holes; })}};
+  double largest = 0;
+  for (const PlotSeries& series : plot.series) {
+    for (const double value : series.values)
+      largest = std::max(largest, value);
+  }
+  if (largest < 5) plot.top = 5;
+  if (largest == 0) plot.note = "Nothing was missing in any frame.";
+  return plot;
+}
+
+// What levels of detail might be off, where it was not what was asked for all the time.
+Plot error_plot(const FrameLog& log, const Summary& s, Plot plot) {
+  plot.title = "Error that levels of detail might have";
+  plot.unit = "pixels";
+  plot.series = {{"error", 5, column(log, [](const auto& r) { return r.error_pixels; })}};
+  plot.levels = {{fmt::format("asked for {:g}", s.run.error_pixels), s.run.error_pixels, true}};
+  return plot;
+}
+
+bool is_error_raised(const FrameLog& log, const Summary& s) {
+  return std::ranges::any_of(log.frames(), [&](const auto& r) {
+    return s.run.error_pixels > 0 && r.error_pixels > 1.005 * s.run.error_pixels;
+  });
+}
+
+Plot cache_plot(const FrameLog& log, const Summary& s, Plot plot) {
+  plot.title = "Geometry cache";
+  plot.unit = "MiB";
+  plot.kind = PlotKind::kPeaks;
+  plot.series = {{"cache", 3, column(log, [](const auto& r) {
+                    return static_cast<double>(r.cache_bytes) / kMebibyte;
+                  })}};
+  const auto budget = static_cast<double>(s.cache.budget_bytes);
+  if (budget > 0)
+    plot.levels = {{fmt::format("budget {}", bytes_text(budget)), budget / kMebibyte, false}};
+  if (budget > 0 && !plot.series[0].values.empty()) {
+    const auto& values = plot.series[0].values;
+    plot.top = 1.15 * std::max(budget / kMebibyte, *std::max_element(values.begin(), values.end()));
+  }
+  return plot;
+}
+
+// Synthesised triangles per second, in windows of a quarter of a second or a hundredth of the run.
+Plot synthesis_plot(const FrameLog& log, const Summary&, Plot plot) {
+  plot.title = "Synthesis: triangles made per second of the flight, all modelers";
+  plot.unit = "million/s";
+  plot.kind = PlotKind::kPeaks;
+  std::vector<double> rates(log.frames().size(), 0.0);
+  const auto frames = log.frames();
+  const double window =
+      frames.empty() ? 1.0 : std::max(0.25, (frames.back().time_s - frames[0].time_s) / 100.0);
+  for (std::size_t first = 0; first < frames.size();) {
+    std::size_t end = first;
+    double triangles = 0;
+    for (; end < frames.size() && frames[end].time_s < frames[first].time_s + window; ++end)
+      triangles += static_cast<double>(frames[end].triangles_synthesised);
+    end = std::max(end, first + 1);
+    std::fill(rates.begin() + static_cast<std::ptrdiff_t>(first),
+              rates.begin() + static_cast<std::ptrdiff_t>(end), triangles / window * 1e-6);
+    first = end;
+  }
+  plot.series = {{"synthesis", 5, std::move(rates)}};
+  return plot;
+}
+
+}  // namespace
+
+std::string report_plots(const FrameLog& log, const Summary& s) {
+  if (log.frames().empty()) return "<p>No frame was drawn.</p>\n";
+  const std::vector<double> times = column(log, [](const auto& r) { return r.time_s; });
+  const Plot base = base_plot(log, s, times);
+  return plot_html(frame_time_plot(log, s, base)) + plot_html(systems_plot(log, s, base)) +
+         plot_html(coarse_plot(log, s, base)) + plot_html(missing_plot(log, s, base)) +
+         (is_error_raised(log, s) ? plot_html(error_plot(log, s, base)) : "") +
+         plot_html(cache_plot(log, s, base)) + plot_html(synthesis_plot(log, s, base));
+}
+
+}  // namespace psygen::telemetry

@@ -1,0 +1,192 @@
+#include "engine/telemetry/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/telemetry/synthetic_flight.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+// 200 frames, 20 s of flight in 10 s, of which `change` has changed what it wants.
+template <class Change>
+Summary flight(const Change& change, RunFacts facts = synthetic_facts()) {
+  FrameLog log({});
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    FrameRecord r;
+    r.index = i;
+    r.time_s = 0.1 * static_cast<double>(i);
+    r.frame_ms = 50;
+    r.error_pixels = 4;
+    r.synthesis_seconds = 0.04;
+    change(r);
+    log.add(r);
+  }
+  return summarise(log, facts, 0.0);
+}
+
+std::string text_of(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences)
+    text += sentence + "\n";
+  return text;
+}
+
+TEST(Verdict, IsGoodOnlyWhereNothingIsWrong) {
+  const Verdict verdict = picture_verdict(flight([](FrameRecord&) {}));
+  EXPECT_EQ(verdict.grade, Grade::kGood);
+  EXPECT_EQ(verdict.headline, "as asked for");
+  EXPECT_TRUE(verdict.advice.empty());
+  // A little may be too coarse in all frames, and a lot in one of a hundred.
+  EXPECT_EQ(picture_verdict(flight([](FrameRecord& r) { r.missing_pixels_percent = 0.9; })).grade,
+            Grade::kGood);
+  EXPECT_EQ(picture_verdict(flight([](FrameRecord& r) {
+              if (r.index == 7) r.too_coarse_percent = 100;
+            })).grade,
+            Grade::kGood);
+}
+
+TEST(Verdict, OneHoleIsPoor) {
+  const Verdict verdict =
+      picture_verdict(flight([](FrameRecord& r) { r.holes = r.index == 50 ? 1 : 0; }));
+  EXPECT_EQ(verdict.grade, Grade::kPoor);
+  EXPECT_EQ(verdict.headline, "incomplete");
+  EXPECT_NE(text_of(verdict.reasons).find("1 of 200 frames had a hole"), std::string::npos);
+  EXPECT_FALSE(verdict.advice.empty());
+}
+
+TEST(Verdict, APictureWithoutHolesThatIsTooCoarseIsNotGood) {
+  const auto coarse = [](double percent) {
+    return picture_verdict(flight([percent](FrameRecord& r) {
+      if (r.index < 100) r.missing_pixels_percent = percent;
+    }));
+  };
+  EXPECT_EQ(coarse(5).grade, Grade::kFair);
+  EXPECT_EQ(coarse(5).headline, "too coarse at times");
+  const Verdict poor = coarse(100);
+  EXPECT_EQ(poor.grade, Grade::kPoor);
+  EXPECT_EQ(poor.headline, "much too coarse at times");
+  EXPECT_NE(text_of(poor.reasons).find("In 100 of 200 frames (10.0 s of 20.0 s of flight)"),
+            std::string::npos)
+      << text_of(poor.reasons);
+  EXPECT_NE(text_of(poor.reasons).find("at worst 100 %"), std::string::npos);
+}
+
+TEST(Verdict, OfFewFramesTheWorstDecides) {
+  FrameLog log({});
+  FrameRecord r;
+  r.frame_ms = 50;
+  r.too_coarse_percent = 60;
+  log.add(r);
+  const Verdict verdict = picture_verdict(summarise(log, synthetic_facts(), 0.0));
+  EXPECT_EQ(verdict.grade, Grade::kPoor);
+  EXPECT_EQ(verdict.headline, "much too coarse");
+}
+
+TEST(Verdict, SaysThatAFixedStepOutranTheModelers) {
+  RunFacts facts = synthetic_facts();
+  facts.run.fixed_step = 10;
+  const auto all_coarse = [](FrameRecord& r) {
+    r.frame_ms = 20;
+    r.too_coarse_percent = 50;
+    r.synthesis_seconds = 0.019;
+  };
+  const std::string advice = text_of(picture_verdict(flight(all_coarse, facts)).advice);
+  EXPECT_NE(advice.find("the flight ran 4.98 times as fast as real time"), std::string::npos)
+      << advice;
+  EXPECT_NE(advice.find("--fixed-step above 10 Hz"), std::string::npos) << advice;
+  EXPECT_EQ(advice.find("processor"), std::string::npos) << "modelers were busy";
+  facts.run.fixed_step = Figure::missing("none");
+  EXPECT_EQ(text_of(picture_verdict(flight(all_coarse, facts)).advice).find("real time"),
+            std::string::npos);
+}
+
+TEST(Verdict, SaysThatModelersGotNoProcessor) {
+  const std::string advice = text_of(picture_verdict(flight([](FrameRecord& r) {
+                                       r.too_coarse_percent = 50;
+                                       r.synthesis_seconds = 0.001;
+                                     })).advice);
+  EXPECT_NE(advice.find("modelers worked for 2.00 % of the time of 1 processor"), std::string::npos)
+      << advice;
+}
+
+TEST(Verdict, WhereMemoryIsShortItBlamesNoProcessor) {
+  const Verdict verdict = picture_verdict(flight([](FrameRecord& r) {
+    r.too_coarse_percent = 50;
+    r.synthesis_seconds = 0.001;
+    r.requests_refused = 3;
+  }));
+  ASSERT_EQ(verdict.advice.size(), 1u) << text_of(verdict.advice);
+  EXPECT_EQ(verdict.advice[0], "Raise --budget above 512 MiB.");
+}
+
+TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotWhatWasAskedFor) {
+  const Verdict memory = picture_verdict(flight([](FrameRecord& r) {
+    r.error_pixels = 12;
+    r.memory_factor = 3;
+    r.requests_refused = 5;
+  }));
+  EXPECT_EQ(memory.grade, Grade::kFair);
+  EXPECT_NE(text_of(memory.reasons).find("The geometry budget was too small in 200 of 200 frames"),
+            std::string::npos)
+      << text_of(memory.reasons);
+  EXPECT_NE(text_of(memory.reasons).find("12.0 at most, not 4"), std::string::npos);
+  EXPECT_NE(text_of(memory.advice).find("--budget above 512 MiB"), std::string::npos);
+  RunFacts facts = synthetic_facts();
+  facts.run.target_fps = 60;
+  const Verdict target =
+      picture_verdict(flight([](FrameRecord& r) { r.error_pixels = 16; }, facts));
+  EXPECT_EQ(target.grade, Grade::kFair);
+  EXPECT_NE(
+      text_of(target.reasons).find("To hold 60 frames/s the error was raised in 200 of 200 frames"),
+      std::string::npos)
+      << text_of(target.reasons);
+  // While it still refines, in the first frames, it is what was asked for.
+  EXPECT_EQ(
+      picture_verdict(flight([](FrameRecord& r) { r.error_pixels = r.index < 2 ? 16 : 4; }, facts))
+          .grade,
+      Grade::kGood);
+}
+
+TEST(Verdict, FailedModelsArePoor) {
+  const Verdict verdict =
+      picture_verdict(flight([](FrameRecord& r) { r.models_failed = r.index == 3 ? 2 : 0; }));
+  EXPECT_EQ(verdict.grade, Grade::kPoor);
+  EXPECT_NE(text_of(verdict.reasons).find("2 models could not be synthesised"), std::string::npos);
+}
+
+TEST(Verdict, TheWorstOfSeveralGradesCountsAndAllReasonsAreGiven) {
+  const Verdict verdict = picture_verdict(flight([](FrameRecord& r) {
+    r.holes = 1;
+    r.too_coarse_percent = 5;
+    r.error_pixels = 8;
+    r.memory_factor = 2;
+  }));
+  EXPECT_EQ(verdict.grade, Grade::kPoor);
+  EXPECT_EQ(verdict.headline, "incomplete");
+  EXPECT_EQ(verdict.reasons.size(), 3u);
+}
+
+TEST(Verdict, WithoutAMeasuredFrameThereIsNone) {
+  const Verdict none = picture_verdict(summarise(FrameLog({}), {}, 1.0));
+  EXPECT_EQ(none.grade, Grade::kUnknown);
+  EXPECT_TRUE(none.advice.empty());
+  FrameLog log({});
+  log.add({});
+  const Verdict warm_up = picture_verdict(summarise(log, {}, 1.0));
+  EXPECT_EQ(warm_up.grade, Grade::kUnknown);
+  EXPECT_NE(text_of(warm_up.advice).find("--warmup"), std::string::npos);
+}
+
+TEST(LeftOut, NamesWhatSetsFramesApart) {
+  Summary s;
+  EXPECT_EQ(left_out_text(s), "");
+  s.run.measured_frames = 100;
+  s.run.timed_frames = 93;
+  s.run.apart_frames = {93, 2, 4, 1, 0};
+  EXPECT_EQ(left_out_text(s),
+            "7 of 100 measured frames are in no figure of times: 2 written as pictures, 4 after "
+            "the device had been waited for, 1 while the window changed its size.");
+}
+
+}  // namespace
+}  // namespace psygen::telemetry
