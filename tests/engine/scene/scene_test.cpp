@@ -395,6 +395,7 @@ TEST(Scene, HalvingTheBudgetWhileFlyingIsMet) {
 
 TEST(Scene, HasTheModelersThatThereAreThreadsForAndIsRefusedWithoutAny) {
   Settings settings = small_settings();
+  settings.virtual_time = false;  // modelers are threads
   settings.modelers = 8;
   {
     const FewThreads few(2);
