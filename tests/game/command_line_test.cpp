@@ -58,6 +58,7 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
                                 "picture --out a.png --preset best",
                                 "picture --out a.png --view depth",
                                 "picture --out a.png --error 0",
+                                "picture --out a.png --budget 1K",
                                 "picture --out a.png --seconds 3",
                                 "amplify --region 0,0,0,1",
                                 "amplify --simd mmx",
@@ -203,7 +204,6 @@ TEST(CommandLine, APictureThatCannotBeTakenSaysWhy) {
         {"--at 1e300,0" + out, "outside of the world paper"},
         {"--world missing.toml" + out, "missing.toml"},
         {"--out /proc/nowhere/a.png", "/proc/nowhere"},
-        {"--budget 1K" + out, "budget"},
         {"--budget 4M --view-distance 1000" + out, "raise --budget or --error"}}) {
     const Outcome outcome = failure(options);
     EXPECT_EQ(outcome.code, 1) << options << "\n" << outcome.err;

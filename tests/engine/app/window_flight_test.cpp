@@ -228,6 +228,7 @@ TEST_F(WindowFlight, APictureThatCannotBeWrittenIsToldOnTheScreen) {
 TEST_F(WindowFlight, ClosingWhileTheCacheIsFilledEndsAtOnceAndIsNoFlight) {
   scene::Gate gate;
   Options made = options();
+  made.scene.virtual_time = false;  // modelers are real, and wait at the gate
   made.scene.watchdog_seconds = 1e6;
   made.world_file = folder_ / "slow.toml";
   std::ofstream(made.world_file) << "format = 1\n[world]\nname = \"paper\"\nseed = 1\n"
