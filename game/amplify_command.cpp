@@ -75,7 +75,8 @@ std::string json_of(const amplify::Report& report, const Files* files) {
 AmplifyCommand::AmplifyCommand(CLI::App& cli)
     : command_(cli.add_subcommand("amplify", "Synthesise a region or the whole world")) {
   CLI::App& c = *command_;
-  c.add_option("--world", world_, "World file (TOML)")->capture_default_str();
+  c.add_option("--world", world_, "World: a TOML file, or the name of one that comes with psygen")
+      ->capture_default_str();
   auto* region = c.add_option_function<std::string>(
       "--region", [this](const std::string& text) { region_ = *amplify::parse_region(text); },
       "Blocks X0,Z0,X1,Z1 without X1 and Z1; default: the whole world");

@@ -1,7 +1,5 @@
-// How the program ends where memory or threads run out and nobody can go on: one sentence, exit
-// code
-// 1. With the program's own operator new, which notes how much was wanted. What other exceptions
-// mean for a thread, an abort, they keep.
+// Ends the program with one sentence and exit code 1 where memory or threads run out. Replaces
+// operator new, to note the size that was refused. Other exceptions still abort.
 #pragma once
 
 namespace psygen::game {

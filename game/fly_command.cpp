@@ -19,14 +19,18 @@ FlyCommand::FlyCommand(CLI::App& cli)
   CLI::App& c = *command_;
   scene::Settings& scene = options_.scene;
   add_scene_options(c, options_);
-  c.add_option("--path", options_.path_file,
-               "Camera path (TOML); without one the camera turns, or you fly");
+  c.add_option(
+      "--path", options_.path_file,
+      "Camera path: a TOML file, or the name of one that comes with psygen; without one the "
+      "camera turns, or you fly");
   c.add_option("--out", options_.out_folder,
                "Folder for frames.csv, summary.json, trace.json, report.html and pictures");
   c.add_flag("--headless", options_.headless, "No window; needs no display");
   c.add_option("--seconds", options_.seconds, "Length of the flight; 0: that of the path")
       ->check(number_between(0, 86400));
-  c.add_flag("--loop", options_.loop, "Fly the path again and again, until --seconds are over");
+  c.add_flag("--loop", options_.loop,
+             "Fly the path again and again, until --seconds (27 if headless) are over")
+      ->needs("--path");
   c.add_option("--frames", options_.frames, "End after so many frames; 0: no limit")
       ->transform(integer_between(0, 1'000'000'000));
   c.add_option("--fixed-step", options_.fixed_step_hz,
@@ -52,7 +56,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
   c.add_option_function<std::string>(
        "--plp",
        [this](const std::string& text) { options_.scene.plp_mode = *scene::plp_mode_from(text); },
-       "Order of nodes: layers around the camera, or what little solidity hides first")
+       "Order of nodes: layers around the camera, or solidity: least hidden first")
       ->check(valid_if(scene::plp_mode_from, "layers|solidity"))
       ->default_str("layers");
   c.add_option_function<double>(
@@ -112,7 +116,10 @@ int FlyCommand::code_of(const core::Error& error) {
 
 int FlyCommand::fly(app::App& app) {
   const auto report = app.run();
-  if (!report) return code_of(report.error());
+  if (!report) {
+    if (auto ok = write_requests(); !ok) core::log_error(ok.error().message);
+    return code_of(report.error());
+  }
   for (const std::string& message : report->validation_messages)
     core::log_error(message);
   return report->validation_messages.empty() ? told_ : kFailed;
@@ -128,16 +135,13 @@ int FlyCommand::tell(const app::FlightReport& report) const {
   };
   for (const core::Error& failure : report.failures)
     fail(failure.message);
-  if (requests_.empty()) return code;
-  if (auto ok = write_requests(); !ok) {
-    fail(ok.error().message);
-  } else {
-    core::log_info(fmt::format("wrote {}", requests_));
-  }
+  if (auto ok = write_requests(); !ok) fail(ok.error().message);
   return code;
 }
 
+// Where they were asked for.
 core::Result<void> FlyCommand::write_requests() const {
+  if (requests_.empty()) return {};
   auto written = core::replace_file(requests_, synthesis::stream_text(recorder_.jobs()));
   if (written) core::log_info(fmt::format("wrote {}", requests_));
   return written;

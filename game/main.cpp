@@ -22,10 +22,6 @@ int main(int argc, char** argv) {
   CLI::App cli("psygen: fly through worlds that are far larger than memory", "psygen");
   cli.set_version_flag("--version", "psygen " PSYGEN_VERSION);
   cli.require_subcommand(1);
-  cli.footer(
-      "For example:\n"
-      "  psygen fly --headless --world silver_combe --path combe --out out\n"
-      "psygen COMMAND --help lists the options of a command.");
   psygen::game::FlyCommand fly(cli);
   psygen::game::PictureCommand picture(cli);
   psygen::game::ModelsCommand models(cli);
@@ -33,6 +29,11 @@ int main(int argc, char** argv) {
   psygen::game::ExportCommand exporter(cli);
   psygen::game::CalibrateCommand calibrate(cli);
   psygen::game::ScheduleCommand schedule(cli);
+  // After the commands, which would take it over.
+  cli.footer(
+      "For example:\n"
+      "  psygen fly --headless --world silver_combe --path combe --out out\n"
+      "psygen COMMAND --help lists the options of a command.");
   if (const auto code = psygen::game::read_command_line(cli, argc, argv)) return *code;
   // Nothing of ours throws, but libraries do when memory ends.
   try {

@@ -71,8 +71,8 @@ inline CLI::Validator bytes_between(std::uint64_t low, std::uint64_t high) {
         if (!bytes) return bytes.error().message;
         return *bytes >= low && *bytes <= high
                    ? std::string()
-                   : fmt::format("'{}' is not allowed: it must be {}M to {}M", text, low >> 20,
-                                 high >> 20);
+                   : fmt::format("'{}' is not allowed: it must be between {}M and {}T", text,
+                                 low >> 20, high >> 40);
       },
       "BYTES");
 }

@@ -115,6 +115,8 @@ core::Result<void> PictureCommand::take(app::App& app) const {
   if (options_.stop->load()) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
   if (auto ok = check_complete(app.scene().state()); !ok) return ok;
   if (auto ok = app.frame(pose, 0); !ok) return ok;
+  if (app.scene().state().totals.failed > 0 || app.scene().state().counters.holes > 0)
+    return core::fail(core::ErrorCode::kSynthesisFailed, "not all that is seen could be made");
   if (auto ok = app.save_picture(out_); !ok) return ok;
   const auto messages = app.renderer().validation_messages();
   if (messages.empty()) return {};

@@ -75,7 +75,9 @@ void add_machine(CLI::App& c, app::Options& options) {
 
 void add_scene_options(CLI::App& command, app::Options& options) {
   options.world_file = kDefaultWorld;
-  command.add_option("--world", options.world_file, "World file (TOML)")
+  command
+      .add_option("--world", options.world_file,
+                  "World: a TOML file, or the name of one that comes with psygen")
       ->default_str(options.world_file.string());
   command
       .add_option_function<double>(

@@ -9,8 +9,8 @@ namespace psygen::game {
 // their numbers and with them what is meant for them. Writing to such a stdout fails, as it should.
 void hold_standard_streams();
 
-// Writes data to stdout. kOk, or kFailed when it does not get there, with a message
-// unless its reader has closed the pipe.
+// Writes data to stdout. kFailed if it cannot be written, with a message unless the reader has
+// closed the pipe.
 int print(const std::string& text);
 
 }  // namespace psygen::game

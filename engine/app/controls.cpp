@@ -88,7 +88,9 @@ void App::save_screenshot() {
   for (int number = 0; file.empty() || std::filesystem::exists(file, ignored); ++number) {
     file = options_.out_folder / fmt::format("screenshot_{:04}.png", number);
   }
-  const auto written = save_picture(file);
+  const auto image = last_picture();
+  const auto written =
+      image ? write_picture(file, *image) : core::Result<void>(tl::unexpected(image.error()));
   const std::string text = written ? fmt::format("wrote {}", file.string())
                                    : "no picture was written: " + written.error().message;
   if (written) {
@@ -103,9 +105,9 @@ void App::change_preset() {
   const render::Preset preset = *std::exchange(wanted_preset_, std::nullopt);
   const auto changed = renderer_->set_preset(preset, [this](double) {
     window_->keep_alive();
-    return !window_->should_close();
+    return !window_->should_close() && !stopped();
   });
-  if (window_->should_close()) return;
+  if (window_->should_close() || stopped()) return;
   if (!changed) core::log_error(changed.error().message);
   if (changed) scene_->take_over_preset();
   hud_.notify(Hud::Subject::kPreset,

@@ -204,7 +204,8 @@ core::Result<FlightReport> App::run() {
   if (!stays_open()) return report;
   tell_end(report);
   user_flies_ = true;
-  if (auto ok = loop(); !ok) return tl::unexpected(ok.error());
+  const auto flown_on = core::within_memory("the flight", [this] { return loop(); });
+  if (!flown_on) return tl::unexpected(flown_on.error());
   report.validation_messages = renderer_->validation_messages();
   return report;
 }

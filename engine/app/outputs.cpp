@@ -97,8 +97,10 @@ telemetry::RunFacts App::run_facts(bool whole) {
                           : telemetry::Figure::missing("nothing was synthesised");
   facts.floor_ratio = telemetry::Figure::missing("the flight failed");
   if (whole) {
-    state.synthesis.manager->wait_all();  // nothing else runs while the floor is measured
-    facts.floor_ratio = floor_ratio(*log_, *renderer_);
+    // Nothing else runs while the floor is measured.
+    const bool alone = state.synthesis.manager->wait_all([this] { return !stopped(); });
+    facts.floor_ratio = alone ? floor_ratio(*log_, *renderer_)
+                              : telemetry::Figure::missing("the flight was stopped");
   }
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
   facts.world_hash = !options_.hash_world ? telemetry::Count::missing("switched off")

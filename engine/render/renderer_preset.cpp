@@ -64,15 +64,15 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
   exchange();  // the old ones are kept until the new ones are there
   Result<void> made = noted(create_looks(preset, progress));
   wait_idle();
+  has_list_ = has_picture_ = false;
+  gpu_.reset();
+  idle_value_ = warm_up_value_ = frame_value_;
   if (!made) {
     exchange();
     use_pipelines();
     swapchain_stale_ = true;  // the window may have changed meanwhile
     return made;
   }
-  has_list_ = has_picture_ = false;
-  gpu_.reset();
-  idle_value_ = warm_up_value_ = frame_value_;
   return {};
 }
 
@@ -135,6 +135,8 @@ Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_sc
   if (Result<void> waited = noted(wait_for(slot)); !waited) return waited;
   overlay_.lay_out(panels, size(), text_scale, glyphs_);
   overlay_.put_ground_under(size(), glyphs_);
+  line_vertices_ = 0;
+  has_list_ = false;
   if (windowed) {
     const Result<WindowState> acquired = noted(acquire_window(slot));
     if (!acquired) return tl::unexpected(acquired.error());

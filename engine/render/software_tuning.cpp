@@ -58,7 +58,7 @@ core::Result<void> fit_software_rendering_to_threads() {
   const std::size_t left = core::threads_left(wanted);
   if (left < kLeastThreads) {
     return core::fail(core::ErrorCode::kInternal,
-                      fmt::format("a flight takes {} threads at least; the system gives {} more",
+                      fmt::format("drawing needs at least {} threads; the system allows {} more",
                                   kLeastThreads, left));
   }
   const std::size_t raster = left - std::min(left, kOtherThreads);

@@ -29,7 +29,7 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
     ++(job.ok ? counters.completed : counters.failed);
     counters.synthesis_seconds += job.seconds;
     if (job.ok) counters.costs.push_back({job.predicted_seconds, job.seconds});
-    if (trace.log != nullptr && !job.late) trace_job(job, trace);
+    if (trace.log != nullptr && !job.late && !settings.virtual_time) trace_job(job, trace);
   }
 }
 

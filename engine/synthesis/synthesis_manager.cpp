@@ -32,6 +32,16 @@ ModelerStats stats_of(const Modeler& modeler) {
 }
 }  // namespace
 
+// Of a request that nobody is left to execute.
+static Completion not_executed(const Request& request) {
+  Completion c;
+  c.handle = request.handle;
+  c.key = request.key;
+  c.owner = request.owner;
+  c.error = "no modeler is left";
+  return c;
+}
+
 unsigned modeler_count_for(unsigned requested) {
   if (requested > 0) return requested;
   return std::max(std::thread::hardware_concurrency(), 2u) - 1;
@@ -180,9 +190,14 @@ void SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& job
     order[job.request.handle.slot] = plan.size();
   }
   if (!plan.empty()) publish_to_threads(std::move(plan));
-  wait_for_threads();
+  const bool all = wait_for_threads();
   std::vector<Completion> done;
   drain_threads(done);
+  if (!all) {
+    close_plan();
+    for (const Request& request : std::exchange(unclaimed_, {}))
+      done.push_back(not_executed(request));
+  }
   const auto place = [&order](const Completion& c) {
     const auto found = order.find(c.handle.slot);
     return found == order.end() ? 0 : found->second;

@@ -147,7 +147,7 @@ TEST(Faults, AFlightGoesOnWithTheModelersThatThereAreThreadsFor) {
   EXPECT_LT(nlohmann::json::parse(some.out)["run"]["modelers"], 64);
   const Outcome none = run_psygen(command, few_threads(0));
   EXPECT_EQ(none.code, 1);
-  EXPECT_TRUE(mentions(none.err, "a flight takes 2 threads at least")) << none.err;
+  EXPECT_TRUE(mentions(none.err, "drawing needs at least 2 threads")) << none.err;
 }
 
 #ifdef PSYGEN_LIMITS_OF_MEMORY

@@ -86,6 +86,7 @@ TEST(Outputs, ALargeFileThatDoesNotFitTakesNoSmallerOneWithIt) {
   const TemporaryFolder folder;
   Options options = flight_into(folder.path());
   options.images_every = 0;
+  options.scene.virtual_time = false;  // jobs are traced
   auto app = App::create(options);
   ASSERT_TRUE(app) << app.error().message;
   const FileLimit limit(12'000);
