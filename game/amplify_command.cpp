@@ -1,7 +1,6 @@
 // psygen amplify: synthesises a region or the whole world and names it by one hash.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 

@@ -5,6 +5,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/replace_file.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "game/calibration_page.hpp"
@@ -33,9 +34,8 @@ CalibrateCommand::CalibrateCommand(CLI::App& cli)
     : command_(cli.add_subcommand("calibrate", "Measure what synthesis costs on this machine")) {
   CLI::App& c = *command_;
   c.add_option("--out", out_, "Folder for calibration.html and calibration.json");
-  auto* world =
-      c.add_option("--world", world_, "World file (TOML) whose models are fitted and predicted")
-          ->capture_default_str();
+  auto* world = c.add_option("--world", world_, "World whose models are fitted and predicted")
+                    ->capture_default_str();
   c.add_flag("--ranges", ranges_,
              "Instead of a world's models those of parameters drawn from all usual ranges")
       ->excludes(world);
@@ -91,7 +91,7 @@ int CalibrateCommand::run() const {
     for (const auto& [name, text] :
          {std::pair("calibration.json", calibration_json(found, registry)),
           std::pair("calibration.html", calibration_page(found, registry))}) {
-      if (auto ok = telemetry::write_text_file(folder / name, text); !ok) return fail(ok.error());
+      if (auto ok = core::replace_file(folder / name, text); !ok) return fail(ok.error());
       core::log_info(fmt::format("wrote {}", (folder / name).string()));
     }
   }

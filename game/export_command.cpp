@@ -132,7 +132,7 @@ ExportCommand::ExportCommand(CLI::App& cli)
       "--block", [this](const std::string& text) { block_ = *parse_block(text); },
       "Block X,Z of the world, with everything on it");
   block->check(valid_if(parse_block, "X,Z"))->excludes(model);
-  c.add_option("--world", world_, "World file (TOML) of the block, or with the model's species")
+  c.add_option("--world", world_, "World of the block, or with the model's species")
       ->capture_default_str();
   c.add_option("--level", level_, "Level of detail; 0 is full")->transform(integer_between(0, 31));
   c.add_option("--out", out_, "File to write: .glb or .obj")

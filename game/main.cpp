@@ -1,11 +1,9 @@
 // psygen: the command line. One subcommand a file; this one only chooses. Data goes to stdout,
 // messages and progress to stderr.
 // Exit codes: 0 ok, 1 failed, 2 usage, 4 no usable device or display.
-#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
-#include "engine/core/log.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "game/commands.hpp"
 #include "game/fatal.hpp"

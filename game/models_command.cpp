@@ -70,7 +70,7 @@ std::string table_of(const models::Registry& registry) {
 ModelsCommand::ModelsCommand(CLI::App& cli)
     : command_(cli.add_subcommand("models", "List every model type and its parameters")) {
   command_->add_flag("--json", json_, "As JSON");
-  command_->add_option("--world", world_, "With the species of this world file");
+  command_->add_option("--world", world_, "With the species of this world");
 }
 
 int ModelsCommand::run() const {

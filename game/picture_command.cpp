@@ -35,14 +35,18 @@ core::Result<std::string> png_name(const std::string& file) {
 
 // Which coarser levels stand for what found no room depends on what came first.
 core::Result<void> check_complete(const scene::State& state) {
-  if (state.synthesis.coarsening <= 1 && state.counters.refused == 0) return {};
-  constexpr double kMiB = 1 << 20;
-  return core::fail(
-      core::ErrorCode::kOverBudget,
-      fmt::format("the budget of {:.0f} MiB does not hold this picture with an error of {:g} "
-                  "pixels; raise --budget or --error",
-                  static_cast<double>(state.settings.budget_bytes) / kMiB,
-                  state.settings.max_error_pixels));
+  if (state.synthesis.coarsening > 1 || state.counters.refused > 0) {
+    constexpr double kMiB = 1 << 20;
+    return core::fail(
+        core::ErrorCode::kOverBudget,
+        fmt::format("the budget of {:.0f} MiB does not hold this picture with an error of {:g} "
+                    "pixels; raise --budget or --error",
+                    static_cast<double>(state.settings.budget_bytes) / kMiB,
+                    state.settings.max_error_pixels));
+  }
+  if (state.totals.failed > 0 || state.counters.holes > 0)
+    return core::fail(core::ErrorCode::kSynthesisFailed, "not all that is seen could be made");
+  return {};
 }
 
 // What the eye is above: the ground, or the water that covers it.
@@ -113,10 +117,8 @@ core::Result<void> PictureCommand::take(app::App& app) const {
   pose.pitch = glm::radians(pitch_deg_);
   if (auto ok = app.prepare(pose); !ok) return ok;
   if (options_.stop->load()) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
-  if (auto ok = check_complete(app.scene().state()); !ok) return ok;
   if (auto ok = app.frame(pose, 0); !ok) return ok;
-  if (app.scene().state().totals.failed > 0 || app.scene().state().counters.holes > 0)
-    return core::fail(core::ErrorCode::kSynthesisFailed, "not all that is seen could be made");
+  if (auto ok = check_complete(app.scene().state()); !ok) return ok;
   if (auto ok = app.save_picture(out_); !ok) return ok;
   const auto messages = app.renderer().validation_messages();
   if (messages.empty()) return {};

@@ -1,6 +1,5 @@
 #include "engine/render/frame_slot.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 #include <vector>
 
-#include "engine/core/assert.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
@@ -247,10 +245,11 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
   info.pCommandBufferInfos = &commands;
   info.signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size());
   info.pSignalSemaphoreInfos = signals.data();
+  const double now_s = core::monotonic_seconds();
   const VkResult result = device_->vk.vkQueueSubmit2(device_->queue, 1, &info, VK_NULL_HANDLE);
   if (result != VK_SUCCESS) return vulkan_failure(result, "submitting a frame");
   slot.submitted_value = ++frame_value_;
-  slot.timer().submitted(frame_value_, core::monotonic_seconds());
+  slot.timer().submitted(frame_value_, now_s);
   pool_->frame_submitted(frame_value_);
   return {};
 }

@@ -42,7 +42,7 @@ Result<Picture> RendererImpl::capture() {
 
 Result<double> RendererImpl::replay_floor_ms(int repeats) {
   PSYGEN_CHECK(repeats >= 1, "the floor needs at least one repeat");
-  if (!has_picture_ || lost_) {
+  if (!has_picture_ || !has_list_ || lost_) {
     return core::fail(ErrorCode::kInvalidArgument, "there is no frame to draw again");
   }
   wait_idle();

@@ -1,7 +1,6 @@
 #include "engine/scene/governor.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace psygen::scene {
 namespace {

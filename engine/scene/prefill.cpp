@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/core/clock.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/systems.hpp"

@@ -12,7 +12,7 @@
 namespace psygen::scene {
 
 // Told how far something long has come: a label and a fraction in [0, 1]; often enough for a window
-// to stay alive. False ends it early.
+// to stay alive. False ends filling the cache early; creating a scene is not ended.
 using Progress = std::function<bool(std::string_view, double)>;
 
 class Scene {

@@ -6,7 +6,8 @@ namespace psygen::scene {
 namespace {
 
 // Modelers that replace hung ones get tracks of their own; what the main thread did itself is seen
-// in its cache system.
+// in its cache system. In virtual time nothing is traced: its jobs have no place on the real clock
+// of the trace.
 void trace_job(const synthesis::Completion& job, Tracing& trace) {
   if (job.modeler == synthesis::kMainThreadModeler) return;
   while (trace.modelers.size() <= job.modeler) {

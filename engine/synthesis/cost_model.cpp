@@ -1,14 +1,11 @@
 #include "engine/synthesis/cost_model.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <typeindex>
-#include <utility>
 
 #include "engine/core/clock.hpp"
 #include "engine/synthesis/synthesize.hpp"

@@ -5,8 +5,6 @@
 #include <exception>
 #include <utility>
 
-#include "engine/core/assert.hpp"
-
 namespace psygen::synthesis {
 
 GeometryCache::GeometryCache(core::GeometryMemory& memory, const models::Registry& registry,

@@ -19,9 +19,9 @@ struct MeshKey {
   models::ModelIndex model = 0;       // type, in the registry's order
   std::uint16_t level = 0;            // of detail, 0 is full
   std::uint64_t parameters_hash = 0;  // models::Parameters::hash(): an edit makes another key
+  bool spare = false;                 // the same mesh once more, see spare_of()
   friend bool operator==(const MeshKey&, const MeshKey&) = default;
 };
-static_assert(sizeof(MeshKey) == 24);
 
 // The same value on every machine: it is part of content hashes.
 constexpr std::uint64_t hash_of(const MeshKey& key) {
@@ -29,13 +29,13 @@ constexpr std::uint64_t hash_of(const MeshKey& key) {
                               static_cast<std::uint32_t>(key.block.z);
   const std::uint64_t model = (std::uint64_t{key.index} << 32) | (std::uint64_t{key.model} << 16) |
                               std::uint64_t{key.level};
-  return core::combine(core::combine(block, model), key.parameters_hash);
+  const std::uint64_t hash = core::combine(core::combine(block, model), key.parameters_hash);
+  return key.spare ? core::combine(hash, 0x5BA2E) : hash;
 }
 
-// A second name of the same mesh, for when somebody else holds the first and must not be waited
-// for.
+// A second name of the same mesh, for when a modeler holds the first and must not be waited for.
 constexpr MeshKey spare_of(MeshKey key) {
-  key.parameters_hash = core::combine(key.parameters_hash, 0x5BA2E);
+  key.spare = true;
   return key;
 }
 

@@ -21,15 +21,6 @@ void add(std::atomic<T>& counter, T value) {
   counter.store(counter.load(std::memory_order_relaxed) + value, std::memory_order_relaxed);
 }
 
-Completion completion_of(const Request& request, std::uint32_t modeler) {
-  Completion c;
-  c.handle = request.handle;
-  c.key = request.key;
-  c.owner = request.owner;
-  c.modeler = modeler;
-  c.work = request.work;
-  return c;
-}
 }  // namespace
 
 void Modeler::run(Workshop& workshop) {

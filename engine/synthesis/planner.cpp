@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "engine/core/assert.hpp"
-#include "engine/core/clock.hpp"
 
 namespace psygen::synthesis {
+
 // Where the unclaimed request of this mesh is in reclaimed_, or kNone.
 std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
   const auto it = std::lower_bound(
@@ -38,19 +38,24 @@ void Planner::leave_for_later(const PlanLimits& limits, Policy policy, PlanRepor
   keep_first(0, limits.max_new, policy, report);
 }
 
+void Planner::note_arrived(const SynthesisManager& manager) {
+  arrived_.clear();
+  for (const Completion& c : manager.arrived())
+    arrived_.push_back(c.handle.slot);
+  std::ranges::sort(arrived_);
+}
+
 // Whether a modeler has claimed what is urgent and has not come back with it. It may hold it for
 // long, because modelers get only what others leave of the processors: then this thread makes the
 // mesh once more.
-bool Planner::is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache,
-                         const SynthesisManager& manager) const {
+bool Planner::is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache) const {
   return handle && is_urgent(want, cache) && cache.get(handle)->state == MeshState::kRequested &&
-         reclaimed_position(handle) == kNone && !manager.has_arrived(handle);
+         reclaimed_position(handle) == kNone && !std::ranges::binary_search(arrived_, handle.slot);
 }
 
 // Fills items_ with the wants that need a request, in serving order, and marks what is kept.
 void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
-                       const SynthesisManager& manager, const PlanLimits& limits, Policy policy,
-                       PlanReport& report) {
+                       const PlanLimits& limits, Policy policy, PlanReport& report) {
   by_slot_.resize(reclaimed_.size());
   std::iota(by_slot_.begin(), by_slot_.end(), 0u);
   std::sort(by_slot_.begin(), by_slot_.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -65,7 +70,7 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
     // First come, first served: what was requested before comes before what is new.
     Item item{{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, want.key, {}, {}, {}};
     MeshHandle handle = cache.find(item.key);
-    if (is_held_up(want, handle, cache, manager)) {
+    if (is_held_up(want, handle, cache)) {
       ++report.in_flight;
       cache.adopt(handle, want.owner, want.rank);
       item.key = spare_of(item.key);
@@ -199,7 +204,8 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   cache.begin_batch();
   here_up_to_.reset();
   if (limits.seconds_here > 0) here_up_to_ = limits.here_up_to;
-  sort_out(wants, cache, cost, manager, limits, policy, report);
+  note_arrived(manager);
+  sort_out(wants, cache, cost, limits, policy, report);
   give_back_unwanted(cache, report);
 
   plan_.clear();

@@ -79,10 +79,9 @@ class Planner {
   };
 
   void sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
-                const SynthesisManager& manager, const PlanLimits& limits, Policy policy,
-                PlanReport& report);
-  bool is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache,
-                  const SynthesisManager& manager) const;
+                const PlanLimits& limits, Policy policy, PlanReport& report);
+  void note_arrived(const SynthesisManager& manager);
+  bool is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache) const;
   // Whether this thread may make it itself.
   bool is_urgent(const Want& want, const GeometryCache& cache) const {
     return here_up_to_ && want.rank.group() <= *here_up_to_ &&
@@ -109,6 +108,7 @@ class Planner {
   std::vector<Request> plan_;
   double waiting_seconds_ = 0;  // predicted, of requests that wait for room
   std::optional<RankGroup> here_up_to_;
+  std::vector<Slot> arrived_;      // of finished requests that have not landed yet, sorted
   std::vector<std::size_t> here_;  // of plan_: executed by this thread as far as time allows
 };
 

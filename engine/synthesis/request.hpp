@@ -51,4 +51,15 @@ struct Completion {
   std::uint64_t content_hash = 0;  // if the manager hashes content, else 0
 };
 
+// What `modeler` answers to a request before it has tried: not ok, and no error yet.
+inline Completion completion_of(const Request& request, std::uint32_t modeler) {
+  Completion c;
+  c.handle = request.handle;
+  c.key = request.key;
+  c.owner = request.owner;
+  c.modeler = modeler;
+  c.work = request.work;
+  return c;
+}
+
 }  // namespace psygen::synthesis

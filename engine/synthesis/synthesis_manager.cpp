@@ -30,26 +30,16 @@ ModelerStats stats_of(const Modeler& modeler) {
           c.locks.load(std::memory_order_relaxed),
           c.retries.load(std::memory_order_relaxed)};
 }
-}  // namespace
 
-// Of a request that nobody is left to execute.
-static Completion not_executed(const Request& request) {
-  Completion c;
-  c.handle = request.handle;
-  c.key = request.key;
-  c.owner = request.owner;
-  c.error = "no modeler is left";
-  return c;
+// Virtual modelers are executed by as many threads as there are processors.
+unsigned threads_for(const SynthesisOptions& options) {
+  return modeler_count_for(options.virtual_clock ? 0 : options.modelers);
 }
+}  // namespace
 
 unsigned modeler_count_for(unsigned requested) {
   if (requested > 0) return requested;
   return std::max(std::thread::hardware_concurrency(), 2u) - 1;
-}
-
-// Virtual modelers are executed by as many threads as there are processors.
-static unsigned threads_for(const SynthesisOptions& options) {
-  return modeler_count_for(options.virtual_clock ? 0 : options.modelers);
 }
 
 // Delegates, so that an exception in it meets the destructor and not running threads.
@@ -152,10 +142,6 @@ std::vector<Request> SynthesisManager::reclaim() {
   return std::exchange(unclaimed_, {});
 }
 
-bool SynthesisManager::has_arrived(MeshHandle handle) const {
-  return std::ranges::any_of(arrived_, [&](const Completion& c) { return c.handle == handle; });
-}
-
 std::size_t SynthesisManager::collect(std::vector<Completion>& out) {
   const std::size_t before = out.size();
   drain();
@@ -181,8 +167,9 @@ void SynthesisManager::drain_threads(std::vector<Completion>& out) {
 }
 
 // Which thread executes what, and when, is nobody's business: completions come in the order of the
-// virtual clock, behind those of execute_here(), and say what they took by it.
-void SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& jobs) {
+// virtual clock, behind those of execute_here(), and say what they took by it. False if there was
+// no modeler left for some; these have failed.
+bool SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& jobs) {
   std::vector<Request> plan;
   std::map<Slot, std::size_t> order;
   for (const VirtualModelers::Job& job : jobs) {
@@ -195,8 +182,10 @@ void SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& job
   drain_threads(done);
   if (!all) {
     close_plan();
-    for (const Request& request : std::exchange(unclaimed_, {}))
-      done.push_back(not_executed(request));
+    for (const Request& request : std::exchange(unclaimed_, {})) {
+      done.push_back(completion_of(request, 0));
+      done.back().error = "no modeler is left";
+    }
   }
   const auto place = [&order](const Completion& c) {
     const auto found = order.find(c.handle.slot);
@@ -216,6 +205,7 @@ void SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& job
     c.seconds = c.predicted_seconds;
   }
   std::ranges::move(done, std::back_inserter(arrived_));
+  return all;
 }
 
 void SynthesisManager::run_watchdog() {
@@ -273,8 +263,7 @@ std::uint64_t SynthesisManager::outstanding_in_threads() const {
 
 bool SynthesisManager::wait_all(const std::function<bool()>& go_on) {
   if (!virtual_) return wait_for_threads(go_on);
-  execute_jobs(virtual_->finish_all(virtual_clock_()));
-  return true;
+  return execute_jobs(virtual_->finish_all(virtual_clock_()));
 }
 
 bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on) {

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -91,16 +92,15 @@ class SynthesisManager {
   // Closes the plan; returns what nobody claimed, in order. Everything else was or will be
   // collected.
   std::vector<Request> reclaim();
-  // Whether what was claimed had been finished when the plan was last closed: it is about to be
-  // collected.
-  bool has_arrived(MeshHandle handle) const;
+  // What was finished when the plan was last closed: the next collect() returns it.
+  std::span<const Completion> arrived() const { return arrived_; }
   // Appends the completions that have arrived, in order per modeler; returns how many. Runs the
   // watchdog. Each claimed request has exactly one completion (plus a `late` one if abandoned).
   std::size_t collect(std::vector<Completion>& out);
   // Blocks until every published request is finished or given up; a virtual clock stands still
   // meanwhile. For tools, tests and the lazy paradigm; the tick never calls it. False if no modeler
-  // is left to finish them, and once `go_on`, called some 50 times a second by a real clock, says
-  // so.
+  // is left to finish them, and once `go_on`, called some 50 times a second, says so (never by a
+  // virtual clock, where nothing is waited for).
   bool wait_all(const std::function<bool()>& go_on = {});
 
   // Requests published and neither reclaimed nor finished.
@@ -125,7 +125,7 @@ class SynthesisManager {
   void drain_threads(std::vector<Completion>& out);
   bool wait_for_threads(const std::function<bool()>& go_on = {});
   std::uint64_t outstanding_in_threads() const;
-  void execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
+  bool execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
   core::Result<void> start_modeler();
   void run_watchdog();
   void drain_retired(std::vector<Completion>& out);

@@ -1,5 +1,5 @@
 // What each frame cost and showed: one row per frame, filled by the tick's last system, timed and
-// added by App::record_frame, read when the run ends. Adding allocates only where memory is
+// added by App::log_frame, read when the run ends. Adding allocates only where memory is
 // limited. Main thread only.
 #pragma once
 

@@ -1,6 +1,5 @@
 #include "engine/telemetry/output_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -23,10 +22,6 @@ core::Result<void> create_output_folder(const std::filesystem::path& folder) {
   }
   core::remove_stale_partials(folder);
   return {};
-}
-
-core::Result<void> write_text_file(const std::filesystem::path& path, std::string_view text) {
-  return core::replace_file(path, text);
 }
 
 }  // namespace psygen::telemetry

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/telemetry/output_file.hpp"
+#include "engine/core/replace_file.hpp"
 #include "engine/telemetry/report_parts.hpp"
 #include "engine/telemetry/report_style.hpp"
 
@@ -24,7 +24,7 @@ std::string report_html(const FrameLog& log, const Summary& s) {
 
 core::Result<void> write_report_html(const std::filesystem::path& path, const FrameLog& log,
                                      const Summary& summary) {
-  return write_text_file(path, report_html(log, summary));
+  return core::replace_file(path, report_html(log, summary));
 }
 
 }  // namespace psygen::telemetry

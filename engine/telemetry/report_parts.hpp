@@ -1,6 +1,8 @@
 // The parts of report.html, and how a figure is shown in it. Private to engine/telemetry. Pure.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "engine/telemetry/frame_log.hpp"
@@ -15,16 +17,6 @@ template <class T, class Text>
 std::string shown(const Measured<T>& measured, const Text& text) {
   if (measured.has_value()) return escaped(text(static_cast<double>(*measured)));
   return fmt::format("<span class=\"none\" title=\"{}\">–</span>", escaped(measured.reason));
-}
-
-inline std::string whole(double value) {
-  return fmt::format("{:.0f}", value);
-}
-inline std::string ms_text(double value) {
-  return three_digits(value) + " ms";
-}
-inline std::string percent_text(double value) {
-  return three_digits(value) + " %";
 }
 
 // The figures that one looks at first, each in a box; whether the picture is what was asked for.

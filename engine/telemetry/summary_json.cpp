@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "engine/telemetry/output_file.hpp"
+#include "engine/core/replace_file.hpp"
 #include "engine/telemetry/summary.hpp"
 #include "engine/telemetry/verdict.hpp"
 
@@ -211,7 +211,7 @@ std::string to_json(const Summary& s) {
 }
 
 core::Result<void> write_summary_json(const std::filesystem::path& path, const Summary& summary) {
-  return write_text_file(path, to_json(summary));
+  return core::replace_file(path, to_json(summary));
 }
 
 }  // namespace psygen::telemetry

@@ -9,21 +9,8 @@
 namespace psygen::telemetry {
 namespace {
 
-std::string plain(double value) {
-  return three_digits(value);
-}
-std::string whole(double value) {
-  return fmt::format("{:.0f}", value);
-}
-std::string milliseconds(double value) {
-  return three_digits(value) + " ms";
-}
-std::string percent(double value) {
-  return three_digits(value) + " %";
-}
-
 std::string share(double value) {
-  return percent(100 * value);
+  return percent_text(100 * value);
 }
 
 // Lines of a title, a label and a text, which goes on in lines of its own where it is long.
@@ -103,28 +90,27 @@ void add_picture(Table& table, const Summary& s) {
 void add_frames(Table& table, const Summary& s) {
   const auto fps = [](double ms) { return ms > 0 ? three_digits(1000.0 / ms) : std::string("–"); };
   table.section("frame");
-  table.row("median", fmt::format("{} ({} frames/s)", or_dash(s.frame_ms.p50, milliseconds),
+  table.row("median", fmt::format("{} ({} frames/s)", or_dash(s.frame_ms.p50, ms_text),
                                   or_dash(s.frame_ms.p50, fps)));
-  table.row("p95, p99, max", fmt::format("{}, {}, {}", or_dash(s.frame_ms.p95, milliseconds),
-                                         or_dash(s.frame_ms.p99, milliseconds),
-                                         or_dash(s.frame_ms.max, milliseconds)));
-  table.row("lowest 1 %", or_dash(s.low1_fps, plain) + " frames/s");
+  table.row("p95, p99, max",
+            fmt::format("{}, {}, {}", or_dash(s.frame_ms.p95, ms_text),
+                        or_dash(s.frame_ms.p99, ms_text), or_dash(s.frame_ms.max, ms_text)));
+  table.row("lowest 1 %", or_dash(s.low1_fps, three_digits) + " frames/s");
   table.row("hitches", fmt::format("{}, {} of the time in stutter", or_dash(s.hitches, whole),
-                                   or_dash(s.stutter_percent, percent)));
+                                   or_dash(s.stutter_percent, percent_text)));
   table.row("drawn (median)",
             fmt::format("{} triangles in {} draws", or_dash(s.draw.triangles_p50, count_text),
                         or_dash(s.draw.draws_p50, whole)));
   const auto spread = [](const Spread& of) {
-    return fmt::format("p50 {}, p99 {}", or_dash(of.p50, milliseconds),
-                       or_dash(of.p99, milliseconds));
+    return fmt::format("p50 {}, p99 {}", or_dash(of.p50, ms_text), or_dash(of.p99, ms_text));
   };
   table.row("waiting", spread(s.wait_ms.all));
-  table.row("device's time", fmt::format("p50 {}, p99 {}", or_dash(s.gpu_ms.p50, milliseconds),
-                                         or_dash(s.gpu_ms.p99, milliseconds)));
+  table.row("device's time", fmt::format("p50 {}, p99 {}", or_dash(s.gpu_ms.p50, ms_text),
+                                         or_dash(s.gpu_ms.p99, ms_text)));
   table.section("systems");
   for (const SystemTimes& system : s.system_ms) {
-    table.row(system.name, fmt::format("p50 {}, p99 {}", or_dash(system.p50, milliseconds),
-                                       or_dash(system.p99, milliseconds)));
+    table.row(system.name, fmt::format("p50 {}, p99 {}", or_dash(system.p50, ms_text),
+                                       or_dash(system.p99, ms_text)));
   }
 }
 
@@ -134,13 +120,13 @@ void add_streaming(Table& table, const Summary& s) {
   table.section("missing");
   table.row("frames with holes", or_dash(s.missing.frames, whole));
   table.row("pixels",
-            fmt::format("p99 {}, worst {}", or_dash(s.missing.pixels_p99_percent, percent),
-                        or_dash(s.missing.pixels_max_percent, percent)));
+            fmt::format("p99 {}, worst {}", or_dash(s.missing.pixels_p99_percent, percent_text),
+                        or_dash(s.missing.pixels_max_percent, percent_text)));
   table.row("too coarse", fmt::format("p99 {}, worst {} of the picture",
-                                      or_dash(s.missing.coarse_p99_percent, percent),
-                                      or_dash(s.missing.coarse_max_percent, percent)));
-  table.row("time to visible", fmt::format("p50 {}, p99 {}", or_dash(wait.p50, milliseconds),
-                                           or_dash(wait.p99, milliseconds)));
+                                      or_dash(s.missing.coarse_p99_percent, percent_text),
+                                      or_dash(s.missing.coarse_max_percent, percent_text)));
+  table.row("time to visible",
+            fmt::format("p50 {}, p99 {}", or_dash(wait.p50, ms_text), or_dash(wait.p99, ms_text)));
   table.section("cache");
   table.row("peak", fmt::format("{} of {}", or_dash(s.cache.peak_bytes, bytes_text),
                                 bytes_text(static_cast<double>(s.cache.budget_bytes))));
@@ -156,10 +142,10 @@ void add_streaming(Table& table, const Summary& s) {
   table.row("ever drawn", or_dash(s.synthesis.share_drawn, share) + " of all triangles");
   table.row("speed",
             or_dash(s.synthesis.triangles_per_second, count_text) + " triangles per busy second");
-  table.row("modelers busy", or_dash(s.synthesis.busy_percent, percent));
+  table.row("modelers busy", or_dash(s.synthesis.busy_percent, percent_text));
   table.row("cost error",
-            fmt::format("p50 {}, p95 {}", or_dash(s.synthesis.cost_error_percent.p50, percent),
-                        or_dash(s.synthesis.cost_error_percent.p95, percent)));
+            fmt::format("p50 {}, p95 {}", or_dash(s.synthesis.cost_error_percent.p50, percent_text),
+                        or_dash(s.synthesis.cost_error_percent.p95, percent_text)));
   table.section("memory");
   table.row("resident, peak", or_dash(s.memory.peak_rss_bytes, bytes_text));
 }

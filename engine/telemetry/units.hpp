@@ -20,6 +20,16 @@ inline std::string three_digits(double value) {
   return fmt::format("{:.{}f}", value, decimals);
 }
 
+inline std::string whole(double value) {
+  return fmt::format("{:.0f}", value);
+}
+inline std::string ms_text(double value) {
+  return three_digits(value) + " ms";
+}
+inline std::string percent_text(double value) {
+  return three_digits(value) + " %";
+}
+
 inline std::string with_prefix(double value, double step, const std::array<const char*, 6>& units) {
   std::size_t i = 0;
   while (i + 1 < units.size() && std::abs(value) >= step * 0.9995) {

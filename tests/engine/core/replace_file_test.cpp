@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -55,6 +56,12 @@ TEST(ReplaceFile, NamesThePathWhenTheFolderDoesNotExist) {
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::kIo);
   EXPECT_NE(result.error().message.find(path.string()), std::string::npos);
+}
+
+TEST(ReplaceFile, DoesNotWaitForAReaderOfAPipe) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(replace_file(folder / "pipe", text("x")).error().code, ErrorCode::kIo);
 }
 
 TEST(ReplaceFile, LeavesDevicesAndFoldersAlone) {

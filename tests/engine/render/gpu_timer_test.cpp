@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
+#include <set>
 
 #include "engine/core/clock.hpp"
 #include "engine/render/renderer.hpp"
@@ -62,7 +62,7 @@ TEST_P(GpuTimerTest, a_frame_gets_its_device_time_four_frames_later) {
   const auto renderer = make(preset, path);
   ASSERT_TRUE(renderer->device().timestamps);
   Scene scene(*renderer);
-  std::map<std::uint64_t, double> times;
+  std::set<std::uint64_t> frames;
   const double start_s = core::monotonic_seconds();
   for (int i = 0; i < 12; ++i) {
     const FrameResult result = scene.draw();
@@ -71,15 +71,11 @@ TEST_P(GpuTimerTest, a_frame_gets_its_device_time_four_frames_later) {
     EXPECT_EQ(result.gpu->frame + 4, result.frame);
     EXPECT_GT(result.gpu->ms, 0.0);
     EXPECT_GE(result.gpu->submitted_s, start_s);
-    EXPECT_LT(result.gpu->submitted_s, core::monotonic_seconds());
-    times[result.gpu->frame] = result.gpu->ms;
+    // It was done after it was submitted and is over, so it took no longer than has passed since.
+    EXPECT_LE(result.gpu->ms, (core::monotonic_seconds() - result.gpu->submitted_s) * 1e3);
+    frames.insert(result.gpu->frame);
   }
-  EXPECT_EQ(times.size(), 8u);
-  // The device does one frame after the other: together they take no longer than has passed.
-  double all_ms = 0;
-  for (const auto& [frame, ms] : times)
-    all_ms += ms;
-  EXPECT_LT(all_ms, (core::monotonic_seconds() - start_s) * 1e3);
+  EXPECT_EQ(frames.size(), 8u);
   renderer->wait_idle();
   for (const std::string& message : renderer->validation_messages())
     ADD_FAILURE() << message;

@@ -121,6 +121,7 @@ TEST_P(RendererPreset, that_is_given_up_leaves_the_old_one_as_it_was) {
   for (const double until : {0.0, 0.2, 0.6, 0.95}) {
     const auto refused = scene.renderer->set_preset(Preset::kUltra, [&](double fraction) {
       EXPECT_TRUE(scene.renderer->show(std::vector{TextPanel{Anchor::kMiddle, {{"wait"}}}}));
+      EXPECT_FALSE(scene.renderer->replay_floor_ms(1)) << "a text is no frame to draw again";
       return fraction < until;
     });
     ASSERT_FALSE(refused);

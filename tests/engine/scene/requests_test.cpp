@@ -72,6 +72,52 @@ TEST(Requests, WhereModelersGetNoProcessorTheMainThreadHelpsWithWhatIsSeenAfterA
   }
 }
 
+// What is drawn and was made twice.
+std::vector<ecs::Entity> drawn_spares(const State& s) {
+  std::vector<ecs::Entity> found;
+  s.entities.each<const Demand, const Mesh>([&](std::span<const ecs::Entity> rows,
+                                                std::span<const Demand> demands,
+                                                std::span<const Mesh> meshes) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (demands[i].drawn_level == kNoLevel) continue;
+      EXPECT_FALSE(demands[i].stale);
+      if (s.synthesis.cache->get(meshes[i].handle)->key.spare) found.push_back(rows[i]);
+    }
+  });
+  return found;
+}
+
+TEST(Requests, AHoleThatAModelerHoldsIsFilledByTheMainThreadAndWhatTheModelerBringsIsDropped) {
+  GatedScene gated(gated_settings());
+  gated.gate.set_open(false);
+  Scene& scene = *gated.scene;
+  State& s = scene.state();
+  const core::CameraPose pose = pose_at(256, 256, 0.3);
+  tick_at(scene, pose);
+  gated.make(0);
+  s.settings.main_thread_budget_ms = 1000;
+  s.settings.plan_seconds_ahead = 1e6;
+  for (int i = 0; i < 3; ++i)
+    tick_at(scene, pose);
+  EXPECT_EQ(s.counters.holes, 0u);
+  const std::vector<ecs::Entity> spares = drawn_spares(s);
+  ASSERT_EQ(spares.size(), 1u) << "one modeler holds one mesh";
+  const synthesis::MeshHandle drawn = s.entities.get<Mesh>(spares[0])->handle;
+  synthesis::MeshKey held = s.synthesis.cache->get(drawn)->key;
+  held.spare = false;
+  const auto record_of_held = [&] { return s.synthesis.cache->get(s.synthesis.cache->find(held)); };
+  ASSERT_EQ(record_of_held()->state, synthesis::MeshState::kRequested);
+
+  gated.make(1);
+  tick_at(scene, pose);
+  EXPECT_EQ(s.entities.get<Mesh>(spares[0])->handle, drawn) << "nothing takes its place";
+  const synthesis::MeshRecord* dropped = record_of_held();
+  EXPECT_TRUE(dropped == nullptr || dropped->rank == Rank::unwanted());
+  for (const Want& want : s.synthesis.wants)
+    EXPECT_FALSE(want.key == held) << "it is there";
+  expect_consistent(scene);
+}
+
 // Nodes in view that are drawn though one above them could be.
 std::vector<ecs::Entity> drawn_below_complete_ones(const State& s) {
   std::vector<ecs::Entity> found;

@@ -236,6 +236,24 @@ TEST(SynthesisManager, OnAVirtualClockWhatIsMadeByWhenFollowsFromPredictionsAlon
   EXPECT_EQ(owners_at(104), (Owners{3})) << "whoever waits gets everything";
 }
 
+TEST(SynthesisManager, OnAVirtualClockWithoutASingleThreadWhatIsClaimedFails) {
+  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
+  Jobs jobs(registry);
+  const FewThreads few(0);
+  SynthesisOptions options = with(2);
+  options.virtual_clock = [] { return 1.0; };
+  SynthesisManager manager(registry, options);
+  manager.publish(jobs.make_many(0, 3));
+  EXPECT_FALSE(manager.wait_all());
+  std::vector<Completion> done;
+  ASSERT_EQ(manager.collect(done), 3u);
+  for (const Completion& c : done) {
+    EXPECT_FALSE(c.ok);
+    EXPECT_EQ(c.error, "no modeler is left");
+  }
+  EXPECT_EQ(manager.outstanding(), 0u);
+}
+
 TEST(SynthesisManager, RequestsAreClaimedInTheOrderOfThePlan) {
   std::vector<std::int64_t> order;  // one modeler: no race
   const models::Registry registry = registry_of(std::make_unique<ScriptedModel>(

@@ -1,8 +1,8 @@
 #include "engine/telemetry/output_file.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
+#include "engine/core/replace_file.hpp"
 #include "tests/engine/telemetry/synthetic_flight.hpp"
 
 namespace psygen::telemetry {
@@ -11,15 +11,9 @@ namespace {
 TEST(OutputFolder, LosesWhatAKilledProcessHalfWrote) {
   const TemporaryFolder folder;
   // No process has a number beyond the kernel's limit of 2^22.
-  ASSERT_TRUE(write_text_file(folder / ".trace.json.99999999-0.partial", "half"));
+  ASSERT_TRUE(core::replace_file(folder / ".trace.json.99999999-0.partial", "half"));
   ASSERT_TRUE(create_output_folder(folder.path()));
   EXPECT_EQ(folder.file_count(), 0U);
-}
-
-TEST(OutputFile, DoesNotWaitForAReaderOfAPipe) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_FALSE(write_text_file(folder / "pipe", "x"));
 }
 
 TEST(OutputFolder, IsCreatedWithTheFoldersAboveItAndMayExist) {
@@ -31,7 +25,7 @@ TEST(OutputFolder, IsCreatedWithTheFoldersAboveItAndMayExist) {
 
 TEST(OutputFolder, CannotBeWhereAFileIsOrWhereNothingMayBeCreated) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_text_file(folder / "file", "x"));
+  ASSERT_TRUE(core::replace_file(folder / "file", "x"));
   for (const auto& path :
        {folder / "file", folder / "file/below", std::filesystem::path("/proc/psygen/out")}) {
     const auto result = create_output_folder(path);
