@@ -6,8 +6,8 @@
 
 #include "engine/amplify/block_files.hpp"
 #include "engine/core/log.hpp"
-#include "engine/models/simd_targets.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/kit/simd_targets.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/telemetry/units.hpp"
 #include "game/commands.hpp"

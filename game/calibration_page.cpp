@@ -9,7 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "engine/models/species.hpp"
+#include "engine/models/tree/species.hpp"
 #include "engine/telemetry/curve_plot.hpp"
 #include "engine/telemetry/report_plot.hpp"
 #include "engine/telemetry/report_style.hpp"

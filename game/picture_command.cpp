@@ -9,7 +9,7 @@
 #include "engine/app/app.hpp"
 #include "engine/core/log.hpp"
 #include "engine/image/image_io.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/camera_path.hpp"

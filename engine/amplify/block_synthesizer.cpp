@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/synthesis/synthesize.hpp"
 
 namespace psygen::amplify {

@@ -6,7 +6,7 @@
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/render/render_path.hpp"
 #include "engine/telemetry/output_file.hpp"
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "engine/app/keys.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/scene/views.hpp"
 

@@ -11,8 +11,8 @@
 
 #include "engine/core/out_of_memory.hpp"
 #include "engine/exchange/ground_colour.hpp"
-#include "engine/models/packing.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/kit/packing.hpp"
+#include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::exchange {
 namespace {

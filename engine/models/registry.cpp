@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "engine/core/assert.hpp"
-#include "engine/models/grass.hpp"
-#include "engine/models/rock.hpp"
-#include "engine/models/terrain.hpp"
-#include "engine/models/tree.hpp"
+#include "engine/models/grass/grass.hpp"
+#include "engine/models/rock/rock.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/models/tree/tree.hpp"
 
 namespace psygen::models {
 namespace {

@@ -1,5 +1,5 @@
 // What the mesh of a node's ground says about what it hides and where it can be seen: a few lines
-// that lie in it, and how high its tiles (models/terrain_grid.hpp) reach. Values.
+// that lie in it, and how high its tiles (models/terrain/grid.hpp) reach. Values.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <span>
 
 #include "engine/core/vertex_layout.hpp"
-#include "engine/models/terrain_grid.hpp"
+#include "engine/models/terrain/grid.hpp"
 #include "engine/visibility/horizon.hpp"
 
 namespace psygen::scene {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/scene/mesh_parts.hpp"
 
 namespace psygen::scene {

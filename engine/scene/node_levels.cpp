@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/merged_models.hpp"
 #include "engine/world/node_walk.hpp"
 #include "engine/world/placement.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::scene {

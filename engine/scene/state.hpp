@@ -13,7 +13,7 @@
 #include "ecs/ecs.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/models/terrain_tiles.hpp"
+#include "engine/models/terrain/tiles.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/fading.hpp"

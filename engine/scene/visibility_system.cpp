@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/scene/missing.hpp"
 #include "engine/scene/systems.hpp"
 

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "engine/core/assert.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::world {
 namespace {

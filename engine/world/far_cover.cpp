@@ -1,7 +1,7 @@
 // How much of the ground a world's models cover, and in which colour.
 #include <algorithm>
 
-#include "engine/models/exact_math.hpp"
+#include "engine/models/kit/exact_math.hpp"
 #include "engine/world/far_scatter.hpp"
 #include "engine/world/merged_models.hpp"
 #include "engine/world/placement.hpp"

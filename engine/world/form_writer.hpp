@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "engine/models/packing.hpp"
+#include "engine/models/kit/packing.hpp"
 #include "engine/world/far_forms.hpp"
 
 namespace psygen::world {

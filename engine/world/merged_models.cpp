@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "engine/core/assert.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/form_writer.hpp"
 #include "engine/world/merged_plan.hpp"
 #include "engine/world/node_walk.hpp"

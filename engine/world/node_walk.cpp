@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/models/terrain_grid.hpp"
+#include "engine/models/terrain/grid.hpp"
 
 namespace psygen::world {
 namespace {

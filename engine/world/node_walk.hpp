@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
-#include "engine/models/terrain_ground.hpp"
+#include "engine/models/terrain/ground.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/models/packing.hpp"
+#include "engine/models/kit/packing.hpp"
 
 namespace psygen::world {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::world {
 namespace {

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/models/terrain_ground.hpp"
+#include "engine/models/terrain/ground.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "engine/core/assert.hpp"
-#include "engine/models/packing.hpp"
+#include "engine/models/kit/packing.hpp"
 #include "engine/world/outline.hpp"
 
 namespace psygen::world {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/models/species.hpp"
+#include "engine/models/tree/species.hpp"
 #include "engine/world/table_reader.hpp"
 
 namespace psygen::world {

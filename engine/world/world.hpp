@@ -14,7 +14,7 @@
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/models/species.hpp"
+#include "engine/models/tree/species.hpp"
 
 namespace psygen::world {
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/world/files.hpp"
 
 namespace psygen::game {

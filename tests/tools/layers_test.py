@@ -32,6 +32,17 @@ MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amp
 MAY_KNOW["game"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["editor"] = MAY_KNOW["game"]
 
+# folder inside a layer -> its neighbours that it may include. The layer's own headers, one folder up,
+# may be included by all of them but those of NOT_UP.
+INSIDE = {
+    "engine/models/kit": set(),
+    "engine/models/terrain": {"kit"},
+    "engine/models/tree": {"kit"},
+    "engine/models/rock": {"kit"},
+    "engine/models/grass": {"kit"},
+}
+NOT_UP = {"engine/models/kit"}
+
 # library header -> the only folders that may include it
 ONLY_IN = {
     r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform"},
@@ -59,6 +70,19 @@ def folder_of(path):
     return parts[0] if parts[0] in MAY_KNOW else None
 
 
+def room_violation(path, name):
+    """Why a file inside a layer must not include another header of that layer, or None."""
+    room, target = (str(pathlib.PurePosixPath(p).parent) for p in (path, name))
+    if room == target or room not in INSIDE:
+        return None
+    if target == str(pathlib.PurePosixPath(room).parent):
+        return f"{room} is below it" if room in NOT_UP else None
+    if target in INSIDE and folder_of(target + "/") == folder_of(room + "/"):
+        neighbour = target.rsplit("/", 1)[1]
+        return None if neighbour in INSIDE[room] else f"{room} must not know {target}"
+    return None
+
+
 def violations(path, lines):
     """Sentences about the forbidden includes of one file."""
     layer = folder_of(path)
@@ -72,6 +96,8 @@ def violations(path, lines):
         target = folder_of(name)
         if target and target != layer and target not in MAY_KNOW[layer]:
             found.append(f"{where}: {layer} must not know {target} ({name})")
+        if reason := room_violation(path, name):
+            found.append(f"{where}: {reason} ({name})")
         if not target and match.group(1) == '"' and name.split("/")[0] in ("engine", "tests", "tools"):
             found.append(f"{where}: {name} is not in a layer that {layer} may know")
         for pattern, folders in ONLY_IN.items():
@@ -91,11 +117,16 @@ def self_test():
         "ecs/a.cpp": "#include <mutex>",
         "engine/app/a.cpp": '#include "game/main.hpp"',
         "engine/core/a.cpp": '#include "tests/engine/core/fake.hpp"',
+        "engine/models/tree/a.cpp": '#include "engine/models/rock/rock.hpp"',
+        "engine/models/kit/a.cpp": '#include "engine/models/tree/tree.hpp"',
+        "engine/models/kit/a.hpp": '#include "engine/models/registry.hpp"',
     }
     for path, line in bad.items():
         assert violations(path, [line]), f"not noticed: {path}: {line}"
     assert not violations("engine/world/a.cpp", ['#include "engine/models/registry.hpp"'])
     assert not violations("engine/synthesis/a.cpp", ["#include <thread>"])
+    for name in ("kit/packing.hpp", "model_type.hpp", "tree/plan.hpp"):
+        assert not violations("engine/models/tree/a.cpp", [f'#include "engine/models/{name}"'])
     print("layers: the scanner notices forbidden arrows")
 
 

@@ -8,13 +8,13 @@
 
 #include "engine/core/hash.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/models/rock.hpp"
-#include "engine/models/terrain.hpp"
-#include "engine/models/tree.hpp"
+#include "engine/models/rock/rock.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/models/tree/tree.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
-#include "tests/engine/models/oracle_rock.hpp"
-#include "tests/engine/models/oracle_terrain.hpp"
-#include "tests/engine/models/oracle_tree.hpp"
+#include "tests/engine/models/oracle/rock.hpp"
+#include "tests/engine/models/oracle/terrain.hpp"
+#include "tests/engine/models/oracle/tree.hpp"
 
 namespace psygen::models {
 namespace {

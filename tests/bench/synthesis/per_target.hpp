@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/models/simd_targets.hpp"
+#include "engine/models/kit/simd_targets.hpp"
 
 namespace psygen::models::bench {
 

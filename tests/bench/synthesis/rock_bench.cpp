@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "engine/models/rock.hpp"
+#include "engine/models/rock/rock.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
-#include "tests/engine/models/oracle_rock.hpp"
+#include "tests/engine/models/oracle/rock.hpp"
 
 namespace psygen::models {
 namespace {

@@ -6,11 +6,11 @@
 #include <numeric>
 #include <vector>
 
-#include "engine/models/ridged_noise.hpp"
-#include "engine/models/terrain.hpp"
-#include "engine/models/terrain_light.hpp"
+#include "engine/models/terrain/light.hpp"
+#include "engine/models/terrain/ridged_noise.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
-#include "tests/engine/models/oracle_terrain.hpp"
+#include "tests/engine/models/oracle/terrain.hpp"
 
 namespace psygen::models {
 namespace {

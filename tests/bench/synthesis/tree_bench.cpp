@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "engine/models/tree.hpp"
+#include "engine/models/tree/tree.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
-#include "tests/engine/models/oracle_tree.hpp"
+#include "tests/engine/models/oracle/tree.hpp"
 
 namespace psygen::models {
 namespace {

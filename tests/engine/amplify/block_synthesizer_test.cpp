@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/amplify/throwing_type.hpp"
 #include "tests/engine/world/files.hpp"
 

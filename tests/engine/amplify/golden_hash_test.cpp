@@ -8,7 +8,7 @@
 #include <string>
 
 #include "engine/amplify/block_synthesizer.hpp"
-#include "engine/models/simd_targets.hpp"
+#include "engine/models/kit/simd_targets.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::amplify {

@@ -6,8 +6,8 @@
 #include <glm/common.hpp>
 
 #include "engine/core/hash.hpp"
+#include "engine/models/kit/packing.hpp"
 #include "engine/models/model_type.hpp"
-#include "engine/models/packing.hpp"
 
 namespace my_game {
 

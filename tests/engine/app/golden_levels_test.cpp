@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/visibility/quadtree.hpp"
 #include "tests/engine/app/golden.hpp"
 

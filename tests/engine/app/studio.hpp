@@ -6,7 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "engine/image/image.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/app/fixture.hpp"
 
 namespace psygen::app {

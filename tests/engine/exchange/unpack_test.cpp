@@ -5,7 +5,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/exchange/synthesised.hpp"
 
 namespace psygen::exchange {

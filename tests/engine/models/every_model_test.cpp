@@ -5,11 +5,11 @@
 #include <thread>
 #include <utility>
 
-#include "engine/models/packing.hpp"
+#include "engine/models/kit/packing.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/models/rock.hpp"
-#include "engine/models/terrain.hpp"
-#include "engine/models/terrain_grid.hpp"
+#include "engine/models/rock/rock.hpp"
+#include "engine/models/terrain/grid.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 
 namespace psygen::models {

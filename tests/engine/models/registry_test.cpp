@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/models/rock.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/rock/rock.hpp"
+#include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::models {
 namespace {

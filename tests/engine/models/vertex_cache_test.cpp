@@ -8,7 +8,7 @@
 #include <span>
 
 #include "engine/models/registry.hpp"
-#include "engine/models/terrain_tiles.hpp"
+#include "engine/models/terrain/tiles.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 
 namespace psygen::models {

@@ -1,7 +1,7 @@
 // A moving sun: the ground is made anew in steps, and what was drawn stays until then.
 #include <set>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {

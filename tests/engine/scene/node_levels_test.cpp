@@ -1,6 +1,6 @@
 #include "engine/scene/node_levels.hpp"
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/merged_models.hpp"
 #include "tests/engine/scene/fixture.hpp"
 

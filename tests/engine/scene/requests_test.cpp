@@ -7,7 +7,7 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/scene/gate.hpp"
 
 namespace psygen::scene {

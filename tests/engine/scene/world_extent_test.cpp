@@ -1,5 +1,5 @@
 // Neither the size of the world nor the distance from its origin makes a difference.
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {

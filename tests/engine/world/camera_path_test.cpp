@@ -7,7 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <limits>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/world/files.hpp"
 
 namespace psygen::world {

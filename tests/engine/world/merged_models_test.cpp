@@ -11,8 +11,8 @@
 #include <sstream>
 #include <thread>
 
-#include "engine/models/packing.hpp"
-#include "engine/models/terrain.hpp"
+#include "engine/models/kit/packing.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/node_walk.hpp"
 #include "engine/world/outline.hpp"
 #include "engine/world/placement.hpp"

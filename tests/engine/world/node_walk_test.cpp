@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "engine/models/terrain_grid.hpp"
+#include "engine/models/terrain/grid.hpp"
 #include "engine/world/placement.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/world/files.hpp"

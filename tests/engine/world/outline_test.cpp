@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/models/packing.hpp"
+#include "engine/models/kit/packing.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/models/tree.hpp"
+#include "engine/models/tree/tree.hpp"
 
 namespace psygen::world {
 namespace {

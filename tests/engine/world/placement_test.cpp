@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
-#include "engine/models/grass.hpp"
-#include "engine/models/rock.hpp"
-#include "engine/models/terrain.hpp"
-#include "engine/models/tree.hpp"
+#include "engine/models/grass/grass.hpp"
+#include "engine/models/rock/rock.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/models/tree/tree.hpp"
 #include "tests/engine/world/files.hpp"
 
 namespace psygen::world {

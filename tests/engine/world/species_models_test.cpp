@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/models/simd_targets.hpp"
-#include "engine/models/species.hpp"
-#include "tests/engine/models/expect_tree.hpp"
+#include "engine/models/kit/simd_targets.hpp"
+#include "engine/models/tree/species.hpp"
+#include "tests/engine/models/oracle/expect_tree.hpp"
 #include "tests/engine/world/files.hpp"
 
 namespace psygen::world {

@@ -3,9 +3,9 @@
 
 #include <bit>
 
-#include "engine/models/rock.hpp"
-#include "engine/models/terrain.hpp"
-#include "engine/models/tree.hpp"
+#include "engine/models/rock/rock.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/models/tree/tree.hpp"
 #include "engine/world/text_file.hpp"
 #include "tests/engine/world/files.hpp"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/models/terrain.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
 #include "tests/engine/world/files.hpp"
 

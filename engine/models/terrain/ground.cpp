@@ -1,0 +1,129 @@
+#include "engine/models/terrain/ground.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "engine/core/assert.hpp"
+#include "engine/core/vertex_layout.hpp"
+
+namespace psygen::models {
+namespace {
+
+// So many vertices of a grid take about as long as one point by itself, whose time is that of
+// finding the lattices.
+constexpr std::size_t kVerticesPerPoint = 128;
+
+glm::vec3 unit_normal(double slope_x, double slope_z) {
+  const double scale = 1 / std::sqrt(slope_x * slope_x + 1 + slope_z * slope_z);
+  return {static_cast<float>(-slope_x * scale), static_cast<float>(scale),
+          static_cast<float>(-slope_z * scale)};
+}
+
+std::uint16_t height_in_mesh(std::span<const std::byte> mesh, std::size_t vertex) {
+  core::TerrainVertex v;
+  std::memcpy(&v, mesh.data() + vertex * sizeof v, sizeof v);
+  return v.height;
+}
+
+}  // namespace
+
+// The noise is left unset where it is not evaluated: writing it would take as long as its reading.
+BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions)
+    : shape_(terrain), block_(block) {
+  const auto size = static_cast<std::size_t>(shape_.size);
+  if (questions * kVerticesPerPoint >= size * size) evaluate_vertices();
+}
+
+BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block,
+                         std::span<const std::byte> mesh)
+    : shape_(terrain),
+      block_(block),
+      vertices_(static_cast<std::size_t>(shape_.size)),
+      mesh_(mesh) {
+  PSYGEN_CHECK(mesh.size() >= vertices_ * vertices_ * sizeof(core::TerrainVertex),
+               "the mesh has every vertex of the block");
+}
+
+// World coordinates of the vertices of a block from `first` on.
+void BlockGround::world_of(std::int32_t block_index, std::int64_t first,
+                           std::span<std::int64_t> out) const {
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = shape_.world_of(block_index, first + static_cast<std::int64_t>(i));
+}
+
+void BlockGround::evaluate_vertices() {
+  vertices_ = static_cast<std::size_t>(shape_.size);
+  std::array<std::int64_t, kMaxTerrainSize> columns, rows;
+  const std::span x = std::span(columns).first(vertices_), z = std::span(rows).first(vertices_);
+  world_of(block_.x, 0, x);
+  world_of(block_.z, 0, z);
+  shape_.noise.evaluate(x, z, noise_, vertices_);
+}
+
+bool BlockGround::is_inside(double x, double z, int step) const {
+  const double end = static_cast<double>(vertices_) - step;
+  return x >= 0 && z >= 0 && x < end && z < end;
+}
+
+BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const {
+  Corners heights;
+  if (is_inside(x, z, step)) {
+    const std::size_t first = static_cast<std::size_t>(z) * vertices_ + static_cast<std::size_t>(x);
+    const auto aside = static_cast<std::size_t>(step), below = aside * vertices_;
+    const std::array at{first, first + aside, first + below, first + below + aside};
+    for (std::size_t i = 0; i < 4; ++i)
+      heights[i] = mesh_.empty() ? shape_.quantise(noise_[at[i]]) : height_in_mesh(mesh_, at[i]);
+    return heights;
+  }
+  const auto first_x = static_cast<std::int64_t>(x), first_z = static_cast<std::int64_t>(z);
+  const std::array columns{shape_.world_of(block_.x, first_x),
+                           shape_.world_of(block_.x, first_x + step)};
+  const std::array rows{shape_.world_of(block_.z, first_z),
+                        shape_.world_of(block_.z, first_z + step)};
+  std::array<float, 4> noise;
+  shape_.noise.evaluate(columns, rows, noise, 2);
+  for (std::size_t i = 0; i < 4; ++i)
+    heights[i] = shape_.quantise(noise[i]);
+  return heights;
+}
+
+GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {
+  const double cell_m = stride * shape_.cell_m;
+  const glm::dvec2 cells = local_xz / cell_m;
+  const double x = std::floor(cells.x), z = std::floor(cells.y);
+  const double u = cells.x - x, v = cells.y - z;
+  const Corners heights = corners_of(stride * x, stride * z, stride);
+  std::array<double, 4> h;
+  for (std::size_t i = 0; i < 4; ++i)
+    h[i] = static_cast<double>(shape_.relief_m) * heights[i] / 65535.0;
+
+  GroundPoint ground;
+  if (u + v <= 1) {
+    ground.height_m = h[0] + u * (h[1] - h[0]) + v * (h[2] - h[0]);
+    ground.normal = unit_normal((h[1] - h[0]) / cell_m, (h[2] - h[0]) / cell_m);
+  } else {
+    ground.height_m = h[3] + (1 - u) * (h[2] - h[3]) + (1 - v) * (h[1] - h[3]);
+    ground.normal = unit_normal((h[3] - h[2]) / cell_m, (h[3] - h[1]) / cell_m);
+  }
+  return ground;
+}
+
+void sample_ground(const Parameters& terrain, core::BlockCoord block,
+                   std::span<const glm::dvec2> local_xz, std::span<GroundPoint> ground) {
+  PSYGEN_CHECK(ground.size() == local_xz.size(), "there is room for every point");
+  const BlockGround all(terrain, block, local_xz.size());
+  for (std::size_t i = 0; i < local_xz.size(); ++i)
+    ground[i] = all.at(local_xz[i]);
+}
+
+double ground_height_m(const Parameters& terrain, core::BlockCoord block, double local_x,
+                       double local_z) {
+  return BlockGround(terrain, block, 1).at({local_x, local_z}).height_m;
+}
+
+glm::vec3 ground_normal(const Parameters& terrain, core::BlockCoord block, double local_x,
+                        double local_z) {
+  return BlockGround(terrain, block, 1).at({local_x, local_z}).normal;
+}
+
+}  // namespace psygen::models

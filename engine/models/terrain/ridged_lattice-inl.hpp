@@ -1,0 +1,228 @@
+// The lattices of ridged noise under the samples of a call: values and gradients of lattice points,
+// and their blending along one lattice row. Included once per instruction set, by
+// ridged_kernel.cpp only; hence its include guard.
+#if defined(PSYGEN_MODELS_RIDGED_LATTICE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSYGEN_MODELS_RIDGED_LATTICE_INL
+#undef PSYGEN_MODELS_RIDGED_LATTICE_INL
+#else
+#define PSYGEN_MODELS_RIDGED_LATTICE_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/models/kit/mix32.hpp"
+#include "engine/models/kit/simd_hash-inl.hpp"
+#include "engine/models/terrain/ridged_axis-inl.hpp"
+#include "engine/models/terrain/ridged_kernel.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace psygen::models::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Whole vectors of zeros.
+HWY_INLINE void clear_vectors(float* to, std::size_t count) {
+  const FloatTag d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d))
+    hn::Store(hn::Zero(d), d, to + i);
+}
+
+// The lattice lines of an octave around the samples of an axis: keys before mixing; those of the
+// lines before samples i … start at first[block of i], and slot[i] counts from there, less than the
+// lanes of a vector. Those of the lines behind are `to_next` further on.
+struct LatticeLines {
+  enum class Fit {
+    kOneVector,   // all keys lie in one vector, all blocks start at 0
+    kEachVector,  // those of the lines before and behind the samples of a block lie in one
+    kNone
+  };
+  std::uint32_t* key;
+  std::size_t key_count, to_next;
+  std::uint32_t* first;
+  std::int32_t* slot;
+  Fit fit;
+
+  // From the cells of `width` samples, padded.
+  void place(const std::uint32_t* HWY_RESTRICT cell, std::size_t width, bool contiguous,
+             std::uint32_t key_offset) {
+    const UintTag du;
+    const IntTag di;
+    const std::size_t lanes = hn::Lanes(du);
+    key_count = contiguous ? cell[width - 1] - cell[0] + 2 : 2 * width;
+    to_next = contiguous ? 1 : width;
+    const bool one_vector = contiguous && key_count <= lanes;
+    std::uint32_t most = 0;  // lattice lines that a block of samples passes
+    for (std::size_t i = 0; contiguous && i < key_count; i += lanes)
+      hn::Store(counting_from(du, cell[0] + key_offset + static_cast<std::uint32_t>(i)), du,
+                key + i);
+    for (std::size_t i = 0; i < width; i += lanes) {
+      const auto cells = hn::Load(du, cell + i);
+      const std::uint32_t start = one_vector ? cell[0] : cell[i];
+      most = std::max(most, cell[i + lanes - 1] - cell[i]);
+      first[i] = contiguous ? start - cell[0] : static_cast<std::uint32_t>(i);
+      const auto slots =
+          contiguous ? hn::BitCast(di, hn::Sub(cells, hn::Set(du, start))) : hn::Iota(di, 0);
+      hn::Store(slots, di, slot + i);
+      if (contiguous) continue;
+      hn::Store(hn::Add(cells, hn::Set(du, key_offset)), du, key + i);
+      hn::Store(hn::Add(cells, hn::Set(du, key_offset + 1)), du, key + width + i);
+    }
+    fit = one_vector                        ? Fit::kOneVector
+          : contiguous && most + 2 <= lanes ? Fit::kEachVector
+                                            : Fit::kNone;
+  }
+};
+
+// One octave on the columns of a call, each array `stride` elements.
+struct ColumnOctave {
+  std::size_t stride;
+  // Along x, of each column: how much the gradients' x to the left and right, and values and the
+  // gradients' z to the right, count.
+  float *left_x, *right_x, *fade;
+  LatticeLines lines;
+  // Blended along x (Blend), of the lower and the upper lattice row: pairs of vectors, one of
+  // values and one of slopes. Pairs lie in one line of the cache, in different banks.
+  float *lower, *upper;
+  float* rise;                // c and d in such pairs
+  std::uint32_t lattice_row;  // the lower of the two
+
+  void clear() const {
+    clear_vectors(lower, 2 * stride);
+    clear_vectors(rise, 2 * stride);
+  }
+};
+
+// What the hash of a lattice point gives it: a value and a gradient.
+struct LatticePoint {
+  Float value, x, z;
+};
+// The value is uniform in ± length / 2. The gradient lies t quarter turns from the x axis, t
+// uniform in [−1, 1], mirrored at the z axis by a further bit. Sine and cosine of quarter turns are
+// polynomials (docs/models.md); gradients are as long as `length` but for one in a thousand.
+HWY_INLINE LatticePoint lattice_point(hn::Vec<UintTag> key, hn::Vec<UintTag> row_hash,
+                                      Float length) {
+  const FloatTag d;
+  const IntTag di;
+  const auto h = mix32(UintTag(), hn::Xor(key, row_hash));
+  const Float t = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, h)), hn::Set(d, 0x1.0p-31F));
+  const Float y = hn::Mul(t, t);
+  Float sine = hn::Set(d, 0.07186F), cosine = hn::Set(d, 0.224F);
+  for (const float c : {-0.64211F, 1.57032F})
+    sine = hn::Add(hn::Mul(sine, y), hn::Set(d, c));
+  for (const float c : {-1.2228F, 0.9994F})
+    cosine = hn::Add(hn::Mul(cosine, y), hn::Set(d, c));
+  const Float mirrored = hn::Xor(length, hn::BitCast(d, hn::ShiftLeft<31>(h)));
+  const Float signed_byte = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftLeft<24>(h)));
+  return {hn::Mul(signed_byte, hn::Mul(length, hn::Set(d, 0x1.0p-32F))), hn::Mul(cosine, mirrored),
+          hn::Mul(hn::Mul(sine, t), length)};
+}
+
+// Points along one lattice row of an octave.
+struct LatticeRow {
+  HWY_ALIGN float value[2 * kMaxNoiseAxis + 3 * kPad];
+  HWY_ALIGN float x[2 * kMaxNoiseAxis + 3 * kPad];
+  HWY_ALIGN float z[2 * kMaxNoiseAxis + 3 * kPad];
+  std::uint32_t key;  // of the lattice row
+  bool filled = false;
+
+  // Fills it unless it has those of this lattice row already.
+  void hold(const ColumnOctave& column, std::uint32_t row_key, float amplitude) {
+    if (filled && key == row_key) return;
+    fill(column, row_key, amplitude);
+    key = row_key;
+    filled = true;
+  }
+
+ private:
+  void fill(const ColumnOctave& column, std::uint32_t row_key, float amplitude) {
+    const FloatTag d;
+    const UintTag du;
+    const auto row_hash = hn::Set(du, models::mix32(row_key));
+    const Float length = hn::Set(d, amplitude);
+    for (std::size_t i = 0; i < column.lines.key_count; i += hn::Lanes(d)) {
+      const LatticePoint p = lattice_point(hn::Load(du, column.lines.key + i), row_hash, length);
+      hn::Store(p.value, d, value + i);
+      hn::Store(p.x, d, x + i);
+      hn::Store(p.z, d, z + i);
+    }
+  }
+};
+
+// Noise on a lattice row, blended along x: its value and its slope along z.
+struct Blend {
+  Float value, slope;
+};
+// `left_x`, `right_x` and `fade` as in ColumnOctave.
+HWY_INLINE Blend blend(const LatticePoint& left, const LatticePoint& right, Float left_x,
+                       Float right_x, Float fade) {
+  const Float value = hn::Add(left.value, hn::Mul(fade, hn::Sub(right.value, left.value)));
+  return {hn::Add(value, hn::Add(hn::Mul(left.x, left_x), hn::Mul(right.x, right_x))),
+          hn::Add(left.z, hn::Mul(fade, hn::Sub(right.z, left.z)))};
+}
+
+// A vector of the row's points, from `first` on.
+HWY_INLINE LatticePoint load(const LatticeRow& row, std::size_t first) {
+  const FloatTag d;
+  return {hn::LoadU(d, row.value + first), hn::LoadU(d, row.x + first),
+          hn::LoadU(d, row.z + first)};
+}
+HWY_INLINE LatticePoint look_up(const LatticePoint& points, hn::Vec<IntTag> slots) {
+  const auto indices = hn::IndicesFromVec(FloatTag(), slots);
+  return {hn::TableLookupLanes(points.value, indices), hn::TableLookupLanes(points.x, indices),
+          hn::TableLookupLanes(points.z, indices)};
+}
+
+// Makes the lattice row the octave's upper one; unless it is the first, what was the upper one
+// becomes the lower.
+template <LatticeLines::Fit kFit, bool kFirst>
+void raise(ColumnOctave& octave, const LatticeRow& row) {
+  const ColumnOctave o = octave;
+  float *const HWY_RESTRICT below = o.upper, *const HWY_RESTRICT above = o.lower;
+  float* const HWY_RESTRICT rise = o.rise;
+  const FloatTag d;
+  const IntTag di;
+  LatticePoint before = load(row, 0), behind = before;
+  for (std::size_t i = 0; i < o.stride; i += hn::Lanes(d)) {
+    const auto slots = hn::Load(di, o.lines.slot + i);
+    if constexpr (kFit != LatticeLines::Fit::kOneVector)
+      behind = before = load(row, o.lines.first[i]);
+    if constexpr (kFit == LatticeLines::Fit::kNone)
+      behind = load(row, o.lines.first[i] + o.lines.to_next);
+    const auto next = kFit == LatticeLines::Fit::kNone ? slots : hn::Add(slots, hn::Set(di, 1));
+    const auto [value, slope] =
+        blend(look_up(before, slots), look_up(behind, next), hn::Load(d, o.left_x + i),
+              hn::Load(d, o.right_x + i), hn::Load(d, o.fade + i));
+    const std::size_t pair = 2 * i, second = pair + hn::Lanes(d);
+    hn::Store(value, d, above + pair);
+    hn::Store(slope, d, above + second);
+    if constexpr (kFirst) continue;
+    const Float below_value = hn::Load(d, below + pair), below_slope = hn::Load(d, below + second);
+    hn::Store(hn::Sub(hn::Sub(value, slope), below_value), d, rise + pair);
+    hn::Store(hn::Sub(slope, below_slope), d, rise + second);
+  }
+  octave.lower = below;
+  octave.upper = above;
+}
+
+template <bool kFirst>
+void raise_to(ColumnOctave& octave, LatticeRow& row, std::uint32_t row_key, float length) {
+  using Fit = LatticeLines::Fit;
+  row.hold(octave, row_key, length);
+  switch (octave.lines.fit) {
+    case Fit::kOneVector:
+      return raise<Fit::kOneVector, kFirst>(octave, row);
+    case Fit::kEachVector:
+      return raise<Fit::kEachVector, kFirst>(octave, row);
+    case Fit::kNone:
+      return raise<Fit::kNone, kFirst>(octave, row);
+  }
+}
+
+}  // namespace psygen::models::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,275 @@
+#include "engine/models/terrain/terrain.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "engine/core/assert.hpp"
+#include "engine/models/kit/exact_math.hpp"
+#include "engine/models/terrain/grid.hpp"
+#include "engine/models/terrain/kernel.hpp"
+#include "engine/models/terrain/light.hpp"
+#include "engine/models/terrain/shape.hpp"
+
+namespace psygen::models {
+namespace {
+
+constexpr double kInt32Min = std::numeric_limits<std::int32_t>::min();
+constexpr double kInt32Max = std::numeric_limits<std::int32_t>::max();
+constexpr ParameterType kInteger = ParameterType::kInteger;
+constexpr ParameterType kReal = ParameterType::kReal;
+constexpr ParameterSource kPlaced = ParameterSource::kPlaced;
+
+constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
+    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "which of all terrains", kPlaced},
+    {"block_x", kInteger, "blocks", 0, kInt32Min, kInt32Max, -1000, 1000, "block along x", kPlaced},
+    {"block_z", kInteger, "blocks", 0, kInt32Min, kInt32Max, -1000, 1000, "block along z", kPlaced},
+    {"node_level", kInteger, "", 0, 0, 20, 0, 10,
+     "cells are 2^node_level times as wide; blocks are counted in these wider ones", kPlaced},
+    {"size", kInteger, "vertices", 64, kMinTerrainSize, kMaxTerrainSize, 16, 128,
+     "vertices per side of a block"},
+    {"cell_m", kReal, "m", 1, 0.01, 1000, 0.25, 16, "distance between neighbouring vertices"},
+    {"height", kReal, "1", 1.2, 0, 4, 0.5, 1.5,
+     "fractal increment H: the larger, the smoother; octave o counts lacunarity^(-H o)"},
+    {"lacunarity", kReal, "1", 2, 1, 4, 1.5, 3, "ratio of the frequencies of two octaves"},
+    {"octaves", kInteger, "", 9, 1, kMaxOctaves, 1, 12, "number of layers of noise"},
+    {"offset", kReal, "1", 0.88, 0, 4, 0.7, 1.2, "height of the ridges before squaring"},
+    {"gain", kReal, "1", 2, 0, 100, 1, 4, "how much an octave weighs on the next"},
+    {"feature_m", kReal, "m", 600, 1, 1e5, 50, 2000, "width of the largest features"},
+    {"relief_m", kReal, "m", 120, 0.01, 1e5, 10, 500, "highest height that is possible"},
+    {"warp", kReal, "1", 0, 0, 1, 0, 0.5,
+     "bends the coarse ridges: largest displacement, in parts of feature_m; 0 is fastest"},
+    {"sun_azimuth_deg", kReal, "degrees", 0, -360, 360, 0, 360,
+     "where shadows come from, from north over east", kPlaced},
+    {"sun_elevation_deg", kReal, "degrees", 90, -90, 90, 0, 90,
+     "of the sun that casts shadows: 90 none, 0 and below all in the dark", kPlaced},
+};
+
+// Sample positions along one axis: every vertex of the level with its neighbours one cell away.
+// Vertex k is sample vertex(k); samples are grid positions −1 … size.
+struct SampleAxis {
+  std::array<std::int64_t, RidgedNoise::kMaxAxis> world;
+  std::size_t count = 0;
+  std::size_t step;  // samples from one vertex to the next
+
+  SampleAxis(const TerrainGrid& grid, const TerrainShape& shape, std::int64_t block)
+      : step(static_cast<std::size_t>(std::min(grid.stride, 3))) {
+    const auto add = [&](int i) { world[count++] = shape.world_of(block, i); };
+    if (grid.stride <= 3) {
+      for (int i = -1; i <= grid.size; ++i)
+        add(i);
+      return;
+    }
+    for (int i = 0; i < grid.size; i += grid.stride) {
+      for (const int neighbour : {-1, 0, 1})
+        add(i + neighbour);
+    }
+  }
+  std::size_t vertex(std::size_t k) const { return 1 + k * step; }
+};
+
+class TerrainType final : public ModelType {
+ public:
+  std::string_view name() const override { return "terrain"; }
+  std::string_view doc() const override {
+    return "ground of one block: ridged multifractal heightfield (Musgrave)";
+  }
+  std::span<const ParameterSpec> parameters() const override { return kSchema; }
+  int level_count() const override { return kTerrainLevels; }
+  bool may_run_on_main_thread() const override { return true; }
+  double level_error_m(const Parameters& p, int level) const override;
+  core::Bounds bounds(const Parameters& p) const override;
+  MeshSize mesh_size(const Parameters& p, int level) const override;
+  double complexity(const Parameters& p, int level) const override;
+  double steps(const Parameters& p, int level) const override;
+  double step_seconds() const override { return 0.6e-9; }
+  double log2_cost(const Parameters& p) const override;
+  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
+  void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {
+    TerrainGrid::of_index_list(id).write_indices(out);
+  }
+};
+
+TerrainGrid grid_of(const Parameters& p, int level) {
+  return {static_cast<int>(p.integer(kTerrainSize)), level};
+}
+
+// The finest grid of the light of a level (TerrainLight).
+std::size_t light_grid_of(int level) {
+  return level < 2 ? 0 : 1;
+}
+
+double cell_of(const Parameters& p) {
+  return std::ldexp(p.real(kTerrainCellM), static_cast<int>(p.integer(kTerrainNodeLevel)));
+}
+
+// The samples of the parent's mesh of level 1 that a node's mesh of level 1 lies on: every second
+// of the node's own vertices and, where the parent has none at the node's border, those beyond.
+struct ParentSamples {
+  static constexpr std::size_t kStride = (kMaxTerrainSize + 1) / 2 + 1;
+  std::array<float, kStride * kStride> noise;
+  CoarseSamples view;
+
+  ParentSamples(const TerrainShape& shape, const TerrainGrid& grid, std::int64_t block_x,
+                std::int64_t block_z) {
+    const Axis columns(shape, grid, block_x), rows(shape, grid, block_z);
+    shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
+                         noise, kStride);
+    view = {noise.data(), kStride, 1, 2, columns.phase, rows.phase};
+  }
+
+ private:
+  struct Axis {
+    std::array<std::int64_t, kStride> world;
+    std::size_t count;
+    std::size_t phase;  // 1 where the first sample lies one vertex before the node
+
+    Axis(const TerrainShape& shape, const TerrainGrid& grid, std::int64_t block)
+        : phase(static_cast<std::size_t>(block & (grid.n - 1) & 1)) {
+      count = (static_cast<std::size_t>(grid.n) + phase) / 2 + 1;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::int64_t vertex = static_cast<std::int64_t>(2 * i) - static_cast<int>(phase);
+        world[i] = shape.world_of(block, vertex * grid.stride);
+      }
+    }
+  };
+};
+
+// An octave of wavelength λ and amplitude A (half a ridge's height counts) leaves A · d/λ when it
+// is sampled d apart, at most A. Amplitudes add up to half the relief.
+double TerrainType::level_error_m(const Parameters& p, int level) const {
+  const TerrainShape shape(p);
+  const double gap = (grid_of(p, level).stride - 1) * shape.cell_m;
+  const double ratio = exact_pow(p.real(kTerrainLacunarity), -p.real(kTerrainHeight));
+  double amplitude = 1, amplitudes = 0;
+  double wavelength = p.real(kTerrainFeatureM);
+  double error = 0;
+  for (std::int64_t o = 0; o < p.integer(kTerrainOctaves); ++o) {
+    error += amplitude * std::min(1.0, gap / wavelength);
+    amplitudes += amplitude;
+    amplitude *= ratio;
+    wavelength /= p.real(kTerrainLacunarity);
+  }
+  return 0.5 * p.real(kTerrainReliefM) * error / amplitudes;
+}
+
+core::Bounds TerrainType::bounds(const Parameters& p) const {
+  const auto side = static_cast<float>(terrain_block_size_m(p));
+  return {{0, 0, 0}, {side, static_cast<float>(p.real(kTerrainReliefM)), side}};
+}
+
+MeshSize TerrainType::mesh_size(const Parameters& p, int level) const {
+  const TerrainGrid grid = grid_of(p, level);
+  return {grid.surface_vertices() + grid.border_vertices(), grid.triangles() * 3, grid.index_list(),
+          core::VertexLayout::kTerrain};
+}
+
+double TerrainType::complexity(const Parameters& p, int level) const {
+  const TerrainGrid grid = grid_of(p, level);
+  const double samples_per_side = std::min(3 * grid.n, grid.size);
+  return static_cast<double>(p.integer(kTerrainOctaves)) * samples_per_side * samples_per_side;
+}
+
+// The work of the noise: of the samples, of those of the parent's mesh, of the heights for the
+// light. Nodes whose octaves are narrower than their cells take five times as long as blocks.
+double TerrainType::steps(const Parameters& p, int level) const {
+  const TerrainShape shape(p);
+  const TerrainGrid grid = grid_of(p, level);
+  const auto n = static_cast<std::size_t>(grid.n);
+  const double cell = std::ldexp(1.0, shape.node_level);
+  double work = 0;
+  if (grid.stride <= 3) {
+    const auto samples = static_cast<std::size_t>(grid.size) + 2;
+    work = shape.noise.work(samples, samples, cell);
+  } else {  // vertices with their neighbours, and gaps between them
+    work = (2 * shape.noise.work(3 * n, 3 * n, cell) +
+            shape.noise.work(3 * n, 3 * n, cell * (grid.stride - 2))) /
+           3;
+  }
+  if (level == 1) work += shape.noise.work(n / 2 + 1, n / 2 + 1, 2 * grid.stride * cell);
+  return work + TerrainLight::noise_work(
+                    shape, {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)},
+                    p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ), light_grid_of(level));
+}
+
+double TerrainType::log2_cost(const Parameters& p) const {
+  const double cells = std::max(static_cast<double>(p.integer(kTerrainSize)) - 1, 1.0);
+  return 1 + std::log2(cells) + std::log2(cells + 4);  // with skirts
+}
+
+core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshView& out) const {
+  const TerrainShape shape(p);
+  const TerrainGrid grid = grid_of(p, level);
+  PSYGEN_CHECK(out.vertices.size() ==
+                   (grid.surface_vertices() + grid.border_vertices()) * sizeof(core::TerrainVertex),
+               "the destination has exactly the size of the mesh");
+  const SampleAxis columns(grid, shape, p.integer(kTerrainBlockX));
+  const SampleAxis rows(grid, shape, p.integer(kTerrainBlockZ));
+  constexpr std::size_t kMaxStride = RidgedNoise::kMaxAxis;
+  alignas(64) std::array<float, kMaxStride*(kMaxTerrainSize + 2) + 16> noise;
+  const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at lines of the cache
+  shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
+                       noise, stride);
+  const TerrainLight light(shape, {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)},
+                           p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ),
+                           light_grid_of(level));
+  const float* const first = &noise[rows.vertex(0) * stride + columns.vertex(0)];
+  std::optional<ParentSamples> parent;
+  if (level == 1) parent.emplace(shape, grid, p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ));
+  const auto ratio = static_cast<std::size_t>(
+      TerrainGrid(grid.size, std::min(level + 1, kTerrainLevels - 1)).stride / grid.stride);
+  const HeightRange heights = pack_terrain(
+      {.first = first,
+       .row_stride = stride,
+       .step = columns.step,
+       .n = static_cast<std::size_t>(grid.n),
+       .stride = static_cast<std::size_t>(grid.stride),
+       .coarse =
+           parent ? parent->view : CoarseSamples{first, stride, columns.step * ratio, ratio, 0, 0},
+       .light = light.samples(),
+       .quantum = shape.quantum,
+       .slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m)},
+      out.vertices.data());
+  core::Bounds box = bounds(p);
+  box.min.y = shape.relief_m * (static_cast<float>(heights.lowest) / 65535.0F);
+  box.max.y = shape.relief_m * (static_cast<float>(heights.highest) / 65535.0F);
+  return box;
+}
+
+RidgedSettings settings_of(const Parameters& p) {
+  return {.seed = static_cast<std::uint64_t>(p.integer(kTerrainSeed)),
+          .height = p.real(kTerrainHeight),
+          .lacunarity = p.real(kTerrainLacunarity),
+          .octaves = static_cast<int>(p.integer(kTerrainOctaves)),
+          .offset = p.real(kTerrainOffset),
+          .gain = p.real(kTerrainGain),
+          .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM),
+          .warp = p.real(kTerrainWarp)};
+}
+
+}  // namespace
+
+TerrainShape::TerrainShape(const Parameters& p)
+    : noise(settings_of(p)),
+      size(static_cast<int>(p.integer(kTerrainSize))),
+      node_level(static_cast<int>(p.integer(kTerrainNodeLevel))),
+      cell_m(cell_of(p)),
+      relief_m(static_cast<float>(p.real(kTerrainReliefM))),
+      quantum(static_cast<float>(65535.0 / noise.max_value())),
+      metres(static_cast<float>(p.real(kTerrainReliefM) / noise.max_value())) {}
+
+std::unique_ptr<ModelType> make_terrain_type() {
+  return std::make_unique<TerrainType>();
+}
+
+std::uint32_t terrain_surface_triangles(const Parameters& terrain, int level) {
+  return grid_of(terrain, level).surface_triangles();
+}
+
+double terrain_block_size_m(const Parameters& terrain) {
+  return static_cast<double>(terrain.integer(kTerrainSize) - 1) * cell_of(terrain);
+}
+
+}  // namespace psygen::models

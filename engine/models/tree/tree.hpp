@@ -1,0 +1,43 @@
+// The broadleaf tree: a stochastic L-system whose nodes draw their own number of branches, meshed
+// at six levels of detail from one skeleton (paper, section 5.2, eq. 4; docs/models.md, "Tree").
+// Leaf triangles are seen from both sides: draw trees without back-face culling. Its
+// looks are parameters; trees whose grammar is data are species (species.hpp).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "engine/models/model_type.hpp"
+#include "engine/models/tree/plan.hpp"
+
+namespace psygen::models {
+
+// Positions in the schema of the type "tree".
+enum TreeParameter : std::size_t {
+  kTreeSeed = 0,
+  kTreeIterations,
+  kTreeBranches,
+  kTreeSizeM,
+  kTreeRadiusM,
+  kTreeBranchAngle,
+  kTreeAngleVariation,
+  kTreeLengthDecay,
+  kTreeRadiusDecay,
+  kTreeTropism,
+  kTreeCurvature,
+  kTreeFlare,
+  kTreeLeafScale,
+  kTreeLeafHue,
+  kTreeColourVariation,
+  kTreeBarkTone,
+  kTreeParameterCount
+};
+
+// The numbers of one tree. Requires legal parameters.
+TreePlan plan_of_tree(const Parameters& p);
+
+// Levels 0 … 5: on average over the paper's ranges about 5,000, 1,200, 300, 80, 23 and 11
+// triangles. Needs about 900 KiB of stack; nothing on the heap.
+std::unique_ptr<ModelType> make_tree_type();
+
+}  // namespace psygen::models

@@ -1,0 +1,40 @@
+// Holds the mesh of a tree, `tree` or species, to the oracle, vertex by vertex: places to half a
+// step of the packing and 1e-5 of the tree's size, everything else to half a step and 1e-5.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "engine/models/kit/packing.hpp"
+#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/models/oracle/tree.hpp"
+
+namespace psygen::models::test {
+
+// `expected` is the level's mesh, made last by an oracle with looks.
+inline void expect_as_oracle(const TreeOracle& oracle,
+                             const std::vector<TreeOracle::Vertex>& expected,
+                             const core::Bounds& bounds, const Mesh& mesh, int level) {
+  const auto vertices = mesh.vertices<core::ModelVertex>();
+  ASSERT_EQ(vertices.size(), expected.size()) << "level " << level;
+  const double size = glm::length(glm::dvec3(bounds.half_extent()));
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const glm::dvec3 place =
+        glm::clamp(expected[k].place, glm::dvec3(bounds.min), glm::dvec3(bounds.max));
+    if (expected[k].bark) {
+      ASSERT_LT(glm::distance(place, expected[k].place), size / 32767)
+          << "level " << level << ": bark beyond the bounds";
+    }
+    const glm::dvec3 found(unpack_position(vertices[k], bounds));
+    ASSERT_LT(glm::distance(place, found), size * (1.0 / 65534 + 1e-5))
+        << "level " << level << " vertex " << k;
+    Look look = oracle.looks().at(expected[k].look);
+    look.normal = expected[k].normal;
+    ASSERT_EQ(fault_of(vertices[k], look), "") << "level " << level << " vertex " << k;
+  }
+}
+
+}  // namespace psygen::models::test
