@@ -10,6 +10,7 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/telemetry/units.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "game/commands.hpp"
 #include "game/interrupt.hpp"
 #include "game/option_checks.hpp"

@@ -8,6 +8,7 @@
 #include "engine/core/replace_file.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "game/calibration_page.hpp"
 #include "game/calibration_samples.hpp"
 #include "game/commands.hpp"

@@ -11,6 +11,7 @@
 #include "engine/core/utf8.hpp"
 #include "engine/exchange/unpack.hpp"
 #include "engine/synthesis/synthesize.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "game/commands.hpp"
 #include "game/option_checks.hpp"
 #include "game/text_values.hpp"

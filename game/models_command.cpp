@@ -5,6 +5,7 @@
 
 #include "engine/core/log.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
 #include "game/commands.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "engine/core/log.hpp"
 #include "engine/synthesis/request_stream.hpp"
-#include "engine/world/text_file.hpp"
+#include "engine/world/files/text_file.hpp"
 #include "game/commands.hpp"
 #include "game/option_checks.hpp"
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/nearest_word.hpp"
+#include "engine/world/files/world_file.hpp"
 
 namespace psygen::game {
 namespace {

@@ -10,7 +10,8 @@
 #include "engine/exchange/cut_short.hpp"
 #include "engine/exchange/unpack.hpp"
 #include "engine/telemetry/output_file.hpp"
-#include "engine/world/text_file.hpp"
+#include "engine/world/files/text_file.hpp"
+#include "engine/world/files/world_file.hpp"
 
 namespace psygen::amplify {
 namespace {

@@ -9,6 +9,8 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/render_path.hpp"
 #include "engine/telemetry/output_file.hpp"
+#include "engine/world/files/path_file.hpp"
+#include "engine/world/files/world_file.hpp"
 
 namespace psygen::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "engine/core/hash.hpp"
 #include "engine/scene/node_levels.hpp"
-#include "engine/world/merged_models.hpp"
+#include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {

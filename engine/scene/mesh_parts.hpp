@@ -1,6 +1,6 @@
 // A mesh that reaches so far that much of it may be out of view: the one for everything that stands
-// on a node. Its triangles come block by block in Morton order (world/merged_models.hpp), so that
-// those that follow each other lie near each other. Values; nothing of what is in the cache.
+// on a node. Its triangles come block by block in Morton order (world/far/merged_models.hpp), so
+// that those that follow each other lie near each other. Values; nothing of what is in the cache.
 #pragma once
 
 #include <cstdint>

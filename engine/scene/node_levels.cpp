@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/merged_models.hpp"
-#include "engine/world/node_walk.hpp"
+#include "engine/world/far/merged_models.hpp"
+#include "engine/world/far/node_walk.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::scene {

@@ -15,7 +15,7 @@
 #include "engine/scene/node_solidity.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/scene/usual_boxes.hpp"
-#include "engine/world/merged_models.hpp"
+#include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {

@@ -8,7 +8,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/scene/node_solidity.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/world/merged_models.hpp"
+#include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {

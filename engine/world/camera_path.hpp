@@ -1,15 +1,13 @@
 // A flight of the camera: points in time over the ground, joined so that velocity and turn are
-// smooth but where it jumps, read from TOML files (docs/world-files.md). Heights are above the
+// smooth but where it jumps, read from TOML files (files/path_file.hpp). Heights are above the
 // ground of whichever world is flown through. Not a simulation: any time can be asked for.
 // Immutable; any thread.
 #pragma once
 
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/core/camera.hpp"
@@ -17,8 +15,6 @@
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
-
-inline constexpr int kPathFormat = 1;
 
 struct PathPoint {
   double time_s = 0;
@@ -77,12 +73,5 @@ class CameraPath {
   std::vector<PathPoint> points_;
   std::vector<Run> runs_;  // by start
 };
-
-// Reads a path file. kParse for texts that are no path file (naming file, line and field), kIo and
-// kOverBudget as load_world().
-core::Result<CameraPath> load_camera_path(const std::filesystem::path& file);
-
-// The same for a text in memory; `file_name` is for messages only.
-core::Result<CameraPath> parse_camera_path(std::string_view text, std::string_view file_name);
 
 }  // namespace psygen::world

@@ -1,18 +1,15 @@
 // A world: a few numbers that stand for terabytes of geometry (paper, section 4.1). Read from and
-// written to TOML files (docs/world-files.md). Plain values, valid once they come from a file; not
+// written to TOML files (files/world_file.hpp). Plain values, valid once they come from a file; not
 // geometry, which models synthesise from the parameters. Immutable in use, so any thread may read.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
-#include "engine/core/error.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/models/tree/species.hpp"
 
@@ -132,24 +129,6 @@ struct World {
 // The palette that the ground is drawn with: the shore of the water is sand. What draws or exports
 // ground takes this one.
 Palette drawn_palette(const World& world);
-
-// Reads a world file. Errors name file, line and field and say what is allowed: kParse for texts
-// that are no world file, kInvalidArgument and kOverBudget for parameters that a model refuses
-// (with the predicted cost), kOverBudget for files above 1 MiB, kIo for files that cannot be read.
-// The species of the file become model types of the registry, unless it has equal ones already; if
-// anything fails, the registry is as it was.
-core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry);
-
-// The same for a text in memory; `file_name` is for messages only.
-core::Result<World> parse_world(std::string_view text, std::string_view file_name,
-                                models::Registry& registry);
-// With a registry that cannot grow: worlds with species that it lacks are refused.
-core::Result<World> load_world(const std::filesystem::path& file, const models::Registry& registry);
-core::Result<World> parse_world(std::string_view text, std::string_view file_name,
-                                const models::Registry& registry);
-
-// The text of a world file that parse_world() turns into an equal world.
-std::string write_world(const World& world, const models::Registry& registry);
 
 // The world if all of it were generated at full detail. Terrain counts without its skirts. An
 // endless world has 0 blocks, models, triangles and bytes.

@@ -7,6 +7,8 @@
 #include "engine/core/assert.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/world/camera_path.hpp"
+#include "engine/world/files/path_file.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::fuzz {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 
 namespace psygen::game {
 namespace {

@@ -1,6 +1,6 @@
 // A species of trees as data: a stochastic L-system whose letters are kinds of branches, and how it
-// looks. Read from world files (engine/world/species_file.hpp) or filled by programs; validated
-// here and made into a model type of its own. Plain values; nothing is grown here
+// looks. Read from world files (engine/world/files/species_file.hpp) or filled by programs;
+// validated here and made into a model type of its own. Plain values; nothing is grown here
 // (skeleton.hpp).
 #pragma once
 

@@ -11,7 +11,8 @@
 #include "engine/scene/ground_relief.hpp"
 #include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/mesh_parts.hpp"
-#include "engine/world/merged_models.hpp"
+#include "engine/world/far/merged_models.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 

@@ -13,6 +13,8 @@
 
 #include "engine/scene/scene.hpp"
 #include "engine/world/camera_path.hpp"
+#include "engine/world/files/path_file.hpp"
+#include "engine/world/files/world_file.hpp"
 
 namespace psygen::scene {
 namespace {

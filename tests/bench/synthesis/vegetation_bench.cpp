@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "engine/models/model_type.hpp"
-#include "engine/world/merged_models.hpp"
+#include "engine/world/far/merged_models.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
 
 namespace psygen::world {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "tests/engine/amplify/throwing_type.hpp"
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 #include "tests/faults.hpp"
 
 namespace psygen::amplify {

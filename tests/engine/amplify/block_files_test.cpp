@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "tests/engine/amplify/throwing_type.hpp"
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 #include "tests/full_disk.hpp"
 
 namespace psygen::amplify {

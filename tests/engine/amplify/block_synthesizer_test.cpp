@@ -4,7 +4,7 @@
 
 #include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/amplify/throwing_type.hpp"
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 
 namespace psygen::amplify {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "engine/amplify/block_synthesizer.hpp"
 #include "engine/models/kit/simd_targets.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::amplify {

@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/amplify/block_files.hpp"
-#include "tests/engine/world/files.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "tests/engine/world/shipped.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::amplify {

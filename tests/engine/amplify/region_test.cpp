@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 
 namespace psygen::amplify {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "engine/models/registry.hpp"
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 
 namespace psygen::amplify {
 

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "engine/render/preset.hpp"
+#include "engine/world/files/path_file.hpp"
 
 namespace psygen::app {
 namespace {

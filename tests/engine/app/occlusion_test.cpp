@@ -1,5 +1,6 @@
 // What is left out behind ridges makes no difference to the picture: in any world, from any height.
 #include "engine/image/compare.hpp"
+#include "engine/world/files/path_file.hpp"
 #include "tests/engine/app/studio.hpp"
 
 namespace psygen::app {

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "engine/image/compare.hpp"
+#include "engine/world/files/path_file.hpp"
 #include "tests/engine/app/golden.hpp"
 
 namespace psygen::app {

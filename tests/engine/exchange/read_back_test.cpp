@@ -6,9 +6,10 @@
 #include <set>
 
 #include "engine/exchange/write_document.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
 #include "tests/engine/exchange/synthesised.hpp"
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::exchange {

@@ -8,6 +8,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/files/world_file.hpp"
 
 namespace psygen::scene {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/world/camera_path.hpp"
+#include "engine/world/files/path_file.hpp"
 #include "tests/engine/scene/gate.hpp"
 
 namespace psygen::scene {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "engine/core/camera.hpp"
-#include "engine/world/merged_models.hpp"
+#include "engine/world/far/merged_models.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/scene/fixture.hpp"
 

@@ -1,7 +1,7 @@
 #include "engine/scene/node_levels.hpp"
 
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/merged_models.hpp"
+#include "engine/world/far/merged_models.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {

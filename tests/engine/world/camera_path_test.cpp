@@ -8,7 +8,9 @@
 #include <limits>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "tests/engine/world/files.hpp"
+#include "engine/world/files/path_file.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world {
 namespace {

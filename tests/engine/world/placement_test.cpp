@@ -11,7 +11,7 @@
 #include "engine/models/rock/rock.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/models/tree/tree.hpp"
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world {
 namespace {

@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "tests/engine/world/files.hpp"
+#include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world {
 namespace {

@@ -4,6 +4,7 @@
 #include "engine/image/image_io.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
 
 int main(int argc, char** argv) {

@@ -1,0 +1,46 @@
+// How much of the ground a world's models cover, and in which colour.
+#include <algorithm>
+
+#include "engine/models/kit/exact_math.hpp"
+#include "engine/world/far/merged_models.hpp"
+#include "engine/world/far/scatter.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::world {
+namespace {
+
+// What is seen of an instance from above, weighted as if it were its upper half.
+glm::vec3 albedo_of(const Outline& outline) {
+  const auto reflected = [](const Corner& c) { return c.colour * c.colour * c.ambient; };
+  glm::vec3 sum = reflected(outline.top) * 0.5F;
+  for (const Corner& c : outline.ring)
+    sum += reflected(c) * 0.125F;
+  return sum;
+}
+
+}  // namespace
+
+FarCover far_cover(const World& world, const models::Registry& registry) {
+  const std::vector<double> placed = placed_per_block(world, registry);
+  const double block_m2 = world.block_size_m() * world.block_size_m();
+  glm::vec3 light(0.0F);
+  double covered = 0;
+  std::uint32_t first = 0;
+  for (std::size_t s = 0; s < world.scatter.size(); ++s) {
+    const Scatter& scatter = world.scatter[s];
+    const FarScatter far(world, registry[scatter.model], scatter, first);
+    first += scatter.count;
+    for (const Representative& r : far.representatives()) {
+      const double share = placed[s] * static_cast<double>(r.silhouette.plan_m2) /
+                           (static_cast<double>(far.representatives().size()) * block_m2);
+      light += albedo_of(r.outline) * static_cast<float>(share);
+      covered += share;
+    }
+  }
+  if (covered <= 0) return {};
+  // Models that stand at random places overlap at random.
+  return {light / static_cast<float>(covered),
+          static_cast<float>(1 - models::exact_exp(-std::min(covered, 100.0)))};
+}
+
+}  // namespace psygen::world

@@ -1,0 +1,290 @@
+#include "engine/world/far/merged_models.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <optional>
+
+#include "engine/core/assert.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/far/form_writer.hpp"
+#include "engine/world/far/merged_plan.hpp"
+#include "engine/world/far/node_walk.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::world {
+namespace {
+
+using models::MeshSize;
+using models::MeshView;
+using models::Parameters;
+using models::ParameterSpec;
+
+constexpr models::ParameterType kInteger = models::ParameterType::kInteger;
+constexpr models::ParameterSource kPlaced = models::ParameterSource::kPlaced;
+constexpr std::uint64_t kEdition = 4;  // of what this file makes of a world
+
+constexpr ParameterSpec kSchema[kMergedParameterCount] = {
+    {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
+     kPlaced},
+    {"block_z", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along z",
+     kPlaced},
+    {"node_level", kInteger, "", 1, 1, kMaxMergedLevel, 1, kMaxMergedLevel,
+     "the node is 2^node_level blocks wide and long", kPlaced},
+};
+
+constexpr int kDetails = 2;
+// What the forms of the next node level are off, in parts of the height of what they stand for;
+// with every node level twice as much.
+constexpr double kNextFormsError = 0.2;
+
+int level_of(const Parameters& p) {
+  return static_cast<int>(
+      std::clamp<std::int64_t>(p.integer(kMergedNodeLevel), 1, kMaxMergedLevel));
+}
+
+std::uint64_t identity_of(const World& world, const models::Registry& registry) {
+  std::uint64_t h = core::combine(kEdition, world.seed);
+  const auto add = [&h](std::uint64_t v) { h = core::combine(h, v); };
+  const auto add_real = [&add](double v) { add(std::bit_cast<std::uint64_t>(v)); };
+  add(static_cast<std::uint64_t>(world.blocks_x));
+  add(static_cast<std::uint64_t>(world.blocks_z));
+  add(models::parameters_hash(registry[world.terrain_model], world.terrain));
+  for (const Scatter& s : world.scatter) {
+    const models::ModelType& type = registry[s.model];
+    add(core::hash_bytes(std::as_bytes(std::span(type.name()))));
+    add(models::parameters_hash(type, models::default_parameters(type)));
+    add(s.count);
+    for (const ParameterRange& range : s.ranges) {
+      add_real(range.low);
+      add_real(range.high);
+    }
+    add_real(s.min_height_m);
+    add_real(s.max_height_m);
+    add_real(s.max_slope_deg);
+  }
+  return h;
+}
+
+class MergedType final : public models::ModelType {
+ public:
+  MergedType(std::shared_ptr<const World> world, const models::Registry& registry)
+      : world_(std::move(world)), identity_(identity_of(*world_, registry)) {
+    std::uint32_t first = 0;
+    for (const Scatter& scatter : world_->scatter) {
+      scatters_.emplace_back(*world_, registry[scatter.model], scatter, first);
+      first += scatter.count;
+      may_run_on_main_thread_ =
+          may_run_on_main_thread_ &&
+          (scatters_.back().empty() || scatters_.back().type().may_run_on_main_thread());
+    }
+    for (int level = 1; level <= kMaxMergedLevel; ++level)
+      make_plans(level);
+  }
+
+  std::string_view name() const override { return "vegetation"; }
+  std::string_view doc() const override {
+    return "all trees and rocks of a node's blocks, a few triangles each";
+  }
+  std::span<const ParameterSpec> parameters() const override { return kSchema; }
+  int level_count() const override { return kDetails; }
+  int level_count_of(const Parameters& p) const override {
+    return plan(p, 0).form_level == plan(p, 1).form_level ? 1 : kDetails;
+  }
+  double level_error_m(const Parameters& p, int level) const override {
+    const double relief_m = world_->terrain.real(models::kTerrainReliefM);
+    const double height_m = plan(p, 0).box.max.y - relief_m;
+    return level == 0 ? 0 : kNextFormsError * std::ldexp(height_m, level_of(p) - 1);
+  }
+  core::Bounds bounds(const Parameters& p) const override { return plan(p, 0).box; }
+  MeshSize mesh_size(const Parameters& p, int level) const override {
+    const LevelPlan& made = plan(p, level);
+    return {static_cast<std::uint32_t>(made.vertices),
+            static_cast<std::uint32_t>(3 * made.triangles), 0, core::VertexLayout::kModel};
+  }
+  double step_seconds() const override { return 350e-9; }
+  double complexity(const Parameters& p, int level) const override {
+    return work_of(*world_, scatters_, plan(p, level));
+  }
+  double log2_cost(const Parameters& p) const override {
+    return std::log2(static_cast<double>(std::max<std::uint64_t>(plan(p, 0).triangles, 1)));
+  }
+  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
+  std::uint64_t identity() const override { return identity_; }
+  bool may_run_on_main_thread() const override { return may_run_on_main_thread_; }
+  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
+    PSYGEN_CHECK(false, "vegetation shares no indices");
+  }
+
+ private:
+  struct Making;    // one call of synthesize()
+  struct Instance;  // that is added to the mesh
+
+  void make_plans(int level) {
+    auto& [own, next] = plans_[static_cast<std::size_t>(level)];
+    own = plan_level(*world_, scatters_, level, level);
+    next = plan_level(*world_, scatters_, level, level + 1);
+    if (next.vertices == 0) next = own;  // all too small: better finer than nothing
+    own.box = next.box = {glm::min(own.box.min, next.box.min), glm::max(own.box.max, next.box.max)};
+  }
+  const LevelPlan& plan(const Parameters& p, int level) const {
+    return plans_[static_cast<std::size_t>(level_of(p))][static_cast<std::size_t>(level)];
+  }
+  void add_scatter(std::size_t s, const NodeBlock& block, Making& making) const;
+  void make_from_like(const Instance& instance, const Parameters& p, Making& making) const;
+  void add_instance(Instance& instance, const Scattering& scattering, Making& making) const;
+
+  std::shared_ptr<const World> world_;
+  std::uint64_t identity_;
+  std::vector<FarScatter> scatters_;
+  bool may_run_on_main_thread_ = true;  // as all may that it is made of
+  // By node level, of which 0 is not used, and level of detail; boxes of one node level are equal.
+  std::array<std::array<LevelPlan, kDetails>, kMaxMergedLevel + 1> plans_;
+};
+
+struct MergedType::Making {
+  const LevelPlan& plan;
+  std::uint64_t key;  // of the node
+  FormWriter writer;
+  models::BlockGround node_ground;            // of the whole node
+  int drawn_stride;                           // for what is drawn of it
+  std::optional<models::BlockGround> ground;  // of the tile, for slopes and heights of places
+  CoarsestMesh mesh;
+  FormMesh form;
+};
+
+struct MergedType::Instance {
+  std::size_t scatter;
+  const NodeBlock& block;
+  std::uint32_t index;     // in the block
+  std::uint32_t together;  // for how many it stands
+  std::uint64_t hash;
+  glm::vec3 place{0.0F};  // in the block
+};
+
+// A unit vector; not uniform, but without sines.
+glm::vec2 direction_of(std::uint64_t hash) {
+  const float t = static_cast<float>(hash >> 40) * 0x1.0p-24F;
+  const float scale = 1 / (1 + t * t);
+  const glm::vec2 v{(1 - t * t) * scale, 2 * t * scale};
+  switch (hash & 3) {
+    case 0:
+      return v;
+    case 1:
+      return {-v.y, v.x};
+    case 2:
+      return {-v.x, -v.y};
+    default:
+      return {v.y, -v.x};
+  }
+}
+
+// A representative in place of an instance that is not synthesised.
+void MergedType::make_from_like(const Instance& instance, const Parameters& p,
+                                Making& making) const {
+  const FarScatter& far = scatters_[instance.scatter];
+  const Form form = making.plan.scatters[instance.scatter].form;
+  const core::Bounds box = far.type().bounds(p);
+  const Likeness like = far.like(box.max.x - box.min.x, box.max.y - box.min.y, instance.hash >> 8);
+  const Outline outline = like.model->outline.scaled(like.across, like.up);
+  if (!is_billboard(form))
+    return make_form(form, outline, far.width_of(form), direction_of(instance.hash), making.form);
+  const Silhouette area = like.model->silhouette.scaled(like.across, like.up);
+  make_billboard(form, outline,
+                 billboard_of(form, outline, area, static_cast<float>(instance.together)),
+                 making.form);
+}
+
+void MergedType::add_instance(Instance& instance, const Scattering& scattering,
+                              Making& making) const {
+  const FarScatter& far = scatters_[instance.scatter];
+  const ScatterPlan& how = making.plan.scatters[instance.scatter];
+  const NodeBlock& block = instance.block;
+  const auto place = scattering.place(*making.ground, instance.index, block.in_tile_m);
+  if (!place) return;
+  instance.place = place->position;
+  const glm::dvec2 in_node = block.in_node_m + glm::dvec2(place->position.x, place->position.z);
+  instance.place.y =
+      static_cast<float>(making.node_ground.at(in_node, making.drawn_stride).height_m);
+  const Parameters p = scattering.parameters(instance.index);
+  if (how.each_is_synthesised) {
+    making.mesh.make(far.type(), p);
+    const auto outline = making.mesh.outline();
+    if (!outline) return;
+    make_form(how.form, *outline, far.width_of(how.form), direction_of(instance.hash), making.form);
+  } else {
+    make_from_like(instance, p, making);
+  }
+  const glm::vec3 corner{static_cast<float>(block.in_node_m.x), 0,
+                         static_cast<float>(block.in_node_m.y)};
+  making.writer.add(how.form, making.form, corner + instance.place, making.plan.form_level == 1);
+}
+
+// Instances of the whole node are numbered block by block; `together` numbers in a row are one
+// group, of which one member, drawn at random, stands for all.
+void MergedType::add_scatter(std::size_t s, const NodeBlock& block, Making& making) const {
+  const FarScatter& far = scatters_[s];
+  const ScatterPlan& how = making.plan.scatters[s];
+  if (how.forms == 0) return;
+  const Scattering scattering(*world_, far.type(), far.scatter(), block.coord);
+  const std::uint64_t count = far.scatter().count, first = block.ordinal * count;
+  const std::uint64_t all = count << (2 * making.plan.level);
+  for (std::uint64_t g = first / how.together; g * how.together < first + count; ++g) {
+    const std::uint64_t begin = g * how.together;
+    const std::uint64_t size = std::min<std::uint64_t>(how.together, all - begin);
+    const std::uint64_t drawn = core::combine(making.key, (std::uint64_t{s} << 32) | g);
+    const std::uint64_t member = begin + (size == 1 ? 0 : drawn % size);
+    if (member < first || member >= first + count) continue;
+    const std::uint32_t index = far.first_index() + static_cast<std::uint32_t>(member - first);
+    core::RandomStream random(world_->seed, block.coord.x, block.coord.z, index,
+                              core::Purpose::kStructure);
+    Instance instance{s, block, index, static_cast<std::uint32_t>(size), random.next_u64()};
+    add_instance(instance, scattering, making);
+  }
+}
+
+core::Bounds MergedType::synthesize(const Parameters& p, int level, const MeshView& out) const {
+  const LevelPlan& made = plan(p, level);
+  PSYGEN_CHECK(out.vertices.size() == made.vertices * sizeof(core::ModelVertex) &&
+                   out.indices.size() == 3 * made.triangles,
+               "the destination has exactly the size of the mesh");
+  const NodeWalk walk(*world_,
+                      {static_cast<std::int32_t>(p.integer(kMergedBlockX)),
+                       static_cast<std::int32_t>(p.integer(kMergedBlockZ))},
+                      level_of(p));
+  Making making{made,
+                core::combine(world_->seed, p.hash()),
+                FormWriter(made.box, out),
+                walk.whole_ground(),
+                walk.drawn_stride(),
+                std::nullopt,
+                {},
+                {}};
+  for (std::uint32_t i = 0; made.vertices > 0 && i < walk.block_count(); ++i) {
+    if (walk.starts_tile(i)) making.ground.reset();
+    const NodeBlock block = walk.block(i);
+    if (!world_->contains(block.coord)) continue;
+    if (!making.ground) walk.make_ground(i, making.ground);
+    for (std::size_t s = 0; s < scatters_.size(); ++s)
+      add_scatter(s, block, making);
+  }
+  return making.writer.finish();
+}
+
+}  // namespace
+
+std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
+                                                    const models::Registry& registry) {
+  return std::make_unique<MergedType>(std::move(world), registry);
+}
+
+models::Parameters merged_parameters(core::BlockCoord node, int node_level) {
+  models::Parameters p;
+  p.set_integer(kMergedBlockX, node.x);
+  p.set_integer(kMergedBlockZ, node.z);
+  p.set_integer(kMergedNodeLevel, node_level);
+  return p;
+}
+
+}  // namespace psygen::world

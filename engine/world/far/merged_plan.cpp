@@ -1,0 +1,103 @@
+#include "engine/world/far/merged_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/far/node_walk.hpp"
+
+namespace psygen::world {
+namespace {
+
+// A node of side s is drawn from about 2.4 s on, by 700 pixels a radian; what is less wide and high
+// than 1.2 of them then is left out, but trees and bushes are first put together, up to so many or
+// twice as many as all are.
+constexpr double kNearestSides = 2.4, kPixelsPerRadian = 700, kLeastPixels = 1.2;
+constexpr std::uint32_t kMostTogether = 8;
+constexpr std::uint32_t kMostThinning = 1U << 26;  // more than there are in any node
+constexpr std::uint64_t kMostVertices = 65'536;
+
+// How many models of this size must be together so that they can be seen.
+std::uint32_t least_together(double pixels) {
+  const double ratio = kLeastPixels / pixels;
+  return static_cast<std::uint32_t>(std::ceil(std::min(ratio * ratio, 1e6)));
+}
+
+void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint32_t thinning,
+                   LevelPlan& plan) {
+  plan.scatters.clear();
+  plan.vertices = plan.triangles = 0;
+  const double pixels_per_m = kPixelsPerRadian / (kNearestSides * side);
+  for (const FarScatter& far : scatters) {
+    ScatterPlan how;
+    const double size_m = std::sqrt(far.mean_silhouette().side_m2);
+    const std::uint32_t least = far.empty() ? 0 : least_together(size_m * pixels_per_m);
+    how.together = std::max(thinning, far.is_leafy() ? least : 1);
+    const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMostTogether) : thinning;
+    if (!far.empty() && least <= most) {
+      how.form = how.together > 1 ? Form::kTent : far.form_at(plan.form_level, pixels_per_m);
+      const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * plan.level);
+      how.forms = (instances + how.together - 1) / how.together;
+      how.each_is_synthesised = plan.form_level == 1 && !is_billboard(how.form) && far.is_cheap();
+    }
+    // Only worlds of thousands of scatters do not fit, however much is put together.
+    if (thinning >= kMostThinning &&
+        plan.vertices + how.forms * size_of(how.form).vertices > kMostVertices)
+      how.forms = 0;
+    plan.vertices += how.forms * size_of(how.form).vertices;
+    plan.triangles += how.forms * size_of(how.form).triangles;
+    plan.scatters.push_back(how);
+  }
+}
+
+core::Bounds box_of(const World& world, std::span<const FarScatter> scatters, double side_m,
+                    const LevelPlan& plan) {
+  FarScatter::Reach most;
+  for (std::size_t s = 0; s < scatters.size(); ++s) {
+    if (plan.scatters[s].forms == 0) continue;
+    const std::uint64_t instances = std::uint64_t{scatters[s].scatter().count} << (2 * plan.level);
+    const FarScatter::Reach reach = scatters[s].reach(
+        static_cast<float>(std::min<std::uint64_t>(plan.scatters[s].together, instances)));
+    most = {std::max(most.aside, reach.aside), std::max(most.up, reach.up),
+            std::max(most.down, reach.down)};
+  }
+  const auto side = static_cast<float>(side_m);
+  const auto relief = static_cast<float>(world.terrain.real(models::kTerrainReliefM));
+  return {{-most.aside, -most.down, -most.aside},
+          {side + most.aside, relief + most.up, side + most.aside}};
+}
+
+}  // namespace
+
+LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters, int level,
+                     int form_level) {
+  const double side = std::ldexp(world.block_size_m(), form_level);
+  LevelPlan plan;
+  plan.level = level;
+  plan.form_level = form_level;
+  std::uint32_t thinning = form_level <= 3 ? 1 : 3U << (2 * (form_level - 4));
+  plan_scatters(scatters, side, thinning, plan);
+  while (plan.vertices > kMostVertices)
+    plan_scatters(scatters, side, thinning *= 2, plan);
+  plan.box = box_of(world, scatters, std::ldexp(world.block_size_m(), level), plan);
+  return plan;
+}
+
+double work_of(const World& world, std::span<const FarScatter> scatters, const LevelPlan& plan) {
+  const auto vertices = static_cast<double>(world.terrain.integer(models::kTerrainSize));
+  const double ground = 0.35 * vertices * vertices *
+                        static_cast<double>(world.terrain.integer(models::kTerrainOctaves)) *
+                        (world.terrain.real(models::kTerrainWarp) > 0 ? 8 : 1);
+  double sum = ground * static_cast<double>(ground_tiles(plan.level) + 1);  // and the whole node
+  for (std::size_t s = 0; s < scatters.size(); ++s) {
+    const ScatterPlan& how = plan.scatters[s];
+    const FarScatter& far = scatters[s];
+    if (how.forms == 0) continue;
+    const double make = !how.each_is_synthesised ? 500 : far.is_leafy() ? 3000 : 400;
+    const double search = far.scatter().has_filter() ? 200 : 0;
+    sum += (make + search) * static_cast<double>(how.forms) + std::ldexp(80, 2 * plan.level);
+  }
+  return sum + 100;
+}
+
+}  // namespace psygen::world

@@ -1,0 +1,172 @@
+#include "engine/world/far/scatter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "engine/world/placement.hpp"
+
+namespace psygen::world {
+namespace {
+
+// A coarsest mesh of more vertices than this is not made for every instance.
+constexpr std::size_t kCheapVertices = 128;
+// Bounds that differ by less than this factor are alike.
+constexpr float kAlike = 1.04F;
+// Of what is no wider or higher than this it cannot be seen that it is flat.
+constexpr double kSmallPixels = 6;
+// Instances beyond the representatives may be so much larger; what reaches further is cut.
+constexpr float kRoom = 1.25F;
+
+float ratio(float a, float b) {
+  return std::max(a, b) / std::max(std::min(a, b), 1e-6F);
+}
+
+FarScatter::Reach reach_of(const core::Bounds& box) {
+  return {std::max({-box.min.x, -box.min.z, box.max.x, box.max.z, 0.0F}), std::max(box.max.y, 0.0F),
+          std::max(-box.min.y, 0.0F)};
+}
+
+FarScatter::Reach larger(const FarScatter::Reach& a, const FarScatter::Reach& b) {
+  return {std::max(a.aside, b.aside), std::max(a.up, b.up), std::max(a.down, b.down)};
+}
+
+// Trunks in the middle of their turns.
+float aside_of(Form form, const FormMesh& mesh, std::size_t corner) {
+  return corner < size_of(form).solid_vertices ? 0 : mesh.aside[corner].x;
+}
+
+Silhouette silhouette_of_form(Form form, const Outline& outline) {
+  FormMesh mesh;
+  make_form(form, outline, 1, {0.8F, 0.6F}, mesh);
+  std::array<glm::vec3, 9> places;
+  const FormSize size = size_of(form);
+  for (std::size_t i = 0; i < size.vertices; ++i)
+    places[i] = mesh.corners[i].position + glm::vec3(aside_of(form, mesh, i), 0, 0);
+  return silhouette_of(std::span(places).first(size.vertices),
+                       std::span(mesh.indices).first(std::size_t{3} * size.triangles));
+}
+
+}  // namespace
+
+FarScatter::FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,
+                       std::uint32_t first)
+    : type_(&type), scatter_(&scatter), first_(first) {
+  if (scatter.count == 0 || !type.is_seen_from_far()) return;
+  try {  // types of users may throw; nothing of ours does unless memory ends
+    measure(world);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (...) {
+    representatives_.clear();
+  }
+  if (mean_.side_m2 <= 0) representatives_.clear();
+  if (representatives_.empty()) return;
+  measure_shape();
+  fit_forms();
+}
+
+void FarScatter::measure(const World& world) {
+  CoarsestMesh mesh;
+  std::size_t vertices = 0;
+  for (std::uint32_t k = 0; k < kRepresentatives; ++k) {
+    // Blocks that exist in any world; those of one block differ as much as those of many.
+    const Scattering scattering(world, *type_, *scatter_,
+                                {static_cast<std::int32_t>(k / scatter_->count), 0});
+    const models::Parameters p = scattering.parameters(first_ + k % scatter_->count);
+    if (type_->mesh_size(p, type_->level_count() - 1).layout != core::VertexLayout::kModel) return;
+    mesh.make(*type_, p);
+    const auto outline = mesh.outline();
+    if (!outline) continue;
+    vertices += mesh.vertices().size() / sizeof(core::ModelVertex);
+    const core::Bounds box = type_->bounds(p);
+    reach_ = larger(reach_, reach_of(box));
+    const Silhouette silhouette = mesh.silhouette(*type_);
+    representatives_.push_back(
+        {*outline, silhouette, box.max.x - box.min.x, box.max.y - box.min.y});
+    mean_.side_m2 += silhouette.side_m2;
+    mean_.plan_m2 += silhouette.plan_m2;
+  }
+  if (representatives_.empty()) return;
+  const auto count = static_cast<float>(representatives_.size());
+  mean_ = {mean_.side_m2 / count, mean_.plan_m2 / count};
+  cheap_ = vertices <= kCheapVertices * representatives_.size();
+}
+
+void FarScatter::measure_shape() {
+  float leafy = 0, ring = 0, gap = 0, slender = 0, extent = 0;
+  for (const Representative& r : representatives_) {
+    const Outline& o = r.outline;
+    const float top = o.top.position.y, bottom = o.bottom.position.y;
+    const float height = std::max(top - bottom, 1e-6F);
+    leafy += o.leafy ? 1.0F : 0.0F;
+    ring += (o.ring_height() - bottom) / height;
+    gap += o.trunk_radius > 0 ? bottom / std::max(top, 1e-6F) : 0.0F;
+    slender += top / std::max(o.ring_radius(), 1e-6F);
+    extent += std::max(height, 2 * o.ring_radius());
+  }
+  const auto count = static_cast<float>(representatives_.size());
+  leafy_ = 2 * leafy > count;
+  conical_ = ring < 0.36F * count;
+  trunk_ = leafy_ && gap > 0.08F * count;
+  slender_ = slender > 2.5F * count;
+  extent_m_ = extent / count;
+}
+
+void FarScatter::fit_forms() {
+  for (std::size_t f = 0; f < kFormCount; ++f) {
+    const auto form = static_cast<Form>(f);
+    if (is_billboard(form)) continue;
+    float sum = 0;
+    for (const Representative& r : representatives_)
+      sum += silhouette_of_form(form, r.outline).side_m2;
+    const float meshes = mean_.side_m2 * static_cast<float>(representatives_.size());
+    widths_[f] = sum > 0 ? std::clamp(meshes / sum, 0.05F, 3.0F) : 1.0F;
+  }
+}
+
+Form FarScatter::form_at(int node_level, double pixels_per_m) const {
+  if (!leafy_) {
+    if (extent_m_ * pixels_per_m < kSmallPixels || node_level >= 3) return Form::kTent;
+    return node_level == 1 && slender_ ? Form::kSpindle : Form::kChunk;
+  }
+  if (node_level >= 3) return Form::kTent;
+  if (node_level == 2) return conical_ ? Form::kTent : trunk_ ? Form::kKiteTrunk : Form::kKite;
+  return trunk_ ? Form::kSpindleTrunk : Form::kSpindle;
+}
+
+Likeness FarScatter::like(float width_m, float height_m, std::uint64_t hash) const {
+  const std::size_t count = representatives_.size(), start = hash % count;
+  std::size_t best = start;
+  float least = 1e30F;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = start + k < count ? start + k : start + k - count;
+    const Representative& r = representatives_[i];
+    const float apart =
+        std::max(ratio(width_m, r.bounds_width_m), ratio(height_m, r.bounds_height_m));
+    if (apart < least) {
+      least = apart;
+      best = i;
+    }
+    if (apart < kAlike) break;
+  }
+  const Representative& r = representatives_[best];
+  return {&r, r.bounds_width_m > 0 ? width_m / r.bounds_width_m : 1,
+          r.bounds_height_m > 0 ? height_m / r.bounds_height_m : 1};
+}
+
+FarScatter::Reach FarScatter::reach(float models) const {
+  Reach most = reach_;
+  for (const Representative& r : representatives_) {
+    float aside = 0;
+    for (const float width : widths_)
+      aside = std::max(aside, width * r.outline.ring_radius());
+    const glm::vec2 axis = r.outline.axis();
+    const Billboard billboard = billboard_of(Form::kTent, r.outline, r.silhouette, models);
+    aside = std::max(aside, billboard.half_width_m + 0.5F * billboard.lean_m);
+    most.aside = std::max(most.aside, aside + std::abs(axis.x) + std::abs(axis.y));
+  }
+  return {kRoom * most.aside, kRoom * most.up, kRoom * most.down};
+}
+
+}  // namespace psygen::world

@@ -1,0 +1,264 @@
+#include "engine/world/files/table_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/nearest_word.hpp"
+#include "engine/core/utf8.hpp"
+
+namespace psygen::world {
+namespace {
+
+constexpr std::size_t kMostShownBytes = 60;  // of a key that a stranger wrote
+
+// What may be written: "an integer from 1 to 9".
+std::string allowed_text(Limits limits, bool integer) {
+  constexpr double kExact = 0x1.0p53;  // larger integers are shown rounded
+  if (integer && limits.low >= -kExact && limits.high <= kExact)
+    return fmt::format("an integer from {:.0f} to {:.0f}", limits.low, limits.high);
+  return fmt::format("{} from {:g} to {:g}", integer ? "an integer" : "a number", limits.low,
+                     limits.high);
+}
+
+bool is_number(const Node& node) {
+  return node.kind == Node::Kind::kInteger || node.kind == Node::Kind::kReal;
+}
+
+// Those of ASCII and of Latin-1.
+bool has_control_characters(std::string_view text) {
+  while (!text.empty()) {
+    const core::CodePoint point = core::first_code_point(text);
+    if (point.value < ' ' || (point.value >= 0x7F && point.value < 0xA0)) return true;
+    text.remove_prefix(point.bytes);
+  }
+  return false;
+}
+
+}  // namespace
+
+void Problems::keep_first(int line, int rank, std::string_view field, std::string_view sentence,
+                          core::ErrorCode code) {
+  if (first_ && rank >= first_rank_) return;
+  // Words of the file may be part of the sentence.
+  first_ = core::Error{code, fmt::format("{}:{}: {}", file_, line,
+                                         core::shown(fmt::format("{}: {}", field, sentence)))};
+  first_rank_ = rank;
+}
+
+void Problems::add(int line, std::string_view field, std::string_view sentence,
+                   core::ErrorCode code) {
+  keep_first(line, line, field, sentence, code);
+}
+
+void Problems::add_missing(int line, std::string_view field) {
+  keep_first(line, std::numeric_limits<int>::max(), field, "this field is missing",
+             core::ErrorCode::kParse);
+}
+
+TableReader::TableReader(const Node& table, std::string path, int line, Problems& problems)
+    : table_(table), path_(std::move(path)), line_(line), problems_(problems) {}
+
+std::string TableReader::field(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+const Member* TableReader::find(std::string_view key, Presence presence) {
+  if (std::ranges::find(known_, key) == known_.end()) known_.emplace_back(key);
+  for (const Member& member : table_.members) {
+    if (member.key == key) return &member;
+  }
+  if (presence == Presence::kRequired) problems_.add_missing(line_, field(key));
+  return nullptr;
+}
+
+bool TableReader::check_number(const Node& node, std::string_view name, Limits limits,
+                               bool integer) {
+  const bool right_kind = integer ? node.kind == Node::Kind::kInteger : is_number(node);
+  // False for NaN.
+  if (right_kind && node.real >= limits.low && node.real <= limits.high) return true;
+  problems_.add(node.line, name,
+                fmt::format("{} is not allowed: it must be {}", value_text(node),
+                            allowed_text(limits, integer)));
+  return false;
+}
+
+bool TableReader::read(std::string_view key, double& value, Limits limits, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr || !check_number(member->value, field(key), limits, false)) return false;
+  value = member->value.real;
+  return true;
+}
+
+bool TableReader::read(std::string_view key, float& value, Limits limits, Presence presence) {
+  double wide = 0;
+  if (!read(key, wide, limits, presence)) return false;
+  value = static_cast<float>(wide);
+  return true;
+}
+
+bool TableReader::read(std::string_view key, std::int64_t& value, Limits limits,
+                       Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr || !check_number(member->value, field(key), limits, true)) return false;
+  value = member->value.integer;
+  return true;
+}
+
+bool TableReader::read(std::string_view key, bool& value, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr) return false;
+  if (member->value.kind != Node::Kind::kBoolean) {
+    problem(member->value.line, key, "it must be true or false");
+    return false;
+  }
+  value = member->value.boolean;
+  return true;
+}
+
+bool TableReader::read(std::string_view key, std::string& value, std::size_t max_bytes,
+                       Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr) return false;
+  const Node& node = member->value;
+  if (node.kind == Node::Kind::kText && !node.text.empty() && node.text.size() <= max_bytes &&
+      !has_control_characters(node.text)) {
+    value = node.text;
+    return true;
+  }
+  problem(
+      node.line, key,
+      fmt::format("it must be a string of 1 to {} bytes without control characters", max_bytes));
+  return false;
+}
+
+const Node* TableReader::array_of(std::string_view key, std::size_t count, Limits limits,
+                                  bool integers, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr) return nullptr;
+  const Node& node = member->value;
+  if (node.kind != Node::Kind::kArray || node.items.size() != count) {
+    problem(
+        node.line, key,
+        fmt::format("it must be an array of {}, each {}", count, allowed_text(limits, integers)));
+    return nullptr;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!check_number(node.items[i], fmt::format("{}[{}]", field(key), i), limits, integers))
+      return nullptr;
+  }
+  return &node;
+}
+
+bool TableReader::read(std::string_view key, glm::vec3& value, Limits limits, Presence presence) {
+  const Node* node = array_of(key, 3, limits, false, presence);
+  if (node == nullptr) return false;
+  value = glm::vec3(node->items[0].real, node->items[1].real, node->items[2].real);
+  return true;
+}
+
+bool TableReader::read(std::string_view key, glm::dvec2& value, Limits limits, Presence presence) {
+  const Node* node = array_of(key, 2, limits, false, presence);
+  if (node == nullptr) return false;
+  value = {node->items[0].real, node->items[1].real};
+  return true;
+}
+
+bool TableReader::read_pair(std::string_view key, std::int64_t (&value)[2], Limits limits,
+                            Presence presence) {
+  const Node* node = array_of(key, 2, limits, true, presence);
+  if (node == nullptr) return false;
+  value[0] = node->items[0].integer;
+  value[1] = node->items[1].integer;
+  return true;
+}
+
+std::optional<NumberRange> TableReader::read_range(std::string_view key) {
+  const Member* member = find(key);
+  if (member == nullptr) return std::nullopt;
+  const Node& node = member->value;
+  const bool is_pair = node.kind == Node::Kind::kArray && node.items.size() == 2;
+  const Node& low = is_pair ? node.items[0] : node;
+  const Node& high = is_pair ? node.items[1] : node;
+  if (!is_number(low) || !is_number(high)) {
+    problem(node.line, key, "it must be a number, or [lowest, highest]");
+    return std::nullopt;
+  }
+  if (!std::isfinite(low.real) || !std::isfinite(high.real)) {
+    problem(node.line, key,
+            fmt::format("{} is not allowed: it must be finite",
+                        value_text(std::isfinite(low.real) ? high : low)));
+    return std::nullopt;
+  }
+  if (low.real > high.real) {
+    problem(node.line, key,
+            fmt::format("[{}, {}] is upside down: the lowest value comes first", value_text(low),
+                        value_text(high)));
+    return std::nullopt;
+  }
+  return NumberRange{low.real, high.real,
+                     low.kind == Node::Kind::kInteger && high.kind == Node::Kind::kInteger,
+                     node.line};
+}
+
+const Member* TableReader::table(std::string_view key, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr || member->value.kind == Node::Kind::kTable) return member;
+  problem(member->line, key,
+          fmt::format("it must be a table, [{}], not {}", key, kind_name(member->value.kind)));
+  return nullptr;
+}
+
+std::vector<const Node*> TableReader::tables(std::string_view key, std::size_t max_count) {
+  const Member* member = find(key);
+  if (member == nullptr) return {};
+  const Node& node = member->value;
+  const bool fits = node.kind == Node::Kind::kArray && node.items.size() <= max_count;
+  if (!fits || !std::ranges::all_of(
+                   node.items, [](const Node& item) { return item.kind == Node::Kind::kTable; })) {
+    problem(member->line, key, fmt::format("it must be at most {} tables, [[{}]]", max_count, key));
+    return {};
+  }
+  std::vector<const Node*> found;
+  for (const Node& item : node.items)
+    found.push_back(&item);
+  return found;
+}
+
+void TableReader::finish() {
+  for (const Member& member : table_.members) {
+    if (std::ranges::find(known_, member.key) != known_.end()) continue;
+    const std::string_view nearest = core::nearest_word(member.key, known_);
+    std::string sentence = "this key is unknown";
+    if (!nearest.empty()) {
+      sentence += fmt::format("; did you mean {}?", nearest);
+    } else {
+      sentence += fmt::format("; known here: {}", fmt::join(known_, ", "));
+    }
+    problem(member.line, core::shown(member.key, kMostShownBytes), sentence);
+  }
+}
+
+std::string value_text(const Node& node) {
+  if (node.kind == Node::Kind::kInteger) return fmt::format("{}", node.integer);
+  if (node.kind == Node::Kind::kReal) return fmt::format("{:g}", node.real);
+  return std::string(kind_name(node.kind));
+}
+
+void read_format(TableReader& root, int current) {
+  const Member* member = root.find("format", Presence::kRequired);
+  if (member == nullptr) return;
+  const Node& node = member->value;
+  const bool is_integer = node.kind == Node::Kind::kInteger;
+  if (is_integer && node.integer == current) return;
+  root.problem(node.line, "format",
+               is_integer && node.integer > current
+                   ? fmt::format("the file has version {}, which is newer than this program; "
+                                 "allowed: {}",
+                                 node.integer, current)
+                   : fmt::format("it must be {}", current));
+}
+
+}  // namespace psygen::world

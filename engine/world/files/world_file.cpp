@@ -1,0 +1,203 @@
+// World files: text → World, its [[scatter]] tables in scatter_file.cpp, its species in
+// species_file.cpp. Writing is in write_world.cpp, the format in docs/world-files.md.
+#include "engine/world/files/world_file.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "engine/core/utf8.hpp"
+#include "engine/world/files/document.hpp"
+#include "engine/world/files/fields.hpp"
+#include "engine/world/files/model_fields.hpp"
+#include "engine/world/files/scatter_file.hpp"
+#include "engine/world/files/species_file.hpp"
+#include "engine/world/files/table_reader.hpp"
+#include "engine/world/files/text_file.hpp"
+#include "engine/world/placement.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+namespace {
+
+constexpr std::size_t kMaxNameBytes = 128;
+constexpr double kMaxBlocks = 0x1.0p31;
+
+// Seeds have 64 bits. TOML has integers below 2^63, so that larger ones are strings of digits.
+void read_seed(TableReader& reader, std::uint64_t& seed) {
+  const Member* member = reader.find("seed", Presence::kRequired);
+  if (member == nullptr) return;
+  const Node& node = member->value;
+  const std::string digits =
+      node.kind == Node::Kind::kInteger ? fmt::format("{}", node.integer) : node.text;
+  const char* const end = digits.data() + digits.size();
+  std::uint64_t value = 0;
+  const auto parsed = std::from_chars(digits.data(), end, value);
+  if (parsed.ec == std::errc() && parsed.ptr == end) {
+    seed = value;
+    return;
+  }
+  constexpr std::size_t kMostShownBytes = 40;
+  reader.problem(
+      node.line, "seed",
+      fmt::format("{} is not allowed: it must be an integer from 0 to {}, or a string of digits up "
+                  "to \"{}\"",
+                  node.kind == Node::Kind::kText
+                      ? fmt::format("\"{}\"", core::shown(node.text, kMostShownBytes))
+                      : value_text(node),
+                  INT64_MAX, UINT64_MAX));
+}
+
+void read_world_table(TableReader& root, World& world, ModelFields& terrain, Problems& problems) {
+  const Member* member = root.table("world", Presence::kRequired);
+  if (member == nullptr) return;
+  TableReader reader(member->value, "world", member->line, problems);
+  reader.read("name", world.name, kMaxNameBytes, Presence::kRequired);
+  read_seed(reader, world.seed);
+  std::int64_t blocks[2] = {0, 0};
+  if (reader.read_pair("blocks", blocks, {0, kMaxBlocks}, Presence::kRequired)) {
+    world.blocks_x = blocks[0];
+    world.blocks_z = blocks[1];
+  }
+  for (const TerrainAlias& alias : kWorldKeys) {
+    const int i = models::parameter_index(*terrain.type, alias.parameter);
+    read_parameter(reader, alias.key, static_cast<std::size_t>(i), false, terrain);
+  }
+  reader.finish();
+}
+
+bool is_world_key(std::string_view parameter) {
+  for (const TerrainAlias& alias : kWorldKeys) {
+    if (alias.parameter == parameter) return true;
+  }
+  return false;
+}
+
+void read_terrain_table(TableReader& root, ModelFields& terrain, Problems& problems) {
+  const Member* member = root.table("terrain");
+  if (member == nullptr) return;
+  TableReader reader(member->value, "terrain", member->line, problems);
+  const auto specs = terrain.type->parameters();
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (specs[i].source == models::ParameterSource::kUser && !is_world_key(specs[i].name))
+      read_parameter(reader, specs[i].name, i, false, terrain);
+  }
+  reader.finish();
+}
+
+// `visit_fields` hands every field of the table to the function that it is given (fields.hpp).
+template <class VisitFields>
+void read_fields(TableReader& root, std::string_view name, Problems& problems,
+                 const VisitFields& visit_fields) {
+  const Member* member = root.table(name);
+  if (member == nullptr) return;
+  TableReader reader(member->value, std::string(name), member->line, problems);
+  visit_fields([&reader](std::string_view key, auto& field, Limits limits) {
+    reader.read(key, field, limits);
+  });
+  reader.finish();
+}
+
+// The sky of a file that gives no colours: what the sun makes of the air at the file's elevation.
+// Wrong values are told when the table is read.
+Sky usual_sky(TableReader& root) {
+  const Sky usual;
+  const Member* member = root.table("sky");
+  if (member == nullptr) return usual;
+  SunPlace sun{usual.sun_azimuth_deg, usual.sun_elevation_deg};
+  Problems told_later("");
+  TableReader reader(member->value, "sky", member->line, told_later);
+  reader.read("sun_elevation_deg", sun.elevation_deg, {-90, 90});
+  return with_sun(usual, sun);
+}
+
+// Makes the species of a world models of the registry; `grown` is null where it cannot grow.
+void register_species(TableReader& root, const World& world, const models::Registry& registry,
+                      models::Registry* grown, Problems& problems) {
+  const std::vector<const Node*> nodes = root.tables("species", kMaxSpecies);
+  for (std::size_t i = 0; i < world.species.size(); ++i) {
+    const models::Species& species = world.species[i];
+    const auto refuse = [&](std::string_view sentence) {
+      problems.add(nodes[i]->line, fmt::format("species[{}].name", i), sentence);
+    };
+    auto type = models::make_species_type(species);
+    if (!type) return refuse(type.error().message);
+    const int known = registry.find(species.name);
+    if (known >= 0) {
+      const models::ModelType& there = registry[static_cast<models::ModelIndex>(known)];
+      if (there.identity() != (*type)->identity())
+        return refuse(fmt::format("there is another model called {}", species.name));
+    } else if (grown == nullptr) {
+      return refuse("species cannot be added here");
+    } else if (auto added = grown->add(std::move(*type)); !added) {
+      return refuse(added.error().message);
+    }
+  }
+}
+
+core::Result<World> read_world(std::string_view text, std::string_view file_name,
+                               const models::Registry& registry, models::Registry* grown) {
+  const int terrain_model = registry.find("terrain");
+  if (terrain_model < 0)
+    return core::fail(core::ErrorCode::kInvalidArgument, "no model type is called terrain");
+  const core::Result<Node> document = parse_document(text, file_name);
+  if (!document) return tl::unexpected(document.error());
+
+  Problems problems(file_name);
+  TableReader root(*document, "", 1, problems);
+  World world;
+  world.terrain_model = static_cast<models::ModelIndex>(terrain_model);
+  ModelFields terrain = fields_of(registry[world.terrain_model], 1);
+  read_format(root, kWorldFormat);
+  // Another version may break any other rule of this one.
+  if (problems.any()) return tl::unexpected(problems.first());
+  read_world_table(root, world, terrain, problems);
+  read_terrain_table(root, terrain, problems);
+  check_model(terrain, problems);
+  world.terrain = corner_of(terrain, 0);
+  Problems of_species(file_name);
+  world.species = read_species(root, of_species);
+  if (!of_species.any()) register_species(root, world, registry, grown, of_species);
+  if (of_species.any())
+    return tl::unexpected(problems.any() ? problems.first() : of_species.first());
+  read_scatters(root, registry, world, problems);
+  world.sky = usual_sky(root);
+  read_fields(root, "sky", problems, [&](const auto& visit) { visit_sky(world.sky, visit); });
+  read_fields(root, "water", problems, [&](const auto& visit) { visit_water(world.water, visit); });
+  read_fields(root, "palette", problems,
+              [&](const auto& visit) { visit_palette(world.palette, visit); });
+  root.finish();
+  if (problems.any()) return tl::unexpected(problems.first());
+  world.terrain = terrain_parameters(world, {0, 0});
+  return world;
+}
+
+}  // namespace
+
+core::Result<World> parse_world(std::string_view text, std::string_view file_name,
+                                models::Registry& registry) {
+  const std::size_t before = registry.size();
+  auto world = read_world(text, file_name, registry, &registry);
+  if (!world) registry.shrink(before);
+  return world;
+}
+
+core::Result<World> parse_world(std::string_view text, std::string_view file_name,
+                                const models::Registry& registry) {
+  return read_world(text, file_name, registry, nullptr);
+}
+
+core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry) {
+  const core::Result<std::string> text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse_world(*text, file.string(), registry);
+}
+
+core::Result<World> load_world(const std::filesystem::path& file,
+                               const models::Registry& registry) {
+  const core::Result<std::string> text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse_world(*text, file.string(), registry);
+}
+
+}  // namespace psygen::world

@@ -1,0 +1,113 @@
+// World → the text of a world file. Reading is in world_file.cpp.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "engine/world/files/fields.hpp"
+#include "engine/world/files/species_file.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+namespace {
+
+using Text = std::back_insert_iterator<std::string>;
+
+std::string toml_string(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+// TOML has no integers from 2^63 on.
+std::string seed_text(std::uint64_t seed) {
+  return seed <= INT64_MAX ? fmt::format("{}", seed) : fmt::format("\"{}\"", seed);
+}
+
+std::string number(double value, models::ParameterType type) {
+  return type == models::ParameterType::kInteger ? fmt::format("{}", std::llround(value))
+                                                 : fmt::format("{}", value);
+}
+
+struct FieldWriter {
+  Text out;
+  void operator()(std::string_view key, double value, Limits) const {
+    fmt::format_to(out, "{} = {}\n", key, value);
+  }
+  void operator()(std::string_view key, const glm::vec3& value, Limits) const {
+    fmt::format_to(out, "{} = [{}, {}, {}]\n", key, value.x, value.y, value.z);
+  }
+};
+
+double terrain_value(const models::ModelType& type, const models::Parameters& p, std::size_t i) {
+  return type.parameters()[i].type == models::ParameterType::kInteger
+             ? static_cast<double>(p.integer(i))
+             : p.real(i);
+}
+
+void write_terrain(Text out, const World& world, const models::ModelType& type) {
+  const auto specs = type.parameters();
+  for (const TerrainAlias& alias : kWorldKeys) {
+    const auto i = static_cast<std::size_t>(models::parameter_index(type, alias.parameter));
+    fmt::format_to(out, "{} = {}\n", alias.key,
+                   number(terrain_value(type, world.terrain, i), specs[i].type));
+  }
+  fmt::format_to(out, "\n[terrain]\n");
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    bool elsewhere = specs[i].source == models::ParameterSource::kPlaced;
+    for (const TerrainAlias& alias : kWorldKeys)
+      elsewhere = elsewhere || alias.parameter == specs[i].name;
+    if (!elsewhere)
+      fmt::format_to(out, "{} = {}\n", specs[i].name,
+                     number(terrain_value(type, world.terrain, i), specs[i].type));
+  }
+}
+
+void write_scatter(Text out, const Scatter& scatter, const models::ModelType& type) {
+  fmt::format_to(out, "\n[[scatter]]\nmodel = {}\ncount = {}\n", toml_string(type.name()),
+                 scatter.count);
+  if (std::isfinite(scatter.min_height_m))
+    fmt::format_to(out, "min_height_m = {}\n", scatter.min_height_m);
+  if (std::isfinite(scatter.max_height_m))
+    fmt::format_to(out, "max_height_m = {}\n", scatter.max_height_m);
+  if (scatter.max_slope_deg < 90)
+    fmt::format_to(out, "max_slope_deg = {}\n", scatter.max_slope_deg);
+  for (std::size_t i = 0; i < scatter.ranges.size(); ++i) {
+    const models::ParameterSpec& spec = type.parameters()[i];
+    const ParameterRange& range = scatter.ranges[i];
+    if (spec.source == models::ParameterSource::kPlaced) continue;
+    if (range.low == range.high) {
+      fmt::format_to(out, "{} = {}\n", spec.name, number(range.low, spec.type));
+    } else {
+      fmt::format_to(out, "{} = [{}, {}]\n", spec.name, number(range.low, spec.type),
+                     number(range.high, spec.type));
+    }
+  }
+}
+
+}  // namespace
+
+std::string write_world(const World& world, const models::Registry& registry) {
+  std::string text;
+  const Text out(text);
+  fmt::format_to(out, "format = {}\n\n[world]\nname = {}\nseed = {}\nblocks = [{}, {}]\n",
+                 world.format, toml_string(world.name), seed_text(world.seed), world.blocks_x,
+                 world.blocks_z);
+  write_terrain(out, world, registry[world.terrain_model]);
+  write_species(world.species, text);
+  for (const Scatter& scatter : world.scatter)
+    write_scatter(out, scatter, registry[scatter.model]);
+  fmt::format_to(out, "\n[sky]\n");
+  visit_sky(world.sky, FieldWriter{out});
+  fmt::format_to(out, "\n[water]\n");
+  visit_water(world.water, FieldWriter{out});
+  fmt::format_to(out, "\n[palette]\n");
+  visit_palette(world.palette, FieldWriter{out});
+  return text;
+}
+
+}  // namespace psygen::world

@@ -1,0 +1,95 @@
+// The species of the worlds that come with the engine, as models: the same bits on every
+// instruction set, and those of the double-precision oracle.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/models/kit/simd_targets.hpp"
+#include "engine/models/tree/species.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "tests/engine/models/oracle/expect_tree.hpp"
+#include "tests/engine/world/shipped.hpp"
+
+namespace psygen::world {
+namespace {
+
+using models::test::Mesh;
+using models::test::synthesize;
+
+class SpeciesModels : public ::testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    registry_ = models::make_standard_registry();
+    const auto world =
+        load_world(testing::game_file(std::string("worlds/") + GetParam()), registry_);
+    ASSERT_TRUE(world) << world.error().message;
+    for (const models::Species& s : world->species)
+      names_.push_back(s.name);
+    ASSERT_GE(names_.size(), 4U);
+  }
+  void TearDown() override { models::unpin_simd_target(); }
+
+  // Some trees of every species: in the middle of each season as the species is, then any.
+  template <class Visit>
+  void for_trees(const Visit& visit) {
+    core::RandomStream random(31, 0, 0, 0, core::Purpose::kParameters);
+    for (const std::string& name : names_) {
+      const models::ModelType& type =
+          registry_[static_cast<models::ModelIndex>(registry_.find(name))];
+      for (int i = 0; i < 8; ++i) {
+        models::Parameters p = models::test::random_parameters(type, random);
+        if (i < 4) {
+          p = models::default_parameters(type);
+          p.set_integer(models::kSpeciesSeed, 100 + i);
+          p.set_real(models::kSpeciesSeason, i);
+        }
+        SCOPED_TRACE(name + " " + std::to_string(i));
+        for (int level = 0; level < type.level_count(); ++level)
+          ASSERT_NO_FATAL_FAILURE(visit(type, p, level));
+      }
+    }
+  }
+
+ private:
+  models::Registry registry_;
+  std::vector<std::string> names_;
+};
+
+TEST_P(SpeciesModels, HaveTheSameBytesOnEveryInstructionSetAtEveryLevel) {
+  for_trees([](const models::ModelType& type, const models::Parameters& p, int level) {
+    models::pin_simd_target(models::simd_targets().front());
+    const Mesh best = synthesize(type, p, level);
+    for (const std::string_view target : models::simd_targets()) {
+      models::pin_simd_target(target);
+      const Mesh mesh = synthesize(type, p, level);
+      ASSERT_EQ(mesh.vertex_bytes, best.vertex_bytes) << target << " level " << level;
+      ASSERT_EQ(mesh.indices, best.indices) << target << " level " << level;
+      ASSERT_EQ(mesh.box.min, best.box.min) << target << " level " << level;
+      ASSERT_EQ(mesh.box.max, best.box.max) << target << " level " << level;
+    }
+  });
+}
+
+TEST_P(SpeciesModels, MeetTheOracleOnEveryInstructionSetAtEveryLevel) {
+  for_trees([](const models::ModelType& type, const models::Parameters& p, int level) {
+    const models::TreePlan plan = models::plan_of_species(type, p);
+    models::test::TreeOracle oracle(plan, true);
+    const auto expected = oracle.mesh(level);
+    for (const std::string_view target : models::simd_targets()) {
+      SCOPED_TRACE(target);
+      models::pin_simd_target(target);
+      expect_as_oracle(oracle, expected, plan.bounds, synthesize(type, p, level), level);
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, SpeciesModels,
+                         ::testing::Values("five_species.toml", "silver_combe.toml"),
+                         [](const auto& world) {
+                           const std::string name = world.param;
+                           return name.substr(0, name.find('.'));
+                         });
+
+}  // namespace
+}  // namespace psygen::world

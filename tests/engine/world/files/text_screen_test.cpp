@@ -1,0 +1,133 @@
+#include "engine/world/files/text_screen.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/world/files/document.hpp"
+
+namespace psygen::world {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string error_of(std::string_view text) {
+  const auto screened = screen_text(text, "f.toml", kMaxNesting);
+  EXPECT_FALSE(screened.has_value()) << text;
+  if (screened) return "accepted";
+  EXPECT_EQ(screened.error().code, core::ErrorCode::kParse);
+  EXPECT_EQ(parse_document(text, "f.toml").error().message, screened.error().message);
+  return screened.error().message;
+}
+
+std::string utf8(char32_t c) {
+  std::string text;
+  if (c < 0x800) {
+    text += static_cast<char>(0xC0 | c >> 6);
+  } else {
+    text += static_cast<char>(c < 0x10000 ? 0xE0 | c >> 12 : 0xF0 | c >> 18);
+    if (c >= 0x10000) text += static_cast<char>(0x80 | (c >> 12 & 0x3F));
+    text += static_cast<char>(0x80 | (c >> 6 & 0x3F));
+  }
+  return text + static_cast<char>(0x80 | (c & 0x3F));
+}
+
+TEST(TextScreen, ACharacterBeyondAsciiIsNamedWithItsPlaceAndWhatIsAllowed) {
+  EXPECT_EQ(error_of("größe = 1\n"),
+            "f.toml:1:3: 'ö' (U+00F6) is not allowed here; outside of strings and comments only "
+            "ASCII characters are");
+  EXPECT_EQ(error_of("# größe\nsize = 3 × 4\n"),
+            "f.toml:2:10: '×' (U+00D7) is not allowed here; outside of strings and comments only "
+            "ASCII characters are");
+  EXPECT_THAT(error_of("a = \"ä\"\nname = “x”\n"),
+              StartsWith("f.toml:2:8: '“' (U+201C, a typographic quotation mark) is not allowed "
+                         "here: write \"; outside"));
+}
+
+TEST(TextScreen, ColumnsCountCharactersAndNoByteOrderMark) {
+  EXPECT_THAT(error_of("\"äöü\" ß"), StartsWith("f.toml:1:7: 'ß'"));
+  EXPECT_THAT(error_of("\xEF\xBB\xBFö"), StartsWith("f.toml:1:1: 'ö'"));
+  EXPECT_THAT(error_of("\t\tö"), StartsWith("f.toml:1:3: 'ö'"));
+  EXPECT_THAT(error_of("a = '\xC3\xB6'\r\n\n  \xC3\xB6"), StartsWith("f.toml:3:3: 'ö'"));
+}
+
+// Every plane, and all that the parser's function has no answer for.
+TEST(TextScreen, EveryCharacterBeyondAsciiIsRefusedWhereverItIsNoStringOrComment) {
+  for (char32_t c = 0x80; c <= 0x10FFFF; c = c < 0x10000 ? c + 1 : c + 997) {
+    if (c >= 0xD800 && c <= 0xDFFF) continue;
+    const std::string foreign = utf8(c);
+    const auto screened = screen_text("a" + foreign, "f", kMaxNesting);
+    ASSERT_FALSE(screened.has_value()) << std::hex << static_cast<std::uint32_t>(c);
+    ASSERT_THAT(screened.error().message,
+                HasSubstr(fmt::format("U+{:04X}", static_cast<std::uint32_t>(c))));
+  }
+  for (const char* before : {"",
+                             "a",
+                             "a ",
+                             "a.",
+                             "a =",
+                             "a = 1",
+                             "a = 1 ",
+                             "a = true",
+                             "a = -",
+                             "a = \"x\"",
+                             "a = [",
+                             "a = [1",
+                             "a = [1, ",
+                             "a = {",
+                             "a = {b",
+                             "a = {b = 1",
+                             "[",
+                             "[a",
+                             "[a]",
+                             "[[a]",
+                             "[[a]]",
+                             "\"a\"",
+                             "'a'.",
+                             "a = 1979-05-27",
+                             "a = 1979-05-27 1",
+                             "a = 0x",
+                             "a = 1e"})
+    EXPECT_THAT(error_of(std::string(before) + "ö = 1\n"), HasSubstr("'ö' (U+00F6)")) << before;
+}
+
+TEST(TextScreen, StringsAndCommentsMayHaveAnyCharacter) {
+  for (const char* text :
+       {"name = \"Größe “×” \xE2\x80\xAE 木 😀\"\n", "name = 'Größe'\n", "# Größe × − \xC2\xA0\n",
+        "\"größe\" = 1\n", "a = 1 # ö\nb = 2\n", "a.'ö'.b = 1\n", "[\"ö\"]\n", "[[a.'ö']] # ß\n",
+        "a = [\"ö\", 'ß', # ä\n \"ü\"]\n", "a = {\"ö\" = 'ß'}\n", "a = \"\\\"ö\\\\\" # ö\n",
+        "a = '\\' # ö\n", "1.\"ö\" = 2\n", "\xEF\xBB\xBF# a mark at the start\na = 1\n"}) {
+    EXPECT_TRUE(screen_text(text, "f", kMaxNesting)) << text;
+    EXPECT_TRUE(parse_document(text, "f")) << text;
+  }
+}
+
+// Here the parser does not take for a string what the screen does.
+TEST(TextScreen, AQuoteRightAfterANumberIsAnErrorOfTheParser) {
+  for (const char* text : {"a = 1\"ö\"\n", "a = 1'ö'\n", "a = [1\"×\"]\n", "a = 1=\"ö\"\n",
+                           "a = 1.\"ö\"\n", "a = 1979-05-27 1\"ö\"\n", "a = +\"ö\"\n"}) {
+    EXPECT_TRUE(screen_text(text, "f", kMaxNesting)) << text;
+    EXPECT_FALSE(parse_document(text, "f")) << text;
+  }
+}
+
+TEST(TextScreen, BytesThatAreNotUtf8AreRefusedEvenInStringsAndComments) {
+  EXPECT_EQ(error_of("a = 1\nname = \"Gr\xF6\xDF"
+                     "e\"\n"),
+            "f.toml:2:11: the byte 0xF6 is not UTF-8; save the file as UTF-8");
+  EXPECT_THAT(error_of("# \xED\xA0\x80\n"), StartsWith("f.toml:1:3: the byte 0xED"));
+  EXPECT_THAT(error_of("a = '\xF0\x9F\x98"), StartsWith("f.toml:1:6: the byte 0xF0"));
+  EXPECT_THAT(error_of("a = \"\\\xFF\"\n"), StartsWith("f.toml:1:7: the byte 0xFF"));
+  EXPECT_THAT(error_of(std::string("\xFF\xFE"
+                                   "a\0",
+                                   4)),
+              HasSubstr("UTF-16"));
+  EXPECT_THAT(error_of(std::string("\xFE\xFF"
+                                   "\0a",
+                                   4)),
+              HasSubstr("UTF-16"));
+}
+
+}  // namespace
+}  // namespace psygen::world

@@ -1,0 +1,61 @@
+// Where the project's own world and path files lie, and small ones for tests.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "engine/core/assert.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world::testing {
+
+inline std::filesystem::path game_file(const std::string& name) {
+  return std::filesystem::path(PSYGEN_SOURCE_DIR) / "game" / name;
+}
+
+inline const models::Registry& registry() {
+  static const models::Registry standard = models::make_standard_registry();
+  return standard;
+}
+
+inline constexpr const char* kSmallWorld = R"(format = 1
+
+[world]
+name = "small"
+seed = 5
+blocks = [8, 4]
+cell_m = 2
+block_vertices = 33
+
+[terrain]
+octaves = 4
+relief_m = 60
+
+[[scatter]]
+model = "tree"
+count = 3
+iterations = [2, 3]
+size_m = [1.5, 2.5]
+
+[[scatter]]
+model = "rock"
+count = 5
+subdivisions = 1
+)";
+
+inline World parsed(std::string_view text) {
+  auto world = parse_world(text, "test.toml", registry());
+  if (!world) std::fprintf(stderr, "%s\n", world.error().message.c_str());
+  PSYGEN_CHECK(world.has_value(), "the world of the test is sound");
+  return *world;
+}
+
+// `text` with the first occurrence of `from` replaced.
+inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  const std::size_t at = text.find(from);
+  PSYGEN_CHECK(at != std::string::npos, "the text has what is to be replaced");
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace psygen::world::testing
