@@ -7,7 +7,7 @@ set_target_properties(psygen_settings PROPERTIES EXPORT_NAME settings)
 install(EXPORT psygen_targets NAMESPACE psygen:: FILE psygen-targets.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
 install(DIRECTORY ecs engine shaders DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/psygen
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN cli EXCLUDE)
 configure_package_config_file(cmake/psygen-config.cmake.in psygen-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
 write_basic_package_version_file(psygen-config-version.cmake COMPATIBILITY SameMinorVersion)

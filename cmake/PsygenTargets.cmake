@@ -1,6 +1,6 @@
 # Compiler settings and the two functions that every folder uses:
 #   psygen_library(NAME SOURCES ... PUBLIC ... PRIVATE ...)   one static library per layer
-#   psygen_executable(NAME SOURCES ... PRIVATE ...)
+#   psygen_executable(NAME SOURCES ... PRIVATE ...)           built into bin/
 include(GNUInstallDirs)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -56,6 +56,7 @@ function(psygen_executable name)
   target_link_libraries(${name} PRIVATE psygen::settings psygen_warnings ${ARG_PRIVATE})
   # Where psygen::image finds its library; with old tags also from below a sanitizer's dlopen().
   set_target_properties(${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
     BUILD_RPATH ${PROJECT_BINARY_DIR}/engine/image
     INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR}/psygen)
   target_link_options(${name} PRIVATE LINKER:--disable-new-dtags)

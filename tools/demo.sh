@@ -11,7 +11,7 @@ cmake --preset release -DPSYGEN_TESTS=OFF -DPSYGEN_BENCHMARKS=OFF -B build/demo 
 cmake --build build/demo --target psygen
 
 fly() {
-  build/demo/game/psygen fly --world game/worlds/paper.toml --path game/paths/walk27.toml \
+  build/demo/bin/psygen fly --world game/worlds/paper.toml --path game/paths/walk27.toml \
     --out "${PSYGEN_DEMO_OUT:-out/demo}" --images 300 "$@"
 }
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then

@@ -7,7 +7,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 out=${1:-out/figures}
-psygen=build/release/game/psygen
+psygen=build/release/bin/psygen
 [ -x "$psygen" ] || { echo "build it first: cmake --preset release && cmake --build --preset release" >&2; exit 1; }
 mkdir -p "$out"
 worlds=game/worlds
@@ -46,7 +46,7 @@ if command -v taskset >/dev/null; then
   first=$(taskset -pc $$ | sed 's/.*: *//; s/[-,].*//')
   psygen="taskset -c $first $psygen"
   laps one_core
-  psygen=build/release/game/psygen
+  psygen=build/release/bin/psygen
 fi
 sed 's/^blocks *=.*/blocks = [1048576, 1048576]/' $worlds/paper.toml >"$out/huge.toml"
 # shellcheck disable=SC2086
@@ -60,6 +60,6 @@ done
 
 python3 tools/flight_table.py "$out"/*/summary.json
 echo "== PLP over 100,489 blocks, and the tick without drawing"
-build/release/tests/bench/visibility/psygen_bench_visibility --benchmark_filter='plp' --benchmark_min_time=0.2
-build/release/tests/bench/scene/psygen_bench_scene
+build/release/bin/psygen_bench_visibility --benchmark_filter='plp' --benchmark_min_time=0.2
+build/release/bin/psygen_bench_scene
 exit $failed

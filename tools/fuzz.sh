@@ -11,6 +11,6 @@ cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz --target psygen_fuzz_readers
 mkdir -p build/fuzz/corpus build/fuzz/failures
 export UBSAN_OPTIONS="print_stacktrace=1"
-exec build/fuzz/tests/fuzz/psygen_fuzz_readers build/fuzz/corpus game/worlds game/paths \
+exec build/fuzz/bin/psygen_fuzz_readers build/fuzz/corpus game/worlds game/paths \
   -max_total_time="${1:-60}" -seed="${2:-0}" -max_len=65536 -timeout=60 -rss_limit_mb=4096 \
   -artifact_prefix=build/fuzz/failures/ -print_final_stats=1

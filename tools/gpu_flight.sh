@@ -13,7 +13,7 @@ cmake --build "$build" --target psygen
 
 failed=0
 for path in cpu gpu; do
-  "$build/game/psygen" fly --headless --world game/worlds/paper.toml --path game/paths/walk27.toml \
+  "$build/bin/psygen" fly --headless --world game/worlds/paper.toml --path game/paths/walk27.toml \
     --render-path "$path" --out "$out/$path" "$@" >/dev/null || {
     echo "the flight on the $path path failed" >&2
     failed=1

@@ -1,0 +1,145 @@
+// The subcommands of psygen. Each declares its options when it is made and runs when it was chosen.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/amplify/amplify.hpp"
+#include "engine/app/app.hpp"
+#include "engine/cli/request_recorder.hpp"
+#include "engine/cli/shipped_files.hpp"
+#include "engine/cli/standard_streams.hpp"
+#include "engine/exchange/write_document.hpp"
+
+namespace psygen::cli {
+
+enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
+
+inline int exit_code_of(const core::Error& error) {
+  return error.code == core::ErrorCode::kNoDevice ? kNoDevice : kFailed;
+}
+
+class FlyCommand {
+ public:
+  explicit FlyCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run();
+
+ private:
+  static int code_of(const core::Error& error);
+  core::Result<void> load_what_pictures_take() const;
+  int fly(app::App& app);
+  int tell(const app::FlightReport& report) const;
+  core::Result<void> write_requests() const;
+
+  CLI::App* command_;
+  app::Options options_;
+  int told_ = 0;          // exit code of what the end of the flight wrote
+  std::string requests_;  // file; empty: they are not recorded
+  RequestRecorder recorder_;
+  bool json_ = false;
+};
+
+class PictureCommand {
+ public:
+  explicit PictureCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run();
+
+ private:
+  core::Result<void> take(app::App& app) const;
+
+  CLI::App* command_;
+  app::Options options_;
+  std::string out_;
+  std::optional<glm::dvec2> at_;  // metres; none: the middle of the world
+  double height_m_ = 1.7, yaw_deg_ = 0, pitch_deg_ = 0;
+};
+
+class ModelsCommand {
+ public:
+  explicit ModelsCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run() const;
+
+ private:
+  CLI::App* command_;
+  std::string world_;
+  bool json_ = false;
+};
+
+class AmplifyCommand {
+ public:
+  explicit AmplifyCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run();
+
+ private:
+  int print_heights(const world::World& world) const;
+  core::Result<amplify::Report> amplify(const world::World& world,
+                                        const models::Registry& registry);
+  int print_report(const amplify::Report& report) const;
+
+  CLI::App* command_;
+  std::string world_ = kDefaultWorld;
+  std::optional<amplify::Region> region_;
+  unsigned threads_ = 0;
+  std::vector<glm::dvec2> samples_;  // x and z in metres
+  std::string out_;                  // empty: nothing is written
+  std::string format_ = "glb";
+  std::string simd_;                         // empty: the best
+  std::uint64_t written_ = 0, skipped_ = 0;  // files
+  bool json_ = false;
+};
+
+class ExportCommand {
+ public:
+  explicit ExportCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run() const;
+
+ private:
+  core::Result<exchange::Document> model_document(const models::Registry& registry,
+                                                  const world::Palette& palette) const;
+  core::Result<exchange::Document> block_document(const world::World& world,
+                                                  const models::Registry& registry) const;
+
+  CLI::App* command_;
+  std::string model_, world_ = kDefaultWorld, out_;
+  std::vector<std::string> settings_;  // name=value
+  std::optional<core::BlockCoord> block_;
+  int level_ = 0;
+};
+
+class CalibrateCommand {
+ public:
+  explicit CalibrateCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run() const;
+
+ private:
+  CLI::App* command_;
+  std::string out_, world_ = kDefaultWorld;
+  bool ranges_ = false;
+  std::size_t samples_ = 64;
+  bool json_ = false;
+};
+
+class ScheduleCommand {
+ public:
+  explicit ScheduleCommand(CLI::App& cli);
+  bool chosen() const { return command_->parsed(); }
+  int run() const;
+
+ private:
+  CLI::App* command_;
+  std::string file_;
+  unsigned modelers_ = 2;
+  double slower_ = 1;
+  bool json_ = false;
+};
+
+}  // namespace psygen::cli

@@ -1,0 +1,207 @@
+// psygen export: one model or one block as glTF or OBJ.
+#include <fmt/format.h>
+
+#include <bit>
+#include <charconv>
+#include <filesystem>
+#include <set>
+
+#include "engine/amplify/block_files.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/cli/option_checks.hpp"
+#include "engine/cli/text_values.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/utf8.hpp"
+#include "engine/exchange/unpack.hpp"
+#include "engine/synthesis/synthesize.hpp"
+#include "engine/world/files/world_file.hpp"
+
+namespace psygen::cli {
+namespace {
+
+constexpr std::size_t kMostShownBytes = 60;  // of a value
+
+tl::unexpected<core::Error> refuse(std::string sentence) {
+  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
+}
+
+core::Result<exchange::Format> format_of(const std::string& file) {
+  const std::string extension = std::filesystem::path(file).extension().string();
+  const auto format = exchange::format_from(extension.empty() ? "" : extension.substr(1));
+  if (!format) return refuse(fmt::format("{}: its name must end in .glb or .obj", file));
+  return *format;
+}
+
+std::string model_names(const models::Registry& registry) {
+  std::string names;
+  for (std::size_t i = 0; i < registry.size(); ++i)
+    names += fmt::format("{}{}", i == 0 ? "" : ", ",
+                         registry[static_cast<models::ModelIndex>(i)].name());
+  return names;
+}
+
+std::string parameter_names(const models::ModelType& type) {
+  std::string names;
+  for (const models::ParameterSpec& spec : type.parameters())
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", spec.name);
+  return names;
+}
+
+template <class Number>
+bool parse(std::string_view text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  return parsed.ec == std::errc() && parsed.ptr == end;
+}
+
+// One that may have any 64 bits may have them without a sign, so that seeds read as they are
+// printed.
+bool has_any_bits(const models::ParameterSpec& spec) {
+  return spec.hard_min <= -0x1.0p63 && spec.hard_max >= 0x1.0p63;
+}
+
+bool set_value(const models::ParameterSpec& spec, std::string_view text, models::Parameters& p,
+               std::size_t i) {
+  std::int64_t integer = 0;
+  std::uint64_t bits = 0;
+  double real = 0;
+  if (spec.type == models::ParameterType::kReal) {
+    if (!parse(text, real)) return false;
+    p.set_real(i, real);
+  } else if (parse(text, integer)) {
+    p.set_integer(i, integer);
+  } else {
+    if (!has_any_bits(spec) || !parse(text, bits)) return false;
+    p.set_integer(i, std::bit_cast<std::int64_t>(bits));
+  }
+  return true;
+}
+
+std::string wanted_by(const models::ParameterSpec& spec) {
+  if (spec.type == models::ParameterType::kReal)
+    return fmt::format("a number from {:g} to {:g}", spec.hard_min, spec.hard_max);
+  if (has_any_bits(spec)) return fmt::format("an integer from {} to {}", INT64_MIN, UINT64_MAX);
+  return fmt::format("an integer from {:.0f} to {:.0f}", spec.hard_min, spec.hard_max);
+}
+
+// "name=value" into `p`.
+core::Result<void> set(const models::ModelType& type, models::Parameters& p,
+                       const std::string& setting) {
+  const auto shown = [](std::string_view text) { return core::shown(text, kMostShownBytes); };
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos)
+    return refuse(fmt::format("'{}' is not name=value", shown(setting)));
+  const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
+  const int index = models::parameter_index(type, name);
+  if (index < 0) {
+    return refuse(fmt::format("{} has no parameter '{}'; it has {}", type.name(), shown(name),
+                              parameter_names(type)));
+  }
+  const auto i = static_cast<std::size_t>(index);
+  const models::ParameterSpec& spec = type.parameters()[i];
+  if (set_value(spec, text, p, i)) return {};
+  return refuse(
+      fmt::format("{}: {} must be {}, not '{}'", type.name(), name, wanted_by(spec), shown(text)));
+}
+
+core::Result<void> set_all(const models::ModelType& type, models::Parameters& p,
+                           const std::vector<std::string>& settings) {
+  std::set<std::string> names;
+  for (const std::string& setting : settings) {
+    if (auto ok = set(type, p, setting); !ok) return ok;
+    const std::string name = setting.substr(0, setting.find('='));
+    if (!names.insert(name).second)
+      return refuse(fmt::format("{}: {} is set twice", type.name(), name));
+  }
+  return models::validate(type, p);
+}
+
+core::Result<void> check_level(const models::ModelType& type, int level) {
+  if (level < type.level_count()) return {};
+  return refuse(fmt::format("{} has the levels 0 to {}", type.name(), type.level_count() - 1));
+}
+
+}  // namespace
+
+ExportCommand::ExportCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("export", "Write a model or a block as glTF or OBJ")) {
+  CLI::App& c = *command_;
+  auto* model = c.add_option("--model", model_, "Model type, by name");
+  c.add_option("--set", settings_, "name=value: a parameter of the model; several times")
+      ->needs(model);
+  auto* block = c.add_option_function<std::string>(
+      "--block", [this](const std::string& text) { block_ = *parse_block(text); },
+      "Block X,Z of the world, with everything on it");
+  block->check(valid_if(parse_block, "X,Z"))->excludes(model);
+  c.add_option("--world", world_, "World of the block, or with the model's species")
+      ->capture_default_str();
+  c.add_option("--level", level_, "Level of detail; 0 is full")->transform(integer_between(0, 31));
+  c.add_option("--out", out_, "File to write: .glb or .obj")
+      ->required()
+      ->check(valid_if(format_of, "FILE"));
+  c.callback([this] {
+    if (model_.empty() && !block_)
+      throw CLI::RequiredError("psygen export: one of --model and --block");
+  });
+}
+
+int ExportCommand::run() const {
+  models::Registry registry = models::make_standard_registry();
+  std::optional<world::World> world;
+  if (block_ || command_->count("--world") > 0) {
+    auto loaded = load_world(world_, registry);
+    if (!loaded) {
+      core::log_error(loaded.error().message);
+      return exit_code_of(loaded.error());
+    }
+    world = std::move(*loaded);
+  }
+  const auto document =
+      block_ ? block_document(*world, registry)
+             : model_document(registry, world ? world::drawn_palette(*world) : world::Palette{});
+  if (!document) {
+    core::log_error(document.error().message);
+    const bool usage = !block_ && document.error().code == core::ErrorCode::kInvalidArgument;
+    return usage ? kUsage : exit_code_of(document.error());
+  }
+  if (auto ok = exchange::write_document(out_, *format_of(out_), *document); !ok) {
+    core::log_error(ok.error().message);
+    return exit_code_of(ok.error());
+  }
+  core::log_info(fmt::format("wrote {}: {} objects, {} vertices, {} triangles", out_,
+                             document->objects.size(), document->vertex_count(),
+                             document->triangle_count()));
+  return kOk;
+}
+
+core::Result<exchange::Document> ExportCommand::model_document(
+    const models::Registry& registry, const world::Palette& palette) const {
+  const int found = registry.find(model_);
+  if (found < 0) {
+    return refuse(fmt::format("there is no model '{}'; there are {}",
+                              core::shown(model_, kMostShownBytes), model_names(registry)));
+  }
+  const models::ModelType& type = registry[static_cast<models::ModelIndex>(found)];
+  models::Parameters p = models::default_parameters(type);
+  if (auto ok = set_all(type, p, settings_); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_level(type, level_); !ok) return tl::unexpected(ok.error());
+  const auto mesh = synthesis::HeapDestination::make(type, p, level_);
+  if (!mesh) return tl::unexpected(mesh.error());
+  const auto outcome = synthesis::synthesize_guarded(type, p, level_, mesh->view());
+  if (!outcome.ok) return core::fail(core::ErrorCode::kSynthesisFailed, outcome.error);
+  auto object = exchange::unpack(type, p, level_, mesh->size(), mesh->view(), palette);
+  if (!object) return tl::unexpected(object.error());
+  exchange::Document document{model_, {}};
+  document.objects.push_back(std::move(*object));
+  return document;
+}
+
+core::Result<exchange::Document> ExportCommand::block_document(
+    const world::World& world, const models::Registry& registry) const {
+  const std::int64_t x = block_->x, z = block_->z;
+  if (auto ok = amplify::check_region(world, {x, z, x + 1, z + 1}); !ok)
+    return tl::unexpected(ok.error());
+  return amplify::block_document(world, registry, *block_, level_);
+}
+
+}  // namespace psygen::cli

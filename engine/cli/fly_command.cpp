@@ -1,0 +1,150 @@
+// psygen fly: a flight through a world, in a window or headless, and what it measured.
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "engine/app/app.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/cli/interrupt.hpp"
+#include "engine/cli/option_checks.hpp"
+#include "engine/cli/scene_options.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/replace_file.hpp"
+#include "engine/image/image_io.hpp"
+#include "engine/render/software_tuning.hpp"
+
+namespace psygen::cli {
+FlyCommand::FlyCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("fly", "Fly through a world, in a window or headless")) {
+  CLI::App& c = *command_;
+  scene::Settings& scene = options_.scene;
+  add_scene_options(c, options_);
+  c.add_option(
+      "--path", options_.path_file,
+      "Camera path: a TOML file, or the name of one that comes with psygen; without one the "
+      "camera turns, or you fly");
+  c.add_option("--out", options_.out_folder,
+               "Folder for frames.csv, summary.json, trace.json, report.html and pictures");
+  c.add_flag("--headless", options_.headless, "No window; needs no display");
+  c.add_option("--seconds", options_.seconds, "Length of the flight; 0: that of the path")
+      ->check(number_between(0, 86400));
+  c.add_flag("--loop", options_.loop,
+             "Fly the path again and again, until --seconds (27 if headless) are over")
+      ->needs("--path");
+  c.add_option("--frames", options_.frames, "End after so many frames; 0: no limit")
+      ->transform(integer_between(0, 1'000'000'000));
+  c.add_option("--fixed-step", options_.fixed_step_hz,
+               "Every frame advances the flight by 1/HZ seconds, however long it took")
+      ->check(number_between(1, 1000));
+  c.add_option("--warmup", options_.warmup_seconds, "Seconds that are left out of the figures")
+      ->capture_default_str()
+      ->check(number_between(0, 3600));
+  c.add_option("--images", options_.images_every, "Write every Nth frame as a PNG")
+      ->transform(integer_between(0, 1'000'000'000));
+  c.add_option_function<std::string>(
+       "--paradigm",
+       [this](const std::string& text) { options_.scene.paradigm = *scene::paradigm_from(text); },
+       "pla: on demand, in parallel; amplify: everything before; lazy: anew in each frame")
+      ->check(valid_if(scene::paradigm_from, "pla|amplify|lazy"))
+      ->default_str("pla");
+  c.add_option_function<std::string>(
+       "--policy",
+       [this](const std::string& text) { options_.scene.policy = *synthesis::policy_from(text); },
+       "Order of synthesis: fifo, plp, shortest, longest, deadline")
+      ->check(CLI::IsMember({"fifo", "plp", "shortest", "longest", "deadline"}))
+      ->default_str("deadline");
+  c.add_option_function<std::string>(
+       "--plp",
+       [this](const std::string& text) { options_.scene.plp_mode = *scene::plp_mode_from(text); },
+       "Order of nodes: layers around the camera, or solidity: least hidden first")
+      ->check(valid_if(scene::plp_mode_from, "layers|solidity"))
+      ->default_str("layers");
+  c.add_option_function<double>(
+       "--target-fps", [this](double hz) { options_.target_hz = hz; },
+       "Hold this frame rate with a larger error (up to 4 times); 0: fixed error")
+      ->default_str("60 in a window, 0 headless")
+      ->check(zero_or_between(0.1, 1000));
+  c.add_option("--fade", scene.fade_seconds, "Seconds in which models come and go; 0: at once")
+      ->capture_default_str()
+      ->check(number_between(0, 60));
+  c.add_flag("!--no-vsync", options_.vsync, "Do not wait for the display");
+  c.add_flag("!--no-prefill", options_.prefill, "Start with an empty cache");
+  c.add_option("--record-requests", requests_,
+               "File that gets every request of the flight; starts with an empty cache");
+  c.add_flag("--json", json_, "Print the summary as JSON instead of a table");
+}
+
+int FlyCommand::run() {
+  if (auto ok = find_files(options_); !ok) {
+    core::log_error(ok.error().message);
+    return exit_code_of(ok.error());
+  }
+  options_.stop = &stop_at_interrupt();
+  app::Plugin reporter;
+  reporter.name = "report";
+  if (!requests_.empty()) {
+    options_.prefill = false;  // the initial fill is part of the flight
+    reporter.on_frame = [this](app::App& flown, double) {
+      if (flown.flying()) recorder_.observe(flown.scene().state());
+    };
+  }
+  // At the end of the flight, not only when its window is closed.
+  reporter.on_end = [this](app::App&, const app::FlightReport& report) { told_ = tell(report); };
+  options_.plugins.push_back(std::move(reporter));
+  auto app = load_what_pictures_take()
+                 .and_then(render::fit_software_rendering_to_threads)
+                 .and_then([this] { return app::App::create(options_); });
+  const int code = app ? fly(**app) : code_of(app.error());
+  if (app && (*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
+  return code;
+}
+
+// Before the driver and the modelers take the threads that are left.
+core::Result<void> FlyCommand::load_what_pictures_take() const {
+  return options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
+}
+
+// A window that is closed before the flight begins is no failure.
+int FlyCommand::code_of(const core::Error& error) {
+  if (error.code == core::ErrorCode::kInterrupted) {
+    core::log_info(error.message);
+    return kOk;
+  }
+  core::log_error(error.message);
+  return exit_code_of(error);
+}
+
+int FlyCommand::fly(app::App& app) {
+  const auto report = app.run();
+  if (!report) {
+    if (auto ok = write_requests(); !ok) core::log_error(ok.error().message);
+    return code_of(report.error());
+  }
+  for (const std::string& message : report->validation_messages)
+    core::log_error(message);
+  return report->validation_messages.empty() ? told_ : kFailed;
+}
+
+int FlyCommand::tell(const app::FlightReport& report) const {
+  int code = print(json_ ? telemetry::to_json(report.summary) : telemetry::to_text(report.summary));
+  for (const auto& file : report.files)
+    core::log_info(fmt::format("wrote {}", file.string()));
+  const auto fail = [&code](const std::string& sentence) {
+    core::log_error(sentence);
+    code = kFailed;
+  };
+  for (const core::Error& failure : report.failures)
+    fail(failure.message);
+  if (auto ok = write_requests(); !ok) fail(ok.error().message);
+  return code;
+}
+
+// Where they were asked for.
+core::Result<void> FlyCommand::write_requests() const {
+  if (requests_.empty()) return {};
+  auto written = core::replace_file(requests_, synthesis::stream_text(recorder_.jobs()));
+  if (written) core::log_info(fmt::format("wrote {}", requests_));
+  return written;
+}
+
+}  // namespace psygen::cli

@@ -1,0 +1,43 @@
+#include "engine/cli/interrupt.hpp"
+
+#include <signal.h>
+
+namespace psygen::cli {
+namespace {
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void interrupt(int) {
+  interrupted = true;
+}
+
+bool is_ignored(int signal_number) {
+  struct sigaction action {};
+  return sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+void handle(int signal_number, int flags) {
+  struct sigaction action {};
+  action.sa_handler = interrupt;
+  action.sa_flags = SA_RESTART | flags;
+  sigaction(signal_number, &action, nullptr);
+}
+
+}  // namespace
+
+const std::atomic<bool>& stop_at_interrupt() {
+  // A person who presses Ctrl+C again does not want to wait. The end of a terminal comes twice by
+  // itself, from the kernel and from the shell; under nohup it is ignored.
+  handle(SIGINT, SA_RESETHAND);
+  handle(SIGTERM, SA_RESETHAND);
+  if (!is_ignored(SIGHUP)) handle(SIGHUP, 0);
+  return interrupted;
+}
+
+void ignore_what_write_errors_say() {
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+}  // namespace psygen::cli

@@ -1,0 +1,48 @@
+// psygen: the command line. One subcommand a file; this one only chooses. Data goes to stdout,
+// messages and progress to stderr.
+// Exit codes: 0 ok, 1 failed, 2 usage, 4 no usable device or display.
+
+#include <CLI/CLI.hpp>
+
+#include "engine/cli/commands.hpp"
+#include "engine/cli/fatal.hpp"
+#include "engine/cli/interrupt.hpp"
+#include "engine/cli/standard_streams.hpp"
+#include "engine/cli/usage.hpp"
+#include "engine/render/software_tuning.hpp"
+
+int main(int argc, char** argv) {
+  psygen::cli::hold_standard_streams();
+  psygen::render::tune_allocator_for_software_rendering();  // before the first allocation of size
+  psygen::cli::say_why_at_terminate();
+  psygen::cli::ignore_what_write_errors_say();
+
+  CLI::App cli("psygen: fly through worlds that are far larger than memory", "psygen");
+  cli.set_version_flag("--version", "psygen " PSYGEN_VERSION);
+  cli.require_subcommand(1);
+  psygen::cli::FlyCommand fly(cli);
+  psygen::cli::PictureCommand picture(cli);
+  psygen::cli::ModelsCommand models(cli);
+  psygen::cli::AmplifyCommand amplify(cli);
+  psygen::cli::ExportCommand exporter(cli);
+  psygen::cli::CalibrateCommand calibrate(cli);
+  psygen::cli::ScheduleCommand schedule(cli);
+  // After the commands, which would take it over.
+  cli.footer(
+      "For example:\n"
+      "  psygen fly --headless --world silver_combe --path combe --out out\n"
+      "psygen COMMAND --help lists the options of a command.");
+  if (const auto code = psygen::cli::read_command_line(cli, argc, argv)) return *code;
+  // Nothing of ours throws, but libraries do when memory ends.
+  try {
+    if (fly.chosen()) return fly.run();
+    if (picture.chosen()) return picture.run();
+    if (amplify.chosen()) return amplify.run();
+    if (exporter.chosen()) return exporter.run();
+    if (calibrate.chosen()) return calibrate.run();
+    if (schedule.chosen()) return schedule.run();
+    return models.run();
+  } catch (...) {
+    return psygen::cli::say_what_was_thrown();
+  }
+}

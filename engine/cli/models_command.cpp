@@ -1,0 +1,88 @@
+// psygen models: every model type, every parameter, straight from the schemas.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/cli/commands.hpp"
+#include "engine/core/log.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::cli {
+namespace {
+
+std::string number(const models::ParameterSpec& spec, double value) {
+  if (spec.type == models::ParameterType::kInteger) {
+    return fmt::format("{:.0f}", value);
+  }
+  return fmt::format("{:g}", value);
+}
+
+nlohmann::ordered_json to_json(const models::ParameterSpec& spec) {
+  return {{"name", spec.name},
+          {"type", spec.type == models::ParameterType::kInteger ? "integer" : "real"},
+          {"unit", spec.unit},
+          {"default", spec.default_value},
+          {"range", {spec.hard_min, spec.hard_max}},
+          {"usual", {spec.soft_min, spec.soft_max}},
+          {"set_by", spec.source == models::ParameterSource::kUser ? "user" : "world"},
+          {"doc", spec.doc}};
+}
+
+std::string json_of(const models::Registry& registry) {
+  auto list = nlohmann::ordered_json::array();
+  for (models::ModelIndex i = 0; i < registry.size(); ++i) {
+    const models::ModelType& type = registry[i];
+    auto parameters = nlohmann::ordered_json::array();
+    for (const models::ParameterSpec& spec : type.parameters())
+      parameters.push_back(to_json(spec));
+    list.push_back({{"name", type.name()},
+                    {"doc", type.doc()},
+                    {"levels", type.level_count()},
+                    {"parameters", parameters}});
+  }
+  return list.dump(2) + "\n";
+}
+
+std::string table_of(const models::Registry& registry) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (models::ModelIndex i = 0; i < registry.size(); ++i) {
+    const models::ModelType& type = registry[i];
+    fmt::format_to(out, "{}{}: {} ({} levels of detail)\n", i == 0 ? "" : "\n", type.name(),
+                   type.doc(), type.level_count());
+    for (const models::ParameterSpec& spec : type.parameters()) {
+      if (spec.source == models::ParameterSource::kPlaced) {
+        fmt::format_to(out, "  {:<16} set by the world{:<21} {}\n", spec.name, "", spec.doc);
+        continue;
+      }
+      const std::string range =
+          fmt::format("{} to {}", number(spec, spec.hard_min), number(spec, spec.hard_max));
+      fmt::format_to(out, "  {:<16} {:>8} {:<9} {:<18} {}\n", spec.name,
+                     number(spec, spec.default_value), spec.unit, range, spec.doc);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+ModelsCommand::ModelsCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("models", "List every model type and its parameters")) {
+  command_->add_flag("--json", json_, "As JSON");
+  command_->add_option("--world", world_, "With the species of this world");
+}
+
+int ModelsCommand::run() const {
+  models::Registry registry = models::make_standard_registry();
+  if (!world_.empty()) {
+    if (const auto world = load_world(world_, registry); !world) {
+      core::log_error(world.error().message);
+      return exit_code_of(world.error());
+    }
+  }
+  return print(json_ ? json_of(registry) : table_of(registry));
+}
+
+}  // namespace psygen::cli

@@ -1,0 +1,79 @@
+// Checks that CLI11 runs on an option's text; the sentence becomes the usage error.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <string>
+#include <string_view>
+
+#include "engine/cli/text_values.hpp"
+#include "engine/core/utf8.hpp"
+
+namespace psygen::cli {
+
+// `parse` gives a core::Result.
+template <class Parse>
+CLI::Validator valid_if(Parse parse, const std::string& description) {
+  return CLI::Validator(
+      [parse](std::string& text) {
+        const auto value = parse(text);
+        return value ? std::string() : value.error().message;
+      },
+      description);
+}
+
+// A number in decimal, the whole text, with a sign or without.
+template <class Number>
+CLI::Validator decimal_between(Number low, Number high, std::string_view kind) {
+  return CLI::Validator(
+      [low, high, kind](std::string& text) {
+        Number value{};
+        const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+        const char* const end = text.data() + text.size();
+        const auto parsed = std::from_chars(begin, end, value);
+        if (parsed.ec == std::errc() && parsed.ptr == end && value >= low && value <= high) {
+          text = fmt::format("{}", value);
+          return std::string();
+        }
+        constexpr std::size_t kMostShownBytes = 60;
+        return fmt::format("'{}' is not {} from {} to {}", core::shown(text, kMostShownBytes), kind,
+                           low, high);
+      },
+      fmt::format("{} to {}", low, high));
+}
+
+inline CLI::Validator number_between(double low, double high) {
+  return decimal_between(low, high, "a number");
+}
+
+// For transform(): what CLI11 gets is without leading zeros, of which it would make an octal
+// number.
+inline CLI::Validator integer_between(std::int64_t low, std::int64_t high) {
+  return decimal_between(low, high, "a whole number");
+}
+
+// 0, which switches something off, or a number.
+inline CLI::Validator zero_or_between(double low, double high) {
+  const CLI::Validator zero = number_between(0, 0), other = number_between(low, high);
+  return CLI::Validator(
+      [zero, other](std::string& text) { return zero(text).empty() ? std::string() : other(text); },
+      fmt::format("0, or {} to {}", low, high));
+}
+
+// For an option with parse_bytes(); whole MiB.
+inline CLI::Validator bytes_between(std::uint64_t low, std::uint64_t high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        const auto bytes = parse_bytes(text);
+        if (!bytes) return bytes.error().message;
+        return *bytes >= low && *bytes <= high
+                   ? std::string()
+                   : fmt::format("'{}' is not allowed: it must be between {}M and {}T", text,
+                                 low >> 20, high >> 40);
+      },
+      "BYTES");
+}
+
+}  // namespace psygen::cli

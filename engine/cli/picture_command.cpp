@@ -1,0 +1,128 @@
+// psygen picture: one still picture of a world, with everything there that it shows.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <glm/trigonometric.hpp>
+
+#include "engine/app/app.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/cli/interrupt.hpp"
+#include "engine/cli/option_checks.hpp"
+#include "engine/cli/places.hpp"
+#include "engine/cli/scene_options.hpp"
+#include "engine/cli/text_values.hpp"
+#include "engine/core/log.hpp"
+#include "engine/image/image_io.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/render/software_tuning.hpp"
+#include "engine/telemetry/output_file.hpp"
+#include "engine/world/camera_path.hpp"
+
+namespace psygen::cli {
+namespace {
+
+// A still picture has time.
+constexpr double kStillErrorPixels = 1;
+constexpr render::Preset kStillPreset = render::Preset::kHigh;
+
+core::Result<std::string> png_name(const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".png") return file;
+  return core::fail(core::ErrorCode::kInvalidArgument,
+                    fmt::format("{}: its name must end in .png", file));
+}
+
+// Which coarser levels stand for what found no room depends on what came first.
+core::Result<void> check_complete(const scene::State& state) {
+  if (state.synthesis.coarsening > 1 || state.counters.refused > 0) {
+    constexpr double kMiB = 1 << 20;
+    return core::fail(
+        core::ErrorCode::kOverBudget,
+        fmt::format("the budget of {:.0f} MiB does not hold this picture with an error of {:g} "
+                    "pixels; raise --budget or --error",
+                    static_cast<double>(state.settings.budget_bytes) / kMiB,
+                    state.settings.max_error_pixels));
+  }
+  if (state.totals.failed > 0 || state.counters.holes > 0)
+    return core::fail(core::ErrorCode::kSynthesisFailed, "not all that is seen could be made");
+  return {};
+}
+
+// What the eye is above: the ground, or the water that covers it.
+double surface_m(const world::World& world, const core::WorldPosition& at) {
+  const double ground_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
+  return world.water.exists() ? std::max(ground_m, world.water.level_m) : ground_m;
+}
+
+}  // namespace
+
+PictureCommand::PictureCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("picture", "Write one still picture of a world as a PNG")) {
+  using world::CameraPath;
+  CLI::App& c = *command_;
+  options_.scene.max_error_pixels = kStillErrorPixels;
+  options_.preset = kStillPreset;
+  c.add_option("--out", out_, "File to write: .png")->required()->check(valid_if(png_name, "FILE"));
+  c.add_option_function<std::string>(
+       "--at", [this](const std::string& text) { at_ = *parse_place(text); },
+       "Where the camera stands, X,Z in metres of the world; without it in the middle")
+      ->check(valid_if(parse_place, "X,Z"));
+  c.add_option("--height", height_m_, "Metres above the ground there, or the water on it")
+      ->capture_default_str()
+      ->check(number_between(CameraPath::kLeastHeightM, CameraPath::kMostHeightM));
+  c.add_option("--yaw", yaw_deg_, "Where it looks, in degrees: 0 north, 90 east")
+      ->capture_default_str()
+      ->check(number_between(-36'000, 36'000));
+  c.add_option("--pitch", pitch_deg_, "Degrees upwards; -90 straight down")
+      ->capture_default_str()
+      ->check(number_between(-90, 90));
+  add_scene_options(c, options_);
+}
+
+int PictureCommand::run() {
+  if (auto ok = find_files(options_); !ok) {
+    core::log_error(ok.error().message);
+    return exit_code_of(ok.error());
+  }
+  options_.headless = true;
+  options_.stop = &stop_at_interrupt();
+  const auto folder = std::filesystem::path(out_).parent_path();
+  // What cannot be written is told before all the work.
+  const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
+  auto app = writable.and_then(image::load_picture_libraries)
+                 .and_then(render::fit_software_rendering_to_threads)
+                 .and_then([this] { return app::App::create(options_); });
+  const auto taken = app ? take(**app) : core::Result<void>(tl::unexpected(app.error()));
+  if (taken) {
+    core::log_info(fmt::format("wrote {}", out_));
+  } else {
+    core::log_error(taken.error().message);
+  }
+  const int code = taken ? kOk : exit_code_of(taken.error());
+  if (app && (*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
+  return code;
+}
+
+core::Result<void> PictureCommand::take(app::App& app) const {
+  const world::World& world = app.scene().state().facts.world;
+  core::CameraPose pose = app.home();
+  if (at_) {
+    const auto at = position_at(world, *at_);
+    if (!at) return tl::unexpected(at.error());
+    pose.position = *at;
+  }
+  pose.position.local.y = surface_m(world, pose.position) + height_m_;
+  pose.yaw = glm::radians(yaw_deg_);
+  pose.pitch = glm::radians(pitch_deg_);
+  if (auto ok = app.prepare(pose); !ok) return ok;
+  if (options_.stop->load()) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
+  if (auto ok = app.frame(pose, 0); !ok) return ok;
+  if (auto ok = check_complete(app.scene().state()); !ok) return ok;
+  if (auto ok = app.save_picture(out_); !ok) return ok;
+  const auto messages = app.renderer().validation_messages();
+  if (messages.empty()) return {};
+  return core::fail(core::ErrorCode::kInternal, fmt::format("{}", fmt::join(messages, "\n")));
+}
+
+}  // namespace psygen::cli

@@ -1,0 +1,13 @@
+// Places of a world as people write them: metres from the corner of block (0, 0).
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "engine/world/world.hpp"
+
+namespace psygen::cli {
+
+// The place in its block, at world height 0. Fails with kInvalidArgument outside of the world.
+core::Result<core::WorldPosition> position_at(const world::World& world, glm::dvec2 place);
+
+}  // namespace psygen::cli

@@ -1,0 +1,23 @@
+// Notes each mesh of a flight when it is first wanted, for `psygen schedule`. Main thread.
+#pragma once
+
+#include <unordered_set>
+#include <vector>
+
+#include "engine/scene/state.hpp"
+#include "engine/synthesis/request_stream.hpp"
+
+namespace psygen::cli {
+
+class RequestRecorder {
+ public:
+  // After a tick: what it wanted. Times are those of the flight.
+  void observe(const scene::State& state);
+  const std::vector<synthesis::SimulatedJob>& jobs() const { return jobs_; }
+
+ private:
+  std::unordered_set<synthesis::MeshKey> seen_;
+  std::vector<synthesis::SimulatedJob> jobs_;
+};
+
+}  // namespace psygen::cli

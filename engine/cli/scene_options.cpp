@@ -1,0 +1,92 @@
+#include "engine/cli/scene_options.hpp"
+
+#include "engine/cli/option_checks.hpp"
+#include "engine/cli/shipped_files.hpp"
+#include "engine/cli/text_values.hpp"
+#include "engine/render/preset.hpp"
+#include "engine/render/render_path.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::cli {
+namespace {
+
+void add_picture(CLI::App& c, app::Options& options) {
+  c.add_option_function<std::string>(
+       "--size", [&options](const std::string& text) { options.size = *parse_size(text); },
+       "Picture in pixels, WIDTHxHEIGHT")
+      ->check(valid_if(parse_size, "WxH"))
+      ->default_str("1280x720");
+  c.add_option_function<std::string>(
+       "--preset",
+       [&options](const std::string& text) { options.preset = *render::preset_from(text); },
+       "Light and detail: low, medium, high, ultra")
+      ->check(valid_if(render::preset_from, "low|medium|high|ultra"))
+      ->default_str(options.preset ? std::string(to_string(*options.preset))
+                                   : "what suits the device");
+  c.add_option_function<std::string>(
+       "--view", [&options](const std::string& text) { options.view = *render::view_from(text); },
+       "What is shown: normal, levels, layers, bounds, wireframe, missing, cache")
+      ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing|cache"))
+      ->default_str("normal");
+}
+
+void add_detail(CLI::App& c, scene::Settings& scene) {
+  c.add_option_function<std::string>(
+       "--lod", [&scene](const std::string& text) { scene.levels_of_detail = text == "on"; },
+       "Levels of detail: on, or off for full detail everywhere")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->default_str("on");
+  c.add_option("--view-distance", scene.view_distance_m, "Metres; nothing beyond exists")
+      ->capture_default_str()
+      ->check(number_between(32, 65536));
+  c.add_option("--error", scene.max_error_pixels, "Allowed error of a level of detail in pixels")
+      ->capture_default_str()
+      ->check(number_between(0.1, 1000));
+  c.add_option_function<std::string>(
+       "--occlusion", [&scene](const std::string& text) { scene.occlusion = text == "on"; },
+       "Leave out what lies behind ridges: on, off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->default_str("on");
+}
+
+void add_machine(CLI::App& c, app::Options& options) {
+  c.add_option("--modelers", options.scene.modelers, "Synthesis threads; 0: one less than cores")
+      ->transform(integer_between(0, 256));
+  c.add_option_function<std::string>(
+       "--budget",
+       [&options](const std::string& text) { options.scene.budget_bytes = *parse_bytes(text); },
+       "Bytes for all geometry, e.g. 512M")
+      ->check(bytes_between(scene::Scene::kMinBudgetBytes, scene::Scene::kMaxBudgetBytes))
+      ->default_str("512M");
+  c.add_option("--device", options.device_name, "Part of the name of the Vulkan device");
+  c.add_option_function<std::string>(
+       "--render-path",
+       [&options](const std::string& text) {
+         options.render_path = *render::render_path_from(text);
+       },
+       "Who decides what is drawn: cpu, gpu, or auto for what suits the device")
+      ->check(valid_if(render::render_path_from, "auto|cpu|gpu"))
+      ->default_str("auto");
+  c.add_flag("--validation", options.validation,
+             "Vulkan validation; any message makes the run fail");
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& command, app::Options& options) {
+  options.world_file = kDefaultWorld;
+  command
+      .add_option("--world", options.world_file,
+                  "World: a TOML file, or the name of one that comes with psygen")
+      ->default_str(options.world_file.string());
+  command
+      .add_option_function<double>(
+          "--hour", [&options](double hour) { options.start_hour = hour; },
+          "Hour of the day, 0 to 24, in worlds that have one (sky.day_length_s)")
+      ->check(number_between(0, 24));
+  add_picture(command, options);
+  add_detail(command, options.scene);
+  add_machine(command, options);
+}
+
+}  // namespace psygen::cli

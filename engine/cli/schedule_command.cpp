@@ -1,0 +1,101 @@
+// psygen schedule: what each policy makes of a recorded stream of requests, under the virtual
+// clock.
+#include <fmt/format.h>
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "engine/cli/commands.hpp"
+#include "engine/cli/option_checks.hpp"
+#include "engine/core/log.hpp"
+#include "engine/synthesis/request_stream.hpp"
+#include "engine/world/files/text_file.hpp"
+
+namespace psygen::cli {
+namespace {
+
+constexpr double kOverloadPercent = 100;
+
+core::Result<std::vector<synthesis::SimulatedJob>> read_stream(const std::string& file) {
+  const auto text = world::read_text_file(file, synthesis::kMaxStreamBytes);
+  if (!text) return tl::unexpected(text.error());
+  return synthesis::parse_stream(*text, file);
+}
+
+constexpr const char* kColumns =
+    "fill      what the first frame wanted, alone: until all of it is finished, and the share of\n"
+    "          the modelers' time in which they had nothing to do\n"
+    "visible   from wanted in view to finished: how long a hole or a coarse model is seen\n"
+    "late      of what was predicted to come into view later: the share not finished by then\n"
+    "lateness  how late that was, 0 for what was in time: mean and largest\n"
+    "deadline, the default, aims at the least of the largest latenesses. Where not everything can "
+    "be\n"
+    "in time, shortest may be late less often and less in the mean, but lets some wait much "
+    "longer.";
+
+std::string table_of(std::span<const synthesis::PolicyFigures> rows,
+                     const synthesis::StreamLoad& load, unsigned modelers) {
+  std::string text = fmt::format(
+      "{} requests in {:.2f} s, {:.3g} s of work: {:.3g} % of what {} modeler{} can do\n",
+      load.requests, load.span_s, load.work_s, load.percent, modelers, modelers == 1 ? "" : "s");
+  if (load.percent > kOverloadPercent)
+    text += "That is more than they can do meanwhile: some of it has to wait, in any order.\n";
+  text +=
+      "           fill    idle   visible p50       p99       max    late  lateness       max\n"
+      "             ms       %            ms        ms        ms       %        ms        ms\n";
+  for (const synthesis::PolicyFigures& row : rows) {
+    fmt::format_to(
+        std::back_inserter(text),
+        "{:<8} {:>6.1f} {:>7.2f} {:>13.3f} {:>9.3f} {:>9.3f} {:>7.2f} {:>9.3f} {:>9.3f}\n",
+        synthesis::name_of(row.policy), row.fill_s * 1e3, row.fill_idle_percent,
+        row.visible_p50_s * 1e3, row.visible_p99_s * 1e3, row.visible_max_s * 1e3, row.late_percent,
+        row.lateness_mean_s * 1e3, row.lateness_max_s * 1e3);
+  }
+  return text + "\n" + kColumns + "\n";
+}
+
+std::string json_of(std::span<const synthesis::PolicyFigures> rows) {
+  auto list = nlohmann::ordered_json::array();
+  for (const synthesis::PolicyFigures& row : rows) {
+    list.push_back(
+        {{"policy", synthesis::name_of(row.policy)},
+         {"fill_seconds", row.fill_s},
+         {"visible_seconds",
+          {{"p50", row.visible_p50_s}, {"p99", row.visible_p99_s}, {"max", row.visible_max_s}}},
+         {"late_percent", row.late_percent},
+         {"lateness_seconds", {{"mean", row.lateness_mean_s}, {"max", row.lateness_max_s}}},
+         {"fill_idle_percent", row.fill_idle_percent}});
+  }
+  return list.dump(2) + "\n";
+}
+
+}  // namespace
+
+ScheduleCommand::ScheduleCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("schedule", "Compare the policies on recorded requests")) {
+  CLI::App& c = *command_;
+  c.add_option("--requests", file_, "What `psygen fly --record-requests` wrote")->required();
+  c.add_option("--modelers", modelers_, "Simulated modelers")
+      ->capture_default_str()
+      ->transform(integer_between(1, 256));
+  c.add_option("--slower", slower_, "Every synthesis takes so many times as long")
+      ->capture_default_str()
+      ->check(number_between(0.001, 1e6));
+  c.add_flag("--json", json_, "Print the figures as JSON");
+  c.footer(std::string("The columns:\n") + kColumns);
+}
+
+int ScheduleCommand::run() const {
+  auto jobs = read_stream(file_);
+  if (!jobs) {
+    core::log_error(jobs.error().message);
+    return exit_code_of(jobs.error());
+  }
+  for (synthesis::SimulatedJob& job : *jobs)
+    job.seconds *= slower_;
+  const auto rows = synthesis::compare_policies(*jobs, modelers_);
+  return print(json_ ? json_of(rows)
+                     : table_of(rows, synthesis::load_of(*jobs, modelers_), modelers_));
+}
+
+}  // namespace psygen::cli

@@ -1,0 +1,108 @@
+#include "engine/cli/shipped_files.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "engine/core/nearest_word.hpp"
+#include "engine/world/files/world_file.hpp"
+
+namespace psygen::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kEnding = ".toml";
+
+std::string_view word_of(Shipped kind) {
+  return kind == Shipped::kWorld ? "world" : "path";
+}
+
+// Where the shipped files of a kind may be: where they are installed, as seen from the executable,
+// so that an installation can be moved; beside it, where a build has a link to the sources'.
+std::vector<fs::path> folders_of(Shipped kind) {
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  const fs::path here = executable.parent_path();
+  const std::string folder = fmt::format("{}s", word_of(kind));
+  return {(here / PSYGEN_DATA_FROM_EXECUTABLE / folder).lexically_normal(), here / folder};
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+std::vector<std::string> names_in(const std::vector<fs::path>& folders) {
+  std::vector<std::string> names;
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+      if (it->path().extension() == kEnding) names.push_back(it->path().stem().string());
+  }
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+bool has_folder(const std::string& name) {
+  return name.find('/') != std::string::npos;
+}
+
+// What is said where there is no such file.
+std::string missing(Shipped kind, const std::string& name, std::vector<fs::path> folders) {
+  const std::vector<std::string> names = names_in(folders);
+  const std::string_view nearest = core::nearest_word(fs::path(name).stem().string(), names);
+  if (has_folder(name)) folders.clear();
+  std::error_code error;
+  if (fs::path(name).is_relative()) folders.insert(folders.begin(), fs::current_path(error));
+  std::string text = fmt::format("{}: there is no such file; ", name);
+  for (const fs::path& folder : folders)
+    text += fmt::format("{}{}{}", &folder == &folders.front() ? "looked in " : ", ",
+                        folder.string(), &folder == &folders.back() ? "; " : "");
+  if (names.empty())
+    return text + fmt::format("no {} that comes with psygen is there", word_of(kind));
+  text +=
+      fmt::format("the {}s that come with psygen are {}", word_of(kind), fmt::join(names, ", "));
+  return nearest.empty() ? text : text + fmt::format("; did you mean {}?", nearest);
+}
+
+}  // namespace
+
+core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
+  std::error_code error;
+  const fs::file_status status = fs::status(name, error);
+  if (fs::is_regular_file(status)) return fs::path(name);
+  const std::vector<fs::path> folders = folders_of(kind);
+  if (!has_folder(name)) {
+    for (const fs::path& folder : folders) {
+      for (const std::string& file : {name, name + kEnding})
+        if (is_file(folder / file)) return folder / file;
+    }
+  }
+  // What is there and is no file is told by whoever reads it.
+  if (status.type() != fs::file_type::not_found) return fs::path(name);
+  return core::fail(core::ErrorCode::kIo, missing(kind, name, folders));
+}
+
+core::Result<world::World> load_world(const std::string& name, models::Registry& registry) {
+  const auto file = find_file(Shipped::kWorld, name);
+  if (!file) return tl::unexpected(file.error());
+  return world::load_world(*file, registry);
+}
+
+core::Result<void> find_files(app::Options& options) {
+  auto world_file = find_file(Shipped::kWorld, options.world_file.string());
+  if (!world_file) return tl::unexpected(world_file.error());
+  options.world_file = std::move(*world_file);
+  if (options.path_file.empty()) return {};
+  auto path_file = find_file(Shipped::kPath, options.path_file.string());
+  if (!path_file) return tl::unexpected(path_file.error());
+  options.path_file = std::move(*path_file);
+  return {};
+}
+
+}  // namespace psygen::cli

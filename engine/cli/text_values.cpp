@@ -1,0 +1,85 @@
+#include "engine/cli/text_values.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace psygen::cli {
+namespace {
+
+// Digits at the start of `text`, and what follows them.
+std::optional<std::uint64_t> leading_number(std::string_view& text) {
+  std::uint64_t value = 0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (result.ec != std::errc() || result.ptr == text.data()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(result.ptr - text.data()));
+  return value;
+}
+
+}  // namespace
+
+core::Result<std::uint64_t> parse_bytes(const std::string& text) {
+  const auto refuse = [&text] {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("'{}' is not a number of bytes such as 512M or 2G", text));
+  };
+  std::string_view rest = text;
+  const auto value = leading_number(rest);
+  if (!value) return refuse();
+  unsigned shift = 0;
+  if (!rest.empty()) {
+    const std::size_t unit = std::string_view("KMGT").find(rest.front() & ~0x20);
+    if (unit == std::string_view::npos) return refuse();
+    shift = 10 * (static_cast<unsigned>(unit) + 1);
+    rest.remove_prefix(1);
+    if (!rest.empty() && rest != "B" && rest != "iB") return refuse();
+  }
+  if (*value > (std::numeric_limits<std::uint64_t>::max() >> shift)) return refuse();
+  return *value << shift;
+}
+
+core::Result<core::Extent> parse_size(const std::string& text) {
+  constexpr std::uint64_t kMaxPixels = 16384;
+  std::string_view rest = text;
+  const std::uint64_t width = leading_number(rest).value_or(0);
+  const bool separated = !rest.empty() && (rest.front() == 'x' || rest.front() == 'X');
+  if (separated) rest.remove_prefix(1);
+  const std::uint64_t height = separated ? leading_number(rest).value_or(0) : 0;
+  if (!rest.empty() || width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("'{}' is not a size such as 1280x720 (1 to 16384 each)", text));
+  }
+  return core::Extent{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+}
+
+core::Result<glm::dvec2> parse_place(const std::string& text) {
+  const char* const end = text.data() + text.size();
+  glm::dvec2 place{0.0};
+  const auto x = std::from_chars(text.data(), end, place.x);
+  const bool separated = x.ec == std::errc() && x.ptr != end && *x.ptr == ',';
+  const auto z = separated ? std::from_chars(x.ptr + 1, end, place.y) : x;
+  if (!separated || z.ec != std::errc() || z.ptr != end || !std::isfinite(place.x) ||
+      !std::isfinite(place.y)) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("'{}' is not a place X,Z in metres", text));
+  }
+  return place;
+}
+
+core::Result<core::BlockCoord> parse_block(const std::string& text) {
+  const char* const end = text.data() + text.size();
+  core::BlockCoord block;
+  const auto x = std::from_chars(text.data(), end, block.x);
+  const bool separated = x.ec == std::errc() && x.ptr != end && *x.ptr == ',';
+  const auto z = separated ? std::from_chars(x.ptr + 1, end, block.z) : x;
+  if (!separated || z.ec != std::errc() || z.ptr != end) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("'{}' is not a block X,Z", text));
+  }
+  return block;
+}
+
+}  // namespace psygen::cli

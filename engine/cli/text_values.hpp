@@ -1,0 +1,27 @@
+// Values as people write them on a command line. Pure.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <string>
+
+#include "engine/core/coordinates.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/surface_provider.hpp"
+
+namespace psygen::cli {
+
+// A number of bytes: digits with an optional suffix K, M, G or T (powers of 1024), "MiB" and the
+// like.
+core::Result<std::uint64_t> parse_bytes(const std::string& text);
+
+// Pixels as WIDTHxHEIGHT, each 1 … 16384.
+core::Result<core::Extent> parse_size(const std::string& text);
+
+// A place as X,Z: two finite numbers.
+core::Result<glm::dvec2> parse_place(const std::string& text);
+
+// A block as X,Z: two integers of 32 bits.
+core::Result<core::BlockCoord> parse_block(const std::string& text);
+
+}  // namespace psygen::cli

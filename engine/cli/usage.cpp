@@ -1,0 +1,164 @@
+#include "engine/cli/usage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "engine/cli/commands.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/nearest_word.hpp"
+#include "engine/core/utf8.hpp"
+
+namespace psygen::cli {
+namespace {
+
+constexpr std::size_t kMostShownBytes = 80;  // of an argument
+constexpr std::size_t kMostSaidBytes = 400;  // of what CLI11 says, with an argument in it
+
+std::string in_quotes(std::string_view argument) {
+  return fmt::format("'{}'", core::shown(argument, kMostShownBytes));
+}
+
+// Of an app and its option groups, which are apps without a name.
+std::vector<CLI::Option*> options_of(CLI::App& app) {
+  std::vector<CLI::Option*> options = app.get_options();
+  for (CLI::App* group : app.get_subcommands([](CLI::App* a) { return a->get_name().empty(); })) {
+    const auto more = options_of(*group);
+    options.insert(options.end(), more.begin(), more.end());
+  }
+  return options;
+}
+
+std::vector<CLI::App*> commands_of(CLI::App& cli) {
+  return cli.get_subcommands([](CLI::App* app) { return !app->get_name().empty(); });
+}
+
+std::string check_value(const std::string& text) {
+  if (text.empty()) return "the value is empty";
+  if (text.starts_with("--"))
+    return fmt::format("a value is missing before {0} (a file of that name is ./{0})",
+                       core::shown(text, kMostShownBytes));
+  return {};
+}
+
+// CLI11 takes the next argument for the value of "--name=" and of "--name --other".
+void refuse_missing_values(CLI::App& cli) {
+  for (CLI::App* command : commands_of(cli)) {
+    for (CLI::Option* option : options_of(*command)) {
+      if (option->get_items_expected_max() > 0)
+        option->transform(CLI::Validator([](std::string& text) { return check_value(text); }, ""));
+      else
+        option->disable_flag_override();
+    }
+  }
+}
+
+// Last first, as CLI11 wants them.
+std::vector<std::string> reversed_arguments(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  for (int i = 1; i < argc; ++i) {
+    arguments.emplace_back(argv[i]);
+    std::string& argument = arguments.back();
+    if (argument.starts_with("--") && argument.find('=') == argument.size() - 1) {
+      argument.pop_back();
+      arguments.emplace_back();
+    }
+  }
+  std::ranges::reverse(arguments);
+  return arguments;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  const std::string_view nearest = core::nearest_word(word, known);
+  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
+}
+
+std::string about_command(CLI::App& cli, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(cli))
+    names.push_back(command->get_name());
+  return fmt::format("there is no command {}{}", in_quotes(word), suggestion(word, names));
+}
+
+std::string about_option(CLI::App& command, const std::string& argument) {
+  const std::string word = argument.substr(0, argument.find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options_of(command))
+    names.push_back(option->get_name());
+  return fmt::format("psygen {} has no option {}{}", command.get_name(), in_quotes(word),
+                     suggestion(word, names));
+}
+
+// What CLI11 could not place behind the program's name.
+std::string about_extra(CLI::App& cli) {
+  const std::string first = cli.remaining().front();
+  if (first.starts_with('-'))
+    return fmt::format("{} stands before the command; options come after it", in_quotes(first));
+  if (cli.get_subcommands().empty()) return about_command(cli, first);
+  return fmt::format("{} is not expected", in_quotes(first));
+}
+
+// And behind the command's.
+std::string about_extra_of(CLI::App& command) {
+  const std::vector<std::string> extras = command.remaining();
+  // What follows an unknown option may be its value.
+  const auto option =
+      std::ranges::find_if(extras, [](const std::string& text) { return text.starts_with('-'); });
+  if (option != extras.end()) return about_option(command, *option);
+  return fmt::format("{} is not expected: after the command there are only options",
+                     in_quotes(extras.front()));
+}
+
+// An option that is given twice, one without a value, or a flag with one.
+std::string about_count(CLI::App& command, const CLI::ParseError& error) {
+  for (const CLI::Option* option : options_of(command)) {
+    if (option->get_items_expected_max() == 1 && option->count() > 1)
+      return fmt::format("{} is given {} times; once is allowed", option->get_name(),
+                         option->count());
+  }
+  const std::string said = error.what();  // begins with the option
+  const std::string name = said.substr(0, said.find_first_of(": "));
+  return name.starts_with('-') ? fmt::format("{} needs a value", name)
+                               : fmt::format("--{} takes no value", name);
+}
+
+std::string sentence_of(CLI::App& cli, CLI::App& command, const CLI::ParseError& error) {
+  const auto kind = static_cast<CLI::ExitCodes>(error.get_exit_code());
+  if (!cli.remaining().empty()) return about_extra(cli);
+  if (&command == &cli) return "a command is missing";
+  if (kind == CLI::ExitCodes::ArgumentMismatch) return about_count(command, error);
+  // What is missing may be there under a misspelt name.
+  const bool wrong_value = kind == CLI::ExitCodes::ValidationError;
+  if (!wrong_value && !command.remaining().empty()) return about_extra_of(command);
+  return core::shown(error.what(), kMostSaidBytes);
+}
+
+int refuse(CLI::App& cli, const CLI::ParseError& error) {
+  const auto chosen = cli.get_subcommands();
+  CLI::App& command = chosen.empty() ? cli : *chosen.front();
+  core::log_error(sentence_of(cli, command, error));
+  const std::string more =
+      chosen.empty() ? "\n" + cli.help()
+                     : fmt::format("psygen {} --help lists its options\n", command.get_name());
+  std::fputs(more.c_str(), stderr);
+  return kUsage;
+}
+
+}  // namespace
+
+std::optional<int> read_command_line(CLI::App& cli, int argc, char** argv) {
+  refuse_missing_values(cli);
+  std::vector<std::string> arguments = reversed_arguments(argc, argv);
+  try {
+    cli.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) return refuse(cli, error);
+    std::ostringstream text;  // --help, --version
+    cli.exit(error, text, text);
+    return print(text.str());
+  }
+  return std::nullopt;
+}
+
+}  // namespace psygen::cli

@@ -1,0 +1,55 @@
+// Runs psygen as people do: as a process, of which exit code and both streams are seen.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace psygen::cli {
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+inline std::string read(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// `environment` is put before the command; `folder` is where it runs; `redirection` comes last.
+// Leaks are looked for in the tests of the libraries, which keep drivers loaded so that reports
+// have names.
+inline Outcome run_psygen(const std::string& arguments, const std::string& environment = "",
+                          const std::filesystem::path& folder = PSYGEN_SOURCE_DIR,
+                          const std::string& redirection = "") {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const auto outputs = std::filesystem::path(testing::TempDir());
+  const std::string name = std::string(test->test_suite_name()) + "_" + test->name() + "_" +
+                           std::to_string(getpid());  // of another build, maybe, at the same time
+  const auto out = outputs / (name + ".out"), err = outputs / (name + ".err");
+  const std::string command =
+      "cd " + folder.string() +
+      " && export ASAN_OPTIONS=detect_leaks=0:verify_asan_link_order=0 && " + environment +
+      " " PSYGEN_EXECUTABLE " " + arguments + " >" + out.string() + " 2>" + err.string() +
+      " </dev/null " + redirection;
+  const int status = std::system(command.c_str());
+  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+  std::filesystem::remove(out);
+  std::filesystem::remove(err);
+  return outcome;
+}
+
+inline bool mentions(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+}  // namespace psygen::cli

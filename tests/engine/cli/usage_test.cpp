@@ -1,0 +1,244 @@
+// What somebody is told who got the command line wrong: by the commands as psygen has them.
+#include "engine/cli/usage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/cli/commands.hpp"
+#include "engine/cli/option_checks.hpp"
+#include "engine/core/utf8.hpp"
+
+namespace psygen::cli {
+namespace {
+
+struct Program {
+  CLI::App cli{"psygen", "psygen"};
+  FlyCommand fly{cli};
+  ModelsCommand models{cli};
+  AmplifyCommand amplify{cli};
+  ExportCommand exporter{cli};
+  CalibrateCommand calibrate{cli};
+  ScheduleCommand schedule{cli};
+  Program() {
+    cli.require_subcommand(1);
+    cli.footer("For example");
+  }
+};
+
+using Arguments = std::vector<std::string>;
+
+struct Told {
+  std::optional<int> code;
+  std::string out, err;
+};
+
+Told told(Arguments arguments) {
+  Program program;
+  arguments.insert(arguments.begin(), "psygen");
+  std::vector<char*> argv;
+  for (std::string& argument : arguments)
+    argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Told result;
+  result.code = read_command_line(program.cli, static_cast<int>(arguments.size()), argv.data());
+  result.out = testing::internal::GetCapturedStdout();
+  result.err = testing::internal::GetCapturedStderr();
+  return result;
+}
+
+std::string text_of(const Arguments& arguments) {
+  std::string text;
+  for (const std::string& argument : arguments)
+    text += " '" + core::shown(argument) + "'";
+  return text;
+}
+
+// A usage error that says `words`, in lines that can be printed.
+void expect_refused(const Arguments& arguments, const std::string& words) {
+  const Told result = told(arguments);
+  EXPECT_EQ(result.code, kUsage) << text_of(arguments) << "\n" << result.err;
+  EXPECT_TRUE(result.out.empty()) << text_of(arguments);
+  EXPECT_TRUE(result.err.starts_with("psygen: error: ")) << result.err;
+  EXPECT_NE(result.err.find(words), std::string::npos) << text_of(arguments) << "\n" << result.err;
+  std::istringstream lines(result.err);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_EQ(core::shown(line), line) << text_of(arguments);
+}
+
+std::vector<CLI::App*> commands_of(Program& program) {
+  return program.cli.get_subcommands([](CLI::App* app) { return !app->get_name().empty(); });
+}
+
+TEST(Usage, WithoutACommandOrWithAMisspeltOneTheCommandsAreListed) {
+  const std::vector<std::pair<Arguments, std::string>> cases{
+      {{}, "error: a command is missing\n"},
+      {{"fyl"}, "there is no command 'fyl'; did you mean fly?\n"},
+      {{"calibarte", "--samples", "4"}, "did you mean calibrate?\n"},
+      {{"walk", "there"}, "there is no command 'walk'\n"},
+      {{"--frobnicate"}, "'--frobnicate' stands before the command"},
+      {{""}, "there is no command ''\n"}};
+  Program program;
+  for (const auto& [arguments, words] : cases) {
+    expect_refused(arguments, words);
+    const std::string err = told(arguments).err;
+    for (const CLI::App* command : commands_of(program))
+      EXPECT_NE(err.find("\n  " + command->get_name() + "  "), std::string::npos) << err;
+    EXPECT_NE(err.find("For example"), std::string::npos) << err;
+  }
+}
+
+TEST(Usage, AMisspeltOptionSuggestsTheNearestOfItsCommand) {
+  const std::vector<std::pair<Arguments, std::string>> cases{
+      {{"fly", "--wrold", "paper"}, "psygen fly has no option '--wrold'; did you mean --world?\n"},
+      {{"fly", "--seconds", "3", "--heedless"}, "did you mean --headless?"},
+      {{"fly", "-world", "paper"}, "did you mean --world?"},
+      {{"models", "--jsn"}, "did you mean --json?"},
+      {{"amplify", "--regoin=0,0,1,1"}, "no option '--regoin'; did you mean --region?"},
+      {{"export", "--modle", "rock"}, "did you mean --model?"},
+      {{"calibrate", "--sample", "4"}, "did you mean --samples?"},
+      {{"schedule", "--modeler", "3"}, "did you mean --modelers?"},
+      {{"fly", "--frobnicate"}, "psygen fly has no option '--frobnicate'\n"}};
+  for (const auto& [arguments, words] : cases)
+    expect_refused(arguments, words);
+}
+
+TEST(Usage, EveryOptionOfEveryCommandRefusesAnEmptyValueAndAMissingOne) {
+  Program program;
+  std::size_t values = 0, flags = 0;
+  for (CLI::App* command : commands_of(program)) {
+    for (const CLI::Option* option : command->get_options()) {
+      const std::string name = option->get_name(), in = command->get_name();
+      if (name == "--help") continue;
+      if (option->get_items_expected_max() == 0) {
+        ++flags;
+        expect_refused({in, name + "=1"}, name + " takes no value");
+        continue;
+      }
+      ++values;
+      for (const Arguments& empty :
+           {Arguments{in, name, ""}, {in, name + "="}, {in, name + "=", "a"}})
+        expect_refused(empty, name + ": the value is empty");
+      expect_refused({in, name, "--world"}, name + ": a value is missing before --world");
+      expect_refused({in, name}, name + " needs a value");
+    }
+  }
+  EXPECT_GT(values, 40u);
+  EXPECT_GT(flags, 8u);
+}
+
+TEST(Usage, OptionsOfAGroupAreLikeOthers) {
+  const auto told_of = [](Arguments arguments) {
+    CLI::App cli("psygen", "psygen");
+    cli.require_subcommand(1);
+    std::string where;
+    CLI::App* picture = cli.add_subcommand("picture");
+    picture->add_option_group("shared")->add_option("--where", where);
+    arguments.insert(arguments.begin(), {"psygen", "picture"});
+    std::vector<char*> argv;
+    for (std::string& argument : arguments)
+      argv.push_back(argument.data());
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(read_command_line(cli, static_cast<int>(argv.size()), argv.data()), kUsage);
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_NE(told_of({"--where", ""}).find("--where: the value is empty"), std::string::npos);
+  EXPECT_NE(told_of({"--hwere", "a"}).find("did you mean --where?"), std::string::npos);
+  EXPECT_NE(told_of({"--where", "a", "--where", "b"}).find("--where is given 2 times"),
+            std::string::npos);
+}
+
+TEST(Usage, WhatIsOutOfPlaceIsNamed) {
+  const std::vector<std::pair<Arguments, std::string>> cases{
+      {{"--headless", "fly"}, "'--headless' stands before the command; options come after it"},
+      {{"fly", "models"}, "'models' is not expected: after the command there are only options"},
+      {{"fly", ""}, "'' is not expected"},
+      {{"fly", "-"}, "psygen fly has no option '-'"},
+      {{"models", "--", "x"}, "'x' is not expected"},
+      {{"fly", "--seconds", "3", "--size", "64x36", "--seconds", "4"},
+       "--seconds is given 2 times"},
+      {{"schedule"}, "--requests is required"},
+      {{"amplify", "--format", "obj"}, "--format requires --out"},
+      {{"fly", "--seconds", "-3"}, "\npsygen fly --help lists its options\n"}};
+  for (const auto& [arguments, words] : cases)
+    expect_refused(arguments, words);
+}
+
+TEST(Usage, NumbersAreDecimalAndOthersAreToldWhatIsAllowed) {
+  const std::vector<std::pair<Arguments, std::string>> cases{
+      {{"fly", "--frames", "1.5"}, "'1.5' is not a whole number from 0 to 1000000000"},
+      {{"fly", "--frames", "0x10"}, "'0x10' is not a whole number"},
+      {{"fly", "--frames", " 5"}, "' 5' is not a whole number"},
+      {{"fly", "--frames", "5 "}, "'5 ' is not a whole number"},
+      {{"fly", "--frames", "1e3"}, "'1e3' is not a whole number"},
+      {{"fly", "--frames", "99999999999999999999"}, "from 0 to 1000000000"},
+      {{"fly", "--modelers", "-1"}, "'-1' is not a whole number from 0 to 256"},
+      {{"fly", "--seconds", "nan"}, "'nan' is not a number from 0 to 86400"},
+      {{"fly", "--seconds", "inf"}, "'inf' is not a number"},
+      {{"fly", "--seconds", "1e400"}, "'1e400' is not a number"},
+      {{"fly", "--seconds", "0x1p3"}, "'0x1p3' is not a number"},
+      {{"fly", "--target-fps", "0.05"}, "'0.05' is not a number from 0.1 to 1000"},
+      {{"fly", "--budget", "0"}, "'0' is not allowed: it must be between 4M and 1T"},
+      {{"fly", "--budget", "1K"}, "it must be between 4M and 1T"},
+      {{"fly", "--budget", "4194303"}, "it must be between 4M and 1T"},
+      {{"fly", "--budget", "2T"}, "it must be between 4M and 1T"},
+      {{"amplify", "--threads", "0"}, "from 1 to 256"},
+      {{"export", "--model", "rock", "--level", "1.0"}, "from 0 to 31"},
+      {{"calibrate", "--samples", "4.5"}, "from 4 to 10000"},
+      {{"schedule", "--requests", "a", "--slower", "-0"}, "from 0.001 to 1000000"}};
+  for (const auto& [arguments, words] : cases)
+    expect_refused(arguments, words);
+  const Told sound = told({"fly", "--warmup", "-0", "--frames", "010", "--seconds", "+1.5",
+                           "--budget", "4M", "--target-fps", "0.0"});
+  EXPECT_FALSE(sound.code.has_value()) << sound.err;
+}
+
+TEST(Usage, ALeadingZeroIsNotOctal) {
+  CLI::App cli("psygen", "psygen");
+  int number = 0;
+  cli.add_subcommand("a")->add_option("--number", number)->transform(integer_between(-20, 20));
+  std::string arguments[] = {"psygen", "a", "--number", "010"};
+  char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(),
+                  arguments[3].data()};
+  EXPECT_FALSE(read_command_line(cli, 4, argv).has_value());
+  EXPECT_EQ(number, 10);
+}
+
+TEST(Usage, WhatIsSaidOfHostileArgumentsCanBePrintedAndIsShort) {
+  for (const char* text : {"\x1B[31m", "a\nb", "\xFF\xFE", "\xC3", "\xE2\x80\xAE", "\x7F"}) {
+    const std::string hostile = text;
+    expect_refused({hostile}, core::shown(hostile));
+    expect_refused({"fly", "--" + hostile}, core::shown(hostile));
+    expect_refused({"fly", "--" + hostile + "=1"}, core::shown(hostile));
+    expect_refused({"fly", hostile}, core::shown(hostile));
+    expect_refused({"fly", "--size", hostile}, core::shown(hostile));
+    expect_refused({"fly", "--seconds", hostile}, core::shown(hostile));
+    expect_refused({"fly", "--lod", hostile}, core::shown(hostile));
+    expect_refused({"amplify", "--region", hostile}, core::shown(hostile));
+    expect_refused({"export", "--model", "rock", "--out", hostile}, core::shown(hostile));
+  }
+  const std::string longest(100'000, 'a');
+  for (const Arguments& arguments : {Arguments{longest},
+                                     {"fly", longest},
+                                     {"fly", "--" + longest},
+                                     {"fly", "--size", longest},
+                                     {"fly", "--seconds", longest},
+                                     {"fly", "--view", longest}})
+    EXPECT_LT(told(arguments).err.size(), 2000u) << arguments.size();
+}
+
+TEST(Usage, HelpGoesToStdoutAndIsNoFailure) {
+  Program program;
+  for (const CLI::App* command : commands_of(program)) {
+    const Told help = told({command->get_name(), "--help"});
+    EXPECT_EQ(help.code, kOk);
+    EXPECT_TRUE(help.err.empty()) << help.err;
+    EXPECT_NE(help.out.find("--help"), std::string::npos) << help.out;
+  }
+  EXPECT_EQ(told({"-h"}).code, kOk);
+}
+
+}  // namespace
+}  // namespace psygen::cli
