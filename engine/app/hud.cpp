@@ -10,7 +10,7 @@
 #include "engine/app/keys.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/scene/views.hpp"
+#include "engine/scene/draws/views.hpp"
 
 namespace psygen::app {
 namespace {

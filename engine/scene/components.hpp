@@ -101,7 +101,7 @@ struct OldParts {
   MeshParts parts;
 };
 
-// How a model comes and goes (fading.hpp).
+// How a model comes and goes (draws/fading.hpp).
 struct Fading {
   float share = 0;                  // of its pixels that are there
   std::uint32_t tick = UINT32_MAX;  // the last one in which it was drawn

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/hash.hpp"
-#include "engine/scene/node_levels.hpp"
+#include "engine/scene/nodes/levels.hpp"
 #include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/scene/mesh_parts.hpp"
+#include "engine/scene/draws/mesh_parts.hpp"
 
 namespace psygen::scene {
 namespace {

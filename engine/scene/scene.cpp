@@ -10,11 +10,11 @@
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/core/log.hpp"
 #include "engine/scene/cost_samples.hpp"
-#include "engine/scene/lighting.hpp"
+#include "engine/scene/draws/lighting.hpp"
 #include "engine/scene/mesh_notes.hpp"
-#include "engine/scene/node_solidity.hpp"
+#include "engine/scene/nodes/solidity.hpp"
+#include "engine/scene/nodes/usual_boxes.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/scene/usual_boxes.hpp"
 #include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {

@@ -16,12 +16,12 @@
 #include "engine/models/terrain/tiles.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
-#include "engine/scene/fading.hpp"
-#include "engine/scene/governor.hpp"
-#include "engine/scene/ground_relief.hpp"
-#include "engine/scene/ground_sun.hpp"
-#include "engine/scene/node_grid.hpp"
-#include "engine/scene/node_levels.hpp"
+#include "engine/scene/draws/fading.hpp"
+#include "engine/scene/nodes/grid.hpp"
+#include "engine/scene/nodes/ground_relief.hpp"
+#include "engine/scene/nodes/ground_sun.hpp"
+#include "engine/scene/nodes/levels.hpp"
+#include "engine/scene/quality/governor.hpp"
 #include "engine/scene/settings.hpp"
 #include "engine/synthesis/cost_model.hpp"
 #include "engine/synthesis/geometry_cache.hpp"
@@ -195,10 +195,11 @@ struct Counters {
   // Of both, and of what has more than twice its error: what can still be synthesised.
   std::uint32_t awaited = 0;
   double missing_pixels_percent = 0;
-  double seen_area = 0, too_coarse_area = 0;  // of pieces (missing.hpp), in percent of the picture
-  std::uint32_t requests = 0;                 // wanted, but not there
-  std::uint32_t refused = 0;                  // of these, for want of memory
-  std::uint32_t refused_visible = 0;          // … of what is in view
+  double seen_area = 0,
+         too_coarse_area = 0;         // of pieces (draws/missing.hpp), in percent of the picture
+  std::uint32_t requests = 0;         // wanted, but not there
+  std::uint32_t refused = 0;          // of these, for want of memory
+  std::uint32_t refused_visible = 0;  // … of what is in view
   std::uint32_t completed = 0, failed = 0;
   std::uint32_t models_synthesised = 0;
   std::uint64_t triangles_synthesised = 0, bytes_synthesised = 0;

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/scene/ground_relief.hpp"
+#include "engine/scene/draws/mesh_parts.hpp"
 #include "engine/scene/mesh_notes.hpp"
-#include "engine/scene/mesh_parts.hpp"
+#include "engine/scene/nodes/ground_relief.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"

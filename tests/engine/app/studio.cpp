@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/scene/ground_draws.hpp"
+#include "engine/scene/draws/ground.hpp"
 
 namespace psygen::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "engine/scene/mesh_parts.hpp"
+#include "engine/scene/draws/mesh_parts.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "tests/engine/scene/fixture.hpp"
 #include "tests/faults.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/scene/ground_draws.hpp"
+#include "engine/scene/draws/ground.hpp"
 #include "tests/engine/scene/gate.hpp"
 
 namespace psygen::scene {

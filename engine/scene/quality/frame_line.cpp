@@ -1,0 +1,38 @@
+#include "engine/scene/quality/frame_line.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace psygen::scene {
+namespace {
+
+constexpr double kNewest = 1.0 / 120;  // share of the newest frame
+// While triangles have hardly changed nothing tells how they count: they make no difference then,
+// and with this spread, in parts of their mean, half of what was measured.
+constexpr double kTrustedSpread = 0.1;
+
+}  // namespace
+
+void FrameLine::observe(double frame_ms, double triangles) {
+  weight_ += (1 - weight_) * kNewest;
+  const double share = kNewest / weight_;  // the first counts wholly
+  const double ms = frame_ms - mean_ms_, more = triangles - mean_triangles_;
+  mean_ms_ += share * ms;
+  mean_triangles_ += share * more;
+  variance_ += share * ((1 - share) * more * more - variance_);
+  covariance_ += share * ((1 - share) * ms * more - covariance_);
+}
+
+double FrameLine::slope() const {
+  if (!(mean_triangles_ > 0)) return 0;
+  const double doubt = kTrustedSpread * mean_triangles_;
+  return std::max(covariance_ / (variance_ + doubt * doubt), 0.0);
+}
+
+double FrameLine::triangles(double frame_ms) const {
+  const double each_ms = slope();
+  if (!(each_ms > 0)) return std::numeric_limits<double>::infinity();
+  return std::max(mean_triangles_ + (frame_ms - mean_ms_) / each_ms, 0.0);
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,59 @@
+#include "engine/scene/quality/governor.hpp"
+
+#include <algorithm>
+
+namespace psygen::scene {
+namespace {
+
+constexpr double kSmoothing = 0.1;  // share of the newest frame; the first counts wholly
+// Steps of a frame whose time is off by kFullStepAt: at 60 Hz the error doubles in a second and
+// halves in four, at the start in one. Frames that take far too long are answered by up to
+// kMostSteps of them.
+constexpr double kStepUp = 0.012, kStepDown = 0.003, kStartStepDown = 0.012;
+constexpr double kFullStepAt = 0.25;
+constexpr double kMostSteps = 3;
+// Where too many triangles are seen, so much of the error is added in a frame at most, beside that.
+constexpr double kJump = 0.12;
+
+}  // namespace
+
+void Governor::observe(double frame_ms, double triangles) {
+  const double target_ms = settings_.target_ms;
+  if (!(target_ms > 0) || !(frame_ms > 0)) return;
+  const double counted_ms = std::min(frame_ms, 3 * target_ms);
+  smoothed_ms_ += (counted_ms - smoothed_ms_) * (smoothed_ms_ > 0 ? kSmoothing : 1);
+  const double before = factor_;
+  follow();
+  if (triangles > 0) {
+    line_.observe(counted_ms, triangles);
+    foresee(triangles);
+  }
+  factor_ = std::clamp(factor_, 1.0, settings_.max_factor);
+  factors_[next_] = before;
+  next_ = (next_ + 1) % kLagFrames;
+}
+
+// By the times of the last frames.
+void Governor::follow() {
+  const double target_ms = settings_.target_ms;
+  const double over = smoothed_ms_ / target_ms - 1;
+  const double under = settings_.rest_share - smoothed_ms_ / target_ms;
+  // Slow frames before anything is refined, such as the very first, do not end the start.
+  if (under <= 0 && factor_ < settings_.max_factor) refining_ = false;
+  if (over > 0) {
+    factor_ *= 1 + kStepUp * std::min(over / kFullStepAt, kMostSteps);
+  } else if (under > 0) {
+    factor_ *= 1 - (refining_ ? kStartStepDown : kStepDown) * std::min(under / kFullStepAt, 1.0);
+  }
+}
+
+// By the triangles of the last frame, which are those of the error some frames ago and become fewer
+// as the error grows, about in proportion.
+void Governor::foresee(double triangles) {
+  const double allowed = line_.triangles(settings_.target_ms), lagging = factors_[next_];
+  if (!(lagging > 0) || triangles <= allowed) return;
+  const double enough = lagging * triangles / allowed;
+  if (enough > factor_) factor_ = std::min(enough, factor_ * (1 + kJump));
+}
+
+}  // namespace psygen::scene

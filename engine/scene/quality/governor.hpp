@@ -1,0 +1,51 @@
+// Holds a frame time by the error that levels of detail may have: more when frames take too long,
+// less, slowly, when there is time to spare. What it steers acts late (meshes must be synthesised
+// first), so that it takes small steps and rests inside a band. It starts with the largest error,
+// so that the first picture is there soon and is fast, and until frames reach the band it refines
+// in larger steps. Where a wide view opens, as behind a hilltop, it does not wait until frames have
+// been too long for a while: from how many triangles there are it knows what they will take
+// (frame_line.hpp). Pure; no clock of its own.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/scene/quality/frame_line.hpp"
+
+namespace psygen::scene {
+
+struct GovernorSettings {
+  double target_ms = 0;      // of a frame; 0: the error stays at its lower bound
+  double max_factor = 4;     // upper bound of the error over its lower bound, >= 1
+  double rest_share = 0.85;  // of the target: between it and the target nothing changes
+};
+
+class Governor {
+ public:
+  explicit Governor(const GovernorSettings& settings = {})
+      : settings_(settings), factor_(settings.target_ms > 0 ? settings.max_factor : 1) {}
+
+  // What the last frame took, without waiting for a display, and how many triangles it drew (0:
+  // unknown). Times that are not positive are ignored, one frame counts for at most three targets.
+  void observe(double frame_ms, double triangles = 0);
+
+  // By how much the error exceeds its lower bound, 1 … max_factor.
+  double error_factor() const { return factor_; }
+
+ private:
+  // Frames until the picture has followed the error: meshes, and fades of a fifth of a second.
+  static constexpr std::size_t kLagFrames = 14;
+
+  void follow();
+  void foresee(double triangles);
+
+  GovernorSettings settings_;
+  bool refining_ = true;  // since the start, and no frames have come to the band yet
+  double smoothed_ms_ = 0;
+  double factor_;
+  FrameLine line_;
+  std::array<double, kLagFrames> factors_{};  // of the last frames, a ring; 0: none yet
+  std::size_t next_ = 0;                      // of the ring, the oldest
+};
+
+}  // namespace psygen::scene

@@ -1,0 +1,257 @@
+// Keeps one entity per node of the quadtree that may be drawn soon, and one per model on it:
+// created and destroyed in batches, coarse nodes before fine ones and nearest first, within a time
+// budget per tick.
+#include <algorithm>
+#include <climits>
+#include <cmath>
+
+#include "engine/core/clock.hpp"
+#include "engine/scene/nodes/solidity.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/world/far/merged_models.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// The window is looked at again when distances have changed by this share.
+constexpr double kRelistedChange = 0.05;
+// Created in one tick at least, if as many are missing and time allows.
+constexpr std::size_t kFewestCreated = 3;
+// On a virtual clock: of an entity that is created, about what it takes on a core of today.
+constexpr double kEntitySeconds = 0.5e-6;
+// If more than this are missing the camera has leapt: as many as time allows.
+constexpr std::size_t kLeapt = 256;
+
+// `usual`: in what part of the box its mesh lies (WorldFacts).
+Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box,
+                 const core::Bounds& usual) {
+  Placed placed;
+  placed.block = block;
+  placed.position = position;
+  placed.box_center = box.center();
+  placed.box_half_extent = box.half_extent();
+  placed.middle = placed.box_center + placed.box_half_extent * usual.center();
+  placed.radius_m = glm::length(placed.box_half_extent * usual.half_extent());
+  return placed;
+}
+
+// Levels `first` … `last` of a model type, at most as many as differ.
+Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first,
+                 int last) {
+  Detail detail;
+  detail.seen_size_m = static_cast<float>(type.seen_size_m(parameters));
+  for (int level = first; level <= std::min(last, type.level_count_of(parameters) - 1); ++level) {
+    if (detail.level_count == kMaxLevels) break;
+    detail.error_m[detail.level_count++] =
+        static_cast<float>(type.level_error_m(parameters, level));
+  }
+  return detail;
+}
+
+// Fills row `i` of the shared columns of nodes and models; of the type only these levels are used.
+template <class Created>
+void fill(const Created& created, std::size_t i, const WorldFacts& facts, core::BlockCoord block,
+          const world::Placement& placement, int first_level = 0, int last_level = INT_MAX) {
+  const models::ModelType& type = facts.registry[placement.model];
+  created.template column<Placed>()[i] =
+      placed_at(block, placement.position, type.bounds(placement.parameters),
+                facts.usual_boxes[placement.model]);
+  created.template column<Detail>()[i] =
+      detail_of(type, placement.parameters, first_level, last_level);
+  created.template column<Source>()[i] = {
+      placement.parameters, models::parameters_hash(type, placement.parameters), placement.index,
+      placement.model, static_cast<std::uint16_t>(first_level)};
+}
+
+// Creates the mesh entities of a node, with the components of all such and `Also`.
+template <class... Also>
+void create_children(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
+                     std::span<const world::Placement> placements, ecs::World& entities) {
+  const auto models =
+      entities.create<Placed, Detail, Source, Demand, Mesh, Fading, Also...>(placements.size());
+  for (std::size_t i = 0; i < placements.size(); ++i)
+    fill(models, i, facts, block, placements[i]);
+  entities.set_children(node, models.entities);
+}
+
+// The models of a block, or the one mesh of all models on a coarser node.
+void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
+                   std::vector<world::Placement>& scratch, ecs::World& entities) {
+  const core::BlockCoord block = visibility::corner_block(at);
+  if (at.level == 0) {
+    world::place_models(facts.world, facts.registry, block, scratch);
+    create_children(facts, block, node, scratch, entities);
+  } else if (facts.levels[at.level].merged) {
+    scratch.assign(1, {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
+                       world::merged_parameters(at.coord, at.level)});
+    create_children<MeshParts, OldParts>(facts, block, node, scratch, entities);
+  }
+}
+
+void create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
+                 const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
+                 Streaming& streaming, ecs::World& entities) {
+  const NodeLevel& level = facts.levels[at.level];
+  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundRelief,
+                                       GroundSun, Placed, Detail, Source, Demand, Mesh>(1);
+  models::Parameters ground = node_terrain(facts.world, at);
+  world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
+  const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
+  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y,
+                               solid ? node_solidity(facts.world, facts.standing, at) : 0.0F};
+  fill(created, 0, facts, visibility::corner_block(at),
+       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground},
+       at.level == 0 ? 0 : level.mesh_level, level.mesh_level);
+  const ecs::Entity node = created.entities[0];
+  streaming.grids[at.level].entity_of(at.coord) = node;
+  create_models(facts, at, node, scratch, entities);
+}
+
+// How far the middle of the camera's block is from a node's square.
+double distance_m(const Camera& camera, const WorldFacts& facts, const visibility::NodeCoord& at) {
+  const double block_m = facts.world.block_size_m();
+  const core::WorldPosition middle{camera.pose.position.block, {block_m / 2, 0, block_m / 2}};
+  const glm::dvec3 corner = core::offset_m(visibility::corner_block(at), middle, block_m);
+  const double size_m = facts.levels[at.level].size_m;
+  const auto outside = [size_m](double low) { return std::max({low, -(low + size_m), 0.0}); };
+  return std::hypot(outside(corner.x), outside(corner.z));
+}
+
+// How far windows must reach so that all nodes that may exist, or be wanted, lie in them.
+std::uint32_t needed_radius(const WorldFacts& facts, const Settings& settings,
+                            const Streaming& streaming, const NodeGrid& grid) {
+  return std::min(window_radius(facts.levels, settings, grid.level(), streaming.distances),
+                  grid.max_radius());
+}
+
+bool windows_too_small(const WorldFacts& facts, const Settings& settings,
+                       const Streaming& streaming) {
+  return std::ranges::any_of(streaming.grids, [&](const NodeGrid& grid) {
+    return grid.radius() < needed_radius(facts, settings, streaming, grid);
+  });
+}
+
+// Which nodes exist at the camera's place.
+class Window {
+ public:
+  Window(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+         const Streaming& streaming)
+      : camera_(camera), facts_(facts) {
+    for (std::size_t k = 0; k < facts.levels.size(); ++k)
+      reach_m_.push_back(existing_distance_m(facts.levels, settings, k, streaming.distances));
+  }
+
+  bool holds(const visibility::NodeCoord& at) const {
+    if (!contains(facts_.world, at)) return false;
+    const bool top = at.level + 1U == facts_.levels.size();
+    return distance_m(camera_, facts_, top ? at : visibility::parent_of(at)) < reach_m_[at.level];
+  }
+
+ private:
+  const Camera& camera_;
+  const WorldFacts& facts_;
+  std::vector<double> reach_m_;
+};
+
+// Their meshes stay in the cache while there is room: the camera may come back.
+void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs::World& entities,
+                           synthesis::GeometryCache& cache, Counters& counters) {
+  std::vector<ecs::Entity> leaving;
+  entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node> nodes) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const visibility::NodeCoord& at = nodes[i].at;
+      if (!streaming.grids[at.level].contains(at.coord) || !window.holds(at))
+        leaving.push_back(rows[i]);
+    }
+  });
+  counters.nodes_destroyed += static_cast<std::uint32_t>(leaving.size());
+  const auto give_back = [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
+                             std::span<const Mesh> meshes) {
+    for (std::size_t i = 0; i < demands.size(); ++i) {
+      if (demands[i].drawn_level == kNoLevel) continue;
+      cache.set_rank(meshes[i].handle, synthesis::Rank::unwanted());
+    }
+  };
+  entities.each_of<const Demand, const Mesh>(leaving, give_back);
+  for (const ecs::Entity node : leaving)
+    entities.each_of<const Demand, const Mesh>(entities.children(node), give_back);
+  entities.destroy_with_children(leaving);
+}
+
+// Coarse nodes are few and stand for all finer ones: they come first.
+void list_missing_nodes(const Window& window, const Camera& camera, const WorldFacts& facts,
+                        const ecs::World& entities, Streaming& streaming) {
+  streaming.missing.clear();
+  struct Missing {
+    double distance_m;
+    visibility::NodeCoord at;
+  };
+  std::vector<Missing> of_level;
+  for (const NodeGrid& grid : streaming.grids) {
+    of_level.clear();
+    for (std::uint32_t row = 0; row < grid.side(); ++row) {
+      for (std::uint32_t column = 0; column < grid.side(); ++column) {
+        const visibility::NodeCoord at = grid.node_at(column, row);
+        if (!entities.alive(grid.entity_of(at.coord)) && window.holds(at))
+          of_level.push_back({distance_m(camera, facts, at), at});
+      }
+    }
+    std::ranges::sort(of_level, std::greater{}, &Missing::distance_m);
+    for (const Missing& missing : of_level)
+      streaming.missing.push_back(missing.at);
+  }
+}
+
+// What is new is there by the middle of the time until more of it is, if that goes on as before.
+// Returns over how many ticks it is created.
+std::uint32_t spread_missing(const Settings& settings, Streaming& streaming) {
+  const bool leapt = streaming.missing.size() > kLeapt;
+  const std::uint32_t ticks =
+      leapt ? 1 : std::clamp(streaming.ticks_since_listed / 2, 1U, settings.streaming_ticks);
+  streaming.ticks_since_listed = 0;
+  streaming.per_tick = std::max(kFewestCreated, (streaming.missing.size() + ticks - 1) / ticks);
+  return ticks;
+}
+
+}  // namespace
+
+void streaming_system(const Settings& settings, const Camera& camera, const Quality& quality,
+                      const WorldFacts& facts, const Daylight& daylight, Streaming& streaming,
+                      ecs::World& entities, Synthesis& synthesis, Counters& counters) {
+  split_distances(facts.levels, settings, camera.pixels_per_radian, quality.error_pixels,
+                  streaming.distances);
+  const core::BlockCoord place = camera.pose.position.block;
+  const double reach = streaming.distances.back().split_m;
+  if (place != streaming.listed_at ||
+      std::abs(reach - streaming.listed_split_m) > kRelistedChange * reach ||
+      windows_too_small(facts, settings, streaming)) {
+    for (NodeGrid& grid : streaming.grids) {
+      grid.set_centre(nearest_block(facts.world, place));
+      grid.set_radius(needed_radius(facts, settings, streaming, grid));
+    }
+    streaming.listed_split_m = reach;
+    streaming.listed_at = place;
+    const Window window(settings, camera, facts, streaming);
+    destroy_leaving_nodes(window, streaming, entities, *synthesis.cache, counters);
+    list_missing_nodes(window, camera, facts, entities, streaming);
+    synthesis.spread_ticks = spread_missing(settings, streaming);
+  }
+  ++streaming.ticks_since_listed;
+  // All of it for lazy evaluation, in every frame, and before the first frame.
+  const bool all = settings.paradigm == Paradigm::kLazyEvaluation || synthesis.settling;
+  const std::size_t count = all ? streaming.missing.size() : streaming.per_tick;
+  core::Stopwatch spent(settings.virtual_time);
+  std::vector<world::Placement> scratch;
+  for (std::size_t created = 0; created < count && !streaming.missing.empty(); ++created) {
+    const std::size_t before = entities.size();
+    create_node(settings, facts, daylight, streaming.missing.back(), scratch, streaming, entities);
+    spent.charge(kEntitySeconds * static_cast<double>(entities.size() - before));
+    streaming.missing.pop_back();
+    ++counters.nodes_created;
+    if (settings.paradigm == Paradigm::kLazyEvaluation) continue;
+    if (spent.seconds() * 1000.0 > settings.streaming_budget_ms) break;
+  }
+  if (streaming.missing.empty()) synthesis.spread_ticks = 1;
+}
+
+}  // namespace psygen::scene

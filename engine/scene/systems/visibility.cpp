@@ -1,0 +1,325 @@
+// What should be drawn: the cut through the quadtree of nodes, and Prioritized-Layered Projection
+// over the nodes of each level (paper, section 4) from where the camera is. Nodes that the camera
+// would see from where it is predicted to be get the time until then as their deadline. Models
+// inherit their node's key.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/scene/draws/missing.hpp"
+#include "engine/scene/systems.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// LevelView::chosen of nodes in view, and of those that are chosen only for their sake.
+constexpr std::uint8_t kInView = 1, kBeside = 2;
+
+// With room for what stands on the ground and reaches over the node's edge.
+core::Bounds node_bounds(const WorldFacts& facts, const glm::vec3& corner, double size_m,
+                         float low_m, float high_m) {
+  const auto size = static_cast<float>(size_m);
+  const float reach_m = facts.models_reach_m.x;
+  return {corner + glm::vec3(-reach_m, low_m, -reach_m),
+          corner + glm::vec3(size + reach_m, high_m + facts.models_reach_m.y, size + reach_m)};
+}
+
+glm::vec3 corner_of(const WorldFacts& facts, const Camera& camera,
+                    const visibility::NodeCoord& at) {
+  return glm::vec3(core::offset_m(visibility::corner_block(at), camera.pose.position,
+                                  facts.world.block_size_m()));
+}
+
+// Squared, of the nearest point of a box.
+float distance_squared_to(const core::Bounds& box) {
+  const glm::vec3 nearest = glm::clamp(glm::vec3(0.0F), box.min, box.max);
+  return glm::dot(nearest, nearest);
+}
+
+visibility::Frustum frustum_of(const core::CameraPose& pose, const core::Projection& projection) {
+  return visibility::make_frustum(core::projection_matrix(projection) * core::view_rotation(pose));
+}
+
+// The boxes of all cells of all windows: as far as the ground could reach at most where there is no
+// node, or none with a mesh.
+void find_bounds(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                 const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
+  const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
+  view.levels.resize(facts.levels.size());
+  for (const NodeGrid& grid : streaming.grids) {
+    const NodeLevel& level = facts.levels[grid.level()];
+    std::vector<core::Bounds>& bounds = view.levels[grid.level()].bounds;
+    bounds.clear();
+    if (solid)
+      view.levels[grid.level()].solidity.assign(std::size_t{grid.side()} * grid.side(), 0.0F);
+    const glm::vec3 first = corner_of(facts, camera, grid.node_at(0, 0));
+    const auto size = static_cast<float>(level.size_m);
+    for (std::uint32_t row = 0; row < grid.side(); ++row) {
+      for (std::uint32_t column = 0; column < grid.side(); ++column) {
+        const glm::vec3 steps(static_cast<float>(column), 0.0F, static_cast<float>(row));
+        bounds.push_back(node_bounds(facts, first + steps * size, level.size_m, level.bounds.min.y,
+                                     level.bounds.max.y));
+      }
+    }
+  }
+  nodes.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> rows) {
+    for (const Node& node : rows) {
+      const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
+      if (solid) view.levels[node.at.level].solidity[cell] = node.solidity;
+      view.levels[node.at.level].bounds[cell] =
+          node_bounds(facts, corner_of(facts, camera, node.at), facts.levels[node.at.level].size_m,
+                      node.low_m, node.high_m);
+    }
+  });
+}
+
+void project_layers(const Settings& settings, const NodeGrid& grid,
+                    const visibility::Frustum& frustum, LevelView& level) {
+  visibility::PlpInput input;
+  input.width = input.depth = grid.side();
+  input.start_x = input.start_z = grid.radius();
+  input.bounds = level.bounds;
+  input.frustum = &frustum;
+  input.mode = settings.plp_mode;
+  input.solidity = level.solidity;
+  visibility::run_plp(input, level.plp);
+  level.deadlines.assign(level.bounds.size(), std::numeric_limits<float>::infinity());
+  level.chosen.assign(level.bounds.size(), 0);
+}
+
+// What a predicted camera sees.
+struct Outlook {
+  float tau_s = 0;
+  glm::vec3 moved{0.0F};  // from where the camera is
+  visibility::Frustum frustum;
+};
+
+// Until when a node is expected in view by cameras that are so near to it that it is fine enough
+// only for them: the first of the outlooks.
+float deadline_of(const core::Bounds& bounds, float reach_m, std::span<const Outlook> outlooks) {
+  for (const Outlook& outlook : outlooks) {
+    const core::Bounds box{bounds.min - outlook.moved, bounds.max - outlook.moved};
+    if (distance_squared_to(box) < reach_m * reach_m &&
+        visibility::intersects(outlook.frustum, box))
+      return outlook.tau_s;
+  }
+  return std::numeric_limits<float>::infinity();
+}
+
+// The deadlines of all nodes that there are.
+void expect(const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
+            const VisibilityQuery& query, View& view) {
+  std::vector<Outlook> outlooks;  // soonest first
+  for (const Camera::Prediction& prediction : camera.predictions) {
+    const core::WorldPosition& to = prediction.pose.position;
+    outlooks.push_back(
+        {prediction.tau_s,
+         glm::vec3(core::offset_m(to.block, camera.pose.position, facts.world.block_size_m()) +
+                   to.local),
+         frustum_of(prediction.pose, camera.projection)});
+  }
+  std::vector<float> reaches_m;
+  for (std::size_t k = 0; k + 1 < view.levels.size(); ++k)
+    reaches_m.push_back(
+        static_cast<float>(streaming.distances[k + 1].merge_m + 2 * facts.levels[k].size_m));
+  reaches_m.push_back(std::numeric_limits<float>::infinity());
+  query.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> nodes) {
+    for (const Node& node : nodes) {
+      LevelView& level = view.levels[node.at.level];
+      const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
+      level.deadlines[cell] = deadline_of(level.bounds[cell], reaches_m[node.at.level], outlooks);
+    }
+  });
+}
+
+void choose_cut(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                const Streaming& streaming, bool settling, View& view) {
+  const auto top = static_cast<std::uint8_t>(facts.levels.size() - 1);
+  visibility::CutInput input;
+  input.camera = camera.pose.position;
+  input.block_size_m = facts.world.block_size_m();
+  input.levels = streaming.distances;
+  input.view_distance_m = settings.view_distance_m;
+  input.world = {{},
+                 static_cast<std::uint32_t>(facts.world.blocks_x),
+                 static_cast<std::uint32_t>(facts.world.blocks_z)};
+  visibility::roots_around(camera.pose.position, facts.world.block_size_m(),
+                           settings.view_distance_m, top, view.roots, input.world);
+  input.roots = view.roots;
+  if (settling) view.cut.split.clear();  // no hysteresis
+  visibility::select_cut(input, view.cut);
+}
+
+// A node in view that has no entity yet is a hole unless an ancestor stands for it.
+void count_missing_node(const Camera& camera, const core::Bounds& box, Counters& counters) {
+  count_seen(camera,
+             {.center = box.center(),
+              .radius_m = glm::length(box.half_extent()),
+              .hole = true,
+              .awaits = false},
+             counters);
+}
+
+// What of the cut could be drawn before this tick, and what of it is therefore drawn now, unless a
+// mesh is evicted or a hole is filled (find_ready of the render system): complete nodes; where no
+// ancestor is complete bare ground is better than nothing.
+void find_drawn(const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
+  const std::vector<visibility::CutNode>& cut = view.cut.nodes;
+  view.ready.assign(cut.size(), 0);
+  std::vector<std::uint8_t>& complete = view.scratch;  // the node or an ancestor
+  complete.assign(cut.size(), 0);
+  for (std::size_t i = 0; i < cut.size(); ++i) {
+    const bool above = cut[i].parent != visibility::kNoNode && complete[cut[i].parent] != 0;
+    const ecs::Entity entity = streaming.grids[cut[i].node.level].entity_of(cut[i].node.coord);
+    const Lacking* lacking = nodes.get<Lacking>(entity);
+    const bool itself = lacking != nullptr && lacking->meshes == 0;
+    const bool ground = lacking != nullptr && nodes.get<Demand>(entity)->drawn_level != kNoLevel;
+    complete[i] = above || itself ? 1 : 0;
+    view.ready[i] = itself || (ground && !above) ? 1 : 0;
+  }
+  visibility::drawn_nodes(view.cut, view.ready, view.scratch, view.drawn);
+}
+
+// Whether the lines of a drawn node say what can be hidden: none of them lies beyond the world, and
+// none may lie above the camera, as in coarse ground that stands for finer ground below it.
+bool hides_others(const WorldFacts& facts, const visibility::CutNode& node) {
+  const bool around = node.corner_x_m <= 0 && node.corner_x_m + node.side_m >= 0 &&
+                      node.corner_z_m <= 0 && node.corner_z_m + node.side_m >= 0;
+  return !(around && !node.leaf) && !overhangs(facts.world, node.node);
+}
+
+// Which nodes of the cut are in view: in the frustum, and not behind the ground of others that are
+// drawn. Front to back, so that each is held against what lies before it.
+void find_hidden(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                 const Streaming& streaming, const VisibilityQuery& nodes, View& view,
+                 Counters& counters) {
+  const std::vector<visibility::CutNode>& cut = view.cut.nodes;
+  view.horizon.reset();
+  view.in_view.assign(cut.size(), 0);
+  const glm::dvec3& local = camera.pose.position.local;
+  const bool hides =
+      settings.occlusion &&
+      local.y > models::ground_height_m(facts.world.terrain, camera.pose.position.block, local.x,
+                                        local.z);
+  std::size_t next = 0;  // of view.drawn
+  for (std::uint32_t i = 0; i < cut.size();) {
+    const visibility::NodeCoord& at = cut[i].node;
+    const NodeGrid& grid = streaming.grids[at.level];
+    const std::size_t cell = grid.window_index(at.coord);
+    const core::Bounds& box = view.levels[at.level].bounds[cell];
+    const bool in_frustum = view.levels[at.level].plp.in_view[cell] != 0;
+    const bool hidden = in_frustum && view.horizon.hides(box);
+    counters.nodes_hidden += hidden ? 1 : 0;
+    view.in_view[i] = in_frustum && !hidden ? 1 : 0;
+    while (next < view.drawn.size() && view.drawn[next] < i)
+      ++next;
+    const bool drawn = next < view.drawn.size() && view.drawn[next] == i;
+    if (hides && drawn && view.in_view[i] != 0 && hides_others(facts, cut[i])) {
+      const auto& relief = *nodes.get<GroundRelief>(grid.entity_of(at.coord));
+      add_lines(relief, corner_of(facts, camera, at), cut[i].side_m, view.horizon);
+    }
+    i = view.in_view[i] != 0 ? i + 1 : cut[i].end;
+  }
+}
+
+// The nodes of the cut that are in view, and those without which one of these cannot be drawn.
+void list_chosen(const Camera& camera, const Streaming& streaming, const VisibilityQuery& nodes,
+                 View& view, Counters& counters) {
+  const std::vector<visibility::CutNode>& cut = view.cut.nodes;
+  view.chosen.clear();
+  std::vector<std::uint8_t> covered(cut.size(), 0);  // an ancestor or the node itself is complete
+  std::size_t next = 0;                              // of view.drawn
+  for (std::size_t i = 0; i < cut.size(); ++i) {
+    const visibility::CutNode& node = cut[i];
+    const NodeGrid& grid = streaming.grids[node.node.level];
+    const std::size_t cell = grid.window_index(node.node.coord);
+    LevelView& level = view.levels[node.node.level];
+    const bool root = node.parent == visibility::kNoNode;
+    const bool covered_above = !root && covered[node.parent] != 0;
+    const ecs::Entity entity = grid.entity_of(node.node.coord);
+    const bool alive = nodes.alive(entity);
+    covered[i] = covered_above || (alive && nodes.get<Lacking>(entity)->meshes == 0) ? 1 : 0;
+    while (next < view.drawn.size() && view.drawn[next] < i)
+      ++next;
+    // What is drawn in this tick is not covered, whatever stands ready: what it lacks is seen.
+    const bool drawn = next < view.drawn.size() && view.drawn[next] == i;
+    if (view.in_view[i] == 0 && (root || view.in_view[node.parent] == 0)) continue;
+    if (alive) {
+      view.chosen.push_back({entity, node.node.level, node.leaf, node.fine, view.in_view[i] != 0,
+                             covered_above && !drawn});
+      level.chosen[cell] = view.in_view[i] != 0 ? kInView : kBeside;
+    } else if (node.leaf && view.in_view[i] != 0 && !covered_above) {
+      count_missing_node(camera, level.bounds[cell], counters);
+    }
+  }
+}
+
+void write_visibility(const View& view, const Streaming& streaming, const VisibilityQuery& query) {
+  query.each<const Node, Visibility>([&](std::span<const ecs::Entity>, std::span<const Node> nodes,
+                                         std::span<Visibility> visibilities) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const visibility::NodeCoord& at = nodes[i].at;
+      const LevelView& level = view.levels[at.level];
+      const std::size_t cell = streaming.grids[at.level].window_index(at.coord);
+      Visibility& visibility = visibilities[i];
+      visibility.distance_m = std::sqrt(distance_squared_to(level.bounds[cell]));
+      visibility.layer = static_cast<std::uint16_t>(
+          std::min<std::uint32_t>(level.plp.key[cell] / visibility::kKeysPerLayer, UINT16_MAX));
+      visibility.in_view = level.chosen[cell] == kInView ? 1 : 0;
+      visibility.deadline_s = visibility.in_view != 0 ? 0.0F : level.deadlines[cell];
+    }
+  });
+}
+
+// All other nodes, in order of importance.
+void list_others(const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
+  view.expected.clear();
+  view.around.clear();
+  struct Expected {
+    float deadline_s;
+    ecs::Entity node;
+  };
+  std::vector<Expected> expected;
+  for (std::size_t k = view.levels.size(); k-- > 0;) {
+    const LevelView& level = view.levels[k];
+    const NodeGrid& grid = streaming.grids[k];
+    for (const auto* list : {&level.plp.visible, &level.plp.prefetch}) {
+      for (const std::uint32_t cell : *list) {
+        if (level.chosen[cell] != 0) continue;
+        const ecs::Entity entity =
+            grid.entity_of(grid.node_at(cell % grid.side(), cell / grid.side()).coord);
+        if (!nodes.alive(entity)) continue;
+        if (std::isfinite(level.deadlines[cell])) {
+          expected.push_back({level.deadlines[cell], entity});
+        } else {
+          view.around.push_back(entity);
+        }
+      }
+    }
+  }
+  std::ranges::stable_sort(expected, {}, &Expected::deadline_s);
+  for (const Expected& soon : expected)
+    view.expected.push_back(soon.node);
+}
+
+}  // namespace
+
+void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
+                       const Streaming& streaming, const Synthesis& synthesis,
+                       VisibilityQuery nodes, View& view, Counters& counters) {
+  find_bounds(settings, camera, facts, streaming, nodes, view);
+  view.frustum = frustum_of(camera.pose, camera.projection);
+  for (const NodeGrid& grid : streaming.grids)
+    project_layers(settings, grid, view.frustum, view.levels[grid.level()]);
+  expect(camera, facts, streaming, nodes, view);
+  choose_cut(settings, camera, facts, streaming, synthesis.settling, view);
+  find_drawn(streaming, nodes, view);
+  find_hidden(settings, camera, facts, streaming, nodes, view, counters);
+  list_chosen(camera, streaming, nodes, view, counters);
+  write_visibility(view, streaming, nodes);
+  list_others(streaming, nodes, view);
+}
+
+}  // namespace psygen::scene
