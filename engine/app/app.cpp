@@ -195,7 +195,7 @@ core::Extent App::picture_size() const {
 }
 
 bool App::has_hung_modelers() const {
-  return !scene_->state().synthesis.manager->hung().empty();
+  return !scene_->state().meshes.hung().empty();
 }
 
 core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {

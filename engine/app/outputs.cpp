@@ -84,7 +84,7 @@ telemetry::RunFacts App::run_facts(bool whole) {
   const double target_ms = options_.scene.target_frame_ms;
   facts.run.target_fps = target_ms > 0 ? telemetry::Figure(1000 / target_ms)
                                        : telemetry::Figure::missing("no frame rate is held");
-  const synthesis::CacheStats cache = state.synthesis.cache->stats();
+  const synthesis::CacheStats cache = state.meshes.stats();
   facts.cache_budget_bytes = cache.budget_bytes;
   facts.cache_peak_bytes = cache.peak_bytes;
   facts.prefetch_hit_percent =
@@ -98,7 +98,7 @@ telemetry::RunFacts App::run_facts(bool whole) {
   facts.floor_ratio = telemetry::Figure::missing("the flight failed");
   if (whole) {
     // Nothing else runs while the floor is measured.
-    const bool alone = state.synthesis.manager->wait_all([this] { return !stopped(); });
+    const bool alone = scene_->state().meshes.wait([this] { return !stopped(); });
     facts.floor_ratio = alone ? floor_ratio(*log_, *renderer_)
                               : telemetry::Figure::missing("the flight was stopped");
   }

@@ -35,7 +35,7 @@ core::Result<std::string> png_name(const std::string& file) {
 
 // Which coarser levels stand for what found no room depends on what came first.
 core::Result<void> check_complete(const scene::State& state) {
-  if (state.synthesis.coarsening > 1 || state.counters.refused > 0) {
+  if (state.quality.coarsening > 1 || state.counters.refused > 0) {
     constexpr double kMiB = 1 << 20;
     return core::fail(
         core::ErrorCode::kOverBudget,

@@ -7,10 +7,9 @@ namespace psygen::cli {
 
 void RequestRecorder::observe(const scene::State& state) {
   const double now_s = std::max(state.clock.now_s, 0.0);
-  for (const synthesis::Want& want : state.synthesis.wants) {
+  for (const synthesis::Want& want : state.meshes.wants()) {
     if (!seen_.insert(want.key).second) continue;
-    const double seconds =
-        state.synthesis.cost->predict(want.key.model, *want.parameters, want.key.level);
+    const double seconds = state.meshes.predict(want);
     const bool due = synthesis::is_visible(want.rank.group()) || std::isfinite(want.deadline_s);
     const double ahead_s = synthesis::is_visible(want.rank.group()) ? 0.0 : double{want.deadline_s};
     jobs_.push_back({now_s, seconds, due ? now_s + ahead_s : synthesis::kNoDeadline, want.rank});

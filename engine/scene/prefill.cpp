@@ -46,9 +46,8 @@ RegionSize region_size(const State& s) {
 }
 
 // Wants for everything that exists now.
-void want_everything(State& s) {
-  std::vector<synthesis::Want>& wants = s.synthesis.wants;
-  wants.clear();
+std::vector<synthesis::Want> want_everything(const State& s) {
+  std::vector<synthesis::Want> wants;
   s.entities.each<const Placed, const Source, const Detail>(
       [&](std::span<const ecs::Entity> entities, std::span<const Placed> placed,
           std::span<const Source> sources, std::span<const Detail> details) {
@@ -62,22 +61,23 @@ void want_everything(State& s) {
           }
         }
       });
+  return wants;
 }
 
 void land_everything(State& s) {
   Settings unlimited = s.settings;
   unlimited.upload_budget_bytes = UINT64_MAX;
-  synthesis_system(s.settings, s.synthesis, s.counters, s.trace);
-  s.synthesis.ready.clear();
-  upload_system(unlimited, s.clock, s.facts, UploadQuery(s.entities), s.synthesis, s.output,
-                s.counters, s.totals);
+  synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
+  s.found.meshes.clear();
+  upload_system(unlimited, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
+                s.output, s.counters, s.totals);
 }
 
 // False if it was ended early.
 bool create_all_nodes(State& s, const std::function<bool()>& go_on) {
   do {
-    streaming_system(s.settings, s.camera, s.quality, s.facts, s.daylight, s.streaming, s.entities,
-                     s.synthesis, s.counters);
+    streaming_system(s.settings, s.rules, s.camera, s.quality, s.facts, s.daylight, s.streaming,
+                     s.entities, s.meshes, s.counters);
     if (!go_on()) return false;
   } while (!s.streaming.missing.empty());
   return true;
@@ -90,19 +90,21 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
   s.input.pose = pose;
   s.clock.real_s = s.clock.read_real_s();
   s.counters = {};
-  s.totals.awaiting_since_s = std::numeric_limits<double>::infinity();
-  input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);
+  s.rules = rules_of(s.settings, true);
+  s.pressure.awaited = 0;  // nobody looks
+  input_system(s.input, s.clock, s.facts, s.camera);
+  quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
-  streaming_system(s.settings, s.camera, s.quality, s.facts, s.daylight, s.streaming, s.entities,
-                   s.synthesis, s.counters);
-  visibility_system(s.settings, s.camera, s.facts, s.streaming, s.synthesis,
+  streaming_system(s.settings, s.rules, s.camera, s.quality, s.facts, s.daylight, s.streaming,
+                   s.entities, s.meshes, s.counters);
+  visibility_system(s.settings, s.rules, s.camera, s.facts, s.streaming,
                     VisibilityQuery(s.entities), s.view, s.counters);
-  cache_system(s.settings, s.clock, s.camera, s.quality, s.facts, s.view, CacheQuery(s.entities),
-               s.synthesis, s.counters, s.totals);
-  s.synthesis.manager->wait_all(go_on);
-  synthesis_system(s.settings, s.synthesis, s.counters, s.trace);
-  upload_system(s.settings, s.clock, s.facts, UploadQuery(s.entities), s.synthesis, s.output,
-                s.counters, s.totals);
+  cache_system(s.settings, s.rules, s.clock, s.camera, s.quality, s.facts, s.streaming, s.view,
+               CacheQuery(s.entities), s.meshes, s.found, s.pressure, s.counters);
+  s.meshes.wait(go_on);
+  synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
+  upload_system(s.settings, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
+                s.output, s.counters, s.totals);
   ++s.clock.tick;
 }
 
@@ -112,19 +114,19 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   int quiet = 0, idle = 0, refused = 0;
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("filling the cache", fraction); };
-  s.synthesis.settling = true;
-  s.synthesis.coarsening = 1;
+  s.pressure = {};
+  s.quality.coarsening = 1;
   // What frames in flight may read cannot be given back before they are done, and none follows.
   if (s.output.renderer != nullptr) s.output.renderer->wait_idle();
   while (quiet < kQuietTicks && idle < kIdleTicks && refused < kRefusedTicks) {
-    const float coarsening = s.synthesis.coarsening;
+    const float coarsening = s.quality.coarsening;
     tick_without_drawing(pose, go_on);
     synthesised += s.counters.models_synthesised;
     const bool moved = s.counters.models_synthesised > 0 || s.counters.failed > 0 ||
-                       s.counters.nodes_created > 0 || s.synthesis.coarsening != coarsening;
+                       s.counters.nodes_created > 0 || s.quality.coarsening != coarsening;
     refused += s.counters.refused > 0 ? 1 : 0;
     idle = moved ? 0 : idle + 1;
-    const bool complete = s.streaming.missing.empty() && s.synthesis.finished.empty();
+    const bool complete = s.streaming.missing.empty() && !s.meshes.has_arrived();
     quiet = complete && s.counters.requests == 0 ? quiet + 1 : 0;
     const double missing = s.counters.requests + static_cast<double>(s.streaming.missing.size()) *
                                                      (1.0 + s.facts.models_per_block);
@@ -132,7 +134,6 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
     fraction = made / (made + missing + 1.0);
     if (!go_on()) break;
   }
-  s.synthesis.settling = false;
   return synthesised;
 }
 
@@ -151,23 +152,23 @@ core::Result<void> Scene::check_region() const {
 core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const Progress& progress) {
   State& s = state_;
   s.input.pose = pose;
-  input_system(s.settings, s.input, s.clock, s.facts, s.synthesis, s.camera, s.quality);
+  s.rules = rules_of(s.settings, false);
+  input_system(s.input, s.clock, s.facts, s.camera);
+  quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("amplifying", fraction); };
   if (!create_all_nodes(s, go_on)) return 0;
   if (auto fits = check_region(); !fits) return tl::unexpected(fits.error());
-  want_everything(s);
-  const std::vector<synthesis::Want> all = std::move(s.synthesis.wants);
+  const std::vector<synthesis::Want> all = want_everything(s);
   constexpr std::size_t kBatch = 2048;
   std::uint64_t done = 0, failed = 0;
   for (std::size_t first = 0; first < all.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, all.size() - first);
-    s.synthesis.planner->plan(std::span(all).subspan(first, count), *s.synthesis.cache,
-                              *s.synthesis.cost, *s.synthesis.manager,
-                              {std::numeric_limits<double>::infinity(), UINT32_MAX},
-                              synthesis::Policy::kLongest);
-    s.synthesis.manager->wait_all(go_on);
+    s.meshes.plan(std::span(all).subspan(first, count),
+                  {std::numeric_limits<double>::infinity(), UINT32_MAX},
+                  synthesis::Policy::kLongest);
+    s.meshes.wait(go_on);
     s.counters = {};
     land_everything(s);
     done += s.counters.models_synthesised;

@@ -125,16 +125,17 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
 }
 
 // As many as there are from now on. Without any no mesh would ever be made.
-core::Result<void> take_modelers(const synthesis::SynthesisManager& manager, Settings& settings) {
+core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
+                                  synthesis::MeshSupply& meshes, Settings& settings) {
   const unsigned wanted = synthesis::modeler_count_for(settings.modelers);
-  settings.modelers = manager.modeler_count();
+  settings.modelers = meshes.start_modelers(options);
   if (settings.modelers == 0) {
     return core::fail(core::ErrorCode::kInternal,
-                      fmt::format("no modeler can be started: {}", manager.shortage()));
+                      fmt::format("no modeler can be started: {}", meshes.shortage()));
   }
   if (settings.modelers < wanted) {
     core::log_warning(fmt::format("only {} of {} modelers can be started: {}", settings.modelers,
-                                  wanted, manager.shortage()));
+                                  wanted, meshes.shortage()));
   }
   return {};
 }
@@ -163,13 +164,6 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
 }
 
 }  // namespace
-
-Scene::~Scene() {
-  // Modelers write into the cache's memory: they end first.
-  state_.synthesis.manager.reset();
-  state_.synthesis.planner.reset();
-  state_.synthesis.cache.reset();
-}
 
 core::Result<void> Scene::check(const Settings& settings) {
   const auto refuse = [](std::string sentence) {
@@ -240,17 +234,13 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
     s.heap = std::make_unique<core::HeapGeometryMemory>(settings.budget_bytes);
   }
   s.memory = renderer != nullptr ? &renderer->geometry() : s.heap.get();
-  Synthesis& synthesis = s.synthesis;
-  synthesis.cache =
-      std::make_unique<synthesis::GeometryCache>(*s.memory, facts.registry, settings.budget_bytes);
-  synthesis.cost = std::make_unique<synthesis::CostModel>(facts.registry);
+  s.meshes.open(facts.registry, *s.memory, settings.budget_bytes);
   facts.usual_boxes = usual_boxes(facts.registry, models_on(facts, {}));
   if (!settings.virtual_time) {
-    scene->calibration_ = synthesis.cost->calibrate(cost_samples(facts), {}, [&](double fraction) {
+    scene->calibration_ = s.meshes.calibrate(cost_samples(facts), [&](double fraction) {
       if (progress) (void)progress("calibrating", fraction);
     });
   }
-  synthesis.planner = std::make_unique<synthesis::Planner>();
   synthesis::SynthesisOptions options;
   // How many processors there are changes nothing on a virtual clock.
   if (settings.virtual_time) s.settings.modelers = std::max(settings.modelers, 1U);
@@ -258,8 +248,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   options.watchdog_seconds = settings.watchdog_seconds;
   options.annotate = mesh_notes(facts);
   if (settings.virtual_time) options.virtual_clock = [&s] { return s.clock.real_s; };
-  synthesis.manager = std::make_unique<synthesis::SynthesisManager>(facts.registry, options);
-  if (auto ok = take_modelers(*synthesis.manager, s.settings); !ok)
+  if (auto ok = start_modelers(options, s.meshes, s.settings); !ok)
     return tl::unexpected(ok.error());
   s.quality.governor =
       Governor({.target_ms = settings.target_frame_ms, .max_factor = settings.max_error_factor});

@@ -25,7 +25,6 @@ class Scene {
                                                      render::Renderer* renderer,
                                                      telemetry::TraceLog* trace = nullptr,
                                                      const Progress& progress = {});
-  ~Scene();
 
   State& state() { return state_; }
   const State& state() const { return state_; }

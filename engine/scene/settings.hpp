@@ -50,4 +50,17 @@ struct Settings {
   bool virtual_time = false;
 };
 
+// What the paradigm asks of a tick, decided once (rules_of).
+struct Rules {
+  bool request = true;       // meshes that are missing are synthesised
+  bool wait = false;         // for all of them, before the frame is drawn
+  bool keep = true;          // what this frame draws may be drawn by the next one
+  bool look_ahead = true;    // also for nodes out of view
+  bool coarse_first = true;  // the first mesh of a hole is the coarsest level
+  bool settle = false;       // before the first frame: levels follow from the pose alone, not from
+                             // what came first, or when
+};
+// `settling`: before the first frame.
+Rules rules_of(const Settings& settings, bool settling);
+
 }  // namespace psygen::scene

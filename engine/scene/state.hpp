@@ -23,10 +23,7 @@
 #include "engine/scene/nodes/levels.hpp"
 #include "engine/scene/quality/governor.hpp"
 #include "engine/scene/settings.hpp"
-#include "engine/synthesis/cost_model.hpp"
-#include "engine/synthesis/geometry_cache.hpp"
-#include "engine/synthesis/planner.hpp"
-#include "engine/synthesis/synthesis_manager.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/trace_log.hpp"
 #include "engine/visibility/camera_predictor.hpp"
@@ -49,14 +46,27 @@ struct Input {
   double frame_ms = 0, frame_triangles = 0;
 };
 
-// How fine the picture is in this tick.
+// What a tick lacked. The next one's quality answers it.
+struct Pressure {
+  std::uint32_t refused_visible = 0;  // requests of what is seen for which there was no memory
+  std::uint32_t waiting = 0;          // requests whose memory is about to be free
+  std::uint32_t awaited = 0;          // Counters::awaited
+  double seen_share = 0;              // of the memory for meshes, what is seen
+  double at_s = 0;                    // the real clock then
+};
+
+// How fine the picture is in this tick (quality_system).
 struct Quality {
   Governor governor;
   double error_pixels = 0;  // that levels of detail may have
-  // The same for single models. Of what the governor adds they take the root: they are near, where
-  // one looks, and few of a frame's triangles.
+  // The same for single models. They take the square root of what the governor adds: they are near,
+  // where one looks, and few of a frame's triangles.
   double model_error_pixels = 0;
-  double memory_factor = 1;  // of both, by how much the geometry budget raised them
+  float coarsening = 1;  // >= 1: factor of both, while the geometry budget is too small
+  // Real seconds since which every picture has awaited something (Counters::awaited); +inf: the
+  // last one did not, or there was none.
+  double awaiting_since_s = std::numeric_limits<double>::infinity();
+  bool warned_budget = false;
 };
 
 struct Clock {
@@ -113,6 +123,7 @@ struct Streaming {
   std::vector<visibility::NodeCoord> missing;         // most important last
   std::uint32_t ticks_since_listed = 0;               // the window, for what it lacks
   std::size_t per_tick = 0;                           // of what it lacked, nodes created in a tick
+  std::uint32_t spread_ticks = 1;                     // over which new nodes are created now
   double listed_split_m = 0;   // of the coarsest level, when the window was last looked at
   core::BlockCoord listed_at;  // where the camera was then
 };
@@ -152,22 +163,14 @@ struct View {
   std::vector<ecs::Entity> around;    // the others, coarsest level first, then nearest layers
 };
 
-struct Synthesis {
-  std::unique_ptr<synthesis::GeometryCache> cache;
-  std::unique_ptr<synthesis::CostModel> cost;
-  std::unique_ptr<synthesis::SynthesisManager> manager;
-  std::unique_ptr<synthesis::Planner> planner;
-  std::vector<synthesis::Want> wants;
-  std::vector<synthesis::Completion> finished;  // synthesised, not yet resident; oldest first
-  struct Ready {
+// Meshes that the cache system found ready in this tick. The upload system gives them to their
+// entities, like those that modelers made.
+struct Found {
+  struct Mesh {
     ecs::Entity entity;
     synthesis::MeshHandle handle;
   };
-  std::vector<Ready> ready;        // found in the cache in this tick
-  std::uint32_t spread_ticks = 1;  // over which new nodes are created now
-  bool settling = false;  // levels follow from the pose alone: not from what came first, or when
-  std::uint32_t waiting = 0;  // requests of the last plan whose room is on its way
-  float coarsening = 1;       // ≥ 1: how much the wanted error grows under memory pressure
+  std::vector<Mesh> meshes;
 };
 
 struct DrawLists {
@@ -215,10 +218,6 @@ struct Counters {
 // What is counted from tick to tick.
 struct Totals {
   std::uint64_t failed = 0;
-  // Real seconds since which every picture awaited something (Counters::awaited); +inf: the last
-  // one did not, or there was none.
-  double awaiting_since_s = std::numeric_limits<double>::infinity();
-  bool warned_budget = false;
   synthesis::CacheStats cache;  // at the end of the last tick
 };
 
@@ -245,12 +244,14 @@ struct Tracing {
 
 struct State {
   Settings settings;
+  Rules rules;
   WorldFacts facts;
   ecs::World entities;
   ecs::Schedule tick{entities};  // filled by build_tick
   Input input;
   Clock clock;
   Camera camera;
+  Pressure pressure;
   Quality quality;
   Daylight daylight;
   Streaming streaming;
@@ -258,7 +259,8 @@ struct State {
   std::unique_ptr<core::GeometryMemory> heap;  // the null device's memory; unused with a renderer
   core::GeometryMemory* memory = nullptr;
   Output output;
-  Synthesis synthesis;
+  synthesis::MeshSupply meshes;
+  Found found;
   DrawLists draws;
   Counters counters;
   Totals totals;

@@ -8,11 +8,15 @@
 
 namespace psygen::scene {
 
-// Takes over the wanted pose (an invalid one is refused, the last valid one stays), predicts poses,
-// and decides how fine the picture shall be.
-void input_system(const Settings& settings, const Input& input, const Clock& clock,
-                  const WorldFacts& facts, const Synthesis& synthesis, Camera& camera,
-                  Quality& quality);
+// Takes over the wanted pose (an invalid one is refused, the last valid one stays) and predicts
+// poses.
+void input_system(const Input& input, const Clock& clock, const WorldFacts& facts, Camera& camera);
+
+// Decides how fine the picture shall be, from the time that the last frames took and from what the
+// last tick lacked.
+void quality_system(const Settings& settings, const Rules& rules, const Input& input,
+                    const Pressure& pressure, const synthesis::MeshSupply& meshes,
+                    Quality& quality);
 
 // Moves the sun of worlds that have a day; the ground whose shadows it changes is made anew.
 using DaylightQuery = ecs::Query<const Node, Source, Demand>;
@@ -20,34 +24,38 @@ void daylight_system(const Clock& clock, const WorldFacts& facts, DaylightQuery 
                      Daylight& daylight);
 
 // Creates and destroys nodes with their models around the camera, in batches.
-void streaming_system(const Settings& settings, const Camera& camera, const Quality& quality,
-                      const WorldFacts& facts, const Daylight& daylight, Streaming& streaming,
-                      ecs::World& entities, Synthesis& synthesis, Counters& counters);
+void streaming_system(const Settings& settings, const Rules& rules, const Camera& camera,
+                      const Quality& quality, const WorldFacts& facts, const Daylight& daylight,
+                      Streaming& streaming, ecs::World& entities, synthesis::MeshSupply& meshes,
+                      Counters& counters);
 
 // Chooses the cut through the quadtree and runs Prioritized-Layered Projection over the nodes of
 // each level; what predicted cameras see gets a deadline.
 using VisibilityQuery =
     ecs::Query<const Node, const Lacking, const Demand, const GroundRelief, Visibility>;
-void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                       const Streaming& streaming, const Synthesis& synthesis,
-                       VisibilityQuery nodes, View& view, Counters& counters);
+void visibility_system(const Settings& settings, const Rules& rules, const Camera& camera,
+                       const WorldFacts& facts, const Streaming& streaming, VisibilityQuery nodes,
+                       View& view, Counters& counters);
 
 // Chooses levels of detail, finds what the cache has, ranks what it keeps, plans what is missing.
 using CacheQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
                               const Detail, const Source, const Mesh, Demand, Fading, Lacking>;
-void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
-                  const Quality& quality, const WorldFacts& facts, const View& view,
-                  CacheQuery entities, Synthesis& synthesis, Counters& counters, Totals& totals);
+void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
+                  const Camera& camera, const Quality& quality, const WorldFacts& facts,
+                  const Streaming& streaming, const View& view, CacheQuery entities,
+                  synthesis::MeshSupply& meshes, Found& found, Pressure& pressure,
+                  Counters& counters);
 
 // Collects what the modelers have finished since the last tick.
-void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& counters,
-                      Tracing& trace);
+void synthesis_system(const Settings& settings, const Rules& rules, synthesis::MeshSupply& meshes,
+                      Counters& counters, Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
 using UploadQuery = ecs::Query<const Source, Mesh, MeshParts, OldParts, Fading, Demand, Node,
                                GroundRelief, GroundSun>;
-void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
-                   UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
+void upload_system(const Settings& settings, const Rules& rules, const Clock& clock,
+                   const WorldFacts& facts, const Found& found, UploadQuery entities,
+                   synthesis::MeshSupply& meshes, Output& output, Counters& counters,
                    Totals& totals);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
@@ -56,12 +64,12 @@ using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility
                                const GroundRelief, const GroundSun, Fading>;
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                   const View& view, RenderQuery entities, DrawLists& draws, Output& output,
-                   Counters& counters);
+                   const View& view, RenderQuery entities, synthesis::MeshSupply& meshes,
+                   DrawLists& draws, Output& output, Pressure& pressure, Counters& counters);
 
 // Writes down what the tick did.
 void telemetry_system(const Clock& clock, const Quality& quality, const Counters& counters,
-                      const DrawLists& draws, Synthesis& synthesis, Totals& totals,
+                      const synthesis::MeshSupply& meshes, Totals& totals,
                       telemetry::FrameRecord& record);
 
 }  // namespace psygen::scene

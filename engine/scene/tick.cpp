@@ -16,9 +16,10 @@ constexpr std::string_view kRenderSystem = "render";
 
 void build_tick(State& s) {
   s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight,
-                 s.streaming, s.view, s.output, s.synthesis, s.draws, s.counters, s.totals, s.trace,
-                 s.record);
+                 s.streaming, s.view, s.output, s.meshes, s.found, s.draws, s.counters, s.totals,
+                 s.trace, s.record, s.rules, s.pressure);
   s.tick.add("input", input_system);
+  s.tick.add("quality", quality_system);
   s.tick.add("daylight", daylight_system);
   s.tick.add("streaming", streaming_system);
   s.tick.add("visibility", visibility_system);
@@ -77,7 +78,8 @@ void tick(State& state) {
   state.output.error.reset();
   state.clock.real_s = state.clock.read_real_s();
   state.record = {};
-  state.synthesis.manager->lower_priority();
+  state.rules = rules_of(state.settings, false);
+  state.meshes.lower_priority();
   state.tick.run();
   note_system_times(state);
   if (state.trace.log != nullptr) trace_tick(state);

@@ -1,15 +1,12 @@
 // Decides what every mesh entity should show, takes from the cache what it has, ranks what it
 // keeps, and plans what is missing. Nodes that the picture depends on are looked at in every tick,
 // front to back; those around the camera in turns.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "engine/core/log.hpp"
 #include "engine/scene/draws/seen.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/visibility/level_choice.hpp"
@@ -74,18 +71,21 @@ double seen_share(const synthesis::CacheStats& stats) {
 
 class Chooser {
  public:
-  Chooser(const Settings& settings, const Clock& clock, const Camera& camera,
-          const Quality& quality, const WorldFacts& facts, const View& view, Synthesis& synthesis,
-          Counters& counters)
+  Chooser(const Settings& settings, const Rules& rules, const Clock& clock, const Camera& camera,
+          const Quality& quality, const WorldFacts& facts, const View& view,
+          const Pressure& pressure, synthesis::MeshSupply& meshes, Found& found, Counters& counters)
       : settings_(settings),
+        rules_(rules),
         facts_(facts),
         quality_(quality),
         clock_(clock),
         camera_(camera),
         view_(view),
-        synthesis_(synthesis),
+        pressure_(pressure),
+        meshes_(meshes),
+        found_(found),
         counters_(counters),
-        roomy_(is_roomy(synthesis.cache->stats())) {}
+        roomy_(is_roomy(meshes.stats())) {}
 
   // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
   bool consider(const MeshEntity& row, const NodeView& node, bool is_ground) {
@@ -134,7 +134,7 @@ class Chooser {
       return kNoLevel;
     if (!settings_.levels_of_detail) return 0;
     const std::span<const float> errors(detail.error_m.data(), detail.level_count);
-    const bool keep = demand.drawn_level != kNoLevel && !synthesis_.settling;
+    const bool keep = demand.drawn_level != kNoLevel && !rules_.settle;
     const int current = keep ? demand.drawn_level : -1;
     const double error_pixels =
         node.level == 0 ? quality_.model_error_pixels : quality_.error_pixels;
@@ -176,9 +176,8 @@ class Chooser {
     std::uint8_t& ranked = row.demand.ranked;
     if (ranked == static_cast<std::uint8_t>(group) && !turn) return;
     ranked = static_cast<std::uint8_t>(group);
-    synthesis_.cache->set_rank(row.mesh.handle, group == RankGroup::kUnwanted
-                                                    ? Rank::unwanted()
-                                                    : rank_of(group, node, distance_m));
+    meshes_.rank(row.mesh.handle, group == RankGroup::kUnwanted ? Rank::unwanted()
+                                                                : rank_of(group, node, distance_m));
   }
 
   // Keeps what is drawn, and sees to it that the wanted level comes. Ground never gives way for
@@ -205,8 +204,8 @@ class Chooser {
       // Ground that is only lit anew waits for what lacks detail: with a fast sun it is all of it.
       group = RankGroup::kDrawn;
     } else if (wanted) {  // what frees room is urgent only where room is short
-      group = too_fine && synthesis_.coarsening > 1 ? RankGroup::kVisibleFine
-                                                    : RankGroup::kVisibleCoarse;
+      group =
+          too_fine && quality_.coarsening > 1 ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
     }
     request(row, level, group, node, distance_m);
   }
@@ -216,12 +215,11 @@ class Chooser {
   std::uint8_t level_to_request(const MeshEntity& row, bool hole) const {
     const Demand& demand = row.demand;
     const auto levels = static_cast<int>(row.detail.level_count);
-    const bool coarse_first = hole && settings_.levels_of_detail &&
-                              settings_.paradigm == Paradigm::kParallelLazyAmplification;
+    const bool coarse_first = hole && rules_.coarse_first;
     // A modeler that holds the coarsest one may not get a processor for a while: then the next one.
     // Not where it waits for room.
-    const bool stuck = !synthesis_.settling && synthesis_.coarsening <= 1 &&
-                       synthesis_.waiting == 0 && demand.seen_s >= 0 &&
+    const bool stuck = !rules_.settle && quality_.coarsening <= 1 && pressure_.waiting == 0 &&
+                       demand.seen_s >= 0 &&
                        clock_.real_s - double{demand.seen_s} > kHolePatienceSeconds;
     const int coarsest = stuck && levels > 1 ? levels - 2 : levels - 1;
     const int first = coarse_first ? coarsest : demand.wanted_level;
@@ -244,32 +242,34 @@ class Chooser {
                                  source.parameters_hash};
     const bool first_time = demand.requested_level != level;
     demand.requested_level = level;
-    const synthesis::MeshHandle handle =
-        first_time ? synthesis_.cache->look_up(key) : synthesis_.cache->find(key);
-    const synthesis::MeshRecord* record = synthesis_.cache->get(handle);
+    const synthesis::MeshHandle handle = first_time ? meshes_.look_up(key) : meshes_.find(key);
+    const synthesis::MeshRecord* record = meshes_.get(handle);
     if (record != nullptr && record->state == synthesis::MeshState::kReady) {
-      synthesis_.ready.push_back({row.entity, handle});
+      found_.meshes.push_back({row.entity, handle});
       // The entity that asked for it may have been destroyed; evictions are reported to the owner.
       const RankGroup landed = synthesis::is_visible(group) ? RankGroup::kDrawn : group;
-      synthesis_.cache->adopt(handle, owner_of(row.entity), rank_of(landed, node, distance_m));
+      meshes_.adopt(handle, owner_of(row.entity), rank_of(landed, node, distance_m));
       return;
     }
     if (record != nullptr && record->state == synthesis::MeshState::kFailed) {
       demand.failed_levels |= static_cast<std::uint8_t>(1u << level);
       return;
     }
-    if (settings_.paradigm == Paradigm::kDataAmplification) return;
-    synthesis_.wants.push_back({key, &source.parameters, owner_of(row.entity),
-                                rank_of(group, node, distance_m), node.visibility->deadline_s});
+    if (!rules_.request) return;
+    meshes_.want({key, &source.parameters, owner_of(row.entity), rank_of(group, node, distance_m),
+                  node.visibility->deadline_s});
   }
 
   const Settings& settings_;
+  const Rules& rules_;
   const WorldFacts& facts_;
   const Quality& quality_;
   const Clock& clock_;
   const Camera& camera_;
   const View& view_;
-  Synthesis& synthesis_;
+  const Pressure& pressure_;
+  synthesis::MeshSupply& meshes_;
+  Found& found_;
   Counters& counters_;
   const bool roomy_;
 };
@@ -333,21 +333,21 @@ class NodeWalk {
 };
 
 // Lazy evaluation keeps nothing: what the last frame drew is given back.
-void forget_last_frame(const CacheQuery& entities, Synthesis& synthesis) {
-  entities.each<Demand, const Mesh>([&synthesis](std::span<const ecs::Entity>,
-                                                 std::span<Demand> demands,
-                                                 std::span<const Mesh> meshes) {
+void forget_last_frame(const CacheQuery& entities, synthesis::MeshSupply& supply) {
+  entities.each<Demand, const Mesh>([&supply](std::span<const ecs::Entity>,
+                                              std::span<Demand> demands,
+                                              std::span<const Mesh> meshes) {
     for (std::size_t i = 0; i < demands.size(); ++i) {
       if (demands[i].drawn_level == kNoLevel) continue;
-      synthesis.cache->release(meshes[i].handle);
+      supply.forget(meshes[i].handle);
       demands[i].drawn_level = kNoLevel;
     }
   });
 }
 
 // Entities whose mesh was taken to make room draw nothing until they get another one.
-void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
-  for (const synthesis::Eviction& eviction : synthesis.cache->take_evictions()) {
+void drop_evicted(const CacheQuery& entities, synthesis::MeshSupply& meshes) {
+  for (const synthesis::Eviction& eviction : meshes.take_evictions()) {
     const ecs::Entity owner = entity_of(eviction.owner);
     const Mesh* mesh = entities.get<Mesh>(owner);
     if (mesh != nullptr && mesh->handle == eviction.handle) {
@@ -358,77 +358,60 @@ void drop_evicted(const CacheQuery& entities, Synthesis& synthesis) {
   }
 }
 
-std::string what_is_small(const synthesis::CacheStats& stats) {
-  const std::uint64_t capacity_mib = stats.capacity_bytes >> 20;
-  if (capacity_mib >= stats.budget_bytes >> 20) return "the geometry budget";
-  return fmt::format("the memory that the system has for geometry ({} MiB)", capacity_mib);
-}
-
-// Under pressure everything gets coarser, and finer again when there is room: quickly up, slowly
-// down.
-void adapt_to_budget(const Settings& settings, const synthesis::PlanReport& report,
-                     Synthesis& synthesis, Totals& totals) {
-  constexpr float kUp = 1.15F, kDown = 0.99F, kCoarsest = 64.0F;
-  const bool lazy = settings.paradigm == Paradigm::kLazyEvaluation;
-  // Finer levels of what is seen need room, and so does what is around. Lazy evaluation has no next
-  // tick in which to come again, and may make a picture while the last two, still in flight, hold
-  // their memory: three must fit.
-  const double seen = seen_share(synthesis.cache->stats()), roomy = lazy ? 0.28 : 0.5;
-  const bool too_late = lazy && (report.waiting > 0 || seen > 1.0 / 3);
-  if (report.refused_visible > 0 || too_late) {
-    synthesis.coarsening = std::min(synthesis.coarsening * kUp, kCoarsest);
-    if (!totals.warned_budget) {
-      totals.warned_budget = true;
-      core::log_warning(
-          fmt::format("{} is too small for this view{}", what_is_small(synthesis.cache->stats()),
-                      settings.levels_of_detail ? "; drawing coarser levels"
-                                                : " at full detail; some of it is missing"));
+synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, const Clock& clock,
+                                  const Quality& quality, const Streaming& streaming,
+                                  const Pressure& pressure) {
+  synthesis::PlanLimits limits;
+  if (rules.wait) {
+    limits.seconds_ahead = std::numeric_limits<double>::infinity();
+    limits.max_requests = UINT32_MAX;
+  } else {
+    limits.seconds_ahead = settings.plan_seconds_ahead;
+    limits.max_requests = settings.plan_max_requests;
+    limits.seconds_here = settings.main_thread_budget_ms / 1000.0;
+    if (!rules.settle) {
+      limits.max_new = settings.plan_max_new;
+      limits.max_new_hidden =
+          std::max(settings.plan_max_new / streaming.spread_ticks, kFewestHidden);
     }
-  } else if (seen < roomy) {
-    synthesis.coarsening = std::max(synthesis.coarsening * kDown, 1.0F);
   }
+  if (pressure.waiting == 0 && clock.real_s - quality.awaiting_since_s > kCoarsePatienceSeconds)
+    limits.here_up_to = RankGroup::kVisibleCoarse;
+  return limits;
 }
 
 }  // namespace
 
-void cache_system(const Settings& settings, const Clock& clock, const Camera& camera,
-                  const Quality& quality, const WorldFacts& facts, const View& view,
-                  CacheQuery entities, Synthesis& synthesis, Counters& counters, Totals& totals) {
-  if (settings.paradigm == Paradigm::kLazyEvaluation) forget_last_frame(entities, synthesis);
-  synthesis.wants.clear();
-  synthesis.ready.clear();
+void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
+                  const Camera& camera, const Quality& quality, const WorldFacts& facts,
+                  const Streaming& streaming, const View& view, CacheQuery entities,
+                  synthesis::MeshSupply& meshes, Found& found, Pressure& pressure,
+                  Counters& counters) {
+  if (!rules.keep) forget_last_frame(entities, meshes);
+  meshes.begin_wants();
+  found.meshes.clear();
 
-  Chooser chooser(settings, clock, camera, quality, facts, view, synthesis, counters);
+  Chooser chooser(settings, rules, clock, camera, quality, facts, view, pressure, meshes, found,
+                  counters);
   NodeWalk walk(chooser, camera, facts.world.block_size_m(), entities);
-  const bool wait = settings.paradigm == Paradigm::kLazyEvaluation;
-  walk.consider(view.chosen, wait);
-  if (settings.paradigm == Paradigm::kParallelLazyAmplification) {
+  walk.consider(view.chosen, rules.wait);
+  if (rules.look_ahead) {
     walk.consider(view.expected, NodeView{});
     std::vector<ecs::Entity> around;  // those whose turn it is
     for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns)
       around.push_back(view.around[i]);
     walk.consider(around, NodeView{.error_factor = kAroundErrorFactor, .around = true});
   }
-  synthesis::PlanLimits limits;
-  limits.seconds_ahead =
-      wait ? std::numeric_limits<double>::infinity() : settings.plan_seconds_ahead;
-  limits.max_requests = wait ? UINT32_MAX : settings.plan_max_requests;
-  limits.max_new = wait || synthesis.settling ? UINT32_MAX : settings.plan_max_new;
-  limits.max_new_hidden = limits.max_new;
-  if (!wait && !synthesis.settling)
-    limits.max_new_hidden = std::max(settings.plan_max_new / synthesis.spread_ticks, kFewestHidden);
-  limits.seconds_here = wait ? 0.0 : settings.main_thread_budget_ms / 1000.0;
-  if (synthesis.waiting == 0 && clock.real_s - totals.awaiting_since_s > kCoarsePatienceSeconds)
-    limits.here_up_to = RankGroup::kVisibleCoarse;
-  const synthesis::PlanReport report =
-      synthesis.planner->plan(synthesis.wants, *synthesis.cache, *synthesis.cost,
-                              *synthesis.manager, limits, settings.policy);
-  counters.requests = static_cast<std::uint32_t>(synthesis.wants.size());
+  const synthesis::PlanReport report = meshes.plan(
+      plan_limits(settings, rules, clock, quality, streaming, pressure), settings.policy);
+  drop_evicted(entities, meshes);
+  counters.requests = static_cast<std::uint32_t>(meshes.wants().size());
   counters.refused = report.refused;
   counters.refused_visible = report.refused_visible;
-  synthesis.waiting = report.waiting;
-  drop_evicted(entities, synthesis);
-  adapt_to_budget(settings, report, synthesis, totals);
+  pressure.refused_visible = report.refused_visible;
+  pressure.waiting = report.waiting;
+  pressure.seen_share = seen_share(meshes.stats());
+  pressure.at_s = clock.real_s;
 }
 
 }  // namespace psygen::scene

@@ -1,5 +1,4 @@
-#include <cmath>
-#include <glm/geometric.hpp>
+#include <array>
 
 #include "engine/scene/systems.hpp"
 
@@ -9,9 +8,7 @@ namespace {
 constexpr std::array kPredictionSeconds{0.25F, 0.75F, 1.5F, 3.0F};
 }  // namespace
 
-void input_system(const Settings& settings, const Input& input, const Clock& clock,
-                  const WorldFacts& facts, const Synthesis& synthesis, Camera& camera,
-                  Quality& quality) {
+void input_system(const Input& input, const Clock& clock, const WorldFacts& facts, Camera& camera) {
   const double block_size_m = facts.world.block_size_m();
   if (core::is_valid(input.pose)) {
     camera.pose = input.pose;
@@ -30,12 +27,6 @@ void input_system(const Settings& settings, const Input& input, const Clock& clo
   for (const float tau_s : kPredictionSeconds) {
     camera.predictions.push_back({tau_s, camera.predictor.predict(tau_s)});
   }
-
-  quality.governor.observe(input.frame_ms, input.frame_triangles);
-  quality.memory_factor = synthesis.coarsening;
-  const double unhurried = settings.max_error_pixels * quality.memory_factor;
-  quality.error_pixels = unhurried * quality.governor.error_factor();
-  quality.model_error_pixels = unhurried * std::sqrt(quality.governor.error_factor());
 }
 
 }  // namespace psygen::scene

@@ -239,8 +239,8 @@ FadeStep fade_step(const Settings& settings, const Clock& clock, const DrawLists
 
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                   const View& view, RenderQuery entities, DrawLists& draws, Output& output,
-                   Counters& counters) {
+                   const View& view, RenderQuery entities, synthesis::MeshSupply& meshes,
+                   DrawLists& draws, Output& output, Pressure& pressure, Counters& counters) {
   draws.terrain.clear();
   draws.models.clear();
   draws.meshes.clear();
@@ -255,6 +255,8 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   draws.tick = clock.tick;
   draws.now_s = clock.now_s;
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
+  pressure.awaited = counters.awaited;
+  meshes.note_drawn(draws.meshes);
   if (output.renderer == nullptr) return;
 
   render::FrameInput frame;

@@ -155,7 +155,7 @@ class Window {
 
 // Their meshes stay in the cache while there is room: the camera may come back.
 void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs::World& entities,
-                           synthesis::GeometryCache& cache, Counters& counters) {
+                           synthesis::MeshSupply& supply, Counters& counters) {
   std::vector<ecs::Entity> leaving;
   entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node> nodes) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -169,7 +169,7 @@ void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs
                              std::span<const Mesh> meshes) {
     for (std::size_t i = 0; i < demands.size(); ++i) {
       if (demands[i].drawn_level == kNoLevel) continue;
-      cache.set_rank(meshes[i].handle, synthesis::Rank::unwanted());
+      supply.rank(meshes[i].handle, synthesis::Rank::unwanted());
     }
   };
   entities.each_of<const Demand, const Mesh>(leaving, give_back);
@@ -203,21 +203,21 @@ void list_missing_nodes(const Window& window, const Camera& camera, const WorldF
 }
 
 // What is new is there by the middle of the time until more of it is, if that goes on as before.
-// Returns over how many ticks it is created.
-std::uint32_t spread_missing(const Settings& settings, Streaming& streaming) {
+void spread_missing(const Settings& settings, Streaming& streaming) {
   const bool leapt = streaming.missing.size() > kLeapt;
   const std::uint32_t ticks =
       leapt ? 1 : std::clamp(streaming.ticks_since_listed / 2, 1U, settings.streaming_ticks);
   streaming.ticks_since_listed = 0;
   streaming.per_tick = std::max(kFewestCreated, (streaming.missing.size() + ticks - 1) / ticks);
-  return ticks;
+  streaming.spread_ticks = ticks;
 }
 
 }  // namespace
 
-void streaming_system(const Settings& settings, const Camera& camera, const Quality& quality,
-                      const WorldFacts& facts, const Daylight& daylight, Streaming& streaming,
-                      ecs::World& entities, Synthesis& synthesis, Counters& counters) {
+void streaming_system(const Settings& settings, const Rules& rules, const Camera& camera,
+                      const Quality& quality, const WorldFacts& facts, const Daylight& daylight,
+                      Streaming& streaming, ecs::World& entities, synthesis::MeshSupply& meshes,
+                      Counters& counters) {
   split_distances(facts.levels, settings, camera.pixels_per_radian, quality.error_pixels,
                   streaming.distances);
   const core::BlockCoord place = camera.pose.position.block;
@@ -232,13 +232,13 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
     streaming.listed_split_m = reach;
     streaming.listed_at = place;
     const Window window(settings, camera, facts, streaming);
-    destroy_leaving_nodes(window, streaming, entities, *synthesis.cache, counters);
+    destroy_leaving_nodes(window, streaming, entities, meshes, counters);
     list_missing_nodes(window, camera, facts, entities, streaming);
-    synthesis.spread_ticks = spread_missing(settings, streaming);
+    spread_missing(settings, streaming);
   }
   ++streaming.ticks_since_listed;
   // All of it for lazy evaluation, in every frame, and before the first frame.
-  const bool all = settings.paradigm == Paradigm::kLazyEvaluation || synthesis.settling;
+  const bool all = rules.wait || rules.settle;
   const std::size_t count = all ? streaming.missing.size() : streaming.per_tick;
   core::Stopwatch spent(settings.virtual_time);
   std::vector<world::Placement> scratch;
@@ -248,10 +248,10 @@ void streaming_system(const Settings& settings, const Camera& camera, const Qual
     spent.charge(kEntitySeconds * static_cast<double>(entities.size() - before));
     streaming.missing.pop_back();
     ++counters.nodes_created;
-    if (settings.paradigm == Paradigm::kLazyEvaluation) continue;
+    if (rules.wait) continue;
     if (spent.seconds() * 1000.0 > settings.streaming_budget_ms) break;
   }
-  if (streaming.missing.empty()) synthesis.spread_ticks = 1;
+  if (streaming.missing.empty()) streaming.spread_ticks = 1;
 }
 
 }  // namespace psygen::scene

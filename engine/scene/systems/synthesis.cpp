@@ -20,13 +20,10 @@ void trace_job(const synthesis::Completion& job, Tracing& trace) {
 
 }  // namespace
 
-void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& counters,
-                      Tracing& trace) {
-  if (settings.paradigm == Paradigm::kLazyEvaluation) synthesis.manager->wait_all();
-  const std::size_t before = synthesis.finished.size();
-  synthesis.manager->collect(synthesis.finished);
-  for (std::size_t i = before; i < synthesis.finished.size(); ++i) {
-    const synthesis::Completion& job = synthesis.finished[i];
+void synthesis_system(const Settings& settings, const Rules& rules, synthesis::MeshSupply& meshes,
+                      Counters& counters, Tracing& trace) {
+  if (rules.wait) meshes.wait();
+  for (const synthesis::Completion& job : meshes.collect()) {
     ++(job.ok ? counters.completed : counters.failed);
     counters.synthesis_seconds += job.seconds;
     if (job.ok) counters.costs.push_back({job.predicted_seconds, job.seconds});

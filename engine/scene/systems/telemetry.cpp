@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <limits>
-
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
@@ -35,17 +32,16 @@ void note_drawing(const render::FrameResult& frame, telemetry::FrameRecord& reco
 }  // namespace
 
 void telemetry_system(const Clock& clock, const Quality& quality, const Counters& counters,
-                      const DrawLists& draws, Synthesis& synthesis, Totals& totals,
+                      const synthesis::MeshSupply& meshes, Totals& totals,
                       telemetry::FrameRecord& record) {
-  synthesis.cache->note_drawn(draws.meshes);
-  const synthesis::CacheStats cache = synthesis.cache->stats();
+  const synthesis::CacheStats cache = meshes.stats();
   const auto since = [](std::uint64_t now, std::uint64_t before) {
     return static_cast<std::uint32_t>(now - before);
   };
   record.time_s = clock.now_s;
   note_drawing(counters.frame, record);
   record.error_pixels = quality.error_pixels;
-  record.memory_factor = quality.memory_factor;
+  record.memory_factor = double{quality.coarsening};
   record.nodes_in_view = counters.nodes_in_view;
   record.holes = counters.holes;
   record.coarse_nodes = counters.coarse;
@@ -66,8 +62,6 @@ void telemetry_system(const Clock& clock, const Quality& quality, const Counters
   record.bytes_synthesised = counters.bytes_synthesised;
   record.synthesis_seconds = counters.synthesis_seconds;
   totals.cache = cache;
-  totals.awaiting_since_s = counters.awaited > 0 ? std::min(totals.awaiting_since_s, clock.real_s)
-                                                 : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace psygen::scene

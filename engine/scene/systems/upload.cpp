@@ -10,7 +10,6 @@
 #include "engine/scene/draws/fading.hpp"
 #include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/synthesis/landing.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -88,17 +87,6 @@ void give_up(const synthesis::Completion& job, const WorldFacts& facts, const Up
   }
 }
 
-// How many of the finished meshes, oldest first, the upload budget of this tick covers.
-std::size_t count_within_budget(const Synthesis& synthesis, std::uint64_t budget_bytes) {
-  std::uint64_t bytes = 0;
-  std::size_t count = 0;
-  while (count < synthesis.finished.size() && bytes < budget_bytes) {
-    const synthesis::MeshRecord* record = synthesis.cache->get(synthesis.finished[count++].handle);
-    if (record != nullptr) bytes += record->range.bytes;
-  }
-  return count;
-}
-
 // What the modeler noted of a mesh.
 template <class T>
 const T& note_of(const synthesis::MeshRecord& record) {
@@ -133,11 +121,11 @@ const Mesh& mesh_before(ecs::Entity owner, bool ranked, const UploadQuery& entit
 // Notes that `handle` is what the entity draws from now on, if it has a use for it.
 void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::MeshRecord& record,
            std::uint32_t shared_indices, const WorldFacts& facts, double now_s,
-           const UploadQuery& entities, Synthesis& synthesis, Counters& counters,
+           const UploadQuery& entities, synthesis::MeshSupply& meshes, Counters& counters,
            std::vector<ecs::Landing<Mesh>>& landings) {
   Demand* demand = entities.get<Demand>(owner);
   if (demand == nullptr) {
-    synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());  // destroyed meanwhile
+    meshes.rank(handle, synthesis::Rank::unwanted());  // destroyed meanwhile
     return;
   }
   const std::uint8_t level_before = demand->drawn_level;
@@ -147,13 +135,13 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
   const auto level = static_cast<std::uint8_t>(record.key.level - first_level);
   const bool fresh = record.key.parameters_hash == entities.get<Source>(owner)->parameters_hash;
   if (!accept(*demand, level, fresh, now_s, counters)) {
-    synthesis.cache->set_rank(handle, synthesis::Rank::unwanted());
+    meshes.rank(handle, synthesis::Rank::unwanted());
     return;
   }
   bool before_goes = false;
   if (level_before != kNoLevel) {
     const Mesh& before = mesh_before(owner, ranked, entities, landings);
-    synthesis.cache->set_rank(before.handle, synthesis::Rank::unwanted());
+    meshes.rank(before.handle, synthesis::Rank::unwanted());
     if (Fading* fading = entities.get<Fading>(owner))
       before_goes = replace_mesh(*fading, before, level_before);
   }
@@ -167,33 +155,32 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
 
 }  // namespace
 
-void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
-                   UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
+void upload_system(const Settings& settings, const Rules& rules, const Clock& clock,
+                   const WorldFacts& facts, const Found& found, UploadQuery entities,
+                   synthesis::MeshSupply& meshes, Output& output, Counters& counters,
                    Totals& totals) {
   std::vector<ecs::Landing<Mesh>> landings;
-  for (const Synthesis::Ready& ready : synthesis.ready) {
-    const synthesis::MeshRecord* record = synthesis.cache->get(ready.handle);
-    if (record == nullptr || record->state != synthesis::MeshState::kReady) continue;
-    offer(ready.entity, ready.handle, *record, shared_indices_of(*record, facts, output), facts,
-          clock.real_s, entities, synthesis, counters, landings);
+  const auto offer_to = [&](ecs::Entity entity, synthesis::MeshHandle handle,
+                            const synthesis::MeshRecord& record) {
+    offer(entity, handle, record, shared_indices_of(record, facts, output), facts, clock.real_s,
+          entities, meshes, counters, landings);
+  };
+  for (const Found::Mesh& mesh : found.meshes) {
+    const synthesis::MeshRecord* record = meshes.ready(mesh.handle);
+    if (record != nullptr) offer_to(mesh.entity, mesh.handle, *record);
   }
-  // Lazy evaluation draws in this frame what it made for this frame.
-  const std::uint64_t budget_bytes =
-      settings.paradigm == Paradigm::kLazyEvaluation ? UINT64_MAX : settings.upload_budget_bytes;
-  const std::size_t count = count_within_budget(synthesis, budget_bytes);
-  const std::span<synthesis::Completion> batch(synthesis.finished.data(), count);
-  counters.bytes_synthesised = synthesis::land(batch, *synthesis.cache, synthesis.cost.get()).bytes;
-  for (const synthesis::Completion& job : batch) {
+  // What was made for this frame is drawn in it.
+  const synthesis::MeshSupply::Landed landed =
+      meshes.land(rules.wait ? UINT64_MAX : settings.upload_budget_bytes);
+  counters.bytes_synthesised = landed.bytes;
+  for (const synthesis::Completion& job : landed.completions) {
     if (!job.ok) give_up(job, facts, entities, totals);
-    const synthesis::MeshRecord* record = synthesis.cache->get(job.handle);
-    if (record == nullptr || record->state != synthesis::MeshState::kReady) continue;
+    const synthesis::MeshRecord* record = meshes.ready(job.handle);
+    if (record == nullptr) continue;
     ++counters.models_synthesised;
     counters.triangles_synthesised += record->size.triangle_count();
-    offer(entity_of(job.owner), job.handle, *record, shared_indices_of(*record, facts, output),
-          facts, clock.real_s, entities, synthesis, counters, landings);
+    offer_to(entity_of(job.owner), job.handle, *record);
   }
-  synthesis.finished.erase(synthesis.finished.begin(),
-                           synthesis.finished.begin() + static_cast<std::ptrdiff_t>(count));
   entities.land<Mesh>(std::span<const ecs::Landing<Mesh>>(landings));
 }
 

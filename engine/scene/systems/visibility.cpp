@@ -306,15 +306,15 @@ void list_others(const Streaming& streaming, const VisibilityQuery& nodes, View&
 
 }  // namespace
 
-void visibility_system(const Settings& settings, const Camera& camera, const WorldFacts& facts,
-                       const Streaming& streaming, const Synthesis& synthesis,
-                       VisibilityQuery nodes, View& view, Counters& counters) {
+void visibility_system(const Settings& settings, const Rules& rules, const Camera& camera,
+                       const WorldFacts& facts, const Streaming& streaming, VisibilityQuery nodes,
+                       View& view, Counters& counters) {
   find_bounds(settings, camera, facts, streaming, nodes, view);
   view.frustum = frustum_of(camera.pose, camera.projection);
   for (const NodeGrid& grid : streaming.grids)
     project_layers(settings, grid, view.frustum, view.levels[grid.level()]);
   expect(camera, facts, streaming, nodes, view);
-  choose_cut(settings, camera, facts, streaming, synthesis.settling, view);
+  choose_cut(settings, camera, facts, streaming, rules.settle, view);
   find_drawn(streaming, nodes, view);
   find_hidden(settings, camera, facts, streaming, nodes, view, counters);
   list_chosen(camera, streaming, nodes, view, counters);

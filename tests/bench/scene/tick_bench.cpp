@@ -49,7 +49,7 @@ std::vector<std::vector<double>> fly(const world::World& world, const world::Cam
     tick(state);
     for (std::size_t k = 0; k < names.size(); ++k)
       times[k].push_back(static_cast<double>(state.record.system_ms[k]));
-    state.synthesis.manager->wait_all();
+    state.meshes.wait();
   }
   return times;
 }

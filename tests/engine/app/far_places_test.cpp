@@ -44,10 +44,10 @@ TEST(FarPlaces, SettlingAfterALeapWithAFullCacheIsLikeAFreshStart) {
       EXPECT_EQ(at->state().counters.requests, 0u) << block.x;
       EXPECT_EQ(at->state().counters.refused, 0u) << block.x;
     }
-    EXPECT_EQ(studio.state().synthesis.coarsening, fresh.state().synthesis.coarsening);
+    EXPECT_EQ(studio.state().quality.coarsening, fresh.state().quality.coarsening);
     EXPECT_EQ(image::compare(studio.picture(), fresh.picture(), 0).pixels_over, 0u) << block.x;
   }
-  EXPECT_GT(studio.state().synthesis.cache->stats().evictions, 1000u);
+  EXPECT_GT(studio.state().meshes.stats().evictions, 1000u);
 }
 
 // What frames in flight may read comes back later: that is no want of memory.
@@ -64,12 +64,12 @@ TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
     pose.position.local.x += 20;
     pose.position = core::normalised(pose.position, 63);
     studio.draw(pose);
-    studio.state().synthesis.manager->wait_all();
+    studio.state().meshes.wait();
   }
-  const synthesis::CacheStats stats = studio.state().synthesis.cache->stats();
+  const synthesis::CacheStats stats = studio.state().meshes.stats();
   EXPECT_GT(stats.evictions, 1000u);
   EXPECT_GT(stats.peak_bytes, options.scene.budget_bytes * 9 / 10);
-  EXPECT_EQ(studio.state().synthesis.coarsening, 1.0F);
+  EXPECT_EQ(studio.state().quality.coarsening, 1.0F);
 }
 
 // What the last pictures drew may come back too late for this one: then pictures must get coarser
@@ -83,11 +83,11 @@ TEST(FarPlaces, LazyEvaluationMissesNothingForLongWhereOnlyOnePictureFits) {
   Studio ample("paper.toml", options);
   const core::CameraPose pose = ample.above({256, 256}, 20, 30, 6, 0.5, -0.2);
   ample.draw(pose);
-  options.scene.budget_bytes = ample.state().synthesis.cache->stats().bytes * 5 / 4;
+  options.scene.budget_bytes = ample.state().meshes.stats().bytes * 5 / 4;
   Studio studio("paper.toml", options);
   for (int i = 0; i < 80; ++i)
     studio.draw(pose);
-  EXPECT_GT(studio.state().synthesis.coarsening, 1.0F);
+  EXPECT_GT(studio.state().quality.coarsening, 1.0F);
   for (int i = 0; i < 8; ++i) {
     studio.draw(pose);
     EXPECT_EQ(studio.state().counters.holes, 0u) << i;

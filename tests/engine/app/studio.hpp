@@ -63,8 +63,8 @@ class Studio {
   void fly(const core::CameraPose& pose) {
     for (int i = 0; i < 40; ++i) {
       draw(pose);
-      state().synthesis.manager->wait_all();
-      if (state().counters.requests == 0 && state().synthesis.finished.empty()) break;
+      state().meshes.wait();
+      if (state().counters.requests == 0 && !state().meshes.has_arrived()) break;
     }
     draw(pose);
   }

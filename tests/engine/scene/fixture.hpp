@@ -68,7 +68,7 @@ inline void tick_at(Scene& scene, const core::CameraPose& pose) {
 }
 
 inline void expect_within_budget(const Scene& scene) {
-  const synthesis::CacheStats stats = scene.state().synthesis.cache->stats();
+  const synthesis::CacheStats stats = scene.state().meshes.stats();
   EXPECT_LE(stats.peak_bytes, stats.budget_bytes);
   EXPECT_LE(scene.state().memory->used_bytes(), stats.budget_bytes);
 }
@@ -80,7 +80,7 @@ inline void expect_drawn_alive(const Scene& scene) {
   std::set<std::uint32_t> alive;
   std::size_t wrong = 0;
   for (const synthesis::MeshHandle handle : s.draws.meshes) {
-    const synthesis::MeshRecord* record = s.synthesis.cache->get(handle);
+    const synthesis::MeshRecord* record = s.meshes.get(handle);
     if (record != nullptr && record->state == synthesis::MeshState::kReady)
       alive.insert(record->range.id);
     else
@@ -93,7 +93,7 @@ inline void expect_drawn_alive(const Scene& scene) {
 
 // Whatever an entity draws is alive in the cache, and is what the entity thinks it is.
 inline void expect_consistent(Scene& scene) {
-  const synthesis::GeometryCache& cache = *scene.state().synthesis.cache;
+  const synthesis::MeshSupply& supply = scene.state().meshes;
   std::size_t wrong = 0;
   std::as_const(scene.state().entities)
       .each<const Demand, const Mesh, const Source>(
@@ -101,7 +101,7 @@ inline void expect_consistent(Scene& scene) {
               std::span<const Mesh> meshes, std::span<const Source> sources) {
             for (std::size_t i = 0; i < demands.size(); ++i) {
               if (demands[i].drawn_level == kNoLevel) continue;
-              const synthesis::MeshRecord* record = cache.get(meshes[i].handle);
+              const synthesis::MeshRecord* record = supply.get(meshes[i].handle);
               wrong += record == nullptr || record->state != synthesis::MeshState::kReady ||
                        record->range != meshes[i].range ||
                        record->key.level != sources[i].first_level + demands[i].drawn_level;

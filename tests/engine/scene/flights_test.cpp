@@ -60,7 +60,7 @@ Size size_at(double view_distance_m) {
   const auto number = [](std::size_t count) { return static_cast<double>(count); };
   return {number(s.entities.size()),       number(s.entities.count<Node>()),
           number(s.view.cut.nodes.size()), number(s.draws.terrain.size()),
-          number(s.draws.models.size()),   number(s.synthesis.cache->stats().bytes) / (1 << 20)};
+          number(s.draws.models.size()),   number(s.meshes.stats().bytes) / (1 << 20)};
 }
 
 // If it grew with the distance, each doubling would add twice as much as the one before.

@@ -118,7 +118,7 @@ struct GatedScene {
   // in between, or has nothing more to do.
   void make(int meshes) {
     gate.let_only(meshes);
-    while (scene->state().synthesis.manager->outstanding() > 0 && !gate.blocks())
+    while (scene->state().meshes.outstanding() > 0 && !gate.blocks())
       std::this_thread::sleep_for(std::chrono::microseconds(50));
   }
   GatedScene(const GatedScene&) = delete;

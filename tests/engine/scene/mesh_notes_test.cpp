@@ -21,7 +21,7 @@ struct Noted {
 // Holds the notes of everything in the cache against what is in memory.
 Noted check_records(const State& s) {
   Noted noted;
-  for (const synthesis::MeshRecord& record : s.synthesis.cache->records()) {
+  for (const synthesis::MeshRecord& record : s.meshes.records()) {
     if (record.state != synthesis::MeshState::kReady) {
       EXPECT_FALSE(record.note.has_value());
     } else if (record.key.model == s.facts.world.terrain_model) {
@@ -79,9 +79,9 @@ TEST(MeshNotes, AreThoseOfTheMeshesAndThereWhenMeshesAreFoundAgain) {
   settings.view_distance_m = 1000;
   const auto scene = make_scene(settings);
   scene->settle(pose_at(256, 256));
-  const std::uint64_t evictions = scene->state().synthesis.cache->stats().evictions;
+  const std::uint64_t evictions = scene->state().meshes.stats().evictions;
   for (const std::int32_t block : {256, 330, 256}) {  // away from all blocks and back
-    const std::uint64_t hits = scene->state().synthesis.cache->stats().hits;
+    const std::uint64_t hits = scene->state().meshes.stats().hits;
     const bool back = scene->state().camera.pose.position.block.x > block;
     scene->settle(pose_at(block, 256));
     const Noted kept = check_records(scene->state());
@@ -93,10 +93,10 @@ TEST(MeshNotes, AreThoseOfTheMeshesAndThereWhenMeshesAreFoundAgain) {
     EXPECT_GT(drawn.ground, 100u);
     EXPECT_GT(drawn.fine, 3u);
     if (back) {
-      EXPECT_GT(scene->state().synthesis.cache->stats().hits, hits + 1000);
+      EXPECT_GT(scene->state().meshes.stats().hits, hits + 1000);
     }
   }
-  EXPECT_EQ(scene->state().synthesis.cache->stats().evictions, evictions);
+  EXPECT_EQ(scene->state().meshes.stats().evictions, evictions);
 }
 
 TEST(MeshNotes, AreThereInEveryParadigm) {
@@ -114,7 +114,7 @@ TEST(MeshNotes, AreThereInEveryParadigm) {
     }
     for (int i = 0; i < 20; ++i) {
       tick_at(*scene, pose_at(260, 256));
-      scene->state().synthesis.manager->wait_all();
+      scene->state().meshes.wait();
     }
     Noted noted = check_records(scene->state());
     EXPECT_GT(noted.ground, 10u);

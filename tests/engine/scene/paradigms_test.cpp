@@ -59,7 +59,7 @@ TEST(Paradigms, LazyEvaluationDrawsEverythingAndKeepsNothing) {
   tick_at(*scene, pose_at(256, 256));
   EXPECT_EQ(scene->state().counters.models_synthesised, second);
   tick_at(*scene, pose_at(256, 256, 3.14));
-  const synthesis::CacheStats stats = scene->state().synthesis.cache->stats();
+  const synthesis::CacheStats stats = scene->state().meshes.stats();
   EXPECT_EQ(stats.ready, scene->state().counters.models_synthesised);
 }
 
@@ -70,17 +70,17 @@ TEST(Paradigms, LazyEvaluationLeavesRoomForTwoPicturesThatMayBeInFlight) {
   settings.view_distance_m = 600;
   settings.max_error_pixels = 1;
   const auto visible = [](const Scene& scene) {
-    return scene.state().synthesis.cache->stats().visible_bytes;
+    return scene.state().meshes.stats().visible_bytes;
   };
   const auto ample = make_scene(settings);
   for (int i = 0; i < 3; ++i)
     tick_at(*ample, pose_at(256, 256));
-  EXPECT_EQ(ample->state().synthesis.coarsening, 1.0F);
+  EXPECT_EQ(ample->state().quality.coarsening, 1.0F);
   settings.budget_bytes = visible(*ample) * 2;
   const auto scene = make_scene(settings);
   for (int i = 0; i < 25; ++i)
     tick_at(*scene, pose_at(256, 256));
-  EXPECT_GT(scene->state().synthesis.coarsening, 1.0F);
+  EXPECT_GT(scene->state().quality.coarsening, 1.0F);
   EXPECT_LE(3 * visible(*scene), settings.budget_bytes);
   EXPECT_GT(8 * visible(*scene), settings.budget_bytes) << "but no coarser than that";
   EXPECT_EQ(scene->state().counters.holes, 0u);
@@ -187,13 +187,13 @@ TEST(Paradigms, AModelThatHangsIsReplacedByAnotherLevelAndTheOthersGoOn) {
       },
       release, settings);
   scene->settle(pose_at(256, 256));
-  EXPECT_EQ(scene->state().synthesis.manager->hung().size(), 1u);
+  EXPECT_EQ(scene->state().meshes.hung().size(), 1u);
   EXPECT_EQ(scene->state().totals.failed, 1u);
   tick_at(*scene, pose_at(256, 256));
   EXPECT_EQ(scene->state().counters.holes, 0u);
   release = true;
   release.notify_all();
-  while (!scene->state().synthesis.manager->hung().empty()) {
+  while (!scene->state().meshes.hung().empty()) {
     tick_at(*scene, pose_at(256, 256));  // collects what the modeler left
   }
   EXPECT_EQ(scene->state().totals.failed, 1u);

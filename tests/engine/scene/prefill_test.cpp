@@ -45,7 +45,7 @@ TEST_P(Prefilling, EndsWhenItIsToldToThoughModelersWork) {
   gated.gate.set_open(false);
   prefill(*gated.scene, [&](std::string_view, double) { return !gated.gate.blocks(); });
   EXPECT_TRUE(gated.gate.blocks());
-  EXPECT_GT(gated.scene->state().synthesis.manager->outstanding(), 0u);
+  EXPECT_GT(gated.scene->state().meshes.outstanding(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, Prefilling, ::testing::Values("settle", "amplify"),

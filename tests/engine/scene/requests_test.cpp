@@ -38,7 +38,7 @@ TEST(Requests, WhoTurnsAroundSeesNoHoleThoughNothingMoreIsSynthesised) {
 
 // By the main thread itself.
 std::uint64_t made_here(const Scene& scene) {
-  for (const synthesis::ModelerStats& made : scene.state().synthesis.manager->stats().modelers)
+  for (const synthesis::ModelerStats& made : scene.state().meshes.modeler_stats().modelers)
     if (made.modeler == synthesis::kMainThreadModeler) return made.models;
   return 0;
 }
@@ -81,7 +81,7 @@ std::vector<ecs::Entity> drawn_spares(const State& s) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (demands[i].drawn_level == kNoLevel) continue;
       EXPECT_FALSE(demands[i].stale);
-      if (s.synthesis.cache->get(meshes[i].handle)->key.spare) found.push_back(rows[i]);
+      if (s.meshes.get(meshes[i].handle)->key.spare) found.push_back(rows[i]);
     }
   });
   return found;
@@ -103,9 +103,9 @@ TEST(Requests, AHoleThatAModelerHoldsIsFilledByTheMainThreadAndWhatTheModelerBri
   const std::vector<ecs::Entity> spares = drawn_spares(s);
   ASSERT_EQ(spares.size(), 1u) << "one modeler holds one mesh";
   const synthesis::MeshHandle drawn = s.entities.get<Mesh>(spares[0])->handle;
-  synthesis::MeshKey held = s.synthesis.cache->get(drawn)->key;
+  synthesis::MeshKey held = s.meshes.get(drawn)->key;
   held.spare = false;
-  const auto record_of_held = [&] { return s.synthesis.cache->get(s.synthesis.cache->find(held)); };
+  const auto record_of_held = [&] { return s.meshes.get(s.meshes.find(held)); };
   ASSERT_EQ(record_of_held()->state, synthesis::MeshState::kRequested);
 
   gated.make(1);
@@ -113,7 +113,7 @@ TEST(Requests, AHoleThatAModelerHoldsIsFilledByTheMainThreadAndWhatTheModelerBri
   EXPECT_EQ(s.entities.get<Mesh>(spares[0])->handle, drawn) << "nothing takes its place";
   const synthesis::MeshRecord* dropped = record_of_held();
   EXPECT_TRUE(dropped == nullptr || dropped->rank == Rank::unwanted());
-  for (const Want& want : s.synthesis.wants)
+  for (const Want& want : s.meshes.wants())
     EXPECT_FALSE(want.key == held) << "it is there";
   expect_consistent(scene);
 }
@@ -153,13 +153,13 @@ TEST(Requests, WhatADrawnNodeLacksIsAHoleThoughOneAboveItIsComplete) {
       Demand& demand = *s.entities.get<Demand>(model);
       if (demand.drawn_level == kNoLevel || demand.in_view_tick + 1 != s.clock.tick) continue;
       demand.drawn_level = kNoLevel;
-      s.synthesis.cache->release(s.entities.get<Mesh>(model)->handle);
+      s.meshes.forget(s.entities.get<Mesh>(model)->handle);
       taken.insert(owner_of(model));
     }
   }
   tick_at(scene, pose_at(256, 258, 0));
   std::size_t holes = 0;
-  for (const Want& want : s.synthesis.wants) {
+  for (const Want& want : s.meshes.wants()) {
     if (!taken.contains(want.owner)) continue;
     EXPECT_EQ(want.rank.group(), RankGroup::kVisibleHole);
     ++holes;
@@ -248,7 +248,7 @@ struct Expected {
 std::vector<Expected> expected_wants(const State& s) {
   const auto nodes = nodes_of_owners(s);
   std::vector<Expected> found;
-  for (const Want& want : s.synthesis.wants) {
+  for (const Want& want : s.meshes.wants()) {
     const ecs::Entity entity = nodes.at(want.owner);
     if (want.rank.group() != RankGroup::kPredicted ||
         s.entities.get<Visibility>(entity)->in_view != 0)
@@ -366,7 +366,7 @@ TEST(Requests, WhatHidesBehindARidgeComesAfterAllThatIsSeen) {
       tick_at(*scene, pose);
       const auto nodes = nodes_of_owners(s);
       Rank first_hidden = Rank::unwanted(), last_seen = Rank::from_bits(0);
-      for (const Want& want : s.synthesis.wants) {
+      for (const Want& want : s.meshes.wants()) {
         if (hides(s, s.entities.get<Node>(nodes.at(want.owner))->at)) {
           first_hidden = std::min(first_hidden, want.rank);
           ++hidden;
@@ -376,7 +376,7 @@ TEST(Requests, WhatHidesBehindARidgeComesAfterAllThatIsSeen) {
       }
       EXPECT_FALSE(synthesis::is_visible(first_hidden.group())) << "tick " << i;
       EXPECT_LT(last_seen, first_hidden) << "tick " << i;
-      s.synthesis.manager->wait_all();
+      scene->state().meshes.wait();
     }
   }
   EXPECT_GT(hidden, 500u);

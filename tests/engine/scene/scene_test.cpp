@@ -43,7 +43,7 @@ TEST(Scene, SettlingLeavesNoHoleAndNothingCoarse) {
 synthesis::WorldHash cache_hash(const Scene& scene) {
   synthesis::WorldHash hash;
   const State& s = scene.state();
-  for (const synthesis::MeshRecord& record : s.synthesis.cache->records()) {
+  for (const synthesis::MeshRecord& record : s.meshes.records()) {
     if (record.state != synthesis::MeshState::kReady) continue;
     const auto vertices = core::hash_bytes(s.memory->vertex_bytes(record.range));
     const auto indices = core::hash_bytes(std::as_bytes(s.memory->indices(record.range)));
@@ -85,7 +85,7 @@ TEST(Scene, BothModesOfPlpAreDeterministicAndSettleToTheSamePicture) {
     tick_at(*scene, pose_at(100, 400, 0.7));
     if (first.empty()) first = draw_keys(*scene);
     EXPECT_EQ(draw_keys(*scene), first);
-    const synthesis::CacheStats stats = scene->state().synthesis.cache->stats();
+    const synthesis::CacheStats stats = scene->state().meshes.stats();
     EXPECT_GT(stats.triangles_drawn, 0u);
     EXPECT_LT(stats.triangles_drawn, stats.triangles);
   }
@@ -180,8 +180,7 @@ TEST(Scene, TeleportsAndSpinsKeepTheQueueBoundedAndRecover) {
   }();
   for (int i = 0; i < 12; ++i) {
     tick_at(*scene, pose_at(40 + 37 * i, 500 - 31 * i, 2.0 * i));
-    EXPECT_LE(scene->state().synthesis.manager->outstanding(),
-              scene->state().settings.plan_max_requests + 64u);
+    EXPECT_LE(scene->state().meshes.outstanding(), scene->state().settings.plan_max_requests + 64u);
     EXPECT_EQ(scene->state().entities.size(), entities_of_window);
     expect_within_budget(*scene);
   }
@@ -197,18 +196,18 @@ TEST(Scene, ABudgetThatIsTooSmallGivesCoarserLevelsWithoutThrashing) {
   const auto scene = make_scene(settings);
   for (int i = 0; i < 300; ++i) {
     tick_at(*scene, pose_at(256, 256));
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
     expect_within_budget(*scene);
   }
-  EXPECT_GT(scene->state().synthesis.coarsening, 1.0F);
-  EXPECT_TRUE(scene->state().totals.warned_budget);
+  EXPECT_GT(scene->state().quality.coarsening, 1.0F);
+  EXPECT_TRUE(scene->state().quality.warned_budget);
   EXPECT_EQ(scene->state().counters.holes, 0u);
-  const std::uint64_t evictions = scene->state().synthesis.cache->stats().evictions;
+  const std::uint64_t evictions = scene->state().meshes.stats().evictions;
   for (int i = 0; i < 50; ++i) {
     tick_at(*scene, pose_at(256, 256));
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
   }
-  EXPECT_LT(scene->state().synthesis.cache->stats().evictions - evictions, 500u);
+  EXPECT_LT(scene->state().meshes.stats().evictions - evictions, 500u);
 }
 
 // After a long flight a cache is full of what lies behind: that must not make what is seen coarser.
@@ -222,21 +221,21 @@ TEST(Scene, ACacheThatIsFullOfWhatNobodyWantsMakesNothingCoarser) {
     pose.position.local.x += 25;
     pose.position = core::normalised(pose.position, scene->state().facts.world.block_size_m());
     tick_at(*scene, pose);
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
     expect_within_budget(*scene);
-    EXPECT_EQ(scene->state().synthesis.coarsening, 1.0F) << i;
+    EXPECT_EQ(scene->state().quality.coarsening, 1.0F) << i;
   }
-  const synthesis::CacheStats stats = scene->state().synthesis.cache->stats();
+  const synthesis::CacheStats stats = scene->state().meshes.stats();
   EXPECT_GT(stats.evictions, 1000u);
   EXPECT_GT(stats.bytes, settings.budget_bytes * 9 / 10);
   EXPECT_LT(stats.visible_bytes, settings.budget_bytes / 4);
-  EXPECT_FALSE(scene->state().totals.warned_budget);
+  EXPECT_FALSE(scene->state().quality.warned_budget);
 }
 
 // Of what is drawn in view.
 std::uint64_t visible_bytes(const Scene& scene) {
   std::uint64_t bytes = 0;
-  for (const synthesis::MeshRecord& record : scene.state().synthesis.cache->records()) {
+  for (const synthesis::MeshRecord& record : scene.state().meshes.records()) {
     const bool ready = record.state == synthesis::MeshState::kReady;
     if (ready && synthesis::is_visible(record.rank.group())) bytes += record.range.bytes;
   }
@@ -264,14 +263,14 @@ TEST(Scene, DetailThatIsNotWantedAnyMoreDoesNotHoldTheRoomOfWhatIs) {
   tick_at(*scene, pose_at(256, 256));
   // Room for the nearest of what is drawn and for nothing else, and then much less detail is
   // wanted.
-  scene->state().synthesis.cache->set_budget(visible_bytes(*scene) / 4);
+  scene->state().meshes.set_budget(visible_bytes(*scene) / 4);
   const std::uint64_t room = visible_bytes(*scene);
   EXPECT_GT(room, 1ull << 20);
-  scene->state().synthesis.cache->set_budget(room);
-  scene->state().synthesis.coarsening = 64;
+  scene->state().meshes.set_budget(room);
+  scene->state().quality.coarsening = 64;
   for (int i = 0; i < 60; ++i) {
     tick_at(*scene, pose_at(256, 256));
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
     EXPECT_LE(scene->state().memory->used_bytes(), room);
   }
   EXPECT_EQ(scene->state().counters.holes, 0u);
@@ -288,12 +287,12 @@ TEST(Scene, ComingBackUnderPressureNeverDrawsWhatWasEvicted) {
       core::CameraPose pose = pose_at(200, 200, 0.4 * step);
       pose.position.local.x += 45.0 * (round % 2 == 0 ? step : -step);
       tick_at(*scene, pose);
-      scene->state().synthesis.manager->wait_all();
+      scene->state().meshes.wait();
       expect_consistent(*scene);
     }
   }
-  EXPECT_GT(scene->state().synthesis.cache->stats().evictions, 100u);
-  EXPECT_GT(scene->state().synthesis.cache->stats().hits, 100u);
+  EXPECT_GT(scene->state().meshes.stats().evictions, 100u);
+  EXPECT_GT(scene->state().meshes.stats().hits, 100u);
 }
 
 TEST(Scene, SettlingEndsAlsoWhenTheBudgetCannotHoldTheView) {
@@ -320,13 +319,13 @@ TEST(Scene, SettlingEndsUnderAnyBudget) {
         return scene->state().clock.tick < kMostTicks;
       });
       EXPECT_LT(scene->state().clock.tick, kMostTicks) << mib << " MiB, levels " << levels;
-      const std::uint64_t evicted = scene->state().synthesis.cache->stats().evictions;
+      const std::uint64_t evicted = scene->state().meshes.stats().evictions;
       for (int i = 0; i < 60; ++i) {
         tick_at(*scene, pose_at(256, 256));
-        scene->state().synthesis.manager->wait_all();
+        scene->state().meshes.wait();
       }
       // Meshes that evict each other in turn would do so in every tick.
-      EXPECT_LT(scene->state().synthesis.cache->stats().evictions, evicted + 10);
+      EXPECT_LT(scene->state().meshes.stats().evictions, evicted + 10);
       expect_consistent(*scene);
       expect_within_budget(*scene);
     }
@@ -385,10 +384,10 @@ TEST(Scene, HalvingTheBudgetWhileFlyingIsMet) {
   const auto scene = make_scene(settings);
   scene->settle(pose_at(256, 256));
   const std::uint64_t half = scene->state().memory->used_bytes() / 2;
-  scene->state().synthesis.cache->set_budget(half);
+  scene->state().meshes.set_budget(half);
   for (int i = 0; i < 60; ++i) {
     tick_at(*scene, pose_at(256, 256));
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
   }
   EXPECT_LE(scene->state().memory->used_bytes(), half);
 }

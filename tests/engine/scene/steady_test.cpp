@@ -182,7 +182,7 @@ std::size_t most_entities(const State& s) {
 void expect_bounded(const Scene& scene) {
   const State& s = scene.state();
   expect_within_budget(scene);
-  EXPECT_LE(s.synthesis.manager->outstanding(), s.settings.plan_max_requests + 64u);
+  EXPECT_LE(s.meshes.outstanding(), s.settings.plan_max_requests + 64u);
   EXPECT_LE(s.entities.size(), most_entities(s));
 }
 
@@ -193,7 +193,7 @@ void fly_a_second(const Settings& settings, const Pose& pose_of) {
   scene->settle(pose_of(0));
   for (int i = 1; i <= 60; ++i) {
     tick_at(*scene, pose_of(i));
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
     expect_bounded(*scene);
     EXPECT_EQ(overlaps(drawn_ground(scene->state())), 0u) << "frame " << i;
   }
@@ -201,7 +201,7 @@ void fly_a_second(const Settings& settings, const Pose& pose_of) {
   const Counters& counters = scene->state().counters;
   for (int i = 0; i < 3 || (i < 60 && counters.holes + counters.coarse > 0); ++i) {
     tick_at(*scene, pose_of(60));
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
   }
   EXPECT_EQ(counters.holes, 0u);
   EXPECT_EQ(counters.coarse, 0u);
@@ -246,7 +246,7 @@ TEST(Steady, TooLittleMemoryMakesNoHolesInTheGround) {
     core::CameraPose pose = pose_at(200, 200, 0.05 * i);
     pose.position.local.x += 8.0 * i;
     tick_at(*scene, pose);
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
     expect_bounded(*scene);
     const std::vector<Square> now = drawn_ground(scene->state());
     EXPECT_EQ(overlaps(now), 0u) << "frame " << i;

@@ -154,7 +154,7 @@ TEST(Extent, AWorldOfAMillionBlocksASideTakesNoMoreThanOneOf512) {
     scene->settle(pose);
     tick_at(*scene, pose);
     const State& s = scene->state();
-    const synthesis::CacheStats stats = s.synthesis.cache->stats();
+    const synthesis::CacheStats stats = s.meshes.stats();
     sizes.push_back({s.entities.size(), s.view.cut.nodes.size(), s.draws.terrain.size(),
                      s.draws.models.size(), stats.ready, stats.bytes});
   }

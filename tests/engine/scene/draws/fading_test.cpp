@@ -179,7 +179,7 @@ void fly(Scene& scene, core::CameraPose& pose, int ticks, double step_m, const V
   for (int i = 0; i < ticks; ++i) {
     pose.position.local.z -= step_m;
     tick_at(scene, pose);
-    scene.state().synthesis.manager->wait_all();
+    scene.state().meshes.wait();
     visit(count_fading(scene));
   }
 }
@@ -239,10 +239,10 @@ TEST(FadingScene, WhatGoesIsNotDrawnWhenItsRoomIsTaken) {
   core::CameraPose pose = pose_at(256, 256);
   scene->settle(pose);
   State& s = scene->state();
-  s.synthesis.cache->set_budget(s.memory->used_bytes());
-  const std::uint64_t evicted = s.synthesis.cache->stats().evictions;
+  s.meshes.set_budget(s.memory->used_bytes());
+  const std::uint64_t evicted = s.meshes.stats().evictions;
   fly(*scene, pose, 120, 0.8, [&](const Seen&) { expect_consistent(*scene); });
-  EXPECT_GT(s.synthesis.cache->stats().evictions, evicted + 100);
+  EXPECT_GT(s.meshes.stats().evictions, evicted + 100);
 }
 
 // A model that is drawn as a whole and for which another level is requested; and a third level.
@@ -279,20 +279,16 @@ TEST(FadingScene, WhatWasEvictedIsNotReplacedByWhatLands) {
   const synthesis::MeshKey key{s.entities.get<Placed>(model)->block, source.index, source.model,
                                static_cast<std::uint16_t>(source.first_level + level),
                                source.parameters_hash};
-  synthesis::GeometryCache& cache = *s.synthesis.cache;
   const auto rank = synthesis::Rank::by_layer(synthesis::RankGroup::kVisibleCoarse, 0, 1);
-  const auto first = cache.reserve(key, source.parameters, owner_of(model), rank);
-  ASSERT_TRUE(first);
-  const synthesis::MeshRecord record = *cache.get(*first);
-  s.synthesis.manager->execute_here(
-      {*first, key, source.parameters, record.destination, record.size, {}, {}, owner_of(model)});
-  s.synthesis.manager->wait_all();
+  const synthesis::Want want{key, &source.parameters, owner_of(model), rank, 0};
+  ASSERT_EQ(s.meshes.plan(std::span(&want, 1), {}, s.settings.policy).published, 1u);
+  s.meshes.wait();
   const synthesis::MeshHandle drawn = s.entities.get<Mesh>(model)->handle;
-  cache.set_rank(drawn, synthesis::Rank::unwanted());
-  const std::uint64_t budget = cache.budget_bytes();
-  while (cache.get(drawn) != nullptr)
-    cache.set_budget(s.memory->used_bytes() - 1);
-  cache.set_budget(budget);
+  s.meshes.rank(drawn, synthesis::Rank::unwanted());
+  const std::uint64_t budget = s.meshes.stats().budget_bytes;
+  while (s.meshes.get(drawn) != nullptr)
+    s.meshes.set_budget(s.memory->used_bytes() - 1);
+  s.meshes.set_budget(budget);
   for (int i = 0; i < 5; ++i) {
     tick_at(*scene, pose);
     expect_drawn_alive(*scene);
@@ -306,7 +302,7 @@ TEST(FadingScene, TurningTheCameraFadesNothing) {
   scene->settle(pose_at(256, 256));
   for (int i = 0; i < 60; ++i) {
     tick_at(*scene, pose_at(256, 256, 0.05 * i));
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
     const Seen seen = count_fading(*scene);
     EXPECT_EQ(seen.coming + seen.going, 0u) << i;
   }
@@ -351,7 +347,7 @@ void expect_handover(bool back) {
     const std::vector<NodeCoord> before = shown;
     pose.position.local.z += back ? 0.5 : -0.5;
     tick_at(*scene, pose);
-    scene->state().synthesis.manager->wait_all();
+    scene->state().meshes.wait();
     for (const NodeCoord& gone : before) {
       if (std::ranges::find(shown, gone) != shown.end()) continue;
       for (const NodeCoord& come : shown) {

@@ -52,17 +52,17 @@ TEST(Daylight, WhenTheSunHasMovedAStepTheGroundIsMadeAnewWithoutAHole) {
   EXPECT_GT(noon.stale, 0u);
   EXPECT_EQ(scene.state().counters.holes, 0u);
 
-  const synthesis::CacheStats before = scene.state().synthesis.cache->stats();
+  const synthesis::CacheStats before = scene.state().meshes.stats();
   const double then_s = scene.state().clock.now_s;
   for (int i = 0; i < 40; ++i) {
-    scene.state().synthesis.manager->wait_all();
+    scene.state().meshes.wait();
     tick_at(scene, pose_at(256, 256));
     scene.state().clock.now_s = then_s;
     EXPECT_EQ(scene.state().counters.holes, 0u);
   }
   EXPECT_EQ(ground_of(scene).stale, 0u);
   // What is seen already is nothing that was fetched before it is seen.
-  EXPECT_EQ(scene.state().synthesis.cache->stats().prefetch_hits, before.prefetch_hits);
+  EXPECT_EQ(scene.state().meshes.stats().prefetch_hits, before.prefetch_hits);
 }
 
 TEST(Daylight, WhatLacksDetailComesBeforeGroundThatIsOnlyLitAnew) {
@@ -75,7 +75,7 @@ TEST(Daylight, WhatLacksDetailComesBeforeGroundThatIsOnlyLitAnew) {
   s.settings.max_error_pixels /= 2;
   tick_at(*scene, pose_at(256, 256));
   std::optional<synthesis::Rank> first_lit, last_finer;
-  for (const synthesis::Want& want : s.synthesis.wants) {
+  for (const synthesis::Want& want : s.meshes.wants()) {
     const ecs::Entity entity = entity_of(want.owner);
     const Demand& demand = *s.entities.get<Demand>(entity);
     if (demand.in_view_tick + 1 != s.clock.tick) continue;

@@ -1,7 +1,9 @@
-// How the time that frames take comes to the error of what is drawn.
+// How the time that frames take, and the memory that they need, come to the error of what is drawn.
 #include <cmath>
 #include <numeric>
 
+#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/scene/systems.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
@@ -46,7 +48,7 @@ std::size_t drawn_vertices(Scene& scene) {
       [](std::size_t sum, const render::MeshDraw& draw) { return sum + draw.range.vertex_count; });
 }
 
-TEST(InputSystem, SlowFramesMakeThePictureCoarserAndFastOnesFinerWithinBounds) {
+TEST(QualityOfTime, SlowFramesMakeThePictureCoarserAndFastOnesFinerWithinBounds) {
   const auto scene = steered_scene();
   EXPECT_EQ(after_frames(*scene, 5, 0, 200, true), kError);
   scene->state().input.frame_ms = 0;  // unknown: settling changes nothing
@@ -65,7 +67,7 @@ TEST(InputSystem, SlowFramesMakeThePictureCoarserAndFastOnesFinerWithinBounds) {
 }
 
 // Where a wide view opens the error rises before frames have been slow for a while.
-TEST(InputSystem, TheTrianglesOfFramesCountAsWell) {
+TEST(QualityOfTime, TheTrianglesOfFramesCountAsWell) {
   const auto error_behind_a_hilltop = [](bool knows_triangles) {
     const auto scene = steered_scene();
     for (int i = 0; i < 100; ++i) {
@@ -77,7 +79,7 @@ TEST(InputSystem, TheTrianglesOfFramesCountAsWell) {
   EXPECT_GT(error_behind_a_hilltop(true), 1.2 * error_behind_a_hilltop(false));
 }
 
-TEST(InputSystem, WithoutATargetTheErrorIsFixed) {
+TEST(QualityOfTime, WithoutATargetTheErrorIsFixed) {
   Settings settings = small_settings();
   settings.max_error_pixels = kError;
   const auto scene = make_scene(settings);
@@ -86,6 +88,57 @@ TEST(InputSystem, WithoutATargetTheErrorIsFixed) {
     tick_at(*scene, pose_at(256, 256));
     EXPECT_EQ(scene->state().quality.error_pixels, kError);
   }
+}
+
+// The system alone, with an empty cache.
+struct MemoryLoop {
+  MemoryLoop() { meshes.open(registry, heap, 1 << 20); }
+  float after(const Pressure& pressure, Paradigm paradigm = Settings{}.paradigm) {
+    settings.paradigm = paradigm;
+    quality_system(settings, rules_of(settings, false), {}, pressure, meshes, quality);
+    return quality.coarsening;
+  }
+  models::Registry registry = models::make_standard_registry();
+  core::HeapGeometryMemory heap{1 << 20};
+  synthesis::MeshSupply meshes;
+  Settings settings;
+  Quality quality;
+};
+
+TEST(QualityOfMemory, GetsCoarserWhileWhatIsSeenIsRefusedAndFinerWhileThereIsRoom) {
+  MemoryLoop loop;
+  float before = 1;
+  for (int i = 0; i < 60; ++i) {
+    const float now = loop.after({.refused_visible = 1, .seen_share = 0.9});
+    EXPECT_TRUE(now > before || now == 64) << "tick " << i;
+    before = now;
+    EXPECT_DOUBLE_EQ(loop.quality.error_pixels, loop.settings.max_error_pixels * double{now});
+  }
+  EXPECT_EQ(before, 64) << "and no coarser";
+  EXPECT_EQ(loop.after({.seen_share = 0.6}), before) << "no room to spare";
+  for (int i = 0; i < 600; ++i)
+    loop.after({.seen_share = 0.4});
+  EXPECT_EQ(loop.quality.coarsening, 1);
+}
+
+TEST(QualityOfMemory, LazyEvaluationKeepsRoomForThreePictures) {
+  MemoryLoop loop;
+  const Pressure third{.seen_share = 0.34}, waiting{.waiting = 1};
+  EXPECT_EQ(loop.after(third), 1);
+  EXPECT_EQ(loop.after(waiting), 1) << "it comes in the next tick";
+  const float coarser = loop.after(third, Paradigm::kLazyEvaluation);
+  EXPECT_GT(coarser, 1);
+  EXPECT_GT(loop.after(waiting, Paradigm::kLazyEvaluation), coarser);
+}
+
+TEST(QualityOfMemory, KnowsSinceWhenPicturesHaveAwaitedSomething) {
+  MemoryLoop loop;
+  loop.after({.awaited = 2, .at_s = 5});
+  EXPECT_EQ(loop.quality.awaiting_since_s, 5);
+  loop.after({.awaited = 1, .at_s = 6});
+  EXPECT_EQ(loop.quality.awaiting_since_s, 5);
+  loop.after({.at_s = 7});
+  EXPECT_GT(loop.quality.awaiting_since_s, 1e300);
 }
 
 }  // namespace
