@@ -34,7 +34,7 @@ struct ComponentTraits {};
 // How a value is built up. Snapshots store these numbers.
 enum class FieldKind : std::uint8_t {
   kBool,
-  kSigned,  // 1, 2, 4 or 8 bytes; enumerations too
+  kSigned,    // 1, 2, 4 or 8 bytes; enumerations too
   kUnsigned,  // likewise
   kReal,      // float or double
   kEntity,
@@ -68,8 +68,8 @@ struct FieldDescription {
 struct TypeDescription {
   FieldKind kind = FieldKind::kStruct;
   std::size_t size_bytes = 0;
-  std::size_t count = 0;  // of a kArray
-  const TypeDescription* element = nullptr;  // of a kArray or kList
+  std::size_t count = 0;                      // of a kArray
+  const TypeDescription* element = nullptr;   // of a kArray or kList
   std::vector<FieldDescription> fields = {};  // of a kStruct
   // Of a kString or kList: its number of elements, the address of the first, and a function that
   // resizes it to `count` elements and returns the address of the first.

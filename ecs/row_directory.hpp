@@ -14,7 +14,7 @@ namespace psygen::ecs::detail {
 
 // Rows per chunk.
 inline constexpr std::uint32_t kChunkRows = 4096;
-inline constexpr std::uint32_t kNowhere = 0;  // the location of a free slot
+inline constexpr std::uint32_t kNowhere = 0;             // the location of a free slot
 inline constexpr std::uint32_t kInTransit = UINT32_MAX;  // of an entity that is being moved
 
 // A table by its id and a row in it.

@@ -26,11 +26,11 @@ enum class SnapshotStatus : std::uint8_t {
   kNotASnapshot,
   kNewerVersion,
   kTruncated,
-  kCorrupt,  // the checksum does not match, or the content is invalid
+  kCorrupt,           // the checksum does not match, or the content is invalid
   kUnknownComponent,  // not declared in this world (World::declare)
-  kTypeMismatch,  // a field has another type, or a component is kept elsewhere now
-  kTooLarge,  // beyond this world's WorldLimits, or unreasonably long lists
-  kWorldInUse,  // the world has had entities before
+  kTypeMismatch,      // a field has another type, or a component is kept elsewhere now
+  kTooLarge,          // beyond this world's WorldLimits, or unreasonably long lists
+  kWorldInUse,        // the world has had entities before
 };
 
 // What load_snapshot returns; true in a condition when the world was loaded.

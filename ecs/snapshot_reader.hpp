@@ -84,11 +84,11 @@ class SnapshotReader {
 // A type as the snapshot declares it.
 struct SavedType {
   FieldKind kind = FieldKind::kStruct;
-  std::size_t size_bytes = 0;  // of a scalar
-  std::size_t count = 0;  // of an array
-  std::vector<SavedType> parts;  // fields that take bytes, or the one element
+  std::size_t size_bytes = 0;            // of a scalar
+  std::size_t count = 0;                 // of an array
+  std::vector<SavedType> parts;          // fields that take bytes, or the one element
   const TypeDescription* own = nullptr;  // the program's type; null: the value is skipped
-  std::size_t offset_bytes = 0;  // in the program's struct
+  std::size_t offset_bytes = 0;          // in the program's struct
 
   // Whether a value of this type takes bytes in the snapshot.
   bool has_bytes() const {

@@ -184,7 +184,7 @@ class Saver {
   static constexpr std::uint32_t kUnused = UINT32_MAX;
   const Storage& storage_;
   std::vector<std::byte> out_;
-  std::vector<ComponentId> ids_;  // of the components written, in their order
+  std::vector<ComponentId> ids_;          // of the components written, in their order
   std::vector<std::uint32_t> number_of_;  // place in ids_, by component id
 };
 

@@ -242,7 +242,7 @@ class Storage {
   std::vector<std::unique_ptr<Table>> tables_;
   std::vector<std::uint32_t> table_index_;  // open addressing by signature; 0 is empty
   std::array<ComponentId, 2 * kMaxComponents> id_index_;  // open addressing by ComponentInfo*
-  std::vector<Table*> touched_;  // scratch of the batch verbs
+  std::vector<Table*> touched_;                           // scratch of the batch verbs
   std::vector<RowMove> moves_;
   mutable IterationState iteration_;
 };

@@ -99,7 +99,7 @@ class Table {
   std::vector<Column> columns_;
   ReservedMemory entities_;
   std::vector<std::uint32_t> chunks_;  // the location of every 4096th row
-  std::vector<std::uint64_t> dead_;  // scratch: which of the last rows are leaving
+  std::vector<std::uint64_t> dead_;    // scratch: which of the last rows are leaving
   std::array<std::uint16_t, kMaxComponents> column_of_;
 };
 

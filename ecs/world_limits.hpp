@@ -10,7 +10,7 @@ namespace psygen::ecs {
 
 // Given to World's constructor and fixed for its life.
 struct WorldLimits {
-  std::size_t max_entities = std::size_t{1} << 28;  // below 2^32
+  std::size_t max_entities = std::size_t{1} << 28;        // below 2^32
   std::size_t max_rows_per_table = std::size_t{1} << 26;  // below 2^32; also per sparse component
   std::size_t max_tables = 2048;  // a column is a mapping; systems grant some 65,000
   // The generation of a slot's first entity, at least 1. With a value near UINT32_MAX slots retire

@@ -28,9 +28,9 @@ inline glm::vec3 forward_of(const CameraPose& pose) {
 
 // A perspective without a far plane.
 struct Projection {
-  float vertical_fov = 0.9F;  // radians, in (0, π)
+  float vertical_fov = 0.9F;    // radians, in (0, π)
   float aspect = 16.0F / 9.0F;  // width / height
-  float near_m = 0.2F;  // above 0
+  float near_m = 0.2F;          // above 0
   // Pixels that one radian covers in the middle of a picture `height` pixels high.
   float pixels_per_radian(float height) const {
     return height * 0.5F / std::tan(vertical_fov * 0.5F);

@@ -12,15 +12,15 @@ namespace psygen::core {
 // What went wrong, for programs to decide on.
 enum class ErrorCode : std::uint8_t {
   kInvalidArgument,  // a value outside its documented range
-  kParse,  // text that violates its format; the message has file, line, field
+  kParse,            // text that violates its format; the message has file, line, field
   kIo,               // a file could not be read or written
-  kOverBudget,  // legal, but larger than a limit that was set
+  kOverBudget,       // legal, but larger than a limit that was set
   kOutOfMemory,      // host or device memory
-  kNotYet,  // the result is not ready yet; ask again
+  kNotYet,           // the result is not ready yet; ask again
   kNoDevice,         // no usable Vulkan device or no display
   kDeviceLost,
   kSynthesisFailed,  // a model's synthesis threw or was abandoned
-  kInterrupted,  // cancelled at the caller's request
+  kInterrupted,      // cancelled at the caller's request
   kInternal,
 };
 

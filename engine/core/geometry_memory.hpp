@@ -17,7 +17,7 @@ namespace psygen::core {
 // The place of one mesh. Offsets count vertices and indices of the pool block, as draw calls need
 // them.
 struct GeometryRange {
-  std::uint32_t id = UINT32_MAX;  // names the range to its memory; UINT32_MAX: none
+  std::uint32_t id = UINT32_MAX;   // names the range to its memory; UINT32_MAX: none
   std::uint32_t pool_block = 0;    // which buffer pair to bind
   std::uint32_t first_vertex = 0;  // in strides of the range's layout
   std::uint32_t first_index = 0;   // in 16-bit indices

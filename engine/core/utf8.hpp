@@ -10,9 +10,9 @@ namespace psygen::core {
 
 // One decoded character, or one byte that is not UTF-8.
 struct CodePoint {
-  char32_t value = 0;  // the byte itself when it is not UTF-8
+  char32_t value = 0;     // the byte itself when it is not UTF-8
   std::size_t bytes = 1;  // its length in the text
-  bool valid = false;  // RFC 3629: no overlong forms, no surrogates
+  bool valid = false;     // RFC 3629: no overlong forms, no surrogates
 };
 
 // The first code point of `text`, which must not be empty. O(1).

@@ -30,7 +30,7 @@ struct TerrainVertex {
   std::int8_t normal_z;
   std::uint8_t sun = 255;      // unorm8: visible share of the sun, 255 = unshadowed
   std::uint8_t ambient = 255;  // unorm8: visible share of the sky, 255 = open
-  std::uint8_t cover = 0;  // unused, always 0: far forests are per draw (TerrainDraw::cover)
+  std::uint8_t cover = 0;      // unused, always 0: far forests are per draw (TerrainDraw::cover)
   std::uint8_t spare = 0;
 };
 static_assert(sizeof(TerrainVertex) == 12);
@@ -42,7 +42,7 @@ inline constexpr std::uint8_t kTerrainSkirtBit = 0x80;
 struct ModelVertex {
   std::int16_t position[3];
   std::uint8_t ambient;    // unorm8: baked ambient visibility, 255 = open sky
-  std::uint8_t sway;  // unorm8: how much the wind moves it, 0 = not at all
+  std::uint8_t sway;       // unorm8: how much the wind moves it, 0 = not at all
   std::int16_t normal[2];  // octahedral, snorm16; see kBillboardBit
   std::uint8_t colour[3];  // linear-light albedo, stored with sqrt: albedo = (c/255)^2
   std::uint8_t material;   // 0 solid (bark, stone), 1 leaf (lit from both sides); kBillboardBit

@@ -15,9 +15,9 @@ inline constexpr double kGoldenShareAllowed = 0.1e-2;  // of all pixels
 
 // The result of a comparison.
 struct ImageDifference {
-  bool same_size = false;  // if false, every pixel counts as different
+  bool same_size = false;           // if false, every pixel counts as different
   std::uint8_t max_difference = 0;  // largest of any channel of any pixel, 0 … 255
-  std::uint64_t pixels_over = 0;  // pixels with a channel over the threshold
+  std::uint64_t pixels_over = 0;    // pixels with a channel over the threshold
   double share_over = 0;            // pixels_over / all pixels, 0 … 1
 
   // Equal in every field.

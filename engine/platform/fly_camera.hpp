@@ -23,8 +23,8 @@ struct FlyCameraSettings {
   double response_s = 0.12;      // time to 63 % of a new speed
   double mouse_rad_px = 0.0025;  // turn per pixel
   double arrow_rad_s = 1.4;      // turn by arrow keys
-  double max_pitch_rad = 1.55;  // just less than straight up and down
-  double max_step_s = 0.25;  // longer frames count as this long
+  double max_pitch_rad = 1.55;   // just less than straight up and down
+  double max_step_s = 0.25;      // longer frames count as this long
 };
 
 // Holds the present velocity, not the pose: callers keep that.

@@ -25,12 +25,12 @@ using KeySet = std::bitset<static_cast<std::size_t>(Key::kCount)>;  // one bit p
 
 // The input of one frame.
 struct InputState {
-  KeySet held;  // down at the end of the frame
+  KeySet held;       // down at the end of the frame
   KeySet went_down;  // pressed during the frame, even if released again; not repeated while held
   glm::dvec2 look_px{0.0};  // mouse movement while looking: right, down; pixels
-  double wheel = 0;  // steps; positive is away from the user
-  bool looking = false;  // the right button is down
-  bool resized = false;  // the framebuffer changed its size; ask the window for it
+  double wheel = 0;         // steps; positive is away from the user
+  bool looking = false;     // the right button is down
+  bool resized = false;     // the framebuffer changed its size; ask the window for it
 
   // Whether the key is down at the end of the frame, or was pressed during it.
   bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }

@@ -99,7 +99,7 @@ GLFWmonitor* monitor_of(const Rectangle& place) {
 
 struct Window::Implementation {
   GLFWwindow* window = nullptr;
-  Rectangle windowed;  // its place before it covered a monitor
+  Rectangle windowed;       // its place before it covered a monitor
   InputState input;         // collected since the last poll
   glm::dvec2 pointer{0.0};  // last reported place; leaves the window while looking
 

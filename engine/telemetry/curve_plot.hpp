@@ -11,7 +11,7 @@ namespace psygen::telemetry {
 // How a curve is drawn.
 enum class CurveKind {
   kPoints,
-  kLine,  // breaks where there is no value; a value without neighbours is a ring
+  kLine,    // breaks where there is no value; a value without neighbours is a ring
   kDashed,  // likewise, dashed
 };
 
@@ -26,7 +26,7 @@ struct Curve {
 // What is drawn. The y axis starts at 0.
 struct CurvePlot {
   std::string title;
-  std::string x_name;  // label of the x axis
+  std::string x_name;     // label of the x axis
   std::string unit;       // of the values
   std::string note;       // a sentence below the plot; may be empty
   std::vector<double> x;  // ascending

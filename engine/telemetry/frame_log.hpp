@@ -24,10 +24,10 @@ inline constexpr std::size_t kMaxSystems = 16;
 // What sets a frame apart from the others: its time is excluded from all figures of times.
 enum class Apart : std::uint8_t {
   kNo,
-  kPicture,  // it was written to a file
+  kPicture,    // it was written to a file
   kAfterIdle,  // the device had been waited for (after a picture): a shorter wait
   kResized,    // the window changed its size
-  kNotDrawn,  // the window did not take the picture
+  kNotDrawn,   // the window did not take the picture
 };
 // The number of Apart values.
 inline constexpr std::size_t kApartKinds = 5;
@@ -38,29 +38,29 @@ std::string_view name_of(Apart apart);
 // end.
 struct FrameRecord {
   std::uint64_t index = 0;
-  double time_s = 0;       // start of the frame on the flight's clock; 0 is the flight's start
-  double frame_ms = 0;  // wall time of pose, tick and plugins; for a picture also the device
-  double main_cpu_ms = 0;  // CPU time of the main thread in this frame
+  double time_s = 0;          // start of the frame on the flight's clock; 0 is the flight's start
+  double frame_ms = 0;        // wall time of pose, tick and plugins; for a picture also the device
+  double main_cpu_ms = 0;     // CPU time of the main thread in this frame
   double device_wait_ms = 0;  // part of frame_ms: waiting for the frame before the last
-  double acquire_ms = 0;  // part of frame_ms: waiting for an image of the window
-  double present_ms = 0;  // part of frame_ms: waiting for the window to take the picture
-  double record_ms = 0;  // the render system recording and submitting commands
-  std::optional<double> gpu_ms;  // this frame on the device, by timestamps
+  double acquire_ms = 0;      // part of frame_ms: waiting for an image of the window
+  double present_ms = 0;      // part of frame_ms: waiting for the window to take the picture
+  double record_ms = 0;       // the render system recording and submitting commands
+  std::optional<double> gpu_ms;          // this frame on the device, by timestamps
   std::optional<double> gpu_shadows_ms;  // part of gpu_ms: shadow maps
-  std::uint64_t device_frame = 0;  // the renderer's number of this frame; 0: none
+  std::uint64_t device_frame = 0;        // the renderer's number of this frame; 0: none
   Apart apart = Apart::kNo;
   // In the order of FrameLog::systems(), without waiting for the device or the display.
   std::array<float, kMaxSystems> system_ms{};
 
-  double error_pixels = 0;  // that levels of detail may have
-  double memory_factor = 1;  // factor by which the geometry budget raised it
+  double error_pixels = 0;      // that levels of detail may have
+  double memory_factor = 1;     // factor by which the geometry budget raised it
   std::uint64_t triangles = 0;  // submitted
   std::uint32_t draws = 0;
   std::uint32_t nodes_in_view = 0;
-  std::uint32_t holes = 0;  // nodes in view for which nothing is drawn
-  std::uint32_t coarse_nodes = 0;  // nodes in view more than one level coarser than wanted
+  std::uint32_t holes = 0;            // nodes in view for which nothing is drawn
+  std::uint32_t coarse_nodes = 0;     // nodes in view more than one level coarser than wanted
   double missing_pixels_percent = 0;  // of the picture, covered by holes and coarse nodes
-  double too_coarse_percent = 0;  // of the picture, drawn with over twice the requested error
+  double too_coarse_percent = 0;      // of the picture, drawn with over twice the requested error
 
   std::uint64_t cache_bytes = 0;
   std::uint32_t cache_hits = 0;
@@ -71,7 +71,7 @@ struct FrameRecord {
   std::uint32_t requests_queued = 0;
   std::uint32_t requests_refused = 0;  // for things in view, for lack of memory
   std::uint32_t requests_completed = 0;
-  std::uint32_t models_failed = 0;  // could not be synthesised
+  std::uint32_t models_failed = 0;       // could not be synthesised
   std::uint32_t models_synthesised = 0;  // completed and landed, without stale and failed ones
   std::uint64_t triangles_synthesised = 0;
   std::uint64_t bytes_synthesised = 0;

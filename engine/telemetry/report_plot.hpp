@@ -20,7 +20,7 @@ enum class PlotKind {
 // One quantity over time.
 struct PlotSeries {
   std::string name;
-  int colour = 0;  // of the palette in report_style.cpp, 1 … 8; 0 and 9 are greys
+  int colour = 0;              // of the palette in report_style.cpp, 1 … 8; 0 and 9 are greys
   std::vector<double> values;  // one per entry of Plot::times_s; not finite: no value
 };
 
@@ -41,8 +41,8 @@ struct Plot {
   std::vector<PlotSeries> series;
   std::vector<PlotLevel> levels;
   std::vector<double> marks_s;  // times marked below the drawing
-  double warmup_s = 0;  // shaded from the start to this time
-  double top = 0;  // of the axis, higher values are cut off; 0: from the data
+  double warmup_s = 0;          // shaded from the start to this time
+  double top = 0;               // of the axis, higher values are cut off; 0: from the data
 };
 
 // A <figure> element. All text is escaped. At most 900 columns are drawn.

@@ -27,7 +27,7 @@ struct WorldFacts {
   std::array<std::int64_t, 2> blocks{};  // x, z; 0 = endless
   Count triangles;
   Count bytes_paper;  // at the paper's 256 bytes per triangle
-  Count bytes;  // in the engine's formats
+  Count bytes;        // in the engine's formats
   // Means over the world's blocks, and a block's side in metres; 0: unknown.
   double block_m = 0, block_models = 0, block_triangles = 0, block_bytes = 0;
 
@@ -57,7 +57,7 @@ struct RunSettings {
   bool lod = true;
   Figure fixed_step;        // Hz; missing when the flight follows the wall clock
   double error_pixels = 0;  // requested error of levels of detail
-  Figure target_fps;  // held by raising the error; missing when none is held
+  Figure target_fps;        // held by raising the error; missing when none is held
 };
 
 // What summarise cannot find in the log.
@@ -66,10 +66,10 @@ struct RunFacts {
   DeviceFacts device;
   RunSettings run;
   std::uint64_t cache_budget_bytes = 0;
-  Count cache_peak_bytes;  // when missing: the largest cache_bytes of the log
+  Count cache_peak_bytes;       // when missing: the largest cache_bytes of the log
   Figure prefetch_hit_percent;  // of models synthesised ahead of time: came into view
-  Figure share_drawn;  // of all triangles synthesised, those of meshes ever drawn
-  Figure floor_ratio;  // median frame ÷ the same draw lists replayed with nothing else
+  Figure share_drawn;           // of all triangles synthesised, those of meshes ever drawn
+  Figure floor_ratio;           // median frame ÷ the same draw lists replayed with nothing else
   Count peak_rss_bytes;
   Count world_hash;
   Count images_hash;
@@ -103,13 +103,13 @@ struct Summary {
   struct : RunSettings {
     std::uint64_t frames = 0;           // of the whole run
     double seconds = 0;                 // of the whole run, on the flight's clock
-    double warmup_seconds = 0;  // excluded from all figures below
+    double warmup_seconds = 0;          // excluded from all figures below
     std::uint64_t measured_frames = 0;  // frames after the warm-up
     // The measured frames that the figures of times are about, and all of them by what sets them
     // apart.
     std::uint64_t timed_frames = 0;
     std::array<std::uint64_t, kApartKinds> apart_frames{};  // by Apart; [0] are the timed ones
-    Figure real_seconds;  // wall time of the measured frames together
+    Figure real_seconds;          // wall time of the measured frames together
     double measured_seconds = 0;  // the same on the flight's clock
   } run;
   // Times, of the timed frames alone.
@@ -139,9 +139,9 @@ struct Summary {
     } time_to_visible_ms;
   } missing;
   struct {
-    Figure p50_pixels, max_pixels;  // error that levels of detail may have
+    Figure p50_pixels, max_pixels;              // error that levels of detail may have
     Count raised_by_memory, raised_for_target;  // frames in which it was above the requested one
-    Count refused_frames;  // frames in which something in view got no memory
+    Count refused_frames;                       // frames in which something in view got no memory
   } detail;
   struct {
     std::uint64_t budget_bytes = 0;
@@ -151,11 +151,11 @@ struct Summary {
   } cache;
   struct {
     Count models, triangles, bytes;
-    Count failed;  // models of the whole run that could not be synthesised
+    Count failed;                 // models of the whole run that could not be synthesised
     Figure seconds;               // busy time of all modelers together
-    Figure busy_percent;  // the same, as a share of all modelers' real time
-    Figure coarse_busy_percent;  // likewise, in frames more than kCoarsePercent too coarse
-    Figure share_drawn;  // of all triangles of the run, those ever drawn, in [0, 1]
+    Figure busy_percent;          // the same, as a share of all modelers' real time
+    Figure coarse_busy_percent;   // likewise, in frames more than kCoarsePercent too coarse
+    Figure share_drawn;           // of all triangles of the run, those ever drawn, in [0, 1]
     Figure triangles_per_second;  // per busy second of one modeler
     struct {
       Figure p50, p95;

@@ -10,7 +10,7 @@
 namespace psygen::telemetry {
 namespace {
 
-constexpr double kBusyPercent = 60;  // of the modelers' processors: they have what they need
+constexpr double kBusyPercent = 60;      // of the modelers' processors: they have what they need
 constexpr double kFasterThanReal = 1.1;  // flight time over real time
 
 // The missing or too coarse part of the picture, as the grade counts it.

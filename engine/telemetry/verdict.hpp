@@ -15,7 +15,7 @@ namespace psygen::telemetry {
 enum class Grade {
   kUnknown,  // no frame was measured
   kGood,     // no hole, no failed model, at most kGoodPercent too coarse, no error raised for long
-  kFair,  // coarser than requested
+  kFair,     // coarser than requested
   kPoor,     // holes, failed models, or more than kPoorPercent too coarse
 };
 // "unknown", "good", "fair", "poor".
@@ -32,7 +32,7 @@ struct Verdict {
   Grade grade = Grade::kUnknown;
   std::string headline;              // two or three words
   std::vector<std::string> reasons;  // sentences: what was seen
-  std::vector<std::string> advice;  // sentences: what to do; empty when nothing is wrong
+  std::vector<std::string> advice;   // sentences: what to do; empty when nothing is wrong
 };
 
 // Judges the picture of a run. The worst finding decides the grade.

@@ -16,7 +16,7 @@ class CameraPredictor {
   static constexpr double kMaxSpeed_m_s = 2000;
   static constexpr double kMaxTurnRate = 25;      // rad/s
   static constexpr double kMaxPrediction_s = 10;  // longer predictions are cut to this
-  static constexpr double kSmoothing_s = 0.15;  // time constant: 63 % of a change is followed
+  static constexpr double kSmoothing_s = 0.15;    // time constant: 63 % of a change is followed
 
   // The camera is at `pose` at `time_s`. Times increase from call to call; an earlier time restarts
   // the predictor. Poses that are not core::is_valid() and times that are not finite are ignored.

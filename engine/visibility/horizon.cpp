@@ -51,7 +51,7 @@ struct Horizon::Point {
 // The part of a followed line that lies in one bin.
 struct Horizon::Piece {
   std::int64_t bin = 0;
-  double end = 0;  // where the line came from, in the bin: 0 … 1
+  double end = 0;                    // where the line came from, in the bin: 0 … 1
   double tangent = 0, distance = 0;  // smallest and largest so far
 
   explicit Piece(const Point& start)

@@ -59,7 +59,7 @@ struct PlpInput {
 //
 // The caller keeps the result from tick to tick, so nothing is allocated in the long run.
 struct PlpResult {
-  std::vector<std::uint16_t> layer;  // per cell; kUnvisited where the search did not arrive
+  std::vector<std::uint16_t> layer;     // per cell; kUnvisited where the search did not arrive
   std::vector<std::uint32_t> key;       // per cell, visited or not
   std::vector<std::uint8_t> in_view;    // per cell: 1 or 0, visited or not
   std::vector<std::uint32_t> visible;   // visited cells in view, most important first

@@ -153,8 +153,8 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
                 "settings are in range");
   // Larger than the rounding errors of distances, so the proof holds for computed numbers.
   constexpr double kSlack = 1 + 1e-9;
-  double merge_below = 0;  // splitting here lets morphing begin beyond the level below
-  double reach_below = 0;  // farther than all nodes that touch split nodes of that level
+  double merge_below = 0;      // splitting here lets morphing begin beyond the level below
+  double reach_below = 0;      // farther than all nodes that touch split nodes of that level
   double reach_two_below = 0;  // the same, two levels below
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double side = side_of(static_cast<std::uint8_t>(k), settings.block_size_m);

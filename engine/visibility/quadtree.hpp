@@ -77,7 +77,7 @@ struct SplitSettings {
   // The error of a node alone never splits it at more than this many of its sides.
   double max_ratio = std::numeric_limits<double>::infinity();
   double merge_factor = 1.1;  // merge_m / split_m, >= 1
-  double morph_share = 0.7;  // share of split_m where morphing begins; above 0, at most 1
+  double morph_share = 0.7;   // share of split_m where morphing begins; above 0, at most 1
 };
 
 // One LevelDistances for each level. level_errors_m[k] is the error of the mesh of a node of level
@@ -111,7 +111,7 @@ struct BlockArea {
 struct CutInput {
   core::WorldPosition camera;  // within 2^30 blocks of all roots
   double block_size_m = 64;
-  std::span<const NodeCoord> roots;  // canonical, of one level, each once
+  std::span<const NodeCoord> roots;        // canonical, of one level, each once
   std::span<const LevelDistances> levels;  // of split_distances, up to the roots' level at least
   // By level: how far the camera is above (or below) all ground that nodes of the level could show,
   // in metres. It must not grow with the level (see the proof above). Empty: 0 for all.
@@ -126,8 +126,8 @@ inline constexpr std::uint32_t kNoNode = UINT32_MAX;
 // A node of the cut with its place relative to the camera.
 struct CutNode {
   NodeCoord node;
-  bool leaf = true;  // wanted for drawing; otherwise its children are
-  bool fine = false;  // a leaf of level 0 so near that its finest mesh is wanted
+  bool leaf = true;                // wanted for drawing; otherwise its children are
+  bool fine = false;               // a leaf of level 0 so near that its finest mesh is wanted
   std::uint32_t parent = kNoNode;  // index in Cut::nodes
   std::uint32_t end = 0;  // nodes[i + 1] … nodes[end − 1] are its descendants in the cut
   float corner_x_m = 0, corner_z_m = 0;  // of the node's corner, relative to the camera

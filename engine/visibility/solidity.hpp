@@ -10,9 +10,9 @@ namespace psygen::visibility {
 // Objects of one kind at random places in a cell. All values are >= 0.
 struct Standing {
   float count = 0;     // in the cell; may be an expected value
-  float width_m = 0;  // seen from the side
+  float width_m = 0;   // seen from the side
   float height_m = 0;  // above the ground
-  float density = 1;  // share of the light through its outline that it blocks
+  float density = 1;   // share of the light through its outline that it blocks
 };
 
 // The share in [0, 1] of the light through a square cell that the cell blocks. The light is level
