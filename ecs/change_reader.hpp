@@ -17,7 +17,8 @@ namespace psygen::ecs {
 // them.
 enum class Removed : bool { kIgnore, kReport };
 
-// Made by World::reader. `Tag` tells readers of the same component apart by type, as in a schedule.
+// Made by World::reader. `Tag` separates readers of the same component by type, as a schedule
+// needs.
 template <Component C, class Tag = void>
 class ChangeReader {
   static_assert(is_tracked<C>(),

@@ -9,7 +9,8 @@
 
 namespace psygen::ecs {
 
-// Index and generation name one entity of one world, for ever. The default is kNullEntity.
+// Index and generation together name one entity of one world; the pair is never reused. The default
+// is kNullEntity.
 struct Entity {
   std::uint32_t index = UINT32_MAX;
   std::uint32_t generation = 0;  // 0 is never given to an entity

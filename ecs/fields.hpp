@@ -55,7 +55,7 @@ struct FieldNotes {
   double max = std::numeric_limits<double>::infinity();
 };
 
-// One field of a struct. `name` has static storage; `type` lives for ever.
+// One field of a struct. `name` has static storage; `type` is never freed.
 struct FieldDescription {
   std::string_view name;
   std::size_t offset_bytes = 0;  // from the start of the struct
@@ -217,7 +217,7 @@ const TypeDescription* describe_component() {
 }  // namespace detail
 
 // The fields of a component; null when its ComponentTraits list none. A component without members
-// is described, with no fields. Lives for ever. Safe from any thread.
+// is described, with no fields. Never freed. Safe from any thread.
 template <class C>
 const TypeDescription* describe() {
   return detail::describe_component<C>();

@@ -112,7 +112,7 @@ void Storage::index_table(std::uint32_t id) {
   table_index_[i] = id;
 }
 
-// Makes room for `count` more rows and tells every component where its rows of the new chunks are.
+// Makes room for `count` more rows and stores for every component where its rows of new chunks are.
 void Storage::make_room(Table& table, std::size_t count) {
   const std::size_t known = directory_.chunk_count();
   table.reserve_more(count);

@@ -72,7 +72,7 @@ inline constexpr std::array<QueryTerm, sizeof...(Cs)> kQueryTerms{
 template <class... Cs>
 inline constexpr std::span<const QueryTerm> kQuery{kQueryTerms<Cs...>};
 
-// Which query is being iterated; structural changes meanwhile break the contract. Atomic because
+// The query being iterated: structural changes break the contract until it ends. Atomic because
 // systems on several threads iterate at once.
 struct IterationState {
   std::atomic<std::uint32_t> depth{0};  // iterations under way on all threads

@@ -79,10 +79,10 @@ class World {
   // died.
   std::size_t destroy_with_children(std::span<const Entity> parents);
 
-  // Adds value-initialised components, or removes components; everything else keeps its value.
-  // Entities that already have all of them (or none of them) or are dead are skipped. Returns how
-  // many changed. A sparse component is added and removed by itself; other components move the
-  // entity's row. O(handles).
+  // add gives these entities value-initialised components, remove takes components away; everything
+  // else keeps its value. Entities that are dead are skipped, and so are those that already have
+  // all of the components (add) or none of them (remove). Returns how many changed. A sparse
+  // component is added and removed by itself; other components move the entity's row. O(handles).
   template <Component... Cs>
   std::size_t add(std::span<const Entity> entities) {
     if constexpr (one_sparse<Cs...>()) {
@@ -220,8 +220,8 @@ class World {
     mark_changed<C>(std::span<const Entity>(&entity, 1));
   }
 
-  // A further consumer of C's changes; to it, all rows are new. A tag tells readers of the same
-  // component apart when they are known by type, as in a schedule. O(rows / 64).
+  // A new consumer of C's changes; to it, all rows are new. A tag separates readers of the same
+  // component by type, as a schedule needs. O(rows / 64).
   template <Component C, class Tag = void>
   ChangeReader<C, Tag> reader(Removed removed = Removed::kIgnore) {
     static_assert(is_tracked<C>(), "only a tracked component has changes");

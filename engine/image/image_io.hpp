@@ -1,6 +1,6 @@
 // Pictures from and to files. Reads PNG and JPEG (recognised by their first bytes, not by the
 // name); writes PNG. Files are not trusted: sizes are checked before anything is allocated for
-// them, and whatever the decoder reports becomes an error. OpenImageIO does the work and stays
+// them, and errors of the decoder are returned as errors. OpenImageIO does the work and stays
 // hidden here. Any thread; too slow for the tick.
 #pragma once
 

@@ -94,7 +94,7 @@ class Judge {
     return is_often(s_, s_.detail.raised_by_memory) || is_often(s_, s_.detail.refused_frames);
   }
 
-  // What keeps meshes from being ready in time. When it is memory, judge_memory() says so.
+  // Advises on why meshes were not ready in time. When memory is the cause, judge_memory() says so.
   void advise_on_time() {
     if (!verdict_.advice.empty() || lacks_memory()) return;
     const double real_s = s_.run.real_seconds.value.value_or(0);
