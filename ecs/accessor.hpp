@@ -1,6 +1,7 @@
-// Random access to one component by handle, with everything looked up once. Hold it in a system
-// that follows handles; for whole tables iterate instead. Stays valid as long as its world, also
-// across structural changes. `Accessor<const C>` reads only.
+// Random access to one component by handle, with everything looked up once. Not for walking whole
+// tables: iterate instead. A system that follows handles holds an accessor. It stays valid as long
+// as its world, also across structural changes, and reads on any thread while nothing changes the
+// structure. get is O(1).
 #pragma once
 
 #include <array>
@@ -12,12 +13,13 @@
 
 namespace psygen::ecs {
 
+// Made by World::accessor or Query::accessor. `Accessor<const C>` only reads.
 template <class C>
 class Accessor {
   using Value = std::remove_const_t<C>;
 
  public:
-  // The entity's component, null when the entity is dead or has none. The pointer is valid until
+  // The entity's component; null when the entity is dead or lacks it. The pointer is valid until
   // the next structural change.
   C* get(Entity entity) const {
     if constexpr (is_sparse<Value>()) {
@@ -28,13 +30,12 @@ class Accessor {
     }
   }
 
-  // Calls f(i, get(entities[i])) for every i in order, with the loads of the next ones under way:
-  // the way to follow many handles. `f` may write through the pointer and makes no structural
-  // change.
+  // Calls f(i, get(entities[i])) for every i in order and prefetches the next ones: the fast way to
+  // follow many handles. `f` may write through the pointer and must not change structure.
   template <class F>
   void each(std::span<const Entity> entities, F&& f) const;
 
-  // A hint that get(entity) follows soon: loads where the entity is, not the component itself.
+  // Hints that get(entity) follows soon. Loads the place of the entity, not the component itself.
   void prefetch(Entity entity) const {
     if constexpr (is_sparse<Value>()) {
       if (record_->sparse != nullptr) record_->sparse->prefetch(entity);
@@ -46,7 +47,7 @@ class Accessor {
  private:
   friend class World;
   struct Found {
-    C* value;  // null for dead entities and those without the component
+    C* value;  // null for entities that are dead or lack the component
     detail::RowPlace at;
   };
   Found find(Entity entity) const {
@@ -75,7 +76,7 @@ template <class F>
 void Accessor<C>::each(std::span<const Entity> entities, F&& f) const {
   const detail::IterationGuard guard(storage_->iteration(), detail::kQuery<C>);
   constexpr std::size_t kAhead = detail::kPrefetchAhead;
-  std::array<C*, kAhead> found;  // of entities [i, i + kAhead), as a ring
+  std::array<C*, kAhead> found;  // ring of entities [i, i + kAhead)
   const std::size_t count = entities.size();
   for (std::size_t i = 0; i < count + kAhead; ++i) {
     if (i >= kAhead) f(i - kAhead, found[i % kAhead]);

@@ -1,6 +1,7 @@
-// Structural changes written down while a query is iterated, and applied afterwards in the order in
-// which they were recorded. Neighbouring commands of the same form are one batch. A Commands
-// belongs to one thread; every thread may have its own. Entities that die before apply are skipped.
+// Structural changes recorded while a query is iterated, and applied afterwards in the order of
+// recording. Neighbouring commands of the same form become one batch. Not thread-safe: a Commands
+// belongs to one thread, and every thread may have its own. Entities that die before apply are
+// skipped. Recording is amortised O(1) per entity.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +15,15 @@
 
 namespace psygen::ecs {
 
+// A list of recorded changes. Destroying it drops what was not applied.
 class Commands {
  public:
+  // Starts empty; moving takes the recorded changes along.
   Commands() = default;
   Commands(Commands&&) noexcept = default;
   Commands& operator=(Commands&&) noexcept = default;
 
-  // One entity with these components and values.
+  // Records one new entity with these components and values.
   template <Component... Cs>
   void create(Cs... values) {
     static_assert(sizeof...(Cs) > 0, "an entity without components is created in no batch");
@@ -28,30 +31,34 @@ class Commands {
     std::apply([&](auto&... rows) { (rows.push_back(std::move(values)), ...); },
                list<List>().values);
   }
+  // Records World::destroy of these entities.
   void destroy(Entity entity) { list<DestroyList>().entities.push_back(entity); }
   void destroy(std::span<const Entity> entities) {
     auto& all = list<DestroyList>().entities;
     all.insert(all.end(), entities.begin(), entities.end());
   }
-  // World::set_children with a copy of the list.
+  // Records World::set_children with a copy of the list.
   void set_children(Entity parent, std::span<const Entity> children) {
     auto& all = list<ChildrenList>().lists;
     all.push_back({parent, {children.begin(), children.end()}});
   }
+  // Records World::destroy_with_children.
   void destroy_with_children(Entity parent) { list<FamilyList>().parents.push_back(parent); }
-  // Gives the entity a C with this value, or sets the one that it has.
+  // Records that the entity gets a C with this value; an existing C takes the value.
   template <Component C>
   void add(Entity entity, C value = {}) {
     list<AddList<C>>().results.push_back({entity, std::move(value)});
   }
+  // Records that the entity loses its C.
   template <Component C>
   void remove(Entity entity) {
     list<RemoveList<C>>().entities.push_back(entity);
   }
 
+  // Whether nothing is recorded.
   bool empty() const { return batches_.empty(); }
-  // Carries everything out and forgets it. Not while a query of this world is iterated. When a
-  // component's constructor throws, what comes after that batch is kept.
+  // Applies everything in order and forgets it. Not while a query of this world is iterated. When a
+  // component's constructor throws, the batches after that one are kept.
   void apply(World& world);
 
  private:
@@ -86,7 +93,7 @@ class Commands {
     void apply(World& world) { world.remove<C>(entities); }
   };
 
-  // A list of any of these types, owned.
+  // Owns a list of any of these types.
   class Batch {
    public:
     template <class List>

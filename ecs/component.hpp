@@ -1,7 +1,7 @@
 // What the library knows about a component type: its name, where it is kept, whether changes are
-// tracked, and how batches of rows are built, moved and destroyed. One constant table per type; its
-// address is the type's identity. Users specialise ComponentTraits (fields.hpp); the rest is
-// internal.
+// tracked, and how batches of rows are built, moved and destroyed. There is one constant table per
+// type, and its address is the type's identity. Users specialise ComponentTraits (fields.hpp); the
+// rest is internal. Constants and pure functions over rows: no state, any thread.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,22 @@
 
 namespace psygen::ecs {
 
-// Any movable value type. Moving and destroying must not throw; constructing may.
+// Any movable value type, aligned to at most 64 bytes. Moving and destroying must not throw;
+// constructing may.
 template <class C>
 concept Component =
     std::is_object_v<C> && std::is_same_v<C, std::remove_cv_t<C>> && !std::is_array_v<C> &&
     std::is_default_constructible_v<C> && std::is_nothrow_move_constructible_v<C> &&
     std::is_nothrow_destructible_v<C> && alignof(C) <= 64;
 
+// Whether changes of C are tracked: ComponentTraits<C>::tracked, by default false.
 template <class C>
 constexpr bool is_tracked() {
   if constexpr (requires { ComponentTraits<C>::tracked; }) return ComponentTraits<C>::tracked;
   return false;
 }
 
+// Whether C is kept in a set of its own: ComponentTraits<C>::sparse, by default false.
 template <class C>
 constexpr bool is_sparse() {
   if constexpr (requires { ComponentTraits<C>::sparse; }) return ComponentTraits<C>::sparse;
@@ -39,16 +42,18 @@ constexpr bool is_sparse() {
 
 namespace detail {
 
+// The qualified name of C as this compiler spells it. Static storage.
 template <class C>
 constexpr std::string_view type_name() {
   std::string_view text = __PRETTY_FUNCTION__;
   text.remove_prefix(text.find("C = ") + 4);
-  const std::size_t others = text.rfind("; std::string_view");  // g++ lists aliases as well
+  const std::size_t others = text.rfind("; std::string_view");  // g++ also lists aliases here
   return text.substr(0, others != std::string_view::npos ? others : text.rfind(']'));
 }
 
 }  // namespace detail
 
+// ComponentTraits<C>::name, by default the compiler's name of the type. Static storage.
 template <class C>
 constexpr std::string_view component_name() {
   if constexpr (requires { ComponentTraits<C>::name; }) return ComponentTraits<C>::name;
@@ -57,38 +62,46 @@ constexpr std::string_view component_name() {
 
 namespace detail {
 
-// Row `from` goes to row `to`, which holds no object before; `from` holds none afterwards.
+// Row `from` moves to row `to`. `to` holds no object before the move, `from` holds none after it.
 struct RowMove {
   std::uint32_t to;
   std::uint32_t from;
 };
 
+// How many elements before their use the loops over handles and moves prefetch.
 inline constexpr std::size_t kPrefetchAhead = 16;
 
+// A component type without its type: sizes, flags and functions over rows of its column. `column`
+// is the address of row 0, rows are `size_bytes` apart.
 struct ComponentInfo {
   std::string_view name;
   std::size_t size_bytes;
   std::size_t alignment;
   bool tracked;
   bool sparse;
-  const TypeDescription* (*describe)();  // gives null where fields are not listed
-  // Value-initialises rows [first, first + count); `fresh` says that their memory reads as zero.
+  const TypeDescription* (*describe)();  // returns null when fields are not listed
+  // Value-initialises rows [first, first + count). `fresh` says that their memory reads as zero.
   // When a constructor throws, none of these rows holds an object.
   void (*construct)(std::byte* column, std::size_t first, std::size_t count, bool fresh);
-  // Null for trivial destructors.
+  // Both end the objects of rows: of [first, first + count), or of the `count` rows listed. Null
+  // for types with trivial destructors.
   void (*destroy_range)(std::byte* column, std::size_t first, std::size_t count);
   void (*destroy_rows)(std::byte* column, const std::uint32_t* rows, std::size_t count);
+  // Carries out `count` moves between rows of one column.
   void (*relocate_within)(std::byte* column, const RowMove* moves, std::size_t count);
-  // Rows of `source`, in this order, to rows first, first + 1, ... of `target`.
+  // Moves the listed rows of `source`, in this order, to rows first, first + 1, ... of `target`.
   void (*relocate_into)(std::byte* target, std::size_t first, std::byte* source,
                         const std::uint32_t* rows, std::size_t count);
 };
 
+// The column as an array of C. Only rows that hold objects may be read.
 template <class C>
 C* rows_of(std::byte* column) {
   return std::launder(reinterpret_cast<C*>(column));
 }
 
+// Moves the object at `from` to `to`, which holds none; `from` holds none afterwards. The two rows
+// differ.
 template <class C>
 void relocate(C* to, C* from) {
   if constexpr (std::is_trivially_copyable_v<C>) {
@@ -99,12 +112,12 @@ void relocate(C* to, C* from) {
   }
 }
 
-// Trivially copyable rows are copies of one value-initialised row: one memset, or nothing where
-// that row is all zeros and the memory is fresh.
+// ComponentInfo::construct for C. Trivially copyable rows are copies of one value-initialised row.
+// When that row is all zeros this is one memset, or nothing at all on fresh memory.
 template <class C>
 void construct_rows(std::byte* column, std::size_t first, std::size_t count, bool fresh) {
   C* rows = reinterpret_cast<C*>(column) + first;
-  constexpr std::size_t kLargestModel = 4096;  // on the stack
+  constexpr std::size_t kLargestModel = 4096;  // bytes on the stack
   if constexpr (std::is_trivially_copyable_v<C> && sizeof(C) <= kLargestModel) {
     alignas(C) std::byte model[sizeof(C)]{};
     ::new (static_cast<void*>(model)) C();
@@ -122,17 +135,20 @@ void construct_rows(std::byte* column, std::size_t first, std::size_t count, boo
   }
 }
 
+// ComponentInfo::destroy_range for C.
 template <class C>
 void destroy_range_of(std::byte* column, std::size_t first, std::size_t count) {
   std::destroy_n(rows_of<C>(column) + first, count);
 }
 
+// ComponentInfo::destroy_rows for C.
 template <class C>
 void destroy_rows_of(std::byte* column, const std::uint32_t* rows, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     std::destroy_at(rows_of<C>(column) + rows[i]);
 }
 
+// ComponentInfo::relocate_within for C.
 template <class C>
 void relocate_within_column(std::byte* column, const RowMove* moves, std::size_t count) {
   C* rows = rows_of<C>(column);
@@ -145,6 +161,7 @@ void relocate_within_column(std::byte* column, const RowMove* moves, std::size_t
     relocate(rows + moves[i].to, rows + moves[i].from);
 }
 
+// ComponentInfo::relocate_into for C.
 template <class C>
 void relocate_into_column(std::byte* target, std::size_t first, std::byte* source,
                           const std::uint32_t* rows, std::size_t count) {
@@ -156,6 +173,7 @@ void relocate_into_column(std::byte* target, std::size_t first, std::byte* sourc
   }
 }
 
+// The table of C. Its address identifies C throughout the program.
 template <Component C>
 inline constexpr ComponentInfo kComponentInfo{
     component_name<C>(),

@@ -1,5 +1,5 @@
-// The one header to include: entities, components in columns, and batch verbs. See README.md for a
-// tour. Knows nothing but the standard library and, for its memory, mmap.
+// The one header to include: entities, components in columns, and batch verbs. README.md has a
+// tour. Depends on the standard library and, for its memory, on mmap.
 #pragma once
 
 #include "ecs/accessor.hpp"

@@ -1,6 +1,6 @@
 // The handle of an entity: 8 bytes, an index into the world's slots and the generation of that
-// slot. A handle owns nothing. When the entity dies its slot's generation moves on, so a kept
-// handle is recognised as stale in every build.
+// slot. Not an owner: a handle keeps nothing alive and may be copied anywhere. When the entity
+// dies, its slot's generation advances, so a kept handle is recognised as stale in every build.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,8 @@
 
 namespace psygen::ecs {
 
+// Index and generation together name one entity of one world; the pair is never reused. The default
+// is kNullEntity.
 struct Entity {
   std::uint32_t index = UINT32_MAX;
   std::uint32_t generation = 0;  // 0 is never given to an entity
@@ -16,13 +18,15 @@ struct Entity {
 };
 static_assert(sizeof(Entity) == 8);
 
-// Equal to no entity that ever lived.
+// Equals no entity that ever lived.
 inline constexpr Entity kNullEntity{};
 
 }  // namespace psygen::ecs
 
+// Handles as keys of unordered containers.
 template <>
 struct std::hash<psygen::ecs::Entity> {
+  // Mixes both halves of the handle. O(1).
   std::size_t operator()(psygen::ecs::Entity entity) const noexcept {
     const std::uint64_t key = (std::uint64_t{entity.generation} << 32) | entity.index;
     const std::uint64_t mixed = (key ^ (key >> 29)) * 0x9E3779B97F4A7C15ull;

@@ -1,6 +1,7 @@
-// Where every entity is: slot i tells the generation and location of the entity with index i.
-// A free slot already has its next generation, so that old handles are stale. A slot whose
-// generations are used up retires: it is never given out again. 8 bytes per entity.
+// Where every entity is: slot i holds the generation and the location of the entity with index i. A
+// free slot already has its next generation, so old handles are stale. A slot whose generations are
+// used up retires and is never issued again. 8 bytes per entity. Not an owner of rows: tables are.
+// The world's thread changes it; const functions may run on several threads while nothing changes.
 #pragma once
 
 #include <cstddef>
@@ -14,34 +15,41 @@
 
 namespace psygen::ecs::detail {
 
+// One slot. Its index is its place in the array.
 struct Slot {
   std::uint32_t generation;
-  std::uint32_t location;  // see RowDirectory; kNowhere while free
+  std::uint32_t location;  // see RowDirectory; kNowhere while the slot is free
 };
 static_assert(sizeof(Slot) == 8);
 
+// All slots of one world. Slots never move in memory.
 class EntitySlots {
  public:
+  // Reserves address space for `max_entities` slots; throws std::bad_alloc when there is none.
   // `first_generation` (at least 1) is the generation of a slot's first entity.
   EntitySlots(std::size_t max_entities, std::uint32_t first_generation);
 
-  // The slot that the handle's index names, when the generation fits as well. A forged handle may
-  // name a free slot: its location is kNowhere.
+  // The slot of the handle's index when the generation matches too, else null. A forged handle may
+  // name a free slot: its location is kNowhere. O(1).
   Slot* find(Entity entity) const {
     if (entity.index >= count_) return nullptr;
     Slot* slot = slots() + entity.index;
     return slot->generation == entity.generation ? slot : nullptr;
   }
+  // The slot of an index below used().
   Slot& operator[](std::uint32_t index) const { return slots()[index]; }
+  // Hints that find(entity) follows soon. Any handle is allowed.
   void prefetch(Entity entity) const {
     if (entity.index < count_) __builtin_prefetch(slots() + entity.index);
   }
 
-  // Makes room for so many more entities. Throws std::bad_alloc when there is none.
+  // Makes room for `count` more entities. Throws std::bad_alloc when memory ends; ends the program
+  // beyond max_entities.
   void reserve_more(std::size_t count);
-  // Handles for the rows at first_location, first_location + 1, ..., written to `out`.
+  // Writes one handle per element of `out`, for the rows at first_location, first_location + 1, ...
+  // Free slots are reused first. Makes its own room, like reserve_more. O(handles).
   void issue(std::span<Entity> out, std::uint32_t first_location);
-  // The entity of a living slot dies.
+  // Ends the entity of a living slot: its handle is stale and the slot is free or retired.
   void release(Slot& slot) {
     slot.location = kNowhere;
     if (++slot.generation != 0) {
@@ -51,15 +59,18 @@ class EntitySlots {
     }
   }
 
-  // As another world had them; nobody lives yet. Generation 0 is a slot that has retired.
+  // Takes over the slots of another world; no entity lives yet. Generation 0 marks a retired slot,
+  // `free` lists the free slots.
   void restore(std::span<const std::uint32_t> generations, std::span<const std::uint32_t> free);
-  // Free slots; the last one is issued next.
+  // Indices of free slots; the last one is issued next. Valid until the next issue or release.
   std::span<const std::uint32_t> free() const { return free_; }
 
-  // Slots that were ever used: indices of entities are below.
+  // How many slots were ever used; indices of entities are below this.
   std::uint32_t used() const { return count_; }
+  // How many entities live, and how many slots have retired.
   std::size_t living() const { return count_ - free_.size() - retired_; }
   std::size_t retired() const { return retired_; }
+  // Bytes of slot memory that are usable now.
   std::size_t committed_bytes() const { return memory_.committed_bytes(); }
 
  private:

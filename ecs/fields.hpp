@@ -1,6 +1,7 @@
-// What a type consists of, said once: names, units and ranges of its fields, for snapshots, editors
-// and messages. Values are reached by offset, so that nothing here needs templates but `field` and
-// `describe`. Not a serialiser (snapshot.hpp is) and not reflection: what is not listed is unknown.
+// The description of a type, written once: names, units and ranges of its fields, for snapshots,
+// editors and messages. Values are reached by offset, so only `field` and `describe` need
+// templates. Not a serialiser (snapshot.hpp is) and not reflection: a field that is not listed is
+// unknown. Descriptions are built on first use, never freed, and safe to read from any thread.
 #pragma once
 
 #include <array>
@@ -20,19 +21,21 @@
 
 namespace psygen::ecs {
 
-// Describes a type once. Specialise it to say more than the defaults; each member may be left out:
+// Describes a type once. Specialise it to override the defaults; each member may be left out:
 //   static constexpr std::string_view name = "mesh";   default: the type's name
 //   static constexpr bool tracked = true;              default: false, no change bits
 //   static constexpr bool sparse = true;               default: false, a column of tables
 //   static constexpr auto fields = std::tuple{ecs::field("id", &Mesh::id), ...};
-// A component without `fields` is transient: snapshots keep that an entity has it, not its value.
+// A component without `fields` is transient: snapshots record which entities have it, not its
+// value.
 template <class C>
 struct ComponentTraits {};
 
+// How a value is built up. Snapshots store these numbers.
 enum class FieldKind : std::uint8_t {
   kBool,
-  kSigned,    // 1, 2, 4 or 8 bytes, also enumerations
-  kUnsigned,  // the same
+  kSigned,    // 1, 2, 4 or 8 bytes; enumerations too
+  kUnsigned,  // likewise
   kReal,      // float or double
   kEntity,
   kString,  // std::string
@@ -43,7 +46,8 @@ enum class FieldKind : std::uint8_t {
 
 struct TypeDescription;
 
-// What an editor wants to know beyond the type. Ranges bound sliders; they are not enforced.
+// What an editor wants to know beyond the type. Ranges bound sliders; they are not enforced. The
+// strings have static storage.
 struct FieldNotes {
   std::string_view unit = {};  // "m", "rad"; empty: none
   std::string_view doc = {};
@@ -51,6 +55,7 @@ struct FieldNotes {
   double max = std::numeric_limits<double>::infinity();
 };
 
+// One field of a struct. `name` has static storage; `type` is never freed.
 struct FieldDescription {
   std::string_view name;
   std::size_t offset_bytes = 0;  // from the start of the struct
@@ -58,25 +63,29 @@ struct FieldDescription {
   FieldNotes notes;
 };
 
+// One type: its kind, its size, and what it is made of. Pointers are null when the kind has no use
+// for them.
 struct TypeDescription {
   FieldKind kind = FieldKind::kStruct;
   std::size_t size_bytes = 0;
-  std::size_t count = 0;                      // kArray
-  const TypeDescription* element = nullptr;   // kArray, kList
-  std::vector<FieldDescription> fields = {};  // kStruct
-  // kString, kList: how many elements, where they are, and how to have `count` of them.
+  std::size_t count = 0;                      // of a kArray
+  const TypeDescription* element = nullptr;   // of a kArray or kList
+  std::vector<FieldDescription> fields = {};  // of a kStruct
+  // Of a kString or kList: its number of elements, the address of the first, and a function that
+  // resizes it to `count` elements and returns the address of the first.
   std::size_t (*length)(const std::byte* value) = nullptr;
   const std::byte* (*elements)(const std::byte* value) = nullptr;
   std::byte* (*resize)(std::byte* value, std::size_t count) = nullptr;
 };
 
-// A field and its name, in the order in which they are listed in ComponentTraits<C>::fields.
+// A field and its name. ComponentTraits<C>::fields lists them; descriptions keep that order.
 template <class C, class T>
 struct Field {
   std::string_view name;
   T C::*member;
   FieldNotes notes;
 };
+// Makes a Field. The strings must have static storage.
 template <class C, class T>
 constexpr Field<C, T> field(std::string_view name, T C::*member, FieldNotes notes = {}) {
   return {name, member, notes};
@@ -84,14 +93,17 @@ constexpr Field<C, T> field(std::string_view name, T C::*member, FieldNotes note
 
 namespace detail {
 
+// A type whose ComponentTraits list its fields.
 template <class T>
 concept HasFields = requires {
   ComponentTraits<T>::fields;
 };
 
+// The description of T, built on first use. Ends the program when T contains itself. Any thread.
 template <class T>
 const TypeDescription& description_of();
 
+// Whether T is a std::array, or a std::vector other than std::vector<bool>.
 template <class T>
 inline constexpr bool kIsArray = false;
 template <class T, std::size_t N>
@@ -101,12 +113,13 @@ inline constexpr bool kIsList = false;
 template <class T>
 inline constexpr bool kIsList<std::vector<T>> = !std::is_same_v<T, bool>;
 
+// The types that a field may have.
 template <class T>
 concept Describable = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, Entity> ||
     std::is_same_v<T, std::string> || kIsArray<T> || kIsList<T> || HasFields<T> ||
     std::is_empty_v<T>;
 
-// Elements of lists and arrays: without fields they would take no bytes.
+// Whether a value of T takes bytes in a snapshot: elements of lists and arrays must.
 template <class T>
 constexpr bool has_content() {
   if constexpr (HasFields<T>) return std::tuple_size_v<decltype(ComponentTraits<T>::fields)> > 0;
@@ -114,6 +127,7 @@ constexpr bool has_content() {
   return !std::is_empty_v<T>;
 }
 
+// The description of a std::string or std::vector.
 template <class T>
 TypeDescription describe_list(FieldKind kind) {
   static_assert(has_content<typename T::value_type>(), "a list of nothing is a number: its length");
@@ -133,6 +147,7 @@ TypeDescription describe_list(FieldKind kind) {
   return result;
 }
 
+// The description of a struct. Finds offsets on a default-constructed T.
 template <class T>
 TypeDescription describe_struct() {
   TypeDescription result;
@@ -150,6 +165,7 @@ TypeDescription describe_struct() {
   return result;
 }
 
+// Builds the description of T. Fails to compile for a type that is not Describable.
 template <class T>
 TypeDescription make_description() {
   static_assert(Describable<T>,
@@ -187,7 +203,7 @@ const TypeDescription& description_of() {
   return description;
 }
 
-// Null for a type that says nothing about its fields.
+// Like description_of, but null for a type that lists no fields and is not empty.
 template <class C>
 const TypeDescription* describe_component() {
   static_assert(
@@ -201,7 +217,7 @@ const TypeDescription* describe_component() {
 }  // namespace detail
 
 // The fields of a component; null when its ComponentTraits list none. A component without members
-// has no fields, which is described. Lives for ever. Safe from any thread.
+// is described, with no fields. Never freed. Safe from any thread.
 template <class C>
 const TypeDescription* describe() {
   return detail::describe_component<C>();

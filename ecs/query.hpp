@@ -1,5 +1,7 @@
-// Iteration: which rows a query wants, and the spans of each run of them. One call per table;
-// filters by a sparse component cut tables into runs of matching rows.
+// Iteration: which rows a query visits, and the spans of each run of them. One call per table;
+// filters by a sparse component cut tables into runs of matching rows. Not a cache: each walk
+// matches tables anew, O(tables) plus the rows visited. Several threads may iterate while nothing
+// changes structure.
 #pragma once
 
 #include <array>
@@ -13,10 +15,10 @@
 
 namespace psygen::ecs {
 
-// Filters: which components the entities must have as well, or must not have:
+// Filters: components that the entities must also have, or must not have:
 //   world.each<A>(f, With<Selected>{}, Without<Hidden>{})
-// With a sparse component the walk costs what its smallest set costs; without one, where there are
-// any, a look-up per row.
+// With<sparse component> walks the smallest of the sets named. Without<sparse component> costs one
+// look-up per row when the set has members.
 template <Component... Cs>
 struct With {};
 template <Component... Cs>
@@ -24,12 +26,14 @@ struct Without {};
 
 namespace detail {
 
+// How often C occurs in Cs, and whether every component occurs once.
 template <class C, class... Cs>
 inline constexpr std::size_t kCount = (std::size_t{0} + ... + std::size_t{std::is_same_v<C, Cs>});
 template <class... Cs>
 inline constexpr bool kDistinct =
     ((kCount<std::remove_const_t<Cs>, std::remove_const_t<Cs>...> == 1) && ...);
 
+// Defined below; declared here because TableRows makes it a friend.
 template <class... Cs, class S, class F>
 void call_with_spans(S& storage, F& f, const Table& table,
                      const std::array<ComponentId, sizeof...(Cs)>& ids, std::uint32_t first,
@@ -37,12 +41,12 @@ void call_with_spans(S& storage, F& f, const Table& table,
 
 }  // namespace detail
 
-// The rows that are being iterated, for marking rows as changed: an optional first parameter of the
-// function given to World::each.
+// The rows being iterated, for marking rows as changed: an optional first parameter of the function
+// given to World::each. Valid during that call.
 template <class... Cs>
 class TableRows {
  public:
-  // Rows [first, first + count) of the spans changed in C, which the query must write.
+  // Marks rows [first, first + count) of the spans as changed in C, which the query must write.
   template <Component C>
   void mark_changed(std::size_t first, std::size_t count) const {
     static_assert(detail::kCount<C, Cs...> == 1, "only a component that the query writes changes");
@@ -75,8 +79,10 @@ namespace detail {
 template <class F>
 class RunMerger {
  public:
+  // Both must outlive it.
   RunMerger(const Storage& storage, F& visit) : storage_(storage), visit_(visit) {}
 
+  // The next row. Visits the previous run when `at` does not continue it.
   void add(RowPlace at) {
     if (count_ > 0 && at.table == begin_.table && at.row == begin_.row + count_) {
       ++count_;
@@ -86,7 +92,7 @@ class RunMerger {
     begin_ = at;
     count_ = 1;
   }
-  // Hands out the last run. After the last row, once.
+  // Visits the last run. Call it once, after the last row.
   void finish() {
     if (count_ > 0) visit_(*storage_.tables()[begin_.table], begin_.row, count_);
   }
@@ -98,7 +104,7 @@ class RunMerger {
   std::uint32_t count_ = 0;
 };
 
-// How many components the filters of one query may name.
+// How many components the filters of one query may name, and how many one filter names.
 inline constexpr std::size_t kMaxFilters = 8;
 template <class F>
 inline constexpr std::size_t kFilterSize = 0;
@@ -107,12 +113,15 @@ inline constexpr std::size_t kFilterSize<With<Cs...>> = sizeof...(Cs);
 template <class... Cs>
 inline constexpr std::size_t kFilterSize<Without<Cs...>> = sizeof...(Cs);
 
-// Which rows a query visits. Made from its columns and filters, then walked once.
+// Which rows a query visits. Made from the query's columns and filters, then walked once.
 class RowFilter {
  public:
+  // Rows must have (want) or lack (refuse) this component. Nothing matches a wanted component that
+  // the world has never seen. At most kMaxFilters calls of each for sparse components.
   void want(const Storage& storage, const ComponentInfo& info);
   void refuse(const Storage& storage, const ComponentInfo& info);
 
+  // Adds one filter of a query.
   template <class... Cs>
   void add(const Storage& storage, With<Cs...>) {
     (want(storage, kComponentInfo<Cs>), ...);
@@ -160,7 +169,7 @@ void RowFilter::each_run(const Storage& storage, F&& visit) const {
   }
 }
 
-// Follows the members of the smallest set to their tables; neighbours there are one run.
+// Follows the members of the smallest set to their tables; neighbours there form one run.
 template <class F>
 void RowFilter::each_run_of_members(const Storage& storage, F& visit) const {
   const SparseSet* smallest = with_[0];
@@ -176,6 +185,7 @@ void RowFilter::each_run_of_members(const Storage& storage, F& visit) const {
   runs.finish();
 }
 
+// Looks up every row's entity in the sparse sets.
 template <class F>
 void RowFilter::each_run_of_rows(const Table& table, F& visit) const {
   const Entity* entities = table.entities();
@@ -189,7 +199,7 @@ void RowFilter::each_run_of_rows(const Table& table, F& visit) const {
 }
 
 // Calls visit(table, first row, count) for every maximal run of living `entities` that are
-// neighbours in a table.
+// neighbours in a table. Keeps their order. O(entities).
 template <class F>
 void each_run_of(const Storage& storage, std::span<const Entity> entities, F&& visit) {
   RunMerger runs(storage, visit);
@@ -202,7 +212,7 @@ void each_run_of(const Storage& storage, std::span<const Entity> entities, F&& v
   runs.finish();
 }
 
-// f(entities, spans of Cs...), or f(TableRows<Cs...>, entities, spans of Cs...), for one run.
+// Calls f(entities, spans of Cs...), or f(TableRows<Cs...>, entities, spans of Cs...), for one run.
 template <class... Cs, class S, class F>
 void call_with_spans(S& storage, F& f, const Table& table,
                      const std::array<ComponentId, sizeof...(Cs)>& ids, std::uint32_t first,

@@ -1,33 +1,41 @@
-// A range of address space that is reserved once and backed by memory as it grows, so that what it
-// holds never moves. Fresh memory reads as zero. Large ranges ask for huge pages. Not a container:
-// it knows bytes, not objects. Growing costs one system call; touching a page costs its page fault.
+// A range of address space, reserved once and backed by memory as it grows, so its contents never
+// move. Fresh memory reads as zero. Large ranges ask for huge pages. Not a container: it knows
+// bytes, not objects. Growing costs one system call; the first touch of a page costs its page
+// fault. Owned by one thread at a time.
 #pragma once
 
 #include <cstddef>
 
 namespace psygen::ecs::detail {
 
+// Owns its mapping and unmaps it on destruction.
 class ReservedMemory {
  public:
+  // An empty range: no address, no bytes.
   ReservedMemory() = default;
-  // Reserves `bytes` of address space, or, where the system refuses, the largest half, quarter, ...
-  // of it down to 1 MiB; where the process's addresses are limited (ulimit -v), a 64th of those
-  // that are left. Throws std::bad_alloc where there is none. `skew_bytes` (a multiple of 64, below
-  // 4096) shifts the first byte, so that columns that are walked together do not compete for the
-  // same cache sets.
+  // Reserves `bytes` of address space. When the system refuses, it reserves the largest half,
+  // quarter, ... of it down to 1 MiB. When the process's address space is limited (ulimit -v), it
+  // reserves at most a 64th of what is left. Throws std::bad_alloc when there is none. `skew_bytes`
+  // (a multiple of 64, below 4096) shifts the first byte, so columns that are walked together do
+  // not compete for the same cache sets.
   explicit ReservedMemory(std::size_t bytes, std::size_t skew_bytes = 0);
+  // Returns memory and address space to the system.
   ~ReservedMemory();
+  // Both exchange the two ranges; pointers into them stay valid.
   ReservedMemory(ReservedMemory&& other) noexcept;
   ReservedMemory& operator=(ReservedMemory&& other) noexcept;
 
-  // Makes at least the first `bytes` usable. Throws std::bad_alloc when the system has no more.
+  // Makes at least the first `bytes` usable. Throws std::bad_alloc when the system has no more, or
+  // when `bytes` exceeds capacity_bytes().
   void commit(std::size_t bytes) {
     if (bytes > committed_bytes_) grow(bytes);
   }
 
-  std::byte* data() const { return data_; }                         // 64-byte aligned
-  std::size_t committed_bytes() const { return committed_bytes_; }  // usable now
-  std::size_t capacity_bytes() const { return capacity_bytes_; }    // usable at most
+  // The first byte, 64-byte aligned; null for an empty range. Then the bytes usable now and at
+  // most.
+  std::byte* data() const { return data_; }
+  std::size_t committed_bytes() const { return committed_bytes_; }
+  std::size_t capacity_bytes() const { return capacity_bytes_; }
 
  private:
   void grow(std::size_t bytes);

@@ -45,8 +45,8 @@ bool conflict(const SystemInfo& a, const SystemInfo& b) {
   return false;
 }
 
-// The order as a graph, and the threads that walk it. Every system is a step; one that records
-// commands is followed by a step that applies them and has the world to itself.
+// The order as a graph, and the threads that walk it. Every system is a step. A system that records
+// commands has a second step, which applies them and has the world to itself.
 struct Schedule::Parts {
   struct Resource {
     const void* type;
@@ -168,7 +168,7 @@ Schedule::Schedule(World& world, std::size_t threads)
         parts->work(lock, false, [parts] { return parts->stopping; });
       });
     }
-  } catch (const std::exception&) {  // the system gives no more: those that there are do it
+  } catch (const std::exception&) {  // the system gives no more threads: run on these
   }
 }
 

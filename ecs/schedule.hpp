@@ -1,14 +1,14 @@
-// Systems in one readable order. A system is a function; what it reads and writes is taken from its
-// parameters:
+// Systems in one readable order. A system is a function; its parameters say what it reads and
+// writes:
 //   Query<A, const B>     writes the component A, reads B
 //   const R& / R&         reads / writes a resource: any object given to provide()
 //   ChangeReader<C, Tag>& drains a reader that was provided; reads C. A reader hidden in another
-//                         resource is not seen: nothing would keep its drain from a writer of C
+//                         resource is not seen: nothing would separate its drain from writers of C
 //   Commands&             structural changes, applied right after the system
 //   World& / const World& everything: alone / beside others that only read
-// Systems run in the order of add(); on several threads those that do not conflict run at the same
-// time, and the result is that of one thread. Not a job system: a system that wants to split its
-// own work does so itself. Systems must not throw. One thread owns the schedule.
+// Systems run in the order of add(). On several threads, systems that do not conflict run at the
+// same time, and the result equals that of one thread. Not a job system: a system that wants to
+// split its own work does so itself. Systems must not throw. One thread owns the schedule.
 #pragma once
 
 #include <cstddef>
@@ -28,44 +28,50 @@
 
 namespace psygen::ecs {
 
+// Where a system may run.
 enum class RunsOn : std::uint8_t {
   kAnyThread,
   kCallingThread,  // the one that calls run(): windows, graphics interfaces
 };
 
-// How much of a world a system touches beyond the components that it lists.
+// How much of the world a system touches beyond the components that it lists.
 enum class WorldAccess : std::uint8_t { kNone, kReads, kWrites };
 
+// One component or resource that a system uses.
 struct Access {
   std::string name;  // of the component, or the type of the resource without its namespace
-  const void* type;  // its identity
+  const void* type;  // identity of the type, unique in the program
   bool writes;
   bool is_component;
 };
 
+// What a schedule knows about a system. Times are in seconds; they are 0 before the first run.
 struct SystemInfo {
-  std::string name;
+  std::string name;  // of the component, or of the resource's type; no namespace
   std::vector<Access> accesses;
   WorldAccess world = WorldAccess::kNone;
   bool records_commands = false;
   RunsOn runs_on = RunsOn::kAnyThread;
   double last_start_s = 0;  // when its last run began, on std::chrono::steady_clock
-  double last_seconds = 0;  // wall time of the last run, with its commands
+  double last_seconds = 0;  // wall time of the last run, including its commands
 };
 
-// Whether the order of two systems matters. Symmetric.
+// Whether the order of two systems matters. Symmetric. O(accesses of a * accesses of b).
 bool conflict(const SystemInfo& a, const SystemInfo& b);
 
+// Owns its systems and its worker threads; the world and the resources must outlive it.
 class Schedule {
  public:
-  // `threads` (at most 64) counts the calling one: 1 runs everything there, in order. Where the
-  // system does not give them all, threads() tells how many there are.
+  // `threads` (at most 64) includes the calling one: 1 runs everything there, in order. When the
+  // system grants fewer, threads() returns how many there are.
   explicit Schedule(World& world, std::size_t threads = 1);
+  // Stops and joins the worker threads. Not while run() is under way.
   ~Schedule();
   Schedule(const Schedule&) = delete;
   Schedule& operator=(const Schedule&) = delete;
 
-  // Makes an object known to systems by its type, one of each. It must outlive the schedule.
+  // Makes an object known to systems by its type, one object per type; a second one ends the
+  // program. It must outlive the schedule.
   template <class... Rs>
   void provide(Rs&... resources) {
     static_assert((!std::is_const_v<Rs> && ...),
@@ -73,15 +79,18 @@ class Schedule {
     (provide_one(&kIdentity<Rs>, type_label<Rs>(), &resources), ...);
   }
 
-  // Appends a system. What it wants must have been provided before; ends the program with a message
-  // that names what is missing. Not from inside a system.
+  // Appends a system. Its resources must have been provided before: otherwise the program ends with
+  // a message that names what is missing. Not from inside a system. O(systems).
   template <class F>
   void add(std::string_view name, F system, RunsOn runs_on = RunsOn::kAnyThread);
 
-  // Runs every system once.
+  // Runs every system once, commands included, and returns when all are done. Not from inside a
+  // system.
   void run();
 
+  // The systems in the order of add(). Valid until the next add(); times change during run().
   std::span<const SystemInfo> systems() const;
+  // How many threads run systems, the calling one included: 1 to 64.
   std::size_t threads() const;
 
  private:
@@ -98,6 +107,7 @@ class Schedule {
   };
   template <class F, class... Ps>
   class RunnerOf;
+  // A system with its parameters bound; `commands` is null when it records none.
   struct System {
     SystemInfo info;
     std::unique_ptr<Runner> runner;
@@ -105,12 +115,14 @@ class Schedule {
   };
   struct Parts;
 
-  // What one parameter stands for: its accesses, and how to get it when the system runs.
+  // What one parameter stands for: its accesses, and how to get its value when the system runs.
   template <class P>
   struct Parameter;
   template <class F, class... Ps>
   void add_with(System system, F f, std::type_identity<std::tuple<Ps...>>);
 
+  // The untyped parts of provide and add. resource() ends the program when `asker` wants a type
+  // that was not provided.
   void provide_one(const void* type, std::string label, void* resource);
   void* resource(const System& asker, const void* type, const std::string& label) const;
   void append(System system);
@@ -122,6 +134,7 @@ class Schedule {
 
 namespace detail {
 
+// The parameters of a function pointer, or of an object with one operator(), as a tuple type.
 template <class F>
 struct ParametersOf : ParametersOf<decltype(&F::operator())> {};
 template <class R, class... Ps>
@@ -137,12 +150,13 @@ struct ParametersOf<R (F::*)(Ps...) noexcept> : std::type_identity<std::tuple<Ps
 template <class R, class F, class... Ps>
 struct ParametersOf<R (F::*)(Ps...) const noexcept> : std::type_identity<std::tuple<Ps...>> {};
 
+// Whether T is a Query.
 template <class T>
 inline constexpr bool kIsQuery = false;
 template <class... Cs>
 inline constexpr bool kIsQuery<Query<Cs...>> = true;
 
-// The last part of a qualified name.
+// The name without its namespaces; template arguments keep theirs.
 std::string without_namespace(std::string_view name);
 
 }  // namespace detail
@@ -152,6 +166,8 @@ std::string Schedule::type_label() {
   return detail::without_namespace(detail::type_name<T>());
 }
 
+// const R& or R&: a resource. As for all of these, the constructor records the accesses in
+// `system`, and get() makes the argument of one run.
 template <class P>
 struct Schedule::Parameter {
   static_assert(std::is_lvalue_reference_v<P>,
@@ -168,6 +184,7 @@ struct Schedule::Parameter {
   P get() const { return *resource; }
 };
 
+// Query<Cs...>: declares its components in the world.
 template <class... Cs>
 struct Schedule::Parameter<Query<Cs...>> {
   World& world;
@@ -181,6 +198,7 @@ struct Schedule::Parameter<Query<Cs...>> {
   Query<Cs...> get() const { return Query<Cs...>(world); }
 };
 
+// A provided change reader: writes the reader, reads C.
 template <class C, class Tag>
 struct Schedule::Parameter<ChangeReader<C, Tag>&> {
   using Reader = ChangeReader<C, Tag>;
@@ -195,6 +213,7 @@ struct Schedule::Parameter<ChangeReader<C, Tag>&> {
   Reader& get() const { return *reader; }
 };
 
+// The system's own Commands; two such parameters are the same object.
 template <>
 struct Schedule::Parameter<Commands&> {
   Commands* commands;
@@ -206,6 +225,7 @@ struct Schedule::Parameter<Commands&> {
   Commands& get() const { return *commands; }
 };
 
+// The world, to change it or only to read it.
 template <>
 struct Schedule::Parameter<World&> {
   World& world;
@@ -215,6 +235,7 @@ struct Schedule::Parameter<World&> {
   World& get() const { return world; }
 };
 
+// The world, only to read it.
 template <>
 struct Schedule::Parameter<const World&> {
   const World& world;
@@ -233,6 +254,7 @@ void Schedule::add(std::string_view name, F system, RunsOn runs_on) {
            std::type_identity<typename detail::ParametersOf<F>::type>{});
 }
 
+// Calls the function with the value of each parameter.
 template <class F, class... Ps>
 class Schedule::RunnerOf : public Runner {
  public:
@@ -249,7 +271,7 @@ class Schedule::RunnerOf : public Runner {
 
 template <class F, class... Ps>
 void Schedule::add_with(System system, F f, std::type_identity<std::tuple<Ps...>>) {
-  // Braces: from left to right, so that accesses are listed in the order of the parameters.
+  // Braces evaluate from left to right, which lists accesses in the order of the parameters.
   std::tuple<Parameter<Ps>...> parameters{Parameter<Ps>(*this, system)...};
   system.runner = std::make_unique<RunnerOf<F, Ps...>>(std::move(f), std::move(parameters));
   append(std::move(system));

@@ -1,5 +1,5 @@
-// A set of component types of one world: which columns a table has, which a query wants.
-// Four words; at most 256 component types per world.
+// A set of component types of one world: the columns that a table has, or that a query wants. Four
+// words; at most 256 component types per world. A plain value; every operation is O(1).
 #pragma once
 
 #include <array>
@@ -8,27 +8,32 @@
 
 namespace psygen::ecs::detail {
 
+// The number of a component type in one world, in the order of registration.
 using ComponentId = std::uint16_t;
 inline constexpr std::size_t kMaxComponents = 256;
 inline constexpr ComponentId kNoComponent = UINT16_MAX;
 
+// Ids given to it are below kMaxComponents.
 class Signature {
  public:
+  // One id: adds it to the set, or tests for it.
   void insert(ComponentId id) { words_[id / 64] |= bit(id); }
   bool contains(ComponentId id) const { return (words_[id / 64] & bit(id)) != 0; }
+  // Whether every id of `other` is in this set.
   bool includes(const Signature& other) const {
     std::uint64_t missing = 0;
     for (std::size_t i = 0; i < words_.size(); ++i)
       missing |= other.words_[i] & ~words_[i];
     return missing == 0;
   }
+  // Whether the two sets share an id.
   bool intersects(const Signature& other) const {
     std::uint64_t shared = 0;
     for (std::size_t i = 0; i < words_.size(); ++i)
       shared |= other.words_[i] & words_[i];
     return shared != 0;
   }
-  // This set with all of `added` and then without any of `removed`.
+  // This set plus all of `added`, then minus all of `removed`.
   Signature changed(const Signature& added, const Signature& removed) const {
     Signature result;
     for (std::size_t i = 0; i < words_.size(); ++i) {
@@ -36,6 +41,7 @@ class Signature {
     }
     return result;
   }
+  // Equal sets have equal hashes.
   std::uint64_t hash() const {
     std::uint64_t h = 0;
     for (const std::uint64_t word : words_) {

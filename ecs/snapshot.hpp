@@ -1,9 +1,10 @@
 // A world as bytes and back, for saved games and editors. Versioned and checksummed; little-endian.
-// Handles keep their meaning: entities, generations and free slots are restored exactly, and so are
-// the rows' order, children and sparse components. Values are kept field by field, by name
-// (fields.hpp), so that types may gain and lose fields; components without fields are transient:
-// who has them is kept, their value starts anew. Files are the caller's (write to a temporary name
-// and rename). Change readers are not part of a world's state: after a load all rows are new.
+// Handles keep their meaning: entities, generations, free slots, the order of rows, children and
+// sparse components are restored exactly. Values are stored field by field, by name (fields.hpp),
+// so types may gain and lose fields. Components without fields are transient: the snapshot stores
+// which entities have them, and loading value-initialises them. Not file I/O: writing files is the
+// caller's (write to a temporary name and rename). Change readers are not part of a world's state:
+// after a load all rows are new. Called on the world's thread.
 #pragma once
 
 #include <cstddef>
@@ -16,35 +17,38 @@
 
 namespace psygen::ecs {
 
-// The same world gives the same bytes. About 20 ns per entity and component.
+// Worlds in the same state give the same bytes. About 20 ns per entity and component.
 std::vector<std::byte> save_snapshot(const World& world);
 
+// The outcome of a load.
 enum class SnapshotStatus : std::uint8_t {
   kLoaded,
   kNotASnapshot,
   kNewerVersion,
   kTruncated,
-  kCorrupt,           // the checksum does not fit, or what it protects makes no sense
+  kCorrupt,           // the checksum does not match, or the content is invalid
   kUnknownComponent,  // not declared in this world (World::declare)
-  kTypeMismatch,      // a field has another type now
-  kTooLarge,          // more than this world's WorldLimits, or lists beyond all measure
-  kWorldInUse,        // the world had entities before
+  kTypeMismatch,      // a field has another type, or a component is kept elsewhere now
+  kTooLarge,          // beyond this world's WorldLimits, or unreasonably long lists
+  kWorldInUse,        // the world has had entities before
 };
 
+// What load_snapshot returns; true in a condition when the world was loaded.
 struct SnapshotResult {
   SnapshotStatus status = SnapshotStatus::kLoaded;
   std::string sentence;  // what is wrong and where; empty when loaded
+  // Whether the world was loaded.
   explicit operator bool() const { return status == SnapshotStatus::kLoaded; }
 };
 
-// Fills a world that never had an entity and in which all component types of the snapshot are
-// known. Everything is checked before anything is changed: unless it returns kLoaded, the world is
-// as it was. When a component's constructor or memory throws, the exception passes through and the
-// world has no entities. Fields that the snapshot lacks keep the value of a new component; fields
-// that the type lacks are skipped. Safe on any bytes.
+// Fills a world that never had an entity and that knows all component types of the snapshot (see
+// World::declare). Everything is checked before anything is changed: unless the result is kLoaded,
+// the world is as it was. When a component's constructor or an allocation throws, the exception
+// passes through and the world has no entities. Fields that the snapshot lacks keep the value of a
+// new component; fields that the type lacks are skipped. Safe on any bytes. O(bytes), two passes.
 [[nodiscard]] SnapshotResult load_snapshot(std::span<const std::byte> bytes, World& world);
 
-// A hash of everything that save_snapshot keeps: equal for worlds in the same state.
+// A hash of everything that save_snapshot stores: equal for worlds in the same state. Costs a save.
 std::uint64_t state_hash(const World& world);
 
 }  // namespace psygen::ecs

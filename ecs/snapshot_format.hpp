@@ -1,4 +1,4 @@
-// What saving and loading of snapshots share: the header, the checksum, how a type is written down.
+// What saving and loading snapshots share: the header, the checksum, and how a type is stored.
 //
 //   "psyg-ecs", u32 version, u64 bytes of what follows up to the checksum
 //   components: u32 count; each: string name, u8 sparse, u8 described, type if described
@@ -7,8 +7,9 @@
 //   sparse:     u32 count; each: u32 component; u32 rows, handles, column
 //   u64 checksum of all bytes before it
 //
-// A string is u32 length and bytes; a handle u32 index, u32 generation; a list u32 length and
-// elements; other values their bytes. Nothing is aligned. Internal to the library.
+// A string is a u32 length and its bytes; a handle is u32 index, u32 generation; a list is a u32
+// length and its elements; other values are their bytes. Nothing is aligned. Internal to the
+// library.
 #pragma once
 
 #include <algorithm>
@@ -28,12 +29,14 @@ namespace psygen::ecs::detail {
 
 static_assert(std::endian::native == std::endian::little, "snapshots are little-endian");
 
+// The header: magic bytes, the version that this library writes, and sizes in bytes.
 inline constexpr std::string_view kSnapshotMagic = "psyg-ecs";
 inline constexpr std::uint32_t kSnapshotVersion = 1;
 inline constexpr std::size_t kSnapshotHeaderBytes = 8 + 4 + 8;
 inline constexpr std::size_t kSnapshotChecksumBytes = 8;
 
-// Every step is a bijection of the state: a change of one word always changes the result.
+// A 64-bit hash of the bytes and their number. Every step is a bijection of the state, so changing
+// one word always changes the result. Not cryptographic.
 inline std::uint64_t checksum(std::span<const std::byte> bytes) {
   std::uint64_t h = 0x243F6A8885A308D3ull ^ bytes.size();
   for (std::size_t i = 0; i < bytes.size(); i += 8) {
@@ -45,16 +48,19 @@ inline std::uint64_t checksum(std::span<const std::byte> bytes) {
   return h;
 }
 
-// Children are written as the list that they name.
+// Children are stored as the list that they name.
 inline bool is_children(const ComponentInfo& info) {
   return &info == &kComponentInfo<Children>;
 }
+// The stored type of a component; null when its value is not stored.
 inline const TypeDescription* described(const ComponentInfo& info) {
   return is_children(info) ? &description_of<std::vector<Entity>>() : info.describe();
 }
 
+// Gives saving and loading the storage of a world.
 class SnapshotAccess {
  public:
+  // The storage, to read or to fill.
   static const Storage& storage(const World& world) { return world.storage_; }
   static Storage& storage(World& world) { return world.storage_; }
 };

@@ -1,5 +1,6 @@
 // Loading in two passes over the same bytes: the first checks everything and changes nothing, the
-// second fills the world. Only a constructor or the memory can stop the second; then it is undone.
+// second fills the world. Only a throwing constructor or allocation can stop the second pass; what
+// it did is then undone.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -136,7 +137,7 @@ class Loader {
     for (std::size_t i = 0; i < count && in_.ok(); ++i)
       value(type.parts[0], to == nullptr ? nullptr : to + i * step);
   }
-  // Elements may be larger here than they were there, but not without bounds.
+  // Elements may be larger in the program than in the snapshot, but within bounds.
   void count_memory(const SavedType& type, std::uint32_t length) {
     if (type.own == nullptr) return;
     list_bytes_ += std::uint64_t{length} * type.own->element->size_bytes;
@@ -257,7 +258,7 @@ class Loader {
     return storage_.record(components_[number].id).info->sparse;
   }
 
-  // The component numbers of a table, and the kind that they make. Empty when they make none.
+  // The component numbers of a table, and the kind that they form. Empty when they are invalid.
   std::pair<std::vector<std::uint32_t>, Signature> read_kind() {
     std::vector<std::uint32_t> numbers(in_.length(sizeof(std::uint32_t)));
     Signature kind;

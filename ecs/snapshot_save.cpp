@@ -14,7 +14,7 @@ class Saver {
   std::vector<std::byte> save() {
     bytes(kSnapshotMagic.data(), kSnapshotMagic.size());
     number(kSnapshotVersion);
-    number(std::uint64_t{0});  // the length, below
+    number(std::uint64_t{0});  // the length, filled in below
     components();
     slots();
     tables();
@@ -63,8 +63,8 @@ class Saver {
     }
   }
 
-  // Components that somebody has, by name: the same state gives the same bytes, whatever the order
-  // in which the world met its types.
+  // The components that some entity has, sorted by name: the same state then gives the same bytes,
+  // whatever the order in which the world registered its types.
   void components() {
     number_of_.assign(storage_.records().size(), kUnused);
     for (const auto& table : storage_.tables()) {
@@ -184,8 +184,8 @@ class Saver {
   static constexpr std::uint32_t kUnused = UINT32_MAX;
   const Storage& storage_;
   std::vector<std::byte> out_;
-  std::vector<ComponentId> ids_;          // of the components that are written, in their order
-  std::vector<std::uint32_t> number_of_;  // place in ids_ by component
+  std::vector<ComponentId> ids_;          // of the components written, in their order
+  std::vector<std::uint32_t> number_of_;  // place in ids_, by component id
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Where a toggled component (ComponentTraits<C>::sparse) is kept: one table of its own for all
-// entities that have it, whatever their kind, and for every entity the row in it. Adding and
-// removing move nobody's other components. Untyped; the storage keeps readers and slots in step.
+// entities that have it, whatever their kind, and the row in it for every entity. Adding and
+// removing move no other component. Untyped; Storage keeps readers and slots in step with it.
+// Lookups are O(1).
 #pragma once
 
 #include <cstddef>
@@ -14,34 +15,43 @@
 
 namespace psygen::ecs::detail {
 
+// The members of one sparse component of one world, with their values.
 class SparseSet {
  public:
+  // What row_of returns for entities that are not members.
   static constexpr std::uint32_t kNoRow = UINT32_MAX;
 
+  // Reserves address space for `max_rows` members among `max_entities` entities. Throws
+  // std::bad_alloc when there is none. `info` outlives the set.
   SparseSet(ComponentId id, const ComponentInfo& info, std::size_t max_entities,
             std::size_t max_rows);
 
-  // The members and their column. Its id is 0, which no table of the world has.
+  // The members and their column. The table's id is 0, which no table of the world has.
   Table& rows() { return rows_; }
   const Table& rows() const { return rows_; }
+  // Row 0 of the values. The address never changes.
   std::byte* column() const { return rows_.columns()[0].memory.data(); }
 
-  // The row of a member, else kNoRow. Stale handles are no members.
+  // The row of a member, else kNoRow. Stale handles are not members.
   std::uint32_t row_of(Entity entity) const {
     if (entity.index >= indexed_) return kNoRow;
     const std::uint32_t row = row_after()[entity.index] - 1;
     if (row >= rows_.rows()) return kNoRow;
     return rows_.entities()[row] == entity ? row : kNoRow;
   }
+  // Whether the entity is a member.
   bool contains(Entity entity) const { return row_of(entity) != kNoRow; }
+  // Hints that row_of(entity) follows soon. Any handle is allowed.
   void prefetch(Entity entity) const {
     if (entity.index < indexed_) __builtin_prefetch(row_after() + entity.index);
   }
 
-  // Value-initialised rows at the end for those of `entities` that live and are no members yet.
-  // Returns how many. When a constructor throws, nobody joined.
+  // Appends value-initialised rows for those of `entities` that live and are not members yet;
+  // returns how many. When a constructor throws, no entity has joined. Ends the program beyond
+  // `max_rows` members. O(entities).
   std::size_t add(std::span<const Entity> entities, const EntitySlots& slots);
-  // Lists this member in rows().leaving, once; from then on it is none. False for others.
+  // Lists a member in rows().leaving, once; from then on it is not a member. False for other
+  // entities.
   bool leave(Entity entity) {
     const std::uint32_t row = row_of(entity);
     if (row == kNoRow) return false;
@@ -49,9 +59,10 @@ class SparseSet {
     rows_.leaving.push_back(row);
     return true;
   }
-  // Row `row` has got another member.
+  // Row `row` holds another member now: updates where that member is found.
   void note_moved(std::uint32_t row) { row_after()[rows_.entities()[row].index] = row + 1; }
 
+  // Bytes of memory that are usable now, rows and index together.
   std::size_t committed_bytes() const {
     return rows_.committed_bytes() + memory_.committed_bytes();
   }
@@ -60,7 +71,7 @@ class SparseSet {
   std::uint32_t* row_after() const { return reinterpret_cast<std::uint32_t*>(memory_.data()); }
 
   Table rows_;
-  ReservedMemory memory_;  // by index of the entity: row + 1, 0 for those that are no members
+  ReservedMemory memory_;  // by entity index: row + 1, or 0 for an entity that is not a member
   std::size_t indexed_ = 0;
 };
 

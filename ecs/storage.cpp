@@ -7,7 +7,7 @@
 namespace psygen::ecs::detail {
 namespace {
 
-// Columns that are walked together start at different offsets in a page.
+// Gives columns that are walked together different offsets in a page.
 std::size_t skew_bytes(std::size_t column) {
   return (column + 1) * 320 % 4096;
 }
@@ -96,7 +96,7 @@ Table& Storage::make_table(const Signature& kind) {
   }
   if (tables_.size() * 2 <= table_index_.size()) {
     index_table(id);
-  } else {  // at most half full: everybody finds a new place
+  } else {  // at most half full: every table gets a new place
     table_index_.assign(table_index_.size() * 2, 0);
     for (std::uint32_t t = 1; t < tables_.size(); ++t)
       index_table(t);
@@ -112,7 +112,7 @@ void Storage::index_table(std::uint32_t id) {
   table_index_[i] = id;
 }
 
-// Room for `count` more rows, and every component knows where its rows of the new chunks are.
+// Makes room for `count` more rows and stores for every component where its rows of new chunks are.
 void Storage::make_room(Table& table, std::size_t count) {
   const std::size_t known = directory_.chunk_count();
   table.reserve_more(count);
@@ -157,7 +157,7 @@ Storage::Batch Storage::create(const Signature& kind, std::size_t count) {
   slots_.reserve_more(count);
   table.construct_new_rows(count, Signature{});
   const std::uint32_t first = table.add_rows(count);
-  for (std::size_t done = 0; done < count;) {  // neighbours within a chunk have neighbouring names
+  for (std::size_t done = 0; done < count;) {  // neighbours in a chunk have neighbouring locations
     const std::uint32_t row = first + static_cast<std::uint32_t>(done);
     const std::size_t step = std::min<std::size_t>(count - done, kChunkRows - row % kChunkRows);
     slots_.issue({table.entities() + row, step}, table.location(row));
@@ -198,7 +198,7 @@ void Storage::report_removed(const Table& table, const Signature& which) {
   });
 }
 
-// Ends the objects in the leaving rows, in the columns of `which`, and what they own in the world.
+// Ends the objects of the leaving rows in the columns of `which`, and frees their child lists.
 void Storage::end_leaving_rows(Table& table, const Signature& which) {
   if (children_id_ != kNoComponent && which.contains(children_id_)) {
     if (std::byte* column = table.column_data(children_id_)) {
@@ -209,7 +209,7 @@ void Storage::end_leaving_rows(Table& table, const Signature& which) {
   table.destroy_rows(table.leaving, which);
 }
 
-// Rows have moved as `moves_` tells and the table has got shorter: the bits follow.
+// Moves the change bits after `moves_` moved rows and the table became shorter.
 void Storage::move_leaving_bits(Table& table, std::uint32_t old_rows) {
   for_each_reader(table, [&](ReaderState& reader) {
     RowBits& bits = reader.bits_of_table[table.id()];
@@ -221,7 +221,7 @@ void Storage::move_leaving_bits(Table& table, std::uint32_t old_rows) {
   table.leaving.clear();
 }
 
-// The objects of the leaving rows are gone; fills the holes and lets handles and bits follow.
+// Fills the holes of the leaving rows, whose objects are gone, and updates handles and change bits.
 void Storage::remove_leaving_rows(Table& table) {
   const std::uint32_t old_rows = table.rows();
   table.close_holes(table.leaving, moves_);

@@ -1,6 +1,7 @@
 // The untyped core of a world: component types, tables, sparse sets, handles, change bits, and the
-// batch verbs that change structure. `World` puts types on top; nobody else uses it. One thread
-// changes it; const functions may run on several threads while nothing changes.
+// batch verbs that change structure. `World` puts types on top; nothing else uses it. One thread
+// changes it; const functions may run on several threads while nothing changes. Verbs are linear in
+// the handles or rows that they are given.
 #pragma once
 
 #include <array>
@@ -32,53 +33,61 @@ namespace detail {
 struct ReaderState {
   ComponentId component = kNoComponent;
   bool reports_removed = false;
-  std::vector<RowBits> bits_of_table;  // by table id; [0] of a sparse component
+  std::vector<RowBits> bits_of_table;  // by table id; [0] for a sparse component
   std::vector<Entity> removed;
   std::vector<Entity> handed_out;  // scratch of draining
 };
 
+// What a world keeps per component type.
 struct ComponentRecord {
   const ComponentInfo* info = nullptr;
-  // By chunk: where the row at location 0 would be if the rows of this chunk went on down to it, so
-  // that a row is one multiplication away; 0 where the chunk's table lacks the component.
+  // By chunk: the address that the row at location 0 would have if the rows of this chunk continued
+  // down to it. The address of a row is then one multiplication and one addition. 0 when the
+  // chunk's table lacks the component.
   std::vector<std::uintptr_t> origin_of_chunk;
   std::unique_ptr<SparseSet> sparse;  // null for a component that is kept in tables
   std::vector<std::unique_ptr<ReaderState>> readers;
 };
 
-// The row of a component at a location; null where its table lacks the component.
+// The row of a component at a location; null when its table lacks the component. O(1).
 template <class C>
 C* row_at(const ComponentRecord& record, std::uint32_t location) {
   const std::uintptr_t origin = record.origin_of_chunk[location / kChunkRows];
   if (origin == 0) return nullptr;
   C* const row = std::launder(reinterpret_cast<C*>(origin + std::uintptr_t{location} * sizeof(C)));
-  if (row == nullptr) __builtin_unreachable();  // spares the caller's check a second test
+  if (row == nullptr) __builtin_unreachable();  // spares the caller a second null test
   return row;
 }
 
+// One component of a query, for messages. `name` has static storage.
 struct QueryTerm {
   std::string_view name;
   bool writes;
 };
 
+// The components of a query, as an array and as a span with static storage.
 template <class... Cs>
 inline constexpr std::array<QueryTerm, sizeof...(Cs)> kQueryTerms{
     QueryTerm{component_name<std::remove_const_t<Cs>>(), !std::is_const_v<Cs>}...};
 template <class... Cs>
 inline constexpr std::span<const QueryTerm> kQuery{kQueryTerms<Cs...>};
 
-// Which query is being iterated; structural changes meanwhile break the contract.
+// The query being iterated: structural changes break the contract until it ends. Atomic because
+// systems on several threads iterate at once.
 struct IterationState {
-  std::atomic<std::uint32_t> depth{0};
-  std::atomic<const std::span<const QueryTerm>*> query{nullptr};
+  std::atomic<std::uint32_t> depth{0};  // iterations under way on all threads
+  std::atomic<const std::span<const QueryTerm>*> query{nullptr};  // the latest; for messages only
 };
 
+// Counts one iteration as under way for as long as it lives.
 class IterationGuard {
  public:
+  // `state` and `query` must outlive the guard.
   IterationGuard(IterationState& state, const std::span<const QueryTerm>& query) : state_(state) {
     state_.depth.fetch_add(1, std::memory_order_relaxed);
     outer_ = state_.query.exchange(&query, std::memory_order_relaxed);
   }
+  // Ends the iteration.
   ~IterationGuard() {
     state_.query.store(outer_, std::memory_order_relaxed);
     state_.depth.fetch_sub(1, std::memory_order_relaxed);
@@ -91,49 +100,69 @@ class IterationGuard {
   const std::span<const QueryTerm>* outer_;
 };
 
+// World's functions without types; contracts and errors are described there. A component is named
+// by its id in this world, a kind by the set of its ids.
 class Storage {
  public:
+  // Contiguous rows of a table, from `first` on. Valid until the next structural change.
   struct Batch {
     Table* table = nullptr;
     std::uint32_t first = 0;
   };
 
+  // An empty storage. Limits above 2^32 - 2 entities or rows are lowered to that. Throws
+  // std::bad_alloc when there is no address space for the slots.
   explicit Storage(const WorldLimits& limits);
+  // Destroys all components.
   ~Storage();
   Storage(const Storage&) = delete;
   Storage& operator=(const Storage&) = delete;
 
-  ComponentId id_of(const ComponentInfo& info);          // registers it when it is new
-  ComponentId find_id(const ComponentInfo& info) const;  // kNoComponent when it is new
+  // The id of a component type. id_of registers a new type and ends the program beyond 256 types or
+  // when two types share a name; find_id returns kNoComponent for a new type. O(1) for known types.
+  ComponentId id_of(const ComponentInfo& info);
+  ComponentId find_id(const ComponentInfo& info) const;
+  // The record of a registered id. Its address never changes.
   ComponentRecord& record(ComponentId id) { return *records_[id]; }
   const ComponentRecord& record(ComponentId id) const { return *records_[id]; }
-  // Stands for a component that this world has never seen: nobody has it.
+  // Stands for a component that this world has never seen: no entity has it.
   const ComponentRecord& absent() const { return absent_; }
+  // Component types by id, and tables by id; tables()[0] is null. Valid until one is added.
   std::span<const std::unique_ptr<ComponentRecord>> records() const { return records_; }
-  std::span<const std::unique_ptr<Table>> tables() const { return tables_; }  // [0] is null
+  std::span<const std::unique_ptr<Table>> tables() const { return tables_; }
+  // Where entities are: the slots, and what their locations mean.
   const EntitySlots& slots() const { return slots_; }
   const RowDirectory& directory() const { return directory_; }
 
-  // The slot of a living entity, else null.
+  // The slot of a living entity, else null. O(1).
   Slot* living(Entity entity) const {
     Slot* slot = slots_.find(entity);
     return slot != nullptr && slot->location != kNowhere ? slot : nullptr;
   }
 
+  // World::create: `count` entities of one kind, in new contiguous rows.
   Batch create(const Signature& kind, std::size_t count);
+  // World::destroy. Returns how many died.
   std::size_t destroy(std::span<const Entity> entities);
+  // World::change_kind for components that are kept in tables. Returns how many entities moved.
+  // When a constructor throws, entities that have not moved yet stay as they were.
   std::size_t change_kind(std::span<const Entity> entities, const Signature& added,
                           const Signature& removed);
-  // The same for one sparse component.
+  // World::add and World::remove for one sparse component. Return how many entities changed.
   std::size_t add_sparse(ComponentId id, std::span<const Entity> entities);
   std::size_t remove_sparse(ComponentId id, std::span<const Entity> entities);
+  // World::reserve.
   void reserve(const Signature& kind, std::size_t count) {
     expect_no_iteration("reserve");
     make_room(table_for(kind), count);
   }
 
+  // A new reader, to which all rows are new. The storage owns it; its address never changes.
   ReaderState& add_reader(ComponentId id, bool reports_removed);
+  // Deletes a reader that add_reader returned.
   void remove_reader(const ReaderState& reader);
+  // Mark rows as changed for all readers of the component. Rows must be filled; `table` is a table
+  // id.
   static void mark(ComponentRecord& record, RowPlace at) {
     for (auto& reader : record.readers)
       reader->bits_of_table[at.table].mark(at.row);
@@ -151,30 +180,36 @@ class Storage {
       reader->bits_of_table[table].mark_range(first, count);
   }
 
-  // Ends the program when a query is being iterated.
+  // Ends the program with a message that names `verb` when a query is being iterated.
   void expect_no_iteration(std::string_view verb) const {
     if (iteration_.depth.load(std::memory_order_relaxed) != 0) structural_change_inside(verb);
   }
+  // For IterationGuard. Changes also in a const storage.
   IterationState& iteration() const { return iteration_; }
+  // Bytes of memory that slots, children, tables and sparse sets can use now.
   std::size_t committed_bytes() const;
 
+  // The lists that Children components name.
   const ChildLists& child_lists() const { return child_lists_; }
-  // Null where the entity has no Children.
+  // The entity's Children; null when it is dead or has none.
   Children* children_of(Entity entity) const;
+  // Replaces the list. `children` may not be a list of this storage.
   void set_children(Children& list, std::span<const Entity> children) {
     expect_no_iteration("set_children");
     child_lists_.assign(list, children);
   }
 
+  // The limits, after lowering.
+  const WorldLimits& limits() const { return limits_; }
   // For loading into a world that never had an entity: first the slots, then rows for handles that
   // these slots know.
-  const WorldLimits& limits() const { return limits_; }
   void restore_slots(std::span<const std::uint32_t> generations,
                      std::span<const std::uint32_t> free) {
     slots_.restore(generations, free);
   }
+  // One row per handle, in this order, with value-initialised components.
   Batch restore_rows(const Signature& kind, std::span<const Entity> entities);
-  // Undoes all of it.
+  // Undoes restore_slots, restore_rows and add_sparse: no entities and no slots remain.
   void forget_restored();
 
  private:
@@ -201,7 +236,7 @@ class Storage {
   std::vector<std::unique_ptr<ComponentRecord>> records_;
   ComponentRecord absent_;
   std::vector<SparseSet*> sparse_sets_;
-  std::vector<std::uint64_t> ever_sparse_;  // by index: this entity may be in a sparse set
+  std::vector<std::uint64_t> ever_sparse_;  // one bit per entity index: it may be in a sparse set
   ChildLists child_lists_;
   ComponentId children_id_ = kNoComponent;
   std::vector<std::unique_ptr<Table>> tables_;

@@ -1,6 +1,7 @@
-// What a system may do with the columns that it names: a window on a world, cut to these
-// components. `Query<Mesh, const Placed>` writes Mesh and reads Placed, and the compiler holds the
-// system to it. No structural changes: those are recorded in Commands.
+// What a system may do with the components that it names: a view of a world, restricted to these
+// components. `Query<Mesh, const Placed>` writes Mesh and reads Placed, and the compiler enforces
+// it. No structural changes: record those in Commands. Its functions are World's, with the same
+// complexity and contracts; a schedule decides which systems run beside each other.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +12,7 @@
 
 namespace psygen::ecs {
 
+// A pointer to the world, passed by value. The world must outlive it.
 template <class... Cs>
 class Query {
   static_assert(detail::kDistinct<Cs...>, "a component type occurs once in a query");
@@ -21,9 +23,10 @@ class Query {
   static constexpr bool kWrites = (std::is_same_v<C, Cs> || ...);
 
  public:
+  // A view of `world`. Schedules make it from a system's parameters.
   explicit Query(World& world) : world_(&world) {}
 
-  // World::each over all of Cs, or over those that are named: query.each<const Placed>(f).
+  // World::each over all of Cs, or over the components named: query.each<const Placed>(f).
   template <class... Some, class F, class... Filters>
   void each(F&& f, Filters... filters) const {
     if constexpr (sizeof...(Some) == 0) {
@@ -34,7 +37,7 @@ class Query {
     }
   }
 
-  // World::each_of, alike.
+  // World::each_of, over the same choice of components.
   template <class... Some, class F>
   std::size_t each_of(std::span<const Entity> entities, F&& f) const {
     if constexpr (sizeof...(Some) == 0) {
@@ -45,20 +48,22 @@ class Query {
     }
   }
 
-  // World::accessor for C or const C, as the query says.
+  // World::accessor for C or const C, as far as the query allows.
   template <class C>
   Accessor<C> accessor() const {
     static_assert(may_use<C>(), "the query does not name this component like this");
     return world_->accessor<C>();
   }
-  // World::get; a pointer to const where the query only reads.
+  // World::get; a pointer to const when the query only reads C.
   template <class C>
   auto get(Entity entity) const {
     static_assert(kReads<C>, "the query does not name this component");
     using Value = std::conditional_t<kWrites<C>, C, const C>;
     return world_->accessor<Value>().get(entity);
   }
+  // World::alive.
   bool alive(Entity entity) const { return world_->alive(entity); }
+  // World::children, for queries that name Children.
   std::span<const Entity> children(Entity parent) const {
     static_assert(kReads<Children>, "the query does not name Children");
     return world_->children(parent);
@@ -68,6 +73,7 @@ class Query {
     return world_->children(list);
   }
 
+  // World::land, World::land_moved and World::mark_changed, for components that the query writes.
   template <Component C>
   LandReport land(std::span<const Landing<C>> results) const {
     static_assert(kWrites<C>, "the query does not write this component");

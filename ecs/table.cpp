@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kFirstRows = 64;
 
-// Ends what was built when construction is left early by an exception.
+// Destroys what was built when an exception ends construction early.
 class ConstructionGuard {
  public:
   ConstructionGuard(std::span<Column> columns, std::size_t first, std::size_t count)

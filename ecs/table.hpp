@@ -1,6 +1,7 @@
 // All entities with the same set of components: one contiguous column per component and one of
 // handles, each at an address that never changes. Rows [0, rows()) are filled without holes; their
-// order is not meaningful. Untyped: the world above knows the component types.
+// order has no meaning. Untyped: the world above knows the component types. Not a map: it does not
+// find entities (EntitySlots does). The world's thread changes it.
 #pragma once
 
 #include <array>
@@ -17,59 +18,72 @@
 
 namespace psygen::ecs::detail {
 
+// One component's values: row i lies at memory.data() + i * info->size_bytes.
 struct Column {
   const ComponentInfo* info = nullptr;
   ComponentId id = kNoComponent;
   ReservedMemory memory;
 };
 
+// Its functions are steps of Storage's verbs and are called in their order; columns and handles are
+// its own, slots and change bits are the caller's.
 class Table {
  public:
+  // `columns` are those of `signature`, each with address space for `max_rows` rows. Throws
+  // std::bad_alloc when there is no address space for the handles.
   Table(std::uint32_t id, const Signature& signature, std::vector<Column> columns,
         std::size_t max_rows);
+  // Destroys the objects of all rows.
   ~Table();
   Table(const Table&) = delete;
   Table& operator=(const Table&) = delete;
 
+  // What the table is: its number in the world (0 for a sparse set), its components, its filled
+  // rows.
   std::uint32_t id() const { return id_; }
   const Signature& signature() const { return signature_; }
   std::uint32_t rows() const { return rows_; }
+  // The handles of rows [0, rows()). The address never changes.
   Entity* entities() const { return reinterpret_cast<Entity*>(entities_.data()); }
+  // One column per component of the signature. Valid as long as the table.
   std::span<Column> columns() { return columns_; }
   std::span<const Column> columns() const { return columns_; }
-  // The column of a component, null where the table has none.
+  // Row 0 of a component's column; null when the table lacks it. `id` is below kMaxComponents.
   std::byte* column_data(ComponentId id) const {
     const std::uint16_t at = column_of_[id];
     return at == kNoColumn ? nullptr : columns_[at].memory.data();
   }
 
-  // The name of a row, filled or to be filled within the last name_rows.
+  // The location of a row that is filled or was named by name_rows.
   std::uint32_t location(std::uint32_t row) const {
     return chunks_[row / kChunkRows] + row % kChunkRows;
   }
 
+  // The most rows this table may have.
   std::size_t max_rows() const { return max_rows_; }
 
-  // Makes room for `count` more rows, without objects in them.
+  // Commits memory for `count` more rows, without objects in them. Throws std::bad_alloc when
+  // memory ends; ends the program beyond max_rows(). Amortised O(1) system calls.
   void reserve_more(std::size_t count);
-  // Names rows up to rows() + count.
+  // Gives locations to rows up to rows() + count.
   void name_rows(std::size_t count, RowDirectory& directory);
   // Builds rows [rows(), rows() + count) of the columns that are not in `except`. When a
   // constructor throws, everything built here is destroyed again.
   void construct_new_rows(std::size_t count, const Signature& except);
-  // The `count` rows after the last one count as filled from now on; returns the first of them.
+  // Counts the `count` rows after the last one as filled from now on; returns the first of them.
   std::uint32_t add_rows(std::size_t count);
 
-  // Ends the objects in these rows, in the columns of `which`.
+  // Ends the objects of these rows in the columns of `which`.
   void destroy_rows(std::span<const std::uint32_t> leaving, const Signature& which);
-  // Closes the holes that `leaving` (distinct rows, holding no objects any more) make: rows from
-  // the end of the table fill them and the table gets shorter. `moves` receives what went where;
-  // columns and handles are moved here, everything else is the caller's.
+  // Fills the holes that `leaving` (distinct rows without objects) makes with rows from the end of
+  // the table, which becomes shorter. `moves` receives what moved where. Columns and handles are
+  // moved here, everything else is the caller's. O(leaving).
   void close_holes(std::span<const std::uint32_t> leaving, std::vector<RowMove>& moves);
 
+  // Bytes of handles and columns that are usable now.
   std::size_t committed_bytes() const;
 
-  // Rows that a batch verb in progress takes away; empty between verbs.
+  // The rows that a batch verb in progress takes away; empty between verbs.
   std::vector<std::uint32_t> leaving;
 
  private:
@@ -84,7 +98,7 @@ class Table {
   Signature signature_;
   std::vector<Column> columns_;
   ReservedMemory entities_;
-  std::vector<std::uint32_t> chunks_;  // location of every 4096th row
+  std::vector<std::uint32_t> chunks_;  // the location of every 4096th row
   std::vector<std::uint64_t> dead_;    // scratch: which of the last rows are leaving
   std::array<std::uint16_t, kMaxComponents> column_of_;
 };

@@ -15,7 +15,7 @@ std::size_t World::destroy_with_children(std::span<const Entity> parents) {
       if (list == nullptr) continue;
       const std::span<const Entity> found = children(*list);
       next.insert(next.end(), found.begin(), found.end());
-      storage_.set_children(*list, {});  // who is met again has given its children away
+      storage_.set_children(*list, {});  // a parent met again has no children left
     }
     died += destroy(level);
     level = std::move(next);

@@ -1,9 +1,9 @@
-// The world: entities, their components in tables, and verbs that work on batches.
-// Every verb takes a span or a count; single look-ups are for tools and tests. A structural change
-// (create, destroy, add, remove, reserve) invalidates spans and pointers into columns, and must not
-// happen while a query is iterated: the program ends and names the query; use Commands. Component
+// The world: entities, their components in tables, and verbs that work on batches. Every verb takes
+// a span or a count; single look-ups are for tools and tests. A structural change (create, destroy,
+// add, remove, reserve) invalidates spans and pointers into columns. It must not happen while a
+// query is iterated: the program ends with a message that names the query; use Commands. Component
 // constructors and destructors must not touch the world. One thread changes a world; const
-// functions may run on several threads while nobody changes it. When a component's constructor
+// functions may run on several threads while nothing changes it. When a component's constructor
 // throws, the exception passes through and no entity was created.
 #pragma once
 
@@ -27,25 +27,27 @@ struct Created {
   std::span<const Entity> entities;
   std::tuple<std::span<Cs>...> columns;
 
+  // The column of C, one value per entity.
   template <class C>
   std::span<C> column() const {
     return std::get<std::span<C>>(columns);
   }
 };
 
-// What change_kind gives and takes.
+// The components that World::change_kind gives and takes.
 template <Component... Cs>
 struct Add {};
 template <Component... Cs>
 struct Remove {};
 
-// A value that arrives for an entity which may have died meanwhile.
+// A value that arrives for an entity which may have died in the meantime.
 template <class C>
 struct Landing {
   Entity entity;
   C value;
 };
 
+// How many values World::land wrote and dropped.
 struct LandReport {
   std::size_t landed = 0;
   std::size_t stale = 0;  // dead, or without the component
@@ -56,27 +58,31 @@ namespace detail {
 class SnapshotAccess;
 }
 
+// Owns its entities and components. Handles, accessors and readers belong to one world.
 class World {
  public:
+  // An empty world. Throws std::bad_alloc when there is no address space for `limits`.
   explicit World(const WorldLimits& limits = {}) : storage_(limits) {}
 
   // ---- structure -------------------------------------------------------------------------------
 
-  // `count` entities with these components, value-initialised, in contiguous rows. Tracked
-  // components count as changed. O(count).
+  // Makes `count` entities with these components, value-initialised, in contiguous rows. Tracked
+  // components count as changed. O(count). Not for sparse components: add them afterwards.
   template <Component... Cs>
   Created<Cs...> create(std::size_t count);
 
-  // Ends these entities; stale handles and repetitions are skipped. Returns how many died.
+  // Destroys these entities; stale handles and repetitions are skipped. Returns how many died.
   // O(handles); touches only the columns of the kinds concerned.
   std::size_t destroy(std::span<const Entity> entities) { return storage_.destroy(entities); }
 
-  // The same, with their children, the children of these, and so on.
+  // Destroys these entities, their children, the children of those, and so on. Returns how many
+  // died.
   std::size_t destroy_with_children(std::span<const Entity> parents);
 
-  // Gives these entities value-initialised components, or takes components away; everything else
-  // keeps its value. Who already has them all (has none of them), or is dead, is skipped. Returns
-  // how many changed. A sparse component is added and removed by itself; other components move.
+  // add gives these entities value-initialised components, remove takes components away; everything
+  // else keeps its value. Entities that are dead are skipped, and so are those that already have
+  // all of the components (add) or none of them (remove). Returns how many changed. A sparse
+  // component is added and removed by itself; other components move the entity's row. O(handles).
   template <Component... Cs>
   std::size_t add(std::span<const Entity> entities) {
     if constexpr (one_sparse<Cs...>()) {
@@ -94,14 +100,14 @@ class World {
     }
   }
 
-  // Both at once: one move from kind to kind.
+  // Adds and removes in one move from kind to kind. Returns how many entities moved.
   //   world.change_kind(entities, Add<Asleep>{}, Remove<Awake>{})
   template <Component... As, Component... Rs>
   std::size_t change_kind(std::span<const Entity> entities, Add<As...>, Remove<Rs...>) {
     return storage_.change_kind(entities, signature<As...>(), signature<Rs...>());
   }
 
-  // Prepares the kind with exactly these components for `count` further entities.
+  // Makes room for `count` more entities with exactly these components.
   template <Component... Cs>
   void reserve(std::size_t count) {
     storage_.reserve(signature<Cs...>(), count);
@@ -109,23 +115,25 @@ class World {
 
   // ---- values ----------------------------------------------------------------------------------
 
-  // Writes each value in place and marks it changed; later ones win. Stale handles are dropped.
+  // Writes each value in place and marks it changed; of several values for one entity the last
+  // wins. Stale handles are dropped. O(results).
   template <Component C>
   LandReport land(std::span<const Landing<C>> results) {
     return land_from<C>(results);
   }
-  // The same, moving the values out of `results`.
+  // Like land, but moves the values out of `results`.
   template <Component C>
   LandReport land_moved(std::span<Landing<C>> results) {
     return land_from<C>(results);
   }
 
+  // Whether the entity lives. O(1).
   bool alive(Entity entity) const { return storage_.living(entity) != nullptr; }
-  // How many entities are alive.
+  // How many entities live.
   std::size_t size() const { return storage_.slots().living(); }
 
-  // The entity's component, null when the entity is dead or has none; valid until the next
-  // structural change. Whoever follows many handles holds an accessor instead.
+  // The entity's component; null when the entity is dead or lacks it. Valid until the next
+  // structural change. To follow many handles, hold an accessor instead.
   template <Component C>
   C* get(Entity entity) {
     return find<C>(entity);
@@ -134,11 +142,13 @@ class World {
   const C* get(Entity entity) const {
     return find<C>(entity);
   }
+  // Random access to C by handle; const C only reads. Valid as long as the world.
   template <class C>
   Accessor<C> accessor() {
     return {storage_, record<std::remove_const_t<C>>()};
   }
-  // From a const world: a component that it has never seen stays absent to this accessor.
+  // From a const world. A component that the world has never seen stays absent to this accessor,
+  // even after it was added.
   template <class C>
   Accessor<C> accessor() const {
     static_assert(std::is_const_v<C>, "a const World is only read: ask for const C");
@@ -148,10 +158,10 @@ class World {
   // ---- iteration -------------------------------------------------------------------------------
 
   // Calls f(std::span<const Entity>, std::span<Cs>...) once per non-empty table that has all of Cs
-  // and passes the filters (With<...>, Without<...>); filters by sparse components cut tables into
-  // runs of rows. Write `const C` for what is only read. With a
-  // first parameter `TableRows<Cs...>`, f can mark the rows that it changed. A sparse component is
-  // either the only one of Cs (its members are one run) or a filter.
+  // and passes the filters (With<...>, Without<...>). Filters by sparse components cut tables into
+  // runs of rows. Write `const C` for components that are only read. With a first parameter
+  // `TableRows<Cs...>`, f can mark the rows that it changed. A sparse component is either the only
+  // one of Cs (its members are one run) or a filter.
   template <class... Cs, class F, class... Filters>
   void each(F&& f, Filters... filters) {
     each_in<Cs...>(storage_, f, filters...);
@@ -162,9 +172,9 @@ class World {
     each_in<Cs...>(storage_, f, filters...);
   }
 
-  // The same for these entities, in their order: calls f once per run of handles whose rows are
-  // neighbours. Entities that were created together mostly still are. The dead and those without
-  // all of Cs are skipped. No sparse components. Returns how many were visited.
+  // Like each, for these entities in their order: calls f once per run of handles whose rows are
+  // neighbours. Entities that were created together usually still are. Entities that are dead or
+  // lack one of Cs are skipped. No sparse components. Returns how many were visited. O(handles).
   template <class... Cs, class F>
   std::size_t each_of(std::span<const Entity> entities, F&& f) {
     return each_of_in<Cs...>(storage_, entities, f);
@@ -175,7 +185,7 @@ class World {
     return each_of_in<Cs...>(storage_, entities, f);
   }
 
-  // How many entities have all of these components.
+  // How many entities have all of these components. O(tables).
   template <Component... Cs>
   std::size_t count() const {
     std::size_t total = 0;
@@ -186,11 +196,12 @@ class World {
 
   // ---- parents and children --------------------------------------------------------------------
 
-  // Replaces the children of an entity that has the component Children; false when it has not.
-  // O(children). Children may be dead or die: their handles are stale then.
+  // Replaces the children of an entity that has the component Children; false when it lacks it.
+  // O(children). Children may be dead or die later: their handles are then stale.
   bool set_children(Entity parent, std::span<const Entity> children);
-  // The children in the order in which they were set; valid until the next set_children (which is
-  // not possible while a query is iterated) or structural change. Empty for who has none.
+  // The children in the order in which they were set; empty for entities without children. Valid
+  // until the next structural change or set_children, which is not possible while a query is
+  // iterated.
   std::span<const Entity> children(Entity parent) const {
     const Children* list = storage_.children_of(parent);
     return list == nullptr ? std::span<const Entity>{} : children(*list);
@@ -201,7 +212,7 @@ class World {
 
   // ---- changes ---------------------------------------------------------------------------------
 
-  // Says that C was written through a span or a pointer. Stale handles are skipped.
+  // Says that C was written through a span or a pointer. Stale handles are skipped. O(handles).
   template <Component C>
   void mark_changed(std::span<const Entity> entities);
   template <Component C>
@@ -209,8 +220,8 @@ class World {
     mark_changed<C>(std::span<const Entity>(&entity, 1));
   }
 
-  // A further consumer of C's changes; to it, all rows are new. A tag tells readers of the same
-  // component apart where they are known by their type, as in a schedule.
+  // A new consumer of C's changes; to it, all rows are new. A tag separates readers of the same
+  // component by type, as a schedule needs. O(rows / 64).
   template <Component C, class Tag = void>
   ChangeReader<C, Tag> reader(Removed removed = Removed::kIgnore) {
     static_assert(is_tracked<C>(), "only a tracked component has changes");
@@ -218,7 +229,8 @@ class World {
                                           removed == Removed::kReport)};
   }
 
-  // Makes component types known before they are used: what a snapshot names must be.
+  // Makes component types known before they are used. load_snapshot requires this of every type
+  // that its snapshot names.
   template <Component... Cs>
   void declare() {
     (storage_.id_of(detail::kComponentInfo<Cs>), ...);
@@ -226,10 +238,11 @@ class World {
 
   // ---- figures ---------------------------------------------------------------------------------
 
+  // How many tables the world has made, one per kind of entity.
   std::size_t table_count() const { return storage_.tables().size() - 1; }
-  // Slots whose generations are used up.
+  // How many slots have used up their generations.
   std::size_t retired_slots() const { return storage_.slots().retired(); }
-  // Memory of handles and columns that is usable now; what was never touched costs nothing.
+  // Bytes of memory of handles and columns that are usable now; pages never touched cost nothing.
   std::size_t committed_bytes() const { return storage_.committed_bytes(); }
 
  private:
@@ -372,7 +385,7 @@ void World::mark_changed(std::span<const Entity> entities) {
   static_assert(is_tracked<C>(), "only a tracked component is marked: ComponentTraits<C>::tracked");
   detail::ComponentRecord& target = record<C>();
   const Accessor<C> rows(storage_, target);
-  std::array<detail::RowPlace, 128> found;  // resolved first, marked then: two short loops
+  std::array<detail::RowPlace, 128> found;  // resolve first, then mark: two short loops
   std::size_t count = 0;
   for (std::size_t i = 0; i < entities.size(); ++i) {
     if (i + detail::kPrefetchAhead < entities.size()) {

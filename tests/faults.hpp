@@ -1,7 +1,7 @@
-// Faults of the operating system to order: a disk that is full, threads that cannot be created.
-// faults.cpp takes the place of the C library's functions in whatever program it is linked into,
-// and goes on to them as long as no fault is asked for. As a library of its own (psygen_faults) it
-// is preloaded into whole programs, which get their faults from the environment:
+// Operating system faults on request: a full disk, threads that cannot be created. faults.cpp
+// replaces the C library's functions in any program that links it, and forwards to them while no
+// fault is requested. As a library of its own (psygen_faults) it is preloaded into whole programs,
+// which take their faults from the environment:
 //   PSYGEN_FULL_DISK=FOLDER PSYGEN_CALLS_LEFT=N     FullDisk(FOLDER, N)
 //   PSYGEN_THREADS_LEFT=N                           FewThreads(N)
 #pragma once
@@ -11,11 +11,13 @@
 
 namespace psygen {
 
-// While it lives, each call that makes, writes, flushes, closes or renames a file below `folder`
-// fails with ENOSPC, after so many that do not. One at a time.
+// While it lives, calls that create, write, flush, close or rename a file below `folder` fail with
+// ENOSPC, after the first `calls_left` of them. One at a time.
 class FullDisk {
  public:
+  // The disk is full from now until the object ends.
   FullDisk(const std::filesystem::path& folder, std::size_t calls_left);
+  // The disk has room again.
   ~FullDisk();
   FullDisk(const FullDisk&) = delete;
   FullDisk& operator=(const FullDisk&) = delete;
@@ -24,11 +26,14 @@ class FullDisk {
   bool was_met() const;
 };
 
-// While it lives, only so many threads more can be started from one library: std::threads, or with
-// a part of its name those of another one, as of a driver. One at a time.
+// While it lives, only `threads_left` more threads can be started by one library: the C++ library
+// (std::thread), or another one that is named by a part of its file name, such as a driver. One at
+// a time.
 class FewThreads {
  public:
+  // Threads are limited from now until the object ends.
   explicit FewThreads(std::size_t threads_left, const char* library = "libstdc++");
+  // Threads are unlimited again.
   ~FewThreads();
   FewThreads(const FewThreads&) = delete;
   FewThreads& operator=(const FewThreads&) = delete;

@@ -1,4 +1,4 @@
-// What a function that writes files leaves behind on a disk that fills.
+// Checks what a function that writes files leaves behind on a disk that fills up.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,8 +15,10 @@
 
 namespace psygen {
 
+// File names and their contents.
 using FileContents = std::map<std::string, std::string>;
 
+// The files that lie directly in a folder.
 inline FileContents contents_of(const std::filesystem::path& folder) {
   FileContents contents;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -26,8 +28,8 @@ inline FileContents contents_of(const std::filesystem::path& folder) {
   return contents;
 }
 
-// Calls write(folder) on a disk with room for no call, for one, ..., until there is room for all:
-// each file is then whole or not there, and a failure names a file and its reason.
+// Calls write(folder) on a disk with room for no call, for one call, ..., until there is room for
+// all. Each time every file must be whole or absent, and a failure must name a file and its reason.
 template <class Write>
 void expect_whole_files(const Write& write) {
   const TemporaryFolder top;

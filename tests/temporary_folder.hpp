@@ -1,4 +1,4 @@
-// A folder for the files of one test.
+// A folder for the files of one test, on the disk under testing::TempDir(). One thread.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,9 +11,10 @@
 
 namespace psygen {
 
-// An empty folder of the running test's own, removed when the test ends.
+// An empty folder that belongs to the running test and is removed when the object ends.
 class TemporaryFolder {
  public:
+  // Creates the folder. Only inside a running test.
   TemporaryFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     // Another build may run the same test at the same time.
@@ -23,14 +24,17 @@ class TemporaryFolder {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
+  // Removes the folder and everything in it.
   ~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  // The path of a file in the folder, and of the folder itself.
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   const std::filesystem::path& path() const { return path_; }
+  // How many files and folders lie directly in it.
   std::size_t file_count() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
   }

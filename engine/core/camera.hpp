@@ -1,6 +1,7 @@
 // A camera: where it is, where it looks, how it projects. Matrices are relative to the camera's
-// position (the camera is the origin), so that nothing loses precision far from the world's origin.
-// Depth is reversed: 1 at the near plane, 0 infinitely far. Vulkan clip space (y down).
+// position (the camera is the origin), so precision does not suffer far from the world's origin.
+// Depth is reversed: 1 at the near plane, 0 infinitely far. Vulkan clip space (y down). Values and
+// pure functions; not a controller (platform/fly_camera.hpp).
 #pragma once
 
 #include <cmath>
@@ -11,23 +12,25 @@
 
 namespace psygen::core {
 
-// yaw 0 looks along −Z and turns to the right (+X) with growing yaw; pitch grows upwards. Radians.
+// yaw 0 looks along −Z; growing yaw turns right (to +X); growing pitch turns up. Radians.
 struct CameraPose {
   WorldPosition position;
   double yaw = 0;
   double pitch = 0;
 };
 
+// The unit vector of the direction of view.
 inline glm::vec3 forward_of(const CameraPose& pose) {
   const double c = std::cos(pose.pitch);
   return {static_cast<float>(std::sin(pose.yaw) * c), static_cast<float>(std::sin(pose.pitch)),
           static_cast<float>(-std::cos(pose.yaw) * c)};
 }
 
+// A perspective without a far plane.
 struct Projection {
-  float vertical_fov = 0.9F;  // radians, in (0, π)
-  float aspect = 16.0F / 9.0F;
-  float near_m = 0.2F;
+  float vertical_fov = 0.9F;    // radians, in (0, π)
+  float aspect = 16.0F / 9.0F;  // width / height
+  float near_m = 0.2F;          // above 0
   // Pixels that one radian covers in the middle of a picture `height` pixels high.
   float pixels_per_radian(float height) const {
     return height * 0.5F / std::tan(vertical_fov * 0.5F);
@@ -52,7 +55,7 @@ inline glm::mat4 view_rotation(const CameraPose& pose) {
   return m;
 }
 
-// Infinite reversed-depth perspective for Vulkan.
+// The projection of view space, for Vulkan: infinite, with reversed depth.
 inline glm::mat4 projection_matrix(const Projection& p) {
   const float f = 1.0F / std::tan(p.vertical_fov * 0.5F);
   glm::mat4 m(0.0F);
@@ -63,7 +66,8 @@ inline glm::mat4 projection_matrix(const Projection& p) {
   return m;
 }
 
-// False for NaN, infinities and heights beyond ±10^7 m; such a pose must not reach the tick.
+// False for NaN, infinities, heights beyond ±10^7 m, local x or z beyond ±10^12 m and angles beyond
+// ±10^9 rad. Such a pose must not reach the tick.
 inline bool is_valid(const CameraPose& pose) {
   const auto ok = [](double v, double limit) { return std::isfinite(v) && std::abs(v) <= limit; };
   return ok(pose.position.local.x, 1e12) && ok(pose.position.local.y, 1e7) &&

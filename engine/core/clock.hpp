@@ -1,19 +1,25 @@
-// Time. Seconds as doubles from a monotonic clock; CPU time of the calling thread.
+// Time. Seconds as doubles: a monotonic clock, the CPU time of the calling thread, and a stopwatch
+// over the latter that tests can make virtual. Not calendar time. POSIX; any thread.
 #pragma once
 
 namespace psygen::core {
 
+// Seconds since an arbitrary start that is fixed while the system runs; never goes back.
 double monotonic_seconds();
+// Seconds of processor time that the calling thread has used.
 double thread_cpu_seconds();
 
-// What the calling thread has spent since it was made, in seconds: of its processor, so that others
-// who take it away do not count, or virtual ones, which are what the stopwatch was charged with.
+// Seconds that the calling thread has used since the stopwatch was made. A real stopwatch measures
+// the thread's CPU time, so time that other threads take does not count. A virtual one returns the
+// seconds that it was charged with. Read it on the thread that made it.
 class Stopwatch {
  public:
+  // Starts at 0.
   explicit Stopwatch(bool is_virtual = false)
       : is_virtual_(is_virtual), start_s_(is_virtual ? 0.0 : thread_cpu_seconds()) {}
-  // What something takes on the virtual clock; a real one knows by itself.
+  // Adds to a virtual stopwatch; a real one measures by itself and ignores this.
   void charge(double seconds) { charged_s_ += seconds; }
+  // Seconds since the start.
   double seconds() const { return is_virtual_ ? charged_s_ : thread_cpu_seconds() - start_s_; }
 
  private:

@@ -1,6 +1,6 @@
-// Where things are. A position is a block (integers) and metres inside it, so that precision does
-// not depend on the distance from the origin. Metres; +Y is up; right-handed; block (x, z) spans
-// local [0, size) on both axes. Not a transform hierarchy.
+// Where things are. A position is a block (integers) and metres inside it, so precision does not
+// depend on the distance from the origin. Metres; +Y is up; right-handed; block (x, z) spans local
+// [0, size) on both axes. Not a transform hierarchy. Plain values; any thread.
 #pragma once
 
 #include <cmath>
@@ -13,6 +13,7 @@
 
 namespace psygen::core {
 
+// A block of the ground, in blocks east (+X) and south (+Z) of block (0, 0). Both wrap at 2^32.
 struct BlockCoord {
   std::int32_t x = 0;
   std::int32_t z = 0;
@@ -20,22 +21,25 @@ struct BlockCoord {
 };
 static_assert(sizeof(BlockCoord) == 8);
 
-// Axis-aligned box in metres, relative to a frame that the user of the box names.
+// Axis-aligned box in metres, relative to a frame that its user defines.
 struct Bounds {
   glm::vec3 min{0.0F};
   glm::vec3 max{0.0F};
+  // The box with this centre and these half extents (>= 0), in metres.
   static Bounds around(const glm::vec3& center, const glm::vec3& half_extent) {
     return {center - half_extent, center + half_extent};
   }
+  // Its centre and half extents, in metres.
   glm::vec3 center() const { return (min + max) * 0.5F; }
   glm::vec3 half_extent() const { return (max - min) * 0.5F; }
   friend bool operator==(const Bounds&, const Bounds&) = default;
 };
 
+// A place in the world. Normalised when local x and z lie in [0, block size).
 struct WorldPosition {
   BlockCoord block;
-  glm::dvec3 local{
-      0.0};  // metres from the block's corner; x and z in [0, block size) when normalised
+  // Metres from the block's corner.
+  glm::dvec3 local{0.0};
 };
 
 // The same place with local x and z in [0, block_size_m). Block indices wrap at 2^32.
@@ -52,7 +56,8 @@ inline WorldPosition normalised(WorldPosition p, double block_size_m) {
   return p;
 }
 
-// Metres from `origin` to the corner of `block`, exact as long as they are within 2^31 blocks.
+// Metres from `origin` to the corner of `block`, at height 0. Exact while they are within 2^31
+// blocks.
 inline glm::dvec3 offset_m(BlockCoord block, const WorldPosition& origin, double block_size_m) {
   const auto difference = [](std::int32_t a, std::int32_t b) {
     return static_cast<double>(
@@ -62,7 +67,9 @@ inline glm::dvec3 offset_m(BlockCoord block, const WorldPosition& origin, double
           difference(block.z, origin.block.z) * block_size_m - origin.local.z};
 }
 
+// Blocks as keys of unordered containers.
 struct BlockCoordHash {
+  // A bijective mix of both indices. O(1).
   std::size_t operator()(BlockCoord b) const {
     return static_cast<std::size_t>(mix64((std::uint64_t{static_cast<std::uint32_t>(b.x)} << 32) |
                                           static_cast<std::uint32_t>(b.z)));

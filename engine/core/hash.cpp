@@ -1,7 +1,7 @@
 #include "engine/core/hash.hpp"
 
-// The library's ordinary functions are built for the oldest processor, nine times slower; the
-// dispatching ones give the same values.
+// xxHash's ordinary functions are built for the oldest processor and are nine times slower. The
+// dispatching functions give the same values.
 #if defined(__x86_64__)
 #include <xxh_x86dispatch.h>
 #else

@@ -1,5 +1,5 @@
 // Hashes and counter-based random numbers. All are pure functions of their arguments and give the
-// same bits on every machine. Not for security.
+// same bits on every machine. Not for security. O(1), or O(bytes) for hash_bytes; any thread.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,15 @@ constexpr std::uint64_t mix64(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+// Appends a value to a hash; the order of values matters.
 constexpr std::uint64_t combine(std::uint64_t hash, std::uint64_t value) {
   return mix64(hash ^ mix64(value));
 }
 
-// XXH3 with 64 bits over bytes.
+// XXH3, 64 bits, over the bytes.
 std::uint64_t hash_bytes(std::span<const std::byte> bytes, std::uint64_t seed = 0);
 
-// What a random number is for: two purposes never share a stream.
+// The use of a random number: two purposes never share a stream.
 enum class Purpose : std::uint32_t {
   kPosition = 1,
   kParameters = 2,
@@ -36,6 +37,7 @@ enum class Purpose : std::uint32_t {
 // k).
 class RandomStream {
  public:
+  // The stream of the thing `index` in a block, for one purpose. Starts at k = 0.
   constexpr RandomStream(std::uint64_t world_seed, std::int32_t block_x, std::int32_t block_z,
                          std::uint32_t index, Purpose purpose)
       : key_(combine(
@@ -43,8 +45,9 @@ class RandomStream {
                                            static_cast<std::uint32_t>(block_z)),
             (std::uint64_t{index} << 32) | static_cast<std::uint32_t>(purpose))) {}
 
+  // Uniform over all 64-bit numbers.
   constexpr std::uint64_t next_u64() { return mix64(key_ + 0x9E3779B97F4A7C15ull * counter_++); }
-  // Uniform in [0, 1) with 53 bits.
+  // Uniform in [0, 1), with 53 bits.
   constexpr double next_unit() { return static_cast<double>(next_u64() >> 11) * 0x1.0p-53; }
   // Uniform in [low, high).
   constexpr double next_real(double low, double high) { return low + (high - low) * next_unit(); }

@@ -39,7 +39,7 @@ std::size_t threads_left(std::size_t most) {
     threads.reserve(most);
     while (threads.size() < most)
       threads.emplace_back([&counted] { counted.wait(); });
-  } catch (const std::exception&) {  // no thread or no memory for one
+  } catch (const std::exception&) {  // no more threads, or no memory for one
   }
   counted.count_down();
   for (std::thread& thread : threads)

@@ -1,7 +1,8 @@
-// What the operating system would still give to this process, found out by taking it and giving it
-// back at once: limits (ulimit -d, -v, -u, of containers on threads, of memory that must not be
-// overcommitted) then show before a library meets them that cannot bear them. Not seen: limits of
-// memory at which the kernel kills. The answer is of the moment. POSIX. Any thread.
+// How much more the operating system would give to this process. Each function takes the resource
+// and returns it at once. This reveals limits (ulimit -d, -v, -u, container limits on threads,
+// memory that must not be overcommitted) before a library that cannot handle them runs into them.
+// Limits of memory that the kernel enforces by killing are not seen. The answer holds for the
+// moment only. POSIX. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +10,12 @@
 
 namespace psygen::core {
 
-// Whether so many bytes of memory could be had. If not, out_of_memory() names them.
+// Whether `bytes` bytes of memory could be allocated. If not, the next out_of_memory() in this
+// thread reports them.
 bool memory_left(std::uint64_t bytes);
-// Whether so many bytes of addresses could be had, without memory behind them. If not, as above.
+// Like memory_left, for address space without memory behind it.
 bool addresses_left(std::uint64_t bytes);
-// How many threads could be started, of `most`. Takes some 10 microseconds for each.
+// How many threads could be started, at most `most`. Takes about 10 microseconds per thread.
 std::size_t threads_left(std::size_t most);
 
 }  // namespace psygen::core

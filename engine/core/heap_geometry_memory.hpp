@@ -1,5 +1,5 @@
-// GeometryMemory on the heap: one allocation per mesh. For tests, tools and the null renderer.
-// Released ranges are free at once. Main thread only.
+// GeometryMemory on the heap: one allocation per mesh. For tests, tools and the null renderer, not
+// for devices. Released ranges are free at once. Every function is O(1). Main thread only.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,14 @@
 
 namespace psygen::core {
 
+// See GeometryMemory for the contracts. Ranges it does not know end the program.
 class HeapGeometryMemory final : public GeometryMemory {
  public:
+  // At most `capacity_bytes` are used at a time; none are allocated before reserve.
   explicit HeapGeometryMemory(std::uint64_t capacity_bytes) : capacity_bytes_(capacity_bytes) {}
 
+  // As in GeometryMemory. reserve also fails with kOutOfMemory when the heap has no memory;
+  // vertex_bytes and indices require a committed range.
   Result<GeometryReservation> reserve(VertexLayout layout, std::uint32_t vertex_count,
                                       std::uint32_t index_count) override;
   void commit(const GeometryRange& range) override;

@@ -1,15 +1,16 @@
-// Messages for people, on stderr, one printable line each (utf8.hpp); data goes to stdout.
-// Thread-safe. Format with fmt at the caller.
+// Messages for people, on stderr, one printable line each (utf8.hpp). Data goes to stdout instead.
+// Thread-safe. Callers format with fmt.
 #pragma once
 
 #include <string_view>
 
 namespace psygen::core {
 
+// One line with its level. Characters that cannot be printed are escaped.
 void log_info(std::string_view message);
 void log_warning(std::string_view message);
 void log_error(std::string_view message);
-// Only warnings and errors from now on.
+// true: only warnings and errors from now on. false: everything again.
 void set_log_quiet(bool quiet);
 
 }  // namespace psygen::core

@@ -7,6 +7,7 @@
 namespace psygen::core {
 namespace {
 
+// Levenshtein distance in bytes.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -25,7 +26,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string_view nearest_word(std::string_view word, std::span<const std::string> known) {
-  // Far longer words than any that is known are near to none; this also bounds the time.
+  // A word far longer than every known one is near to none; this also bounds the time.
   if (word.size() > 64) return {};
   std::string_view nearest;
   std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;

@@ -1,4 +1,5 @@
-// What somebody may have meant who misspelt a word: a key of a file, a command, an option. Pure.
+// What a misspelt word was probably meant to be: a key of a file, a command, an option. Not a
+// spelling checker: it compares with the words given. Pure.
 #pragma once
 
 #include <span>
@@ -7,8 +8,9 @@
 
 namespace psygen::core {
 
-// The one of `known` that needs the fewest changes to become `word`, if it is near: at most a third
-// of the letters, or two. Else empty.
+// The word of `known` that the fewest edits turn into `word`; the first of several. Empty when none
+// is within a third of the letters or two edits, whichever is more. A view into `known`. O(letters
+// of `word` * letters of `known`); words over 64 bytes match nothing.
 std::string_view nearest_word(std::string_view word, std::span<const std::string> known);
 
 }  // namespace psygen::core

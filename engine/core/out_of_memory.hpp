@@ -1,5 +1,5 @@
-// What is said where memory ends: for what it was, how much more was wanted, how much there is and
-// what limits it. Nothing here takes memory but the std::string. Any thread.
+// The message for exhausted memory: what it was for, how much more was requested, how much is in
+// use and what limits it. Not an allocator. Allocates nothing except the std::string. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,18 @@
 
 namespace psygen::core {
 
-// An allocation of so many bytes has failed in this thread; 0 forgets it. For whoever makes it, and
-// for the operator new of a program.
+// Notes that an allocation of `bytes` bytes has failed in this thread; 0 forgets it. Called by the
+// code that allocates and by a program's operator new.
 void note_refused_bytes(std::size_t bytes);
 
 // "<what>: memory ran out (N bytes more were wanted; M MiB are in use, ulimit -d allows L MiB)". N
-// is what was noted last in this thread, in MiB from 10 of them on, and is left out where nothing
-// was noted; so is an empty `what`. Forgets what was noted.
+// is the size last noted in this thread, in MiB from 10 MiB on; it is left out when none was noted,
+// and so is an empty `what`. Forgets what was noted. At most 511 bytes.
 std::string out_of_memory(std::string_view what);
-// The same into `buffer`, cut to its size, for where a string cannot be made.
+// The same written into `buffer` (not empty) and cut to its size, for when no string can be made.
 std::string_view out_of_memory(std::string_view what, std::span<char> buffer);
 
-// What f(), which returns a Result<void>, returns; kOutOfMemory where it throws std::bad_alloc.
+// Returns f()'s Result<void>, or kOutOfMemory when f() throws std::bad_alloc.
 template <class F>
 Result<void> within_memory(std::string_view what, const F& f) {
   try {

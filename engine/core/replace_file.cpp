@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{64} << 10;
 
-// Opens a new file beside `path` and stores its name; -1 with errno when that is not possible.
+// Opens a new file next to `path` and stores its name; -1 with errno when that fails.
 int open_temporary(const std::filesystem::path& path, std::filesystem::path& temporary) {
   int file = -1;
   for (int attempt = 0; attempt < 100 && file < 0; ++attempt) {
@@ -37,7 +37,7 @@ void flush_folder(const std::filesystem::path& path) {
   close(handle);
 }
 
-// The process that a temporary file of open_temporary() belongs to; 0 for any other file.
+// The process that made a temporary file of open_temporary(); 0 for any other file.
 pid_t owner_of_partial(const std::string& name) {
   constexpr std::string_view kEnding = ".partial";
   if (!name.starts_with('.') || !name.ends_with(kEnding)) return 0;

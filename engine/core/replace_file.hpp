@@ -1,5 +1,6 @@
-// Replaces a file's content as a whole: after a crash or a full disk the old content or the new
-// content is there, never a mix. POSIX. One thread per file; different files from any thread.
+// Replaces a file's content as a whole: after a crash or a full disk the file holds the old content
+// or the new content, never a mix. Not a lock: the last of several writers wins. POSIX. One thread
+// per file; different files from any thread.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +13,24 @@
 
 namespace psygen::core {
 
-// A file that is written piece by piece. Until commit() it lies beside `path` under a temporary
-// name; what was not committed is removed.
+// A file that is written piece by piece. Until commit() the content is in a temporary file next to
+// `path`; it is removed when commit() does not happen.
 class FileReplacement {
  public:
-  // Refuses a path that exists and is not a regular file. Always gives an object: the first error
-  // is kept and comes out of commit().
+  // Refuses a path that exists and is not a regular file. Always constructs an object: the first
+  // error is kept and is returned by commit().
   explicit FileReplacement(std::filesystem::path path);
+  // Removes the temporary file unless it was committed.
   ~FileReplacement();
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;
 
-  void write(std::string_view bytes);  // buffered
-  // Everything has reached the disk, still under the temporary name. Call once, or leave it to
-  // commit(). Fails with kIo: the path, what could not be done and the system's reason.
+  // Appends bytes, buffered. After an error it does nothing.
+  void write(std::string_view bytes);
+  // Writes everything to the disk, still under the temporary name. Call it once, or leave it to
+  // commit(). Fails with kIo: the path, what failed and the system's reason.
   Result<void> flush();
-  // Flushes and renames, once. Fails as flush(); then `path` holds what it held before.
+  // Flushes and renames, once. Fails like flush(); `path` then holds what it held before.
   Result<void> commit();
 
  private:
@@ -41,12 +44,12 @@ class FileReplacement {
   std::string failure_;              // the first; empty: none
 };
 
-// The whole content at once.
+// Replaces the whole content at once. Fails like FileReplacement::commit().
 Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Result<void> replace_file(const std::filesystem::path& path, std::string_view text);
 
-// Removes the temporary files that processes which no longer run (killed, no power) left in the
-// folder. Not those of its sub-folders.
+// Removes temporary files in this folder whose processes no longer run (killed, power lost). Does
+// not look into sub-folders.
 void remove_stale_partials(const std::filesystem::path& folder);
 
 }  // namespace psygen::core

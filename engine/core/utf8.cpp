@@ -21,7 +21,7 @@ std::string escape_of(const CodePoint& point) {
 bool is_printable(const CodePoint& point, std::string_view bytes) {
   if (!point.valid || point.value < 0x80)
     return point.valid && point.value >= ' ' && point.value <= '~';
-  return fmt::format("{:?}", bytes).size() == bytes.size() + 2;  // only the quotes were added
+  return fmt::format("{:?}", bytes).size() == bytes.size() + 2;  // only quotes were added
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// The two vertex formats, written by modelers (engine/models) and read by the shaders
-// (shaders/terrain.vert, shaders/model.vert). Seam between synthesis and rendering.
+// The two vertex formats. Modelers (engine/models) write them and shaders read them
+// (shaders/terrain.vert, shaders/model.vert). The interface between synthesis and rendering: byte
+// layouts, no behaviour. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +9,7 @@
 
 namespace psygen::core {
 
+// Which of the two formats a mesh has.
 enum class VertexLayout : std::uint8_t { kTerrain = 0, kModel = 1 };
 
 // Octahedral normals here fold about y (up). With s = |x| + |y| + |z| of the unit normal, the
@@ -15,10 +17,10 @@ enum class VertexLayout : std::uint8_t { kTerrain = 0, kModel = 1 };
 // sign(0) = 1. Decoding a pair (a, b): y = 1 - |a| - |b|, (x, z) = (a, b), or, where y < 0,
 // ((1 - |b|) · sign a, (1 - |a|) · sign b); then normalise.
 
-// A terrain vertex. Position in the block: x = grid_x · cell_m, z = grid_z · cell_m,
-// y = height_min + height/65535 · height_range (the two figures are the same for the whole world,
-// so that neighbouring blocks agree bit for bit). Bit 7 of grid_x marks a skirt vertex, which hangs
-// below its twin by the skirt depth of the draw; the index itself is in bits 0–6 (0 … 127).
+// A terrain vertex. Its position in the block is x = grid_x · cell_m, z = grid_z · cell_m, y =
+// height_min + height/65535 · height_range. Both height figures are the same for the whole world,
+// so neighbouring blocks agree bit for bit. Bit 7 of grid_x marks a skirt vertex, which hangs below
+// its twin by the skirt depth of the draw; bits 0–6 hold the index (0 … 127).
 struct TerrainVertex {
   std::uint8_t grid_x;
   std::uint8_t grid_z;
@@ -28,14 +30,15 @@ struct TerrainVertex {
   std::int8_t normal_z;
   std::uint8_t sun = 255;      // unorm8: visible share of the sun, 255 = unshadowed
   std::uint8_t ambient = 255;  // unorm8: visible share of the sky, 255 = open
-  std::uint8_t cover = 0;      // spare: always 0, far forests are of a draw (TerrainDraw::cover)
+  std::uint8_t cover = 0;      // unused, always 0: far forests are per draw (TerrainDraw::cover)
   std::uint8_t spare = 0;
 };
 static_assert(sizeof(TerrainVertex) == 12);
+// Bit 7 of TerrainVertex::grid_x.
 inline constexpr std::uint8_t kTerrainSkirtBit = 0x80;
 
-// A vertex of a tree, rock or any other model. Position is snorm16 within the mesh's box:
-// p = center + half_extent · position / 32767, metres, local to the model's foot.
+// A vertex of a tree, rock or any other model. `position` is snorm16 within the mesh's box: p =
+// center + half_extent · position / 32767, in metres relative to the model's foot.
 struct ModelVertex {
   std::int16_t position[3];
   std::uint8_t ambient;    // unorm8: baked ambient visibility, 255 = open sky
@@ -46,13 +49,14 @@ struct ModelVertex {
 };
 static_assert(sizeof(ModelVertex) == 16);
 
-// Of a material: the vertex turns about the vertical line through `position` towards the camera
-// (for shadows the sun). `normal` says where it is then, to the right of that line and behind it as
-// the camera sees it, in 1/32767 of kBillboardReachM metres. Its normal follows, as if it were
-// rounded: to its side, to the camera, and up where it is behind the line.
+// A bit of ModelVertex::material. The vertex turns about the vertical line through `position` to
+// face the camera (in shadow maps, the sun). `normal` then holds its offset from that line as the
+// camera sees it, to the right and behind, in units of kBillboardReachM / 32767 metres. The shading
+// normal is that of a rounded surface: towards the vertex's side, towards the camera, and up when
+// the vertex is behind the line.
 inline constexpr std::uint8_t kBillboardBit = 2;
 inline constexpr float kBillboardReachM = 256;
-// No further from `position` than this does a vertex get by that, in metres.
+// An upper bound of how far turning moves the vertex from `position`, in metres.
 constexpr float billboard_reach_m(const ModelVertex& v) {
   if ((v.material & kBillboardBit) == 0) return 0;
   const int right = v.normal[0], behind = v.normal[1];
@@ -60,11 +64,12 @@ constexpr float billboard_reach_m(const ModelVertex& v) {
          (kBillboardReachM / 32767.0F);
 }
 
+// Bytes per vertex of a layout.
 constexpr std::uint32_t vertex_stride_bytes(VertexLayout layout) {
   return layout == VertexLayout::kTerrain ? sizeof(TerrainVertex) : sizeof(ModelVertex);
 }
 
-// The bytes of a mesh as vertices of its layout.
+// The bytes of a mesh as vertices. `Vertex` is the type of the mesh's layout.
 template <class Vertex>
 std::span<const Vertex> vertices_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const Vertex*>(bytes.data()), bytes.size() / sizeof(Vertex)};

@@ -1,6 +1,6 @@
-// How far two pictures are apart, channel by channel. For golden images: the same picture drawn by
-// another driver may differ by 5/255 and, at edges, by more on at most 0.1 % of its pixels.
-// Not a perceptual metric.
+// How far two pictures differ, channel by channel. For golden images: the same picture drawn by
+// another driver may differ by 5/255 and, at edges, by more on at most 0.1 % of its pixels. Not a
+// perceptual metric. Pure; any thread; linear in the pixels.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,26 @@
 
 namespace psygen::image {
 
+// What a picture may differ from its golden image.
 inline constexpr std::uint8_t kGoldenThreshold = 5;    // of 255
 inline constexpr double kGoldenShareAllowed = 0.1e-2;  // of all pixels
 
+// The result of a comparison.
 struct ImageDifference {
-  bool same_size = false;           // when false, every pixel counts as different
-  std::uint8_t max_difference = 0;  // largest difference of any channel of any pixel, 0 … 255
-  std::uint64_t pixels_over = 0;    // pixels with a channel that differs by more than the threshold
+  bool same_size = false;           // if false, every pixel counts as different
+  std::uint8_t max_difference = 0;  // largest of any channel of any pixel, 0 … 255
+  std::uint64_t pixels_over = 0;    // pixels with a channel over the threshold
   double share_over = 0;            // pixels_over / all pixels, 0 … 1
 
+  // Equal in every field.
   friend bool operator==(const ImageDifference&, const ImageDifference&) = default;
 };
 
+// Compares two valid pictures. `threshold` is the difference of a channel, 0 … 255, that still
+// counts as equal.
 ImageDifference compare(const Image& a, const Image& b, std::uint8_t threshold = kGoldenThreshold);
 
-// True for two pictures of one size with at most 0.1 % of the pixels over the threshold.
+// True for two pictures of the same size with at most 0.1 % of the pixels over the threshold.
 bool matches_golden(const ImageDifference& difference);
 
 }  // namespace psygen::image

@@ -1,6 +1,6 @@
 // A picture in memory: 8 bits per channel, red, green, blue, alpha, rows from top to bottom without
 // padding. A plain value: no files (image_io.hpp), no colour management (bytes are sRGB as stored,
-// alpha is not premultiplied).
+// alpha is not premultiplied). Any thread.
 #pragma once
 
 #include <cstddef>
@@ -10,26 +10,28 @@
 
 namespace psygen::image {
 
+// A picture. Valid when `rgba` has width · height · 4 bytes.
 struct Image {
   std::uint32_t width = 0;         // pixels
   std::uint32_t height = 0;        // pixels
   std::vector<std::uint8_t> rgba;  // width · height · 4
 
-  // The four bytes of a pixel. Requires x < width and y < height.
+  // The four bytes of a pixel. Requires x < width and y < height. O(1).
   std::span<const std::uint8_t, 4> pixel(std::uint32_t x, std::uint32_t y) const;
   std::span<std::uint8_t, 4> pixel(std::uint32_t x, std::uint32_t y);
 
+  // Equal in size and in every byte.
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-// A picture of one colour (transparent black when none is given).
+// A picture of one colour (transparent black by default). Sizes in pixels, channels 0 … 255.
 Image make_image(std::uint32_t width, std::uint32_t height, std::uint8_t red = 0,
                  std::uint8_t green = 0, std::uint8_t blue = 0, std::uint8_t alpha = 0);
 
-// True when the size of `rgba` is what width and height say.
+// True when the size of `rgba` matches width and height.
 bool is_valid(const Image& image);
 
-// Hash of the size and of every byte; the same on every machine.
+// A hash of the size and of every byte; the same on every machine. O(bytes).
 std::uint64_t hash(const Image& image);
 
 }  // namespace psygen::image

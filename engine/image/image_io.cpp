@@ -70,7 +70,7 @@ core::Result<T> with_path(const std::filesystem::path& path, core::Result<T> res
   return fail_at(result.error().code, path, result.error().message);
 }
 
-// OpenImageIO and the decoders below it may throw; nothing of that leaves this file.
+// OpenImageIO and the decoders below it may throw; no exception leaves this file.
 template <class Function>
 auto without_exceptions(const std::filesystem::path& path, const Function& function)
     -> decltype(function()) {

@@ -13,7 +13,7 @@ namespace {
 using core::ErrorCode;
 using Bytes = std::vector<std::uint8_t>;
 
-// 1 to 4 channels to red, green, blue, alpha.
+// Expands 1 to 4 channels to red, green, blue, alpha.
 void expand_channels(const Bytes& source, std::size_t channels, Bytes& rgba) {
   const bool grey = channels <= 2;
   const bool has_alpha = channels == 2 || channels == 4;

@@ -1,7 +1,8 @@
-// The pictures' decoder and encoder: OpenImageIO behind two functions. They live in a library of
-// their own, which is loaded when the first picture is read or written: OpenImageIO brings some 250
-// libraries along, which cost every start 0.2 s and 100 MB, start threads, and end the program
-// where they do not get them. Files, limits and headers are image_io's business. Any thread.
+// The decoder and encoder of pictures: OpenImageIO behind two functions. They are in a library of
+// their own, which is loaded when the first picture is read or written. OpenImageIO depends on
+// about 250 more libraries. Linked directly, they would cost every start 0.2 s and 100 MB; they
+// also start threads, and end the program when they cannot. Not for files, limits and headers:
+// image_io handles those. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +15,22 @@
 
 namespace psygen::image {
 
-// Errors are sentences without a path.
+// The functions of the loaded library. Error messages have no path.
 struct PictureCodec {
-  // A file whose header has been read, as 8 bits in each of four channels. Fails with kParse.
+  // Decodes a file whose header has been read to four channels of 8 bits. Fails with kParse, or
+  // with kInternal when OpenImageIO lacks the format.
   core::Result<Image> (*decode)(std::span<const std::uint8_t> bytes, const PictureHeader& header);
-  // A valid picture as a PNG file. Fails with kIo.
+  // Encodes a valid picture as a PNG file. Fails with kIo, or with kInternal when OpenImageIO lacks
+  // the format.
   core::Result<std::vector<std::uint8_t>> (*encode_png)(const Image& image);
 };
 
-// Whether the library would find the memory and the threads that it takes while it is loaded. Fails
+// Checks that the memory and the threads exist which the library takes while it is loaded. Fails
 // with kOutOfMemory.
 core::Result<void> check_room_for_codec();
 
-// Loads it, once. Fails as check_room_for_codec(), and with kInternal where the library is missing.
+// Loads the library, once; it stays loaded. Fails like check_room_for_codec(), and with kInternal
+// when the library is missing.
 core::Result<const PictureCodec*> picture_codec();
 
 }  // namespace psygen::image

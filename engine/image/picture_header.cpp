@@ -55,7 +55,7 @@ bool is_start_of_frame(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-// Segments (FF, marker, length, …) until a start of frame (ITU T.81, B.2.2).
+// Segments (FF, marker, length, …) up to a start of frame (ITU T.81, B.2.2).
 std::optional<PictureHeader> jpeg_header(Bytes bytes) {
   std::size_t at = 2;
   while (at + 9 <= bytes.size() && bytes[at] == 0xFF) {

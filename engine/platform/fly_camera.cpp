@@ -16,8 +16,8 @@ double axis(const InputState& input, Key positive, Key negative) {
   return (input.is_held(positive) ? 1.0 : 0.0) - (input.is_held(negative) ? 1.0 : 0.0);
 }
 
-// Lets `rate` approach `target` exponentially for dt and returns what it sums up to meanwhile.
-// Exact for a constant target: many short steps and one long one give the same.
+// Lets `rate` approach `target` exponentially for dt and returns its integral over that time. Exact
+// for a constant target: many short steps and one long step give the same result.
 template <class Vector>
 Vector integrate(Vector& rate, const Vector& target, double response_s, double dt_s) {
   const double decay = response_s > 0 ? std::exp(-dt_s / response_s) : 0.0;

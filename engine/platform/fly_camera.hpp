@@ -1,7 +1,8 @@
 // A camera that flies: WASD along and across the view, E and Q up and down, mouse or arrow keys to
 // turn, wheel for the speed, shift faster, control slower. Speeds follow the keys smoothly and the
-// same way at every frame rate. A pure function of pose, input and time; knows no window and no
-// world (it flies through mountains). Nothing that is not a number gets into the pose.
+// same way at every frame rate. The result depends on pose, input and time alone. Knows no window
+// and no world: it flies through mountains. NaN and infinities never reach the pose. One thread at
+// a time.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -11,33 +12,37 @@
 
 namespace psygen::platform {
 
+// How the camera moves and turns.
 struct FlyCameraSettings {
   double speed_m_s = 20.0;  // without shift and control
   double min_speed_m_s = 0.5;
   double max_speed_m_s = 2000.0;
-  double wheel_factor = 1.25;  // of the speed per step
+  double wheel_factor = 1.25;  // of the speed, per wheel step
   double shift_factor = 5.0;
   double control_factor = 0.2;
   double response_s = 0.12;      // time to 63 % of a new speed
   double mouse_rad_px = 0.0025;  // turn per pixel
   double arrow_rad_s = 1.4;      // turn by arrow keys
-  double max_pitch_rad = 1.55;   // just below straight up and down
-  double max_step_s = 0.25;      // longer frames count as this
+  double max_pitch_rad = 1.55;   // just less than straight up and down
+  double max_step_s = 0.25;      // longer frames count as this long
 };
 
+// Holds the present velocity, not the pose: callers keep that.
 class FlyCamera {
  public:
+  // Stands still. The speed is clamped to the settings' range.
   explicit FlyCamera(const FlyCameraSettings& settings = {});
 
-  // The pose `dt_s` seconds after `pose`. The position is not normalised to its block. A pose that
-  // is not valid comes back as it was; so does one that the flight would make invalid.
+  // The pose `dt_s` seconds after `pose`. The position is not normalised to its block. An invalid
+  // pose is returned unchanged; a valid pose that the flight would make invalid is returned
+  // unchanged too, and the camera stops.
   core::CameraPose update(const core::CameraPose& pose, const InputState& input, double dt_s);
 
-  // Speed in metres per second at which the keys move the camera, without shift and control.
+  // The speed in metres per second at which the keys move the camera, without shift and control.
   double speed_m_s() const { return speed_m_s_; }
-  // Present velocity in metres per second: +X, up, +Z. For prediction.
+  // The present velocity in metres per second: +X, up, +Z. For prediction.
   glm::dvec3 velocity_m_s() const { return velocity_m_s_; }
-  // Stands still at once, for teleports.
+  // Stops moving and turning at once, for teleports.
   void stop();
 
  private:

@@ -1,5 +1,5 @@
-// What the person at the keyboard and mouse did since the last frame. A plain value that tests make
-// up and the window fills in; knows no window system.
+// Keyboard and mouse input since the last frame. A plain value that the window fills in and tests
+// make up. Knows no window system.
 #pragma once
 
 #include <bitset>
@@ -8,7 +8,7 @@
 
 namespace psygen::platform {
 
-// Keys by their place on a US keyboard, so that WASD is the same block of keys everywhere. Left and
+// Keys by their place on a US keyboard: WASD is the same block of keys on every layout. Left and
 // right shift, control and alt are one key each.
 // clang-format off
 enum class Key : std::uint8_t {
@@ -21,16 +21,18 @@ enum class Key : std::uint8_t {
   kCount
 };
 // clang-format on
-using KeySet = std::bitset<static_cast<std::size_t>(Key::kCount)>;
+using KeySet = std::bitset<static_cast<std::size_t>(Key::kCount)>;  // one bit per key
 
+// The input of one frame.
 struct InputState {
   KeySet held;       // down at the end of the frame
   KeySet went_down;  // pressed during the frame, even if released again; not repeated while held
   glm::dvec2 look_px{0.0};  // mouse movement while looking: right, down; pixels
-  double wheel = 0;         // steps; positive is away from the person
+  double wheel = 0;         // steps; positive is away from the user
   bool looking = false;     // the right button is down
-  bool resized = false;     // the framebuffer changed its size; ask the window for the new one
+  bool resized = false;     // the framebuffer changed its size; ask the window for it
 
+  // Whether the key is down at the end of the frame, or was pressed during it.
   bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
   bool was_pressed(Key key) const { return went_down[static_cast<std::size_t>(key)]; }
 };

@@ -12,7 +12,7 @@
 
 #include "engine/core/assert.hpp"
 
-// As GLFW declares it where vulkan.h is known; the handles are pointers on every 64-bit platform.
+// As GLFW declares it when vulkan.h is known; the handles are pointers on every 64-bit platform.
 extern "C" int glfwCreateWindowSurface(void* instance, GLFWwindow* window, const void* allocator,
                                        std::uint64_t* surface);
 
@@ -21,7 +21,7 @@ namespace {
 
 static_assert(sizeof(void*) == 8, "Vulkan surfaces are pointers only on 64-bit platforms");
 
-// GLFW is one per process and not counted by GLFW itself.
+// GLFW is initialised once per process and keeps no count of its own.
 int& window_count() {
   static int count = 0;
   return count;
@@ -76,7 +76,7 @@ std::int64_t common_area(const Rectangle& a, const Rectangle& b) {
   return std::int64_t{std::max(width, 0)} * std::max(height, 0);
 }
 
-// The monitor that shows most of a place, the first one if none does; null without monitors.
+// The monitor that shows most of a rectangle, or the first one if none does; null without monitors.
 GLFWmonitor* monitor_of(const Rectangle& place) {
   int count = 0;
   GLFWmonitor** const monitors = glfwGetMonitors(&count);
@@ -99,9 +99,9 @@ GLFWmonitor* monitor_of(const Rectangle& place) {
 
 struct Window::Implementation {
   GLFWwindow* window = nullptr;
-  Rectangle windowed;       // where it was before it covered a monitor
+  Rectangle windowed;       // its place before it covered a monitor
   InputState input;         // collected since the last poll
-  glm::dvec2 pointer{0.0};  // where it was last told to be; beyond the window while looking
+  glm::dvec2 pointer{0.0};  // last reported place; leaves the window while looking
 
   explicit Implementation(GLFWwindow* created) : window(created) {
     ++window_count();
@@ -149,7 +149,7 @@ struct Window::Implementation {
   }
   static void on_resize(GLFWwindow* window, int, int) { of(window).input.resized = true; }
 
-  // While looking, the pointer is hidden and cannot run into the screen's edge.
+  // While looking, the pointer is hidden and the screen's edge does not stop it.
   void look(bool looking) {
     if (looking == input.looking) return;
     input.looking = looking;
@@ -166,7 +166,7 @@ core::Result<std::unique_ptr<Window>> Window::create(const WindowSettings& setti
   }
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-  glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // a full screen stays when another window is used
+  glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // full screen survives a change of focus
   glfwWindowHint(GLFW_VISIBLE, settings.visible ? GLFW_TRUE : GLFW_FALSE);
   GLFWwindow* window = glfwCreateWindow(static_cast<int>(settings.size.width),
                                         static_cast<int>(settings.size.height),

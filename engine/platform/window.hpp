@@ -1,6 +1,6 @@
-// A window with keyboard and mouse, over GLFW, which stays hidden here and is initialised only when
-// a window is created: headless runs never touch a window system. Vulkan is known as opaque
-// handles only. Main thread.
+// A window with keyboard and mouse, over GLFW. GLFW stays hidden here and is initialised only when
+// a window is created: headless runs never touch a window system. Vulkan appears only as opaque
+// handles. Not a renderer. Main thread.
 #pragma once
 
 #include <memory>
@@ -11,48 +11,57 @@
 
 namespace psygen::platform {
 
+// The window to create.
 struct WindowSettings {
   std::string title = "psygen";
   core::Extent size{1280, 720};  // in screen coordinates, each at least 1
   bool visible = true;
 };
 
+// Owns its window; the last window ends GLFW.
 class Window final : public core::SurfaceProvider {
  public:
-  // Fails with kNoDevice when there is no display, in one sentence.
+  // Opens a window. Fails with kNoDevice when there is no display.
   static core::Result<std::unique_ptr<Window>> create(const WindowSettings& settings);
-  ~Window() override;  // surfaces made from it must be gone
+  // Closes the window. Surfaces created from it must be destroyed before.
+  ~Window() override;
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
+  // As in SurfaceProvider. The names are empty where GLFW finds no Vulkan; create_surface fails
+  // with kNoDevice.
   std::vector<std::string> required_instance_extensions() const override;
   core::Result<std::uint64_t> create_surface(void* instance) override;
   core::Extent framebuffer_size() const override;
 
-  // Handles everything that happened and tells what it was. Call once per frame.
+  // Handles all pending events and returns the input since the last poll. Call it once per frame.
   InputState poll();
-  // Handles everything that happened, for while the program is busy; the next poll() tells what it
-  // was.
+  // Handles all pending events while the program is busy; the next poll() returns their input.
   void keep_alive();
-  // Sleeps until something happens, at most `timeout_s` seconds; the next poll() tells what it was.
-  // For windows that are minimised, so that they do not spin.
+  // Sleeps until an event arrives, at most `timeout_s` seconds; the next poll() returns the input.
+  // For minimised windows, which must not busy-wait. Returns at once unless timeout_s is finite and
+  // above 0.
   void wait_events(double timeout_s);
 
-  // The person asked to close the window, or request_close() did.
+  // True when the user asked to close the window, or request_close() did.
   bool should_close() const;
   void request_close();
+  // Whether the window is minimised.
   bool minimised() const;
 
-  // Covers the monitor that shows most of the window, in the monitor's present mode; leaving that
-  // brings the window back to its size and place. Fails with kNoDevice where the window system has
-  // no monitor; then the window stays as it is.
+  // Covers the monitor that shows most of the window, in the monitor's current mode; leaving full
+  // screen restores size and place. Fails with kNoDevice when the window system has no monitor; the
+  // window then stays as it is.
   core::Result<void> set_fullscreen(bool fullscreen);
+  // Whether the window covers a monitor.
   bool fullscreen() const;
-  // Pixels per unit that text and controls are drawn with: 1 on usual displays, 2 on fine ones.
+  // Pixels per unit of text and controls: 1 on usual displays, 2 on high-density ones.
   float content_scale() const;
 
+  // Set the title (UTF-8) and the size (in screen coordinates, each at least 1).
   void set_title(const std::string& title);
-  void set_size(core::Extent size);  // in screen coordinates
+  void set_size(core::Extent size);
+  // Minimise the window, and bring it back.
   void minimise();
   void restore();
 

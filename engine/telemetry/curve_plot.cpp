@@ -12,11 +12,11 @@
 namespace psygen::telemetry {
 namespace {
 
-// The drawing in the units of its view box.
+// The drawing, in units of its view box.
 constexpr double kWidth = 500, kHeight = 300;
 constexpr double kLeft = 62, kRight = 488, kTop = 14, kBottom = 252;
 
-// 1, 2 or 5 times a power of ten, so that `range` has at most about six of them.
+// 1, 2 or 5 times a power of ten, such that `range` has at most about six steps.
 double step_of(double range) {
   const double raw = std::max(range, 1e-12) / 6;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -80,7 +80,7 @@ class Drawing {
     return std::min(curve.values.size(), plot_.x.size());
   }
 
-  // Each stretch without gaps.
+  // Draws each stretch without gaps.
   void draw_line(const Curve& curve) {
     std::vector<std::pair<double, double>> stretch;
     const auto end_stretch = [&] {

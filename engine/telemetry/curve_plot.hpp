@@ -1,5 +1,6 @@
 // A plot of values over a parameter as an SVG picture: measured values as points, curves through
-// them as lines, with axes and a legend. In the looks of report_style.cpp. Pure.
+// them as lines, with axes and a legend. In the style of report_style.cpp. Not for values over
+// time: report_plot.hpp draws those. Pure; linear in the values.
 #pragma once
 
 #include <string>
@@ -7,22 +8,25 @@
 
 namespace psygen::telemetry {
 
+// How a curve is drawn.
 enum class CurveKind {
   kPoints,
   kLine,    // breaks where there is no value; a value without neighbours is a ring
-  kDashed,  // a line like that
+  kDashed,  // likewise, dashed
 };
 
+// One set of values of a plot.
 struct Curve {
   std::string name;
   int colour = 1;  // of the palette, 1 … 8; 0 is grey
   CurveKind kind = CurveKind::kLine;
-  std::vector<double> values;  // one per entry of CurvePlot::x; not finite: nothing is drawn there
+  std::vector<double> values;  // one per entry of CurvePlot::x; not finite: no value
 };
 
+// What is drawn. The y axis starts at 0.
 struct CurvePlot {
   std::string title;
-  std::string x_name;     // stands below the axis
+  std::string x_name;     // label of the x axis
   std::string unit;       // of the values
   std::string note;       // a sentence below the plot; may be empty
   std::vector<double> x;  // ascending

@@ -23,7 +23,7 @@ constexpr std::string_view kColumnsAfterSystems =
     "missing_pixels_percent,too_coarse_percent,cache_bytes,cache_hits,cache_misses,"
     "cache_evictions,cache_regenerations,requests_queued,requests_refused,requests_completed,"
     "models_failed,models_synthesised,triangles_synthesised,bytes_synthesised,synthesis_seconds";
-// The device's time of a frame is known this many frames later at most.
+// The device's time of a frame is known at most this many frames later.
 constexpr std::size_t kLatestFrames = 16;
 
 std::string cell(const std::optional<double>& ms) {
@@ -65,7 +65,7 @@ FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
   if (core::memory_left(kSmallPart * max_frames_ * sizeof(FrameRecord))) {
     frames_.reserve(max_frames_);
   } else {
-    core::note_refused_bytes(0);  // the log does without
+    core::note_refused_bytes(0);  // the log does without it
   }
 }
 

@@ -1,5 +1,6 @@
-// A figure that may be missing, with the reason why: too few frames, a world without an end, a
-// device that cannot tell. Becomes a number, or null with a reason, in summary.json.
+// A figure that may be missing, with the reason: too few frames, an endless world, a device without
+// timestamps. In summary.json it becomes a number, or null with a reason. Not an Error: nothing
+// failed. A plain value.
 #pragma once
 
 #include <optional>
@@ -8,24 +9,29 @@
 
 namespace psygen::telemetry {
 
+// A value, or the reason for its absence.
 template <class T>
 struct Measured {
   std::optional<T> value;
-  std::string reason = "not measured in this run";  // a sentence; empty where there is a value
+  std::string reason = "not measured in this run";  // a sentence; empty when there is a value
 
+  // Missing with the default reason, or known. The conversion is implicit on purpose.
   Measured() = default;
-  Measured(T known) : value(std::move(known)), reason() {}  // a figure is its value
+  Measured(T known) : value(std::move(known)), reason() {}
+  // Missing for this reason.
   static Measured missing(std::string why) {
     Measured result;
     result.reason = std::move(why);
     return result;
   }
 
+  // Whether it is known; * requires that it is.
   bool has_value() const { return value.has_value(); }
-  const T& operator*() const { return *value; }  // requires has_value()
+  const T& operator*() const { return *value; }
   friend bool operator==(const Measured&, const Measured&) = default;
 };
 
+// A measured real number.
 using Figure = Measured<double>;
 
 }  // namespace psygen::telemetry

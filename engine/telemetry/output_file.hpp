@@ -1,5 +1,5 @@
-// The folder that outputs go to. What is written there is there whole or not at all
-// (core/replace_file.hpp).
+// The folder for a run's output. Files in it are written whole or not at all
+// (core/replace_file.hpp). Not a file writer itself. One thread per folder.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace psygen::telemetry {
 
-// Creates the folder and those above it; one that exists already is fine, and loses the
-// half-written files of processes that were killed. Fails with kIo and the path when it cannot be
-// created, is no folder, or nothing can be written into it.
+// Creates the folder and its parents. An existing folder is fine; half-written files of processes
+// that were killed are removed from it. Fails with kIo and the path when the folder cannot be
+// created, is not a folder, or cannot be written to.
 core::Result<void> create_output_folder(const std::filesystem::path& folder);
 
 }  // namespace psygen::telemetry

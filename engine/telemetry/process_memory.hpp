@@ -1,4 +1,5 @@
-// Memory of this process as the operating system counts it. Linux.
+// Memory of this process as the operating system counts it. Not the engine's own count (cache,
+// pools). Linux. Any thread; each call reads a file.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,7 @@
 
 namespace psygen::telemetry {
 
-// Largest and present resident set in bytes. Missing where /proc cannot be read.
+// Largest and present resident set in bytes. Missing when /proc cannot be read.
 Measured<std::uint64_t> peak_rss_bytes();
 Measured<std::uint64_t> current_rss_bytes();
 

@@ -1,5 +1,5 @@
-// The boxes at the top of report.html. Green is said of the picture only where nothing is wrong
-// with it (verdict.hpp); everything else that can be wrong is amber or red, or has no colour.
+// The boxes at the top of report.html. The picture is green only when nothing is wrong with it
+// (verdict.hpp); anything else that can be wrong is amber, red or without colour.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::string card(std::string_view state, std::string_view label, std::string_vie
       state, escaped(label), value, escaped(unit), detail);
 }
 
-// Escaped; options of the command line are not broken over two lines.
+// Escaped; command-line options do not break over two lines.
 std::string sentence_html(const std::string& sentence) {
   std::string html;
   std::size_t done = 0;
@@ -44,7 +44,7 @@ std::string sentence_html(const std::string& sentence) {
   return html + escaped(sentence.substr(done));
 }
 
-// What the verdict says, in sentences.
+// The verdict in sentences.
 std::string verdict_html(const Verdict& verdict) {
   std::string html = fmt::format("<section class=\"verdict {}\"><b>Picture: {}</b>\n",
                                  class_of(verdict.grade), escaped(verdict.headline));
@@ -57,7 +57,7 @@ std::string verdict_html(const Verdict& verdict) {
 
 std::string speed_cards(const Summary& s) {
   const bool a_hitch = s.hitches.value.value_or(0) > 0;
-  constexpr double kMissed = 1.05;  // times the frame time that was wanted
+  constexpr double kMissed = 1.05;  // times the requested frame time
   const bool missed = s.run.target_fps.has_value() && s.frame_ms.p50.has_value() &&
                       *s.frame_ms.p50 > kMissed * 1000.0 / *s.run.target_fps;
   const std::string wanted =

@@ -1,4 +1,5 @@
-// The parts of report.html, and how a figure is shown in it. Private to engine/telemetry. Pure.
+// The parts of report.html, and how figures appear in it. Each part is a piece of HTML with its
+// text escaped. Private to engine/telemetry. Pure.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,18 +13,18 @@
 
 namespace psygen::telemetry {
 
-// Escaped text of a figure; a dash that tells the reason where it is missing.
+// The escaped text of a figure; for a missing one a dash with the reason as its tooltip.
 template <class T, class Text>
 std::string shown(const Measured<T>& measured, const Text& text) {
   if (measured.has_value()) return escaped(text(static_cast<double>(*measured)));
   return fmt::format("<span class=\"none\" title=\"{}\">–</span>", escaped(measured.reason));
 }
 
-// The figures that one looks at first, each in a box; whether the picture is what was asked for.
+// The headline figures, each in a box, and whether the picture is as requested.
 std::string report_cards(const Summary& summary);
 // All plots over the flight's time.
 std::string report_plots(const FrameLog& log, const Summary& summary);
-// Tables of everything else.
+// Tables of all other figures.
 std::string report_facts(const Summary& summary);
 
 }  // namespace psygen::telemetry

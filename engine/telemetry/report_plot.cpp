@@ -13,12 +13,12 @@
 namespace psygen::telemetry {
 namespace {
 
-// The drawing in the units of its view box.
+// The drawing, in units of its view box.
 constexpr double kWidth = 1000, kHeight = 250;
 constexpr double kLeft = 60, kRight = 888, kTop = 14, kBottom = 206;
 constexpr std::size_t kMaxColumns = 900;
 
-// Neighbouring frames drawn as one.
+// Neighbouring frames that are drawn as one.
 struct Column {
   double time_s = 0;
   double low = std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ struct Column {
   double mean() const { return count > 0 ? sum / count : 0; }
 };
 
-// Empty ones where no value is finite.
+// A column without finite values is empty.
 std::vector<Column> columns_of(std::span<const double> times, std::span<const double> values) {
   const std::size_t count = std::min(times.size(), kMaxColumns);
   std::vector<Column> columns(count);
@@ -45,7 +45,7 @@ std::vector<Column> columns_of(std::span<const double> times, std::span<const do
   return columns;
 }
 
-// visit(first, end) for each stretch of columns that have values.
+// Calls visit(first, end) for each stretch of columns that have values.
 template <class Visit>
 void for_each_stretch(std::span<const Column> columns, const Visit& visit) {
   for (std::size_t first = 0; first < columns.size();) {
@@ -57,7 +57,7 @@ void for_each_stretch(std::span<const Column> columns, const Visit& visit) {
   }
 }
 
-// 1, 2 or 5 times a power of ten, so that `range` has about `steps` of them.
+// 1, 2 or 5 times a power of ten, such that `range` has about `steps` steps.
 double nice_step(double range, double steps) {
   const double raw = std::max(range, 1e-9) / steps;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -246,7 +246,7 @@ class Drawing {
     }
   }
 
-  // One mark for what would lie on the same place.
+  // Marks at the same place are drawn once.
   void draw_marks() {
     if (plot_.marks_s.empty()) return;
     std::string path;
@@ -262,7 +262,7 @@ class Drawing {
         path);
   }
 
-  // The label stands right of the drawing, so that curves do not run through it.
+  // The label is to the right of the drawing, where no curve crosses it.
   void draw_level(const PlotLevel& level) {
     const double y = y_of(level.value);
     fmt::format_to(out(),

@@ -1,5 +1,6 @@
 // One plot of a report: values over the flight's time as an SVG picture with axes, a legend and the
-// data that its pointer read-out needs. Knows nothing of frames or figures. Pure.
+// data for its read-out under the pointer. Knows nothing of frames or figures. Pure; linear in the
+// values.
 #pragma once
 
 #include <span>
@@ -9,42 +10,45 @@
 
 namespace psygen::telemetry {
 
+// How the series of a plot are drawn.
 enum class PlotKind {
   kLine,     // the mean of each column with a band from its lowest to its highest value
   kPeaks,    // the highest value of each column, filled
-  kStacked,  // means of the series on top of each other
+  kStacked,  // means of the series stacked on each other
 };
 
+// One quantity over time.
 struct PlotSeries {
   std::string name;
   int colour = 0;              // of the palette in report_style.cpp, 1 … 8; 0 and 9 are greys
-  std::vector<double> values;  // one per entry of Plot::times_s; not finite: nothing is drawn
+  std::vector<double> values;  // one per entry of Plot::times_s; not finite: no value
 };
 
-// A dashed horizontal line with a label right of it, just above or below its height.
+// A dashed horizontal line with a label to its right, just above or below its height.
 struct PlotLevel {
   std::string label;
   double value = 0;
   bool label_below = false;
 };
 
+// What is drawn. `times_s` must stay valid during the call.
 struct Plot {
   std::string title;
-  std::string unit;  // "ms"; stands at the axis and behind values
+  std::string unit;  // "ms"; at the axis and after values
   std::string note;  // a sentence below the plot; may be empty
   PlotKind kind = PlotKind::kLine;
   std::span<const double> times_s;  // ascending
   std::vector<PlotSeries> series;
   std::vector<PlotLevel> levels;
-  std::vector<double> marks_s;  // times that are marked below the drawing
-  double warmup_s = 0;          // shaded from the start to here
-  double top = 0;               // of the axis; 0 chooses it by the data. Higher values are cut off
+  std::vector<double> marks_s;  // times marked below the drawing
+  double warmup_s = 0;          // shaded from the start to this time
+  double top = 0;               // of the axis, higher values are cut off; 0: from the data
 };
 
-// A <figure> element. All text is escaped.
+// A <figure> element. All text is escaped. At most 900 columns are drawn.
 std::string plot_html(const Plot& plot);
 
-// Text with &, <, >, " and ' written as entities.
+// The text with &, <, >, " and ' written as entities.
 std::string escaped(std::string_view text);
 
 }  // namespace psygen::telemetry

@@ -34,7 +34,7 @@ Plot base_plot(const FrameLog& log, const Summary& s, std::span<const double> ti
   return plot;
 }
 
-// Of the frames that are like the others; nothing for those that are not.
+// A value for each timed frame, no value for frames that are set apart.
 template <class Field>
 std::vector<double> timed_column(const FrameLog& log, const Field& field) {
   return column(log, [&](const FrameRecord& r) {
@@ -42,7 +42,7 @@ std::vector<double> timed_column(const FrameLog& log, const Field& field) {
   });
 }
 
-// Frames whose time is not shown.
+// Marks the frames whose time is not shown.
 void mark_apart(const FrameLog& log, const Summary& s, Plot& plot) {
   for (const FrameRecord& r : log.frames())
     if (r.apart != Apart::kNo) plot.marks_s.push_back(r.time_s);
@@ -89,7 +89,7 @@ double sum_of(const std::vector<double>& values) {
                          [](double sum, double v) { return std::isfinite(v) ? sum + v : sum; });
 }
 
-// The systems that take most, and all others as one.
+// The systems that take most time, and all others as one.
 std::vector<PlotSeries> system_series(const FrameLog& log) {
   constexpr std::size_t kShown = 5;
   constexpr int kOthersColour = 8;
@@ -134,7 +134,7 @@ Plot systems_plot(const FrameLog& log, const Summary& s, Plot plot) {
   const auto window_ms = [](const FrameRecord& r) { return r.acquire_ms + r.present_ms; };
   if (std::ranges::any_of(log.frames(), [&](const auto& r) { return window_ms(r) > 0; }))
     plot.series.push_back({"presenting, waiting for the window", 9, timed_column(log, window_ms)});
-  // The axis follows nearly all frames, as in the plot above.
+  // The axis fits nearly all frames, as in the plot above.
   if (s.frame_ms.p99.has_value()) plot.top = 1.25 * *s.frame_ms.p99;
   mark_apart(log, s, plot);
   return plot;
@@ -178,7 +178,7 @@ Plot missing_plot(const FrameLog& log, const Summary&, Plot plot) {
   return plot;
 }
 
-// What levels of detail might be off, where it was not what was asked for all the time.
+// The error that levels of detail may have, for runs in which it was raised.
 Plot error_plot(const FrameLog& log, const Summary& s, Plot plot) {
   plot.title = "Error that levels of detail might have";
   plot.unit = "pixels";

@@ -1,4 +1,5 @@
-// The looks and the script of report.html, as text that is put into the page.
+// The style and the script of report.html, as text to put into the page. Static storage; any
+// thread.
 #pragma once
 
 #include <string_view>

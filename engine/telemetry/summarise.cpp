@@ -9,7 +9,7 @@ namespace {
 
 using Frames = std::span<const FrameRecord>;
 
-constexpr double kLeastBusySeconds = 0.25;  // below it says nothing of a share
+constexpr double kLeastBusySeconds = 0.25;  // below it a share means nothing
 constexpr const char* kNoFrames = "no frame is left after the warm-up";
 
 // One value per frame.
@@ -34,7 +34,7 @@ Figure percentile_of_samples(const SampleSet& samples, double warmup_s, double p
   return percentile(samples.values_since(warmup_s), p);
 }
 
-// One value for each frame that has it.
+// The value of each frame that has it.
 std::vector<double> known(Frames frames, std::optional<double> FrameRecord::*field) {
   std::vector<double> values;
   for (const FrameRecord& r : frames)
@@ -49,7 +49,7 @@ Spread spread(Frames frames, const Field& field) {
   return {p[0], p[1]};
 }
 
-// Those whose times can be compared.
+// The frames whose times can be compared.
 std::vector<FrameRecord> timed(Frames frames) {
   std::vector<FrameRecord> kept;
   std::copy_if(frames.begin(), frames.end(), std::back_inserter(kept),
@@ -57,12 +57,12 @@ std::vector<FrameRecord> timed(Frames frames) {
   return kept;
 }
 
-// Of the picture, missing or too coarse.
+// Percentage of the picture that is missing or too coarse.
 double coarse_percent(const FrameRecord& r) {
   return std::max(r.missing_pixels_percent, r.too_coarse_percent);
 }
 
-// Flight time from each frame to the next; the last one takes its own.
+// Flight time from this frame to the next; the last frame's own time.
 double length_s(Frames frames, std::size_t i) {
   return i + 1 < frames.size() ? frames[i + 1].time_s - frames[i].time_s
                                : frames[i].frame_ms * 1e-3;
@@ -118,11 +118,11 @@ void summarise_times(Summary& s, Frames frames, const FrameLog& log) {
   summarise_device(s, frames);
 }
 
-// What was drawn, whatever it took.
+// What was drawn, whatever time it took.
 void summarise_drawing(Summary& s, Frames frames) {
   s.draw.triangles_p50 = percentile(column(frames, [](const auto& r) { return r.triangles; }), 0.5);
   s.draw.draws_p50 = percentile(column(frames, [](const auto& r) { return r.draws; }), 0.5);
-  constexpr double kRaised = 1.005;  // times what was asked for
+  constexpr double kRaised = 1.005;  // times the requested error
   const double asked = s.run.error_pixels * kRaised;
   const auto error = column(frames, [](const auto& r) { return r.error_pixels; });
   s.detail.p50_pixels = percentile(error, 0.5);
@@ -177,7 +177,8 @@ void summarise_cache(Summary& s, Frames frames, const FrameLog& log, const RunFa
   s.cache.prefetch_hit_percent = facts.prefetch_hit_percent;
 }
 
-// Of the processors of all modelers what synthesis took, in the frames that `counts` is true for.
+// The share of the modelers' processors that synthesis used, in the frames for which `counts` is
+// true.
 template <class Counts>
 Figure busy_percent(Frames frames, std::uint32_t modelers, const Counts& counts) {
   double busy_s = 0, real_s = 0;

@@ -1,5 +1,6 @@
 // The figures of a run, field by field as in summary.json, and how they are made from a frame log
-// and the facts that only the caller knows. Plain values; the statistics are in statistics.hpp.
+// and facts that only the caller knows. Plain values; the statistics are in statistics.hpp, the
+// judgement in verdict.hpp. Any thread.
 #pragma once
 
 #include <array>
@@ -13,35 +14,40 @@
 
 namespace psygen::telemetry {
 
+// The name and version of summary.json's format.
 inline constexpr std::string_view kSummarySchema = "psygen.summary/1";
 
+// A measured number of things or bytes.
 using Count = Measured<std::uint64_t>;
 
-// The world if it were all generated.
+// The world as it would be if all of it were generated.
 struct WorldFacts {
   std::string name;
   std::uint64_t seed = 0;
   std::array<std::int64_t, 2> blocks{};  // x, z; 0 = endless
   Count triangles;
-  Count bytes_paper;  // with the 256 bytes per triangle of the paper
+  Count bytes_paper;  // at the paper's 256 bytes per triangle
   Count bytes;        // in the engine's formats
-  // Of a block of the world in the mean, with its side in metres; 0: not known.
+  // Means over the world's blocks, and a block's side in metres; 0: unknown.
   double block_m = 0, block_models = 0, block_triangles = 0, block_bytes = 0;
 
+  // Whether the world has no end along x or z.
   bool endless() const { return blocks[0] == 0 || blocks[1] == 0; }
-  // Of a square kilometre, e.g. per_km2(block_triangles).
+  // A mean per square kilometre, e.g. per_km2(block_triangles); 0 when a block's side is unknown.
   double per_km2(double of_a_block) const {
     return block_m > 0 ? of_a_block * 1e6 / (block_m * block_m) : 0.0;
   }
 };
 
+// The device that drew.
 struct DeviceFacts {
   std::string name;
   std::string driver;
   std::string api;          // "1.3.289"
-  bool timestamps = false;  // it can tell its own time
+  bool timestamps = false;  // it can measure its own time
 };
 
+// What the run was started with.
 struct RunSettings {
   std::string paradigm;  // "pla", "amplify", "lazy"
   std::string policy;    // of the schedule: "deadline", "plp", …
@@ -50,54 +56,61 @@ struct RunSettings {
   std::uint32_t height = 0;  // pixels
   bool lod = true;
   Figure fixed_step;        // Hz; missing when the flight follows the wall clock
-  double error_pixels = 0;  // asked for: what levels of detail may be off
-  Figure target_fps;        // that is held by a larger error; missing when none is
+  double error_pixels = 0;  // requested error of levels of detail
+  Figure target_fps;        // held by raising the error; missing when none is held
 };
 
+// What summarise cannot find in the log.
 struct RunFacts {
   WorldFacts world;
   DeviceFacts device;
   RunSettings run;
   std::uint64_t cache_budget_bytes = 0;
-  Count cache_peak_bytes;  // where missing: the largest cache_bytes of the log
-  Figure
-      prefetch_hit_percent;  // of the models synthesised ahead of time, those that came into view
-  Figure share_drawn;        // of all triangles synthesised, those of meshes that were ever drawn
-  Figure floor_ratio;        // median frame ÷ the same draw lists replayed with nothing else
+  Count cache_peak_bytes;       // when missing: the largest cache_bytes of the log
+  Figure prefetch_hit_percent;  // of models synthesised ahead of time: came into view
+  Figure share_drawn;           // of all triangles synthesised, those of meshes ever drawn
+  Figure floor_ratio;           // median frame ÷ the same draw lists replayed with nothing else
   Count peak_rss_bytes;
   Count world_hash;
   Count images_hash;
 };
 
+// Statistics of one quantity; "pNN" are percentiles.
 struct FrameTimes {
   Figure mean, p50, p95, p99, p999, max;
 };
 
+// The median and the 99th percentile.
 struct Spread {
   Figure p50, p99;
 };
 
+// The times of one system of the tick.
 struct SystemTimes {
   std::string name;
   Figure p50, p99;  // without waiting for the device or the display
 };
 
-// A frame counts as too coarse where more than this share of its picture is missing or too coarse.
+// A frame counts as too coarse when more than this percentage of its picture is missing or too
+// coarse.
 inline constexpr double kCoarsePercent = 1.0;
 
+// All figures of a run. "Measured" frames start after the warm-up; "timed" frames are those of them
+// that nothing sets apart.
 struct Summary {
   WorldFacts world;
   DeviceFacts device;
   struct : RunSettings {
     std::uint64_t frames = 0;           // of the whole run
     double seconds = 0;                 // of the whole run, on the flight's clock
-    double warmup_seconds = 0;          // left out of all figures below
-    std::uint64_t measured_frames = 0;  // what is left
-    // Of these, those that all figures of times are about; the others by what sets them apart.
+    double warmup_seconds = 0;          // excluded from all figures below
+    std::uint64_t measured_frames = 0;  // frames after the warm-up
+    // The measured frames that the figures of times are about, and all of them by what sets them
+    // apart.
     std::uint64_t timed_frames = 0;
     std::array<std::uint64_t, kApartKinds> apart_frames{};  // by Apart; [0] are the timed ones
-    Figure real_seconds;                                    // of the measured frames together
-    double measured_seconds = 0;                            // the same on the flight's clock
+    Figure real_seconds;          // wall time of the measured frames together
+    double measured_seconds = 0;  // the same on the flight's clock
   } run;
   // Times, of the timed frames alone.
   FrameTimes frame_ms;
@@ -114,10 +127,10 @@ struct Summary {
   std::vector<SystemTimes> system_ms;
   struct {
     Count frames;      // frames with at least one hole
-    Figure nodes_p99;  // holes and coarse nodes of a frame
+    Figure nodes_p99;  // holes and coarse nodes per frame
     Figure pixels_p99_percent, pixels_max_percent;
-    // Of the larger one of missing_pixels_percent and too_coarse_percent in each frame; frames with
-    // more than kCoarsePercent, and how long they were together on the flight's clock.
+    // Of max(missing_pixels_percent, too_coarse_percent) per frame. Frames with more than
+    // kCoarsePercent, and their total length on the flight's clock.
     Figure coarse_p99_percent, coarse_max_percent;
     Count coarse_frames;
     Figure coarse_seconds;
@@ -126,13 +139,13 @@ struct Summary {
     } time_to_visible_ms;
   } missing;
   struct {
-    Figure p50_pixels, max_pixels;              // error that levels of detail might have
-    Count raised_by_memory, raised_for_target;  // frames in which it was above the one asked for
-    Count refused_frames;                       // in which something in view got no memory
+    Figure p50_pixels, max_pixels;              // error that levels of detail may have
+    Count raised_by_memory, raised_for_target;  // frames in which it was above the requested one
+    Count refused_frames;                       // frames in which something in view got no memory
   } detail;
   struct {
     std::uint64_t budget_bytes = 0;
-    Count peak_bytes;  // of the whole run: the budget holds during warm-up, too
+    Count peak_bytes;  // of the whole run: the budget holds during warm-up too
     Count hits, misses, evictions, regenerations;
     Figure prefetch_hit_percent;
   } cache;
@@ -140,9 +153,9 @@ struct Summary {
     Count models, triangles, bytes;
     Count failed;                 // models of the whole run that could not be synthesised
     Figure seconds;               // busy time of all modelers together
-    Figure busy_percent;          // the same, of the real time of as many processors
-    Figure coarse_busy_percent;   // … in frames with more than kCoarsePercent too coarse
-    Figure share_drawn;           // of all triangles of the whole run, those ever drawn, in [0, 1]
+    Figure busy_percent;          // the same, as a share of all modelers' real time
+    Figure coarse_busy_percent;   // likewise, in frames more than kCoarsePercent too coarse
+    Figure share_drawn;           // of all triangles of the run, those ever drawn, in [0, 1]
     Figure triangles_per_second;  // per busy second of one modeler
     struct {
       Figure p50, p95;
@@ -160,17 +173,18 @@ struct Summary {
 };
 
 // All figures over the frames that start at `warmup_s` or later, on the flight's clock. Pure.
+// O(frames log frames).
 Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s);
 
-// summary.json as text with two spaces of indentation and a final newline. A missing figure is null
-// and its reason stands in "reasons" under the field's path ("frame_ms.p999"). Hashes are strings
-// of 16 hexadecimal digits. Bytes that are not UTF-8 in names are replaced.
+// summary.json as text, indented by two spaces, with a final newline. A missing figure is null, and
+// "reasons" has its reason under the field's path ("frame_ms.p999"). Hashes are strings of 16
+// hexadecimal digits. Bytes of names that are not UTF-8 are replaced.
 std::string to_json(const Summary& summary);
 
-// A table for people on a terminal, at most 78 columns, without colours.
+// A table for people on a terminal, at most 78 columns wide, without colours.
 std::string to_text(const Summary& summary);
 
-// to_json into a file. Fails with kIo and the path.
+// Writes to_json() to a file. Fails with kIo and the path.
 core::Result<void> write_summary_json(const std::filesystem::path& path, const Summary& summary);
 
 }  // namespace psygen::telemetry

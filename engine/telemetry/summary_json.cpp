@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Turns figures into values or nulls and collects the reasons of the nulls.
+// Turns figures into values or nulls, and collects the reasons of the nulls.
 class Writer {
  public:
   Json figure(const std::string& path, const Figure& figure) {

@@ -13,7 +13,7 @@ std::string share(double value) {
   return percent_text(100 * value);
 }
 
-// Lines of a title, a label and a text, which goes on in lines of its own where it is long.
+// Lines of a title, a label and a text; a long text continues on lines of its own.
 class Table {
  public:
   void section(std::string_view title) { title_ = title; }
@@ -31,7 +31,7 @@ class Table {
   std::string take() { return std::move(text_); }
 
  private:
-  static constexpr std::size_t kColumns = 48;  // of the text; 78 of all
+  static constexpr std::size_t kColumns = 48;  // for the text; 78 in all
 
   void line(std::string_view label, std::string_view text) {
     fmt::format_to(std::back_inserter(text_), "{:<10} {:<18} {}\n", title_, label, text);

@@ -1,6 +1,6 @@
-// Figures as people read them. Three significant digits, decimal prefixes for counts and
-// sizes of worlds, binary ones for memory. For reports and terminals, not for files that programs
-// read.
+// Figures as people read them: three significant digits, decimal prefixes for counts and sizes of
+// worlds, binary prefixes for memory. For reports and terminals, not for files that programs read.
+// Pure.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,6 +20,7 @@ inline std::string three_digits(double value) {
   return fmt::format("{:.{}f}", value, decimals);
 }
 
+// Without decimals, in milliseconds and in percent.
 inline std::string whole(double value) {
   return fmt::format("{:.0f}", value);
 }
@@ -30,6 +31,8 @@ inline std::string percent_text(double value) {
   return three_digits(value) + " %";
 }
 
+// The value in the largest of `units` of which it has at least one; each unit is `step` times the
+// one before. Without decimals in the first unit, with three digits in the others.
 inline std::string with_prefix(double value, double step, const std::array<const char*, 6>& units) {
   std::size_t i = 0;
   while (i + 1 < units.size() && std::abs(value) >= step * 0.9995) {
@@ -40,6 +43,7 @@ inline std::string with_prefix(double value, double step, const std::array<const
   return units[i][0] == '\0' ? number : number + " " + units[i];
 }
 
+// Sizes in memory, in binary units: 8.40 GiB.
 inline std::string bytes_text(double bytes) {
   return with_prefix(bytes, 1024.0, {"B", "KiB", "MiB", "GiB", "TiB", "PiB"});
 }
@@ -49,13 +53,13 @@ inline std::string size_text(double bytes) {
   return with_prefix(bytes, 1000.0, {"B", "kB", "MB", "GB", "TB", "PB"});
 }
 
-// 12.3 thousand, 32.8 billion.
+// Counts: 12.3 thousand, 32.8 billion.
 inline std::string count_text(double count) {
   return with_prefix(count, 1000.0,
                      {"", "thousand", "million", "billion", "trillion", "quadrillion"});
 }
 
-// The value through `text`, or a dash.
+// The value as `text` formats it, or a dash.
 template <class T, class Text>
 std::string or_dash(const Measured<T>& measured, const Text& text) {
   return measured.has_value() ? text(static_cast<double>(*measured)) : std::string("–");

@@ -13,14 +13,14 @@ namespace {
 constexpr double kBusyPercent = 60;      // of the modelers' processors: they have what they need
 constexpr double kFasterThanReal = 1.1;  // flight time over real time
 
-// Missing or too coarse in the picture, as the grade has it.
+// The missing or too coarse part of the picture, as the grade counts it.
 double coarse_percent(const Summary& s) {
   const auto& m = s.missing;
   return (m.coarse_p99_percent.has_value() ? m.coarse_p99_percent : m.coarse_max_percent)
       .value.value_or(0.0);
 }
 
-// More than kRaisedPercent of the frames.
+// Whether these are more than kRaisedPercent of the frames.
 bool is_often(const Summary& s, const Count& frames) {
   return static_cast<double>(frames.value.value_or(0)) * 100 >
          kRaisedPercent * static_cast<double>(s.run.measured_frames);
@@ -94,7 +94,7 @@ class Judge {
     return is_often(s_, s_.detail.raised_by_memory) || is_often(s_, s_.detail.refused_frames);
   }
 
-  // What keeps meshes from being there in time; where it is memory, judge_memory() says so.
+  // Advises on why meshes were not ready in time. When memory is the cause, judge_memory() says so.
   void advise_on_time() {
     if (!verdict_.advice.empty() || lacks_memory()) return;
     const double real_s = s_.run.real_seconds.value.value_or(0);

@@ -11,7 +11,7 @@ namespace psygen::visibility {
 namespace {
 constexpr double kPi = std::numbers::pi;
 
-// The turn in [−π, π] that leads from one angle to the other.
+// The turn in [−π, π] from one angle to the other.
 double turn_between(double from, double to) {
   return std::remainder(to - from, 2 * kPi);
 }

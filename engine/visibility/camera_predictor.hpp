@@ -1,6 +1,6 @@
 // Where the camera will be: constant velocity and constant turn rate, both smoothed over the last
-// tenths of a second and bounded (paper, section 4.3: prefetching). Teleports start afresh. Not a
-// filter for what is drawn: the pose itself is never changed. One thread at a time.
+// tenths of a second and bounded (paper, section 4.3: prefetching). A teleport restarts it. Not a
+// filter for what is drawn: the pose itself is never changed. O(1). One thread at a time.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,25 +9,27 @@
 
 namespace psygen::visibility {
 
+// Without observations it predicts the default pose.
 class CameraPredictor {
  public:
-  // Bounds of what is believed and predicted. A move faster than kMaxSpeed_m_s is a teleport.
+  // Limits of observed and predicted motion. A move faster than kMaxSpeed_m_s is a teleport.
   static constexpr double kMaxSpeed_m_s = 2000;
   static constexpr double kMaxTurnRate = 25;      // rad/s
-  static constexpr double kMaxPrediction_s = 10;  // longer predictions are cut
-  static constexpr double kSmoothing_s = 0.15;    // after this time 63 % of a change is believed
+  static constexpr double kMaxPrediction_s = 10;  // longer predictions are cut to this
+  static constexpr double kSmoothing_s = 0.15;    // time constant: 63 % of a change is followed
 
-  // Where the camera is at `time_s`. Times grow from call to call; a call with an earlier time
-  // starts afresh. Poses that are not core::is_valid() and times that are not finite are ignored.
+  // The camera is at `pose` at `time_s`. Times increase from call to call; an earlier time restarts
+  // the predictor. Poses that are not core::is_valid() and times that are not finite are ignored.
   void observe(double time_s, const core::CameraPose& pose, double block_size_m);
 
-  // The pose `tau_s` seconds after the last observation, normalised; the turn is at most half a
-  // circle and the pitch stays within ±90°. tau_s <= 0 gives the last observed pose, without any
-  // observation the default pose.
+  // The pose `tau_s` seconds after the last observation, normalised. The turn is at most half a
+  // circle and the pitch stays within ±90°. tau_s <= 0 gives the last observed pose, and the
+  // default pose when there was no observation.
   core::CameraPose predict(double tau_s) const;
 
+  // The smoothed velocity in m/s (+X, up, +Z) and turn rate to the right in rad/s.
   glm::dvec3 velocity_m_s() const { return velocity_; }
-  double yaw_rate() const { return yaw_rate_; }  // rad/s
+  double yaw_rate() const { return yaw_rate_; }
 
   // Forgets everything.
   void reset() { *this = CameraPredictor(); }

@@ -9,7 +9,7 @@ namespace psygen::visibility {
 
 Frustum make_frustum(const glm::mat4& view_projection) {
   const glm::mat4 rows = glm::transpose(view_projection);
-  // Clip space keeps −w <= x <= w, −w <= y <= w and, depth being reversed, z <= w at the near
+  // Clip space keeps −w <= x <= w, −w <= y <= w and, because depth is reversed, z <= w at the near
   // plane.
   Frustum frustum{{rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1],
                    rows[3] - rows[2]}};
@@ -20,7 +20,7 @@ Frustum make_frustum(const glm::mat4& view_projection) {
 
 namespace {
 
-// Four floats that are computed with at once (an extension of GCC and Clang).
+// Four floats in one register (an extension of GCC and Clang).
 using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = std::int32_t;
 
@@ -28,8 +28,9 @@ Float4 absolute(Float4 v) {
   return v < 0 ? -v : v;
 }
 
-// A plane whose normal counts for the largest coordinate of a box where it is positive, for the
-// smallest where it is negative: that is the corner which lies furthest inside.
+// A plane, split by the sign of its normal's coordinates. The positive part multiplies the largest
+// coordinates of a box, the negative part the smallest: together they select the corner that is
+// furthest inside.
 struct SplitPlane {
   glm::vec3 positive, negative;
   float offset;

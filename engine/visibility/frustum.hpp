@@ -1,6 +1,7 @@
 // The view frustum without a far plane, and conservative tests of boxes against it. Everything is
 // relative to the camera, which is the origin (core/camera.hpp). Not an occlusion test: a box
-// behind a mountain is in view here. Values only; usable from any thread.
+// behind a mountain is in view here. Values only; usable from any thread. Each box costs five plane
+// tests.
 #pragma once
 
 #include <array>
@@ -14,28 +15,28 @@
 
 namespace psygen::visibility {
 
-// Planes (normal of unit length, offset in metres) that point inwards: left, right, bottom, top,
-// near. A point p is inside where dot(normal, p) + offset >= 0 for all of them.
+// Five planes (normal of unit length, offset in metres) that point inwards: left, right, bottom,
+// top, near. A point p is inside when dot(normal, p) + offset >= 0 for all of them.
 struct Frustum {
   std::array<glm::vec4, 5> planes{};
 };
 
-// From projection · view with infinite reversed depth (core::projection_matrix ·
+// The frustum of projection · view with infinite reversed depth (core::projection_matrix ·
 // core::view_rotation). The far plane at infinity is left out. (Gribb and Hartmann 2001.)
 Frustum make_frustum(const glm::mat4& view_projection);
 
-// More than the rounding errors of distances between such a box and a plane.
+// An upper bound, in metres, of the rounding errors of distances between the box and a plane.
 inline float rounding_slack(const core::Bounds& box) {
   return 1e-6F * (std::abs(box.min.x) + std::abs(box.min.y) + std::abs(box.min.z) +
                   std::abs(box.max.x) + std::abs(box.max.y) + std::abs(box.max.z));
 }
 
-// False only if the whole box lies outside one plane; boxes near a corner of the frustum may be
-// said to intersect though they do not. Rounding is on the side of true.
+// False only if the whole box lies outside one plane. Boxes near a corner of the frustum may be
+// reported although they do not intersect. Rounding errors make the answer true.
 inline bool intersects(const Frustum& frustum, const core::Bounds& box) {
   const float slack = rounding_slack(box);
   for (const glm::vec4& plane : frustum.planes) {
-    // The corner that lies furthest inside.
+    // The corner that is furthest inside.
     const float x = plane.x > 0 ? box.max.x : box.min.x;
     const float y = plane.y > 0 ? box.max.y : box.min.y;
     const float z = plane.z > 0 ? box.max.z : box.min.z;
@@ -44,7 +45,7 @@ inline bool intersects(const Frustum& frustum, const core::Bounds& box) {
   return true;
 }
 
-// The same for many boxes, faster: in_view[i] = 1 or 0. Both spans have one length.
+// The same for many boxes, faster: in_view[i] = 1 or 0. Both spans have the same length.
 void intersects(const Frustum& frustum, std::span<const core::Bounds> boxes,
                 std::span<std::uint8_t> in_view);
 

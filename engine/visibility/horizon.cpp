@@ -10,13 +10,13 @@ namespace psygen::visibility {
 namespace {
 
 constexpr double kBinCount = Horizon::kBins;
-constexpr double kTolerance = 1e-3;   // of a bin, for ends that meet and for the boxes' sides
-constexpr double kSlack = 1e-5;       // more than all roundings; a hundredth of a pixel or less
+constexpr double kTolerance = 1e-3;  // of a bin, for ends that meet and for sides of boxes
+constexpr double kSlack = 1e-5;  // more than all rounding errors; a hundredth of a pixel or less
 constexpr double kNoDistance = 1e-3;  // nearer points have no direction
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-// Directions in bins, growing from +X over +Z: |x| + |z| = 1 is divided evenly, which is monotonous
-// in the angle and needs one division.
+// Directions in bins, ascending from +X over +Z. |x| + |z| = 1 is divided evenly, which is
+// monotonic in the angle and needs one division.
 double bins_of(double x, double z) {
   const double quarter = kBinCount / 4 / (std::abs(x) + std::abs(z));
   if (z >= 0) return x >= 0 ? z * quarter : kBinCount / 4 - x * quarter;
@@ -26,7 +26,7 @@ double bins_of(double x, double z) {
 }
 
 std::size_t wrapped(std::int64_t bin) {
-  return static_cast<std::size_t>(bin) % Horizon::kBins;  // a power of two: for negative ones, too
+  return static_cast<std::size_t>(bin) % Horizon::kBins;  // a power of two: works for negative bins
 }
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
@@ -48,11 +48,11 @@ struct Horizon::Point {
   bool has_direction() const { return distance > kNoDistance; }  // false for NaN
 };
 
-// The part of a line that is being followed which lies in one bin.
+// The part of a followed line that lies in one bin.
 struct Horizon::Piece {
   std::int64_t bin = 0;
-  double end = 0;                    // in the bin, 0 … 1; where the line came from
-  double tangent = 0, distance = 0;  // smallest, largest so far
+  double end = 0;                    // where the line came from, in the bin: 0 … 1
+  double tangent = 0, distance = 0;  // smallest and largest so far
 
   explicit Piece(const Point& start)
       : bin(static_cast<std::int64_t>(start.bins)),
@@ -96,10 +96,10 @@ void Horizon::reset() {
   right_.fill({1, kNothing, 0});
 }
 
-// How many bands reach no farther than that.
+// How many bands reach no farther than `distance_m`.
 std::size_t Horizon::bands_within(float distance_m) {
   static_assert(kFirstBandM == 16);
-  constexpr int kBias = 127 + 4 - 1;  // of a float's exponent at 16 m, less one
+  constexpr int kBias = 127 + 4 - 1;  // exponent of a float at 16 m, minus one
   const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(distance_m) >> 23);
   return static_cast<std::size_t>(std::clamp(exponent - kBias, 0, static_cast<int>(kBands)));
 }
@@ -113,11 +113,12 @@ void Horizon::raise(std::size_t bin, float tangent, float distance_m) {
   distance_m_[bin] = distance_m;
 }
 
-// A piece that ends at `other_end` covers its bin, or a part of it that may meet another one.
+// Records a piece that ends at `other_end`. It covers its bin, or a part of it that may join
+// another.
 void Horizon::place(const Piece& piece, double other_end) {
   // Along a straight line the elevation is A · cos(angle − angle0). Where it is negative its
-  // minimum may lie inside, lower than at both ends by 1 / cos(half the width of the bin) at most,
-  // which is far below kSlack.
+  // minimum may lie inside the bin. That minimum is lower than both ends by a factor of at most 1 /
+  // cos(half the width of the bin), which exceeds 1 by less than kSlack.
   static_assert(8 / kBinCount * (8 / kBinCount) / 8 < kSlack);
   const auto tangent = static_cast<float>(piece.tangent - kSlack * (1 + std::abs(piece.tangent)));
   const auto distance_m = static_cast<float>(piece.distance * (1 + kSlack));
@@ -136,18 +137,18 @@ void Horizon::place(const Piece& piece, double other_end) {
     raise(bin, std::min(left.tangent, right.tangent), std::max(left.distance_m, right.distance_m));
 }
 
-// Follows a straight line, which leads one way around the camera, from bin to bin.
+// Follows a straight line from bin to bin. It leads one way around the camera.
 void Horizon::follow(const Point& from, const Point& to, bool forward, Piece& piece) {
   const auto first = static_cast<std::int64_t>(from.bins);
   auto last = static_cast<std::int64_t>(to.bins);
   if (forward && to.bins < from.bins) last += static_cast<std::int64_t>(kBins);
   if (!forward && to.bins > from.bins) last -= static_cast<std::int64_t>(kBins);
-  // A line spans half a turn at most; more is a rounding of next to nothing.
+  // A line spans at most half a turn; more is a rounding error near zero.
   const bool spans = std::abs(last - first) <= static_cast<std::int64_t>(kBins / 2 + 1);
   const std::int64_t step = forward ? 1 : -1;
   for (std::int64_t bin = first; spans && bin != last; bin += step) {
     const glm::dvec2& border = border_[wrapped(forward ? bin + 1 : bin)];
-    // The line meets the border's direction in the proportion of the two distances from it.
+    // The line meets the border in the ratio of its ends' distances from it.
     const double a = std::abs(cross(to.ground, border)), b = std::abs(cross(from.ground, border));
     const double distance = a * glm::dot(from.ground, border) + b * glm::dot(to.ground, border);
     const double tangent = (a * from.height + b * to.height) / distance;
@@ -162,7 +163,7 @@ void Horizon::add(std::span<const glm::vec3> line) {
   if (line.size() < 2) return;
   Point from(line[0]);
   Piece piece(from);
-  int way = 0;  // around the camera: 1 forward, −1 backward, 0 nowhere
+  int way = 0;  // around the camera: 1 forward, −1 backward, 0 neither
   const auto finish = [&] {
     if (way != 0) place(piece, from.bins - std::floor(from.bins));
     piece = Piece(from);
@@ -181,14 +182,14 @@ void Horizon::add(std::span<const glm::vec3> line) {
   finish();
 }
 
-// What is asked for. `near` is how far the box's near sides are away along both axes, 0 for none.
+// A query. `near` is the distance of the box's near sides along both axes, 0 for none.
 struct Horizon::Box {
   glm::vec2 near;
   float far_m, top_m;
   const float* within;  // the last band before the box
 };
 
-// For bins first … last. Along a direction in a bin the box begins no nearer than at `begin`.
+// For bins first … last. In every direction of a bin the box begins at `begin` or farther.
 bool Horizon::hides_in(std::size_t first, std::size_t last, const Box& box) const {
   constexpr std::size_t kBlock = 16;
   for (std::size_t block = first; block <= last; block += kBlock) {
@@ -196,7 +197,7 @@ bool Horizon::hides_in(std::size_t first, std::size_t last, const Box& box) cons
     int seen = 0;
     for (std::size_t bin = block; bin < end; ++bin) {
       const float begin = std::max(box.near.x * inverse_x_[bin], box.near.y * inverse_z_[bin]);
-      const float at = box.top_m > 0 ? begin : box.far_m;  // where the top is highest, from here
+      const float at = box.top_m > 0 ? begin : box.far_m;  // where the top appears highest
       const float before = distance_m_[bin] <= begin ? tangent_[bin] : kNothing;
       const float tangent = box.within != nullptr ? std::max(before, box.within[bin]) : before;
       seen |= static_cast<int>(!(box.top_m < tangent * at));
@@ -225,7 +226,7 @@ bool Horizon::hides(const core::Bounds& box) const {
   double end =
       bins_of(last_max_x ? box.max.x : box.min.x, last_max_z ? box.max.z : box.min.z) + kTolerance;
   if (end < begin) end += kBinCount;
-  // Counted from one turn before, so that nothing is negative.
+  // Counted from one turn before, which keeps everything positive.
   const auto first = static_cast<std::size_t>(begin + kBinCount),
              last = static_cast<std::size_t>(end + kBinCount), wrap = first / kBins * kBins;
   const glm::vec2 near(side_x > 0   ? box.min.x

@@ -1,16 +1,17 @@
-// The horizon that the ground makes around the camera, to find what lies hidden behind ridges: for
-// each of kBins directions the highest elevation up to which ground is known to stand within each
-// of some distances, and how far away the highest of all stands. Conservative: hides() is true only
-// for boxes of which nothing can be seen; of others it may say so or not. Everything is relative to
-// the camera. Knows no entities. Adding costs a few divisions per point and bin, asking a few
-// operations per bin that the box reaches into. Nothing is allocated after construction; one thread
+// The horizon that the ground forms around the camera, to find what is hidden behind ridges. For
+// each of kBins directions it holds the highest elevation up to which ground is known to stand
+// within each of several distances, and the distance of the highest ground of all. Conservative:
+// hides() is true only for boxes of which nothing can be seen, and may be false for others.
+// Everything is relative to the camera. Knows no entities. Adding costs a few divisions per point
+// and bin; a query costs a few operations per bin that the box spans. Allocates nothing; one thread
 // at a time while adding.
 //
-// Use: reset() for each camera position; then, for the leaves of a cut from front to back
-// (quadtree.hpp), first ask hides() with a leaf's box, then add() lines of its surface if it is
-// drawn. The order is not needed for correctness, as distances are compared; but a line that is
-// added late hides nothing in what was asked before. Afterwards anything can be asked for: where a
-// higher line stands farther away, the nearer ones still hide what lies twice as far as they do.
+// Use: call reset() for each camera position. Then, for the leaves of a cut from front to back
+// (quadtree.hpp), first call hides() with the leaf's box, then add() lines of its surface if it is
+// drawn. Correctness does not depend on the order, because distances are compared; but a line that
+// is added late does not affect earlier queries. Afterwards hides() may be called for any box:
+// where a higher line stands farther away, nearer lines still hide what is at least twice as far as
+// they are.
 #pragma once
 
 #include <array>
@@ -23,27 +24,29 @@
 
 namespace psygen::visibility {
 
+// Plain memory of fixed size, about 100 KiB.
 class Horizon {
  public:
-  static constexpr std::size_t kBins = 1024;  // borders on the axes; 0.22° to 0.45° wide
+  static constexpr std::size_t kBins = 1024;  // bin borders lie on the axes; 0.22° to 0.45° wide
 
+  // No ground at all.
   Horizon();
 
   // Forgets all ground.
   void reset();
 
-  // Points of a line that lies in the drawn surface or below it, straight from point to point.
-  // Ground is solid below. Requires a camera above the drawn surface, and a surface without holes
-  // between the camera and the line (skirts close cracks); otherwise add nothing. Lines of
-  // neighbouring nodes whose ends meet, to a thousandth of a bin, are taken as one.
+  // Adds a line that lies in the drawn surface or below it, straight from point to point. Ground is
+  // solid below it. Requires a camera above the drawn surface, and a surface without holes between
+  // the camera and the line (skirts close cracks); otherwise add nothing. Lines of neighbouring
+  // nodes whose ends meet, to a thousandth of a bin, count as one.
   void add(std::span<const glm::vec3> line);
 
-  // Whether all of a box with finite corners lies below the horizon and behind it. Never for boxes
-  // above, below or around the camera.
+  // Whether all of a box with finite corners lies below the horizon and behind it. Never true for
+  // boxes above, below or around the camera.
   bool hides(const core::Bounds& box) const;
 
-  // Elevation of the horizon (height per metre of horizontal distance) in the direction (x, z) that
-  // is not (0, 0); −infinity where nothing was added. For views and tests.
+  // Elevation of the horizon (height per metre of horizontal distance) in the direction (x, z),
+  // which is not (0, 0); −infinity where nothing was added. For views and tests.
   float elevation(float x, float z) const;
 
  private:
@@ -60,17 +63,18 @@ class Horizon {
   struct Box;
   bool hides_in(std::size_t first, std::size_t last, const Box& box) const;
 
-  // Within 16 m and each power of two times as much; farther ground is in no band.
+  // Band b = 1 … kBands reaches 16 m · 2^(b − 1) from the camera; farther ground is in no band.
   static constexpr std::size_t kBands = 10;
   static constexpr float kFirstBandM = 16;
   static std::size_t bands_within(float distance_m);
 
   std::array<float, kBins> tangent_, distance_m_;  // of the highest ground that covers the bin
-  // The highest that is no farther than each band, growing; before them a row of no ground. Rows
-  // do not all begin in the same set of a cache.
+  // The highest ground that is no farther than each band, ascending; row 0 has no ground. The
+  // padding keeps rows from starting in the same cache set.
   std::array<std::array<float, kBins + 16>, kBands + 1> within_;
-  std::array<Part, kBins> left_, right_;  // the highest that covers a part of it
-  // The smallest 1 / |x| and 1 / |z| of unit vectors in the bin; unit vectors along left borders.
+  std::array<Part, kBins> left_, right_;  // the highest that covers part of the bin
+  // The smallest 1 / |x| and 1 / |z| of unit vectors in the bin, and unit vectors along left
+  // borders.
   std::array<float, kBins> inverse_x_, inverse_z_;
   std::array<glm::dvec2, kBins> border_;
 };

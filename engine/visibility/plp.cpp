@@ -19,7 +19,7 @@ std::uint32_t cell_of(std::uint64_t key) {
 float distance_squared(const core::Bounds& box) {
   const auto outside = [](float low, float high) {
     const float beyond = std::max(low, -high);
-    return (beyond + std::abs(beyond)) * 0.5F;  // max(beyond, 0), without a branch hard to guess
+    return (beyond + std::abs(beyond)) * 0.5F;  // max(beyond, 0) without an unpredictable branch
   };
   const float x = outside(box.min.x, box.max.x), y = outside(box.min.y, box.max.y),
               z = outside(box.min.z, box.max.z);
@@ -36,8 +36,8 @@ void insertion_sort(std::span<std::uint64_t> keys) {
   }
 }
 
-// The distances within a layer are spread so evenly that buckets of equal width, as many as there
-// are keys, hold one or two each: after dealing them out little is left to sort.
+// Distances within a layer are spread evenly. Buckets of equal width, as many as there are keys,
+// hold one or two keys each: after filling the buckets little is left to sort.
 void sort_keys(std::span<std::uint64_t> keys, std::vector<std::uint64_t>& scratch) {
   constexpr std::size_t kMaxBuckets = 1024, kFew = 24;
   if (keys.size() < kFew) return insertion_sort(keys);
@@ -89,11 +89,11 @@ class Search {
   }
 
  private:
-  // Distances and what is in view.
+  // Distances, and which cells are in view.
   void measure_cells() {
     out_.in_view.resize(cells_);
     out_.distance_bits.resize(cells_);
-    constexpr std::size_t kChunk = 256;  // of boxes that stay in the first-level cache
+    constexpr std::size_t kChunk = 256;  // boxes that stay in the first-level cache
     for (std::size_t first = 0; first < cells_; first += kChunk) {
       const std::size_t count = std::min(kChunk, cells_ - first);
       const auto boxes = in_.bounds.subspan(first, count);
@@ -117,13 +117,13 @@ class Search {
     if (in_.mode == PlpMode::kSolidity) accumulate_solidity();
   }
 
-  // Ring by ring, so that the cells before a cell are known. behind[c] first holds what passing
-  // through c adds, then what the way has added behind it.
+  // Ring by ring, so the cells before a cell are known. behind[c] first holds what passing through
+  // c adds; then the cell's own key is added to it.
   void accumulate_solidity() {
     out_.behind.resize(cells_);
     const float scale = in_.solidity_layers * float{kKeysPerLayer};
     for (std::size_t cell = 0; cell < cells_; ++cell) {
-      // 0 for what is not a number, too.
+      // 0 for NaN, too.
       const float solidity = in_.solidity[cell] > 0 ? std::min(in_.solidity[cell], 1.0F) : 0.0F;
       out_.behind[cell] = kKeysPerLayer + static_cast<std::uint32_t>(
                                               static_cast<std::int32_t>(solidity * scale + 0.5F));
@@ -137,7 +137,7 @@ class Search {
       shares.clear();
       for (std::uint32_t aside = 0; aside <= layer; ++aside)
         shares.push_back((256 * aside + layer / 2) / layer);
-      // The sides left and right with the corners, the other two without.
+      // The left and right sides with the corners, the other two without.
       for (const auto& [ahead, room] : {std::pair{-1, left}, {1, right}}) {
         if (layer > room) continue;
         accumulate(layer, ahead, w, 0, std::min(layer, down));
@@ -151,13 +151,13 @@ class Search {
     }
   }
 
-  // The keys of the cells `layer` steps ahead of the camera's and `first` … `last` steps aside; the
-  // steps are differences of indices.
+  // The keys of the cells `layer` steps ahead of the camera's cell and `first` … `last` steps
+  // aside. The steps `ahead` and `aside` are differences of indices.
   void accumulate(std::uint32_t layer, std::int32_t ahead, std::int32_t aside, std::uint32_t first,
                   std::uint32_t last) {
     const std::int64_t start = std::int64_t{start_z_} * in_.width + start_x_;
     std::int64_t cell = start + std::int64_t{ahead} * layer + std::int64_t{aside} * first;
-    // What is straight before a cell is diagonally before the next one.
+    // The cell straight before one cell is diagonally before the next.
     std::uint64_t diagonal = first == 0 ? 0 : out_.behind[at(cell - ahead - aside)];
     for (std::uint32_t steps = first; steps <= last; ++steps, cell += aside) {
       const std::uint64_t straight = out_.behind[at(cell - ahead)], t = out_.diagonal_shares[steps];
@@ -202,8 +202,8 @@ class Search {
                    out_.sorted.begin() + static_cast<std::ptrdiff_t>(last), cells.begin(), cell_of);
   }
 
-  // The first `visits` cells leave the front. Where the budget ends among the cells of one key,
-  // those in view come first.
+  // The first `visits` cells leave the front. When the budget ends among cells of one key, those in
+  // view come first.
   void visit(std::size_t visits) {
     const std::size_t in_view = out_.bucket_ends[keys_ - 1];
     std::size_t key = 0, near_end = in_view, far_end = cells_;
@@ -220,8 +220,8 @@ class Search {
     if (visits < cells_) stop(key, near_end, far_end);
   }
 
-  // The budget has ended among the cells of `key`: of what was not visited, the neighbours of what
-  // was are the front.
+  // The budget ended among the cells of `key`. The front is the cells that were not visited but
+  // have a visited neighbour.
   void stop(std::size_t key, std::size_t near_begin, std::size_t far_begin) {
     const std::size_t in_view = out_.bucket_ends[keys_ - 1];
     for (std::size_t i = near_begin; i < in_view; ++i)
@@ -257,11 +257,11 @@ class Search {
   PlpResult& out_;
   const std::uint32_t start_x_, start_z_;
   const std::size_t cells_ = in_.bounds.size();
-  std::size_t keys_ = 0;  // the largest key and one
+  std::size_t keys_ = 0;  // the largest key plus one
 };
 
 std::uint32_t clamp_to_axis(std::int32_t corner, std::uint32_t length, std::int32_t block) {
-  // Differences wrap, so that grids across the seam of the block indices work.
+  // Differences wrap, so grids across the seam of the block indices work.
   const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(block) -
                                                 static_cast<std::uint32_t>(corner));
   return offset < 0 ? 0 : std::min(static_cast<std::uint32_t>(offset), length - 1);

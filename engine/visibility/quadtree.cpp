@@ -19,7 +19,7 @@ std::int32_t canonical(std::uint32_t index, std::uint8_t level) {
   return static_cast<std::int32_t>(index << level) >> level;
 }
 
-// Whether [a, a + length_a) and [b, b + length_b) meet on the ring of the block indices.
+// Whether [a, a + length_a) and [b, b + length_b) overlap on the ring of block indices.
 bool meet(std::int32_t a, std::uint32_t length_a, std::int32_t b, std::uint32_t length_b) {
   const std::uint32_t from_b = static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b);
   return from_b < length_b || 0U - from_b < length_a;
@@ -32,7 +32,7 @@ bool exists(const BlockArea& world, const NodeCoord& node) {
          (world.blocks_z == 0 || meet(corner.z, side, world.corner.z, world.blocks_z));
 }
 
-// Along one axis, from the first node of a square to those of it that exist.
+// Along one axis: steps from the first node of a square to the nodes of it that exist.
 struct Steps {
   std::int64_t first, last;
 };
@@ -77,8 +77,9 @@ class Selection {
   }
 
  private:
-  // Along a half-line from the camera both coordinates of the cells of a grid run away from it, so
-  // that the sum of the two distances in cells never shrinks: front to back for every direction.
+  // Along a half-line from the camera both coordinates of grid cells move away from it. The sum of
+  // the two distances in cells therefore never decreases: sorting by it is front to back in every
+  // direction.
   void sort_roots() {
     out_.roots.assign(in_.roots.begin(), in_.roots.end());
     if (out_.roots.empty()) return;
@@ -120,7 +121,7 @@ class Selection {
                           static_cast<float>(corner.z), static_cast<float>(side),
                           static_cast<float>(distance), fine ? morph_below : morph_to_parent});
     if (!leaf) {
-      // The quarter on the camera's side of both middles first, the one opposite last.
+      // The quarter on the camera's side of both centre lines first, the opposite one last.
       const unsigned nearest = (corner.x + side / 2 < 0 ? 1U : 0U) |  //
                                (corner.z + side / 2 < 0 ? 2U : 0U);
       for (unsigned i = 0; i < 4; ++i)
@@ -150,11 +151,11 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
   PSYGEN_ASSERT(settings.merge_factor >= 1 && settings.max_error_pixels > 0 &&
                     settings.morph_share > 0 && settings.morph_share <= 1,
                 "settings are in range");
-  // More than the roundings of distances, so that the proof holds for computed numbers.
+  // Larger than the rounding errors of distances, so the proof holds for computed numbers.
   constexpr double kSlack = 1 + 1e-9;
-  double merge_below = 0;      // so far that morphing begins beyond the level below
-  double reach_below = 0;      // beyond what touches split nodes of that level
-  double reach_two_below = 0;  // the same of the next
+  double merge_below = 0;      // splitting here lets morphing begin beyond the level below
+  double reach_below = 0;      // farther than all nodes that touch split nodes of that level
+  double reach_two_below = 0;  // the same, two levels below
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double side = side_of(static_cast<std::uint8_t>(k), settings.block_size_m);
     const double by_error =
@@ -162,7 +163,7 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
                  settings.max_ratio * side);
     const double split =
         std::max({by_error, settings.min_ratio * side, merge_below, reach_two_below});
-    // Where all are 0 the level is never split and morphs nowhere.
+    // When all are 0, the level is never split and never morphs.
     levels[k] = {split, split * settings.merge_factor, split * settings.morph_share};
     merge_below = levels[k].merge_m / settings.morph_share * kSlack;
     reach_two_below = reach_below;
@@ -198,7 +199,7 @@ void roots_around(const core::WorldPosition& camera, double block_size_m, double
 void drawn_nodes(const Cut& cut, std::span<const std::uint8_t> ready,
                  std::vector<std::uint8_t>& scratch, std::vector<std::uint32_t>& drawn) {
   PSYGEN_ASSERT(ready.size() == cut.nodes.size(), "there is one answer for each node");
-  // replaced[i]: what is ready below node i covers all of it. Children come after their parents.
+  // replaced[i]: the ready nodes below node i cover all of it. Children come after their parents.
   std::vector<std::uint8_t>& replaced = scratch;
   replaced.assign(cut.nodes.size(), 1);
   for (std::size_t i = cut.nodes.size(); i-- > 0;) {

@@ -1,9 +1,9 @@
-// The cut through the quadtree of blocks: which node of which level stands for each piece of
+// The cut through the quadtree of blocks: which node of which level represents each piece of
 // ground. A node of level k covers 2^k × 2^k blocks; node (x, z) begins at block (x << k, z << k).
-// Distances alone decide, so that a level is known before anything is generated. Restricted: leaves
-// that touch differ by two levels at most (proof at split_distances). Knows no entities and no
-// meshes. Linear in the nodes of the cut, whose number grows with the logarithm of the view
-// distance; allocates only while results grow. Values only; usable from any thread.
+// Distances alone decide, so a level is known before anything is generated. Restricted: leaves that
+// touch differ by two levels at most (proof at split_distances). Knows no entities and no meshes.
+// Linear in the nodes of the cut, whose number grows with the logarithm of the view distance;
+// allocates only while results grow. Values only; usable from any thread.
 #pragma once
 
 #include <compare>
@@ -16,22 +16,23 @@
 
 namespace psygen::visibility {
 
+// The highest level of a node.
 inline constexpr std::uint8_t kMaxNodeLevel = 30;
 
-// A level in [0, kMaxNodeLevel] and coordinates in units of the node's side. Canonical: they lie in
-// [−2^(31 − level), 2^(31 − level)), as those of node_of() do; block indices wrap at 2^32.
+// A level in [0, kMaxNodeLevel] and coordinates in units of the node's side. Canonical: coordinates
+// lie in [−2^(31 − level), 2^(31 − level)), as those of node_of() do; block indices wrap at 2^32.
 struct NodeCoord {
   core::BlockCoord coord;
   std::uint8_t level = 0;
   friend constexpr auto operator<=>(const NodeCoord&, const NodeCoord&) = default;
 };
 
-// The node of a level that holds a block.
+// The node of a level that contains a block.
 constexpr NodeCoord node_of(core::BlockCoord block, std::uint8_t level) {
   return {{block.x >> level, block.z >> level}, level};
 }
 
-// The block at the node's corner of smallest x and z.
+// The block at the node's corner with the smallest x and z.
 constexpr core::BlockCoord corner_block(const NodeCoord& node) {
   const auto shifted = [&node](std::int32_t index) {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(index) << node.level);
@@ -39,11 +40,12 @@ constexpr core::BlockCoord corner_block(const NodeCoord& node) {
   return {shifted(node.coord.x), shifted(node.coord.z)};
 }
 
+// The node of the next level that contains this one. Its level is below kMaxNodeLevel.
 constexpr NodeCoord parent_of(const NodeCoord& node) {
   return {{node.coord.x >> 1, node.coord.z >> 1}, static_cast<std::uint8_t>(node.level + 1)};
 }
 
-// Child i in 0 … 3 of a node of level >= 1: bit 0 of i is the step in x, bit 1 the step in z.
+// Child i in 0 … 3 of a node of level >= 1. Bit 0 of i is the step in x, bit 1 the step in z.
 constexpr NodeCoord child_of(const NodeCoord& node, unsigned i) {
   const auto step = [](std::int32_t index, unsigned bit) {
     return static_cast<std::int32_t>((static_cast<std::uint32_t>(index) << 1) | bit);
@@ -52,31 +54,34 @@ constexpr NodeCoord child_of(const NodeCoord& node, unsigned i) {
           static_cast<std::uint8_t>(node.level - 1)};
 }
 
-// The node `dx`, `dz` steps further, across the seam of the block indices if need be.
+// The node `dx`, `dz` steps away on the same level, across the seam of the block indices if
+// necessary.
 NodeCoord neighbour_of(const NodeCoord& node, std::int32_t dx, std::int32_t dz);
 
 // ---- From errors to distances ------------------------------------------------------------------
 
-// What happens to a node of a level, by its distance. 0 < split_m <= merge_m.
+// What happens to a node of a level, by its distance in metres. 0 < split_m <= merge_m.
 struct LevelDistances {
   double split_m = 0;  // nearer than this it is split into its four children
-  double merge_m = 0;  // once split, it stays so up to this distance
-  double morph_m = 0;  // its children begin to take its shape here and have it at split_m
+  double merge_m = 0;  // once split, it stays split up to this distance
+  double morph_m = 0;  // its children begin to take its shape here, have it at split_m
 };
 
+// How errors in metres become distances. A node's side is 2^level blocks.
 struct SplitSettings {
   double block_size_m = 64;
   double pixels_per_radian = 1000;
-  double max_error_pixels = 1;  // what an error in metres may cover
-  double min_ratio = 1;  // a node is split nearer than so many of its sides, whatever its error
-  // Its error alone splits no node farther away than so many of its sides.
+  double max_error_pixels = 1;  // how many pixels an error may cover
+  // A node is split nearer than this many of its sides, whatever its error.
+  double min_ratio = 1;
+  // The error of a node alone never splits it at more than this many of its sides.
   double max_ratio = std::numeric_limits<double>::infinity();
   double merge_factor = 1.1;  // merge_m / split_m, >= 1
-  double morph_share = 0.7;   // of split_m, where morphing begins; above 0, at most 1
+  double morph_share = 0.7;   // share of split_m where morphing begins; above 0, at most 1
 };
 
-// One LevelDistances for each level; level_errors_m[k] is by how much the mesh of a node of level k
-// is off. Both spans have one length, at most kMaxNodeLevel + 1. A node of level 0 that is "split"
+// One LevelDistances for each level. level_errors_m[k] is the error of the mesh of a node of level
+// k. Both spans have the same length, at most kMaxNodeLevel + 1. A node of level 0 that is "split"
 // is a block drawn with its finest mesh (CutNode::fine), so level_errors_m[0] is the error of a
 // block's coarser mesh.
 //
@@ -85,12 +90,12 @@ struct SplitSettings {
 //                merge(k − 1) / morph_share, merge(k − 2) + diagonal(k − 2)).
 //
 // The last term makes the cut restricted. Let P of level p be split, so d(P) < merge(p), and let B
-// of level b > p + 1 touch it. Distances are horizontal distances to squares, or hypot of these and
-// a clearance that does not grow with the level, hence d(B) <= d(P) + diagonal(p) < split(p + 2) <=
-// split(b): B is split as well. So what touches a leaf, whose parent is split, is no leaf of more
-// than two levels above it. merge(k − 1) keeps split nodes within split nodes; divided by
-// morph_share it lets a node that has just replaced its children (at merge(k)) begin without morph,
-// and leaves room for morphing: merge(k) <= morph(k + 1) = morph_share · split(k + 1).
+// of level b > p + 1 touch it. Distances are horizontal distances to squares, or the hypotenuse of
+// these and a clearance that does not grow with the level. Hence d(B) <= d(P) + diagonal(p) <
+// split(p + 2) <= split(b): B is split as well. A leaf's parent is split, so no leaf that touches
+// it is more than two levels above it. merge(k − 1) keeps split nodes within split nodes. Divided
+// by morph_share it lets a node that has just replaced its children (at merge(k)) begin without
+// morph, and leaves room for morphing: merge(k) <= morph(k + 1) = morph_share · split(k + 1).
 void split_distances(std::span<const double> level_errors_m, const SplitSettings& settings,
                      std::span<LevelDistances> levels);
 
@@ -102,45 +107,49 @@ struct BlockArea {
   std::uint32_t blocks_x = 0, blocks_z = 0;
 };
 
+// What select_cut decides from. The spans must stay valid during the call.
 struct CutInput {
   core::WorldPosition camera;  // within 2^30 blocks of all roots
   double block_size_m = 64;
-  std::span<const NodeCoord> roots;        // canonical, of one level, none twice
-  std::span<const LevelDistances> levels;  // of split_distances, for 0 … the roots' level at least
-  // How far the camera is above (or below) all ground that nodes of a level could show, metres; by
-  // level, not growing with it, for the proof above. Empty: 0 for all.
+  std::span<const NodeCoord> roots;        // canonical, of one level, each once
+  std::span<const LevelDistances> levels;  // of split_distances, up to the roots' level at least
+  // By level: how far the camera is above (or below) all ground that nodes of the level could show,
+  // in metres. It must not grow with the level (see the proof above). Empty: 0 for all.
   std::span<const double> clearances_m;
-  double view_distance_m = std::numeric_limits<double>::infinity();  // horizontal, for any node
+  double view_distance_m = std::numeric_limits<double>::infinity();  // horizontal, for all nodes
   BlockArea world;
 };
 
+// The parent of a root.
 inline constexpr std::uint32_t kNoNode = UINT32_MAX;
 
+// A node of the cut with its place relative to the camera.
 struct CutNode {
   NodeCoord node;
-  bool leaf = true;   // wanted for drawing; else its children are
-  bool fine = false;  // a leaf of level 0 that is so near that its finest mesh is wanted
+  bool leaf = true;                // wanted for drawing; otherwise its children are
+  bool fine = false;               // a leaf of level 0 so near that its finest mesh is wanted
   std::uint32_t parent = kNoNode;  // index in Cut::nodes
   std::uint32_t end = 0;  // nodes[i + 1] … nodes[end − 1] are its descendants in the cut
   float corner_x_m = 0, corner_z_m = 0;  // of the node's corner, relative to the camera
   float side_m = 0;
-  float distance_m = 0;  // the one that decides: horizontal, with the level's clearance
-  // 0: its own shape; 1: the next coarser one (a fine block's is its coarser mesh, any other node's
-  // is its parent). As the camera moves, leaves appear with 1 when their parent is split, and a
-  // node appears with 0 when its children, all at 1, merge.
+  float distance_m = 0;  // the deciding one: horizontal, combined with the clearance
+  // In [0, 1]. 0: its own shape. 1: the next coarser shape, which is a fine block's coarser mesh or
+  // any other node's parent. As the camera moves, leaves appear with 1 when their parent is split,
+  // and a node appears with 0 when its children, all at 1, merge.
   float morph = 0;
 
-  // The node's box relative to the camera, from heights relative to the camera.
+  // The node's box relative to the camera, given its lowest and highest height relative to the
+  // camera.
   core::Bounds box(float low_y_m, float high_y_m) const {
     return {{corner_x_m, low_y_m, corner_z_m},
             {corner_x_m + side_m, high_y_m, corner_z_m + side_m}};
   }
 };
 
-// The caller keeps it from tick to tick: which nodes were split before is the hysteresis.
+// The caller keeps it from tick to tick: the nodes that were split before provide the hysteresis.
 struct Cut {
-  // Parents before their children and front to back: no vertical plane through the camera meets,
-  // along a half-line from it, a leaf that comes earlier here than one nearer to the camera.
+  // Parents before their children, and front to back: seen from above, the leaves that any
+  // half-line from the camera crosses appear here from near to far.
   std::vector<CutNode> nodes;
   std::vector<NodeCoord> split;  // inner nodes and fine blocks, sorted
 
@@ -148,20 +157,20 @@ struct Cut {
   std::vector<NodeCoord> split_before, roots;
 };
 
-// Replaces the nodes of the cut. Without an earlier cut (cut.split empty) a node is split if its
-// distance is below split_m, otherwise also if it was split and the distance is below merge_m.
+// Replaces the nodes of the cut. A node is split if its distance is below split_m. A node that was
+// split in the previous cut stays split while its distance is below merge_m.
 void select_cut(const CutInput& input, Cut& cut);
 
-// Canonical nodes of a level that cover everything up to `view_distance_m` around the camera along
-// both axes, as far as they reach into `world`. Replaces the contents of `roots`. The square must
-// be less than 2^31 blocks wide.
+// Replaces the contents of `roots` with the canonical nodes of a level that cover everything up to
+// `view_distance_m` around the camera along both axes, as far as they reach into `world`. The
+// square must be less than 2^31 blocks wide.
 void roots_around(const core::WorldPosition& camera, double block_size_m, double view_distance_m,
                   std::uint8_t level, std::vector<NodeCoord>& roots, const BlockArea& world = {});
 
-// What to draw while meshes are missing: ready[i] says whether cut.nodes[i] has one. A node is
-// drawn if it is ready and either a leaf or one of its leaves can not be covered by what is ready
-// below it. Nothing drawn overlaps, and all ground under a ready node is covered. Indices into
-// cut.nodes in their order replace the contents of `drawn`; `scratch` is working memory.
+// What to draw while meshes are missing: ready[i] says whether cut.nodes[i] has one. A ready node
+// is drawn if it is a leaf, or if the ready nodes below it do not cover all of it. Drawn nodes
+// never overlap, and all ground under a ready node is covered. Indices into cut.nodes, in their
+// order, replace the contents of `drawn`; `scratch` is working memory. O(nodes).
 void drawn_nodes(const Cut& cut, std::span<const std::uint8_t> ready,
                  std::vector<std::uint8_t>& scratch, std::vector<std::uint32_t>& drawn);
 

@@ -9,7 +9,7 @@
 namespace psygen::visibility {
 namespace {
 
-// Mean over heights h in [0, band] of the share of ground that is higher than h.
+// Mean over heights h in [0, band] of the share of the ground that is higher than h.
 float ground_share(float relief_m, float band_m) {
   if (relief_m <= 0) return 0;
   return band_m <= relief_m ? 1 - band_m / (2 * relief_m) : relief_m / (2 * band_m);

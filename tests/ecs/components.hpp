@@ -1,4 +1,5 @@
-// Component types that the tests of ecs share.
+// Component types that the tests of ecs share: plain, tracked, sparse, empty, over-aligned,
+// move-only and throwing ones. Not thread-safe: Throwing counts in plain static members.
 #pragma once
 
 #include <cstdint>
@@ -9,33 +10,43 @@
 
 namespace psygen::ecs::test {
 
+// Plain values in columns.
 struct Position {
   float x = 0, y = 0, z = 0;
 };
 struct Velocity {
   float x = 0, y = 0, z = 0;
 };
+// Tracked. New rows must carry the default, which is not zero.
 struct Health {
-  std::int32_t points = 100;  // not zero: new rows must carry it
+  std::int32_t points = 100;
 };
+// Tracked, with a name of its own.
 struct Mesh {
   std::uint64_t id = 0;
 };
+// Without a value, kept in tables.
 struct Hidden {};
+// At the largest alignment that a component may have.
 struct alignas(64) Aligned {
   std::uint8_t byte = 0;
 };
-struct Owner {  // move-only
+// Move-only.
+struct Owner {
   std::unique_ptr<int> value;
 };
 
-struct Selected {};  // sparse, without a value
-struct Edited {      // sparse, tracked, with one
+// Sparse, without a value.
+struct Selected {};
+// Sparse and tracked, with a value.
+struct Edited {
   std::uint32_t version = 1;
 };
 
-// Counts how many are alive and throws from the `fuse`-th constructor on.
+// Counts its living objects. The constructor call after `fuse` further ones throws
+// std::runtime_error.
 struct Throwing {
+  // Throws when the fuse has run down; moving never throws.
   Throwing() {
     if (fuse >= 0 && fuse-- == 0) throw std::runtime_error("fuse");
     ++alive;
@@ -44,13 +55,16 @@ struct Throwing {
   Throwing& operator=(Throwing&& other) noexcept = default;
   ~Throwing() { --alive; }
   int value = 7;
+  // Living objects, and constructor calls left before one throws; -1 never throws.
   static inline int alive = 0;
-  static inline int fuse = -1;  // -1 never throws
+  static inline int fuse = -1;
 };
 
-struct Fused : Throwing {};  // sparse
+// Sparse.
+struct Fused : Throwing {};
+// Two types with the same name.
 struct Twin {};
-struct OtherTwin {};  // of the same name
+struct OtherTwin {};
 
 }  // namespace psygen::ecs::test
 

@@ -1,4 +1,5 @@
-// Component types whose fields are described, for the tests of fields and snapshots.
+// Component types whose fields are described, for the tests of fields and snapshots. Together they
+// have a field of every kind.
 #pragma once
 
 #include <array>
@@ -9,8 +10,10 @@
 
 namespace psygen::ecs::test {
 
+// An enumeration, as a field.
 enum class Mood : std::uint8_t { kCalm, kCross };
 
+// A struct that other types have as a field.
 struct Vec {
   float x = 0, y = 0, z = 0;
   friend bool operator==(const Vec&, const Vec&) = default;
@@ -32,7 +35,7 @@ struct Creature {
   friend bool operator==(const Creature&, const Creature&) = default;
 };
 
-// Elements of half a kilobyte.
+// Elements of half a kilobyte, and a component with a list of them.
 struct Item {
   std::array<double, 64> values{};
 };

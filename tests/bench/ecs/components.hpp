@@ -13,8 +13,10 @@
 
 namespace psygen::ecs::bench {
 
+// Entities per benchmark.
 inline constexpr std::size_t kEntities = 1'000'000;
 
+// The columns of the moving thing; Mesh is tracked.
 struct Position {
   float x, y, z;
 };
@@ -29,18 +31,21 @@ struct Mesh {
   std::uint32_t state;
 };
 
-struct Selected {  // sparse
+// The same component, sparse and in tables.
+struct Selected {
   std::uint32_t since;
 };
-struct Moved {  // the same, in tables
+struct Moved {
   std::uint32_t since;
 };
-struct Described {  // what snapshots keep
+// A component whose value snapshots store.
+struct Described {
   float health;
   std::uint32_t kind;
   double age_s;
 };
 
+// The numbers 0 to count - 1 in a random order that `seed` fixes.
 inline std::vector<std::uint32_t> shuffled(std::size_t count, std::uint32_t seed) {
   std::vector<std::uint32_t> order(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -49,6 +54,7 @@ inline std::vector<std::uint32_t> shuffled(std::size_t count, std::uint32_t seed
   return order;
 }
 
+// A copy of the values in the order of shuffled().
 template <class T>
 std::vector<T> permuted(std::span<const T> values, std::uint32_t seed) {
   std::vector<T> result;

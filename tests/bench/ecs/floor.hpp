@@ -1,6 +1,6 @@
-// The floor: one table of one fixed shape, written by hand, with the same guarantees (8-byte
-// handles with generations, no holes, memory that does not move, stale handles dropped) and
-// nothing that a library needs for types that it does not know.
+// The floor: one table of one fixed shape, written by hand, with the same guarantees as the library
+// (8-byte handles with generations, no holes, memory that does not move, stale handles dropped).
+// Nothing here serves types that are unknown in advance. One thread uses it.
 #pragma once
 
 #include <cstring>
@@ -10,10 +10,13 @@
 
 namespace psygen::ecs::bench {
 
+// Room for 2 * kEntities values at an address that never changes.
 template <class T>
 class FloorColumn {
  public:
+  // Commits all of it.
   FloorColumn() : memory_(kEntities * 2 * sizeof(T)) { memory_.commit(kEntities * 2 * sizeof(T)); }
+  // The value of a row, and the address of row 0.
   T& operator[](std::size_t row) { return data()[row]; }
   T* data() { return reinterpret_cast<T*>(memory_.data()); }
 
@@ -21,11 +24,13 @@ class FloorColumn {
   detail::ReservedMemory memory_;
 };
 
+// Generation and row of the entity with the slot's index.
 struct FloorSlot {
   std::uint32_t generation;
   std::uint32_t row;
 };
 
+// Columns, slots and free slots. Rows [0, rows) are filled.
 struct FloorTable {
   FloorColumn<Entity> entities;
   FloorColumn<Position> positions;
@@ -37,7 +42,7 @@ struct FloorTable {
   std::size_t rows = 0;
   std::uint32_t slot_count = 0;
 
-  // Returns the first of `count` new rows; the caller fills their columns.
+  // Adds `count` rows with new handles and returns the first; the caller fills their columns.
   std::size_t create(std::size_t count) {
     const std::size_t first = rows;
     for (std::size_t i = 0; i < count; ++i, ++rows) {
@@ -55,8 +60,10 @@ struct FloorTable {
     return first;
   }
 
+  // Whether the handle is not stale.
   bool alive(Entity e) { return e.index < slot_count && slots[e.index].generation == e.generation; }
 
+  // Removes these entities; the last row fills each hole. Stale handles are skipped.
   void destroy(std::span<const Entity> dying) {
     for (const Entity e : dying) {
       if (!alive(e)) continue;

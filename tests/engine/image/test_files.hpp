@@ -1,4 +1,4 @@
-// Files and pictures for the tests of this folder.
+// Files and pictures for the tests of image.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,18 +18,20 @@
 
 namespace psygen::image {
 
+// The content of a file; empty when it cannot be read.
 inline std::vector<std::uint8_t> bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+// Creates or replaces a file.
 inline void write_bytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()),
              static_cast<std::streamsize>(bytes.size()));
 }
 
-// A picture whose four channels are all noise.
+// A picture with noise in all four channels, the same in every run.
 inline Image noise_image(std::uint32_t width, std::uint32_t height) {
   Image image = make_image(width, height);
   for (std::size_t i = 0; i < image.rgba.size(); ++i)

@@ -1,5 +1,6 @@
-// A display of its own for a test: Xvfb with the openbox window manager, and xdotool as the person
-// at its keyboard and mouse. Ends with the object. DISPLAY points to it meanwhile.
+// A display of its own for a test: Xvfb with the openbox window manager, and xdotool in place of
+// the user's keyboard and mouse. Ends with the object; DISPLAY points to it until then. One at a
+// time.
 #pragma once
 
 #include <sys/types.h>
@@ -10,17 +11,19 @@
 
 namespace psygen::platform {
 
+// Owns the two processes.
 class VirtualDisplay {
  public:
-  // None when Xvfb or openbox cannot be started.
+  // Starts the display; null when Xvfb or openbox cannot be started.
   static std::unique_ptr<VirtualDisplay> start();
+  // Ends the processes and restores DISPLAY.
   ~VirtualDisplay();
   VirtualDisplay(const VirtualDisplay&) = delete;
   VirtualDisplay& operator=(const VirtualDisplay&) = delete;
 
   // Runs xdotool with these arguments and waits for it; true when it succeeded.
   bool xdotool(std::vector<std::string> arguments) const;
-  // What a command on this display prints; waits for its end.
+  // What a command on this display prints on stdout; waits for its end.
   std::string output(std::vector<std::string> command) const;
 
  private:

@@ -1,5 +1,5 @@
-// A flight that looks like a real one, made up frame by frame, and files for the tests of this
-// folder.
+// A flight that looks like a real one, invented frame by frame and the same in every run, and files
+// for the tests of telemetry.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,16 +19,19 @@
 
 namespace psygen::telemetry {
 
+// The content of a file; empty when it cannot be read.
 inline std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+// Names of the systems of a tick.
 inline std::vector<std::string> tick_systems() {
   return {"input",     "streaming", "visibility", "cache",
           "synthesis", "upload",    "render",     "telemetry"};
 }
 
+// Frame `i` of a flight of about 1500 frames. `noise` is in [0, 1).
 inline FrameRecord synthetic_frame(std::uint64_t i, double time_s, double noise) {
   FrameRecord r;
   const double progress = static_cast<double>(i) / 1500.0;
@@ -83,6 +86,7 @@ inline FrameLog synthetic_flight(std::uint64_t frame_count = 1500) {
   return log;
 }
 
+// Facts of a run in the paper's world.
 inline RunFacts synthetic_facts() {
   RunFacts facts;
   facts.world = {"paper",           42, {512, 512}, 32'832'000'000ULL, 8'404'992'000'000ULL,

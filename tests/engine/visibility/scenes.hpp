@@ -1,4 +1,4 @@
-// Random cameras and grids of blocks for the tests of visibility, the same ones in every run.
+// Random cameras and grids of blocks for the tests of visibility, the same in every run.
 #pragma once
 
 #include <vector>
@@ -9,6 +9,7 @@
 
 namespace psygen::visibility::testing {
 
+// Side of a block in metres.
 inline constexpr double kBlock_m = 64;
 
 // A camera over a grid whose cell (0, 0) is block (0, 0), and the boxes of its cells.
@@ -20,6 +21,7 @@ struct GridScene {
   Frustum frustum;
   std::vector<core::Bounds> bounds;
 
+  // w × d cells; each box is 1 to `ground_m` metres high and stands at height 0.
   GridScene(std::uint32_t w, std::uint32_t d, const core::CameraPose& camera, float ground_m = 40)
       : width(w),
         depth(d),
@@ -39,7 +41,7 @@ struct GridScene {
   }
 };
 
-// A pose over or beside a grid, looking anywhere.
+// A pose over or next to a grid, looking in any direction.
 inline core::CameraPose random_pose(core::RandomStream& random, std::uint32_t width,
                                     std::uint32_t depth) {
   core::CameraPose pose;
