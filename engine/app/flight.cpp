@@ -1,16 +1,21 @@
 // The main loop: from the first pose to the end of the flight, and on in a window.
+#include "engine/app/flight.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "engine/app/app.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/telemetry/output_file.hpp"
+#include "engine/telemetry/progress_bar.hpp"
+#include "engine/world/files/path_file.hpp"
 
 namespace psygen::app {
 namespace {
@@ -20,26 +25,56 @@ constexpr double kEyeHeightM = 1.7;       // a flying user stays above the groun
 
 }  // namespace
 
-bool App::wants_more() const {
-  if (closed_ || stopped()) return false;
-  if (!flying_) return true;
+core::Result<std::unique_ptr<Flight>> Flight::create(FlightOptions options) {
+  std::unique_ptr<Flight> flight(new Flight(std::move(options)));
+  const auto opened =
+      core::within_memory("starting the flight", [&flight] { return flight->open(); });
+  if (!opened) return tl::unexpected(opened.error());
+  return flight;
+}
+
+core::Result<void> Flight::open() {
+  if (!options_.out_folder.empty()) {
+    if (auto ok = telemetry::create_output_folder(options_.out_folder); !ok) return ok;
+  }
+  if (!options_.path_file.empty()) {
+    auto path = world::load_camera_path(options_.path_file);
+    if (!path) return tl::unexpected(path.error());
+    path_ = std::move(*path);
+  }
+  options_.session.trace = true;
+  auto session = Session::create(options_.session);
+  if (!session) return tl::unexpected(session.error());
+  session_ = std::move(*session);
+  std::vector<std::string> systems;
+  for (const ecs::SystemInfo& system : session_->scene().state().tick.systems())
+    systems.push_back(system.name);
+  log_ = std::make_unique<telemetry::FrameLog>(std::move(systems));
+  return {};
+}
+
+bool Flight::wants_more() const {
+  if (session_->over()) return false;
+  if (!recorded_) return true;
   if (options_.frames > 0 && frames_ >= options_.frames) return false;
-  if (options_.seconds > 0) return flight_s_ < options_.seconds;
+  const double now_s = session_->now_s();
+  if (options_.seconds > 0) return now_s < options_.seconds;
   if (options_.frames > 0 || user_flies_) return true;
-  if (path_ && !options_.loop) return flight_s_ < path_->duration_seconds();
-  return window_ != nullptr || flight_s_ < kDefaultSeconds;
+  if (path_ && !options_.loop) return now_s < path_->duration_seconds();
+  return session_->window() != nullptr || now_s < kDefaultSeconds;
 }
 
 // Where only the path has ended the user goes on.
-bool App::stays_open() const {
+bool Flight::stays_open() const {
   const bool limited = options_.frames > 0 || options_.seconds > 0;
-  return window_ != nullptr && !limited && !closed_ && !stopped();
+  return session_->window() != nullptr && !limited && !session_->over();
 }
 
-core::CameraPose App::next_pose(double dt_s) {
-  const world::World& world = scene_->state().facts.world;
+core::CameraPose Flight::next_pose(double dt_s) {
+  const double now_s = session_->now_s();
+  const world::World& world = session_->scene().state().facts.world;
   if (user_flies_) {
-    pose_ = fly_camera_.update(pose_, input_, dt_s);
+    pose_ = fly_camera_.update(pose_, session_->input(), dt_s);
     pose_.position = core::normalised(pose_.position, world.block_size_m());
     const glm::dvec3& local = pose_.position.local;
     const double ground_m =
@@ -48,37 +83,38 @@ core::CameraPose App::next_pose(double dt_s) {
   } else if (path_) {
     const double end_s = path_->duration_seconds();
     const bool again = options_.loop && end_s > 0;
-    pose_ = path_->pose_at(again ? std::fmod(flight_s_, end_s) : std::min(flight_s_, end_s), world);
+    pose_ = path_->pose_at(again ? std::fmod(now_s, end_s) : std::min(now_s, end_s), world);
   } else {
-    pose_ = home();
-    pose_.yaw += 2 * std::numbers::pi * flight_s_ / kDefaultSeconds;
+    pose_ = session_->home();
+    pose_.yaw += 2 * std::numbers::pi * now_s / kDefaultSeconds;
   }
   return pose_;
 }
 
-bool App::saves_picture() const {
-  return flying_ && !pictures_failed_ && options_.images_every > 0 &&
+bool Flight::saves_picture() const {
+  return recorded_ && !pictures_failed_ && options_.images_every > 0 &&
          frames_ % options_.images_every == 0;
 }
 
-core::Result<void> App::fly_frame(double dt_s) {
-  scene::State& state = scene_->state();
-  state.clock.now_s = flight_s_;
-  if (window_) write_over_picture();
-  pictured_ = false;
+core::Result<void> Flight::fly_frame(double dt_s) {
+  scene::State& state = session_->scene().state();
+  if (session_->window() != nullptr) write_over_picture();
+  const double now_s = session_->now_s();
   const double start_s = core::monotonic_seconds();
   const double cpu_start_s = core::thread_cpu_seconds();
-  if (auto ok = frame(next_pose(dt_s), dt_s); !ok) return ok;
+  if (auto ok = session_->tick(next_pose(dt_s), dt_s); !ok) return ok;
   // The flight's clock goes on while a picture waits for the device, as if the next frames had.
-  if (saves_picture()) renderer_->wait_idle();
+  if (saves_picture()) session_->renderer().wait_idle();
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
   telemetry::FrameRecord& record = state.record;
-  if (pictured_ || saves_picture()) record.apart = telemetry::Apart::kPicture;
+  const auto saved = session_->take_saved();  // by plugins
+  files_.insert(files_.end(), saved.begin(), saved.end());
+  if (!saved.empty() || saves_picture()) record.apart = telemetry::Apart::kPicture;
   record.index = frames_;
-  record.time_s = flight_s_;
+  record.time_s = now_s;
   record.frame_ms = frame_ms;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
-  if (flying_) log_frame();
+  if (recorded_) log_frame();
   const bool like_others = record.apart == telemetry::Apart::kNo;
   if (like_others) hud_.add_frame(frame_ms);
   state.input.frame_ms = like_others ? governed_ms(frame_ms) : 0.0;
@@ -90,53 +126,51 @@ core::Result<void> App::fly_frame(double dt_s) {
 // What the error of levels of detail is governed by. The device's time counts where it is the
 // longer one; waiting, for it or a display, does not. A software device's time is this machine's
 // own.
-double App::governed_ms(double frame_ms) const {
-  const render::FrameResult& drawn = scene_->state().counters.frame;
-  if (renderer_->device().software) return frame_ms - drawn.acquire.ms;
+double Flight::governed_ms(double frame_ms) const {
+  const render::FrameResult& drawn = session_->scene().state().counters.frame;
+  if (session_->renderer().device().software) return frame_ms - drawn.acquire.ms;
   return std::max(frame_ms - drawn.wait_ms(), drawn.gpu ? drawn.gpu->ms : 0.0);
 }
 
-core::Result<void> App::loop() {
+core::Result<void> Flight::loop() {
   const double expected_s = options_.seconds > 0 ? options_.seconds
                             : path_              ? path_->duration_seconds()
                                                  : kDefaultSeconds;
-  telemetry::ProgressBar bar(window_ ? telemetry::Terminal{} : telemetry::stderr_terminal(),
+  const bool in_window = session_->window() != nullptr;
+  telemetry::ProgressBar bar(in_window ? telemetry::Terminal{} : telemetry::stderr_terminal(),
                              "flying", expected_s);
-  const double hz = flying_ ? options_.fixed_step_hz : 0;
+  const double hz = recorded_ ? options_.fixed_step_hz : 0;
   double dt_s = hz > 0 ? 1.0 / hz : 1.0 / 60.0;
-  while (wants_more()) {
-    // The flight's clock stands still while the window is minimised and while pictures are written.
-    if (window_) {
-      handle_window();
-      wait_while_minimised();
-      if (closed_) break;
-    }
-    const double start_s = core::monotonic_seconds();
+  // The flight's clock stands still while the window is minimised and while pictures are written.
+  while (wants_more() && session_->poll()) {
+    if (in_window) handle_keys();
+    if (session_->over()) break;
+    const double start_s = core::monotonic_seconds(), now_s = session_->now_s();
     if (auto ok = fly_frame(dt_s); !ok) return ok;
     if (hz <= 0) dt_s = core::monotonic_seconds() - start_s;
-    bar.update(flight_s_);
+    bar.update(now_s);
     if (saves_picture()) {
       if (auto ok = save_numbered_picture(); !ok) return ok;
     }
     if (photograph_) save_screenshot();
     if (wanted_preset_) change_preset();
     ++frames_;
-    flight_s_ = hz > 0 ? static_cast<double>(frames_) / hz : flight_s_ + dt_s;
+    session_->set_now(hz > 0 ? static_cast<double>(frames_) / hz : now_s + dt_s);
   }
   return {};
 }
 
 // A window that is being resized may have no picture in this frame; that is no failure. A file that
 // cannot be written is one, but not the end of the flight.
-core::Result<void> App::save_numbered_picture() {
+core::Result<void> Flight::save_numbered_picture() {
   const auto file = options_.out_folder / fmt::format("frame_{:05}.png", frames_);
-  const auto image = last_picture();
+  const auto image = session_->picture();
   if (!image) {
-    if (!window_) return tl::unexpected(image.error());
+    if (session_->window() == nullptr) return tl::unexpected(image.error());
     core::log_warning(fmt::format("no picture of frame {}: {}", frames_, image.error().message));
     return {};
   }
-  const auto written = write_picture(file, *image);
+  const auto written = session_->write_picture(file, *image);
   note_written(file, written);
   if (written) {
     images_hash_ = core::combine(images_hash_, image::hash(*image));
@@ -149,21 +183,21 @@ core::Result<void> App::save_numbered_picture() {
 }
 
 // The last frame, and what is known now of earlier ones.
-void App::log_frame() {
-  const scene::State& state = scene_->state();
+void Flight::log_frame() {
+  const scene::State& state = session_->scene().state();
   log_->add(state.record);
   if (const auto& gpu = state.counters.frame.gpu)
     log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
   for (const float ms : state.counters.time_to_visible_ms)
-    log_->add_time_to_visible(flight_s_, ms);
+    log_->add_time_to_visible(state.record.time_s, ms);
   for (const auto& cost : state.counters.costs) {
-    log_->add_cost_error(flight_s_, cost.predicted_s, cost.actual_s);
+    log_->add_cost_error(state.record.time_s, cost.predicted_s, cost.actual_s);
   }
 }
 
 // The end of the flight: what was measured is written down, also when it ended early.
-FlightReport App::land(bool whole) {
-  flying_ = false;
+FlightReport Flight::land(bool whole) {
+  recorded_ = false;
   FlightReport report;
   const auto written =
       core::within_memory("the outputs of the flight", [&]() -> core::Result<void> {
@@ -172,25 +206,21 @@ FlightReport App::land(bool whole) {
         return {};
       });
   if (!written) failures_.push_back(written.error());
-  scene_->state().trace.log = nullptr;  // what comes now is none of the flight
+  session_->scene().state().trace.log = nullptr;  // what comes now is none of the flight
   report.files = files_;
   report.failures = failures_;
-  report.validation_messages = renderer_->validation_messages();
+  report.validation_messages = session_->renderer().validation_messages();
   return report;
 }
 
-core::Result<FlightReport> App::run() {
-  const world::World& world = scene_->state().facts.world;
-  pose_ = path_ ? path_->pose_at(0, world) : home();
+core::Result<FlightReport> Flight::run() {
+  const world::World& world = session_->scene().state().facts.world;
+  pose_ = path_ ? path_->pose_at(0, world) : session_->home();
   const auto prepared =
-      core::within_memory("what is seen first", [this] { return prepare(pose_); });
+      core::within_memory("what is seen first", [this] { return session_->prepare(pose_); });
   if (!prepared) return tl::unexpected(prepared.error());
-  for (const Plugin& plugin : options_.plugins) {
-    if (plugin.on_start) plugin.on_start(*this);
-  }
-  frames_ = 0;
-  flight_s_ = 0;
-  flying_ = true;
+  session_->set_now(0);
+  recorded_ = true;
   const auto flown = core::within_memory("the flight", [this] { return loop(); });
   FlightReport report = land(flown.has_value());
   if (!flown) {
@@ -198,15 +228,15 @@ core::Result<FlightReport> App::run() {
       core::log_error(failure.message);
     return tl::unexpected(flown.error());
   }
-  for (const Plugin& plugin : options_.plugins) {
-    if (plugin.on_end) plugin.on_end(*this, report);
+  for (const Plugin& plugin : options_.session.plugins) {
+    if (plugin.on_end) plugin.on_end(*session_, report);
   }
   if (!stays_open()) return report;
   tell_end(report);
   user_flies_ = true;
   const auto flown_on = core::within_memory("the flight", [this] { return loop(); });
   if (!flown_on) return tl::unexpected(flown_on.error());
-  report.validation_messages = renderer_->validation_messages();
+  report.validation_messages = session_->renderer().validation_messages();
   return report;
 }
 

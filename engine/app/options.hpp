@@ -1,5 +1,5 @@
-// What an application chooses: world, camera path, picture, outputs. Values only; the command line
-// of `psygen fly` fills one, a game fills its own.
+// What a program chooses about a session and about a flight. Values only: a game fills a
+// SessionOptions, the command line of `psygen fly` a FlightOptions.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@
 
 namespace psygen::app {
 
-class App;
+class Session;
 struct FlightReport;
 
 // Code that a game adds. Every member may be empty.
@@ -25,17 +25,15 @@ struct Plugin {
   std::string name;
   // Registers model types before the world file is read.
   std::function<core::Result<void>(models::Registry&)> register_models;
-  // Called once before the first frame and after every tick with the time step in seconds.
-  std::function<void(App&)> on_start;
-  std::function<void(App&, double)> on_frame;
-  // Called once when the flight has ended and its outputs are written. A window may stay open.
-  std::function<void(App&, const FlightReport&)> on_end = {};
+  // Called once before the first tick, and after every tick with its time step in seconds.
+  std::function<void(Session&)> on_start;
+  std::function<void(Session&, double)> on_frame;
+  // Called once when a flight has ended and its outputs are written. A window may stay open.
+  std::function<void(Session&, const FlightReport&)> on_end = {};
 };
 
-struct Options {
+struct SessionOptions {
   std::filesystem::path world_file;
-  std::filesystem::path path_file;   // empty: the camera stands and turns, or the user flies
-  std::filesystem::path out_folder;  // empty: only pictures, here
   core::Extent size{1280, 720};
   bool headless = false;
   bool validation = false;
@@ -43,25 +41,32 @@ struct Options {
   std::string device_name;               // part of a name; empty: the best device
   std::optional<render::Preset> preset;  // none: what suits the device
   render::RenderPath render_path = render::RenderPath::kAuto;
-  render::View view = render::View::kNormal;  // F2 goes on to the next
-  // Both 0: as long as the path; without one 27 s headless, else until the window is closed. Where
-  // one is given a window closes at the end of the flight, otherwise it stays.
-  double seconds = 0;
-  std::uint64_t frames = 0;
+  render::View view = render::View::kNormal;
   std::optional<double> start_hour;  // of the day, 0 to 24; the world must have one
   // Frames a second that are held by a larger error of levels of detail; 0: the error is fixed.
   // Not set: 60 in a window, 0 headless.
   std::optional<double> target_hz;
-  double fixed_step_hz = 0;        // 0: the flight follows the wall clock
-  std::uint64_t images_every = 0;  // every so many frames a PNG; 0: none
-  bool loop = false;               // the path again and again
-  double warmup_seconds = 1;       // left out of all figures
-  bool prefill = true;             // fill the cache for the first pose before the first frame
-  bool hash_world = true;          // hash.world of the summary (some 50 ms)
+  bool prefill = true;  // fill the cache for the first pose before the first tick
+  bool trace = false;   // record spans of systems and modelers (Session::trace())
   scene::Settings scene;
   std::vector<Plugin> plugins;
-  // Set from anywhere (a signal handler, another thread) to end the flight after this frame.
+  // Set from anywhere (a signal handler, another thread) to end the session after this tick.
   const std::atomic<bool>* stop = nullptr;
+};
+
+struct FlightOptions {
+  SessionOptions session;
+  std::filesystem::path path_file;   // empty: the camera stands and turns, or the user flies
+  std::filesystem::path out_folder;  // empty: only pictures, here
+  // Both 0: as long as the path; without one 27 s headless, else until the window is closed. Where
+  // one is given a window closes at the end of the flight, otherwise it stays.
+  double seconds = 0;
+  std::uint64_t frames = 0;
+  double fixed_step_hz = 0;        // 0: the flight follows the wall clock
+  std::uint64_t images_every = 0;  // every Nth frame as a PNG; 0: none
+  bool loop = false;               // the path again and again
+  double warmup_seconds = 1;       // left out of all figures
+  bool hash_world = true;          // hash.world of the summary (some 50 ms)
 };
 
 }  // namespace psygen::app

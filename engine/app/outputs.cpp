@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/amplify/block_synthesizer.hpp"
-#include "engine/app/app.hpp"
+#include "engine/app/flight.hpp"
 #include "engine/telemetry/process_memory.hpp"
 #include "engine/telemetry/report.hpp"
 
@@ -64,24 +64,25 @@ telemetry::Count sample_hash(const scene::State& state, core::BlockCoord block) 
 
 // `whole`: the flight came to its end. Otherwise nothing more is drawn and no model made for
 // figures.
-telemetry::RunFacts App::run_facts(bool whole) {
-  const scene::State& state = scene_->state();
+telemetry::RunFacts Flight::run_facts(bool whole) {
+  scene::State& state = session_->scene().state();
+  const SessionOptions& session = session_->options();
   telemetry::RunFacts facts;
   facts.world = world_facts(state.facts.world, state.facts.registry);
-  const render::DeviceInfo& device = renderer_->device();
+  const render::DeviceInfo& device = session_->renderer().device();
   facts.device = {device.name, device.driver, device.api_version, device.timestamps};
-  const core::Extent size = renderer_->size();
-  facts.run.paradigm = scene::to_string(options_.scene.paradigm);
-  facts.run.policy = synthesis::name_of(options_.scene.policy);
+  const core::Extent size = session_->renderer().size();
+  facts.run.paradigm = scene::to_string(session.scene.paradigm);
+  facts.run.policy = synthesis::name_of(session.scene.policy);
   facts.run.modelers = state.settings.modelers;
   facts.run.width = size.width;
   facts.run.height = size.height;
-  facts.run.lod = options_.scene.levels_of_detail;
+  facts.run.lod = session.scene.levels_of_detail;
   facts.run.fixed_step = options_.fixed_step_hz > 0
                              ? telemetry::Figure(options_.fixed_step_hz)
                              : telemetry::Figure::missing("the flight follows the wall clock");
-  facts.run.error_pixels = options_.scene.max_error_pixels;
-  const double target_ms = options_.scene.target_frame_ms;
+  facts.run.error_pixels = session.scene.max_error_pixels;
+  const double target_ms = session.scene.target_frame_ms;
   facts.run.target_fps = target_ms > 0 ? telemetry::Figure(1000 / target_ms)
                                        : telemetry::Figure::missing("no frame rate is held");
   const synthesis::CacheStats cache = state.meshes.stats();
@@ -98,13 +99,13 @@ telemetry::RunFacts App::run_facts(bool whole) {
   facts.floor_ratio = telemetry::Figure::missing("the flight failed");
   if (whole) {
     // Nothing else runs while the floor is measured.
-    const bool alone = scene_->state().meshes.wait([this] { return !stopped(); });
-    facts.floor_ratio = alone ? floor_ratio(*log_, *renderer_)
+    const bool alone = state.meshes.wait([this] { return !session_->stopped(); });
+    facts.floor_ratio = alone ? floor_ratio(*log_, session_->renderer())
                               : telemetry::Figure::missing("the flight was stopped");
   }
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
   facts.world_hash = !options_.hash_world ? telemetry::Count::missing("switched off")
-                     : whole              ? sample_hash(state, home().position.block)
+                     : whole              ? sample_hash(state, session_->home().position.block)
                                           : telemetry::Count::missing("the flight failed");
   facts.images_hash = pictures_failed_ ? telemetry::Count::missing("a picture was not written")
                       : images_ > 0    ? telemetry::Count(images_hash_)
@@ -112,7 +113,7 @@ telemetry::RunFacts App::run_facts(bool whole) {
   return facts;
 }
 
-void App::note_written(const std::filesystem::path& file, const core::Result<void>& result) {
+void Flight::note_written(const std::filesystem::path& file, const core::Result<void>& result) {
   if (result) {
     files_.push_back(file);
   } else {
@@ -121,13 +122,13 @@ void App::note_written(const std::filesystem::path& file, const core::Result<voi
 }
 
 // What is asked for most comes first, and what is largest last: a full disk takes the rest.
-void App::write_outputs(const telemetry::Summary& summary) {
+void Flight::write_outputs(const telemetry::Summary& summary) {
   if (options_.out_folder.empty()) return;
   const auto file = [this](const char* name) { return options_.out_folder / name; };
   note_written(file("summary.json"), write_summary_json(file("summary.json"), summary));
   note_written(file("report.html"), write_report_html(file("report.html"), *log_, summary));
   note_written(file("frames.csv"), write_frames_csv(file("frames.csv"), *log_));
-  note_written(file("trace.json"), trace_->write(file("trace.json")));
+  note_written(file("trace.json"), session_->trace()->write(file("trace.json")));
 }
 
 }  // namespace psygen::app

@@ -3,12 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/amplify/amplify.hpp"
-#include "engine/app/app.hpp"
+#include "engine/app/flight.hpp"
 #include "engine/cli/request_recorder.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/standard_streams.hpp"
@@ -31,12 +32,13 @@ class FlyCommand {
  private:
   static int code_of(const core::Error& error);
   core::Result<void> load_what_pictures_take() const;
-  int fly(app::App& app);
+  int fly();
   int tell(const app::FlightReport& report) const;
   core::Result<void> write_requests() const;
 
   CLI::App* command_;
-  app::Options options_;
+  app::FlightOptions options_;
+  std::unique_ptr<app::Flight> flight_;
   int told_ = 0;          // exit code of what the end of the flight wrote
   std::string requests_;  // file; empty: they are not recorded
   RequestRecorder recorder_;
@@ -50,10 +52,10 @@ class PictureCommand {
   int run();
 
  private:
-  core::Result<void> take(app::App& app) const;
+  core::Result<void> take(app::Session& session) const;
 
   CLI::App* command_;
-  app::Options options_;
+  app::SessionOptions options_;
   std::string out_;
   std::optional<glm::dvec2> at_;  // metres; none: the middle of the world
   double height_m_ = 1.7, yaw_deg_ = 0, pitch_deg_ = 0;

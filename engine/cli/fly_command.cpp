@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "engine/app/app.hpp"
+#include "engine/app/flight.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
@@ -17,15 +17,15 @@ namespace psygen::cli {
 FlyCommand::FlyCommand(CLI::App& cli)
     : command_(cli.add_subcommand("fly", "Fly through a world, in a window or headless")) {
   CLI::App& c = *command_;
-  scene::Settings& scene = options_.scene;
-  add_scene_options(c, options_);
+  scene::Settings& scene = options_.session.scene;
+  add_scene_options(c, options_.session);
   c.add_option(
       "--path", options_.path_file,
       "Camera path: a TOML file, or the name of one that comes with psygen; without one the "
       "camera turns, or you fly");
   c.add_option("--out", options_.out_folder,
                "Folder for frames.csv, summary.json, trace.json, report.html and pictures");
-  c.add_flag("--headless", options_.headless, "No window; needs no display");
+  c.add_flag("--headless", options_.session.headless, "No window; needs no display");
   c.add_option("--seconds", options_.seconds, "Length of the flight; 0: that of the path")
       ->check(number_between(0, 86400));
   c.add_flag("--loop", options_.loop,
@@ -43,59 +43,72 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->transform(integer_between(0, 1'000'000'000));
   c.add_option_function<std::string>(
        "--paradigm",
-       [this](const std::string& text) { options_.scene.paradigm = *scene::paradigm_from(text); },
+       [this](const std::string& text) {
+         options_.session.scene.paradigm = *scene::paradigm_from(text);
+       },
        "pla: on demand, in parallel; amplify: everything before; lazy: anew in each frame")
       ->check(valid_if(scene::paradigm_from, "pla|amplify|lazy"))
       ->default_str("pla");
   c.add_option_function<std::string>(
        "--policy",
-       [this](const std::string& text) { options_.scene.policy = *synthesis::policy_from(text); },
+       [this](const std::string& text) {
+         options_.session.scene.policy = *synthesis::policy_from(text);
+       },
        "Order of synthesis: fifo, plp, shortest, longest, deadline")
       ->check(CLI::IsMember({"fifo", "plp", "shortest", "longest", "deadline"}))
       ->default_str("deadline");
   c.add_option_function<std::string>(
        "--plp",
-       [this](const std::string& text) { options_.scene.plp_mode = *scene::plp_mode_from(text); },
+       [this](const std::string& text) {
+         options_.session.scene.plp_mode = *scene::plp_mode_from(text);
+       },
        "Order of nodes: layers around the camera, or solidity: least hidden first")
       ->check(valid_if(scene::plp_mode_from, "layers|solidity"))
       ->default_str("layers");
   c.add_option_function<double>(
-       "--target-fps", [this](double hz) { options_.target_hz = hz; },
+       "--target-fps", [this](double hz) { options_.session.target_hz = hz; },
        "Hold this frame rate with a larger error (up to 4 times); 0: fixed error")
       ->default_str("60 in a window, 0 headless")
       ->check(zero_or_between(0.1, 1000));
   c.add_option("--fade", scene.fade_seconds, "Seconds in which models come and go; 0: at once")
       ->capture_default_str()
       ->check(number_between(0, 60));
-  c.add_flag("!--no-vsync", options_.vsync, "Do not wait for the display");
-  c.add_flag("!--no-prefill", options_.prefill, "Start with an empty cache");
+  c.add_flag("!--no-vsync", options_.session.vsync, "Do not wait for the display");
+  c.add_flag("!--no-prefill", options_.session.prefill, "Start with an empty cache");
   c.add_option("--record-requests", requests_,
                "File that gets every request of the flight; starts with an empty cache");
   c.add_flag("--json", json_, "Print the summary as JSON instead of a table");
 }
 
 int FlyCommand::run() {
-  if (auto ok = find_files(options_); !ok) {
+  if (auto ok = find_world(options_.session).and_then([this] { return find_path(options_); });
+      !ok) {
     core::log_error(ok.error().message);
     return exit_code_of(ok.error());
   }
-  options_.stop = &stop_at_interrupt();
+  options_.session.stop = &stop_at_interrupt();
   app::Plugin reporter;
   reporter.name = "report";
   if (!requests_.empty()) {
-    options_.prefill = false;  // the initial fill is part of the flight
-    reporter.on_frame = [this](app::App& flown, double) {
-      if (flown.flying()) recorder_.observe(flown.scene().state());
+    options_.session.prefill = false;  // the initial fill is part of the flight
+    reporter.on_frame = [this](app::Session& session, double) {
+      if (flight_->is_recorded()) recorder_.observe(session.scene().state());
     };
   }
   // At the end of the flight, not only when its window is closed.
-  reporter.on_end = [this](app::App&, const app::FlightReport& report) { told_ = tell(report); };
-  options_.plugins.push_back(std::move(reporter));
-  auto app = load_what_pictures_take()
-                 .and_then(render::fit_software_rendering_to_threads)
-                 .and_then([this] { return app::App::create(options_); });
-  const int code = app ? fly(**app) : code_of(app.error());
-  if (app && (*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
+  reporter.on_end = [this](app::Session&, const app::FlightReport& report) {
+    told_ = tell(report);
+  };
+  options_.session.plugins.push_back(std::move(reporter));
+  auto flight = load_what_pictures_take()
+                    .and_then(render::fit_software_rendering_to_threads)
+                    .and_then([this] { return app::Flight::create(options_); });
+  if (!flight) return code_of(flight.error());
+  flight_ = std::move(*flight);
+  const int code = fly();
+  // Its memory must not be torn down.
+  if (flight_->session().has_hung_modelers()) std::_Exit(code);
+  flight_.reset();
   return code;
 }
 
@@ -114,8 +127,8 @@ int FlyCommand::code_of(const core::Error& error) {
   return exit_code_of(error);
 }
 
-int FlyCommand::fly(app::App& app) {
-  const auto report = app.run();
+int FlyCommand::fly() {
+  const auto report = flight_->run();
   if (!report) {
     if (auto ok = write_requests(); !ok) core::log_error(ok.error().message);
     return code_of(report.error());

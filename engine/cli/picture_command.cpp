@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <glm/trigonometric.hpp>
 
-#include "engine/app/app.hpp"
+#include "engine/app/session.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
@@ -81,7 +81,7 @@ PictureCommand::PictureCommand(CLI::App& cli)
 }
 
 int PictureCommand::run() {
-  if (auto ok = find_files(options_); !ok) {
+  if (auto ok = find_world(options_); !ok) {
     core::log_error(ok.error().message);
     return exit_code_of(ok.error());
   }
@@ -90,23 +90,25 @@ int PictureCommand::run() {
   const auto folder = std::filesystem::path(out_).parent_path();
   // What cannot be written is told before all the work.
   const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
-  auto app = writable.and_then(image::load_picture_libraries)
-                 .and_then(render::fit_software_rendering_to_threads)
-                 .and_then([this] { return app::App::create(options_); });
-  const auto taken = app ? take(**app) : core::Result<void>(tl::unexpected(app.error()));
+  auto session = writable.and_then(image::load_picture_libraries)
+                     .and_then(render::fit_software_rendering_to_threads)
+                     .and_then([this] { return app::Session::create(options_); });
+  const auto taken =
+      session ? take(**session) : core::Result<void>(tl::unexpected(session.error()));
   if (taken) {
     core::log_info(fmt::format("wrote {}", out_));
   } else {
     core::log_error(taken.error().message);
   }
   const int code = taken ? kOk : exit_code_of(taken.error());
-  if (app && (*app)->has_hung_modelers()) std::_Exit(code);  // its memory must not be torn down
+  // Its memory must not be torn down.
+  if (session && (*session)->has_hung_modelers()) std::_Exit(code);
   return code;
 }
 
-core::Result<void> PictureCommand::take(app::App& app) const {
-  const world::World& world = app.scene().state().facts.world;
-  core::CameraPose pose = app.home();
+core::Result<void> PictureCommand::take(app::Session& session) const {
+  const world::World& world = session.scene().state().facts.world;
+  core::CameraPose pose = session.home();
   if (at_) {
     const auto at = position_at(world, *at_);
     if (!at) return tl::unexpected(at.error());
@@ -115,12 +117,12 @@ core::Result<void> PictureCommand::take(app::App& app) const {
   pose.position.local.y = surface_m(world, pose.position) + height_m_;
   pose.yaw = glm::radians(yaw_deg_);
   pose.pitch = glm::radians(pitch_deg_);
-  if (auto ok = app.prepare(pose); !ok) return ok;
+  if (auto ok = session.prepare(pose); !ok) return ok;
   if (options_.stop->load()) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
-  if (auto ok = app.frame(pose, 0); !ok) return ok;
-  if (auto ok = check_complete(app.scene().state()); !ok) return ok;
-  if (auto ok = app.save_picture(out_); !ok) return ok;
-  const auto messages = app.renderer().validation_messages();
+  if (auto ok = session.tick(pose, 0); !ok) return ok;
+  if (auto ok = check_complete(session.scene().state()); !ok) return ok;
+  if (auto ok = session.save_picture(out_); !ok) return ok;
+  const auto messages = session.renderer().validation_messages();
   if (messages.empty()) return {};
   return core::fail(core::ErrorCode::kInternal, fmt::format("{}", fmt::join(messages, "\n")));
 }

@@ -10,7 +10,7 @@
 namespace psygen::cli {
 namespace {
 
-void add_picture(CLI::App& c, app::Options& options) {
+void add_picture(CLI::App& c, app::SessionOptions& options) {
   c.add_option_function<std::string>(
        "--size", [&options](const std::string& text) { options.size = *parse_size(text); },
        "Picture in pixels, WIDTHxHEIGHT")
@@ -49,7 +49,7 @@ void add_detail(CLI::App& c, scene::Settings& scene) {
       ->default_str("on");
 }
 
-void add_machine(CLI::App& c, app::Options& options) {
+void add_machine(CLI::App& c, app::SessionOptions& options) {
   c.add_option("--modelers", options.scene.modelers, "Synthesis threads; 0: one less than cores")
       ->transform(integer_between(0, 256));
   c.add_option_function<std::string>(
@@ -73,7 +73,7 @@ void add_machine(CLI::App& c, app::Options& options) {
 
 }  // namespace
 
-void add_scene_options(CLI::App& command, app::Options& options) {
+void add_scene_options(CLI::App& command, app::SessionOptions& options) {
   options.world_file = kDefaultWorld;
   command
       .add_option("--world", options.world_file,

@@ -9,6 +9,6 @@
 namespace psygen::cli {
 
 // `options` outlives the command; what it holds now are the defaults.
-void add_scene_options(CLI::App& command, app::Options& options);
+void add_scene_options(CLI::App& command, app::SessionOptions& options);
 
 }  // namespace psygen::cli

@@ -94,14 +94,18 @@ core::Result<world::World> load_world(const std::string& name, models::Registry&
   return world::load_world(*file, registry);
 }
 
-core::Result<void> find_files(app::Options& options) {
-  auto world_file = find_file(Shipped::kWorld, options.world_file.string());
-  if (!world_file) return tl::unexpected(world_file.error());
-  options.world_file = std::move(*world_file);
+core::Result<void> find_world(app::SessionOptions& options) {
+  auto file = find_file(Shipped::kWorld, options.world_file.string());
+  if (!file) return tl::unexpected(file.error());
+  options.world_file = std::move(*file);
+  return {};
+}
+
+core::Result<void> find_path(app::FlightOptions& options) {
   if (options.path_file.empty()) return {};
-  auto path_file = find_file(Shipped::kPath, options.path_file.string());
-  if (!path_file) return tl::unexpected(path_file.error());
-  options.path_file = std::move(*path_file);
+  auto file = find_file(Shipped::kPath, options.path_file.string());
+  if (!file) return tl::unexpected(file.error());
+  options.path_file = std::move(*file);
   return {};
 }
 

@@ -22,7 +22,8 @@ core::Result<std::filesystem::path> find_file(Shipped kind, const std::string& n
 // Reads the world that an option means. Fails as find_file() and world::load_world().
 core::Result<world::World> load_world(const std::string& name, models::Registry& registry);
 
-// Sets world and path (none: stays none), which are what was typed, to the files that are meant.
-core::Result<void> find_files(app::Options& options);
+// Replace what was typed by the file that is meant. No path stays no path.
+core::Result<void> find_world(app::SessionOptions& options);
+core::Result<void> find_path(app::FlightOptions& options);
 
 }  // namespace psygen::cli

@@ -30,7 +30,8 @@ class MeshSupply {
   MeshSupply(const MeshSupply&) = delete;
   MeshSupply& operator=(const MeshSupply&) = delete;
 
-  // Starts with an empty cache of at most `budget_bytes` in `memory`. Both outlive the supply. Once.
+  // Starts with an empty cache of at most `budget_bytes` in `memory`. Both outlive the supply.
+  // Once.
   void open(const models::Registry& registry, core::GeometryMemory& memory,
             std::uint64_t budget_bytes);
   // Measures the model types on this machine; see CostModel::calibrate().

@@ -25,10 +25,10 @@ std::string what_is_small(const synthesis::CacheStats& stats) {
 
 void warn_once(const Settings& settings, const synthesis::CacheStats& stats, Quality& quality) {
   if (std::exchange(quality.warned_budget, true)) return;
-  core::log_warning(
-      fmt::format("{} is too small for this view{}", what_is_small(stats),
-                  settings.levels_of_detail ? "; drawing coarser levels"
-                                            : " at full detail; some of it is missing"));
+  core::log_warning(fmt::format("{} is too small for this view{}", what_is_small(stats),
+                                settings.levels_of_detail
+                                    ? "; drawing coarser levels"
+                                    : " at full detail; some of it is missing"));
 }
 
 void adapt_to_memory(const Settings& settings, const Rules& rules, const Pressure& pressure,

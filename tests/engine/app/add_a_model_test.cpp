@@ -35,9 +35,9 @@ app::Plugin fence_plugin() {
   return plugin;
 }
 
-app::Options fenced_flight(const TemporaryFolder& folder) {
+app::SessionOptions fenced_flight(const TemporaryFolder& folder) {
   std::ofstream(folder / "fenced.toml") << kWorld;
-  app::Options options;
+  app::SessionOptions options;
   options.world_file = folder / "fenced.toml";
   options.headless = true;
   options.validation = true;
@@ -49,29 +49,29 @@ app::Options fenced_flight(const TemporaryFolder& folder) {
 
 TEST(AddAModel, TheTypeFliesIsCostModelledAndListed) {
   const TemporaryFolder folder;
-  auto app = app::App::create(fenced_flight(folder));
-  ASSERT_TRUE(app) << app.error().message;
+  auto session = app::Session::create(fenced_flight(folder));
+  ASSERT_TRUE(session) << session.error().message;
 
   // Listed, with its parameters, as `psygen models` and editors see it.
-  const models::Registry& registry = (*app)->scene().state().facts.registry;
+  const models::Registry& registry = (*session)->scene().state().facts.registry;
   const int fence = registry.find("fence");
   ASSERT_GE(fence, 0);
   EXPECT_EQ(registry[static_cast<models::ModelIndex>(fence)].parameters()[kPosts].name, "posts");
 
   // Cost-modelled: calibrated at start-up like the engine's own types.
   std::uint32_t levels = 0;
-  for (const synthesis::LevelCalibration& level : (*app)->scene().calibration().levels) {
+  for (const synthesis::LevelCalibration& level : (*session)->scene().calibration().levels) {
     if (level.model == fence && level.samples > 0) ++levels;
   }
   EXPECT_EQ(levels, 2u);
 
   // It flies: after the cache is filled nothing is missing, and there are fences to draw.
-  const core::CameraPose pose = (*app)->home();
-  (*app)->scene().settle(pose);
-  ASSERT_TRUE((*app)->frame(pose, 1.0 / 60.0));
-  EXPECT_EQ((*app)->scene().state().counters.holes, 0u);
-  EXPECT_GT((*app)->scene().state().draws.models.size(), 5u);
-  EXPECT_EQ((*app)->scene().state().totals.failed, 0u);
+  const core::CameraPose pose = (*session)->home();
+  (*session)->scene().settle(pose);
+  ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
+  EXPECT_EQ((*session)->scene().state().counters.holes, 0u);
+  EXPECT_GT((*session)->scene().state().draws.models.size(), 5u);
+  EXPECT_EQ((*session)->scene().state().totals.failed, 0u);
 }
 
 // What docs/add-a-model.md says that every type must keep.

@@ -7,7 +7,7 @@ namespace psygen::app {
 namespace {
 
 TEST(FarPlaces, AMillimetreChangesThePictureNoMoreThanAtTheOrigin) {
-  Options options = short_flight();
+  SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 1500;
   Studio studio(paper_text(0, 0), options);
@@ -31,7 +31,7 @@ TEST(FarPlaces, AMillimetreChangesThePictureNoMoreThanAtTheOrigin) {
 
 // Everything of the last place gives way, also what frames in flight might read.
 TEST(FarPlaces, SettlingAfterALeapWithAFullCacheIsLikeAFreshStart) {
-  Options options = short_flight();
+  SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 3000;
   options.scene.budget_bytes = 28ull << 20;  // room for one place, not for two
@@ -52,7 +52,7 @@ TEST(FarPlaces, SettlingAfterALeapWithAFullCacheIsLikeAFreshStart) {
 
 // What frames in flight may read comes back later: that is no want of memory.
 TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
-  Options options = short_flight();
+  SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 1500;
   options.scene.budget_bytes = 24ull << 20;
@@ -75,7 +75,7 @@ TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
 // What the last pictures drew may come back too late for this one: then pictures must get coarser
 // until there is room for three.
 TEST(FarPlaces, LazyEvaluationMissesNothingForLongWhereOnlyOnePictureFits) {
-  Options options = short_flight();
+  SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 4000;
   options.scene.max_error_pixels = 1;

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "engine/app/app.hpp"
+#include "engine/app/flight.hpp"
 
 namespace psygen::app {
 
@@ -18,19 +18,27 @@ inline std::filesystem::path fresh_folder() {
   return folder;
 }
 
-inline Options short_flight() {
-  Options options;
+inline const std::filesystem::path kWalk = PSYGEN_SOURCE_DIR "/game/paths/walk27.toml";
+
+inline SessionOptions short_session() {
+  SessionOptions options;
   options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/paper.toml";
-  options.path_file = PSYGEN_SOURCE_DIR "/game/paths/walk27.toml";
   options.headless = true;
   options.validation = true;
   options.size = {320, 180};
-  options.frames = 40;
-  options.fixed_step_hz = 30;
-  options.warmup_seconds = 0.2;
   options.scene.virtual_time = true;  // tests do not depend on what the machine has left over
   options.scene.view_distance_m = 200;
   options.scene.budget_bytes = 128ull << 20;
+  return options;
+}
+
+inline FlightOptions short_flight() {
+  FlightOptions options;
+  options.session = short_session();
+  options.path_file = kWalk;
+  options.frames = 40;
+  options.fixed_step_hz = 30;
+  options.warmup_seconds = 0.2;
   return options;
 }
 

@@ -8,10 +8,10 @@
 namespace psygen::app {
 namespace {
 
-FlightReport fly(const Options& options) {
-  auto app = App::create(options);
-  EXPECT_TRUE(app) << app.error().message;
-  auto report = (*app)->run();
+FlightReport fly(const FlightOptions& options) {
+  auto flight = Flight::create(options);
+  EXPECT_TRUE(flight) << flight.error().message;
+  auto report = (*flight)->run();
   EXPECT_TRUE(report) << report.error().message;
   EXPECT_THAT(report->validation_messages, testing::IsEmpty());
   return std::move(*report);
@@ -23,7 +23,7 @@ nlohmann::json read_json(const std::filesystem::path& file) {
 }
 
 TEST(Flight, WritesEveryOutputWithoutAValidationMessage) {
-  Options options = short_flight();
+  FlightOptions options = short_flight();
   options.out_folder = fresh_folder();
   options.images_every = 20;
   const FlightReport report = fly(options);
@@ -61,7 +61,7 @@ std::vector<std::map<std::string, std::string>> read_frames(const std::filesyste
 }
 
 TEST(Flight, FramesThatAreWrittenAndTheTwoAfterThemAreInNoFigureOfTimes) {
-  Options options = short_flight();
+  FlightOptions options = short_flight();
   options.out_folder = fresh_folder();
   options.images_every = 10;
   const FlightReport report = fly(options);
@@ -80,16 +80,17 @@ TEST(Flight, FramesThatAreWrittenAndTheTwoAfterThemAreInNoFigureOfTimes) {
 }
 
 TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
-  Options options = short_flight();
+  FlightOptions options = short_flight();
   options.out_folder = fresh_folder();
   options.frames = 10;
-  options.target_hz = 30;
+  options.session.target_hz = 30;
   std::vector<double> governed_ms;
-  options.plugins.push_back({"photographer", {}, {}, [&](App& app, double) {
-                               governed_ms.push_back(app.scene().state().input.frame_ms);
-                               if (governed_ms.size() != 6) return;
-                               EXPECT_TRUE(app.save_picture(options.out_folder / "picture.png"));
-                             }});
+  options.session.plugins.push_back(
+      {"photographer", {}, {}, [&](Session& session, double) {
+         governed_ms.push_back(session.scene().state().input.frame_ms);
+         if (governed_ms.size() != 6) return;
+         EXPECT_TRUE(flight.save_picture(options.out_folder / "picture.png"));
+       }});
   fly(options);
   const auto rows = read_frames(options.out_folder / "frames.csv");
   ASSERT_EQ(rows.size(), 10u);
@@ -104,7 +105,7 @@ TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
 }
 
 TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
-  Options options = short_flight();
+  FlightOptions options = short_flight();
   options.out_folder = fresh_folder();
   const FlightReport report = fly(options);
   const auto rows = read_frames(options.out_folder / "frames.csv");
@@ -131,7 +132,7 @@ TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
 }
 
 TEST(Flight, TheSummaryCarriesEveryFieldOrSaysWhyNot) {
-  Options options = short_flight();
+  FlightOptions options = short_flight();
   options.out_folder = fresh_folder();
   fly(options);
   const nlohmann::json summary = read_json(options.out_folder / "summary.json");
@@ -213,12 +214,12 @@ TEST(Flight, TheSummaryCarriesEveryFieldOrSaysWhyNot) {
 TEST(Flight, EachParadigmFlies) {
   for (const auto paradigm :
        {scene::Paradigm::kDataAmplification, scene::Paradigm::kLazyEvaluation}) {
-    Options options = short_flight();
+    FlightOptions options = short_flight();
     options.frames = 4;
     options.warmup_seconds = 0;
-    options.scene.paradigm = paradigm;
-    options.scene.view_distance_m = 64;
-    options.scene.budget_bytes = 512ull << 20;
+    options.session.scene.paradigm = paradigm;
+    options.session.scene.view_distance_m = 64;
+    options.session.scene.budget_bytes = 512ull << 20;
     const FlightReport report = fly(options);
     EXPECT_EQ(report.summary.run.frames, 4u);
     EXPECT_EQ(report.summary.missing.frames.value.value_or(99), 0u);
@@ -227,32 +228,32 @@ TEST(Flight, EachParadigmFlies) {
 }
 
 TEST(Flight, AnUnwritableOutputFolderIsAnErrorBeforeTheFlight) {
-  Options options = short_flight();
+  FlightOptions options = short_flight();
   options.out_folder = "/proc/nowhere/out";
-  const auto app = App::create(options);
-  ASSERT_FALSE(app);
-  EXPECT_EQ(app.error().code, core::ErrorCode::kIo);
-  EXPECT_NE(app.error().message.find("/proc/nowhere"), std::string::npos);
+  const auto flight = Flight::create(options);
+  ASSERT_FALSE(flight);
+  EXPECT_EQ(flight.error().code, core::ErrorCode::kIo);
+  EXPECT_NE(flight.error().message.find("/proc/nowhere"), std::string::npos);
 }
 
 TEST(Flight, AMissingWorldOrPathFileIsNamed) {
-  Options options = short_flight();
-  options.world_file = "no_such_world.toml";
-  auto app = App::create(options);
-  ASSERT_FALSE(app);
-  EXPECT_NE(app.error().message.find("no_such_world.toml"), std::string::npos);
+  FlightOptions options = short_flight();
+  options.session.world_file = "no_such_world.toml";
+  auto flight = Flight::create(options);
+  ASSERT_FALSE(flight);
+  EXPECT_NE(flight.error().message.find("no_such_world.toml"), std::string::npos);
   options = short_flight();
   options.path_file = "no_such_path.toml";
-  app = App::create(options);
-  ASSERT_FALSE(app);
-  EXPECT_NE(app.error().message.find("no_such_path.toml"), std::string::npos);
+  flight = Flight::create(options);
+  ASSERT_FALSE(flight);
+  EXPECT_NE(flight.error().message.find("no_such_path.toml"), std::string::npos);
 }
 
 TEST(Flight, StoppingFromOutsideEndsTheFlightAndStillWritesItsOutputs) {
   std::atomic<bool> stop{true};
-  Options options = short_flight();
+  FlightOptions options = short_flight();
   options.out_folder = fresh_folder();
-  options.stop = &stop;
+  options.session.stop = &stop;
   const FlightReport report = fly(options);
   EXPECT_EQ(report.summary.run.frames, 0u);
   EXPECT_TRUE(std::filesystem::exists(options.out_folder / "summary.json"));

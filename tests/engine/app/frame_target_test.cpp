@@ -8,41 +8,42 @@
 namespace psygen::app {
 namespace {
 
-double target_frame_ms(const Options& options) {
-  const auto app = App::create(options);
-  EXPECT_TRUE(app) << app.error().message;
-  return app ? (*app)->scene().state().settings.target_frame_ms : -1.0;
+double target_frame_ms(const FlightOptions& options) {
+  const auto flight = Flight::create(options);
+  EXPECT_TRUE(flight) << flight.error().message;
+  return flight ? (*flight)->session().scene().state().settings.target_frame_ms : -1.0;
 }
 
 TEST(FrameTarget, Is60HzInAWindowNoneHeadlessAndWhateverTheOptionsSay) {
-  Options options = short_flight();
+  FlightOptions options = short_flight();
   EXPECT_EQ(target_frame_ms(options), 0);
-  options.target_hz = 90;
+  options.session.target_hz = 90;
   EXPECT_DOUBLE_EQ(target_frame_ms(options), 1000.0 / 90);
   const auto display = platform::VirtualDisplay::start();
   ASSERT_NE(display, nullptr) << "this test needs xvfb, openbox and xdotool";
-  options.headless = false;
+  options.session.headless = false;
   EXPECT_DOUBLE_EQ(target_frame_ms(options), 1000.0 / 90);
-  options.target_hz = 0;
+  options.session.target_hz = 0;
   EXPECT_EQ(target_frame_ms(options), 0);
-  options.target_hz.reset();
+  options.session.target_hz.reset();
   EXPECT_DOUBLE_EQ(target_frame_ms(options), 1000.0 / 60);
 }
 
 // What it was in each frame of a flight.
 std::vector<double> errors_of_flight(double target_hz) {
   std::vector<double> errors;
-  Options options = short_flight();
-  options.target_hz = target_hz;
-  options.scene.max_error_pixels = 4;
-  options.scene.max_error_factor = 3;
-  options.plugins.push_back({"watch", {}, {}, [&errors](App& app, double) {
-                               errors.push_back(app.scene().state().quality.error_pixels);
-                             }});
-  auto app = App::create(options);
-  EXPECT_TRUE(app) << app.error().message;
-  if (!app) return {0};
-  EXPECT_TRUE((*app)->run());
+  FlightOptions options = short_flight();
+  options.session.target_hz = target_hz;
+  options.session.scene.max_error_pixels = 4;
+  options.session.scene.max_error_factor = 3;
+  options.session.plugins.push_back({"watch", {}, {}, [&errors](Session& session, double) {
+                                       errors.push_back(
+                                           session.scene().state().quality.error_pixels);
+                                     }});
+  auto flight = Flight::create(options);
+  EXPECT_TRUE(flight) << flight.error().message;
+  if (!flight) return {0};
+  EXPECT_TRUE((*flight)->run());
   EXPECT_EQ(errors.size(), options.frames);
   return errors;
 }

@@ -28,8 +28,8 @@ inline void expect_golden(const std::string& name, const image::Image& image) {
   ADD_FAILURE() << "share of differing pixels " << difference.share_over << "; look at " << found;
 }
 
-inline image::Image captured(App& app) {
-  auto picture = app.renderer().capture();
+inline image::Image captured(Session& session) {
+  auto picture = session.renderer().capture();
   if (!picture) {
     ADD_FAILURE() << picture.error().message;
     return {};

@@ -15,19 +15,18 @@ class GoldenCombe : public testing::Test {
  protected:
   void SetUp() override { open(render::Preset::kLow); }
   void open(render::Preset preset) {
-    Options options = short_flight();
+    SessionOptions options = short_session();
     options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/silver_combe.toml";
-    options.path_file.clear();
     options.preset = preset;
     options.size = {480, 270};
     options.scene.view_distance_m = 16000;
     options.scene.budget_bytes = 512ull << 20;
-    auto app = App::create(options);
-    ASSERT_TRUE(app) << app.error().message;
-    app_ = std::move(*app);
+    auto session = Session::create(options);
+    ASSERT_TRUE(session) << session.error().message;
+    session_ = std::move(*session);
   }
   void TearDown() override {
-    EXPECT_THAT(app_->renderer().validation_messages(), testing::IsEmpty());
+    EXPECT_THAT(session_->renderer().validation_messages(), testing::IsEmpty());
   }
   // Over a slope in the sun, with a valley in the shade behind it.
   core::CameraPose pose() {
@@ -38,22 +37,22 @@ class GoldenCombe : public testing::Test {
     point.pitch_deg = -9;
     return world::CameraPath({}, {point}).pose_at(0, state().facts.world);
   }
-  scene::State& state() { return app_->scene().state(); }
+  scene::State& state() { return session_->scene().state(); }
   template <class Predicate>
   std::ptrdiff_t draws(const Predicate& predicate) {
     return std::ranges::count_if(state().draws.models, predicate);
   }
 
-  std::unique_ptr<App> app_;
+  std::unique_ptr<Session> session_;
 };
 
 TEST_F(GoldenCombe, StandsInTheShadeOfItsHills) {
   const core::CameraPose at = pose();
-  app_->scene().settle(at);
-  ASSERT_TRUE(app_->frame(at, 1.0 / 60.0));
+  session_->scene().settle(at);
+  ASSERT_TRUE(session_->tick(at, 1.0 / 60.0));
   EXPECT_GT(draws([](const render::MeshDraw& d) { return d.sun < 0.1F; }), 50);
   EXPECT_GT(draws([](const render::MeshDraw& d) { return d.sun > 0.9F; }), 50);
-  expect_golden("combe_shade", captured(*app_));
+  expect_golden("combe_shade", captured(*session_));
 }
 
 // Of what stands on a node as one mesh some is in the shade and some is not, also where everything
@@ -62,8 +61,8 @@ TEST_F(GoldenCombe, MergedMeshesHaveTheLightOfTheirParts) {
   for (const bool with_cascades : {false, true}) {
     if (with_cascades) open(render::Preset::kHigh);
     const core::CameraPose at = pose();
-    app_->scene().settle(at);
-    ASSERT_TRUE(app_->frame(at, 1.0 / 60.0));
+    session_->scene().settle(at);
+    ASSERT_TRUE(session_->tick(at, 1.0 / 60.0));
     std::map<std::uint32_t, std::set<float>> light;  // of each mesh that is drawn in parts
     for (const render::MeshDraw& d : state().draws.models) {
       if (d.part.count > 0) light[d.range.id].insert(d.sun);
@@ -80,9 +79,9 @@ TEST_F(GoldenCombe, HalfwayThroughItsFades) {
   to.position.local += glm::dvec3(26, 0, 15);  // ahead
   to.position = core::normalised(to.position, state().facts.world.block_size_m());
   for (const core::CameraPose& at : {to, from})
-    app_->scene().settle(at);
+    session_->scene().settle(at);
   const double step_s = state().settings.fade_seconds / 6;
-  ASSERT_TRUE(app_->frame(from, step_s));
+  ASSERT_TRUE(session_->tick(from, step_s));
   const auto name_of = [](const render::MeshDraw& d) {
     return std::tuple(d.range.id, d.part.first, d.part.count);
   };
@@ -90,7 +89,7 @@ TEST_F(GoldenCombe, HalfwayThroughItsFades) {
   for (const render::MeshDraw& d : state().draws.models)
     light[name_of(d)] = d.sun;
   for (int i = 0; i < 3; ++i)
-    ASSERT_TRUE(app_->frame(to, step_s));
+    ASSERT_TRUE(session_->tick(to, step_s));
   const auto as_before = [&](const render::MeshDraw& d) {
     return d.fade < 0 && light.contains(name_of(d)) && light[name_of(d)] == d.sun;
   };
@@ -99,7 +98,7 @@ TEST_F(GoldenCombe, HalfwayThroughItsFades) {
   EXPECT_GT(draws(coming), 20);
   EXPECT_GT(draws(going), 20);
   EXPECT_GT(draws(as_before), draws(going) / 2) << "what goes keeps its light";
-  expect_golden("combe_fades", captured(*app_));
+  expect_golden("combe_fades", captured(*session_));
 }
 
 }  // namespace

@@ -9,25 +9,24 @@ namespace {
 class GoldenLakes : public testing::TestWithParam<render::Preset> {};
 
 TEST_P(GoldenLakes, LieBetweenTheirHills) {
-  Options options = short_flight();
+  SessionOptions options = short_session();
   options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/lakes.toml";
-  options.path_file.clear();
   options.preset = GetParam();
   options.size = {480, 270};
   options.scene.view_distance_m = 16000;
   options.scene.budget_bytes = 512ull << 20;
-  auto app = App::create(options);
-  ASSERT_TRUE(app) << app.error().message;
+  auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
   world::PathPoint point;
   point.height_m = 60;
   point.heading_deg = 220;
   point.pitch_deg = -8;
   const core::CameraPose pose =
-      world::CameraPath({}, {point}).pose_at(0, (*app)->scene().state().facts.world);
-  (*app)->scene().settle(pose);
-  ASSERT_TRUE((*app)->frame(pose, 1.0 / 60.0));
-  expect_golden("lakes_" + std::string(render::to_string(GetParam())), captured(**app));
-  EXPECT_THAT((*app)->renderer().validation_messages(), testing::IsEmpty());
+      world::CameraPath({}, {point}).pose_at(0, (*session)->scene().state().facts.world);
+  (*session)->scene().settle(pose);
+  ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
+  expect_golden("lakes_" + std::string(render::to_string(GetParam())), captured(**session));
+  EXPECT_THAT((*session)->renderer().validation_messages(), testing::IsEmpty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, GoldenLakes,

@@ -17,14 +17,13 @@ constexpr core::BlockCoord kPlace{256, 256};  // a corner of nodes of all levels
 class GoldenLevels : public testing::TestWithParam<unsigned> {
  protected:
   void SetUp() override {
-    Options options = short_flight();
-    options.path_file.clear();
+    SessionOptions options = short_session();
     options.size = kSize;
     options.scene.view_distance_m = 16000;
     options.scene.budget_bytes = 512ull << 20;
-    auto app = App::create(options);
-    ASSERT_TRUE(app) << app.error().message;
-    app_ = std::move(*app);
+    auto session = Session::create(options);
+    ASSERT_TRUE(session) << session.error().message;
+    session_ = std::move(*session);
   }
 
   // Looks at the node of a level at kPlace from so far away (from its border).
@@ -42,7 +41,7 @@ class GoldenLevels : public testing::TestWithParam<unsigned> {
     pose.pitch = -0.1;
     return pose;
   }
-  scene::State& state() { return app_->scene().state(); }
+  scene::State& state() { return session_->scene().state(); }
 
   // The node of a level at kPlace in the cut of the last frame.
   const visibility::CutNode* node(unsigned level) {
@@ -54,12 +53,12 @@ class GoldenLevels : public testing::TestWithParam<unsigned> {
   }
 
   image::Image seen_from(const core::CameraPose& pose) {
-    app_->scene().settle(pose);
-    EXPECT_TRUE(app_->frame(pose, 1.0 / 60.0));
-    return captured(*app_);
+    session_->scene().settle(pose);
+    EXPECT_TRUE(session_->tick(pose, 1.0 / 60.0));
+    return captured(*session_);
   }
 
-  std::unique_ptr<App> app_;
+  std::unique_ptr<Session> session_;
 };
 
 void put(const image::Image& part, std::uint32_t column, image::Image& sheet) {
@@ -94,7 +93,7 @@ TEST_P(GoldenLevels, ANodeIsReplacedAsItWas) {
     EXPECT_NEAR(child->morph, morphs[i], 0.02) << distances_m[i] << " m";
   }
   expect_golden("level_" + std::to_string(level), sheet);
-  EXPECT_THAT(app_->renderer().validation_messages(), testing::IsEmpty());
+  EXPECT_THAT(session_->renderer().validation_messages(), testing::IsEmpty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Levels, GoldenLevels, testing::Range(0U, 8U));

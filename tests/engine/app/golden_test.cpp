@@ -25,21 +25,22 @@ class Golden : public testing::TestWithParam<Look> {};
 
 TEST_P(Golden, ASettledSceneLooksAsItDid) {
   const Look& look = GetParam();
-  Options options = short_flight();
+  SessionOptions options = short_session();
   options.size = {480, 270};
   options.scene.view_distance_m = 16000;
   options.scene.budget_bytes = 512ull << 20;
   options.preset = look.preset;
   options.view = look.view;
-  auto app = App::create(options);
-  ASSERT_TRUE(app) << app.error().message;
-  const auto path = world::load_camera_path(options.path_file);
+  auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  const auto path = world::load_camera_path(kWalk);
   ASSERT_TRUE(path);
-  const core::CameraPose pose = path->pose_at(look.seconds, (*app)->scene().state().facts.world);
-  (*app)->scene().settle(pose);
-  ASSERT_TRUE((*app)->frame(pose, 1.0 / 60.0));
-  expect_golden(look.name, captured(**app));
-  EXPECT_THAT((*app)->renderer().validation_messages(), testing::IsEmpty());
+  const core::CameraPose pose =
+      path->pose_at(look.seconds, (*session)->scene().state().facts.world);
+  (*session)->scene().settle(pose);
+  ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
+  expect_golden(look.name, captured(**session));
+  EXPECT_THAT((*session)->renderer().validation_messages(), testing::IsEmpty());
 }
 
 using render::Preset;

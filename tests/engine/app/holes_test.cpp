@@ -9,8 +9,8 @@
 namespace psygen::app {
 namespace {
 
-Options wide_view() {
-  Options options = short_flight();
+SessionOptions wide_view() {
+  SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 3000;
   return options;
@@ -37,7 +37,7 @@ TEST(Holes, LookingForwardAndDownFromAnyHeightTheGroundIsClosed) {
 
 // Over plains, along ridges and from above, as far as ground is drawn by the coarsest nodes.
 TEST(Holes, In16KilometresOfGroundNotASinglePixelIsOpen) {
-  Options options = wide_view();
+  SessionOptions options = wide_view();
   options.scene.view_distance_m = 16'000;
   for (const char* world : {"paper.toml", "silver_combe.toml"}) {
     Studio studio(world, options);
@@ -60,7 +60,7 @@ TEST(Holes, In16KilometresOfGroundNotASinglePixelIsOpen) {
 // Where vertices lie on sides of other triangles, single pixels of sky are seen now and then.
 TEST(Holes, InViewsOfAnyPlaceNotASinglePixelIsOpen) {
   for (const char* world : {"paper.toml", "five_species.toml"}) {
-    Options options = wide_view();
+    SessionOptions options = wide_view();
     options.scene.budget_bytes = 1ull << 30;
     Studio studio(world, options);
     core::RandomStream random(5, 0, 0, 0, core::Purpose::kParameters);
@@ -80,7 +80,7 @@ TEST(Holes, InViewsOfAnyPlaceNotASinglePixelIsOpen) {
 // Blocks that no stride divides, coarse levels near the camera, steep ground.
 TEST(Holes, OddBlocksAndCoarseLevelsOfSteepGroundLeaveNoCracks) {
   for (const char* terrain : {"feature_m = 300\nrelief_m = 300\n", "relief_m = 900\n"}) {
-    Options options = wide_view();
+    SessionOptions options = wide_view();
     options.scene.max_error_pixels = 24;
     std::string text = paper_text(0, 0, terrain);
     text.insert(text.find("[terrain]"), "block_vertices = 59\ncell_m = 1.5\n");

@@ -7,8 +7,8 @@ namespace psygen::app {
 namespace {
 
 // Coarse ground hides as much as fine.
-Options coarse_view() {
-  Options options = short_flight();
+SessionOptions coarse_view() {
+  SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 5000;
   options.scene.max_error_pixels = 12;
@@ -38,7 +38,7 @@ std::uint64_t differing(Studio& studio, const core::CameraPose& pose, std::uint3
 }
 
 TEST(Occlusion, MakesNoDifferenceOnTheWalk) {
-  const auto path = world::load_camera_path(short_flight().path_file);
+  const auto path = world::load_camera_path(kWalk);
   ASSERT_TRUE(path);
   Studio studio("paper.toml", coarse_view());
   std::uint32_t hidden = 0;

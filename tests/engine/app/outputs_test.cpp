@@ -31,8 +31,8 @@ class FileLimit {
   rlimit before_{};
 };
 
-Options flight_into(const std::filesystem::path& folder) {
-  Options options = short_flight();
+FlightOptions flight_into(const std::filesystem::path& folder) {
+  FlightOptions options = short_flight();
   options.out_folder = folder;
   options.images_every = 2;
   options.frames = 7;
@@ -52,10 +52,10 @@ std::vector<std::string> names_of(const FlightReport& report, const std::filesys
 
 TEST(Outputs, APictureThatCannotBeWrittenIsNamedAndTheFlightGoesOnWithoutAnyMore) {
   const TemporaryFolder folder;
-  auto app = App::create(flight_into(folder.path()));
-  ASSERT_TRUE(app) << app.error().message;
+  auto flight = Flight::create(flight_into(folder.path()));
+  ASSERT_TRUE(flight) << flight.error().message;
   const FileLimit limit(5000);  // less than any picture
-  const auto report = (*app)->run();
+  const auto report = (*flight)->run();
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->summary.run.frames, 7u);
   EXPECT_EQ(names_of(*report, folder.path()).front(), "frame_00000.png");
@@ -68,12 +68,12 @@ TEST(Outputs, APictureThatCannotBeWrittenIsNamedAndTheFlightGoesOnWithoutAnyMore
 
 TEST(Outputs, WhatFitsIsWrittenWhereTheRestDoesNotAndNothingIsCut) {
   const TemporaryFolder folder;
-  auto app = App::create(flight_into(folder.path()));
-  ASSERT_TRUE(app) << app.error().message;
+  auto flight = Flight::create(flight_into(folder.path()));
+  ASSERT_TRUE(flight) << flight.error().message;
   // Room for the first picture (made, written, flushed, closed, renamed, the folder flushed and
   // closed) and the begin of the next.
   const FullDisk full(folder.path(), 8);
-  const auto report = (*app)->run();
+  const auto report = (*flight)->run();
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->files, (std::vector{folder / "frame_00000.png"}));
   EXPECT_THAT(names_of(*report, folder.path()),
@@ -84,13 +84,13 @@ TEST(Outputs, WhatFitsIsWrittenWhereTheRestDoesNotAndNothingIsCut) {
 
 TEST(Outputs, ALargeFileThatDoesNotFitTakesNoSmallerOneWithIt) {
   const TemporaryFolder folder;
-  Options options = flight_into(folder.path());
+  FlightOptions options = flight_into(folder.path());
   options.images_every = 0;
-  options.scene.virtual_time = false;  // jobs are traced
-  auto app = App::create(options);
-  ASSERT_TRUE(app) << app.error().message;
+  options.session.scene.virtual_time = false;  // jobs are traced
+  auto flight = Flight::create(options);
+  ASSERT_TRUE(flight) << flight.error().message;
   const FileLimit limit(12'000);
-  const auto report = (*app)->run();
+  const auto report = (*flight)->run();
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_THAT(names_of(*report, folder.path()), testing::ElementsAre("report.html", "trace.json"));
   EXPECT_EQ(folder.file_count(), 2u);
@@ -101,13 +101,13 @@ TEST(Outputs, ALargeFileThatDoesNotFitTakesNoSmallerOneWithIt) {
 // Nothing of ours throws, but libraries do when memory ends, and so does a plugin here.
 TEST(Outputs, WhereMemoryEndsTheFlightFailsAndWhatWasMeasuredIsWritten) {
   const TemporaryFolder folder;
-  Options options = flight_into(folder.path());
-  options.plugins.push_back({"hungry", {}, {}, [frame = 0](App&, double) mutable {
-                               if (++frame == 4) throw std::bad_alloc();
-                             }});
-  auto app = App::create(options);
-  ASSERT_TRUE(app) << app.error().message;
-  const auto report = (*app)->run();
+  FlightOptions options = flight_into(folder.path());
+  options.session.plugins.push_back({"hungry", {}, {}, [frame = 0](Session&, double) mutable {
+                                       if (++frame == 4) throw std::bad_alloc();
+                                     }});
+  auto flight = Flight::create(options);
+  ASSERT_TRUE(flight) << flight.error().message;
+  const auto report = (*flight)->run();
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, core::ErrorCode::kOutOfMemory);
   EXPECT_EQ(report.error().message.find("the flight: memory ran out ("), 0u);

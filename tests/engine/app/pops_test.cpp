@@ -104,8 +104,8 @@ void expect_unseen(const Pops& pops) {
   EXPECT_GT(pops.switches, 3u);
 }
 
-Options view() {
-  Options options = short_flight();
+SessionOptions view() {
+  SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 1200;
   return options;
@@ -131,8 +131,8 @@ TEST(Pops, ClimbingNoChangeOfLevelIsSeen) {
 
 // The largest errors of a flight at 60 frames a second, as far as ground is drawn whose trees are
 // no more than its colour.
-Options coarse_view() {
-  Options options = view();
+SessionOptions coarse_view() {
+  SessionOptions options = view();
   options.scene.view_distance_m = 6500;
   options.scene.max_error_pixels = 16;
   return options;
@@ -187,7 +187,7 @@ Pops fly_while_coarsening(Studio& studio, const core::CameraPose& pose, glm::dve
 }
 
 TEST(Pops, WhileTheGovernorCoarsensNoChangeOfLevelIsSeen) {
-  Options options = coarse_view();
+  SessionOptions options = coarse_view();
   options.scene.max_error_pixels = 2;
   options.scene.max_error_factor = 4;
   options.target_hz = 60;

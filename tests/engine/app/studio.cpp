@@ -28,9 +28,9 @@ image::Image Studio::drawn_again(const render::Light& light,
   frame.block_size_m = s.facts.world.block_size_m();
   frame.terrain = terrain;
   frame.models = models;
-  const auto drawn = app_->renderer().render(frame);
+  const auto drawn = session_->renderer().render(frame);
   EXPECT_TRUE(drawn) << drawn.error().message;
-  auto picture = app_->renderer().capture();
+  auto picture = session_->renderer().capture();
   if (!picture) {
     ADD_FAILURE() << picture.error().message;
     return {};

@@ -23,8 +23,7 @@ inline std::string paper_text(int blocks_x, int blocks_z, const std::string& ter
 class Studio {
  public:
   // `world` is a file of game/worlds, or the text of one.
-  Studio(const std::string& world, Options options) {
-    options.path_file.clear();
+  Studio(const std::string& world, SessionOptions options) {
     options.world_file = std::filesystem::path(PSYGEN_SOURCE_DIR "/game/worlds") / world;
     if (world.find('\n') != std::string::npos) {
       const std::filesystem::path folder = fresh_folder();
@@ -32,16 +31,16 @@ class Studio {
       options.world_file = folder / "world.toml";
       std::ofstream(options.world_file) << world;
     }
-    auto app = App::create(options);
-    EXPECT_TRUE(app) << app.error().message;
-    app_ = std::move(*app);
+    auto session = Session::create(options);
+    EXPECT_TRUE(session) << session.error().message;
+    session_ = std::move(*session);
   }
 
-  scene::Scene& scene() { return app_->scene(); }
-  scene::State& state() { return app_->scene().state(); }
-  const scene::State& state() const { return app_->scene().state(); }
-  std::uint32_t width() { return app_->renderer().size().width; }
-  std::uint32_t height() { return app_->renderer().size().height; }
+  scene::Scene& scene() { return session_->scene(); }
+  scene::State& state() { return session_->scene().state(); }
+  const scene::State& state() const { return session_->scene().state(); }
+  std::uint32_t width() { return session_->renderer().size().width; }
+  std::uint32_t height() { return session_->renderer().size().height; }
 
   // A pose so high above the ground at a place of a block.
   core::CameraPose above(core::BlockCoord block, double x, double z, double height_m, double yaw,
@@ -69,7 +68,7 @@ class Studio {
     draw(pose);
   }
   void draw(const core::CameraPose& pose) {
-    const auto drawn = app_->frame(pose, 1.0 / 60.0);
+    const auto drawn = session_->tick(pose, 1.0 / 60.0);
     ASSERT_TRUE(drawn) << drawn.error().message;
   }
   // What the last frame drew, with clouds and wind standing still.
@@ -113,7 +112,7 @@ class Studio {
   image::Image ground_under(float haze_colour);
   bool is_hole(const glm::dvec3& direction);
 
-  std::unique_ptr<App> app_;
+  std::unique_ptr<Session> session_;
 };
 
 }  // namespace psygen::app

@@ -27,14 +27,14 @@ class WindowFlight : public ::testing::Test {
   }
 
   // In a window, along a path of half a second at 30 frames a second.
-  Options options() {
-    Options made = short_flight();
-    made.headless = false;
-    made.vsync = false;
+  FlightOptions options() {
+    FlightOptions made = short_flight();
+    made.session.headless = false;
+    made.session.vsync = false;
     made.frames = 0;
-    made.scene.view_distance_m = 64;
+    made.session.scene.view_distance_m = 64;
     made.out_folder = folder_;
-    made.stop = &stop_;
+    made.session.stop = &stop_;
     made.path_file = folder_ / "path.toml";
     std::ofstream(made.path_file) << "format = 1\n[path]\nname = \"short\"\n"
                                   << "origin_block = [256, 256]\n"
@@ -46,9 +46,9 @@ class WindowFlight : public ::testing::Test {
     return display_->xdotool({"search", "--sync", "--onlyvisible", "--name", "psygen: paper",
                               "windowactivate", "--sync", "key", key});
   }
-  static std::string notices(App& app) {
+  static std::string notices(Session& session) {
     std::string text;
-    for (const render::TextPanel& panel : app.scene().state().input.panels) {
+    for (const render::TextPanel& panel : session.scene().state().input.panels) {
       for (const render::TextLine& line : panel.lines)
         if (panel.anchor == render::Anchor::kBottom) text += line.text + "\n";
     }
@@ -59,33 +59,34 @@ class WindowFlight : public ::testing::Test {
   // was not ready for is pressed again.
   struct Step {
     const char* key;
-    std::function<bool(App&)> done;
+    std::function<bool(Session&)> done;
   };
   // Flies until all steps are done or too many frames have passed.
-  void do_steps(Options made, std::vector<Step> steps) {
+  void do_steps(FlightOptions made, std::vector<Step> steps) {
     constexpr std::uint64_t kFramesForAKey = 400;
     std::size_t next = 0;
     std::uint64_t frames = 0, pressed = kFramesForAKey;
-    made.plugins.push_back({"person",
-                            {},
-                            {},
-                            [&](App& app, double) {
-                              ++frames;
-                              if (next < steps.size() && pressed < kFramesForAKey &&
-                                  steps[next].done(app)) {
-                                ++next;
-                                pressed = kFramesForAKey;
-                              }
-                              if (next == steps.size() || frames > kMostFrames) stop_ = true;
-                              if (!stop_ && pressed++ >= kFramesForAKey) {
-                                EXPECT_TRUE(press(steps[next].key));
-                                pressed = 0;
-                              }
-                            },
-                            {}});
-    auto app = App::create(made);
-    ASSERT_TRUE(app) << app.error().message;
-    const auto report = (*app)->run();
+    made.session.plugins.push_back({"person",
+                                    {},
+                                    {},
+                                    [&](Session& session, double) {
+                                      ++frames;
+                                      if (next < steps.size() && pressed < kFramesForAKey &&
+                                          steps[next].done(session)) {
+                                        ++next;
+                                        pressed = kFramesForAKey;
+                                      }
+                                      if (next == steps.size() || frames > kMostFrames)
+                                        stop_ = true;
+                                      if (!stop_ && pressed++ >= kFramesForAKey) {
+                                        EXPECT_TRUE(press(steps[next].key));
+                                        pressed = 0;
+                                      }
+                                    },
+                                    {}});
+    auto flight = Flight::create(made);
+    ASSERT_TRUE(flight) << flight.error().message;
+    const auto report = (*flight)->run();
     ASSERT_TRUE(report) << report.error().message;
     EXPECT_THAT(report->validation_messages, IsEmpty());
     EXPECT_EQ(next, steps.size()) << (next < steps.size() ? steps[next].key : "");
@@ -97,32 +98,35 @@ class WindowFlight : public ::testing::Test {
 };
 
 TEST_F(WindowFlight, TheWindowStaysWhenThePathHasEndedAndTheReportIsThatOfTheFlight) {
-  Options made = options();
+  FlightOptions made = options();
   made.images_every = 10;
   int ends = 0;
   std::uint64_t frames = 0, frames_at_end = 0;
+  const Flight* flown = nullptr;
   std::string told;
-  made.plugins.push_back({"watch",
-                          {},
-                          {},
-                          [&](App& app, double) {
-                            ++frames;
-                            EXPECT_EQ(app.flying(), ends == 0);
-                            if (ends > 0) told = notices(app);
-                            if (frames == frames_at_end + 25) stop_ = true;
-                          },
-                          [&](App&, const FlightReport& report) {
-                            ++ends;
-                            frames_at_end = frames;
-                            EXPECT_EQ(report.summary.run.frames, 15u);
-                            for (const char* name : {"frames.csv", "summary.json", "trace.json",
-                                                     "report.html", "frame_00010.png"}) {
-                              EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
-                            }
-                          }});
-  const auto app = App::create(made);
-  ASSERT_TRUE(app) << app.error().message;
-  const auto report = (*app)->run();
+  made.session.plugins.push_back(
+      {"watch",
+       {},
+       {},
+       [&](Session& session, double) {
+         ++frames;
+         EXPECT_EQ(flown->is_recorded(), ends == 0);
+         if (ends > 0) told = notices(session);
+         if (frames == frames_at_end + 25) stop_ = true;
+       },
+       [&](Session&, const FlightReport& report) {
+         ++ends;
+         frames_at_end = frames;
+         EXPECT_EQ(report.summary.run.frames, 15u);
+         for (const char* name :
+              {"frames.csv", "summary.json", "trace.json", "report.html", "frame_00010.png"}) {
+           EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+         }
+       }});
+  const auto flight = Flight::create(made);
+  ASSERT_TRUE(flight) << flight.error().message;
+  flown = flight->get();
+  const auto report = (*flight)->run();
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(ends, 1);
   EXPECT_EQ(frames_at_end, 15u);
@@ -136,37 +140,37 @@ TEST_F(WindowFlight, TheWindowStaysWhenThePathHasEndedAndTheReportIsThatOfTheFli
 
 TEST_F(WindowFlight, TheWindowClosesAtTheEndOfSecondsAndFramesThatWereGiven) {
   for (const bool seconds : {true, false}) {
-    Options made = options();
+    FlightOptions made = options();
     made.seconds = seconds ? 0.2 : 0;
     made.frames = seconds ? 0 : 6;
-    const auto app = App::create(made);
-    ASSERT_TRUE(app) << app.error().message;
-    const auto report = (*app)->run();
+    const auto flight = Flight::create(made);
+    ASSERT_TRUE(flight) << flight.error().message;
+    const auto report = (*flight)->run();
     ASSERT_TRUE(report) << report.error().message;
     EXPECT_EQ(report->summary.run.frames, 6u);
   }
 }
 
 TEST_F(WindowFlight, OutputsThatCannotBeWrittenAreToldInTheWindowAndInTheReport) {
-  Options made = options();
+  FlightOptions made = options();
   std::string told;
   std::uint64_t frames = 0;
-  made.plugins.push_back({"watch",
-                          {},
-                          {},
-                          [&](App& app, double) {
-                            if (++frames == 5) {  // in the way of a file
-                              std::filesystem::create_directories(folder_ / "frames.csv");
-                            }
-                            if (frames == 20) {
-                              told = notices(app);
-                              stop_ = true;
-                            }
-                          },
-                          {}});
-  const auto app = App::create(made);
-  ASSERT_TRUE(app) << app.error().message;
-  const auto report = (*app)->run();
+  made.session.plugins.push_back({"watch",
+                                  {},
+                                  {},
+                                  [&](Session& session, double) {
+                                    if (++frames == 5) {  // in the way of a file
+                                      std::filesystem::create_directories(folder_ / "frames.csv");
+                                    }
+                                    if (frames == 20) {
+                                      told = notices(session);
+                                      stop_ = true;
+                                    }
+                                  },
+                                  {}});
+  const auto flight = Flight::create(made);
+  ASSERT_TRUE(flight) << flight.error().message;
+  const auto report = (*flight)->run();
   ASSERT_TRUE(report) << report.error().message;
   ASSERT_EQ(report->failures.size(), 1u);
   EXPECT_EQ(report->failures[0].code, core::ErrorCode::kIo);
@@ -176,11 +180,11 @@ TEST_F(WindowFlight, OutputsThatCannotBeWrittenAreToldInTheWindowAndInTheReport)
 
 TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
   const auto view_is = [](render::View view) {
-    return [view](App& app) { return app.scene().state().input.view == view; };
+    return [view](Session& session) { return session.scene().state().input.view == view; };
   };
   const auto text_has = [](render::Anchor anchor, const char* words) {
-    return [=](App& app) {
-      for (const render::TextPanel& panel : app.scene().state().input.panels) {
+    return [=](Session& session) {
+      for (const render::TextPanel& panel : session.scene().state().input.panels) {
         for (const render::TextLine& line : panel.lines)
           if (panel.anchor == anchor && line.text.find(words) != std::string::npos) return true;
       }
@@ -188,38 +192,41 @@ TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
     };
   };
   const auto preset_is = [](render::Preset preset) {
-    return [preset](App& app) {
-      return app.renderer().preset() == preset &&
-             app.scene().state().facts.shadows == app.renderer().casts_shadows();
+    return [preset](Session& session) {
+      return session.renderer().preset() == preset &&
+             session.scene().state().facts.shadows == session.renderer().casts_shadows();
     };
   };
   const auto size_is = [](core::Extent size) {
-    return [size](App& app) { return app.renderer().size() == size; };
+    return [size](Session& session) { return session.renderer().size() == size; };
   };
   using render::Anchor;
-  Options made = options();
-  made.preset = render::Preset::kMedium;
-  do_steps(made, {{"F1", text_has(Anchor::kTopLeft, "full screen")},
-                  {"F1", [](App& app) { return app.scene().state().input.panels.size() == 2; }},
-                  {"F1", text_has(Anchor::kTopLeft, "preset medium")},
-                  {"F2", view_is(render::View::kLevels)},
-                  {"F2", view_is(render::View::kLayers)},
-                  {"F2", text_has(Anchor::kTopRight, "view: bounds")},
-                  {"F11", size_is({1280, 1024})},
-                  {"F11", size_is({320, 180})},
-                  {"F12", text_has(Anchor::kBottom, "screenshot_0000.png")},
-                  {"F3", preset_is(render::Preset::kHigh)},
-                  {"F1", text_has(Anchor::kBottom, "preset high")}});
+  FlightOptions made = options();
+  made.session.preset = render::Preset::kMedium;
+  do_steps(
+      made,
+      {{"F1", text_has(Anchor::kTopLeft, "full screen")},
+       {"F1", [](Session& session) { return session.scene().state().input.panels.size() == 2; }},
+       {"F1", text_has(Anchor::kTopLeft, "preset medium")},
+       {"F2", view_is(render::View::kLevels)},
+       {"F2", view_is(render::View::kLayers)},
+       {"F2", text_has(Anchor::kTopRight, "view: bounds")},
+       {"F11", size_is({1280, 1024})},
+       {"F11", size_is({320, 180})},
+       {"F12", text_has(Anchor::kBottom, "screenshot_0000.png")},
+       {"F3", preset_is(render::Preset::kHigh)},
+       {"F1", text_has(Anchor::kBottom, "preset high")}});
   EXPECT_TRUE(std::filesystem::exists(folder_ / "screenshot_0000.png"));
 }
 
 TEST_F(WindowFlight, APictureThatCannotBeWrittenIsToldOnTheScreen) {
   const std::filesystem::path moved = folder_.string() + "_moved";
   std::filesystem::remove_all(moved);
-  Options made = options();
-  made.plugins.push_back({"mover", {}, [&](App&) { std::filesystem::rename(folder_, moved); }, {}});
-  do_steps(made, {{"F12", [&](App& app) {
-                     const bool told = notices(app).starts_with("no picture was written: ");
+  FlightOptions made = options();
+  made.session.plugins.push_back(
+      {"mover", {}, [&](Session&) { std::filesystem::rename(folder_, moved); }, {}});
+  do_steps(made, {{"F12", [&](Session& session) {
+                     const bool told = notices(session).starts_with("no picture was written: ");
                      if (told) std::filesystem::rename(moved, folder_);
                      return told;
                    }}});
@@ -227,34 +234,36 @@ TEST_F(WindowFlight, APictureThatCannotBeWrittenIsToldOnTheScreen) {
 
 TEST_F(WindowFlight, ClosingWhileTheCacheIsFilledEndsAtOnceAndIsNoFlight) {
   scene::Gate gate;
-  Options made = options();
-  made.scene.virtual_time = false;  // modelers are real, and wait at the gate
-  made.scene.watchdog_seconds = 1e6;
-  made.world_file = folder_ / "slow.toml";
-  std::ofstream(made.world_file) << "format = 1\n[world]\nname = \"paper\"\nseed = 1\n"
-                                 << "blocks = [512, 512]\n[[scatter]]\nmodel = \"slow_rock\"\n"
-                                 << "count = 40\n";
+  FlightOptions made = options();
+  made.session.scene.virtual_time = false;  // modelers are real, and wait at the gate
+  made.session.scene.watchdog_seconds = 1e6;
+  made.session.world_file = folder_ / "slow.toml";
+  std::ofstream(made.session.world_file)
+      << "format = 1\n[world]\nname = \"paper\"\nseed = 1\n"
+      << "blocks = [512, 512]\n[[scatter]]\nmodel = \"slow_rock\"\n"
+      << "count = 40\n";
   models::Registry standard = models::make_standard_registry();
   const auto rock = static_cast<models::ModelIndex>(standard.find("rock"));
-  made.plugins.push_back({"slow",
-                          [&](models::Registry& registry) -> core::Result<void> {
-                            const auto added = registry.add(std::make_unique<scene::SlowType>(
-                                "slow_rock", standard[rock], gate));
-                            if (!added) return tl::unexpected(added.error());
-                            return {};
-                          },
-                          [](App&) { ADD_FAILURE() << "the flight began"; },
-                          {},
-                          {}});
-  auto app = App::create(made);
-  ASSERT_TRUE(app) << app.error().message;
+  made.session.plugins.push_back(
+      {"slow",
+       [&](models::Registry& registry) -> core::Result<void> {
+         const auto added =
+             registry.add(std::make_unique<scene::SlowType>("slow_rock", standard[rock], gate));
+         if (!added) return tl::unexpected(added.error());
+         return {};
+       },
+       [](Session&) { ADD_FAILURE() << "the flight began"; },
+       {},
+       {}});
+  auto flight = Flight::create(made);
+  ASSERT_TRUE(flight) << flight.error().message;
   gate.set_open(false);  // from here on nothing is ever finished
   std::atomic<bool> ended{false};
   std::thread person([&] {
     while (!ended)
       press("alt+F4");
   });
-  const auto report = (*app)->run();
+  const auto report = (*flight)->run();
   ended = true;
   person.join();
   gate.set_open(true);

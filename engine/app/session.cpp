@@ -1,28 +1,28 @@
-#include "engine/app/app.hpp"
+#include "engine/app/session.hpp"
 
 #include <fmt/format.h>
 
+#include "engine/app/loading.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/render_path.hpp"
-#include "engine/telemetry/output_file.hpp"
-#include "engine/world/files/path_file.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::app {
 namespace {
 
-constexpr double kEyeHeightM = 25.0;
-constexpr double kWindowHz = 60;  // held in windows unless the options say otherwise
+constexpr double kHomeHeightM = 25.0;          // of the camera that nobody has moved
+constexpr double kWindowHz = 60;               // held in windows unless the options say otherwise
+constexpr double kMinimisedWaitSeconds = 0.1;  // between looks at a minimised window
 
 tl::unexpected<core::Error> closed_early() {
   return core::fail(core::ErrorCode::kInterrupted, "the window was closed before the first frame");
 }
 
-core::Result<void> set_hour(const Options& options, world::World& world) {
+core::Result<void> set_hour(const SessionOptions& options, world::World& world) {
   if (!options.start_hour) return {};
   if (!(*options.start_hour >= 0 && *options.start_hour <= 24))
     return core::fail(core::ErrorCode::kInvalidArgument, "an hour of the day is between 0 and 24");
@@ -50,36 +50,23 @@ core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins)
 
 }  // namespace
 
-App::App(Options options) : options_(std::move(options)) {}
+Session::~Session() = default;
 
-App::~App() {
-  scene_.reset();  // its cache gives ranges back to the renderer
-  renderer_.reset();
-  window_.reset();
-}
-
-core::Result<std::unique_ptr<App>> App::create(Options options) {
-  std::unique_ptr<App> app(new App(std::move(options)));
-  const auto opened = core::within_memory("starting the flight", [&app] { return app->open(); });
+core::Result<std::unique_ptr<Session>> Session::create(SessionOptions options) {
+  std::unique_ptr<Session> session(new Session(std::move(options)));
+  const auto opened =
+      core::within_memory("starting the session", [&session] { return session->open(); });
   if (!opened) return tl::unexpected(opened.error());
-  return app;
+  return session;
 }
 
-core::Result<void> App::open() {
-  if (!options_.out_folder.empty()) {
-    if (auto ok = telemetry::create_output_folder(options_.out_folder); !ok) return ok;
-  }
+core::Result<void> Session::open() {
   if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
   if (!registry) return tl::unexpected(registry.error());
   auto world = world::load_world(options_.world_file, *registry);
   if (!world) return tl::unexpected(world.error());
   if (auto ok = set_hour(options_, *world); !ok) return ok;
-  if (!options_.path_file.empty()) {
-    auto path = world::load_camera_path(options_.path_file);
-    if (!path) return tl::unexpected(path.error());
-    path_ = std::move(*path);
-  }
   const std::string title = "psygen: " + world->name;
   if (auto ok = open_window(title); !ok) return ok;
   Loading loading(title, window_.get(), options_.stop);
@@ -87,7 +74,7 @@ core::Result<void> App::open() {
   return open_scene(std::move(*world), std::move(*registry), loading);
 }
 
-core::Result<void> App::open_window(const std::string& title) {
+core::Result<void> Session::open_window(const std::string& title) {
   if (options_.headless) return {};
   auto window = platform::Window::create({title, options_.size, true});
   if (!window) {
@@ -98,7 +85,7 @@ core::Result<void> App::open_window(const std::string& title) {
   return {};
 }
 
-core::Result<void> App::open_renderer(Loading& loading) {
+core::Result<void> Session::open_renderer(Loading& loading) {
   render::RendererOptions render_options;
   render_options.device_name = options_.device_name;
   render_options.validation = options_.validation;
@@ -122,11 +109,11 @@ core::Result<void> App::open_renderer(Loading& loading) {
   return {};
 }
 
-core::Result<void> App::open_scene(world::World world, models::Registry registry,
-                                   Loading& loading) {
+core::Result<void> Session::open_scene(world::World world, models::Registry registry,
+                                       Loading& loading) {
   const double target_hz = options_.target_hz.value_or(options_.headless ? 0 : kWindowHz);
   options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;
-  trace_ = std::make_unique<telemetry::TraceLog>();
+  if (options_.trace) trace_ = std::make_unique<telemetry::TraceLog>();
   auto scene =
       scene::Scene::create(std::move(world), std::move(registry), options_.scene, renderer_.get(),
                            trace_.get(), [&](std::string_view label, double fraction) {
@@ -142,16 +129,10 @@ core::Result<void> App::open_scene(world::World world, models::Registry registry
                                costs.seconds, costs.fit_error_percent_p50));
   }
   scene_->state().input.view = options_.view;
-  pose_ = home();
-
-  std::vector<std::string> systems;
-  for (const ecs::SystemInfo& system : scene_->state().tick.systems())
-    systems.push_back(system.name);
-  log_ = std::make_unique<telemetry::FrameLog>(std::move(systems));
   return {};
 }
 
-core::CameraPose App::home() const {
+core::CameraPose Session::home() const {
   const world::World& world = scene_->state().facts.world;
   core::CameraPose pose;
   pose.position.block = {static_cast<std::int32_t>(world.blocks_x / 2),
@@ -159,12 +140,13 @@ core::CameraPose App::home() const {
   const double middle_m = world.block_size_m() / 2;
   pose.position.local = {middle_m, 0.0, middle_m};
   pose.position.local.y =
-      models::ground_height_m(world.terrain, pose.position.block, middle_m, middle_m) + kEyeHeightM;
+      models::ground_height_m(world.terrain, pose.position.block, middle_m, middle_m) +
+      kHomeHeightM;
   pose.pitch = -0.12;
   return pose;
 }
 
-core::Result<void> App::prepare(const core::CameraPose& first) {
+core::Result<void> Session::prepare(const core::CameraPose& first) {
   Loading loading("psygen: " + scene_->state().facts.world.name, window_.get(), options_.stop);
   const auto progress = [&](std::string_view label, double fraction) {
     return loading.update(label, fraction, renderer_.get());
@@ -190,15 +172,44 @@ core::Result<void> App::prepare(const core::CameraPose& first) {
 }
 
 // The renderer knows a window's size only from the first frame on.
-core::Extent App::picture_size() const {
+core::Extent Session::picture_size() const {
   return window_ ? window_->framebuffer_size() : renderer_->size();
 }
 
-bool App::has_hung_modelers() const {
+bool Session::has_hung_modelers() const {
   return !scene_->state().meshes.hung().empty();
 }
 
-core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
+bool Session::poll() {
+  if (!window_) return !over();
+  take_events();
+  while (picture_size() == core::Extent{} && !over()) {
+    window_->wait_events(kMinimisedWaitSeconds);
+    take_events();
+  }
+  return !over();
+}
+
+void Session::take_events() {
+  input_ = window_->poll();
+  if (input_.resized) {
+    if (auto ok = renderer_->resize(window_->framebuffer_size()); !ok) {
+      core::log_error(ok.error().message);
+      closed_ = true;
+    }
+  }
+  if (window_->should_close()) closed_ = true;
+}
+
+void Session::start() {
+  if (std::exchange(started_, true)) return;
+  for (const Plugin& plugin : options_.plugins) {
+    if (plugin.on_start) plugin.on_start(*this);
+  }
+}
+
+core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
+  start();
   scene::State& state = scene_->state();
   state.input.pose = pose;
   state.input.size = picture_size();
@@ -211,28 +222,39 @@ core::Result<void> App::frame(const core::CameraPose& pose, double dt_s) {
   return {};
 }
 
-core::Result<image::Image> App::last_picture() {
+core::Result<image::Image> Session::picture() {
   auto picture = renderer_->capture();
   if (!picture) return tl::unexpected(picture.error());
   return image::Image{picture->width, picture->height, std::move(picture->rgba)};
 }
 
-core::Result<void> App::write_picture(const std::filesystem::path& file,
-                                      const image::Image& image) {
+core::Result<void> Session::write_picture(const std::filesystem::path& file,
+                                          const image::Image& image) {
   const double start_s = core::monotonic_seconds();
   auto written = image::write_png(file, image);
-  trace_->add_span(scene_->state().trace.main, trace_->intern("write a picture"), start_s,
-                   core::monotonic_seconds());
+  if (trace_) {
+    trace_->add_span(scene_->state().trace.main, trace_->intern("write a picture"), start_s,
+                     core::monotonic_seconds());
+  }
   return written;
 }
 
-core::Result<void> App::save_picture(const std::filesystem::path& file) {
-  pictured_ = true;
-  const auto image = last_picture();
+core::Result<void> Session::save_picture(const std::filesystem::path& file) {
+  const auto image = picture();
   if (!image) return tl::unexpected(image.error());
   if (auto ok = write_picture(file, *image); !ok) return ok;
-  files_.push_back(file);
+  saved_.push_back(file);
   return {};
+}
+
+core::Result<void> Session::set_preset(render::Preset preset) {
+  auto changed = renderer_->set_preset(preset, [this](double) {
+    if (!window_) return !stopped();
+    window_->keep_alive();
+    return !window_->should_close() && !stopped();
+  });
+  if (changed) scene_->take_over_preset();
+  return changed;
 }
 
 }  // namespace psygen::app

@@ -1,0 +1,105 @@
+// A running engine: window or headless, input, renderer and scene. A program with a loop of its own
+// drives one:
+//   while (session.poll()) session.tick(pose, dt_s);
+// A session handles closing, resizing and minimising of its window, and knows no keys. It flies no
+// path and writes no figures: that is a Flight. Main thread only.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "engine/app/options.hpp"
+#include "engine/image/image.hpp"
+#include "engine/platform/window.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/telemetry/trace_log.hpp"
+
+namespace psygen::app {
+
+class Loading;
+
+class Session {
+ public:
+  // Reads the world, opens device and window, starts the modelers. Every failure is a sentence:
+  // kParse for files, kNoDevice for a missing device or display, kOverBudget, kInvalidArgument,
+  // kIo; kInterrupted where the window was closed meanwhile.
+  static core::Result<std::unique_ptr<Session>> create(SessionOptions options);
+  ~Session();
+
+  // Makes what the first tick with this pose needs, as the paradigm says: fills the cache, or
+  // amplifies. Ends early once SessionOptions::stop is set; kInterrupted once the window was
+  // closed.
+  core::Result<void> prepare(const core::CameraPose& first);
+
+  // Takes the events of the window: input(), its size, its end. Waits while it is minimised. False
+  // once the session is over: close(), a closed window, or SessionOptions::stop.
+  bool poll();
+  // One frame with a pose: runs the systems, draws and presents. Then moves the clock on by `dt_s`
+  // and calls the plugins. Fails with kDeviceLost and the like; the session is over then.
+  core::Result<void> tick(const core::CameraPose& pose, double dt_s);
+  // The next poll() is the last.
+  void close() { closed_ = true; }
+  bool over() const { return closed_ || stopped(); }
+  // Whether SessionOptions::stop is set.
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  // What the user did since the last poll but one. Nothing when headless.
+  const platform::InputState& input() const { return input_; }
+  // The clock: seconds, at which the next tick is drawn.
+  double now_s() const { return scene_->state().clock.now_s; }
+  void set_now(double now_s) { scene_->state().clock.now_s = now_s; }
+  // Pixels of the next picture; {0, 0} while the window is minimised.
+  core::Extent picture_size() const;
+
+  // The picture of the last tick.
+  core::Result<image::Image> picture();
+  // The same as a PNG.
+  core::Result<void> save_picture(const std::filesystem::path& file);
+  core::Result<void> write_picture(const std::filesystem::path& file, const image::Image& image);
+  // What save_picture() has written since the last call.
+  std::vector<std::filesystem::path> take_saved() { return std::exchange(saved_, {}); }
+
+  // Draws with another preset from the next tick on. The window stays alive meanwhile. Fails as
+  // Renderer::set_preset(), also where the session ended meanwhile; the old one stays then.
+  core::Result<void> set_preset(render::Preset preset);
+
+  // Where the camera stands when nobody has moved it: above the ground in the middle of the world.
+  core::CameraPose home() const;
+  scene::Scene& scene() { return *scene_; }
+  const scene::Scene& scene() const { return *scene_; }
+  render::Renderer& renderer() { return *renderer_; }
+  // Null when headless.
+  platform::Window* window() { return window_.get(); }
+  // Null without SessionOptions::trace.
+  telemetry::TraceLog* trace() { return trace_.get(); }
+  const SessionOptions& options() const { return options_; }
+
+  // A model hangs and its modeler still writes: a program in this state should leave through
+  // std::_Exit, because the modeler's memory must not be torn down.
+  bool has_hung_modelers() const;
+
+ private:
+  explicit Session(SessionOptions options) : options_(std::move(options)) {}
+  core::Result<void> open();
+  core::Result<void> open_window(const std::string& title);
+  core::Result<void> open_renderer(Loading& loading);
+  core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
+  void take_events();
+  void start();
+
+  SessionOptions options_;
+  // Destroyed in the opposite order: the scene gives its memory back to the renderer.
+  std::unique_ptr<platform::Window> window_;
+  std::unique_ptr<render::Renderer> renderer_;
+  std::unique_ptr<telemetry::TraceLog> trace_;
+  std::unique_ptr<scene::Scene> scene_;
+  platform::InputState input_;
+  bool closed_ = false;
+  bool started_ = false;
+  std::vector<std::filesystem::path> saved_;
+};
+
+}  // namespace psygen::app
