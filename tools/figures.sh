@@ -1,7 +1,7 @@
 #!/bin/sh
-# Measures what docs/performance.md lists under "What was to be reached": the flights, where they
-# end in the middle, far away and in a huge world, and the benchmarks of PLP and of the tick without
-# drawing. Wants a machine with nothing else running, and some twelve minutes.
+# Measures what docs/performance.md lists under "Targets": the flights (also cut short, far away and
+# in a huge world) and the benchmarks of PLP and of the tick without drawing. Takes some twelve
+# minutes and needs a machine with nothing else running.
 #
 # usage: tools/figures.sh [OUT]        (a folder, default out/figures; needs preset release built)
 set -eu
