@@ -50,7 +50,7 @@ def program_differences(root):
 def undescribed_options(root):
     described = (root / "docs/cli.md").read_text(encoding="utf-8")
     sections = dict(re.findall(r"^## psygen (\w+)\n(.*?)(?=^## |\Z)", described, re.S | re.M))
-    sources = sorted((root / "game").glob("*_command.cpp"))
+    sources = sorted((root / "engine/cli").glob("*_command.cpp"))
     assert len(sources) > 2, "the scan found too few commands to mean anything"
     for source in sources:
         command = source.name.removesuffix("_command.cpp")

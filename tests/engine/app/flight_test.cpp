@@ -89,7 +89,7 @@ TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
       {"photographer", {}, {}, [&](Session& session, double) {
          governed_ms.push_back(session.scene().state().input.frame_ms);
          if (governed_ms.size() != 6) return;
-         EXPECT_TRUE(flight.save_picture(options.out_folder / "picture.png"));
+         EXPECT_TRUE(session.save_picture(options.out_folder / "picture.png"));
        }});
   fly(options);
   const auto rows = read_frames(options.out_folder / "frames.csv");
