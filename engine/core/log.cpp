@@ -26,8 +26,5 @@ void log_warning(std::string_view message) {
 void log_error(std::string_view message) {
   logger().error(shown(message));
 }
-void set_log_quiet(bool quiet) {
-  logger().set_level(quiet ? spdlog::level::warn : spdlog::level::info);
-}
 
 }  // namespace psygen::core

@@ -10,7 +10,5 @@ namespace psygen::core {
 void log_info(std::string_view message);
 void log_warning(std::string_view message);
 void log_error(std::string_view message);
-// true: only warnings and errors from now on. false: everything again.
-void set_log_quiet(bool quiet);
 
 }  // namespace psygen::core

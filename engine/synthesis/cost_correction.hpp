@@ -57,7 +57,6 @@ class CostCorrection {
   // The curve was measured on this machine: one observation says little against it.
   void trust_curve() { count_ = kTrusted; }
   double factor() const { return factor_; }
-  const ColdSeconds& cold() const { return cold_; }
 
   // A request that took `seconds` where the curve says `curve_s`, both above 0; `shared` knows of
   // other levels with the same code.

@@ -233,19 +233,6 @@ void GeometryCache::remember_failure(Slot slot, std::string reason) {
   }
 }
 
-void GeometryCache::forget_failures() {
-  std::deque<MeshHandle> kept;
-  for (const MeshHandle handle : failure_order_) {
-    if (records_[handle.slot].still_writing) {
-      kept.push_back(handle);
-    } else {
-      --stats_.failed;
-      free_slot(handle.slot);
-    }
-  }
-  failure_order_ = std::move(kept);
-}
-
 Slot GeometryCache::take_slot(const MeshKey& key, std::uint64_t owner, Rank rank) {
   Slot slot = static_cast<Slot>(records_.size());
   if (free_slots_.empty()) {

@@ -125,7 +125,7 @@ class GeometryCache {
   //   kNotYet           the GPU still reads what was evicted for it
   //   kOutOfMemory      the memory refused although the budget had room; the limit is lowered
   //   kSynthesisFailed  this key failed before (the reason is in the message), or its size cannot
-  //                     be had; never retried until forget_failures()
+  //                     be had; not retried while it is remembered (kMaxFailures)
   // `size`: what the type says, where the caller has asked already.
   core::Result<MeshHandle> reserve(const MeshKey& key, const models::Parameters& parameters,
                                    std::uint64_t owner, Rank rank,
@@ -143,7 +143,6 @@ class GeometryCache {
   // Nobody needs the mesh any more: a ready one goes at once, a requested one as soon as its
   // modeler is done. Failed ones stay remembered.
   void release(MeshHandle handle);
-  void forget_failures();
 
   // Stale handles are ignored by all of these and by the four above.
   void set_rank(MeshHandle handle, Rank rank);

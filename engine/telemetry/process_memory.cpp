@@ -24,8 +24,4 @@ Measured<std::uint64_t> peak_rss_bytes() {
   return status_field("VmHWM:");
 }
 
-Measured<std::uint64_t> current_rss_bytes() {
-  return status_field("VmRSS:");
-}
-
 }  // namespace psygen::telemetry

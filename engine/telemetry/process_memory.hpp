@@ -8,8 +8,7 @@
 
 namespace psygen::telemetry {
 
-// Largest and present resident set in bytes. Missing when /proc cannot be read.
+// The largest resident set so far, in bytes. Missing when /proc cannot be read.
 Measured<std::uint64_t> peak_rss_bytes();
-Measured<std::uint64_t> current_rss_bytes();
 
 }  // namespace psygen::telemetry

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/core/assert.hpp"
-
 namespace psygen::visibility {
 namespace {
 
@@ -24,20 +22,6 @@ int choose_level(std::span<const float> level_errors_m, float distance_m, float 
   const int level = coarsest_within(level_errors_m, allowed_m);
   if (current_level < 0 || level <= current_level) return level;
   return std::max(current_level, coarsest_within(level_errors_m, allowed_m * kCoarserShare));
-}
-
-void choose_levels(std::span<const float> level_errors_m, std::uint32_t level_count,
-                   std::span<const float> distances_m, float pixels_per_radian,
-                   float max_error_pixels, std::span<std::uint8_t> levels) {
-  PSYGEN_ASSERT(distances_m.size() == levels.size(), "there is one level for each distance");
-  PSYGEN_ASSERT(level_errors_m.size() == levels.size() * level_count,
-                "there is one error for each level of each mesh");
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const int current = levels[i] == kNoCurrentLevel ? -1 : levels[i];
-    levels[i] = static_cast<std::uint8_t>(
-        choose_level(level_errors_m.subspan(i * level_count, level_count), distances_m[i],
-                     pixels_per_radian, max_error_pixels, current));
-  }
 }
 
 }  // namespace psygen::visibility

@@ -58,18 +58,13 @@ void frustum_tests_boxes(benchmark::State& state) {
 BENCHMARK(frustum_tests_boxes);
 
 void levels_are_chosen(benchmark::State& state) {
-  constexpr std::size_t kCount = 4096;
-  std::vector<float> errors, distances;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    errors.insert(errors.end(), {0.0F, 0.1F, 0.3F, 0.9F, 2.7F});
-    distances.push_back(static_cast<float>(i));
-  }
-  std::vector<std::uint8_t> levels(kCount, kNoCurrentLevel);
+  constexpr int kCount = 4096;
+  constexpr std::array kErrors{0.0F, 0.1F, 0.3F, 0.9F, 2.7F};
   for (auto _ : state) {
-    choose_levels(errors, 5, distances, 745, 2, levels);
-    benchmark::DoNotOptimize(levels.data());
+    for (int i = 0; i < kCount; ++i)
+      benchmark::DoNotOptimize(choose_level(kErrors, static_cast<float>(i), 745, 2, -1));
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kCount));
+  state.SetItemsProcessed(state.iterations() * kCount);
 }
 BENCHMARK(levels_are_chosen);
 

@@ -219,8 +219,6 @@ TEST_F(GeometryCacheTest, AFailedMeshIsRememberedWithItsReasonAndNotRetried) {
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().code, core::ErrorCode::kSynthesisFailed);
   EXPECT_EQ(again.error().message, "rock level 0 threw: too hard");
-  cache.forget_failures();
-  EXPECT_TRUE(reserve(1, hole(1)));
 }
 
 TEST_F(GeometryCacheTest, OldFailuresAreForgottenSoThatMemoryStaysBounded) {
@@ -242,7 +240,6 @@ TEST_F(GeometryCacheTest, AHungModelersDestinationStaysReservedUntilItLetsGo) {
   const MeshHandle handle = reserve(1, hole(1));
   cache.fail(handle, "hangs", true);
   EXPECT_EQ(memory.used_bytes(), kMeshBytes);
-  cache.forget_failures();
   EXPECT_EQ(cache.get(handle)->state, MeshState::kFailed);
   cache.settle(handle);
   EXPECT_EQ(memory.used_bytes(), 0u);

@@ -13,6 +13,10 @@ constexpr std::array kErrors{0.0F, 0.1F, 0.4F, 1.6F};
 constexpr float kPixelsPerRadian = 745;
 constexpr float kPixels = 2;
 
+float error_pixels(std::size_t level, float distance_m) {
+  return kErrors[level] * kPixelsPerRadian / distance_m;
+}
+
 int choose(float distance_m, int current = -1, float pixels = kPixels) {
   return choose_level(kErrors, distance_m, kPixelsPerRadian, pixels, current);
 }
@@ -20,10 +24,9 @@ int choose(float distance_m, int current = -1, float pixels = kPixels) {
 TEST(LevelChoice, TheErrorOfTheChosenLevelStaysWithinTheAllowedPixelsAndTheNextWouldNot) {
   for (float distance = 0.5F; distance < 3000; distance *= 1.03F) {
     const auto level = static_cast<std::size_t>(choose(distance));
-    EXPECT_LE(projected_size_pixels(kErrors[level], distance, kPixelsPerRadian), kPixels * 1.001F);
+    EXPECT_LE(error_pixels(level, distance), kPixels * 1.001F);
     if (level + 1 == kErrors.size()) continue;
-    EXPECT_GT(projected_size_pixels(kErrors[level + 1], distance, kPixelsPerRadian),
-              kPixels * 0.999F);
+    EXPECT_GT(error_pixels(level + 1, distance), kPixels * 0.999F);
   }
 }
 
@@ -74,24 +77,6 @@ TEST(LevelChoice, InsideOfAMeshOrAtANonsensicalDistanceTheFinestLevelIsTaken) {
 TEST(LevelChoice, AMeshOfOneLevelOrOfNoneHasLevelZero) {
   EXPECT_EQ(choose_level(std::array{0.0F}, 1e6F, kPixelsPerRadian, kPixels, -1), 0);
   EXPECT_EQ(choose_level({}, 1e6F, kPixelsPerRadian, kPixels, -1), 0);
-}
-
-TEST(LevelChoice, TheBatchChoosesLikeTheSingleFunction) {
-  std::vector<float> errors, distances;
-  std::vector<std::uint8_t> levels, expected;
-  for (int i = 0; i < 200; ++i) {
-    const float scale = 1.0F + static_cast<float>(i % 7);
-    for (const float e : kErrors)
-      errors.push_back(e * scale);
-    distances.push_back(static_cast<float>(i * i) * 0.2F);
-    levels.push_back(i % 5 == 4 ? kNoCurrentLevel : static_cast<std::uint8_t>(i % 5));
-    const int current = i % 5 == 4 ? -1 : i % 5;
-    expected.push_back(static_cast<std::uint8_t>(
-        choose_level(std::span(errors).last(kErrors.size()), distances.back(), kPixelsPerRadian,
-                     kPixels, current)));
-  }
-  choose_levels(errors, kErrors.size(), distances, kPixelsPerRadian, kPixels, levels);
-  EXPECT_EQ(levels, expected);
 }
 
 }  // namespace
