@@ -110,8 +110,8 @@ class Drawing {
   }
 
   void draw(std::uint32_t index, ecs::Entity entity) {
-    if (!entities_.alive(entity)) return;  // counted by the visibility system
     const visibility::CutNode& node = view_.cut.nodes[index];
+    if (!entities_.alive(entity)) return count_missing(node.node);
     const auto [placed, demand] =
         std::tuple(entities_.get<Placed>(entity), entities_.get<Demand>(entity));
     const Node& at = *entities_.get<Node>(entity);
@@ -140,6 +140,17 @@ class Drawing {
                corner + glm::vec3(node.side_m, at.high_m, node.side_m)},
               colour_of(shown_, facts), draws_.lines);
     }
+  }
+
+  // A node in view that has no entity yet, and no ancestor that stands for it.
+  void count_missing(const visibility::NodeCoord& node) {
+    const core::Bounds& box = facts_.levels[node.level].bounds;
+    count_seen(camera_,
+               {.center = corner_of(node) + box.center(),
+                .radius_m = glm::length(box.half_extent()),
+                .hole = true,
+                .awaits = false},
+               counters_);
   }
 
   // Of the meshes that the node and its models draw.

@@ -242,14 +242,19 @@ void streaming_system(const Settings& settings, const Rules& rules, const Camera
   const std::size_t count = all ? streaming.missing.size() : streaming.per_tick;
   core::Stopwatch spent(settings.virtual_time);
   std::vector<world::Placement> scratch;
-  for (std::size_t created = 0; created < count && !streaming.missing.empty(); ++created) {
+  std::size_t created = 0;
+  // Nodes of the coarsest level stand for all others. Without them there is a hole.
+  const auto may_wait = [&](const visibility::NodeCoord& node) {
+    const bool late = !rules.wait && spent.seconds() * 1000.0 > settings.streaming_budget_ms;
+    return node.level + std::size_t{1} < facts.levels.size() && (created >= count || late);
+  };
+  while (!streaming.missing.empty() && !may_wait(streaming.missing.back())) {
     const std::size_t before = entities.size();
     create_node(settings, facts, daylight, streaming.missing.back(), scratch, streaming, entities);
     spent.charge(kEntitySeconds * static_cast<double>(entities.size() - before));
     streaming.missing.pop_back();
     ++counters.nodes_created;
-    if (rules.wait) continue;
-    if (spent.seconds() * 1000.0 > settings.streaming_budget_ms) break;
+    ++created;
   }
   if (streaming.missing.empty()) streaming.spread_ticks = 1;
 }

@@ -8,7 +8,6 @@
 #include <span>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/scene/draws/missing.hpp"
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
@@ -152,16 +151,6 @@ void choose_cut(const Settings& settings, const Camera& camera, const WorldFacts
   visibility::select_cut(input, view.cut);
 }
 
-// A node in view that has no entity yet is a hole unless an ancestor stands for it.
-void count_missing_node(const Camera& camera, const core::Bounds& box, Counters& counters) {
-  count_seen(camera,
-             {.center = box.center(),
-              .radius_m = glm::length(box.half_extent()),
-              .hole = true,
-              .awaits = false},
-             counters);
-}
-
 // What of the cut could be drawn before this tick, and what of it is therefore drawn now, unless a
 // mesh is evicted or a hole is filled (find_ready of the render system): complete nodes; where no
 // ancestor is complete bare ground is better than nothing.
@@ -225,8 +214,7 @@ void find_hidden(const Settings& settings, const Camera& camera, const WorldFact
 }
 
 // The nodes of the cut that are in view, and those without which one of these cannot be drawn.
-void list_chosen(const Camera& camera, const Streaming& streaming, const VisibilityQuery& nodes,
-                 View& view, Counters& counters) {
+void list_chosen(const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
   const std::vector<visibility::CutNode>& cut = view.cut.nodes;
   view.chosen.clear();
   std::vector<std::uint8_t> covered(cut.size(), 0);  // an ancestor or the node itself is complete
@@ -246,13 +234,10 @@ void list_chosen(const Camera& camera, const Streaming& streaming, const Visibil
     // What is drawn in this tick is not covered, whatever stands ready: what it lacks is seen.
     const bool drawn = next < view.drawn.size() && view.drawn[next] == i;
     if (view.in_view[i] == 0 && (root || view.in_view[node.parent] == 0)) continue;
-    if (alive) {
-      view.chosen.push_back({entity, node.node.level, node.leaf, node.fine, view.in_view[i] != 0,
-                             covered_above && !drawn});
-      level.chosen[cell] = view.in_view[i] != 0 ? kInView : kBeside;
-    } else if (node.leaf && view.in_view[i] != 0 && !covered_above) {
-      count_missing_node(camera, level.bounds[cell], counters);
-    }
+    if (!alive) continue;
+    view.chosen.push_back({entity, node.node.level, node.leaf, node.fine, view.in_view[i] != 0,
+                           covered_above && !drawn});
+    level.chosen[cell] = view.in_view[i] != 0 ? kInView : kBeside;
   }
 }
 
@@ -317,7 +302,7 @@ void visibility_system(const Settings& settings, const Rules& rules, const Camer
   choose_cut(settings, camera, facts, streaming, rules.settle, view);
   find_drawn(streaming, nodes, view);
   find_hidden(settings, camera, facts, streaming, nodes, view, counters);
-  list_chosen(camera, streaming, nodes, view, counters);
+  list_chosen(streaming, nodes, view);
   write_visibility(view, streaming, nodes);
   list_others(streaming, nodes, view);
 }

@@ -55,11 +55,17 @@ class Display:
             number = pipe.readline().strip()
         self.environment = dict(os.environ, DISPLAY=f":{number}", ASAN_OPTIONS="detect_leaks=0")
         self.environment.pop("WAYLAND_DISPLAY", None)
-        self.manager = subprocess.Popen(["openbox"], env=self.environment,
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        # A window that is mapped while the manager starts may never be seen.
+        self.folder = tempfile.TemporaryDirectory()
+        started = pathlib.Path(self.folder.name, "started")
+        self.manager = subprocess.Popen(["openbox", "--startup", f"touch {started}"],
+                                        env=self.environment, stdout=subprocess.DEVNULL,
+                                        stderr=subprocess.DEVNULL)
+        wait_for("window manager", started.exists)
         return self
 
     def __exit__(self, *_):
+        self.folder.cleanup()
         for process in (self.manager, self.server):
             process.terminate()
             process.wait()

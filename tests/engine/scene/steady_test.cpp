@@ -228,6 +228,27 @@ TEST(Steady, AfterTeleportsNothingIsMissing) {
   });
 }
 
+// Coarse views have few nodes; those that stand for all others are there at once, although new
+// nodes are spread over ticks.
+TEST(Steady, AJumpShowsNoHoleWhereverItLeads) {
+  Settings settings = far_settings();
+  settings.view_distance_m = 16'000;
+  settings.max_error_pixels = 16;
+  settings.streaming_ticks = Settings{}.streaming_ticks;
+  settings.streaming_budget_ms = 0;
+  const auto scene = make_scene(settings);
+  const core::CameraPose home = pose_at(128, 128, 0.3);
+  const core::CameraPose away = pose_at(366, 318, 2.0);
+  scene->settle(home);
+  for (const core::CameraPose& pose : {home, away, home, pose_at(160, 350, 4.0), away}) {
+    for (int i = 0; i < 60; ++i) {
+      tick_at(*scene, pose);
+      EXPECT_EQ(scene->state().counters.holes, 0u) << "tick " << i;
+    }
+  }
+  expect_consistent(*scene);
+}
+
 TEST(Steady, AfterAFallFrom2000MetresNothingIsMissing) {
   fly_a_second(far_settings(), [](int i) {
     core::CameraPose pose = pose_at(256, 256, 0.6);
