@@ -18,7 +18,8 @@ void ChildLists::assign(Children& list, std::span<const Entity> handles) {
   const std::size_t old_class = class_of(list.count_);
   const std::size_t new_class = class_of(handles.size());
   const bool keeps_range = list.count_ > 0 && !handles.empty() && old_class == new_class;
-  if (list.count_ > 0 && !keeps_range) free_[old_class].push_back(list.first_);
+  const bool had_range = list.count_ > 0;
+  const std::uint32_t old_first = list.first_;
   if (!handles.empty() && !keeps_range) {
     if (free_[new_class].empty()) {
       const std::size_t length = std::size_t{1} << new_class;
@@ -32,6 +33,8 @@ void ChildLists::assign(Children& list, std::span<const Entity> handles) {
   }
   list.count_ = static_cast<std::uint32_t>(handles.size());
   std::ranges::copy(handles, handles_.begin() + list.first_);
+  // Last: a range that is free while its list still names it could be given away twice.
+  if (had_range && !keeps_range) free_[old_class].push_back(old_first);
 }
 
 }  // namespace psygen::ecs::detail

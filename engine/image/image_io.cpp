@@ -72,15 +72,14 @@ core::Result<T> with_path(const std::filesystem::path& path, core::Result<T> res
 
 // OpenImageIO and the decoders below it may throw; no exception leaves this file.
 template <class Function>
-auto without_exceptions(const std::filesystem::path& path, const Function& function)
-    -> decltype(function()) {
+auto without_exceptions(const std::filesystem::path& path, ErrorCode code,
+                        const Function& function) -> decltype(function()) {
   try {
     return function();
   } catch (const std::bad_alloc&) {
     return core::fail(ErrorCode::kOutOfMemory, core::out_of_memory(path.string()));
   } catch (const std::exception& exception) {
-    return fail_at(ErrorCode::kParse, path,
-                   std::string("cannot be processed: ") + exception.what());
+    return fail_at(code, path, std::string("cannot be processed: ") + exception.what());
   }
 }
 
@@ -91,7 +90,7 @@ core::Result<void> load_picture_libraries() {
 }
 
 core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits) {
-  return without_exceptions(path, [&]() -> core::Result<Image> {
+  return without_exceptions(path, ErrorCode::kParse, [&]() -> core::Result<Image> {
     return read_file(path, limits.max_file_bytes).and_then([&](const Bytes& bytes) {
       return checked_header(path, bytes, limits).and_then([&](const PictureHeader& header) {
         return with_path(path, picture_codec().and_then([&](const PictureCodec* codec) {
@@ -110,7 +109,7 @@ core::Result<void> write_png(const std::filesystem::path& path, const Image& ima
                    fmt::format("a picture of {} x {} pixels with {} bytes cannot be written",
                                image.width, image.height, image.rgba.size()));
   }
-  return without_exceptions(path, [&]() -> core::Result<void> {
+  return without_exceptions(path, ErrorCode::kIo, [&]() -> core::Result<void> {
     return with_path(path, picture_codec().and_then(
                                [&](const PictureCodec* codec) { return codec->encode_png(image); }))
         .and_then([&](const Bytes& bytes) { return core::replace_file(path, bytes); });
