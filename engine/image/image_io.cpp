@@ -72,8 +72,8 @@ core::Result<T> with_path(const std::filesystem::path& path, core::Result<T> res
 
 // OpenImageIO and the decoders below it may throw; no exception leaves this file.
 template <class Function>
-auto without_exceptions(const std::filesystem::path& path, ErrorCode code,
-                        const Function& function) -> decltype(function()) {
+auto without_exceptions(const std::filesystem::path& path, ErrorCode code, const Function& function)
+    -> decltype(function()) {
   try {
     return function();
   } catch (const std::bad_alloc&) {

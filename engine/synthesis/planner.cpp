@@ -179,15 +179,16 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
 }
 
 // Executes what is urgent until the time is over; the others keep their places in the plan. A model
-// that is predicted to take longer than the time that is left is never started here. What counts is
+// that is predicted to take longer than the time that is left is never started here, unless it is
+// wanted at once. What counts is
 // the prediction: memory that is touched for the first time can take as long as a hundred models,
 // and must not leave the next of them undone.
 void Planner::execute_here(SynthesisManager& manager, double seconds, PlanReport& report) {
   double left_s = seconds;
-  for (const std::size_t at : here_) {
-    Request& request = plan_[at];
+  for (const Here& here : here_) {
+    Request& request = plan_[here.at];
     const double predicted_s = request.cost.of(Warmth::kWoken);
-    if (predicted_s >= left_s) continue;
+    if (predicted_s >= left_s && !here.at_once) continue;
     manager.execute_here(request);
     left_s -= predicted_s;
     request.handle = {};

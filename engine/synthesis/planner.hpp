@@ -25,6 +25,7 @@ struct Want {
   std::uint64_t owner = 0;
   Rank rank;             // of the request; also decides what it may evict
   float deadline_s = 0;  // seconds from now until it is visible; for Policy::kDeadline
+  bool at_once = false;  // made by this thread if it may be, even beyond PlanLimits::seconds_here
 };
 
 struct PlanLimits {
@@ -94,7 +95,7 @@ class Planner {
   bool give_back_last(GeometryCache& cache, PlanReport& report);
   void add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report);
   void append(const Request& request, const Want& want, const GeometryCache& cache) {
-    if (is_urgent(want, cache)) here_.push_back(plan_.size());
+    if (is_urgent(want, cache)) here_.push_back({plan_.size(), want.at_once});
     plan_.push_back(request);
   }
   void execute_here(SynthesisManager& manager, double seconds, PlanReport& report);
@@ -108,8 +109,12 @@ class Planner {
   std::vector<Request> plan_;
   double waiting_seconds_ = 0;  // predicted, of requests that wait for room
   std::optional<RankGroup> here_up_to_;
-  std::vector<Slot> arrived_;      // of finished requests that have not landed yet, sorted
-  std::vector<std::size_t> here_;  // of plan_: executed by this thread as far as time allows
+  std::vector<Slot> arrived_;  // of finished requests that have not landed yet, sorted
+  struct Here {
+    std::size_t at;  // in plan_
+    bool at_once;
+  };
+  std::vector<Here> here_;  // executed by this thread as far as time allows
 };
 
 }  // namespace psygen::synthesis

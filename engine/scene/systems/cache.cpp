@@ -207,7 +207,9 @@ class Chooser {
       group =
           too_fine && quality_.coarsening > 1 ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
     }
-    request(row, level, group, node, distance_m);
+    // Few nodes are so coarse, and each fills much of the picture.
+    const bool root = is_ground && node.level + std::size_t{1} == facts_.levels.size();
+    request(row, level, group, hole && root, node, distance_m);
   }
 
   // The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
@@ -233,8 +235,8 @@ class Chooser {
     return kNoLevel;
   }
 
-  void request(const MeshEntity& row, std::uint8_t level, RankGroup group, const NodeView& node,
-               float distance_m) {
+  void request(const MeshEntity& row, std::uint8_t level, RankGroup group, bool at_once,
+               const NodeView& node, float distance_m) {
     const Source& source = row.source;
     Demand& demand = row.demand;
     const auto type_level = static_cast<std::uint16_t>(source.first_level + level);
@@ -257,7 +259,7 @@ class Chooser {
     }
     if (!rules_.request) return;
     meshes_.want({key, &source.parameters, owner_of(row.entity), rank_of(group, node, distance_m),
-                  node.visibility->deadline_s});
+                  node.visibility->deadline_s, at_once});
   }
 
   const Settings& settings_;

@@ -229,13 +229,14 @@ TEST(Steady, AfterTeleportsNothingIsMissing) {
 }
 
 // Coarse views have few nodes; those that stand for all others are there at once, although new
-// nodes are spread over ticks.
+// nodes are spread over ticks and the main thread has time for nothing else.
 TEST(Steady, AJumpShowsNoHoleWhereverItLeads) {
   Settings settings = far_settings();
   settings.view_distance_m = 16'000;
   settings.max_error_pixels = 16;
   settings.streaming_ticks = Settings{}.streaming_ticks;
   settings.streaming_budget_ms = 0;
+  settings.main_thread_budget_ms = 1e-9;
   const auto scene = make_scene(settings);
   const core::CameraPose home = pose_at(128, 128, 0.3);
   const core::CameraPose away = pose_at(366, 318, 2.0);

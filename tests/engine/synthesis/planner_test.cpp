@@ -383,6 +383,21 @@ TEST_F(PlannerTest, WhatIsNotMadeAtOnceKeepsItsPlaceInThePlan) {
   EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{3, 2, 1}));
 }
 
+TEST_F(PlannerTest, WhatIsWantedAtOnceIsMadeHereWhateverItTakes) {
+  limits.seconds_here = 1e-12;
+  std::vector<Want> wants = wants_of({1, 2, 3});
+  wants[1].at_once = true;
+  EXPECT_EQ(plan(wants).executed, 1u);
+  std::vector<Completion> done;
+  manager.collect(done);
+  ASSERT_EQ(done.size(), 1u);
+  EXPECT_EQ(done[0].owner, 2u);
+  limits.seconds_here = 0;
+  wants = wants_of({4});
+  wants[0].at_once = true;
+  EXPECT_EQ(plan(wants).executed, 0u) << "this thread makes nothing";
+}
+
 // Counts how often it is asked for its size: for trees that is hashing every branch.
 class AskedModel : public testing::FakeModel {
  public:
