@@ -1,6 +1,6 @@
-// The data of a draw for vertex shaders. It is in push constants (one draw per call; fastest on
-// software devices, where an indexed load is a loop over lanes), or in a buffer, indexed by the
-// first instance plus the number of the draw within a multi-draw.
+// The data of a draw for vertex shaders. With one draw per call it is in push constants. This is
+// fastest on software devices, where an indexed load is a loop over lanes. Otherwise it is in a
+// buffer, indexed by the first instance plus the number of the draw within a multi-draw.
 #ifdef PSYGEN_DRAW_PUSHED
 layout(push_constant, std430) uniform Pushed {
   DrawData pushed;

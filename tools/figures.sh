@@ -1,6 +1,6 @@
 #!/bin/sh
-# Measures the figures of docs/performance.md, "What was to be reached": the flights, flights that
-# stop midway, are far from the origin or in a huge world, and the benchmarks of PLP and of the tick
+# Measures the figures of docs/performance.md, "What was to be reached". These are the flights, also
+# stopped midway, far from the origin and in a huge world; and the benchmarks of PLP and of the tick
 # without drawing. Needs a machine with nothing else running, and about twelve minutes.
 #
 # usage: tools/figures.sh [OUT]        (a folder, default out/figures; build preset release first)

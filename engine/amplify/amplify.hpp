@@ -63,9 +63,9 @@ struct Report {
 
 // Synthesises the blocks of `region` and returns when all threads have ended. If the system cannot
 // start all threads, it continues with fewer and logs a warning. A mesh that fails is only counted.
-// Fails with kInvalidArgument for a wrong region or number of threads; with kInternal if no thread
-// can be started; with the error of a sink; with kSynthesisFailed for an exception outside of
-// synthesis, or kOutOfMemory if memory is exhausted.
+// Fails with kInvalidArgument for a wrong region or number of threads, with kInternal if no thread
+// can be started, and with the error of a sink. An exception outside of synthesis gives
+// kSynthesisFailed, or kOutOfMemory if memory is exhausted.
 core::Result<Report> amplify(const world::World& world, const models::Registry& registry,
                              const Region& region, const Options& options);
 

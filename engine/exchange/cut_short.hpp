@@ -10,10 +10,10 @@
 
 namespace psygen::exchange {
 
-// True if `path` is empty; if it begins like such a file and lacks its end (a .glb: is shorter than
-// its header says); or if it is the .obj of a document of this name whose .mtl is missing or empty.
-// False for a whole file, even with additions to it or to its materials; for a file that begins
-// differently; and for one that does not exist or cannot be read.
+// True if `path` is empty, or begins like such a file and lacks its end (a .glb: is shorter than
+// its header says). Also true for the .obj of a document of this name whose .mtl is missing or
+// empty. False for a whole file, even with additions to it or to its materials. False too for a
+// file that begins differently, does not exist or cannot be read.
 bool is_cut_short(const std::filesystem::path& path, Format format, std::string_view document_name);
 
 }  // namespace psygen::exchange

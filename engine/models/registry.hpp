@@ -18,9 +18,9 @@ using ModelIndex = std::uint16_t;
 class Registry {
  public:
   // Adds a type and returns its index. Fails with kInvalidArgument for null, a name that is not
-  // snake_case or already taken, a type without levels, and a broken schema (more than
-  // Parameters::kMaxCount parameters, a default outside its range, duplicate names). Fails with
-  // kOverBudget when all indices are used.
+  // snake_case or already taken, a type without levels, and a broken schema. A schema is broken by
+  // more than Parameters::kMaxCount parameters, a default outside its range or duplicate names.
+  // Fails with kOverBudget when all indices are used.
   core::Result<ModelIndex> add(std::unique_ptr<ModelType> type);
 
   // Destroys the types from index `size` on. References to them become invalid.

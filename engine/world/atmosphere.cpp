@@ -24,7 +24,7 @@ constexpr double kCloudHeight = 2.0;
 constexpr int kSteps = 24;
 // Light that was scattered more than once, relative to single scattering.
 constexpr double kMoreScattering = 0.5;
-// Stars and airglow, relative to the radiance of a clear day; and the exponent of adaptation: the
+// Stars and airglow, relative to the radiance of a clear day. Then the exponent of adaptation: the
 // share of a change in brightness (in logarithms) that the eye compensates.
 constexpr double kNight = 2e-4;
 constexpr double kAdaptation = 0.36;

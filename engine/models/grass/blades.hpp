@@ -43,7 +43,7 @@ struct GrassPatch {
 constexpr std::uint32_t grass_tufts(std::uint32_t blades) {
   return (blades + 7) / 8;
 }
-// Metres that feet reach below the sloping plane, so that curved ground shows no gaps.
+// Metres that feet reach below the sloping plane; curved ground then shows no gaps.
 inline float foot_depth(const GrassPatch& patch) {
   return 0.15F * patch.height + 0.06F * patch.radius;
 }

@@ -38,7 +38,7 @@ struct RockShape {
   glm::vec3 colour;        // square root of the albedo, times 255
   float moss;              // largest cover, 0 … 1
   float facet;             // weight of the triangle's normal at its corners; 0: shared vertices
-  float ledge, tint;       // of layers: how far they stand out, how much their colour differs
+  float ledge, tint;       // of layers: distance they stand out, difference of their colour
   glm::vec3 layer_axis;    // across the layers, times their number per unit
   float layer_phase;       // −1 … 1
   glm::vec3 box_centre, box_scale;  // metres to snorm16; the box is larger than the rock

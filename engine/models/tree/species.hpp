@@ -35,8 +35,8 @@ struct SpeciesKind {
 };
 
 // A rule of the grammar. `to` lists the branches that a node of kind `from` gets: letters, each
-// with an optional number ("LB3": one L and three B) or a star ("LB*": as many B as are missing
-// from the number drawn from branches ± spread).
+// with an optional number ("LB3": one L and three B) or a star ("LB*"). A star stands for as many
+// as are missing from the number drawn from branches ± spread.
 struct SpeciesRule {
   std::string from, to;
   double probability = 1;  // above 0; those of one `from` sum up to 1

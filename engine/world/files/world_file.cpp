@@ -111,7 +111,7 @@ Sky usual_sky(TableReader& root) {
   return with_sun(usual, sun);
 }
 
-// Adds the species of a world to the registry `grown`, or is null where it cannot grow.
+// Adds the species of a world to the registry `grown`, which is null if the registry cannot grow.
 void register_species(TableReader& root, const World& world, const models::Registry& registry,
                       models::Registry* grown, Problems& problems) {
   const std::vector<const Node*> nodes = root.tables("species", kMaxSpecies);

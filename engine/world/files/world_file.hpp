@@ -13,9 +13,9 @@
 namespace psygen::world {
 
 // Reads a world file. Errors name file, line and field and say what is allowed. Fails with kParse
-// for texts that are not world files; with kInvalidArgument or kOverBudget for parameters that a
-// model refuses (with the predicted cost); with kOverBudget for files above 1 MiB; with kIo for
-// files that cannot be read. The species of the file are added to the registry as model types,
+// for texts that are not world files, with kOverBudget for files above 1 MiB, and with kIo for
+// files that cannot be read. Parameters that a model refuses give kInvalidArgument or kOverBudget
+// (with the predicted cost). The species of the file are added to the registry as model types,
 // unless it already has equal ones. After an error the registry is unchanged.
 core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry);
 
