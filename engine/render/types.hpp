@@ -95,7 +95,7 @@ struct Light {
   glm::vec3 haze_colour{0.50F, 0.58F, 0.69F};    // the sky just above (and below) the horizon
   glm::vec3 glow_colour{2.35F, 2.00F, 1.55F};    // of the sky around the sun
   glm::vec3 cloud_colour{2.35F, 2.00F, 1.55F};   // of the sun on clouds
-  float haze_density = 0.0012F;            // 1/m at height 0; at 1/density 37 % is left
+  float haze_density = 0.0012F;                  // 1/m at height 0; at 1/density 37 % is left
   glm::vec3 haze_tint{0.82F, 1.0F, 1.3F};  // extinction of red, green and blue over haze_density
   float haze_height_falloff = 0.004F;      // 1/m; 0: the same at every height
   float exposure = 1.0F;
@@ -115,7 +115,7 @@ struct Canopy {
   glm::vec3 colour{0.022F, 0.040F, 0.012F};  // linear albedo, from above
   float lowest_m = -1e6F, highest_m = 1e6F;  // heights in the world between which it grows
   float blend_m = 20.0F;                     // width of the transition at these heights
-  float slope_max = 0.30F;  // 1 − normal.y
+  float slope_max = 0.30F;                   // 1 − normal.y
 };
 
 // The rectangle of the world in x and z, relative to the camera. Vertices of terrain outside are

@@ -21,7 +21,7 @@ struct RidgedOctave {
   std::uint64_t step;                // Q32.32 lattice cells per integer
   std::uint64_t origin_x, origin_z;  // Q32.32 lattice position of integer 0
   std::uint32_t key_x, key_z;        // added to cells before hashing
-  float limit;  // largest weight: lacunarity^(−H·o)
+  float limit;                       // largest weight: lacunarity^(−H·o)
 };
 
 // The numbers of a noise. They are scaled by κ = √(gain · lacunarity^−H). Then one product is both
@@ -29,7 +29,7 @@ struct RidgedOctave {
 struct RidgedKernel {
   std::array<RidgedOctave, kMaxOctaves> octaves{};  // those beyond octave_count are read too
   int octave_count;                                 // 1 … kMaxOctaves
-  float offset;                            // κ · offset
+  float offset;                                     // κ · offset
   float amplitude;                         // κ: length of gradients; values lie within ± κ / 2
   float result_scale;                      // κ^−2
   float warp;                              // largest displacement, in cells of octave 0; 0: none

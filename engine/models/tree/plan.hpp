@@ -109,8 +109,8 @@ struct TreePlan {
   bool cyclic;
   float hue, colour_variation;
   std::array<float, 3> bark;  // stored colour
-  float bark_contrast;  // largest change of brightness, ±
-  core::Bounds bounds;  // ModelType::bounds()
+  float bark_contrast;        // largest change of brightness, ±
+  core::Bounds bounds;        // ModelType::bounds()
 };
 
 }  // namespace psygen::models

@@ -30,7 +30,7 @@ struct SpeciesKind {
   double length_low = 0.75;                // extrapolated to the parent's foot
   double radius = 0.6;
   double tropism = 0, curvature = 0.4;  // bend upwards (negative: downwards); crookedness
-  std::string leaves = "tips";  // "none", "tips", "all"
+  std::string leaves = "tips";          // "none", "tips", "all"
   friend bool operator==(const SpeciesKind&, const SpeciesKind&) = default;
 };
 
