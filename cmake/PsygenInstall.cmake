@@ -1,4 +1,4 @@
-# Installs libraries and headers so that another project can `find_package(psygen)`.
+# Installs libraries, headers and the package files, for `find_package(psygen)` in other projects.
 include(CMakePackageConfigHelpers)
 
 get_property(psygen_libraries GLOBAL PROPERTY PSYGEN_LIBRARIES)

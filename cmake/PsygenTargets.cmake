@@ -1,6 +1,6 @@
-# Compiler settings and the two functions that every folder uses:
-#   psygen_library(NAME SOURCES ... PUBLIC ... PRIVATE ...)   one static library per layer
-#   psygen_executable(NAME SOURCES ... PRIVATE ...)           built into bin/
+# Compiler settings, and the two functions that every folder uses:
+#   psygen_library(NAME SOURCES ... PUBLIC ... PRIVATE ...)   a static library, one per layer
+#   psygen_executable(NAME SOURCES ... PRIVATE ...)           a program in bin/ of the build folder
 include(GNUInstallDirs)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -21,7 +21,7 @@ endif()
 add_library(psygen_settings INTERFACE)
 add_library(psygen::settings ALIAS psygen_settings)
 target_compile_features(psygen_settings INTERFACE cxx_std_20)
-# Same bits everywhere: no fused multiply-add unless it is written out (docs/models.md).
+# Same bits everywhere: no fused multiply-add unless the source asks for it (docs/models.md).
 target_compile_options(psygen_settings INTERFACE -ffp-contract=off)
 target_compile_definitions(psygen_settings INTERFACE GLM_FORCE_DEPTH_ZERO_TO_ONE GLM_FORCE_XYZW_ONLY)
 
@@ -37,6 +37,7 @@ endif()
 
 set_property(GLOBAL PROPERTY PSYGEN_LIBRARIES "")
 
+# Target psygen_NAME with alias psygen::NAME. PUBLIC and PRIVATE list the libraries that it may use.
 function(psygen_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target psygen_${name})
@@ -50,11 +51,13 @@ function(psygen_library name)
   set_property(GLOBAL APPEND PROPERTY PSYGEN_LIBRARIES ${target})
 endfunction()
 
+# Target NAME. PRIVATE lists the libraries that it uses.
 function(psygen_executable name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PRIVATE" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE psygen::settings psygen_warnings ${ARG_PRIVATE})
-  # Where psygen::image finds its library; with old tags also from below a sanitizer's dlopen().
+  # The folders in which psygen::image finds its library. Old dynamic tags make them work inside the
+  # dlopen() of sanitizers too.
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
     BUILD_RPATH ${PROJECT_BINARY_DIR}/engine/image

@@ -1,7 +1,7 @@
-// Sky and haze. The haze of a far surface tends to the very colour that the sky pass paints in that
-// direction, so that the horizon melts. No clouds and no sun disc here: those are sky.frag's.
+// Sky and haze. With distance, haze approaches the colour that the sky pass draws in the same
+// direction, so the horizon blends in. Without clouds and the sun's disc; sky.frag draws those.
 
-// Light of the clear sky from direction `d` (unit).
+// Light of the clear sky from the unit direction `d`.
 vec3 sky_light(vec3 d) {
   float low = 1.0 - max(d.y, 0.0);
   float low2 = low * low;
@@ -16,9 +16,9 @@ vec3 sky_light(vec3 d) {
   return c + frame.glow_colour.rgb * (0.03 * t4 + 0.10 * t8 * t8 * t8);
 }
 
-// `light` from a surface at `p` (relative to the camera), after the air in between, which takes
-// more of the blue: far ridges turn blue, and far snow yellow. The density falls exponentially with
-// height: the integral along the ray has a closed form.
+// `light` from a surface at `p`, relative to the camera, after the air in between. The air
+// extinguishes more blue than red, so far ridges turn blue and far snow yellow. Its density falls
+// exponentially with height, so the integral along the ray has a closed form.
 vec3 through_haze(vec3 light, vec3 p) {
   float distance2 = max(dot(p, p), 1e-6);
   float inverse = inversesqrt(distance2);
@@ -28,14 +28,14 @@ vec3 through_haze(vec3 light, vec3 p) {
   return mix(sky_light(p * inverse), light, kept);
 }
 
-// Scene light to display values: a filmic curve with the display's gamma folded in (rational, so
-// that it is cheap per vertex).
+// Scene light to display values: a filmic curve that includes the display's gamma. It is a rational
+// function, which is cheap per vertex.
 vec3 shown(vec3 light) {
   vec3 x = max(light - 0.004, 0.0);
   return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
 }
 
-// Light of sky and ground that reaches a surface with normal `n`.
+// Light of sky and ground on a surface with normal `n`.
 vec3 ambient_light(vec3 n) {
   vec3 sky = mix(frame.horizon_colour.rgb, frame.zenith_colour.rgb, 0.6);
   return mix(frame.ground_colour.rgb, sky, 0.5 + 0.5 * n.y);

@@ -1,6 +1,7 @@
-// Which of a frame's candidates are drawn, at which level of detail, as commands for indirect draws.
-// One thread per candidate. View and level are decided as in engine/render/draw_choice.cpp, with
-// the same operations in the same order, so that both choose the same.
+// Selects the candidates of a frame to draw and their level of detail, and writes the commands of
+// indirect draws. One thread per candidate. View and level are decided as in
+// engine/render/draw_choice.cpp, with the same operations in the same order, so both choose the
+// same.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "cull_shared.h"
@@ -13,7 +14,8 @@ layout(set = 0, binding = PSYGEN_CULL_LEVELS, std430) readonly buffer Levels { C
 layout(set = 0, binding = PSYGEN_CULL_GROUPS, std430) readonly buffer Groups { uint first_commands[]; };
 layout(set = 0, binding = PSYGEN_CULL_COMMANDS, std430) writeonly buffer Commands { uint commands[]; };
 layout(set = 0, binding = PSYGEN_CULL_DRAWS, std430) writeonly buffer Draws { DrawData draws[]; };
-// Draws of each group, first and second phase; then triangles of both phases.
+// Number of draws of each group in the first phase, then in the second; then triangles of each
+// phase.
 layout(set = 0, binding = PSYGEN_CULL_COUNTS, std430) buffer Counts { uint counts[]; };
 layout(set = 0, binding = PSYGEN_CULL_SEEN_BEFORE, std430) readonly buffer Before { uint before[]; };
 layout(set = 0, binding = PSYGEN_CULL_SEEN_NOW, std430) buffer Now { uint now[]; };
@@ -51,7 +53,7 @@ uint level_of(vec3 least, vec3 greatest, uint first, uint count) {
   return first + level;
 }
 
-// False only if all of the box lies behind what is in the pyramid.
+// False only if the whole box lies behind the depth in the pyramid.
 bool unhidden(vec3 least, vec3 greatest) {
   vec2 low = vec2(1e30), high = vec2(-1e30);
   float nearest = 0.0;
@@ -66,7 +68,7 @@ bool unhidden(vec3 least, vec3 greatest) {
     nearest = max(nearest, clip.z / clip.w);
   }
   vec2 size = vec2(frame.picture.xy);
-  // A pixel more on each side for rounding.
+  // One more pixel on each side for rounding.
   ivec2 first = ivec2(clamp((low * 0.5 + 0.5) * size - 1.0, vec2(0.0), size - 1.0));
   ivec2 last = ivec2(clamp((high * 0.5 + 0.5) * size + 1.0, vec2(0.0), size - 1.0));
   int level = 0;
@@ -103,7 +105,7 @@ void draw(CullCandidate candidate) {
   uint start = half_index * frame.counts.z + first_commands[group];
   uint place = start + atomicAdd(counts[half_index * frame.counts.y + group], 1u);
   draws[place] = candidate.data;
-  // The vertex shader finds its data at the first instance plus the number of the draw.
+  // The vertex shader reads its data at the first instance plus the number of the draw.
   commands[5u * place] = level.draw.y;
   commands[5u * place + 1u] = 1u;
   commands[5u * place + 2u] = level.draw.x;

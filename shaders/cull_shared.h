@@ -1,5 +1,5 @@
-// What the culling shader reads, written once for GLSL and C++ as in shared.h. Metres, relative to
-// the camera.
+// The input of the culling shader, declared once for GLSL and C++ like shared.h. Positions are in
+// metres, relative to the camera. engine/render/gpu_culling.cpp writes it.
 #ifndef PSYGEN_SHADERS_CULL_SHARED_H
 #define PSYGEN_SHADERS_CULL_SHARED_H
 
@@ -11,6 +11,7 @@ namespace psygen::shaders {
 using glm::uvec4;
 #endif
 
+// Bindings of the descriptor set.
 #define PSYGEN_CULL_FRAME 0
 #define PSYGEN_CULL_CANDIDATES 1
 #define PSYGEN_CULL_LEVELS 2
@@ -22,13 +23,14 @@ using glm::uvec4;
 #define PSYGEN_CULL_SEEN_NOW 8
 #define PSYGEN_CULL_PYRAMID 9
 
-#define PSYGEN_CULL_THREADS 64
+#define PSYGEN_CULL_THREADS 64  // per workgroup
 
-// What one dispatch lets through of what is in view.
-#define PSYGEN_CULL_ALL 0         // everything
-#define PSYGEN_CULL_SEEN 1        // what was seen in the last frame
-#define PSYGEN_CULL_NEWLY_SEEN 2  // what the depth pyramid does not hide and SEEN left out
+// The candidates in view that a dispatch draws.
+#define PSYGEN_CULL_ALL 0         // all of them
+#define PSYGEN_CULL_SEEN 1        // those that were visible in the last frame
+#define PSYGEN_CULL_NEWLY_SEEN 2  // the others that the depth pyramid does not hide
 
+// The frame.
 struct CullFrame {
   vec4 planes[5];  // of the view, inwards: normal, offset
   mat4 clip_from_camera;
@@ -37,16 +39,18 @@ struct CullFrame {
   uvec4 picture;  // width, height in pixels
 };
 
+// A draw of the frame's lists.
 struct CullCandidate {
-  vec4 least;  // of its box
+  vec4 least;  // corners of its box
   vec4 greatest;
   DrawData data;
-  uvec4 levels;  // x: first in the list of levels; y: how many, finest first; z: name of its bit
+  uvec4 levels;  // x: first in the list of levels; y: their number, finest first; z: its bit
 };
 
+// A level of detail of a candidate.
 struct CullLevel {
   uvec4 draw;  // first index, index count, vertex offset (as bits), group
-  vec4 error;  // x: m
+  vec4 error;  // x: in metres
 };
 
 #ifdef __cplusplus

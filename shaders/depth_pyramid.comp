@@ -1,5 +1,5 @@
-// One level of the depth pyramid: each texel is the furthest of the up to 2 x 2 below it. Depth is
-// reversed, so the furthest is the least.
+// Computes one level of the depth pyramid: each texel is the furthest of up to 2 x 2 source texels.
+// Depth is reversed, so the furthest is the smallest.
 #version 460
 #ifdef PSYGEN_SAMPLES
 #extension GL_ARB_shader_texture_image_samples : require

@@ -1,6 +1,6 @@
-// Where a vertex shader finds the data of its draw: in push constants (one draw per call, the
-// fastest on software devices, where an indexed load is a loop over lanes) or in a buffer, indexed
-// by the first instance plus the number of the draw within a multi-draw.
+// The data of a draw for vertex shaders. With one draw per call it is in push constants. This is
+// fastest on software devices, where an indexed load is a loop over lanes. Otherwise it is in a
+// buffer, indexed by the first instance plus the number of the draw within a multi-draw.
 #ifdef PSYGEN_DRAW_PUSHED
 layout(push_constant, std430) uniform Pushed {
   DrawData pushed;
@@ -15,7 +15,7 @@ layout(set = 0, binding = PSYGEN_BINDING_DRAWS, std430) readonly buffer Draws { 
 DrawData this_draw() { return draws[gl_BaseInstance + gl_DrawID]; }
 #endif
 
-// What takes a place relative to the camera to the picture, or into a cascade of shadows.
+// The matrix from positions relative to the camera to clip space, of the picture or of a cascade.
 mat4 clip_matrix() {
 #ifdef PSYGEN_SHADOW
   return frame.shadow_from_camera[pushed_cascade];
@@ -24,7 +24,7 @@ mat4 clip_matrix() {
 #endif
 }
 
-// The octahedral map with its pole at +Y (vertex_layout.hpp); `e` in [-1, 1].
+// The unit normal of an octahedral pair `e` in [-1, 1], with the pole at +Y (vertex_layout.hpp).
 vec3 octahedral_normal(vec2 e) {
   vec3 n = vec3(e.x, 1.0 - abs(e.x) - abs(e.y), e.y);
   float fold = max(-n.y, 0.0);

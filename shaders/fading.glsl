@@ -1,6 +1,6 @@
-// Which pixels a mesh that comes or goes leaves out. One that comes has `fade` in (0, 1), the share
-// of pixels it has; one that goes has −fade of what comes in its place, and just the others. So
-// together they cover each pixel once, in any order, without blending.
+// Discards pixels of a mesh that fades in or out. A mesh that fades in has `fade` in (0, 1), its
+// share of pixels. The mesh that it replaces has the negative of that value and covers the other
+// pixels. So together they cover each pixel once, in any order, without blending.
 #ifdef PSYGEN_FADING
 #include "dither.glsl"
 layout(location = 4) flat in float fade;

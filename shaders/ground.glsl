@@ -1,4 +1,5 @@
-// What the ground looks like: kinds of ground by height, slope and a slow pattern, and far forests.
+// The colour of the ground: kinds of ground by height, slope and a slow pattern, and far forests.
+// engine/exchange/ground_colour.cpp has the same without forests.
 
 float lattice(uvec2 i) {
   uint h = (i.x & 63u) * 0x9E3779B9u ^ (i.y & 63u) * 0x85EBCA6Bu;
@@ -7,7 +8,7 @@ float lattice(uvec2 i) {
   return float(h >> 8) * (1.0 / 16777216.0);
 }
 
-// Smooth noise in [0, 1] over the plane, one lattice point per unit, period 64.
+// Smooth noise in [0, 1] over the plane, with one lattice point per unit and a period of 64.
 float slow_noise(vec2 p) {
   vec2 cell = floor(p);
   vec2 f = p - cell;
@@ -18,7 +19,8 @@ float slow_noise(vec2 p) {
   return mix(a, b, f.y);
 }
 
-// `cover`: share of the ground that far forests hide where they can stand.
+// Albedo of the ground. `height` is that in the world, `plane` the place in the pattern, `grain`
+// random in [0, 1]. `cover`: share of the ground that far forests hide where they can grow.
 vec3 ground_albedo(float height, vec3 n, vec2 plane, float grain, float cover) {
   float pattern = 0.5;
   if (frame.ground_colour.w > 0.0)

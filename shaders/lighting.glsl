@@ -1,14 +1,13 @@
-// Light of sun and sky on surfaces; per vertex where the rasteriser is a CPU, else per pixel.
+// Light of sun and sky on surfaces. Computed per vertex on software devices, else per pixel.
 
-// Solid ground; `sun` is the share of the sun's light that nothing holds up, `ambient` that of the
-// sky's.
+// Light of the ground. `sun` and `ambient` are the visible shares of the sun and of the sky.
 vec3 ground_light(vec3 albedo, vec3 n, float sun, float ambient) {
   float facing = max(dot(n, frame.sun_direction.xyz), 0.0) * sun;
   return albedo * (ambient_light(n) * ambient + facing * frame.sun_colour.rgb);
 }
 
-// Anything else at `p`: `ambient` is the share of the sky that it sees, `leaf` 0 for solid, 1 for
-// leaves, which light goes around and through.
+// Light of models at `p`. `sun` and `ambient` are the visible shares of the sun and of the sky.
+// `leaf` is 0 for solids and 1 for leaves, which are lit from behind too.
 vec3 model_light(vec3 albedo, vec3 n, vec3 p, float ambient, float leaf, float sun) {
   float facing = dot(n, frame.sun_direction.xyz);
   float solid = max(facing, 0.0);

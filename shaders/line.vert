@@ -1,4 +1,4 @@
-// Lines between places relative to the camera, two ends each, from the overlay's buffer.
+// Lines between points relative to the camera. Their two ends are read from the overlay's buffer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

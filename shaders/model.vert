@@ -1,6 +1,6 @@
-// Trees, rocks and every other model: unpacks core::ModelVertex, turns billboards, sways, lights
-// and hazes.
-// On software devices everything per vertex: the fragment shader only writes the colour.
+// Trees, rocks and all other models: unpacks core::ModelVertex, turns billboards, applies wind,
+// light and haze. On software devices all of this is per vertex, and the fragment shader only
+// writes the colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -15,13 +15,14 @@ vec2 snorm16(uint v) {
   return max(vec2(int(v << 16) >> 16, int(v) >> 16) * (1.0 / 32767.0), -1.0);
 }
 
-// A smooth wave of period 1 in [-1, 1], without trigonometry (a loop over lanes on software).
+// A smooth wave of period 1 in [-1, 1], without trigonometric functions, which are loops over lanes
+// on software devices.
 float wave(float t) {
   float f = abs(fract(t) * 2.0 - 1.0);
   return (f * f * (3.0 - 2.0 * f)) * 2.0 - 1.0;
 }
 
-// The horizontal direction, of length 1, from the camera or from the sun to `p`.
+// The horizontal unit direction to `p`, from the camera or (for shadows) from the sun.
 vec2 ahead_of_viewer(vec3 p) {
 #ifdef PSYGEN_SHADOW
   vec2 ahead = -frame.sun_direction.xz;
@@ -50,7 +51,7 @@ void main() {
     vec2 right = vec2(-ahead.y, ahead.x);
     vec2 aside = snorm16(packed.z) * PSYGEN_BILLBOARD_REACH_M;
     p.xz += aside.x * right + aside.y * ahead;
-    vec2 flat_n = 0.7 * (sign(aside.x) * right - ahead);  // rounded
+    vec2 flat_n = 0.7 * (sign(aside.x) * right - ahead);  // as of a round crown
     n = normalize(vec3(flat_n.x, 0.35 + 0.7 * sign(aside.y), flat_n.y));
   }
   float time = frame.sun_direction.w * 0.31 + draw.origin.w;

@@ -1,4 +1,4 @@
-// Text over the picture: coverage from the font's atlas.
+// Text over the picture, with coverage from the font atlas.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

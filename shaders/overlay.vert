@@ -1,4 +1,4 @@
-// Text quads in pixels; the vertices are read from a buffer, six a quad.
+// Text quads in pixels. The vertices are read from a buffer, six per quad.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

@@ -1,4 +1,4 @@
-// The share of a mesh's shadow that is there while the mesh comes or goes.
+// The shadow of a mesh that fades in or out: only its share of pixels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "fading.glsl"

@@ -1,6 +1,6 @@
-// The structures that GLSL and C++ share, each written once. Only vec4 and mat4, so that std140,
-// std430 and C++ agree without padding. Metres, seconds, linear light multiplied by the exposure.
-// Positions are relative to the camera; directions are in world space.
+// The structures that GLSL and C++ share, each declared once. They have only vec4 and mat4, so
+// std140, std430 and C++ agree without padding. Units: metres, seconds, linear light multiplied by
+// the exposure. Positions are relative to the camera; directions are in world space.
 #ifndef PSYGEN_SHADERS_SHARED_H
 #define PSYGEN_SHADERS_SHARED_H
 
@@ -13,6 +13,7 @@ using glm::mat4;
 using glm::vec4;
 #endif
 
+// Bindings of the descriptor set.
 #define PSYGEN_BINDING_FRAME 0
 #define PSYGEN_BINDING_DRAWS 1
 #define PSYGEN_BINDING_CLOUDS 2
@@ -20,32 +21,32 @@ using glm::vec4;
 #define PSYGEN_BINDING_GLYPHS 4
 #define PSYGEN_BINDING_SHADOWS 5
 
-// Cascades of the sun's shadow that a frame can have.
+// Largest number of cascades of the sun's shadow.
 #define PSYGEN_MAX_CASCADES 3
 
 // Vertices that turn towards the camera: core::kBillboardBit and kBillboardReachM.
 #define PSYGEN_BILLBOARD_BIT 2u
 #define PSYGEN_BILLBOARD_REACH_M 256.0
 
-// The plane of water (water.vert): places around each ring, rings, vertices of one ring, metres.
+// The plane of water (water.vert): corners of a ring, rings, vertices of a ring, radius in metres.
 #define PSYGEN_WATER_SIDES 64
 #define PSYGEN_WATER_RINGS 28
 #define PSYGEN_WATER_STRIP (2 * (PSYGEN_WATER_SIDES + 1) + 2)
 #define PSYGEN_WATER_REACH 500000.0
 
-// The dome of the sky of preset low (sky_dome.vert): columns around, rows from the horizon to
-// the highest point, vertices of one column; sides of the pyramid below it (sky_below.vert).
+// The sky dome of preset low (sky_dome.vert): columns around, rows from the horizon to the top,
+// vertices of a column; and the sides of the pyramid below it (sky_below.vert).
 #define PSYGEN_DOME_COLUMNS 24
 #define PSYGEN_DOME_ROWS 14
 #define PSYGEN_BELOW_SIDES 6
 #define PSYGEN_DOME_STRIP (2 * PSYGEN_DOME_ROWS + 2)
 
-// What is drawn anew around the sun over that dome: half a side of the square, and the cosine of
-// the angle where it ends.
+// The square around the sun that is drawn over the dome: half of a side, and the cosine of the
+// angle at which it ends.
 #define PSYGEN_SUN_REACH 0.035
 #define PSYGEN_SUN_EDGE 0.99942
 
-// Everything that is the same for a whole frame.
+// The data of a frame.
 struct FrameData {
   mat4 clip_from_camera;  // camera-relative world to clip space, reversed infinite depth
   vec4 ray_right;  // direction of a pixel = ray_forward + ndc.x · ray_right + ndc.y · ray_down
@@ -57,43 +58,44 @@ struct FrameData {
   vec4 horizon_colour;   // w: height of the camera, m
   vec4 ground_colour;    // light from below; w: strength of the ground pattern, 0 or 1
   vec4 haze_colour;      // w: cloud cover, 0 to 1
-  vec4 ground_anchor;    // x, z: camera in the ground pattern, m; z, w: size of the picture
+  vec4 ground_anchor;    // x, y: camera in the ground pattern, m; z, w: size of the picture, pixels
   vec4 grass;            // palette, linear; w: height where sand ends, m
   vec4 forest;           // w: height where dry meadow starts, m
   vec4 dry;              // w: blend of the dry meadow, m
   vec4 rock;             // w: slope (1 − normal.y) where rock starts
   vec4 snow;             // w: slope where everything is rock
   vec4 sand;             // w: blend of the sand, m
-  vec4 snow_line;        // x: height where snow starts, m; y: blend, m; z: slope that sheds snow
+  vec4 snow_line;        // x: height where snow starts, m; y: blend, m; z: slope without snow
   vec4 glow_colour;      // around the sun
-  vec4 glow_direction;   // of its brightest place, not below the horizon
+  vec4 glow_direction;   // towards the centre of the glow, not below the horizon
   vec4 cloud_colour;     // sun on clouds
   vec4 haze_extinction;  // at the camera's height, 1/m, for red, green, blue
-  vec4 water;            // albedo of deep water; w: height of the surface over the camera, m
-  vec4 canopy;           // of far forests; w: slope that bears none
-  vec4 canopy_place;     // x: height where they start, y: end, m; z: 1 / blend, 1/m
-  vec4 morph;  // of draws whose own is negative; x: distance where it begins, m; y: 1 / length, 1/m
-  vec4 edge;   // where the world ends: least x, least z, greatest x, greatest z
+  vec4 water;            // albedo of deep water; w: height of the surface above the camera, m
+  vec4 canopy;           // albedo of far forests; w: slope without forests
+  vec4 canopy_place;     // x: height where forests start, y: end, m; z: 1 / blend, 1/m
+  vec4 morph;  // of draws with a negative morph; x: distance where it begins, m; y: 1 / length, 1/m
+  vec4 edge;   // of the world: least x, least z, greatest x, greatest z
   vec4 shadow;        // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
-  vec4 shadow_reach;  // distance from the camera that each cascade reaches, m
+  vec4 shadow_reach;  // largest distance from the camera of each cascade, m
   mat4 shadow_from_camera[PSYGEN_MAX_CASCADES];  // to texture and depth, nearest cascade first
 };
 
-// One terrain draw: x, z = origin + cell · grid; y = origin.y + range · height.
-// One model draw:   p = center + half_extent · position.
-// In the views that colour draws, a terrain's cover and a model's phase are its colour instead:
-// red · 65536 + green · 256 + blue.
+// The data of a draw.
+// Terrain: x, z = origin + cell · grid; y = origin.y + range · height.
+// Models:  p = center + half_extent · position.
+// In views that colour draws, the cover of terrain and the phase of models are replaced by the
+// debug colour: red · 65536 + green · 256 + blue.
 struct DrawData {
   vec4 origin;  // terrain: origin, w cell size in m; model: center, w phase of the wind, 0 to 1
   vec4 scale;  // terrain: height range, skirt, morph or < 0 (FrameData), cover; model: half extent,
-               // w fade (fading.glsl), 1 if it is there as a whole
-  vec4 light;  // model: x share of the sun's light that the ground does not hold up
+               // w fade (fading.glsl), 1 if it does not fade
+  vec4 light;  // model: x share of the sun that no terrain hides
 };
 
-// A corner of the overlay's quads, or an end of a line.
+// A corner of a quad of the overlay, or an end of a line.
 struct OverlayVertex {
-  vec4 place;   // pixels x, y; texture u, v; of a line: metres, relative to the camera
-  vec4 colour;  // as shown, not linear; a covers what is below
+  vec4 place;   // pixels x, y; texture u, v; for lines: metres, relative to the camera
+  vec4 colour;  // display values, not linear; a: opacity
 };
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-// The sky behind everything: clear light, clouds, the sun.
+// The sky behind everything: clear sky, clouds, the sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -6,7 +6,7 @@
 #include "clouds.glsl"
 #include "dither.glsl"
 
-// Only the sun and what is around it, which melts into what is there (sun.vert).
+// Draws only the sun and its surroundings, blended over the picture (sun.vert).
 layout(constant_id = 0) const bool only_sun = false;
 layout(set = 0, binding = PSYGEN_BINDING_CLOUDS) uniform sampler2D clouds;
 layout(location = 0) in vec3 ray;

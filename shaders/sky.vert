@@ -1,4 +1,4 @@
-// One triangle over the whole picture at the far plane (depth 0).
+// One triangle over the whole picture, at infinite distance (depth 0).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

@@ -1,5 +1,5 @@
-// What is below the horizon, and a little above, as a pyramid of few triangles that sky.frag fills:
-// nearly all of it is covered, and large triangles that are not seen cost least.
+// The sky below the horizon, and slightly above it, as a pyramid of few triangles for sky.frag.
+// Other surfaces cover nearly all of it, and hidden large triangles cost least.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

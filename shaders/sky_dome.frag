@@ -1,4 +1,4 @@
-// The sky of sky_dome.vert: one look-up of clouds and a few operations per pixel.
+// The sky of sky_dome.vert: one texture look-up and a few operations per pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -17,7 +17,7 @@ void main() {
   vec2 here = cloud_at(texture(clouds, cloud.xy).rg);
   float sun = here.y * cloud.w;
   vec3 shade = shade_x + sun * (shade_y + sun * shade_z);
-  // Colours as shown are mixed, which takes more of the brighter one than of light.
+  // This mixes display values; to match mixed light, it takes more of the brighter colour.
   float share = here.x * cloud.z;
   share += 0.8 * share * (1.0 - share);
   pixel = vec4(mix(clear, shade, share) + dither(), 1.0);

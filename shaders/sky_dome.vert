@@ -1,22 +1,23 @@
-// The sky as a dome for preset low: its light as shown at each corner, finer where it bends,
-// near the horizon and around the sun's azimuth. A strip of PSYGEN_DOME_ROWS pairs for each column,
-// and two more vertices that join it to the next. Depth 0, infinitely far.
+// The sky as a dome, for preset low. Each corner has the display values of the sky. Corners are
+// closer together where the colour changes most: near the horizon and around the sun's azimuth.
+// Each column is a strip of PSYGEN_DOME_ROWS pairs, and two more vertices join it to the next. The
+// depth is 0, infinitely far.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 #include "atmosphere.glsl"
 #include "clouds.glsl"
 
-layout(location = 0) out vec3 clear;       // as shown, without clouds
-layout(location = 1) out vec4 cloud;       // x, y: place in the texture, z: presence, w: light
-// A cloud in the light w as shown is about x + w · (y + w · z).
+layout(location = 0) out vec3 clear;       // display value without clouds
+layout(location = 1) out vec4 cloud;       // x, y: texture coordinates, z: opacity, w: light
+// The display value of a cloud in light w is about x + w · (y + w · z).
 layout(location = 2) flat out vec3 shade_x;
 layout(location = 3) flat out vec3 shade_y;
 layout(location = 4) flat out vec3 shade_z;
 
 const float kTurn = 6.2831853;
 
-// Sine of an elevation.
+// Sine of the elevation of a row.
 float height_of(int row) {
   float t = float(row) * (1.0 / float(PSYGEN_DOME_ROWS - 1));
   return sin(0.25 * kTurn * t * (0.25 + 0.75 * t));
@@ -39,7 +40,7 @@ void main() {
   clear = shown(sky_light(d));
   cloud = vec4(cloud_place(d), cloud_presence(max(y, 0.0)),
                cloud_sun(dot(d, frame.sun_direction.xyz)));
-  // The parabola through the darkest, a usual and the brightest cloud.
+  // The parabola through a dark, a medium and a bright cloud.
   const vec3 at = vec3(0.12, 0.35, 0.80);
   vec3 a = shown_cloud(at.x), b = shown_cloud(at.y), c = shown_cloud(at.z);
   vec3 slope = (b - a) / (at.y - at.x);

@@ -1,4 +1,4 @@
-// A square around the sun, with what sky.frag wants.
+// A square around the sun, with the outputs that sky.frag needs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

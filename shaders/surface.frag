@@ -1,4 +1,4 @@
-// Writes the colour that the vertex shader found; one varying is what a software rasteriser likes.
+// Writes the colour from the vertex shader. A single varying is fast on software rasterisers.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "fading.glsl"

@@ -1,4 +1,4 @@
-// Lights and hazes each pixel of a mesh, with the sun's shadows and fine grain on near ground where
+// Light and haze for each pixel of a mesh, with the sun's shadows and fine grain on near ground if
 // the preset has them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -14,11 +14,11 @@ layout(set = 0, binding = PSYGEN_BINDING_SHADOWS) uniform sampler2DArrayShadow s
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 albedo_ambient;
-// x: share of the sun that the ground does not hold up; y: leaf; z: 1 on ground
+// x: share of the sun that no terrain hides; y: leaf; z: 1 on ground
 layout(location = 3) in vec3 sun_leaf_ground;
 layout(location = 0) out vec4 pixel;
 
-// Share of the sun's light that arrives, from nine texels around the place.
+// Visible share of the sun in the shadow maps, from nine texels around `p`.
 float sun_at(vec3 p, vec3 n) {
   float away = length(p);
   int last = int(frame.shadow.y) - 1;
@@ -27,7 +27,7 @@ float sun_at(vec3 p, vec3 n) {
   float end = frame.shadow_reach[last];
   if (cascade > last || away > end) return 1.0;
   float texel_m = 2.0 * frame.shadow_reach[cascade] * frame.shadow.x;
-  vec3 off = (n + frame.sun_direction.xyz) * (1.5 * texel_m);  // else ground shades itself
+  vec3 off = (n + frame.sun_direction.xyz) * (1.5 * texel_m);  // prevents self-shadowing
   vec3 q = (frame.shadow_from_camera[cascade] * vec4(p + off, 1.0)).xyz;
   vec2 uv = q.xy * 0.5 + 0.5;
   float lit = 0.0;

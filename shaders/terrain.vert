@@ -1,5 +1,6 @@
-// Terrain: unpacks core::TerrainVertex, colours by height, slope and a slow pattern, lights and
-// hazes. On software devices everything per vertex: the fragment shader only writes the colour.
+// Terrain: unpacks core::TerrainVertex, colours it by height, slope and a slow pattern, applies
+// light and haze. On software devices all of this is per vertex, and the fragment shader only
+// writes the colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

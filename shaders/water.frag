@@ -1,4 +1,4 @@
-// Lights each pixel of the water, with waves where the preset has them.
+// Light for each pixel of the water, with waves if the preset has them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -11,7 +11,8 @@ layout(set = 0, binding = PSYGEN_BINDING_CLOUDS) uniform sampler2D heights;
 layout(location = 0) in vec3 place;
 layout(location = 0) out vec4 pixel;
 
-// Slope of waves `length_m` long (a divisor of 2048 m) that run with `drift`.
+// Slope of waves. `length_m`: period of their pattern, a divisor of 2048 m. `drift`: its movement,
+// in periods per second.
 vec2 slope_of(vec2 plane, float length_m, vec2 drift) {
   vec2 at = plane / length_m + drift * frame.sun_direction.w;
   const float texel = 2.0 / 256.0;

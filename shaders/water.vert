@@ -1,6 +1,6 @@
-// A plane of water around the camera, out to the horizon: square rings that grow outwards, made
-// from the vertex's number. A strip of two vertices for each of PSYGEN_WATER_SIDES places around
-// each ring, and two more that join it to the next.
+// A plane of water around the camera, out to the horizon: square rings that grow outwards, computed
+// from the vertex number. Each ring is a strip with two vertices for each of PSYGEN_WATER_SIDES
+// corners, and two more vertices join it to the next ring.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -14,7 +14,7 @@ layout(location = 0) out vec3 place;
 layout(location = 0) out vec3 colour;
 #endif
 
-// Place `i` on the border of the square from -1 to 1.
+// Corner `i` of a ring, on the border of the square from -1 to 1.
 vec2 on_square(int i) {
   int side = i / (PSYGEN_WATER_SIDES / 4);
   float along = float(i - side * (PSYGEN_WATER_SIDES / 4)) * (8.0 / float(PSYGEN_WATER_SIDES)) - 1.0;

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Measures what docs/performance.md lists under "Targets": the flights (also cut short, far away and
-# in a huge world) and the benchmarks of PLP and of the tick without drawing. Takes some twelve
-# minutes and needs a machine with nothing else running.
+# Measures the figures of docs/performance.md, "What was to be reached". These are the flights, also
+# stopped midway, far from the origin and in a huge world; and the benchmarks of PLP and of the tick
+# without drawing. Needs a machine with nothing else running, and about twelve minutes.
 #
-# usage: tools/figures.sh [OUT]        (a folder, default out/figures; needs preset release built)
+# usage: tools/figures.sh [OUT]        (a folder, default out/figures; build preset release first)
 set -eu
 cd "$(dirname "$0")/.."
 out=${1:-out/figures}
@@ -15,7 +15,7 @@ paths=game/paths
 walk="--world $worlds/paper.toml --path $paths/walk27.toml"
 
 failed=0
-fly() { # name, then options; prints the command, and what went wrong
+fly() { # name, then options; prints the command, and the log after an error
   name=$1
   shift
   rm -rf "${out:?}/$name"
@@ -33,14 +33,14 @@ laps() { # name: the same path twice, the second time from the cache
   fly fixed $walk
   fly walk $walk --target-fps 60
   fly walk_again $walk --target-fps 60
-  for seconds in 5 9 13 18 22; do # what a frame takes over its floor, at more than one place
+  for seconds in 5 9 13 18 22; do # frame time over its floor, at several places
     fly "until_$seconds" $walk --target-fps 60 --seconds $seconds
   done
 }
 for path in dash whirl leaps jumps; do
   fly "$path" --world $worlds/paper.toml --path "$paths/$path.toml" --target-fps 60
 done
-python3 tools/lap_table.py 4 "$out/jumps/frames.csv" || failed=1 # each jump, its first second left out
+python3 tools/lap_table.py 4 "$out/jumps/frames.csv" || failed=1 # each jump without its first second
 laps laps
 if command -v taskset >/dev/null; then
   first=$(taskset -pc $$ | sed 's/.*: *//; s/[-,].*//')

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Formats all C++ sources with clang-format; with --check only says which are not.
+# Formats all C++ sources with clang-format. With --check it only lists unformatted files.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mode=(-i)

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fuzzes everything that reads files of people, from the shipped worlds and paths on, with libFuzzer
-# under the address and undefined-behaviour sanitizers. Needs clang (tools/setup.sh --fuzz).
+# Fuzzes all readers of user files with libFuzzer, under the address and undefined-behaviour
+# sanitizers. Starts from the shipped worlds and paths. Needs clang (tools/setup.sh --fuzz).
 #   tools/fuzz.sh [SECONDS [SEED]]     default: 60 seconds, another seed each time
-# Ends with the number of inputs; one that fails stays in build/fuzz/failures.
+# Prints the number of inputs at the end. Inputs that fail are stored in build/fuzz/failures.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

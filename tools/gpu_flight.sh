@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Flies the standard flight headless with both render paths on this machine's Vulkan device and
-# prints the figures as a table. Configures and builds what it needs first.
+# Runs the standard flight headless with both render paths on this machine's Vulkan device, and
+# prints the figures as a table. Configures and builds psygen first.
 #   tools/gpu_flight.sh [psygen fly options...]      e.g. --size 3840x2160 --error 1
 # PSYGEN_FLIGHT_OUT: folder for the outputs of both flights (default out/gpu_flight).
 set -euo pipefail

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs what psygen needs on Debian 12, and only what is missing.
-#   tools/setup.sh          to build, run and test
-#   tools/setup.sh --ci     also what the complete check needs (clang-format)
-#   tools/setup.sh --fuzz   also what tools/fuzz.sh needs (clang with libFuzzer)
+# Installs the packages that psygen needs on Debian 12, if they are missing.
+#   tools/setup.sh          packages to build, run and test
+#   tools/setup.sh --ci     also those of the complete check (clang-format)
+#   tools/setup.sh --fuzz   also those of tools/fuzz.sh (clang with libFuzzer)
 set -euo pipefail
 
 packages=(

@@ -12,13 +12,13 @@ case "$preset" in
   *) echo "usage: tools/test.sh [release|dev|asan|tsan] [ctest arguments...]" >&2; exit 2 ;;
 esac
 
-# Sanitizers: the first report fails the test; drivers of other people may leak.
+# Sanitizers: the first report fails the test, but third-party drivers may leak.
 export ASAN_OPTIONS="detect_leaks=1:abort_on_error=0:strict_string_checks=1"
 export LSAN_OPTIONS="suppressions=$PWD/tools/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tools/tsan.supp:halt_on_error=1:second_deadlock_stack=1"
 export UBSAN_OPTIONS="print_stacktrace=1"
 
-# Hundreds of pictures would take an hour there, for code that other tests run under them as well.
+# Under sanitizers the picture tests would take an hour, and other tests run the same code.
 case "$preset" in asan | tsan) set -- --label-exclude pictures "$@" ;; esac
 
 cmake --preset "$preset" >/dev/null

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kProgressPeriod{100};
 
-// What the threads share. The lock is taken once per thread, when it ends.
+// State that the threads share. Each thread takes the lock once, when it ends.
 struct Shared {
   const world::World& world;
   const models::Registry& registry;
@@ -35,7 +35,7 @@ struct Shared {
 };
 
 struct alignas(64) Worker {
-  std::atomic<std::uint64_t> blocks_done{0};  // written by the thread only
+  std::atomic<std::uint64_t> blocks_done{0};  // only the thread writes it
   Totals totals;
   double cpu_seconds = 0;
   std::optional<core::Error> error;
@@ -75,7 +75,7 @@ core::Result<void> Worker::make_blocks(Shared& shared) {
 void Worker::work(Shared& shared) {
   synthesis::name_this_thread("amplify");
   if (shared.options.lowest_priority) synthesis::lower_priority_of_this_thread();
-  try {  // types and sinks of users may throw; nothing of ours does unless memory ends
+  try {  // user types and sinks may throw; our own code throws only when memory is exhausted
     if (auto ok = make_blocks(shared); !ok) error = ok.error();
   } catch (const std::bad_alloc&) {
     error =
@@ -108,7 +108,7 @@ void wait_for(Shared& shared, std::span<const std::unique_ptr<Worker>> workers) 
   }
 }
 
-// The threads of a run. However it ends, they end with it.
+// The threads of a run. The destructor stops and joins them.
 struct Crew {
   Shared& shared;
   std::vector<std::unique_ptr<Worker>> workers{};
@@ -139,7 +139,8 @@ struct Crew {
   }
 };
 
-// As many threads as the system gives, none in vain. Fails where it gives none.
+// Starts the wanted threads, at most one per block, or as many as the system allows. Fails if it
+// allows none.
 core::Result<void> start(Crew& crew) {
   const std::uint64_t wanted =
       std::min<std::uint64_t>(crew.shared.options.threads, crew.shared.block_count);

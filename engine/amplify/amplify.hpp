@@ -1,7 +1,7 @@
-// Data amplification without a camera: synthesises all blocks of a region at full detail over
-// several threads, throws the meshes away or hands them to a sink, and names what was made by one
-// hash. The hash does not depend on the number of threads or on their order. Threads share an
-// atomic number of the next block and nothing else.
+// Data amplification without a camera: synthesises all blocks of a region at full detail on several
+// threads. Meshes are discarded or passed to a sink, and one hash identifies all of them. The hash
+// does not depend on the number of threads or on their order. Threads share only an atomic counter
+// of the next block. It draws nothing.
 #pragma once
 
 #include <algorithm>
@@ -15,51 +15,57 @@
 namespace psygen::amplify {
 
 inline constexpr unsigned kMaxThreads = 256;
-// One for each processor, as far as allowed; 0 processors: it is not known how many there are.
+// One thread per processor, within 1 … kMaxThreads. 0 processors: their number is unknown.
 constexpr unsigned threads_for(unsigned processors) {
   return std::clamp(processors, 1u, kMaxThreads);
 }
 
-// What takes the meshes. Each thread has one of its own.
+// Takes the meshes of one thread, which makes all calls. For each block: wants(), and if true add()
+// for every mesh, then finish() or drop().
 class BlockSink {
  public:
   virtual ~BlockSink() = default;
+  // One mesh, valid during the call.
   virtual void add(core::BlockCoord block, const BlockMesh& mesh) = 0;  // terrain first
-  // All meshes of the block have been added. A failure ends everything.
+  // All meshes of the block have been added. A failure ends the whole run.
   virtual core::Result<void> finish(core::BlockCoord block) = 0;
-  // Instead of finish(), where a mesh of the block failed: what was added is to be forgotten.
+  // Called instead of finish() if a mesh of the block failed: forget the meshes that were added.
   virtual void drop(core::BlockCoord block) = 0;
-  // Whether the block's meshes are wanted; called first.
+  // Whether to pass the meshes of the block to this sink.
   virtual bool wants(core::BlockCoord block) = 0;
 };
 
+// How to run.
 struct Options {
-  unsigned threads = 1;  // 1 … kMaxThreads
-  bool lowest_priority = true;
-  // Makes the sink of a thread; empty: the meshes are discarded.
+  unsigned threads = 1;         // 1 … kMaxThreads
+  bool lowest_priority = true;  // of the threads, for the system's scheduler
+  // Makes the sink of a thread, in that thread. Empty: the meshes are discarded.
   std::function<std::unique_ptr<BlockSink>()> make_sink;
-  // Told in the calling thread, ten times a second, how many blocks are done.
+  // Called in the calling thread, ten times a second, with the number of finished blocks.
   std::function<void(std::uint64_t)> progress;
-  // Set from anywhere to end after the blocks that are being made.
+  // Set it to true from any thread to stop after the blocks in progress. May be null.
   const std::atomic<bool>* stop = nullptr;
 };
 
+// The result of a run.
 struct Report {
   Totals totals;
-  unsigned threads = 0;    // that could be started
+  unsigned threads = 0;    // threads that were started
   double seconds = 0;      // wall-clock time
   double cpu_seconds = 0;  // of all threads together
   std::uint64_t region_blocks = 0;
   bool complete = false;  // every mesh of every block of the region was made
+  // Triangles per second of CPU time; 0 if no time was measured.
   double triangles_per_second_per_core() const {
     return cpu_seconds > 0 ? static_cast<double>(totals.triangles) / cpu_seconds : 0;
   }
 };
 
-// Goes on with fewer threads where the system gives no more, and warns of it. Fails with
-// kInvalidArgument for a region or a number of threads that is not allowed, with kInternal where
-// there is not one thread, and with what a sink failed with. A mesh that fails is counted; an
-// exception from anywhere else is kSynthesisFailed, or kOutOfMemory where memory ended.
+// Synthesises the blocks of `region` and returns when all threads have ended. If the system cannot
+// start all threads, it continues with fewer and logs a warning. A mesh that fails is only counted.
+// Fails with kInvalidArgument for a wrong region or number of threads, with kInternal if no thread
+// can be started, and with the error of a sink. An exception outside of synthesis gives
+// kSynthesisFailed, or kOutOfMemory if memory is exhausted.
 core::Result<Report> amplify(const world::World& world, const models::Registry& registry,
                              const Region& region, const Options& options);
 

@@ -34,10 +34,11 @@ core::Result<exchange::Object> object_of(const world::World& world,
   return object;
 }
 
-// So much of a text that lost its end tells whose it was.
+// This many bytes of a text that lost its end identify its origin.
 constexpr std::size_t kTelling = 8;
 
-// Of the bytes of a block in the middle of the world; nothing where a model of it fails.
+// The hash of the file of a block in the middle of the world, and of the meshes around it. Nothing
+// if one of its models fails.
 std::optional<std::uint64_t> sample_of(const world::World& world, const models::Registry& registry,
                                        exchange::Format format) {
   const core::BlockCoord middle{static_cast<std::int32_t>(world.blocks_x / 2),
@@ -127,8 +128,8 @@ core::Result<std::unique_ptr<BlockFolder>> BlockFolder::open(std::filesystem::pa
   return opened;
 }
 
-// Leaves a text in the folder, or finds the same one there, or what is left of it. Where it is
-// missing beside blocks nobody knows whose they are.
+// Writes a text into the folder, unless the same text is there; a text that lost its end is
+// replaced. Refuses another text, and a missing text beside blocks, whose origin is then unknown.
 core::Result<void> BlockFolder::claim(const char* file, const std::string& text,
                                       const char* others) const {
   const std::filesystem::path path = folder_ / file;
@@ -152,7 +153,7 @@ core::Result<void> BlockFolder::claim(const char* file, const std::string& text,
   return core::replace_file(path, text);
 }
 
-// Whether there are blocks of this format.
+// Whether the folder has blocks of this format.
 bool BlockFolder::has_blocks() const {
   const std::string extension = fmt::format(".{}", exchange::name_of(format_));
   std::error_code error;
@@ -168,7 +169,7 @@ core::Result<void> BlockFolder::claim() const {
   if (auto ok = claim(kWorldFile, world::write_world(world_, registry_), "another world"); !ok)
     return ok;
   const auto sample = sample_of(world_, registry_, format_);
-  if (!sample) return {};  // a later run finds blocks without one, and refuses them
+  if (!sample) return {};  // a later run with a sample will refuse these blocks
   return claim(format_ == exchange::Format::kGlb ? "sample_glb.hash" : "sample_obj.hash",
                fmt::format("{:016x}\n", *sample), "this world made by another version");
 }

@@ -1,9 +1,9 @@
-// A folder with one file per block: glTF or OBJ with everything on it at one level of detail. Can
-// be gone on with: what is there already is not written again unless it has lost its end, what a
-// killed process left half-done is removed, a block with a mesh that failed gets no file. The
-// folder also holds the world's own file and the hash of a sample of its blocks as they are
-// written, so that blocks of two worlds never mix, nor, as far as that sample shows, those of one
-// world made by two versions of the engine.
+// A folder with one file per block: glTF or OBJ with all its meshes at one level of detail. A run
+// can be continued: existing files are not written again unless they have lost their end, and
+// half-written files of a killed process are removed. A block with a failed mesh gets no file. The
+// folder also holds the world file and a hash of some sample blocks. They prevent that blocks of
+// two worlds mix, and, as far as the sample shows, blocks of one world from two versions of the
+// engine. Sinks are per thread; the folder may be shared.
 #pragma once
 
 #include <atomic>
@@ -14,25 +14,29 @@
 
 namespace psygen::amplify {
 
-// All meshes of a block as a document, in metres from the block's corner. Fails where a model did.
+// All meshes of a block at a level of detail as a document, in metres from the block's corner.
+// Fails with the error of the first mesh that fails.
 core::Result<exchange::Document> block_document(const world::World& world,
                                                 const models::Registry& registry,
                                                 core::BlockCoord block, int level);
 
+// The folder of one run.
 class BlockFolder {
  public:
-  // World and registry outlive it. Creates the folder. Fails with kIo where it cannot be written,
-  // with kInvalidArgument where it holds the blocks of another world, such as this version of the
-  // engine and these model types would make otherwise, or such of which neither is known.
+  // Creates the folder if needed. `world` and `registry` must outlive it. Fails with kIo if the
+  // folder cannot be written. Fails with kInvalidArgument if it holds blocks of another world,
+  // blocks that this version of the engine and these model types would make differently, or blocks
+  // of unknown origin.
   static core::Result<std::unique_ptr<BlockFolder>> open(std::filesystem::path folder,
                                                          const world::World& world,
                                                          const models::Registry& registry,
                                                          exchange::Format format);
 
-  // A sink for one thread; the folder outlives it.
+  // A sink for one thread, which the folder must outlive. Any thread.
   std::unique_ptr<BlockSink> make_sink();
-  // "block_X_Z.glb" in the folder.
+  // The file of a block: "block_X_Z.glb" in the folder.
   std::filesystem::path file_of(core::BlockCoord block) const;
+  // Blocks written, and blocks skipped because their file exists; any thread.
   std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
   std::uint64_t skipped() const { return skipped_.load(std::memory_order_relaxed); }
 

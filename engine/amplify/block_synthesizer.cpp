@@ -11,7 +11,7 @@
 namespace psygen::amplify {
 namespace {
 
-// Everything about a mesh that its bytes and its key do not say.
+// Hash of the data of a mesh that is in neither its bytes nor its key.
 std::uint64_t frame_hash(const world::Placement& placement, const models::MeshSize& size,
                          const core::Bounds& tight) {
   const glm::vec3& at = placement.position;

@@ -1,6 +1,6 @@
-// Makes everything that stands on a block, one mesh after the other in memory that is used again
-// for the next (a few hundred KiB, so that it stays in the processor's cache), and hashes it there.
-// Nothing is kept. One object per thread; no locks, nothing shared but the immutable world.
+// Synthesises all meshes of a block, one after the other, in the same memory. It has a few hundred
+// KiB and so stays in the processor's cache, where each mesh is also hashed. Keeps no mesh. One
+// object per thread; no locks, and only the immutable world is shared.
 #pragma once
 
 #include <cstdint>
@@ -17,41 +17,45 @@
 
 namespace psygen::amplify {
 
-// One finished mesh. The view is valid until the next one is made.
+// One finished mesh. Valid until the next one is made.
 struct BlockMesh {
   const world::Placement& placement;  // of terrain: position 0, index world::kTerrainIndex
-  int level;
+  int level;                          // of detail
   models::MeshSize size;
-  core::Bounds tight;
+  core::Bounds tight;  // box of the vertices, as ModelType::synthesize() returned it
   models::MeshView view;
 };
 
-// Sums over blocks; parts may be added in any order.
+// Sums over blocks. Parts may be added in any order.
 struct Totals {
-  std::uint64_t blocks = 0, models = 0;  // the terrain is no model
-  std::uint64_t triangles = 0;           // terrain without its skirts
-  std::uint64_t bytes = 0;               // vertices and indices as packed; shared lists apart
+  std::uint64_t blocks = 0, models = 0;  // models: without terrain
+  std::uint64_t triangles = 0;           // of terrain without its skirts
+  std::uint64_t bytes = 0;               // packed vertices and indices, without shared index lists
   std::uint64_t failed = 0;              // meshes of types that threw
-  std::string first_failure;
+  std::string first_failure;             // a sentence; empty: none
   synthesis::WorldHash hash;
+  // Adds the sums of other blocks. Keeps the first failure.
   void add(const Totals& part);
 };
 
-// Instead of one level of detail.
+// Selects every level of detail instead of one.
 inline constexpr int kAllLevels = -1;
 
+// Synthesises blocks one by one.
 class BlockSynthesizer {
  public:
-  // World and registry outlive it. `level` is one for all types (the coarsest of those that have
-  // fewer) or kAllLevels.
+  // `world` and `registry` must outlive it. `level` is used for all types (or their coarsest level,
+  // where they have fewer), or it is kAllLevels.
   BlockSynthesizer(const world::World& world, const models::Registry& registry, int level = 0);
 
-  // Adds what stands on `block` to `totals`. `visit`, if given, sees each mesh, terrain first.
+  // Synthesises `block` and adds it to `totals`. `visit`, if given, is called for each mesh,
+  // terrain first. A mesh that fails is counted and left out. Needs the stack of the types'
+  // synthesis.
   void synthesise(core::BlockCoord block, Totals& totals,
                   const std::function<void(const BlockMesh&)>& visit = {});
 
  private:
-  // Hashing is a quarter faster where every load is one line of the cache.
+  // Hashing is a quarter faster if every load is from one cache line.
   struct alignas(64) CacheLine {
     std::byte bytes[64];
   };
@@ -59,7 +63,7 @@ class BlockSynthesizer {
     return (bytes + sizeof(CacheLine) - 1) / sizeof(CacheLine);
   }
 
-  // False where a level failed.
+  // Makes the levels of one model. False if one of them failed.
   bool make_levels(const world::Placement& placement, core::BlockCoord block, Totals& totals,
                    const std::function<void(const BlockMesh&)>& visit);
   void make(const world::Placement& placement, core::BlockCoord block, int level, Totals& totals,
@@ -74,8 +78,8 @@ class BlockSynthesizer {
   std::size_t line_count_ = 0;
 };
 
-// The hash of the 3 × 3 blocks around `block`, as far as they exist, at every level. Nothing where
-// a mesh failed.
+// The hash of the 3 × 3 blocks around `block` at every level of detail; blocks that do not exist
+// are left out. Nothing if a mesh failed.
 std::optional<std::uint64_t> sample_world_hash(const world::World& world,
                                                const models::Registry& registry,
                                                core::BlockCoord block);

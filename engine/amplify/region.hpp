@@ -1,4 +1,5 @@
-// A rectangle of blocks, half-open: x0 … x1 − 1 by z0 … z1 − 1. Values; any thread.
+// A rectangle of blocks, half-open: x0 … x1 − 1 by z0 … z1 − 1. Plain values and pure functions of
+// constant time, any thread. It knows no meshes.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +11,26 @@
 
 namespace psygen::amplify {
 
+// Coordinates in blocks.
 struct Region {
   std::int64_t x0 = 0, z0 = 0, x1 = 0, z1 = 0;
-  // Blocks inside. Both sides are at most 2^32, so that only the square of all blocks needs more
-  // than 64 bits: then it is 2^64 − 1.
+  // Number of blocks inside. Sides have at most 2^32 blocks, so only the square of all blocks needs
+  // more than 64 bits; then the result is 2^64 − 1.
   std::uint64_t block_count() const;
   // The i-th block, row by row (z outer, x inner). Requires i < block_count().
   core::BlockCoord block(std::uint64_t i) const;
   friend bool operator==(const Region&, const Region&) = default;
 };
 
-// "X0,Z0,X1,Z1". Fails with kInvalidArgument for anything else, and for a region that is empty or
-// reaches beyond the blocks that there can be (−2^31 … 2^31 − 1).
+// Parses "X0,Z0,X1,Z1". Fails with kInvalidArgument for anything else, for empty regions, and for
+// blocks outside −2^31 … 2^31 − 1.
 core::Result<Region> parse_region(std::string_view text);
 
-// All of a world. Fails with kInvalidArgument for an endless one.
+// The region of a whole world. Fails with kInvalidArgument for endless worlds.
 core::Result<Region> whole(const world::World& world);
 
-// Fails with kInvalidArgument, naming the blocks that exist, where part of `region` is outside.
+// Fails with kInvalidArgument if part of `region` is outside the world. The message names the
+// blocks that exist.
 core::Result<void> check_region(const world::World& world, const Region& region);
 
 }  // namespace psygen::amplify

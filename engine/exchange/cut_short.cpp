@@ -9,7 +9,7 @@
 namespace psygen::exchange {
 namespace {
 
-// Up to `count` bytes from the file's start; nothing where it cannot be read.
+// Up to `count` bytes from the start of the file; nothing if it cannot be read.
 std::optional<std::string> first_bytes(const std::filesystem::path& path, std::size_t count) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes(count, '\0');
@@ -24,7 +24,7 @@ bool agree(std::string_view a, std::string_view b) {
   return a.substr(0, common) == b.substr(0, common);
 }
 
-// A .glb starts with its name, its version and the length of the whole, little-endian.
+// A .glb starts with "glTF", the version and the length of the whole file, little-endian.
 bool glb_is_cut_short(const std::filesystem::path& path, std::uintmax_t size) {
   constexpr std::size_t kHead = 12;
   const auto head = first_bytes(path, kHead);
@@ -42,7 +42,7 @@ bool is_missing_or_empty(const std::filesystem::path& path) {
   return error ? error == std::errc::no_such_file_or_directory : size == 0;
 }
 
-// What somebody has added behind the last line does no harm.
+// Text behind the last line of write_document() is allowed.
 bool obj_is_cut_short(const std::filesystem::path& path, std::string_view document_name) {
   const std::string first = obj_first_line(document_name);
   const auto head = first_bytes(path, first.size());

@@ -1,5 +1,6 @@
-// Tells a file that write_document() wrote and that lost its end since, as when a disk was full
-// while it was copied, from a whole one. Damage within a file is not seen.
+// Detects files from write_document() that have lost their end, for example because a disk was full
+// while they were copied. It does not detect damage within a file. Any thread; reads a whole .obj,
+// but only the head of a .glb.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +10,10 @@
 
 namespace psygen::exchange {
 
-// Whether `path` is empty, or begins as such a file and lacks its end (of a .glb: is shorter than
-// it says), or is the .obj of a document of this name whose .mtl is missing or empty. False for a
-// whole file, whatever was added to it or to its materials, for one that does not begin like that,
-// and for what does not exist or cannot be read. Any thread.
+// True if `path` is empty, or begins like such a file and lacks its end (a .glb: is shorter than
+// its header says). Also true for the .obj of a document of this name whose .mtl is missing or
+// empty. False for a whole file, even with additions to it or to its materials. False too for a
+// file that begins differently, does not exist or cannot be read.
 bool is_cut_short(const std::filesystem::path& path, Format format, std::string_view document_name);
 
 }  // namespace psygen::exchange

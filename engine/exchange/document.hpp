@@ -1,7 +1,7 @@
-// Meshes as other programs want them: full precision, one list of vertices per material, metres, +Y
-// up, right-handed, counter-clockwise from outside. Plain values; what the packed formats of the
-// engine (core/vertex_layout.hpp) hold, without level-of-detail morphing, skirts, sway and ambient
-// visibility. Not a scene graph.
+// Meshes in a form for other programs: full precision, one list of vertices per material, metres,
+// +Y up, right-handed, counter-clockwise seen from outside. Plain values with the content of the
+// engine's packed formats (core/vertex_layout.hpp), but without level-of-detail morphing, skirts,
+// sway and ambient visibility. Not a scene graph.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,32 @@
 
 namespace psygen::exchange {
 
-// One material of an object. `material` is core::ModelVertex::material; terrain has kGround.
+// Materials: core::ModelVertex::material, or kGround for terrain.
 inline constexpr std::uint8_t kSolid = 0, kLeaf = 1, kGround = 255;
+// The name of a material in files.
 std::string material_name(std::uint8_t material);  // "solid", "leaf", "ground", "material_7"
 
+// The triangles of one material of an object.
 struct Part {
   std::uint8_t material = kSolid;
-  std::vector<glm::vec3> positions;  // local to the object
-  std::vector<glm::vec3> normals;    // unit length; as many
-  std::vector<glm::vec3> colours;    // linear albedo; as many
-  std::vector<std::uint32_t> indices;
+  std::vector<glm::vec3> positions;    // local to the object
+  std::vector<glm::vec3> normals;      // one per position, unit length
+  std::vector<glm::vec3> colours;      // one per position, linear albedo
+  std::vector<std::uint32_t> indices;  // three per triangle
 };
 
+// One model or terrain block.
 struct Object {
   std::string name;
   glm::vec3 position{0.0F};  // of its origin in the document
   std::vector<Part> parts;
 };
 
+// The content of one file.
 struct Document {
   std::string name;
   std::vector<Object> objects;
+  // Sums over all parts.
   std::uint64_t vertex_count() const;
   std::uint64_t triangle_count() const;
 };

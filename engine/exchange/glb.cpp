@@ -12,7 +12,7 @@
 namespace psygen::exchange {
 namespace {
 
-// The .glb header counts bytes in 32 bits; some are left for the JSON.
+// The .glb header counts bytes in 32 bits. The rest is reserved for the JSON.
 constexpr std::size_t kMostBytes = (std::size_t{1} << 32) - (std::size_t{1} << 28);
 
 enum View : std::size_t { kPositions, kNormals, kColours, kIndices, kViewCount };
@@ -113,7 +113,7 @@ class GlbWriter {
   }
 
   int indices_of(const Part& part) {
-    if (part.positions.size() > 65535) {  // 65535 itself would restart a primitive
+    if (part.positions.size() > 65535) {  // index 65535 would restart a primitive
       return accessor<std::uint32_t>(kIndices, part.indices, TINYGLTF_TYPE_SCALAR,
                                      TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, part.indices.size());
     }

@@ -7,7 +7,7 @@
 namespace psygen::exchange {
 namespace {
 
-// Blends and slopes of width 0 are steps.
+// Smallest width of a blend; narrower ones are practically steps.
 constexpr float kLeast = 1e-3F;
 
 float lattice(std::uint32_t x, std::uint32_t z) {
@@ -17,7 +17,7 @@ float lattice(std::uint32_t x, std::uint32_t z) {
   return static_cast<float>(h >> 8) * (1.0F / 16777216.0F);
 }
 
-// Smooth noise in [0, 1], one lattice point per unit, period 64. Requires p >= 0.
+// Smooth noise in [0, 1] with one lattice point per unit and a period of 64. Requires p >= 0.
 float slow_noise(glm::vec2 p) {
   const glm::vec2 cell = glm::floor(p);
   glm::vec2 f = p - cell;

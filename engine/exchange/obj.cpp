@@ -9,7 +9,7 @@
 namespace psygen::exchange {
 namespace {
 
-// IEC 61966-2-1.
+// Linear to sRGB (IEC 61966-2-1).
 float srgb(float linear) {
   return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
 }
@@ -55,7 +55,7 @@ ObjText obj_text(const Document& document, std::string_view mtl_file_name) {
   text.mtl = mtl_of(document);
   const auto out = std::back_inserter(text.obj);
   fmt::format_to(out, "{}mtllib {}\n", obj_first_line(document.name), mtl_file_name);
-  std::uint64_t first = 1;  // the format counts from 1, over the whole file
+  std::uint64_t first = 1;  // OBJ counts vertices from 1, over the whole file
   for (const Object& object : document.objects) {
     fmt::format_to(out, "o {}\n", object.name);
     for (const Part& part : object.parts) {

@@ -40,7 +40,7 @@ Vertex model_vertex(const models::MeshView& mesh, std::uint32_t i, const core::B
           glm::vec3(albedo(0), albedo(1), albedo(2)), v.material};
 }
 
-// What the vertices of one terrain mesh have in common.
+// Values that all vertices of one terrain mesh share.
 struct Ground {
   const world::Palette& palette;
   core::BlockCoord block;
@@ -63,7 +63,7 @@ Vertex terrain_vertex(const models::MeshView& mesh, std::uint32_t i, const Groun
           kGround};
 }
 
-// Hands out the object's vertices material by material, each when a triangle first uses it.
+// Distributes vertices to the parts of an object by material, when a triangle first uses them.
 class Builder {
  public:
   Builder(Object& object, std::size_t vertices) : object_(object), places_(vertices) {}
@@ -73,7 +73,7 @@ class Builder {
     for (const std::uint32_t i : triangle) {
       Place& place = places_[i];
       Part& to = object_.parts[part];
-      if (place.part != part) {  // also when another material's triangle shares it
+      if (place.part != part) {  // new, or used before by a triangle of another material
         place = {part, static_cast<std::uint32_t>(to.positions.size())};
         to.positions.push_back(vertices[i].position);
         to.normals.push_back(vertices[i].normal);
@@ -163,7 +163,7 @@ core::Result<Object> unpack(const models::ModelType& type, const models::Paramet
         core::ErrorCode::kSynthesisFailed,
         fmt::format("{} level {} threw while it was unpacked{}", type.name(), level, what));
   };
-  try {  // types of users may throw; nothing of ours does unless memory ends
+  try {  // user types may throw; our own code throws only when memory is exhausted
     return object_of(type, p, level, size, mesh, palette);
   } catch (const std::bad_alloc&) {
     return core::fail(core::ErrorCode::kOutOfMemory,

@@ -1,4 +1,5 @@
-// Turns a finished mesh of the engine into an object of a document. Any thread.
+// Turns a finished mesh of the engine into an object of a document. Pure, any thread, linear in the
+// mesh. It synthesises nothing and writes no files.
 #pragma once
 
 #include "engine/core/error.hpp"
@@ -8,10 +9,10 @@
 
 namespace psygen::exchange {
 
-// `mesh` is what type.synthesize(p, level, mesh) wrote, `size` its type.mesh_size(p, level).
-// Terrain is coloured by `palette` (world::drawn_palette) and loses its skirts; other models keep
-// every vertex that a triangle uses. Fails with kSynthesisFailed where an index names no vertex or
-// the type throws.
+// The object of a mesh. `mesh` was written by type.synthesize(p, level, mesh), and `size` is
+// type.mesh_size(p, level). Terrain is coloured by `palette` (world::drawn_palette) and loses its
+// skirts. Other models keep every vertex that a triangle uses. Fails with kSynthesisFailed if an
+// index is out of range or the type throws, and with kOutOfMemory if memory is exhausted.
 core::Result<Object> unpack(const models::ModelType& type, const models::Parameters& p, int level,
                             const models::MeshSize& size, const models::MeshView& mesh,
                             const world::Palette& palette);

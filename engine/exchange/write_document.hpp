@@ -1,5 +1,6 @@
-// Documents as files: binary glTF 2.0 (.glb) and Wavefront OBJ with its materials (.mtl beside it).
-// A file is there as a whole or not at all. Any thread.
+// Writes documents as files: binary glTF 2.0 (.glb), or Wavefront OBJ with its materials in a .mtl
+// beside it. Every file is replaced as a whole, so none is ever half-written. Any thread, linear in
+// the document. Reads no files.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +14,7 @@
 
 namespace psygen::exchange {
 
+// File formats, and their names, which are also their extensions.
 enum class Format : std::uint8_t { kGlb, kObj };
 std::optional<Format> format_from(std::string_view name);  // "glb", "obj"
 std::string_view name_of(Format format);
@@ -21,19 +23,20 @@ std::string_view name_of(Format format);
 // linear albedo (COLOR_0, 16 bits each). Fails with kOverBudget beyond the 4 GiB of the format.
 core::Result<std::vector<std::uint8_t>> glb_bytes(const Document& document);
 
-// Colours stand behind the coordinates of each vertex, as sRGB, which is what programs expect
-// there; a material's Kd is the mean of its vertices.
+// The texts of an OBJ file and of its materials.
 struct ObjText {
   std::string obj, mtl;
 };
+// The texts of a document. Colours follow the coordinates of each vertex, as sRGB, which other
+// programs expect there. The Kd of a material is the mean of its vertices.
 ObjText obj_text(const Document& document, std::string_view mtl_file_name);
-// Both texts end with this line, so that one that was cut short can be told from a whole one; an
-// .obj starts with a comment that names the document.
+// The last line of both texts, by which is_cut_short() recognises a whole file, and the first line
+// of an .obj, a comment with the document's name.
 inline constexpr std::string_view kObjLastLine = "# end\n";
 std::string obj_first_line(std::string_view document_name);
 
-// Writes `path`, and for kObj the .mtl of the same stem before it; where the disk has no room for
-// both it leaves both as they were. Fails with kIo.
+// Writes `path`. For kObj it first replaces the .mtl of the same stem; if the disk has no room for
+// both, both files stay unchanged. Fails with kIo, and like glb_bytes().
 core::Result<void> write_document(const std::filesystem::path& path, Format format,
                                   const Document& document);
 

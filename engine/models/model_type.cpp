@@ -12,7 +12,7 @@ std::string value_text(const ParameterSpec& spec, const Parameters& p, std::size
                                               : fmt::format("{:g}", p.real(i));
 }
 
-// "an integer from 4 to 128 vertices".
+// For example "an integer from 4 to 128 vertices".
 std::string allowed_text(const ParameterSpec& spec) {
   const bool has_unit = !spec.unit.empty() && spec.unit != "1";
   return fmt::format("{} from {:g} to {:g}{}{}",
@@ -21,7 +21,7 @@ std::string allowed_text(const ParameterSpec& spec) {
 }
 
 bool is_allowed(const ParameterSpec& spec, const Parameters& p, std::size_t i) {
-  // A 64-bit integer converts to the nearest double; bounds beyond 2^53 only occur as ±2^63.
+  // A 64-bit integer converts to the nearest double. The only bounds beyond 2^53 are ±2^63.
   const double value =
       spec.type == ParameterType::kInteger ? static_cast<double>(p.integer(i)) : p.real(i);
   return value >= spec.hard_min && value <= spec.hard_max;  // false for NaN

@@ -1,7 +1,8 @@
-// What a procedural model is: a schema of parameters, conservative bounds, exact sizes, a cost
-// formula and a synthesis function, all pure functions of the parameters (paper, section 5.2:
-// ProceduralModel). Immutable after construction and usable from any thread. Users derive their own
-// types and register them (registry.hpp). One virtual seam; no data is inherited.
+// The interface of a procedural model: a schema of parameters, conservative bounds, exact sizes, a
+// cost formula and a synthesis function (paper, section 5.2: ProceduralModel). All are pure
+// functions of the parameters. A type is immutable after construction and usable from any thread.
+// Users derive their own types and register them (registry.hpp). One virtual seam; no data is
+// inherited.
 #pragma once
 
 #include <array>
@@ -18,20 +19,22 @@
 
 namespace psygen::models {
 
+// How a value is stored: a 64-bit integer or a double.
 enum class ParameterType : std::uint8_t { kInteger, kReal };
 
-// Who sets a parameter: world files and editors (kUser), or the world when it places the model
+// What sets a parameter: world files and editors (kUser), or the world when it places the model
 // (kPlaced: seed, block coordinates).
 enum class ParameterSource : std::uint8_t { kUser, kPlaced };
 
+// One entry of a schema. The strings must outlive the type.
 struct ParameterSpec {
   std::string_view name;  // snake_case, as in world files
   ParameterType type = ParameterType::kReal;
   std::string_view unit;  // "m", "1", "vertices"; "" for none
   double default_value = 0;
-  double hard_min = 0, hard_max = 0;  // outside: refused
-  double soft_min = 0, soft_max = 0;  // what a slider shows
-  std::string_view doc;
+  double hard_min = 0, hard_max = 0;  // values outside are refused
+  double soft_min = 0, soft_max = 0;  // the range that a slider shows
+  std::string_view doc;               // one line for users
   ParameterSource source = ParameterSource::kUser;
 };
 
@@ -39,10 +42,12 @@ struct ParameterSpec {
 class Parameters {
  public:
   static constexpr std::size_t kMaxCount = 16;
+  // Value `i` of the schema, `i` < kMaxCount. The caller knows from the schema which type it has.
   std::int64_t integer(std::size_t i) const { return std::bit_cast<std::int64_t>(bits_[i]); }
   double real(std::size_t i) const { return std::bit_cast<double>(bits_[i]); }
   void set_integer(std::size_t i, std::int64_t v) { bits_[i] = std::bit_cast<std::uint64_t>(v); }
   void set_real(std::size_t i, double v) { bits_[i] = std::bit_cast<std::uint64_t>(v); }
+  // Hash of the bits of all values. Equal parameters have equal hashes.
   std::uint64_t hash() const {
     std::uint64_t h = 0;
     for (const std::uint64_t b : bits_)
@@ -56,97 +61,105 @@ class Parameters {
 };
 static_assert(sizeof(Parameters) == 128);
 
+// The exact size of one mesh.
 struct MeshSize {
   std::uint32_t vertex_count = 0;
-  std::uint32_t index_count = 0;     // triangles · 3, whether indices are shared or its own
+  std::uint32_t index_count = 0;     // triangles · 3, for shared and for own indices
   std::uint32_t shared_indices = 0;  // 0: the mesh writes its own; else the id of a shared list
   core::VertexLayout layout = core::VertexLayout::kModel;
+  // Triangles of the whole mesh.
   std::uint32_t triangle_count() const { return index_count / 3; }
   friend bool operator==(const MeshSize&, const MeshSize&) = default;
 };
 
-// Destination of one synthesis. `indices` is empty where the indices are shared.
+// Destination of one synthesis. `indices` is empty where the indices are shared. Only write to it:
+// it may be mapped device memory.
 struct MeshView {
   std::span<std::byte> vertices;
   std::span<std::uint16_t> indices;
 };
 
+// One type of model. Unless stated otherwise, `p` passes validate() and 0 <= level < level_count().
 class ModelType {
  public:
   virtual ~ModelType() = default;
 
-  virtual std::string_view name() const = 0;  // "terrain", "rock", "tree"
+  // Name ("terrain", "rock", "tree"), one line for users, and schema. They never change, and they
+  // live as long as the type.
+  virtual std::string_view name() const = 0;
   virtual std::string_view doc() const = 0;
   virtual std::span<const ParameterSpec> parameters() const = 0;
 
   // Levels of detail: 0 is full detail, level_count() − 1 the coarsest.
   virtual int level_count() const = 0;
-  // How many of them these parameters need, at least one and at most level_count(): from there on
-  // every level is the mesh of the one before. Only these are listed, so that no mesh is held under
-  // several keys.
+  // The number of different levels that these parameters have, 1 … level_count(). Every level from
+  // there on has the same mesh as the one before. Only different levels are listed, so no mesh is
+  // held under several keys.
   virtual int level_count_of(const Parameters&) const { return level_count(); }
   // Largest distance in metres between the surface of this level and that of level 0 (an estimate
   // from the parameters). Grows with the level; 0 at level 0.
   virtual double level_error_m(const Parameters& p, int level) const = 0;
 
-  // Box that holds every vertex of every level, local to the model's foot (for terrain: to the
-  // block's corner). Also the box of snorm16 positions; for terrain its y range is the same in
-  // every block of a world and is what unorm16 heights span. Without synthesis.
+  // Box that holds every vertex of every level, in metres from the model's foot (for terrain: from
+  // the block's corner). snorm16 positions are relative to it. For terrain its y range is the same
+  // in every block of a world, and unorm16 heights span it. Works without synthesis.
   virtual core::Bounds bounds(const Parameters& p) const = 0;
   // Exactly what synthesize() will write. vertex_count <= 65,536.
   virtual MeshSize mesh_size(const Parameters& p, int level) const = 0;
-  // Operations by the asymptotic formula, scaled so that level 0 is the paper's formula; time = c ·
-  // this.
+  // Number of operations by the asymptotic formula, scaled so that level 0 matches the paper's
+  // formula. Time is proportional to it.
   virtual double complexity(const Parameters& p, int level) const = 0;
-  // What a level is made from, in steps of about equal time (branches of trees, samples and octaves
-  // of terrain, vertices of rocks), counted for this very seed: beside the triangles of the level
-  // what its time is predicted from. 0: as many as level 0 has triangles. Without synthesis.
+  // Number of steps of about equal time that a level takes: branches of trees, samples and octaves
+  // of terrain, vertices of rocks. Counted for this seed. The time of a level is predicted from its
+  // steps and its triangles. 0 stands for the triangles of level 0. Works without synthesis.
   virtual double steps(const Parameters&, int) const { return 0; }
-  // About what a step takes on a core of today, in seconds: what is predicted before anything was
-  // measured, and always where nothing may be (a virtual clock).
+  // Approximate time of a step on a current core, in seconds. Predictions use it until a level has
+  // been measured, and always where measuring is not allowed (a virtual clock).
   virtual double step_seconds() const { return 10e-9; }
-  // Upper bound of the triangles of level 0 over all seeds, as log2, computed without overflow for
+  // Upper bound of the triangles of level 0 over all seeds, as log2. Computed without overflow for
   // any parameters inside or outside their hard ranges. Used to refuse hostile values.
   virtual double log2_cost(const Parameters& p) const = 0;
 
-  // Fills `out`, whose spans have exactly the sizes of mesh_size(), and returns the tight box of
-  // the vertices written (inside bounds(p)). Deterministic: same bits for the same (p, level) on
-  // any thread and any CPU. No allocation that outlives the call, no I/O, no globals.
+  // Fills `out`, whose spans have exactly the sizes of mesh_size(). Returns the tight box of the
+  // vertices written, which lies inside bounds(p). Deterministic: same bits for the same (p, level)
+  // on any thread and any CPU. No allocation that outlives the call, no I/O, no globals.
   virtual core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const = 0;
-  // Tells types of one name apart whose functions differ, such as two editions of a species: it is
-  // part of every mesh's key (parameters_hash). 0 for types that never change.
+  // Distinguishes types of the same name with different functions, such as two editions of a
+  // species. Part of every mesh's key (parameters_hash). 0 for types that never change.
   virtual std::uint64_t identity() const { return 0; }
-  // False for what is smaller than a pixel where single models end: the meshes that stand for
-  // everything on a node and the colour of far ground leave it out.
+  // False for types smaller than a pixel at the distance where single models end. The merged meshes
+  // of nodes and the colour of far ground leave them out.
   virtual bool is_seen_from_far() const { return true; }
-  // By what it is judged whether a single model is large enough on screen to be drawn, in metres:
-  // for many small things that are one model, the size of one. 0: the sphere around its mesh.
+  // The size in metres that decides whether a single model is large enough on screen to be drawn.
+  // A model of many small things returns the size of one of them. 0: the sphere around its mesh.
   virtual double seen_size_m(const Parameters&) const { return 0; }
-  // True only for types that are certain to end, and in about the time that is predicted, whatever
-  // their parameters: the main thread may synthesise them itself when their absence is seen. A type
-  // that could hang must leave this to the modelers, which are watched.
+  // True only if synthesis always ends, in about the predicted time, for all parameters. Then the
+  // main thread may synthesise a mesh itself when its absence would be visible. A type that could
+  // hang must leave this to the modelers, which are watched.
   virtual bool may_run_on_main_thread() const { return false; }
-  // Writes the shared index list `id` (as named by mesh_size), `index_count` entries.
+  // Writes the shared index list `id` of a MeshSize; `out` has that size's index_count entries.
   virtual void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const = 0;
 };
 
-// What names a mesh beside its place and level: the parameters and which function they are for.
+// Part of a mesh's key, beside its place and level: its parameters and the type's identity().
 inline std::uint64_t parameters_hash(const ModelType& type, const Parameters& p) {
   const std::uint64_t identity = type.identity();
   return identity == 0 ? p.hash() : core::combine(p.hash(), identity);
 }
 
-// "predicted cost: 8192 triangles", or "2^82.0" where the number itself says nothing any more.
+// "predicted cost: 8192 triangles"; from 2^40 on "predicted cost: 2^82.0 triangles", and
+// "predicted cost: unbounded" for infinities and NaN.
 std::string predicted_cost_text(double log2_triangles);
 
 // All parameters at their defaults.
 Parameters default_parameters(const ModelType& type);
 
-// Position of a parameter in the schema, or -1.
+// Position of a parameter in the schema, or -1. Linear in the number of parameters.
 int parameter_index(const ModelType& type, std::string_view name);
 
-// Refuses values outside hard ranges, NaN and infinities, and meshes of more than `max_log2_cost`
-// (log2 of triangles). The message names the parameter, the allowed range and the predicted cost.
+// Fails with kInvalidArgument for values outside their hard ranges, NaN and infinities, and with
+// kOverBudget where log2_cost() is above `max_log2_cost`. The message names the parameter, the
+// allowed range and the predicted cost.
 core::Result<void> validate(const ModelType& type, const Parameters& p,
                             double max_log2_cost = 20.0);
 

@@ -22,7 +22,7 @@ bool is_snake_case(std::string_view name) {
   return true;
 }
 
-// Why this parameter breaks the rules of schemas, or nothing.
+// How this parameter breaks the rules of schemas, as the end of a sentence; empty if it does not.
 std::string_view fault_of(const ParameterSpec& spec) {
   if (!is_snake_case(spec.name)) return "has a name that is not snake_case";
   for (const double v :

@@ -1,5 +1,5 @@
-// The model types that a program knows, by name and by small index. Filled at start-up, then
-// read-only and usable from any thread.
+// The model types that a program knows, by name and by small index. Filled at start-up by one
+// thread, then read-only and usable from any thread. Knows no worlds and no meshes.
 #pragma once
 
 #include <algorithm>
@@ -11,27 +11,32 @@
 
 namespace psygen::models {
 
+// Position of a type in its registry.
 using ModelIndex = std::uint16_t;
 
+// Owns its types. References to them stay valid while the registry lives, until shrink().
 class Registry {
  public:
-  // Adds a type; refuses a second one of the same name and schemas that break their own rules
-  // (more than Parameters::kMaxCount parameters, default outside its range, duplicate names).
+  // Adds a type and returns its index. Fails with kInvalidArgument for null, a name that is not
+  // snake_case or already taken, a type without levels, and a broken schema. A schema is broken by
+  // more than Parameters::kMaxCount parameters, a default outside its range or duplicate names.
+  // Fails with kOverBudget when all indices are used.
   core::Result<ModelIndex> add(std::unique_ptr<ModelType> type);
 
-  // Forgets the types added since there were so many; nobody may use them any more.
+  // Destroys the types from index `size` on. References to them become invalid.
   void shrink(std::size_t size) { types_.resize(std::min(size, types_.size())); }
 
+  // Number of types, and the type of an index below it.
   std::size_t size() const { return types_.size(); }
   const ModelType& operator[](ModelIndex index) const { return *types_[index]; }
-  // The index of a name, or -1.
+  // The index of a name, or -1. Linear in size().
   int find(std::string_view name) const;
 
  private:
   std::vector<std::unique_ptr<ModelType>> types_;
 };
 
-// Terrain, rock and tree (paper, section 5.2), and grass, in this order.
+// A registry of terrain, rock and tree (paper, section 5.2) and grass, in this order.
 Registry make_standard_registry();
 
 }  // namespace psygen::models

@@ -40,7 +40,7 @@ void CandidateList::add(const Draw& draw, bool choose, bool coloured) {
       add_level(level.range, indices_of(level.range, level.shared_indices, {}, lists_),
                 level.shared_indices != kNoSharedIndices, is_fading(draw), level.error_m);
   }
-  // Meshes without a name of their own share bit 0.
+  // Meshes without an id share bit 0.
   const std::uint32_t name = draw.range.id == core::kNoGeometry ? 0 : draw.range.id + 1;
   name_count_ = std::max(name_count_, name + 1);
   candidates_.push_back({{box.min, 0.0F},

@@ -1,6 +1,7 @@
-// From the draws of a frame to what the culling shader reads: candidates with their boxes, levels
-// of detail, and groups of levels that share buffers (one indirect draw each). Plain memory, no
-// Vulkan; reused from frame to frame. Private to engine/render.
+// Turns the draws of a frame into the input of the culling shader: candidates with their boxes,
+// levels of detail, and groups of levels that share buffers (one indirect draw each). Plain memory,
+// no Vulkan. Reused from frame to frame, linear in the draws. Main thread. Private to
+// engine/render.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +13,36 @@
 
 namespace psygen::render {
 
-// Levels that are drawn with the same pipeline and buffers, and where their commands lie among
-// those of a phase. There is room for all of them.
+// Levels that are drawn with the same pipeline and buffers, and the place of their commands among
+// those of a phase. There is room for the commands of all levels.
 struct DrawGroup {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
-  bool fading = false;  // models that come or go
+  bool fading = false;  // models that fade in or out
   std::uint32_t pool_block = 0;
   std::uint32_t first_command = 0;
   std::uint32_t capacity = 0;
 };
 
+// The candidates of one frame. Spans are valid until the next build().
 class CandidateList {
  public:
-  // What every device with indirect draws can take in one call.
+  // Number of draws that every device with indirect draws accepts in one call.
   static constexpr std::uint32_t kGroupCapacity = 65535;
 
-  // Replaces the list: terrain first, then models. `coarser` levels are taken where `choose`,
-  // data has the colour of each draw where `coloured`.
-  // `lists` is indexed by shared_indices − 1.
+  // Replaces the list: terrain first, then models. With `choose` it includes `coarser` levels; with
+  // `coloured` the data has the debug colour of each draw. `lists` is indexed by shared_indices −
+  // 1.
   void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
              std::span<const IndexList> lists, bool choose, bool coloured = false);
 
+  // The list: candidates, their levels, groups, and first commands in the order of groups().
   std::span<const shaders::CullCandidate> candidates() const { return candidates_; }
   std::span<const shaders::CullLevel> levels() const { return levels_; }
   std::span<const DrawGroup> groups() const { return groups_; }
   std::span<const std::uint32_t> first_commands() const { return first_commands_; }  // of groups()
   std::uint32_t command_count() const { return static_cast<std::uint32_t>(levels_.size()); }
-  // One more than the largest name of a bit.
+  // One more than the largest bit number of a candidate.
   std::uint32_t name_count() const { return name_count_; }
 
  private:
@@ -53,7 +56,7 @@ class CandidateList {
   std::vector<shaders::CullLevel> levels_;
   std::vector<DrawGroup> groups_;
   std::vector<std::uint32_t> first_commands_;
-  std::vector<std::uint32_t> open_;   // 1 + the group that is filled, by layout and buffers
+  std::vector<std::uint32_t> open_;   // 1 + the group being filled, by layout and buffers
   std::span<const IndexList> lists_;  // while build() runs
   std::uint32_t name_count_ = 0;
 };

@@ -18,7 +18,7 @@ float lattice(std::uint32_t x, std::uint32_t y, std::uint32_t octave) {
   return static_cast<float>(bits >> 40) * 0x1.0p-24F;
 }
 
-// Value noise with `cells` lattice points a side, repeating; x, y in texels.
+// Repeating value noise with `cells` lattice points per side. x and y are in texels.
 float noise(std::uint32_t x, std::uint32_t y, std::uint32_t cells, std::uint32_t octave) {
   const std::uint32_t step = kSize / cells;
   const std::uint32_t i = x / step, j = y / step;

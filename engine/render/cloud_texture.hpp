@@ -1,5 +1,5 @@
-// The texture behind the clouds: 256 × 256, two half floats a texel, repeating (lavapipe filters
-// them faster than bytes). Made once at start-up.
+// The cloud texture: 256 × 256, two half floats per texel (lavapipe filters them faster than
+// bytes), repeating. Computed once at start-up. Pure; it makes no Vulkan image (pipelines.cpp).
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,10 @@
 
 namespace psygen::render {
 
-inline constexpr std::uint32_t kCloudTextureSize = 256;
+inline constexpr std::uint32_t kCloudTextureSize = 256;  // texels per side
 
-// Red: density of fractal noise, spread over 0 to 1. Green: light from one side (a relief of it).
+// The texels, row by row. Red: density of fractal noise, scaled to 0 … 1. Green: its relief, lit
+// from one side.
 std::vector<std::uint16_t> make_cloud_texture();
 
 }  // namespace psygen::render

@@ -19,7 +19,7 @@ constexpr std::uint32_t kNextCode[] =
 #include "depth_pyramid_comp_spv.h"
     ;
 constexpr VkFormat kFormat = VK_FORMAT_R32_SFLOAT;
-constexpr std::uint32_t kThreads = 8;  // a side, depth_pyramid.comp
+constexpr std::uint32_t kThreads = 8;  // per side of a workgroup, as in depth_pyramid.comp
 
 core::Extent half(core::Extent size) {
   return {(size.width + 1) / 2, (size.height + 1) / 2};
@@ -81,7 +81,8 @@ Result<void> DepthPyramid::resize(const Device& device, core::Extent size, const
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = kFormat;
-  // Levels of an image are halves rounded down, ours are rounded up: powers of two are both.
+  // Mip levels are halves rounded down, those of the pyramid are rounded up. With powers of two
+  // they are the same.
   info.extent = {std::bit_ceil(half(size).width), std::bit_ceil(half(size).height), 1};
   info.mipLevels = levels;
   info.arrayLayers = 1;
@@ -105,7 +106,7 @@ Result<void> DepthPyramid::resize(const Device& device, core::Extent size, const
     views_.push_back(std::move(*view));
   }
   write_sets(device, depth);
-  // Shaders that could read it are bound before it is made for the first time.
+  // Shaders that could read the image are bound before it is first written.
   return run_once(device, [&](VkCommandBuffer commands) {
     VkImageMemoryBarrier2 barrier = barrier_of(image, VK_IMAGE_ASPECT_COLOR_BIT);
     barrier.subresourceRange.levelCount = levels;
@@ -138,7 +139,7 @@ void DepthPyramid::record(const Device& device, VkCommandBuffer commands,
   drawn.oldLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   drawn.newLayout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
   image_barrier(device, commands, drawn);
-  // What it held is forgotten once the last frame has read it.
+  // The old content is discarded after the last frame has read it.
   VkImageMemoryBarrier2 own = barrier_of(image_.get(), VK_IMAGE_ASPECT_COLOR_BIT);
   own.subresourceRange.levelCount = level_count();
   own.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;

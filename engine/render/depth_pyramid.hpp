@@ -1,6 +1,6 @@
-// The furthest depth of squares of pixels, from 2 x 2 upwards by doubling, made from a picture's
-// depth. Its level l covers 2^(l + 1) pixels a side; the last level is one texel. Private to
-// engine/render.
+// The depth pyramid: the furthest depth of squares of pixels, computed from a picture's depth. A
+// texel of level l covers 2^(l + 1) pixels per side; the last level is one texel. It tests nothing
+// itself (gpu_culling.hpp). Main thread. Private to engine/render.
 #pragma once
 
 #include <vector>
@@ -9,30 +9,31 @@
 
 namespace psygen::render {
 
+// Empty until create() and resize(). The device must outlive it.
 class DepthPyramid {
  public:
-  // Most levels that a picture of any size has.
+  // Largest number of levels for a picture of any size.
   static constexpr std::uint32_t kMaxLevels = 16;
 
-  // Once, before everything else; for depth with so many samples per pixel.
+  // Creates the pipelines, once, before everything else. `samples` is that of the depth image.
   core::Result<void> create(const Device& device, VkSampleCountFlagBits samples);
-  // For pictures of this size with this depth, which has been made to be sampled; null: nothing is
-  // recorded. The device must
-  // be idle.
+  // Creates the image for pictures of this size. `depth` must be usable as a sampled image; with
+  // null, record() must not be called. The device must be idle. Waits for it.
   core::Result<void> resize(const Device& device, core::Extent size, const Image* depth);
 
+  // For shaders that read the pyramid: its levels, a nearest sampler, and a view of all levels.
   std::uint32_t level_count() const { return static_cast<std::uint32_t>(views_.size()); }
   VkSampler sampler() const { return sampler_.get(); }
   VkImageView view() const { return whole_.get(); }  // read in VK_IMAGE_LAYOUT_GENERAL
 
-  // Takes the depth as an attachment that was drawn to and leaves it, and the pyramid, readable by
-  // compute shaders (DEPTH_READ_ONLY_OPTIMAL, GENERAL).
+  // Records the computation. `depth` is an attachment that was drawn to. Afterwards it and the
+  // pyramid are readable by compute shaders (DEPTH_READ_ONLY_OPTIMAL, GENERAL).
   void record(const Device& device, VkCommandBuffer commands, const Image& depth) const;
 
  private:
   void write_sets(const Device& device, const Image* depth) const;
 
-  ComputePipeline first_, next_;  // from the depth; from the level below
+  ComputePipeline first_, next_;  // from the depth; from the previous level
   UniqueSampler sampler_;
   UniqueMemory memory_;
   UniqueImage image_;

@@ -49,7 +49,7 @@ struct Features {
   }
 };
 
-// What the GPU path needs: indirect draws whose number is in a buffer.
+// The GPU path needs indirect draws with their number in a buffer.
 bool offers_indirect_count(const Features& features) {
   return features.v12.drawIndirectCount && features.base.features.multiDrawIndirect &&
          features.base.features.drawIndirectFirstInstance;
@@ -86,7 +86,7 @@ std::optional<std::uint32_t> find_queue_family(const Instance& instance, VkPhysi
   return std::nullopt;
 }
 
-// A family that only copies, else the one that draws.
+// A queue family only for transfers, or else the graphics family.
 std::uint32_t transfer_family_of(VkPhysicalDevice physical, std::uint32_t graphics) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
@@ -113,7 +113,7 @@ bool can_compute(VkPhysicalDevice physical, std::uint32_t family) {
   return (family_properties(physical, family).queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
 }
 
-// The bits of a timestamp that count; 0: there are none.
+// The valid bits of a timestamp; 0: no timestamps.
 std::uint64_t timestamp_mask_of(VkPhysicalDevice physical, std::uint32_t family) {
   const std::uint32_t bits = family_properties(physical, family).timestampValidBits;
   return bits == 0 ? 0 : UINT64_MAX >> (64 - std::min(bits, 64U));
@@ -218,7 +218,7 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   features.base.features.drawIndirectFirstInstance = indirect;
   features.v13.dynamicRendering = VK_TRUE;
   features.v13.synchronization2 = VK_TRUE;
-  features.v13.maintenance4 = VK_TRUE;  // every device of 1.3 has it; sizes of workgroups need it
+  features.v13.maintenance4 = VK_TRUE;  // for workgroup sizes; every 1.3 device has it
   std::vector<const char*> extensions;
   if (windowed) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   if (candidate.info.multi_draw) {

@@ -1,5 +1,5 @@
-// Choosing a physical device and making the logical one: queue, function table, what it offers.
-// Private to engine/render.
+// Selects a physical device and creates the logical one: queues, function table, features and
+// limits. Allocates no memory (memory.hpp). Main thread. Private to engine/render.
 #pragma once
 
 #include <memory>
@@ -15,23 +15,24 @@ namespace psygen::render {
 // A physical device that has everything the renderer needs.
 struct DeviceCandidate {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
-  std::uint32_t queue_family = 0;  // graphics, and presenting where there is a surface
+  std::uint32_t queue_family = 0;  // for graphics, and for presenting if there is a surface
   int rank = 0;                    // higher is better: discrete, integrated, virtual, software
   DeviceInfo info;
 };
 
-// Best first. With a surface only devices that can present to it.
+// All candidates, best first. With a surface, only devices that can present to it.
 std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR surface);
 
-// The best candidate whose name contains `name` (any when empty); kNoDevice with the names there
-// are.
+// The best candidate whose name contains `name` (any if empty). Fails with kNoDevice; the message
+// lists the existing names.
 core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& candidates,
                                             const std::string& name);
 
+// The logical device. Everything that is created with it must be destroyed before it.
 class Device {
  public:
-  // `timestamps`: where its queue has any. `timeout_seconds`: the longest wait for the device; then
-  // it counts as lost.
+  // Creates the device. `windowed`: it can present. `timestamps`: use them if the queue has any.
+  // `timeout_seconds`: longest wait for the device; after that it counts as lost.
   static core::Result<std::unique_ptr<Device>> create(const DeviceCandidate& candidate,
                                                       bool windowed, bool timestamps,
                                                       double timeout_seconds);
@@ -39,32 +40,33 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  // The largest number of samples up to `wanted` that colour and depth can have.
+  // The largest number of samples up to `wanted` (a power of two) that colour and depth can have.
   VkSampleCountFlagBits samples_for(std::uint32_t wanted) const;
 
+  // Functions, handles, queues and limits; fixed after create().
   VolkDeviceTable vk{};
   VkDevice handle = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
-  VkQueue transfer_queue = VK_NULL_HANDLE;  // `queue` where there is none for transfers alone
+  VkQueue transfer_queue = VK_NULL_HANDLE;  // `queue` if there is none only for transfers
   std::uint32_t transfer_family = 0;
   VkPhysicalDeviceMemoryProperties memory{};
   std::uint32_t max_image_side = 0;                                 // pixels
-  VkSampleCountFlags sampled_depth_counts = VK_SAMPLE_COUNT_1_BIT;  // of depth that shaders read
+  VkSampleCountFlags sampled_depth_counts = VK_SAMPLE_COUNT_1_BIT;  // of depth read by shaders
   VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;         // of colour and depth
   std::uint32_t max_multi_draw = 0;                                 // 0: no VK_EXT_multi_draw
-  std::uint64_t timestamp_mask = 0;  // the bits that count; 0: no timestamps on the queue
+  std::uint64_t timestamp_mask = 0;  // the valid bits; 0: no timestamps on the queue
   double timestamp_period_ns = 0;
   DeviceInfo info;
 
-  // Returns when a semaphore that counts has come to `value`; `what` is "waiting for ...". Fails
-  // with kDeviceLost.
+  // Returns when a timeline semaphore has reached `value`. `what` is for the error: "waiting for
+  // ...". Fails with kDeviceLost, also after the timeout.
   core::Result<void> wait(VkSemaphore semaphore, std::uint64_t value, const char* what) const;
-  // A wait came to no end: then the driver must not be asked to end anything either.
+  // A wait has timed out. Then calls that destroy Vulkan objects may hang too.
   bool hangs() const { return hangs_; }
 
-  // Bytes of the largest heap of its own memory that the CPU can write.
+  // Size in bytes of the largest device-local heap that the CPU can write.
   std::uint64_t writable_bytes() const;
 
  private:

@@ -9,7 +9,7 @@ namespace psygen::render {
 namespace {
 
 constexpr float kLargestGrid = 127.0F;  // cells (core::TerrainVertex)
-constexpr float kSlackShare = 1e-6F;    // of a box's coordinates, for rounding
+constexpr float kSlackShare = 1e-6F;    // slack for rounding, relative to a box's coordinates
 
 }  // namespace
 
@@ -43,7 +43,8 @@ std::size_t level_of(const ViewTest& test, const core::Bounds& box,
   const float x = std::max(std::max(box.min.x, -box.max.x), 0.0F);
   const float y = std::max(std::max(box.min.y, -box.max.y), 0.0F);
   const float z = std::max(std::max(box.min.z, -box.max.z), 0.0F);
-  // Squares of error · pixels per radian <= allowed error · distance: no root, no division.
+  // Compares the squares of error · pixels per radian and allowed error · distance, which needs
+  // neither a root nor a division.
   const float allowed = test.max_error_pixels * test.max_error_pixels * (x * x + y * y + z * z);
   const float scale = test.pixels_per_radian * test.pixels_per_radian;
   std::size_t level = 0;

@@ -1,6 +1,6 @@
-// What of a frame's draws is in view and at which level of detail: the CPU's side of what
-// shaders/cull.comp decides on the device, with the same operations in the same order, so that both
-// choose the same. Pure functions. Private to engine/render.
+// Decides which draws of a frame are in view, and their level of detail. This is the CPU's version
+// of shaders/cull.comp, with the same operations in the same order, so both choose the same. It
+// tests no occlusion. Pure functions, any thread, linear in the draws. Private to engine/render.
 #pragma once
 
 #include <array>
@@ -13,27 +13,31 @@
 
 namespace psygen::render {
 
+// The view volume and the allowed error of a frame.
 struct ViewTest {
   std::array<glm::vec4, 5> planes{};  // inwards: unit normal, offset in metres; no far plane
   float pixels_per_radian = 1.0F;
   float max_error_pixels = 0.0F;
 };
-// `clip_from_camera` with infinite reversed depth. `height` of the picture in pixels.
+// The test of a frame. `clip_from_camera` has infinite reversed depth. `height` is that of the
+// picture in pixels.
 ViewTest view_test(const glm::mat4& clip_from_camera, const FrameInput& input, float height);
 
-// False only if all of the box lies outside one plane. Rounding is on the side of true.
+// False only if the whole box lies outside one plane. Rounding errors favour true.
 bool in_view(const ViewTest& test, const core::Bounds& box);
 
-// 0 for the draw's own mesh, else 1 + the place in `coarser`: the last level of those in order
-// whose error is small enough at the nearest point of the box.
+// The level to draw: 0 for the draw's own mesh, else 1 + the position in `coarser`. Goes through
+// the levels in order as long as their error is small enough at the nearest point of the box.
 std::size_t level_of(const ViewTest& test, const core::Bounds& box,
                      std::span<const DrawLevel> coarser);
 
-// Around all that the shaders make of a draw: skirts, fading and wind included.
+// The box around all vertices as the shaders move them, including skirts and wind. In metres from
+// the camera.
 core::Bounds bounds_of(const TerrainDraw& draw);
 core::Bounds bounds_of(const MeshDraw& draw);
 
-// The draws in view, with range and index list of the level that was chosen, in the same order.
+// Replaces `chosen` by the draws in view, in the same order, with the range and the index list of
+// the chosen level.
 template <class Draw>
 void choose_draws(const ViewTest& test, std::span<const Draw> draws, std::vector<Draw>& chosen) {
   chosen.clear();

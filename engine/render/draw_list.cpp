@@ -14,7 +14,7 @@ shaders::DrawData data_of(const TerrainDraw& draw) {
 }
 
 shaders::DrawData data_of(const MeshDraw& draw) {
-  // A phase that belongs to the mesh, not to the camera: its box is unlike its neighbour's.
+  // The phase depends on the mesh, not on the camera. Neighbours differ because their boxes do.
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
   return {.origin = {draw.origin + draw.box_center, phase - std::floor(phase)},
           .scale = {draw.box_half_extent, draw.fade},
@@ -60,7 +60,7 @@ void DrawList::append(const Draw& draw) {
 
 template <class Draw>
 void DrawList::add(std::span<const Draw> input) {
-  // What must differ between two runs, as a number to sort by.
+  // The properties that separate runs, as a sort key.
   const auto key = [&](const Draw& draw) {
     const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
     const std::uint64_t pushed = indices.index_count >= pushed_from_ ? 0 : 2;

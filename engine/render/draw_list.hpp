@@ -1,6 +1,7 @@
-// From the draws of a frame to what is submitted: the data of each draw for the shaders, and runs
-// of draws that share buffers. Keeps the given order within windows of draws and gathers those of
-// the same buffers inside a window. Plain memory, no Vulkan; reused from frame to frame.
+// Turns the draws of a frame into the lists that are submitted: the data of each draw for the
+// shaders, and runs of draws that share buffers. Windows of draws keep their order; inside a
+// window, draws with the same buffers are grouped. Plain memory, no Vulkan. Reused from frame to
+// frame, O(n log window). Main thread.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +15,32 @@
 
 namespace psygen::render {
 
-// One shared index list within the buffer of all of them.
+// An index list within the buffer of all shared lists, or within a pool block.
 struct IndexList {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
 };
 
-// The indices of a mesh with a list of its own or a shared one, or a part of them; `lists` is
-// indexed by shared_indices − 1.
+// The indices of a mesh, from its own list or a shared one. A non-empty `part` selects a part of
+// them. `lists` is indexed by shared_indices − 1.
 IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
                      core::IndexPart part, std::span<const IndexList> lists);
 
-// What the shaders read of a draw.
+// The data of a draw for the shaders.
 shaders::DrawData data_of(const TerrainDraw& draw);
 shaders::DrawData data_of(const MeshDraw& draw);
-// Whether it leaves out pixels.
+// Whether a draw covers only some of its pixels.
 constexpr bool is_fading(const TerrainDraw&) {
   return false;
 }
 constexpr bool is_fading(const MeshDraw& draw) {
   return draw.fade < 1.0F;
 }
-// The draw's colour in its data, for the views that show it.
+// Puts the debug colour of a draw into its data, for the views that show it.
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw);
 void set_colour(shaders::DrawData& data, const MeshDraw& draw);
 
-// Same layout as VkMultiDrawIndexedInfoEXT.
+// One draw, in indices and vertices of its buffers. Same layout as VkMultiDrawIndexedInfoEXT.
 struct IndexedDraw {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
@@ -51,28 +52,31 @@ struct DrawRun {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
   bool pushed = false;  // one call per draw with its data pushed, else one call for all
-  bool fading = false;  // models that come or go
+  bool fading = false;  // models that fade in or out
   std::uint32_t pool_block = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
 
+  // Whether this draw can be appended to the run `r`.
   bool continues(const DrawRun& r) const {
     return layout == r.layout && shared == r.shared && pushed == r.pushed && fading == r.fading &&
            pool_block == r.pool_block;
   }
 };
 
+// The draws of one frame. Spans are valid until the next build().
 class DrawList {
  public:
-  static constexpr std::size_t kWindow = 512;  // draws whose order may be changed
+  static constexpr std::size_t kWindow = 512;  // draws that may be reordered together
 
-  // Replaces the list: terrain first, then models. `lists` is indexed by shared_indices − 1.
-  // Meshes of at least `pushed_from` indices are pushed. `coloured`: their data has the colour of
-  // each draw (shared.h).
+  // Replaces the list: terrain first, then models. `lists` is indexed by shared_indices − 1. Meshes
+  // with at least `pushed_from` indices are pushed. With `coloured` the data has the debug colour
+  // of each draw (shared.h).
   void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
              std::span<const IndexList> lists, std::uint32_t pushed_from = UINT32_MAX,
              bool coloured = false);
 
+  // The list: runs, draws, their data, and the triangles of all of them.
   std::span<const DrawRun> runs() const { return runs_; }
   std::span<const IndexedDraw> draws() const { return draws_; }
   std::span<const shaders::DrawData> data() const { return data_; }  // parallel to draws()

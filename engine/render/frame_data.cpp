@@ -54,12 +54,12 @@ void set_light(shaders::FrameData& out, const FrameInput& input) {
   out.haze_colour = {light.haze_colour * e, light.cloud_cover};
 }
 
-// Water down to a height that no ground reaches, where there is none.
+// Without water, its level is at a height that no ground reaches.
 constexpr float kNoWaterM = -1e9F;
-// What is left of red, green and blue under water.
+// Extinction of red, green and blue under water, in 1/m.
 constexpr glm::vec3 kWaterExtinction{0.30F, 0.10F, 0.07F};
 
-// Under water everything is seen through water instead of air.
+// Replaces the air by water, for a camera under water.
 void dive(shaders::FrameData& out) {
   const glm::vec3 above = glm::vec3(out.horizon_colour) + glm::vec3(out.zenith_colour) +
                           std::max(out.sun_direction.y, 0.0F) * glm::vec3(out.sun_colour);
@@ -68,7 +68,7 @@ void dive(shaders::FrameData& out) {
     *colour = {light, colour->w};
   out.glow_colour = out.cloud_colour = glm::vec4(0.0F);
   out.haze_extinction = {kWaterExtinction, 0.0F};
-  out.zenith_colour.w = 0.0F;  // as dense at every depth
+  out.zenith_colour.w = 0.0F;  // equally dense at every depth
   out.haze_colour.w = 0.0F;    // no clouds
 }
 

@@ -1,5 +1,5 @@
-// From a frame's camera, light and palette to what the shaders read. Pure function. Private to
-// engine/render.
+// Converts a frame's camera, light and palette to the data that the shaders read. Pure function,
+// any thread. It writes no buffers (frame_slot.hpp). Private to engine/render.
 #pragma once
 
 #include "engine/core/surface_provider.hpp"
@@ -9,7 +9,8 @@
 
 namespace psygen::render {
 
-// `size` in pixels, both > 0.
+// The data of a frame. `size` is that of the picture in pixels, both > 0. `traits` has the
+// cascades.
 shaders::FrameData frame_data(const FrameInput& input, core::Extent size,
                               const PresetTraits& traits = {});
 

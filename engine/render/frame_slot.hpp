@@ -1,6 +1,6 @@
-// What one frame in flight owns: commands, the buffers that the CPU writes for it, timestamps.
-// Touched by the CPU only after the device has passed the slot's last value. Private to
-// engine/render.
+// The objects of one frame in flight: a command buffer, the buffers that the CPU writes,
+// timestamps. The CPU uses a slot only after the device has finished the slot's last frame. It
+// decides nothing about the frame's content. Main thread. Private to engine/render.
 #pragma once
 
 #include <span>
@@ -13,33 +13,38 @@
 
 namespace psygen::render {
 
+// Empty until create(). The device must outlive it.
 class FrameSlot {
  public:
+  // Creates all objects, once.
   core::Result<void> create(const Device& device);
-  // Frames are recorded with these pipelines from now on; `number` of the slot, from 0.
+  // Records frames with these pipelines from now on. `number` is that of the slot, from 0.
   void use(const Device& device, const Pipelines& pipelines, std::size_t number);
 
-  // Copies a frame's data into the slot's buffers; they grow where needed (kOutOfMemory).
+  // Copies a frame's data into the slot's buffers. They grow if needed, which can fail with
+  // kOutOfMemory.
   core::Result<void> write(const Device& device, const Pipelines& pipelines,
                            const shaders::FrameData& frame,
                            std::span<const shaders::DrawData> draws,
                            std::span<const shaders::OverlayVertex> glyphs);
 
-  // Starts recording from nothing; end() makes the commands ready to submit.
+  // begin() resets the command buffer and starts recording; end() makes it ready to submit.
   core::Result<void> begin(const Device& device);
   core::Result<void> end(const Device& device);
+  // The command buffer, and the descriptor set of the frame.
   VkCommandBuffer commands() const { return commands_; }
   VkDescriptorSet set() const { return set_; }
-  // Binds the data of draws that the device writes itself instead of the slot's own.
+  // Binds `draws`, which the device writes, instead of the slot's own data of draws.
   void read_draws_from(const Device& device, const Pipelines& pipelines,
                        const Buffer& draws) const {
     pipelines.write_set(device, set_, frame_, draws, glyphs_);
   }
+  // The semaphore for the acquired image of the window, and the frame's timestamps.
   VkSemaphore acquired() const { return acquired_.get(); }
 
-  GpuTimer& timer() { return timer_; }
+  GpuTimer& timer() { return timer_; }  // the device's time for frames of this slot
 
-  std::uint64_t submitted_value = 0;  // of the timeline; 0: never
+  std::uint64_t submitted_value = 0;  // timeline value of the last frame; 0: none
 
  private:
   UniqueCommandPool pool_;

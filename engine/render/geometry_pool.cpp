@@ -16,8 +16,8 @@ using core::VertexLayout;
 
 namespace {
 
-// A slot starts at a whole unit, its vertices at the next multiple of their stride: so many bytes
-// later at most.
+// The largest distance in bytes from the start of a slot, at a whole unit, to its first vertex, at
+// a multiple of the stride.
 std::uint32_t most_padding(std::uint32_t stride) {
   return stride - std::gcd(stride, GeometryPool::kUnitBytes);
 }

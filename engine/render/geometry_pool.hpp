@@ -1,9 +1,9 @@
-// The renderer's geometry memory: a few large blocks, each one buffer that holds vertices and
-// indices, with an offset allocator per block. What is written is that buffer, mapped, or its
-// mirror on the heap (staged_geometry.hpp). Blocks are made when first needed and kept; their sum
-// never exceeds the budget. Where no more can be had the capacity is what there is. A released
-// range is reused only when the device has passed the last frame submitted before the release. Main
-// thread; knows no Vulkan: a BlockSource makes the blocks.
+// The renderer's geometry memory: a few large blocks, each a buffer with vertices and indices and
+// an offset allocator. The CPU writes that buffer, mapped, or its mirror on the heap
+// (staged_geometry.hpp). Blocks are created when first needed and kept. Their sum never exceeds the
+// budget; if no more can be created, the capacity is the sum of the existing ones. A released range
+// is reused only after the device has finished the last frame submitted before the release. Main
+// thread. Knows no Vulkan: a BlockSource creates the blocks.
 #pragma once
 
 #include <cstddef>
@@ -18,22 +18,25 @@
 
 namespace psygen::render {
 
+// The pool. reserve() is O(blocks), release() O(1).
 class GeometryPool final : public core::GeometryMemory {
  public:
   static constexpr std::uint64_t kBlockBytes = 64ull << 20;
-  // Where there is no memory for a whole block smaller ones are tried, down to this.
+  // If there is no memory for a whole block, smaller ones are tried, down to this size.
   static constexpr std::uint64_t kLeastBlockBytes = 4ull << 20;
-  static constexpr std::uint32_t kUnitBytes = 16;
+  static constexpr std::uint32_t kUnitBytes = 16;  // unit of allocation
 
-  // Makes the memory of the next block of `bytes` and returns where it is written, 16-byte aligned.
-  // It stays until the pool's owner ends it, after the pool.
+  // Creates the next block of `bytes` and returns the memory to write, 16-byte aligned. The pool's
+  // owner frees it, after the pool.
   using BlockSource = std::function<core::Result<std::byte*>(std::uint64_t bytes)>;
 
-  // `budget_bytes` is rounded down to 16.
+  // `budget_bytes` is rounded down to a multiple of 16.
   GeometryPool(std::uint64_t budget_bytes, BlockSource source);
-  // Makes the first block ahead of need. Fails as its source does: then there is no memory at all.
+  // Creates the first block in advance. Fails with the error of the source; then there is no
+  // geometry memory at all.
   core::Result<void> make_first_block() { return add_block(kUnitBytes); }
 
+  // core::GeometryMemory.
   core::Result<core::GeometryReservation> reserve(core::VertexLayout layout,
                                                   std::uint32_t vertex_count,
                                                   std::uint32_t index_count) override;
@@ -49,11 +52,12 @@ class GeometryPool final : public core::GeometryMemory {
   std::span<const std::byte> vertex_bytes(const core::GeometryRange& range) const override;
   std::span<const std::uint16_t> indices(const core::GeometryRange& range) const override;
 
-  // A frame was submitted that signals `value` and may read every committed range.
+  // Call it after a submission: the frame signals `value` and may read every committed range.
   void frame_submitted(std::uint64_t value) { submitted_ = value; }
-  // The device has passed `value`: ranges released before the frame after it become free.
+  // Call it when the device has passed `value`. Ranges released before the next frame become free.
   void frames_finished(std::uint64_t value);
 
+  // Whether a range may be drawn; number of blocks, and their sum in bytes.
   bool is_committed(const core::GeometryRange& range) const;
   std::size_t block_count() const { return blocks_.size(); }
   std::uint64_t block_bytes_total() const { return block_bytes_total_; }
@@ -82,13 +86,13 @@ class GeometryPool final : public core::GeometryMemory {
   BlockSource source_;
   std::uint64_t used_bytes_ = 0;
   std::uint64_t block_bytes_total_ = 0;
-  bool no_more_blocks_ = false;  // the source had none when it was asked last
+  bool no_more_blocks_ = false;  // the last call of the source failed
   std::uint64_t submitted_ = 0;
   std::uint64_t finished_ = 0;
   std::vector<Block> blocks_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> spare_slots_;
-  std::deque<Pending> pending_;  // in order of value
+  std::deque<Pending> pending_;  // released ranges, in order of value
 };
 
 }  // namespace psygen::render

@@ -48,7 +48,7 @@ std::uint32_t count_bytes(std::size_t groups) {
   return static_cast<std::uint32_t>(2 * groups + 2) * kWordBytes;
 }
 
-// What the CPU reads after the frame.
+// Copies from the start of a buffer, for the CPU to read after the frame.
 void record_copy(const Device& device, VkCommandBuffer commands, const Buffer& from,
                  const Buffer& to, std::uint64_t target_offset, std::uint64_t bytes) {
   if (bytes == 0) return;
@@ -80,7 +80,7 @@ Result<void> GpuCulling::resize(const Device& device, core::Extent size, const I
   return pyramid_.resize(device, size, occlusion_ ? &depth : nullptr);
 }
 
-// Nothing is known of what was seen when the bits are made anew: all is tested in the second phase.
+// New bits say that nothing was visible, so everything is tested in the second phase.
 Result<void> GpuCulling::grow_seen(const Device& device) {
   const std::uint64_t names = std::max<std::uint64_t>(kFirstNames, list_.name_count());
   const std::uint64_t bytes = std::bit_ceil(names) / 8;
@@ -91,7 +91,7 @@ Result<void> GpuCulling::grow_seen(const Device& device) {
     if (!larger) return tl::unexpected(larger.error());
     buffer = std::move(*larger);
   }
-  // Waits for the frames in flight too, which read the old ones.
+  // This also waits for the frames in flight, which read the old bits.
   Result<void> cleared = run_once(device, [&](VkCommandBuffer commands) {
     for (const Buffer& buffer : made)
       device.vk.vkCmdFillBuffer(commands, buffer.buffer.get(), 0, VK_WHOLE_SIZE, 0);
@@ -184,7 +184,7 @@ void GpuCulling::dispatch(const Device& device, VkCommandBuffer commands, std::s
 void GpuCulling::record_first(const Device& device, VkCommandBuffer commands, std::size_t slot) {
   now_ = 1 - now_;
   write_sets(device, slot);
-  // After what the last frame did with the bits.
+  // Waits until the last frame has used the bits.
   memory_barrier(device, commands, kCompute, kShaderWrite,
                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | kCompute,
                  VK_ACCESS_2_TRANSFER_WRITE_BIT | kShaderRead);
@@ -198,7 +198,7 @@ void GpuCulling::record_first(const Device& device, VkCommandBuffer commands, st
 void GpuCulling::record_second(const Device& device, VkCommandBuffer commands, std::size_t slot,
                                const Image& depth) const {
   pyramid_.record(device, commands, depth);
-  // Both phases write to the same buffers.
+  // Both phases write the same buffers.
   memory_barrier(device, commands,
                  VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
                  VK_ACCESS_2_NONE, kCompute, VK_ACCESS_2_NONE);

@@ -1,10 +1,10 @@
-// Compute culling: the candidates of a frame go to the device as they are; a shader tests what is
-// in view, chooses levels of detail and writes the commands of indirect draws, one call for each
-// group of the same pipeline and buffers. With occlusion in two phases: first what was seen in the
-// last frame is drawn; from its depth a pyramid is made; then all that is in view is tested against
-// that, which says what was seen in this frame, and what is newly seen is drawn. So nothing visible
-// is ever left out, and what is hidden is left out from the third frame on. Private to
-// engine/render.
+// Compute culling: all candidates of a frame go to the device. A shader tests which are in view,
+// chooses levels of detail and writes the commands of indirect draws, one call per group with the
+// same pipeline and buffers. With occlusion there are two phases. The first draws the candidates
+// that were visible in the last frame, and a pyramid is made of their depth. The second tests
+// everything in view against the pyramid, stores what is visible now, and draws the newly visible
+// candidates. So no visible candidate is left out, and hidden ones are left out from the third
+// frame on. Main thread. Private to engine/render.
 #pragma once
 
 #include <array>
@@ -15,26 +15,29 @@
 
 namespace psygen::render {
 
+// The buffers and pipelines of culling. Empty until create() and resize().
 class GpuCulling {
  public:
-  // `slots` frames in flight, of pictures with so many samples per pixel.
+  // Creates everything that does not depend on the size. `samples` per pixel of the picture;
+  // `slots` frames in flight.
   core::Result<void> create(const Device& device, bool occlusion, VkSampleCountFlagBits samples,
                             std::size_t slots);
-  // For pictures of this size with this depth. The device must be idle.
+  // Prepares for pictures of this size with this depth. The device must be idle.
   core::Result<void> resize(const Device& device, core::Extent size, const Image& depth);
 
-  // The candidates of the next frames, until this is called again.
+  // Sets the candidates of the following frames, until the next call. Linear in the draws.
   void set_frame(const ViewTest& test, const shaders::FrameData& frame, const FrameInput& input,
                  core::Extent size, std::span<const IndexList> lists);
-  // Copies them into the buffers of a slot whose last frame has finished (kOutOfMemory).
+  // Copies them into the buffers of a slot whose last frame has finished. Fails with kOutOfMemory
+  // if the buffers cannot grow.
   core::Result<void> write(const Device& device, std::size_t slot);
 
-  // What the slot's vertex shaders read.
+  // The data of draws, which the slot's vertex shaders read.
   const Buffer& draw_data(std::size_t slot) const { return slots_[slot].draws; }
 
-  // A frame of a slot: record_first() before the first pass; where two_passes(), record_second()
-  // between the passes, which needs the depth of the first; record_counts() after the last.
-  // In each pass draw_group() for every group, which issues its commands of phase 0 or 1.
+  // Recording a frame of a slot: record_first() before the first pass. If two_passes(),
+  // record_second() between the passes; it reads the depth of the first. record_counts() after the
+  // last pass. In each pass, draw_group() for every group records its draws of phase 0 or 1.
   bool two_passes() const { return occlusion_; }
   void record_first(const Device& device, VkCommandBuffer commands, std::size_t slot);
   void record_second(const Device& device, VkCommandBuffer commands, std::size_t slot,
@@ -44,13 +47,15 @@ class GpuCulling {
   void draw_group(const Device& device, VkCommandBuffer commands, std::size_t slot,
                   std::size_t group, std::uint32_t phase) const;
 
-  // Of the slot's last frame, which has finished.
+  // Numbers of one frame.
   struct Counts {
     std::uint32_t draws = 0;
     std::uint64_t triangles = 0;
   };
+  // The numbers of the slot's last frame, which must have finished.
   Counts read_counts(std::size_t slot) const;
-  // What it drew, in any order; only while set_frame() has not been called since. Waits.
+  // The meshes that this frame drew, in any order. Waits for the device. Only allowed until the
+  // next set_frame().
   core::Result<std::vector<DrawnMesh>> read_drawn(const Device& device, std::size_t slot) const;
 
  private:
@@ -72,9 +77,9 @@ class GpuCulling {
   CandidateList list_;
   shaders::CullFrame frame_{};
   std::vector<Slot> slots_;
-  // A bit for each name: seen in the last frame, in this one; they change places in every frame.
+  // A bit per mesh: visible in the last frame, and in this one. They are swapped every frame.
   std::array<Buffer, 2> seen_;
-  std::size_t now_ = 0;  // which of them is written by the frame recorded last
+  std::size_t now_ = 0;  // index of the one that the last recorded frame writes
 };
 
 }  // namespace psygen::render

@@ -1,7 +1,8 @@
-// The device's own time for the frames of one slot, by timestamps around its passes. Nothing ever
-// waits for them: the slot's next frame copies what its last one wrote, and the CPU reads the copy
-// when that frame has finished, two frames of the slot later. Asking the driver for the queries
-// instead would stop lavapipe until it has finished everything. Private to engine/render.
+// The device's own time for the frames of one slot, from timestamps around its passes. Nothing
+// waits for them: the slot's next frame copies the timestamps of its last one, and the CPU reads
+// the copy when that frame has finished, two frames of the slot later. Reading the queries from the
+// driver instead would make lavapipe finish all its work first. It measures no CPU time. Main
+// thread. Private to engine/render.
 #pragma once
 
 #include <optional>
@@ -11,21 +12,25 @@
 
 namespace psygen::render {
 
+// The timestamps of one slot. Does nothing until create().
 class GpuTimer {
  public:
-  enum class Mark : std::uint32_t { kBegin, kEnd, kShadows };  // kShadows: behind their pass
+  // Places of timestamps in a frame.
+  enum class Mark : std::uint32_t { kBegin, kEnd, kShadows };  // kShadows: after their pass
 
-  // Does nothing, and knows nothing, where the queue has no timestamps.
+  // Creates the queries. If the queue has no timestamps, the timer does nothing.
   core::Result<void> create(const Device& device);
 
-  // At the start of a frame's commands. Requires that the slot's last frame has finished.
+  // Call it at the start of a frame's commands. The slot's last frame must have finished.
   void begin(const Device& device, VkCommandBuffer commands);
-  // Outside of rendering. Shadows may be left out; a frame without the end is not timed.
+  // Records a timestamp, outside of a render pass. kShadows may be left out. A frame without kEnd
+  // is not timed.
   void mark(const Device& device, VkCommandBuffer commands, Mark mark);
-  // The frame that begin() and the marks belong to has been submitted.
+  // Call it when the frame has been submitted. `frame` is its number, `now_s` the time.
   void submitted(std::uint64_t frame, double now_s);
 
-  // Requires that the last frame submitted has finished: the times of the one before it.
+  // The times of the frame before the last one, or nothing. The last submitted frame must have
+  // finished.
   std::optional<GpuTime> read(const Device& device) const;
 
  private:
@@ -37,7 +42,7 @@ class GpuTimer {
 
   UniqueQueryPool queries_;
   Buffer ticks_;
-  Frame recorded_, copied_;  // whose ticks are in the queries, and in `ticks_`
+  Frame recorded_, copied_;  // frames whose ticks are in the queries, and in `ticks_`
 };
 
 }  // namespace psygen::render

@@ -1,5 +1,5 @@
-// The Vulkan instance: loads the loader, switches validation on when asked, collects what it says.
-// Private to engine/render.
+// The Vulkan instance: loads the Vulkan loader, enables validation if requested and collects its
+// messages. Selects no device (device.hpp). Main thread, except messages. Private to engine/render.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace psygen::render {
 
-// The functions of the surface extensions, of one instance. volk's own pointers are those of the
-// instance made last, which need not have these extensions.
+// The functions of the surface extensions of one instance. volk's global pointers belong to the
+// last created instance, which may lack these extensions.
 struct SurfaceFunctions {
   PFN_vkDestroySurfaceKHR destroy = nullptr;
   PFN_vkGetPhysicalDeviceSurfaceSupportKHR support = nullptr;
@@ -23,10 +23,12 @@ struct SurfaceFunctions {
   PFN_vkGetPhysicalDeviceSurfacePresentModesKHR present_modes = nullptr;
 };
 
+// One instance. Devices and surfaces must be destroyed before it.
 class Instance {
  public:
-  // Fails with kNoDevice without a loader for Vulkan 1.3 or without any driver, and where
-  // validation was asked for but its layer is missing.
+  // Creates an instance. With a `surface` it has the surface's extensions. Fails with kNoDevice if
+  // there is no loader for Vulkan 1.3, no driver, or no validation layer although `validation` is
+  // set.
   static core::Result<std::unique_ptr<Instance>> create(const std::string& application_name,
                                                         bool validation,
                                                         const core::SurfaceProvider* surface);
@@ -34,9 +36,11 @@ class Instance {
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
+  // The handle, the functions (null without a surface), and all physical devices.
   VkInstance get() const { return instance_; }
   const SurfaceFunctions& surface_functions() const { return surface_functions_; }
   std::vector<VkPhysicalDevice> physical_devices() const;
+  // The messages of validation so far, and one more. Any thread.
   std::vector<std::string> messages() const;
   void add_message(const char* text);
 
@@ -47,7 +51,7 @@ class Instance {
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   PFN_vkDestroyDebugUtilsMessengerEXT destroy_messenger_ = nullptr;
   SurfaceFunctions surface_functions_;
-  mutable std::mutex mutex_;  // layers may report from the driver's threads
+  mutable std::mutex mutex_;  // layers may report from threads of the driver
   std::vector<std::string> messages_;
 };
 

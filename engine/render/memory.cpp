@@ -11,8 +11,8 @@ using core::Result;
 
 namespace {
 
-// Memory of the first type that has one of the wished-for sets of properties, in order, and has
-// room. A heap that does not hold the allocation four times over is left to others.
+// Allocates memory of the first type with one of the sets of properties in `wishes`, tried in
+// order. Skips heaps that are smaller than four times the allocation.
 Result<UniqueMemory> allocate(const Device& device, const VkMemoryRequirements& needs,
                               std::initializer_list<VkMemoryPropertyFlags> wishes) {
   VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;

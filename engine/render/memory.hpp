@@ -1,5 +1,6 @@
-// Buffers and images with memory of their own, and the one copy that start-up needs. A handful of
-// large allocations; meshes do not come from here (geometry_pool.hpp). Private to engine/render.
+// Buffers and images with their own memory, barriers, and commands that are run once. Only for a
+// few large allocations; meshes use geometry_pool.hpp. Main thread. Errors are those of
+// vulkan_error(). Private to engine/render.
 #pragma once
 
 #include <cstddef>
@@ -11,71 +12,78 @@
 
 namespace psygen::render {
 
+// A buffer bound to its own memory.
 struct Buffer {
-  UniqueMemory memory;  // ends after the buffer
+  UniqueMemory memory;  // destroyed after the buffer
   UniqueBuffer buffer;
-  std::byte* mapped = nullptr;
+  std::byte* mapped = nullptr;  // null for MemoryUse::kDevice
   std::uint64_t bytes = 0;
 };
 
+// An image bound to its own memory, and a view of it.
 struct Image {
   UniqueMemory memory;
   UniqueImage image;
   UniqueImageView view;
 };
 
+// How the memory of a buffer is used.
 enum class MemoryUse : std::uint8_t {
-  kWrite,   // written by the CPU, read by the device: device-local where that is possible
-  kRead,    // read back by the CPU: cached where that is possible
-  kDevice,  // only the device's: not mapped
+  kWrite,   // written by the CPU, read by the device: device-local if possible
+  kRead,    // read by the CPU: cached if possible
+  kDevice,  // used only by the device: not mapped
 };
 
-// A buffer, mapped and coherent unless it is the device's.
+// Creates a buffer. Its memory is mapped and coherent, except for MemoryUse::kDevice.
 core::Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes,
                                  VkBufferUsageFlags usage, MemoryUse use);
 
-// Device-local memory for an image, bound to it.
+// Allocates device-local memory for an image and binds it.
 core::Result<UniqueMemory> bind_image_memory(const Device& device, VkImage image);
 
+// Optional properties of an image.
 struct ImageShape {
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   bool array = false;  // the view is of an array, even with one layer
   std::uint32_t layers = 1;
 };
-// A device-local 2-D image with one mip level.
+// Creates a device-local 2-D image with one mip level.
 core::Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
                                VkImageUsageFlags usage, VkImageAspectFlags aspect,
                                const ImageShape& shape = {});
-// A view of one layer of it.
+// Creates a view of one layer of an image.
 core::Result<UniqueImageView> make_layer_view(const Device& device, const Image& image,
                                               VkFormat format, VkImageAspectFlags aspect,
                                               std::uint32_t layer);
 
-// Fills an image made with TRANSFER_DST and SAMPLED and leaves it readable by shaders. Waits.
+// Fills an image with usage TRANSFER_DST and SAMPLED, and makes it readable by fragment shaders.
+// `pixels` are rows without padding. Waits for the device.
 core::Result<void> upload_image(const Device& device, const Image& image, core::Extent size,
                                 std::span<const std::byte> pixels);
 
-// Runs `record(commands)` on the queue and waits for it.
+// Calls `record(commands)`, submits the commands and waits for them.
 template <class Record>
 core::Result<void> run_once(const Device& device, Record&& record);
 
-// Everything before in `from` with its `from_access` happens before what follows in `to`.
+// Records a global memory barrier between the stages `from` and `to` with these accesses.
 void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 from,
                     VkAccessFlags2 from_access, VkPipelineStageFlags2 to, VkAccessFlags2 to_access);
 
-// A semaphore that counts, from 0.
+// Creates a timeline semaphore with the value 0.
 core::Result<UniqueSemaphore> make_timeline(const Device& device);
 
-// Moves an image between layouts; one full barrier between the stages.
+// Records a barrier, which may change an image's layout. barrier_of() is a barrier of the first mip
+// level and layer, to be completed by the caller.
 void image_barrier(const Device& device, VkCommandBuffer commands,
                    const VkImageMemoryBarrier2& barrier);
 VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect);
 
-// Implementation of run_once.
+// Implementation of run_once: a command buffer in recording, and its submission with a wait.
 struct OneTimeCommands {
   UniqueCommandPool pool;
   VkCommandBuffer commands = VK_NULL_HANDLE;
 };
+// Starts recording; ends it, submits and waits.
 core::Result<OneTimeCommands> begin_once(const Device& device);
 core::Result<void> finish_once(const Device& device, OneTimeCommands& once);
 

@@ -12,7 +12,8 @@ OffsetAllocator::OffsetAllocator(std::uint32_t size) : size_(size), free_units_(
   insert_free(make_node(0, size));
 }
 
-// Sizes below 8 have a bin each; above, a bin is (exponent, top three bits after the leading one).
+// Sizes below 8 have their own bins. Above, a bin is the exponent and the three bits after the
+// leading one.
 std::uint32_t OffsetAllocator::bin_below(std::uint32_t size) {
   if (size < kLeavesPerTop) return size;
   const auto high = static_cast<std::uint32_t>(std::bit_width(size)) - 1;
@@ -90,7 +91,7 @@ void OffsetAllocator::remove_free(std::uint32_t node) {
 std::optional<OffsetAllocator::Allocation> OffsetAllocator::allocate(std::uint32_t size) {
   PSYGEN_ASSERT(size >= 1, "an allocation has at least one unit");
   const std::uint32_t bin = find_bin(bin_above(size));
-  // Nothing that fits for certain: the first range of the bin below may still be large enough.
+  // If no bin fits for certain, the first range of the bin below may still be large enough.
   const std::uint32_t node = bin != kNone ? heads_[bin] : heads_[bin_below(size)];
   if (node == kNone || nodes_[node].size < size) return std::nullopt;
   remove_free(node);

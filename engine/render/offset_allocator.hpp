@@ -1,7 +1,7 @@
-// Hands out ranges of a line of units: O(1) allocate and free with two levels of size bins and
-// coalescing neighbours. It knows offsets, not memory. Not thread-safe.
-// Source: two-level segregated fit (Masmano et al. 2004); bins are 3-bit floats of the size, so
-// that at most 1/8 of a free range's size is overlooked.
+// Allocates ranges of a line of units: O(1) allocate and free with two levels of size bins; free
+// neighbours are merged. It knows offsets, not memory. Not thread-safe.
+// Source: two-level segregated fit (Masmano et al. 2004). Bins are sizes as floats with a mantissa
+// of 3 bits, so the search ignores at most 1/8 of a free range's size.
 #pragma once
 
 #include <array>
@@ -11,24 +11,27 @@
 
 namespace psygen::render {
 
+// One line of units.
 class OffsetAllocator {
  public:
+  // An allocated range.
   struct Allocation {
     std::uint32_t offset = 0;  // in units
-    std::uint32_t node = 0;    // names the range to free()
+    std::uint32_t node = 0;    // identifies the range for free()
   };
 
-  // A line of `size` units, all free. size >= 1.
+  // A line of `size` units, all free. size >= 1, which is checked.
   explicit OffsetAllocator(std::uint32_t size);
 
-  // `size` >= 1 units, or nothing when no free range is found that is large enough.
+  // Allocates `size` >= 1 units. Nothing if no free range is found that is large enough.
   std::optional<Allocation> allocate(std::uint32_t size);
-  // Gives a range back. `node` must be allocated.
+  // Frees a range. `node` must be allocated, which is checked in release too.
   void free(std::uint32_t node);
 
+  // Units of the line, and free units.
   std::uint32_t size() const { return size_; }
   std::uint32_t free_units() const { return free_units_; }
-  // A size up to which an allocation is certain to succeed now.
+  // An allocation of up to this size would succeed now. 0: none.
   std::uint32_t largest_certain() const;
 
  private:
@@ -55,8 +58,8 @@ class OffsetAllocator {
 
   std::uint32_t size_;
   std::uint32_t free_units_;
-  std::uint32_t tops_ = 0;                        // bit per top level that has a free range
-  std::array<std::uint8_t, kTopCount> leaves_{};  // bit per leaf of each top level
+  std::uint32_t tops_ = 0;                        // one bit per top level that has a free range
+  std::array<std::uint8_t, kTopCount> leaves_{};  // one bit per leaf of each top level
   std::array<std::uint32_t, kTopCount * kLeavesPerTop> heads_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> spare_nodes_;

@@ -25,8 +25,8 @@ constexpr float kBarHeight = 10.0F;
 constexpr float kSwatch = 9.0F;
 
 constexpr std::size_t kLeastColumns = 8, kBarColumns = 40;
-constexpr std::size_t kSwatchColumns = 2;     // that a swatch takes before its text
-constexpr std::size_t kContinuedColumns = 2;  // by which rows that go on are indented
+constexpr std::size_t kSwatchColumns = 2;     // of a swatch before its text
+constexpr std::size_t kContinuedColumns = 2;  // indentation of continued rows
 
 constexpr glm::vec4 kTextColour{0.96F, 0.97F, 0.94F, 1.0F};
 constexpr glm::vec4 kPanelColour{0.03F, 0.04F, 0.06F, 0.70F};
@@ -69,7 +69,7 @@ glm::vec4 colour_of(std::uint32_t rgb) {
   return {part(16), part(8), part(0), 1.0F};
 }
 
-// Bytes that are no UTF-8 become the font's replacement character.
+// Bytes that are not UTF-8 become the font's replacement character.
 std::vector<ImWchar> characters_of(const std::string& text) {
   std::vector<ImWchar> characters;
   const char* const end = text.data() + text.size();
@@ -82,7 +82,7 @@ std::vector<ImWchar> characters_of(const std::string& text) {
   return characters;
 }
 
-// One row of a panel as it is shown: a line, or a part of one.
+// One row of a panel on screen: a line, or a part of one.
 struct Row {
   std::vector<ImWchar> characters = {};
   std::size_t indent = 0;  // columns before it
@@ -94,7 +94,7 @@ struct Row {
   }
 };
 
-// Breaks at the last space that fits, or within a word that is longer than a row.
+// Breaks a line into rows, at the last space that fits, or within a word longer than a row.
 void add_rows(const TextLine& line, std::size_t columns, std::vector<Row>& rows) {
   std::vector<ImWchar> rest = characters_of(line.text);
   Row row{.indent = line.swatch ? kSwatchColumns : 0, .swatch = line.swatch};
@@ -114,7 +114,7 @@ void add_rows(const TextLine& line, std::size_t columns, std::vector<Row>& rows)
   rows.push_back(std::move(row));
 }
 
-// Lays out panel after panel, each where the ones before leave it room.
+// Lays out panels one after the other, each where the previous ones leave room.
 class Layout {
  public:
   Layout(const ImFontAtlas& atlas, const ImFont& font, float scale, core::Extent picture,
@@ -198,7 +198,7 @@ class Layout {
 
   const ImFontAtlas& atlas_;
   const ImFont& font_;
-  const float scale_, advance_;  // every character of the font is as wide
+  const float scale_, advance_;  // all characters of the font have the same advance
   const float width_, height_;   // of the picture
   Box left_{0, 0, -1e9F, 0};     // the last panel on the left
   std::vector<shaders::OverlayVertex>& out_;

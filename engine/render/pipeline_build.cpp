@@ -59,7 +59,7 @@ VkPrimitiveTopology topology_of(PipelineKind kind) {
   }
 }
 
-// Numbers of the fragment shader's constants, in its order.
+// The specialisation constants of fragment shaders, by number.
 constexpr std::array kConstants{VkSpecializationMapEntry{0, 0, sizeof(VkBool32)},
                                 VkSpecializationMapEntry{1, sizeof(VkBool32), sizeof(VkBool32)}};
 
@@ -87,7 +87,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
       core::vertex_stride_bytes(terrain ? core::VertexLayout::kTerrain
                                         : core::VertexLayout::kModel),
       VK_VERTEX_INPUT_RATE_VERTEX};
-  // One fetch of whole words, unpacked in the shader: cheaper than four attributes.
+  // One fetch of whole words, which the shader unpacks, is cheaper than four attributes.
   const VkVertexInputAttributeDescription attribute{
       0, 0, terrain ? VK_FORMAT_R32G32B32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0};
   VkPipelineVertexInputStateCreateInfo input{};
@@ -107,7 +107,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   VkPipelineRasterizationStateCreateInfo raster{};
   raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
   raster.polygonMode = shape.wireframe ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_FILL;
-  raster.cullMode = terrain ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;  // leaves have two sides
+  raster.cullMode = terrain ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;  // leaves are two-sided
   raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
   raster.lineWidth = 1.0F;
   VkPipelineMultisampleStateCreateInfo samples{};

@@ -1,4 +1,5 @@
-// Makes one graphics pipeline from a short description. Private to engine/render.
+// Creates one graphics pipeline from a short description. Owns nothing. Main thread. Private to
+// engine/render.
 #pragma once
 
 #include <array>
@@ -11,6 +12,7 @@ namespace psygen::render {
 
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
+// What a pipeline draws. Vertex input, topology, blending and depth test follow from it.
 enum class PipelineKind : std::uint8_t {
   kTerrain,
   kModel,
@@ -22,6 +24,7 @@ enum class PipelineKind : std::uint8_t {
   kOverlay
 };
 
+// The description of a pipeline.
 struct PipelineShape {
   PipelineKind kind = PipelineKind::kSky;
   ShaderCode vert, frag;
@@ -29,9 +32,10 @@ struct PipelineShape {
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   std::array<VkBool32, 2> constants{};  // of the fragment shader; those it lacks are ignored
   bool wireframe = false;               // needs DeviceInfo::wireframe
-  bool shadow = false;  // depth only, of a cascade; mostly without a fragment shader
+  bool shadow = false;                  // only depth, of a cascade; `frag` may be empty
 };
 
+// Creates a pipeline. Takes milliseconds to seconds, if the driver has to compile the shaders.
 core::Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layout,
                                            const PipelineShape& shape);
 

@@ -15,7 +15,7 @@ using core::Result;
 
 namespace {
 
-// That a preset has.
+// Largest number of pipelines of a preset, for the progress.
 constexpr double kMostPipelines = 25;
 
 Result<UniqueSampler> make_sampler(const Device& device, VkSamplerAddressMode mode) {
@@ -170,7 +170,7 @@ Result<void> Pipelines::create_meshes(Making& making, PipelineShape shape, MeshL
   return {};
 }
 
-// `shape` is that of the same models as a whole.
+// Pipelines for fading models. `shape` is that of the same models without fading.
 Result<void> Pipelines::create_fading(Making& making, PipelineShape shape, MeshLook look,
                                       MeshPipelines& out) {
   const OtherCode& code = other_code();
@@ -200,7 +200,7 @@ Result<void> Pipelines::create_others(const Device& device, const Progress& prog
       .and_then([&] { return create_sky(making); });
 }
 
-// Ground, models and water.
+// Pipelines for ground, models and water.
 Result<void> Pipelines::create_landscape(Making& making) {
   const OtherCode& code = other_code();
   const bool lit = traits_.pixel_light;
@@ -236,7 +236,7 @@ Result<void> Pipelines::create_sky(Making& making) {
   return make(making, shape, sun_);
 }
 
-// Those for understanding: draws in their own colour, edges, lines.
+// Pipelines for debugging views: draws in their debug colour, edges, lines.
 Result<void> Pipelines::create_views(Making& making) {
   PipelineShape shape = usual_shape();
   shape.frag = other_code().surface_frag;

@@ -1,5 +1,6 @@
-// Every pipeline of a preset, the one descriptor set layout and the textures that never change. All
-// are made on one thread, before the first frame of the preset. Private to engine/render.
+// All graphics pipelines of a preset, the one descriptor set layout and the constant textures. They
+// are created before the first frame of the preset. Records no draws (scene_recorder.hpp). Main
+// thread. Private to engine/render.
 #pragma once
 
 #include <vector>
@@ -11,36 +12,42 @@
 
 namespace psygen::render {
 
+// Empty until create(). The device must outlive it.
 class Pipelines {
  public:
-  // What text needs, and so many descriptor sets.
+  // Creates the textures, `sets` descriptor sets, and the pipeline for text.
   core::Result<void> create(const Device& device, VkFormat colour_format,
                             const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets);
-  // Once, after that: what everything else needs. `progress` is called after each pipeline.
+  // Creates all other pipelines; call it once, after create(). `progress` is called after each
+  // pipeline and can end it with kInterrupted.
   core::Result<void> create_others(const Device& device, const Progress& progress);
 
+  // The preset, the samples per pixel that the device supports, and the pipeline layout.
   const PresetTraits& traits() const { return traits_; }
   VkSampleCountFlagBits samples() const { return samples_; }
   VkPipelineLayout layout() const { return layout_.get(); }
-  // `pushed`: the draw's data is in push constants, else in the buffer of draws.
-  // `fading`: of models that come or go.
+  // The pipeline for meshes. `pushed`: the data of a draw is in push constants, else in the buffer
+  // of draws. `fading`: for models that fade in or out.
   VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, View view) const;
-  // Into a cascade; only where the preset has some.
+  // The same for drawing into a cascade, if the preset has cascades.
   VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, bool fading) const {
     return shadow_.of(layout, pushed, fading);
   }
+  // Pipelines for water and lines, and the shadow maps.
   VkPipeline water() const { return water_.get(); }
   VkPipeline lines() const { return lines_.get(); }
   const ShadowMaps& shadows() const { return shadows_; }
-  // Over the whole picture; where light is found per vertex what is below the
-  // horizon, then a dome, then the sun.
+  // The sky. With light per pixel, sky() fills the whole picture and the others are null. With
+  // light per vertex, sky_below() fills the part below the horizon, sky() is a dome, sun() comes
+  // last.
   VkPipeline sky() const { return sky_.get(); }
   VkPipeline sky_below() const { return sky_below_.get(); }
   VkPipeline sun() const { return sun_.get(); }
-  VkPipeline overlay() const { return overlay_.get(); }
+  VkPipeline overlay() const { return overlay_.get(); }  // text
 
+  // The descriptor set of a slot.
   VkDescriptorSet set(std::size_t number) const { return sets_[number]; }
-  // Lets a set read the given buffers, and the textures.
+  // Binds these buffers and the textures to a set that no unfinished commands use.
   void write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,
                  const Buffer& draws, const Buffer& glyphs) const;
 
@@ -49,9 +56,9 @@ class Pipelines {
   core::Result<void> create_sets(const Device& device, std::uint32_t count);
   core::Result<void> create_textures(const Device& device, const Overlay& overlay);
   struct MeshPipelines {
-    // By layout (terrain, model) and by whether the data is pushed.
+    // Indexed by layout (terrain, model) and by whether the data is pushed.
     std::array<std::array<UniquePipeline, 2>, 2> whole;
-    std::array<UniquePipeline, 2> fading;  // models; by whether the data is pushed
+    std::array<UniquePipeline, 2> fading;  // models, indexed by whether the data is pushed
 
     VkPipeline of(core::VertexLayout layout, bool is_pushed, bool is_fading) const {
       const std::size_t pushed = is_pushed ? 1 : 0;
@@ -59,7 +66,7 @@ class Pipelines {
       return whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed].get();
     }
   };
-  // While pipelines are made.
+  // State while pipelines are created.
   struct Making {
     const Device& device;
     const Progress& progress;

@@ -1,4 +1,4 @@
-// Names of RenderPath, for options and reports.
+// Names of RenderPath, for options and reports. Pure, any thread. Knows no Vulkan.
 #pragma once
 
 #include <string_view>
@@ -8,6 +8,7 @@
 
 namespace psygen::render {
 
+// The name of a path and its inverse, which fails with kInvalidArgument.
 std::string_view to_string(RenderPath path);  // "auto", "cpu", "gpu"
 core::Result<RenderPath> render_path_from(std::string_view name);
 

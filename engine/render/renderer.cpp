@@ -8,7 +8,7 @@ using core::Result;
 
 Renderer::Renderer(std::unique_ptr<RendererImpl> impl) : impl_(std::move(impl)) {}
 
-// Whatever of a driver that hangs would be ended would hang as well.
+// If the driver hangs, destroying its objects would hang too. So they are leaked.
 void Renderer::leave(std::unique_ptr<RendererImpl> impl) {
   if (impl && impl->hangs()) (void)impl.release();
 }

@@ -1,7 +1,7 @@
-// The renderer: draws lists of meshes that lie in its geometry memory, into a window or headless,
-// with Vulkan 1.3. It knows nothing of entities, models or synthesis. Of the lists it leaves out
-// only what cannot be seen, and takes other levels only where they offer some (FrameInput::choose).
-// Main thread; two frames are in flight. The paper's Renderer (section 4).
+// The renderer: draws lists of meshes from its geometry memory, into a window or headless, with
+// Vulkan 1.3. It knows nothing of entities, models or synthesis. It leaves out only meshes that are
+// not visible, and chooses levels of detail only if asked to (FrameInput::choose). Main thread; two
+// frames are in flight. The paper's Renderer (section 4). docs/gpu.md.
 #pragma once
 
 #include <cstdint>
@@ -18,65 +18,71 @@ namespace psygen::render {
 
 class RendererImpl;
 
+// One device with its pictures. All functions are for the main thread.
 class Renderer {
  public:
-  // Fails with kNoDevice (no loader, no device, unknown name: the sentence lists the names there
-  // are; or that has no GPU path where that is demanded), kOutOfMemory, kInvalidArgument, or
-  // kInterrupted. All pipelines exist afterwards, and those of the landscape have drawn once.
+  // Creates a renderer with all pipelines; those of the landscape have drawn once. Fails with
+  // kNoDevice (no loader, no device, unknown name, or no GPU path although it is required; the
+  // message lists the existing names), kOutOfMemory, kInvalidArgument, or kInterrupted.
   static core::Result<std::unique_ptr<Renderer>> create(const RendererOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // Where meshes are written, mapped or to be copied (Upload). Lives as long as the renderer.
+  // The memory for meshes, mapped or copied to the device (Upload). Lives as long as the renderer.
   core::GeometryMemory& geometry();
 
-  // Keeps an index list that many meshes use; the name that draws give. Fails with kOutOfMemory
-  // when the 4 MiB for such lists (outside the geometry budget) are full. Kept for good.
+  // Stores an index list that many meshes share and returns its id for draws. It is kept as long as
+  // the renderer. Fails with kInvalidArgument for an empty list, and with kOutOfMemory when the
+  // 4 MiB for such lists, outside the geometry budget, are full.
   core::Result<std::uint32_t> upload_shared_indices(std::span<const std::uint16_t> indices);
 
-  // Draws and submits one frame. Waits at most for the frame before the last. Not presented (and
-  // no work done) while the window is minimised. An invalid camera keeps the last valid one.
-  // Fails with kDeviceLost, and with kOutOfMemory when a draw list cannot be held.
+  // Draws and submits one frame. Waits at most for the frame before the last. While the window is
+  // minimised it does nothing and presents nothing. Instead of an invalid camera it uses the last
+  // valid one. Fails with kDeviceLost, and with kOutOfMemory if there is no memory for the draws.
   core::Result<FrameResult> render(const FrameInput& input);
 
-  // A picture that is nothing but text, for when there is no scene to be drawn yet; waits until it
-  // is there. Nothing is shown while the window is minimised. Fails as render() does.
+  // Draws a picture with only text, for example while there is no scene yet, and waits for it.
+  // Shows nothing while the window is minimised. Fails like render().
   core::Result<void> show(std::span<const TextPanel> panels, float text_scale = 1);
 
-  // Makes everything anew that depends on the preset, and waits for it: seconds where the driver
-  // has not kept it from before. Meshes stay. There is no picture to capture until the next frame.
-  // Where it fails (kOutOfMemory, kDeviceLost; kInterrupted by `progress`, in which only show() may
-  // be called) the old preset stays.
+  // Recreates everything that depends on the preset and waits for it. This takes seconds if the
+  // driver has not cached the pipelines. Meshes stay. There is no picture to capture until the next
+  // frame. After an error (kOutOfMemory, kDeviceLost, or kInterrupted by `progress`) the old preset
+  // is in use. `progress` may only call show().
   core::Result<void> set_preset(Preset preset, const Progress& progress = {});
   Preset preset() const;  // the one in use
 
-  // The last frame's picture; waits for it. Fails with kInvalidArgument before the first frame.
+  // The picture of the last frame; waits for it. Fails with kInvalidArgument before the first
+  // frame.
   core::Result<Picture> capture();
 
-  // A new size of the picture; with a surface, a hint that the window changed. 0 × 0: minimised.
+  // Headless: sets the size of the picture in pixels; kInvalidArgument if the device does not
+  // support it. With a surface: a hint that the window has changed (0 × 0: it is minimised).
   core::Result<void> resize(core::Extent size);
-  core::Extent size() const;
+  core::Extent size() const;  // 0 × 0: there is no picture
 
+  // The device in use.
   const DeviceInfo& device() const;
 
-  // What validation has said so far; empty without `validation`.
+  // All messages of validation so far; empty without RendererOptions::validation.
   std::vector<std::string> validation_messages() const;
 
-  // The floor: median wall time in ms of drawing the last frame's lists again, one at a time, with
-  // nothing else running. No range of that frame may have been released since. `repeats` >= 1.
+  // The floor: median wall time in ms per frame of drawing the last frame's lists again, with
+  // nothing else running. No range of that frame may have been released since. `repeats` >= 1,
+  // which is checked. Fails with kInvalidArgument if there is no such frame.
   core::Result<double> replay_floor_ms(int repeats);
 
   // The meshes that the last frame drew, in any order; waits for it. For tests and views. Fails
   // with kInvalidArgument before the first frame.
   core::Result<std::vector<DrawnMesh>> drawn_meshes();
 
-  // What RendererOptions::path has come to: kCpu or kGpu.
+  // The path in use for RendererOptions::path: kCpu or kGpu.
   RenderPath path() const;
-  // Whether what is drawn casts shadows into cascades: then draws out of the picture matter too.
+  // Whether meshes cast shadows into cascades. Then draws outside the picture matter too.
   bool casts_shadows() const;
 
-  // Returns when the device has finished everything; released ranges are free afterwards.
+  // Waits until the device has finished everything. Released ranges are free afterwards.
   void wait_idle();
 
  private:
@@ -85,7 +91,7 @@ class Renderer {
   std::unique_ptr<RendererImpl> impl_;
 };
 
-// The devices that could be used, best first. Fails with kNoDevice when there are none.
+// All usable devices, best first. Fails with kNoDevice if there are none.
 core::Result<std::vector<DeviceInfo>> list_devices();
 
 }  // namespace psygen::render

@@ -41,20 +41,21 @@ VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
   return info;
 }
 
-// What a software driver takes from here to the first frame, besides pictures. It ends the program
-// in many ways where it does not get it, so it is asked for first. Addresses are its libraries'
-// too.
+// Memory that a software driver allocates from here to the first frame, besides pictures. Without
+// it, the driver ends the program in many ways, so it is checked first. Address space includes that
+// of the driver's libraries.
 constexpr std::uint64_t kStartBytes = std::uint64_t{96} << 20;
 constexpr std::uint64_t kStartAddressBytes = std::uint64_t{512} << 20;
-// What geometry leaves to everything else: the scene, the modelers, and a software driver's bins,
-// which grow with the picture (measured: 80 MiB at 1280 x 720, 190 MiB at 3840 x 2160).
+// Memory that geometry leaves free for everything else: the scene, the modelers, and the bins of a
+// software driver, which grow with the picture (measured: 80 MiB at 1280 x 720, 190 MiB at
+// 3840 x 2160).
 std::uint64_t headroom_bytes(core::Extent size) {
   const std::uint64_t bins = std::uint64_t{size.width} * size.height * 80;
   return (std::uint64_t{32} << 20) + std::min(bins, std::uint64_t{192} << 20);
 }
 
-// On lavapipe a pushed draw costs about 800 ns more than one of a multi-draw, and the data of a
-// multi-draw costs about 20 ns per triangle more (psygen_bench_render): even at some 40 triangles.
+// On lavapipe a pushed draw costs about 800 ns more than a draw of a multi-draw. A multi-draw costs
+// about 20 ns per triangle more (psygen_bench_render). They are equal at about 40 triangles.
 constexpr std::uint32_t kWorthPushingIndices = 48 * 3;
 
 std::uint32_t first_pushed_index_count(Submission wish, const Device& device) {
@@ -134,7 +135,7 @@ Result<void> RendererImpl::create_geometry() {
   pool_ =
       std::make_unique<GeometryPool>(options_.geometry_budget_bytes,
                                      [this](std::uint64_t bytes) { return add_pool_block(bytes); });
-  // A heap that does not hold twice the budget is the small window of a device without more.
+  // A heap below twice the budget is taken for the small mapped window of a device.
   const bool writable =
       device_->info.software || device_->writable_bytes() / 2 >= options_.geometry_budget_bytes;
   if (options_.upload == Upload::kStaged || (options_.upload == Upload::kAuto && !writable)) {
@@ -162,7 +163,7 @@ Result<void> RendererImpl::create_culling() {
 }
 
 Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
-  // What is the program's own memory is not taken to its end.
+  // Does not exhaust memory that belongs to the whole process.
   if ((staged_ || device_->info.software) &&
       !core::memory_left(bytes + headroom_bytes(options_.size))) {
     return core::fail(ErrorCode::kOutOfMemory,
@@ -213,8 +214,8 @@ Result<void> RendererImpl::wait_for(FrameSlot& slot) {
   const VkSemaphore timeline = timeline_.get();
   if (auto ok = device_->wait(timeline, slot.submitted_value, "waiting for a frame"); !ok)
     return ok;
-  // Only what was waited for, though the device may be further: which ranges are free must not
-  // depend on its speed.
+  // Reports only the frame that was waited for, although the device may be further. The set of free
+  // ranges must not depend on the device's speed.
   pool_->frames_finished(slot.submitted_value);
   return {};
 }
@@ -277,7 +278,7 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   return slot.end(*device_);
 }
 
-// Camera values that cannot be drawn keep the last ones that could.
+// Stores the camera values that can be drawn; the last ones replace invalid values.
 void RendererImpl::remember_valid(const FrameInput& input) {
   const core::Projection& p = input.projection;
   const bool drawable = p.vertical_fov > 0.001F && p.vertical_fov < 3.13F && p.aspect > 0.001F &&
@@ -304,7 +305,7 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   return noted(draw_frame(input, slot_of(frame_value_ + 1)));
 }
 
-// What is drawn: the lists as they are, what the CPU chooses of them, or what the device will.
+// Makes the list of draws: all draws, those that the CPU chooses, or candidates for the device.
 void RendererImpl::list_draws(const FrameInput& input) {
   const ViewTest test =
       view_test(frame_.clip_from_camera, input, static_cast<float>(size().height));
@@ -312,7 +313,7 @@ void RendererImpl::list_draws(const FrameInput& input) {
   std::uint32_t pushed_from = pushed_from_;
   if (culling_) {
     culling_->set_frame(test, frame_, input, size(), shared_.lists());
-    // Cascades are drawn from a list of the CPU's, whose data is pushed.
+    // Cascades are drawn from a list of the CPU, with pushed data.
     if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
     pushed_from = 0;
   }
@@ -333,7 +334,7 @@ Result<void> RendererImpl::write_frame(FrameSlot& slot) {
   return written;
 }
 
-// How the frame that begins differs from others, apart from what it finds out itself.
+// How the frame that begins differs from others, as far as it is known before drawing.
 Apart RendererImpl::apart_now() {
   if (std::exchange(resized_, false)) return Apart::kResized;
   return frame_value_ - idle_value_ < kFramesInFlight ? Apart::kAfterIdle : Apart::kNo;

@@ -1,5 +1,5 @@
-// The renderer behind renderer.hpp: owns every Vulkan object, in order of creation. Private to
-// engine/render.
+// The implementation of renderer.hpp. Owns every Vulkan object, in order of creation. Main thread.
+// Functions without a comment are those of Renderer. Private to engine/render.
 #pragma once
 
 #include <array>
@@ -20,19 +20,23 @@
 
 namespace psygen::render {
 
+// Its parts are in renderer_impl.cpp, renderer_preset.cpp, renderer_readback.cpp and
+// renderer_window.cpp.
 class RendererImpl {
  public:
   static constexpr std::size_t kFramesInFlight = 2;
 
+  // Only stores the options.
   explicit RendererImpl(const RendererOptions& options);
   ~RendererImpl();
   RendererImpl(const RendererImpl&) = delete;
   RendererImpl& operator=(const RendererImpl&) = delete;
 
-  // To be called once, before everything else but show() in `progress`; after a failure only
-  // destruction is allowed.
+  // Creates everything. Call it once, before all others; during it, `progress` may call show().
+  // After an error only destruction is allowed.
   core::Result<void> create(const Progress& progress);
 
+  // Renderer's functions, and hangs(): Device::hangs().
   core::GeometryMemory& geometry() {
     return staged_ ? static_cast<core::GeometryMemory&>(*staged_) : *pool_;
   }
@@ -72,7 +76,7 @@ class RendererImpl {
     return static_cast<std::size_t>(&slot - slots_.data());
   }
   Targets& targets_of(const FrameSlot& slot) { return targets_[index_of(slot) % targets_.size()]; }
-  // The slot of the frame with this value of the timeline.
+  // The slot of the frame with this timeline value.
   FrameSlot& slot_of(std::uint64_t value) { return slots_[value % kFramesInFlight]; }
   core::Result<std::byte*> add_pool_block(std::uint64_t bytes);
 
@@ -87,7 +91,7 @@ class RendererImpl {
   Apart apart_now();
   void add_lines(std::span<const Line> lines);
   void remember_valid(const FrameInput& input);
-  // Remembers that the device was lost, after which nothing is submitted any more.
+  // Stores in lost_ that the device was lost. After that nothing more is submitted.
   template <class T>
   core::Result<T> noted(core::Result<T> result) {
     if (!result && result.error().code == core::ErrorCode::kDeviceLost) lost_ = true;
@@ -100,24 +104,24 @@ class RendererImpl {
   UniqueSurface surface_;
   std::unique_ptr<Device> device_;
   VkFormat colour_format_ = VK_FORMAT_R8G8B8A8_UNORM;
-  std::uint32_t pushed_from_ = 0;  // meshes of at least so many indices are pushed
+  std::uint32_t pushed_from_ = 0;  // meshes with at least this many indices are pushed
   std::vector<Buffer> pool_blocks_;
   std::unique_ptr<GeometryPool> pool_;
-  std::unique_ptr<StagedGeometry> staged_;  // null where the CPU writes the blocks themselves
+  std::unique_ptr<StagedGeometry> staged_;  // null if the CPU writes the blocks directly
   SharedIndexLists shared_;
   Preset preset_ = Preset::kLow;
   Pipelines pipelines_;
   std::array<FrameSlot, kFramesInFlight> slots_;
   std::unique_ptr<GpuCulling> culling_;  // null on the CPU path
   UniqueSemaphore timeline_;
-  std::vector<Targets> targets_;  // one for each slot; one for all where the device culls
+  std::vector<Targets> targets_;  // one per slot on the CPU path; one for all on the GPU path
   Swapchain swapchain_;
-  core::Extent seen_framebuffer_;  // the window's size when the swapchain was made
+  core::Extent seen_framebuffer_;  // the window's size when the swapchain was created
   bool swapchain_stale_ = true;
 
   std::uint64_t frame_value_ = 0;    // last value submitted to the timeline
-  std::uint64_t idle_value_ = 0;     // the last one when the device was last known to be idle
-  std::uint64_t warm_up_value_ = 0;  // the last one before the first frame
+  std::uint64_t idle_value_ = 0;     // frame_value_ when the device was last known to be idle
+  std::uint64_t warm_up_value_ = 0;  // frame_value_ before the first frame
   bool resized_ = false;             // since the last frame
   bool has_picture_ = false;
   bool has_list_ = false;
@@ -125,7 +129,7 @@ class RendererImpl {
   std::optional<core::CameraPose> last_pose_;
   std::optional<core::Projection> last_projection_;
   DrawList list_;                            // on the CPU path
-  std::vector<TerrainDraw> chosen_terrain_;  // where the renderer chooses
+  std::vector<TerrainDraw> chosen_terrain_;  // with FrameInput::choose
   std::vector<MeshDraw> chosen_models_;
   shaders::FrameData frame_{};
   std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines

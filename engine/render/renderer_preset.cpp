@@ -1,5 +1,5 @@
-// What the renderer has for one preset: pipelines, culling, targets. Made at the start, and anew
-// for another preset. And the picture that is shown meanwhile.
+// The renderer's objects for one preset: pipelines, culling, targets. They are created at the start
+// and again for another preset. Also the text picture that is shown meanwhile.
 #include <utility>
 
 #include "engine/render/frame_data.hpp"
@@ -12,7 +12,7 @@ using core::Result;
 
 namespace {
 
-// Of the time until everything has been drawn once, the share that making the pipelines takes.
+// Share of creating the pipelines in the time until everything has been drawn once.
 constexpr double kPipelinesShare = 0.3;
 
 Progress part_of(const Progress& whole, double from, double to) {
@@ -61,7 +61,7 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
     std::swap(other_culling, culling_);
     std::swap(other_targets, targets_);
   };
-  exchange();  // the old ones are kept until the new ones are there
+  exchange();  // keeps the old ones until the new ones exist
   Result<void> made = noted(create_looks(preset, progress));
   wait_idle();
   has_list_ = has_picture_ = false;
@@ -98,7 +98,7 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
   return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
 }
 
-// An empty frame with every dispatch.
+// Draws an empty frame with every dispatch.
 Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
   return culling_->resize(*device_, small.extent, small.depth)
       .and_then([&] {

@@ -1,5 +1,5 @@
-// What is read back of frames: pictures, what was drawn, what drawing it again takes. All of it
-// waits for the device.
+// Reads back from frames: pictures, the meshes drawn, and the time of drawing them again. All
+// functions wait for the device.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -31,7 +31,7 @@ Result<Picture> RendererImpl::capture() {
     record_copy_to_buffer(*device_, commands, drawn, buffer->buffer.get());
   }));
   if (!copied) return tl::unexpected(copied.error());
-  idle_value_ = frame_value_;  // the copy came after all frames
+  idle_value_ = frame_value_;  // the copy ran after all frames
   std::memcpy(picture.rgba.data(), buffer->mapped, picture.rgba.size());
   if (colour_format_ == VK_FORMAT_B8G8R8A8_UNORM) {
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
@@ -46,7 +46,7 @@ Result<double> RendererImpl::replay_floor_ms(int repeats) {
     return core::fail(ErrorCode::kInvalidArgument, "there is no frame to draw again");
   }
   wait_idle();
-  // Both slots are filled once; then every interval is one frame with the next one in flight.
+  // After both slots are filled once, every interval is one frame, with the next one in flight.
   const int lead = static_cast<int>(kFramesInFlight);
   std::vector<double> intervals;
   double last = core::monotonic_seconds();

@@ -1,11 +1,11 @@
-// The window's part of the renderer: when the swapchain is made, made again, or not there.
+// The renderer's part for the window: creates and recreates the swapchain.
 #include "engine/render/renderer_impl.hpp"
 
 namespace psygen::render {
 
 using core::Result;
 
-// True when there is a swapchain and targets of its size; false while the window has no pixels.
+// True if there is a swapchain with targets of its size; false while the window has no pixels.
 Result<bool> RendererImpl::prepare_window() {
   const core::Extent size = options_.surface->framebuffer_size();
   if (size.width == 0 || size.height == 0) return false;
@@ -40,7 +40,7 @@ Result<void> RendererImpl::recreate_surface() {
   return {};
 }
 
-// A stale swapchain is made again by the next frame; this one is not shown.
+// If the swapchain is stale, this frame is not shown, and the next one recreates it.
 Result<RendererImpl::WindowState> RendererImpl::acquire_window(FrameSlot& slot) {
   const Result<SwapchainState> acquired = swapchain_.acquire(*device_, slot.acquired());
   if (!acquired) return tl::unexpected(acquired.error());

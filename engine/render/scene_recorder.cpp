@@ -20,10 +20,10 @@ bool has_samples(const Targets& targets) {
   return targets.samples.image.get() != VK_NULL_HANDLE;
 }
 
-// A frame is drawn in one pass, or in two with depth read in between.
+// A frame has one pass, or two with a read of depth in between.
 enum class Part : std::uint8_t { kWhole, kFirst, kSecond };
 
-// Makes the targets attachments, after everything that used them before.
+// Moves the targets to the layouts of attachments, after all previous uses.
 void to_attachments(const Device& device, VkCommandBuffer commands, Targets& targets, Part part) {
   if (part == Part::kWhole && targets.host_ordered &&
       targets.colour_layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)
@@ -68,7 +68,7 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
   colour_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   colour_info.imageView = targets.colour.view.get();
   colour_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  colour_info.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  // the sky fills what nothing covers
+  colour_info.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  // the sky covers all other pixels
   colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   if (has_samples(targets)) {
     colour_info.imageView = targets.samples.view.get();
@@ -141,7 +141,7 @@ void draw_many(const Device& device, VkCommandBuffer commands, const DrawList& l
   }
 }
 
-// `pipeline_of(run)`.
+// Draws the runs of the list, each with the pipeline pipeline_of(run).
 template <class PipelineOf>
 void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
                  const ScenePass& pass, const PipelineOf& pipeline_of) {
@@ -188,7 +188,7 @@ void draw_culled(const Device& device, const Pipelines& pipelines, VkCommandBuff
   }
 }
 
-// Begins the last pass of the frame, with everything drawn but what comes after meshes.
+// Draws the meshes on the GPU path. The last pass of the frame stays open, for what follows meshes.
 void draw_culled_passes(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
                         Targets& targets, const ScenePass& pass) {
   const auto [culling, index] = pass.culled;
@@ -261,7 +261,7 @@ void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& tar
 
 constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
-// Read by the depth pyramid where the device can.
+// The depth pyramid reads depth, if the device supports it.
 VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits samples) {
   const bool readable = (device.sampled_depth_counts & samples) != 0;
   VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
@@ -355,7 +355,7 @@ void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targe
                            VkImage window, core::Extent window_extent) {
   to_copy_source(device, commands, targets);
   VkImageMemoryBarrier2 barrier = barrier_of(window, VK_IMAGE_ASPECT_COLOR_BIT);
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;  // where the image is waited for
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;  // the stage that waits for the image
   barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
   barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
   barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;

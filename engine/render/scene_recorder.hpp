@@ -1,6 +1,7 @@
-// Records a frame: the sun's shadows where the preset has them; one pass, or two where the device
-// leaves out what is hidden (gpu_culling.hpp): meshes, then water, the sky behind, lines and text
-// in front; and the copy of the picture out of the target. Private to engine/render.
+// Records a frame: the sun's shadows, if the preset has them; one pass, or two with occlusion
+// culling (gpu_culling.hpp); and the copy of the picture out of the target. A pass draws meshes,
+// water, the sky behind, then lines and text in front. It submits nothing. Main thread. Private to
+// engine/render.
 #pragma once
 
 #include <span>
@@ -12,59 +13,63 @@
 
 namespace psygen::render {
 
-// What is drawn into: colour that can be copied out, and depth, forgotten after the last pass.
-// With several samples per pixel these are drawn and `colour` gets their mean.
+// The images of a picture: colour, which can be copied out, and depth, which is discarded after the
+// last pass. With several samples per pixel, `samples` is drawn to and `colour` gets their mean.
 struct Targets {
   Image colour, depth;
   Image samples;  // empty with one sample per pixel
   core::Extent extent;
   VkImageLayout colour_layout = VK_IMAGE_LAYOUT_UNDEFINED;  // after the last recorded frame
-  // The host waits for the last frame in here before it submits the next: no barrier is needed
-  // between them, and on lavapipe, where each waits for everything, one frame's triangles are set
-  // up while the last one's pixels are filled.
+  // The host waits for the last frame in these targets before it submits the next one, so no
+  // barrier is needed between them. On lavapipe a barrier waits for everything. Without it, the
+  // triangles of one frame are set up while the pixels of the last one are filled.
   bool host_ordered = false;
 };
+// Creates targets of `extent` pixels. Fails with kOutOfMemory.
 core::Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
                                    VkSampleCountFlagBits samples);
 
-// The buffers that a draw list refers to.
+// The buffers of a draw list.
 struct SceneBuffers {
   std::span<const Buffer> pool_blocks;
   VkBuffer shared_indices = VK_NULL_HANDLE;
 };
 
-// Draws that the device chooses itself, instead of a draw list.
+// Draws that the device chooses, instead of a draw list.
 struct CulledDraws {
   GpuCulling* culling = nullptr;  // null: the draw list is drawn
   std::size_t slot = 0;
 };
 
+// The content of a frame.
 struct ScenePass {
   const DrawList& list;
   SceneBuffers buffers;
   CulledDraws culled = {};
-  std::uint32_t glyph_vertex_count = 0;  // of the overlay's buffer; the ends of lines follow
+  std::uint32_t glyph_vertex_count = 0;  // in the overlay's buffer; the ends of lines follow
   std::uint32_t line_vertex_count = 0;
   View view = View::kNormal;
   bool water = false;
-  bool shadows = false;  // the cascades of the preset
+  bool shadows = false;  // draw the cascades of the preset
 };
 
-// Between slot.begin() and slot.end(). Leaves the colour target as an attachment.
+// Records a whole frame, between slot.begin() and slot.end(). Afterwards the colour target is in
+// the layout of an attachment.
 void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                   Targets& targets, const ScenePass& pass);
 
-// The same of a picture that is text alone, with a ground below it.
+// The same for a picture with only text and its background.
 void record_text(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                  Targets& targets, std::uint32_t glyph_vertex_count);
 
-// The pipelines of the landscape once with triangles that cover nothing, so that the driver has
-// compiled them; in steps from 0, a submission each, because that may take long.
+// Records a draw with each pipeline of the landscape, of triangles that cover nothing, to make the
+// driver compile them. `step` is 0 … kWarmUpSteps − 1; each is one submission, because compiling
+// may take long. `blank` is the start of SharedIndexLists::buffer().
 inline constexpr int kWarmUpSteps = 5;
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                     Targets& targets, VkBuffer blank, int step);
 
-// Copies the colour target to a swapchain image and leaves that ready to be shown.
+// Copies the colour target to a swapchain image and makes that ready to be presented.
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,
                            VkImage window, core::Extent window_extent);
 // Copies the colour target into a buffer of width · height · 4 bytes.

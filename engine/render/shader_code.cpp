@@ -128,7 +128,7 @@ constexpr std::uint32_t kOverlayFrag[] =
 #include "overlay_frag_spv.h"
     ;
 
-// By layout, look and whether the data is pushed.
+// Indexed by layout, look and whether the data is pushed.
 constexpr ShaderCode kMeshes[2][4][2] = {
     {{kTerrainVert, kTerrainPushedVert},
      {kTerrainLitVert, kTerrainLitPushedVert},
@@ -140,7 +140,7 @@ constexpr ShaderCode kMeshes[2][4][2] = {
      {kModelShadowVert, kModelShadowPushedVert}},
 };
 
-// Those that come or go, by look and whether the data is pushed.
+// Fading models, indexed by look and whether the data is pushed.
 constexpr ShaderCode kFadingModels[4][2] = {
     {kModelFadingVert, kModelFadingPushedVert},
     {kModelFadingLitVert, kModelFadingLitPushedVert},

@@ -1,4 +1,5 @@
-// The compiled shaders. Private to engine/render.
+// The compiled shaders (shaders/CMakeLists.txt), embedded in the library. Constant data, any
+// thread. Private to engine/render.
 #pragma once
 
 #include <cstdint>
@@ -8,22 +9,26 @@
 
 namespace psygen::render {
 
+// SPIR-V words.
 using ShaderCode = std::span<const std::uint32_t>;
 
-// What a mesh's vertex shader hands on (shaders/surface_out.glsl).
+// The outputs of a mesh's vertex shader (shaders/surface_out.glsl).
 enum class MeshLook : std::uint8_t { kColour, kLit, kDrawColour, kShadow };
 
-// `pushed`: the draw's data is in push constants, else in the buffer of draws.
+// The vertex shader of meshes. `pushed`: the data of a draw is in push constants, else in the
+// buffer of draws.
 ShaderCode mesh_vertex_code(core::VertexLayout layout, MeshLook look, bool pushed);
 
-// Of models that come or go (shaders/fading.glsl).
+// The vertex shader of models that fade in or out (shaders/fading.glsl).
 ShaderCode fading_vertex_code(MeshLook look, bool pushed);
 
+// All other shaders, named after their files and defines.
 struct OtherCode {
   ShaderCode surface_frag, surface_lit_frag, surface_fading_frag, surface_lit_fading_frag,
       shadow_fading_frag, water_vert, water_lit_vert, water_frag, line_vert, sky_vert, sky_frag,
       sky_dome_vert, sky_dome_frag, sky_below_vert, sun_vert, overlay_vert, overlay_frag;
 };
+// The other shaders; static data.
 const OtherCode& other_code();
 
 }  // namespace psygen::render

@@ -12,7 +12,8 @@ using core::Result;
 
 namespace {
 
-// Towards and away from the sun: what stands so far outside of a cascade casts shadows into it.
+// Largest distance outside a cascade, towards and away from the sun, of meshes that cast shadows
+// into it.
 constexpr float kCasterReachM = 1500;
 constexpr float kLeastElevation = 0.02F;  // of the sun, as a sine
 
@@ -35,7 +36,7 @@ Result<UniqueSampler> make_comparing_sampler(const Device& device) {
   return UniqueSampler(device.vk, device.handle, sampler);
 }
 
-// Where the camera is along `axis`, within one step of `step` metres.
+// The camera's position along `axis` modulo `step` metres.
 float within_step(const FrameInput& input, glm::dvec3 axis, double step) {
   const core::WorldPosition& at = input.pose.position;
   const glm::dvec3 world{at.block.x * input.block_size_m + at.local.x, at.local.y,

@@ -1,5 +1,5 @@
-// The index lists that many meshes use (terrain: one per level; rocks: one per subdivision), in one
-// small buffer of their own, outside the geometry budget. Lists are kept for good. Private to
+// The index lists that many meshes share (terrain: one per level; rocks: one per subdivision), in
+// one small buffer outside the geometry budget. Lists are never removed. Main thread. Private to
 // engine/render.
 #pragma once
 
@@ -12,15 +12,20 @@
 
 namespace psygen::render {
 
+// Empty until create(). The device must outlive it.
 class SharedIndexLists {
  public:
   static constexpr std::uint64_t kBytes = 4ull << 20;
-  // The buffer starts with zeroed bytes that are nobody's list: a mesh of nothing to warm up with.
+  // The buffer starts with zeroed bytes that belong to no list: an empty mesh for the warm-up.
   static constexpr std::uint32_t kBlankBytes = 64;
 
+  // Creates the buffer, once.
   core::Result<void> create(const Device& device);
+  // Copies a list and returns its id, which is >= 1. Fails with kInvalidArgument for an empty list,
+  // and with kOutOfMemory when the buffer is full.
   core::Result<std::uint32_t> add(std::span<const std::uint16_t> indices);
 
+  // The lists, indexed by id − 1, and their buffer.
   std::span<const IndexList> lists() const { return lists_; }
   VkBuffer buffer() const { return buffer_.buffer.get(); }
 

@@ -22,10 +22,10 @@
 namespace psygen::render {
 namespace {
 
-// llvmpipe's own threads are as many as processors, at most so many.
+// llvmpipe starts one thread per processor, at most this many.
 constexpr std::size_t kMostRasterThreads = 32;
-// Beside them: the driver's queue and a modeler, without which there is no picture, and two of the
-// driver's cache of shaders.
+// Other threads: the driver's queue and a modeler, without which there is no picture, and two
+// threads of the driver's shader cache.
 constexpr std::size_t kLeastThreads = 2, kOtherThreads = 4;
 
 }  // namespace

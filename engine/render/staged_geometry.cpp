@@ -13,7 +13,7 @@ using core::Result;
 
 namespace {
 
-// Hands ranges of a queue's buffers to another queue family, or takes them.
+// Records barriers that release buffer ranges to another queue family, or acquire them.
 void hand_over(const Device& device, VkCommandBuffer commands,
                std::span<const VkBufferMemoryBarrier2> barriers) {
   VkDependencyInfo dependency{};
@@ -70,7 +70,7 @@ Result<void> StagedGeometry::create(const Device& device) {
 }
 
 Result<std::byte*> StagedGeometry::add_block(std::uint64_t bytes) {
-  // Not initialised: pages that are never written are never there.
+  // Not initialised, because pages that are never written take no memory.
   std::unique_ptr<std::byte[]> mirror(new (std::nothrow) std::byte[bytes]);
   if (!mirror) {
     return core::fail(ErrorCode::kOutOfMemory,
@@ -89,7 +89,7 @@ void StagedGeometry::commit(const core::GeometryRange& range) {
 }
 
 void StagedGeometry::release(const core::GeometryRange& range) {
-  // Its bytes may belong to the next mesh from here on.
+  // From here on its bytes may belong to another mesh.
   std::erase_if(pending_, [&](const Piece& piece) { return piece.id == range.id; });
   pool_.release(range);
 }
@@ -98,7 +98,7 @@ Result<void> StagedGeometry::wait_for(const Device& device, const Part& part) co
   return device.wait(timeline_.get(), part.value, "waiting for copies of meshes");
 }
 
-// As many pending bytes as the part holds, in order; the last mesh may be cut.
+// Fills a part with pending bytes, in order. The last mesh may be split.
 std::vector<StagedGeometry::Piece> StagedGeometry::fill(Part& part) {
   std::vector<Piece> pieces;
   std::uint64_t used = 0;
@@ -173,7 +173,7 @@ Result<void> StagedGeometry::flush(const Device& device, std::span<const Buffer>
     for (const Piece& piece : pieces) {
       taken.push_back(
           ownership_of(device, blocks[piece.block].buffer.get(), piece.offset, piece.bytes));
-      // Where the frame waits for the copies.
+      // The stage at which the frame waits for the copies.
       taken.back().srcStageMask = VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT;
       taken.back().dstStageMask = VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT;
       taken.back().dstAccessMask =

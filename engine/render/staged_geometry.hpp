@@ -1,8 +1,8 @@
-// Geometry memory for devices whose own memory the CPU cannot write: meshes are written to memory
-// of the CPU that mirrors the pool's blocks; what was committed is copied through a ring of staging
-// memory into the device's blocks, on a queue for transfers where there is one, before the next
-// frame that could draw it. A frame that commits more than the ring holds waits for parts of it.
-// Main thread. Private to engine/render.
+// Geometry memory for devices whose own memory the CPU cannot write. Meshes are written to CPU
+// memory that mirrors the pool's blocks. Committed meshes are copied through a ring of staging
+// memory into the device's blocks, on a transfer queue if there is one, before the next frame that
+// could draw them. A frame that commits more than the ring holds waits for parts of it. It
+// allocates no ranges itself (geometry_pool.hpp). Main thread. Private to engine/render.
 #pragma once
 
 #include <array>
@@ -15,26 +15,29 @@
 
 namespace psygen::render {
 
+// Adds the copies to a GeometryPool.
 class StagedGeometry final : public core::GeometryMemory {
  public:
   static constexpr std::uint64_t kPartBytes = 4ull << 20;
   static constexpr std::size_t kParts = 3;  // of the ring
 
-  // `pool` outlives this and takes its blocks from add_block().
+  // `pool` must outlive this object and take its blocks from add_block().
   explicit StagedGeometry(GeometryPool& pool) : pool_(pool) {}
 
+  // Creates the ring, once, before flush().
   core::Result<void> create(const Device& device);
-  // The mirror of the next block, which is written instead of it. Fails with kOutOfMemory.
+  // Allocates the mirror of the next block, which the CPU writes. Fails with kOutOfMemory.
   core::Result<std::byte*> add_block(std::uint64_t bytes);
 
-  // Submits the copies of what was committed since the last call and records into `commands`, of
-  // the frame to come, what makes them readable there. The frame waits for `timeline()` to pass
-  // `value()` before it reads vertices and indices. `blocks` are the device's.
+  // Submits copies of everything committed since the last call. Records into `commands`, of the
+  // next frame, the barriers that make them readable. That frame must wait for timeline() to reach
+  // value() before it reads vertices and indices. `blocks` are the device's.
   core::Result<void> flush(const Device& device, std::span<const Buffer> blocks,
                            VkCommandBuffer commands);
   VkSemaphore timeline() const { return timeline_.get(); }
   std::uint64_t value() const { return value_; }
 
+  // core::GeometryMemory, by the pool.
   core::Result<core::GeometryReservation> reserve(core::VertexLayout layout,
                                                   std::uint32_t vertex_count,
                                                   std::uint32_t index_count) override {
@@ -61,9 +64,9 @@ class StagedGeometry final : public core::GeometryMemory {
     Buffer staging;
     UniqueCommandPool pool;
     VkCommandBuffer commands = VK_NULL_HANDLE;
-    std::uint64_t value = 0;  // of the timeline, when its copies are done
+    std::uint64_t value = 0;  // timeline value when its copies are done
   };
-  // Bytes that are not copied yet.
+  // Bytes of a mesh that are not copied yet.
   struct Piece {
     std::uint32_t id = 0, block = 0;
     std::uint64_t offset = 0, bytes = 0;

@@ -23,7 +23,7 @@ std::vector<VkSurfaceFormatKHR> surface_formats(const Device& device,
   return formats;
 }
 
-// Formats of the surface that hold our bytes unchanged, the best first.
+// Formats of the surface that store the picture's bytes unchanged, best first.
 constexpr std::array kSurfaceFormats{VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM,
                                      VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_SRGB};
 

@@ -1,5 +1,6 @@
-// What the renderer is told: options, light, palette, draws; and what it answers. Plain values
-// without any Vulkan type. Metres, seconds, linear colours; positions relative to the camera.
+// Inputs of the renderer (options, light, palette, draws) and its results. Plain values without any
+// Vulkan type, any thread. Units are metres and seconds, colours are linear, positions are relative
+// to the camera. It does nothing itself (renderer.hpp).
 #pragma once
 
 #include <cstdint>
@@ -18,58 +19,61 @@
 
 namespace psygen::render {
 
-// How meshes reach the device: many per call with their data in a buffer (kMultiDraw), or one per
-// call with its data pushed (kPushed: a dearer draw, cheaper vertices on software devices). kAuto:
-// multi-draw on hardware; on software devices by the size of each mesh.
+// How draws are submitted: many per call with their data in a buffer (kMultiDraw), or one per call
+// with its data in push constants (kPushed). A pushed draw is more expensive, but its vertices are
+// cheaper on software devices. kAuto: multi-draw on hardware; on software devices by mesh size.
 enum class Submission : std::uint8_t { kAuto, kMultiDraw, kPushed };
 
-// Who tests what is in view and chooses levels of detail: the CPU, or the device, which then also
-// leaves out what is hidden (gpu_culling.hpp). kAuto: the device, unless it is software.
+// Where culling and the choice of levels of detail run: on the CPU, or on the device, which then
+// also culls hidden meshes (gpu_culling.hpp). kAuto: on the device, except software devices.
 enum class RenderPath : std::uint8_t { kAuto, kCpu, kGpu };
 
-// How meshes come into the device's memory: written there by the CPU, or into memory of its own and
-// copied. kAuto: written, where the device has enough memory that the CPU can write.
+// How meshes get into device memory: the CPU writes it directly, or writes its own memory, which is
+// copied. kAuto: directly, if the device has enough memory that the CPU can write.
 enum class Upload : std::uint8_t { kAuto, kDirect, kStaged };
 
-// How much light and detail a picture has; what each changes is in preset.hpp and docs/presets.md.
+// The amount of light and detail in a picture. preset.hpp and docs/presets.md list the differences.
 enum class Preset : std::uint8_t { kLow, kMedium, kHigh, kUltra };
 
-// What a picture shows: the landscape, or something about how it is made.
+// What a picture shows: the landscape, or a view for debugging.
 enum class View : std::uint8_t {
   kNormal,
-  kLevels,     // each draw in its `debug_colour`, which stands for its level
-  kLayers,     // the same, for layers of visibility
+  kLevels,     // each draw in its `debug_colour`, for its level of detail
+  kLayers,     // the same, for its layer of visibility
   kBounds,     // the landscape with the frame's lines
-  kWireframe,  // edges of triangles; the landscape where the device cannot
-  kMissing,    // each draw in its `debug_colour`, which says how far it is from what is wanted
-  kCache,      // the same, for what it takes of the geometry cache
+  kWireframe,  // edges of triangles; the landscape if the device cannot draw them
+  kMissing,    // each draw in its `debug_colour`, for its difference from the wanted level
+  kCache,      // the same, for its share of the geometry cache
 };
 
-// Told how far something long has come, as a fraction in [0, 1]; false gives it up. May be empty.
+// Called with the progress of a long operation, a fraction in [0, 1]. Returning false cancels it.
+// May be empty.
 using Progress = std::function<bool(double)>;
 
 class Renderer;
 
+// The options of Renderer::create().
 struct RendererOptions {
   std::string application_name = "psygen";
-  std::string device_name;  // part of the device's name; empty: the best there is
+  std::string device_name;  // part of the device's name; empty: the best device
   bool validation = false;  // Khronos layer with synchronization validation; messages are collected
-  core::Extent size{1280, 720};  // of the picture; with a surface the framebuffer's size counts
+  core::Extent size{1280, 720};  // of the picture; with a surface it is that of the framebuffer
   std::uint64_t geometry_budget_bytes = 512ull << 20;  // hard limit of geometry()
-  core::SurfaceProvider* surface = nullptr;  // null: headless; else it outlives the renderer
+  core::SurfaceProvider* surface = nullptr;  // null: headless; else it must outlive the renderer
   bool vsync = false;
   Submission submission = Submission::kAuto;  // kMultiDraw without VK_EXT_multi_draw is kPushed
   RenderPath path = RenderPath::kAuto;
   Upload upload = Upload::kAuto;
-  bool occlusion = true;  // on the GPU path: leave out what was hidden in the last frame and is
+  bool occlusion = true;  // on the GPU path: cull what was hidden in the last frame and still is
   std::optional<Preset> preset;  // none: kLow on software devices, kHigh on others
-  // Called while the pipelines are made, which takes seconds where the driver has not kept them
-  // from before. Of the renderer only show() may be called; false: create() fails (kInterrupted).
+  // Called while the pipelines are created, which takes seconds if the driver has not cached them.
+  // It may only call show() of the renderer. If it returns false, create() fails with kInterrupted.
   std::function<bool(Renderer&, double)> progress;
-  double device_timeout_seconds = 60;  // longest wait for the device; then it counts as lost
-  bool timestamps = true;              // FrameResult::gpu, where the device can
+  double device_timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
+  bool timestamps = true;              // FrameResult::gpu, if the device supports it
 };
 
+// A device and its abilities.
 struct DeviceInfo {
   std::string name;         // "llvmpipe (LLVM 15.0.6, 256 bits)"
   std::string driver;       // name and version
@@ -91,8 +95,8 @@ struct Light {
   glm::vec3 haze_colour{0.50F, 0.58F, 0.69F};    // the sky just above (and below) the horizon
   glm::vec3 glow_colour{2.35F, 2.00F, 1.55F};    // of the sky around the sun
   glm::vec3 cloud_colour{2.35F, 2.00F, 1.55F};   // of the sun on clouds
-  float haze_density = 0.0012F;            // at height 0, 1/m; 1/density is where 37 % is left
-  glm::vec3 haze_tint{0.82F, 1.0F, 1.3F};  // how much more of blue than of red the air takes
+  float haze_density = 0.0012F;                  // 1/m at height 0; at 1/density 37 % is left
+  glm::vec3 haze_tint{0.82F, 1.0F, 1.3F};  // extinction of red, green and blue over haze_density
   float haze_height_falloff = 0.004F;      // 1/m; 0: the same at every height
   float exposure = 1.0F;
   float time_seconds = 0.0F;  // for wind and clouds
@@ -105,21 +109,23 @@ struct Water {
   glm::vec3 colour{0.010F, 0.045F, 0.050F};  // linear albedo of deep water
 };
 
-// What hides the ground where `TerrainDraw::cover` says so: forests too far to be drawn.
+// The canopy of forests too far away to be drawn. It hides the share TerrainDraw::cover of the
+// ground.
 struct Canopy {
   glm::vec3 colour{0.022F, 0.040F, 0.012F};  // linear albedo, from above
-  float lowest_m = -1e6F, highest_m = 1e6F;  // where it can stand
-  float blend_m = 20.0F;
-  float slope_max = 0.30F;  // 1 − normal.y
+  float lowest_m = -1e6F, highest_m = 1e6F;  // heights in the world between which it grows
+  float blend_m = 20.0F;                     // width of the transition at these heights
+  float slope_max = 0.30F;                   // 1 − normal.y
 };
 
-// The rectangle that the world covers, relative to the camera; terrain beyond is moved onto it.
+// The rectangle of the world in x and z, relative to the camera. Vertices of terrain outside are
+// moved onto its edge.
 struct WorldEdge {
   glm::vec2 least{-1e30F}, greatest{1e30F};
 };
 
-// Linear albedo of the ground and where each kind of ground is. Heights in metres of the world.
-// Slope is 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
+// Linear albedos of the ground, and the extent of each kind of ground. Heights are in metres of the
+// world. Slope is 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
 struct TerrainPalette {
   glm::vec3 grass{0.085F, 0.125F, 0.030F};
   glm::vec3 forest{0.045F, 0.070F, 0.022F};
@@ -127,40 +133,40 @@ struct TerrainPalette {
   glm::vec3 rock{0.150F, 0.138F, 0.125F};
   glm::vec3 snow{0.74F, 0.78F, 0.84F};
   glm::vec3 sand{0.36F, 0.30F, 0.19F};
-  float sand_end_m = -1e6F, sand_blend_m = 2.0F;    // sand below
-  float dry_start_m = 60.0F, dry_blend_m = 40.0F;   // dry meadow above
-  float snow_start_m = 1e6F, snow_blend_m = 15.0F;  // snow above, except where steep
+  float sand_end_m = -1e6F, sand_blend_m = 2.0F;    // sand below this height
+  float dry_start_m = 60.0F, dry_blend_m = 40.0F;   // dry meadow above this height
+  float snow_start_m = 1e6F, snow_blend_m = 15.0F;  // snow above this height, except where steep
   float rock_slope_start = 0.16F, rock_slope_full = 0.34F;
-  float snow_slope_max = 0.40F;  // steeper ground sheds its snow
+  float snow_slope_max = 0.40F;  // no snow on steeper ground
 };
 
-// Name of "no shared list": the mesh has indices of its own.
+// The id for "no shared list": the mesh has its own indices.
 inline constexpr std::uint32_t kNoSharedIndices = 0;
 
-// A coarser mesh for the same place and box.
+// A coarser mesh at the same place and in the same box.
 struct DrawLevel {
   core::GeometryRange range;
   std::uint32_t shared_indices = kNoSharedIndices;
-  float error_m = 0.0F;  // how far it is off; grows from level to level
+  float error_m = 0.0F;  // distance from the full surface; grows from level to level
 };
 
-// How far the wind moves a vertex of a mesh at most, either way, metres (shaders/model.vert).
+// Largest displacement of a vertex by the wind in metres, in both directions (shaders/model.vert).
 inline constexpr glm::vec3 kSwayM{0.12F, 0.0F, 0.09F};
 
 // A tree, rock or any other mesh of core::VertexLayout::kModel. With `fade` in (0, 1) it covers
-// such a share of its pixels; with −fade, in (−1, 0], just the others: for what goes while it
-// comes.
+// this share of its pixels. With `fade` in (−1, 0] it covers the pixels that a draw with −fade
+// leaves out, so one mesh can fade out while another fades in.
 struct MeshDraw {
   core::GeometryRange range;
   std::uint32_t shared_indices = kNoSharedIndices;  // from upload_shared_indices
   glm::vec3 origin{0.0F};                           // the mesh's foot
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
-  core::IndexPart part;  // of its indices; of 0: all; not with `coarser`
-  float fade = 1.0F;     // what is there of one that comes or goes
-  float sun = 1.0F;      // share of the sun's light that the ground does not hold up, 0 to 1
+  core::IndexPart part;                     // of its indices; empty: all; not with `coarser`
+  float fade = 1.0F;                        // 1: all of its pixels
+  float sun = 1.0F;                         // share of the sun that no terrain hides, 0 … 1
   std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
-  std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
+  std::span<const DrawLevel> coarser = {};  // used with FrameInput::choose
 };
 
 // A grid of core::VertexLayout::kTerrain.
@@ -169,30 +175,31 @@ struct TerrainDraw {
   std::uint32_t shared_indices = kNoSharedIndices;
   glm::vec3 origin{0.0F};                            // the block's corner at world height 0
   float cell_m = 1.0F;                               // between two grid lines
-  float height_min_m = 0.0F, height_range_m = 1.0F;  // what unorm16 heights span
-  float skirt_m = 0.0F;                              // how far skirt vertices hang down
+  float height_min_m = 0.0F, height_range_m = 1.0F;  // range of the unorm16 heights
+  float skirt_m = 0.0F;                              // length of the skirts
   float morph = 0.0F;    // 0 fine heights … 1 coarse heights; kMorphByDistance: FrameInput::morph
-  core::IndexPart part;  // of the shared list; of 0 indices: all of it
-  float side_m = 0.0F;   // of the square that the grid covers; 0: as large as a grid can be
-  std::span<const DrawLevel> coarser = {};  // read where FrameInput::choose
+  core::IndexPart part;  // of the shared list; empty: all of it
+  float side_m = 0.0F;   // of the square that the grid covers; 0: the largest possible grid
+  std::span<const DrawLevel> coarser = {};  // used with FrameInput::choose
   float cover = 0.0F;                       // share of the ground that far forests hide (Canopy)
   std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
 };
 
-// A line between two places relative to the camera.
+// A line between two points relative to the camera.
 struct Line {
   glm::vec3 from{0.0F}, to{0.0F};
-  glm::vec3 colour{1.0F};  // as shown
+  glm::vec3 colour{1.0F};  // as on screen
 };
 
-inline constexpr float kMorphByDistance = -1.0F;
+inline constexpr float kMorphByDistance = -1.0F;  // TerrainDraw::morph
 inline constexpr std::size_t kMaxLines = 1 << 16;
 
-// Ground whose morph follows from the distance of each vertex, seen from above.
+// Morphing of terrain by the horizontal distance of each vertex.
 struct Morph {
-  float from_m = 0, to_m = 0;  // where it begins, and where it has the coarse heights
+  float from_m = 0, to_m = 0;  // distances at which it begins, and at which heights are coarse
 };
 
+// Everything that a frame shows. Spans must stay valid during render().
 struct FrameInput {
   core::CameraPose pose;
   core::Projection projection;
@@ -206,64 +213,66 @@ struct FrameInput {
   double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
-  // The lists hold what lies outside the picture too, with `coarser` levels: the renderer chooses,
-  // on either path, the coarsest level that is at most so many pixels off.
+  // The lists also have draws outside the picture, and `coarser` levels. The renderer chooses, on
+  // both paths, the coarsest level with an error of at most `max_error_pixels`.
   bool choose = false;
   float max_error_pixels = 1.0F;
   std::span<const Line> lines;        // at most kMaxLines are drawn, in every view
   std::span<const TextPanel> panels;  // over the picture
-  float text_scale = 1;               // of their text, 1 to 4, rounded
+  float text_scale = 1;               // of their text, 1 … 4, rounded
 };
 
-// What the device itself took for a frame, from its first pass to the end of its last one. On a
-// software device it is processor time of this machine, spread over its threads.
+// The device's own time for a frame, from the start of its first pass to the end of its last one.
+// On a software device it is time of this machine's processors, spread over its threads.
 struct GpuTime {
   std::uint64_t frame = 0;  // FrameResult::frame
-  double submitted_s = 0;   // when, by core::monotonic_seconds()
+  double submitted_s = 0;   // time of submission, by core::monotonic_seconds()
   double ms = 0;
-  double shadows_ms = 0;  // of these, for cascades of the sun's shadow
+  double shadows_ms = 0;  // part of `ms` for the cascades of the sun's shadow
 };
 
-// Time in which the main thread could do nothing.
+// Time during which the main thread was blocked.
 struct Wait {
   double start_s = 0;  // core::monotonic_seconds()
   double ms = 0;
 };
 
-// What sets a frame apart from others, so that its time says nothing of theirs.
+// Why a frame's time cannot be compared with that of others.
 enum class Apart : std::uint8_t {
   kNo,
-  kAfterIdle,  // the device had been waited for and had nothing to do: no wait for an older frame
-  kResized,    // the picture or the window's images were made anew
+  kAfterIdle,  // the device was idle before, so there was no wait for an older frame
+  kResized,    // the picture or the window's images were recreated
   kNotDrawn,   // the window takes no picture now
 };
 
+// The result of a frame.
 struct FrameResult {
-  std::uint64_t frame = 0;  // numbers frames, ascending; 0: none was submitted
-  std::uint32_t draws = 0;  // on the GPU path of the latest finished frame, 0 until there is one
+  std::uint64_t frame = 0;  // number of the frame, ascending; 0: none was submitted
+  std::uint32_t draws = 0;  // on the GPU path: of the latest finished frame, 0 until there is one
   std::uint64_t triangles = 0;  // the same
   double cpu_ms = 0;            // recording and submission
   Wait device;                  // for the frame before the last
   Wait acquire;                 // for an image of the window
-  Wait present;                 // handing it over; software devices finish the frame here
-  std::optional<GpuTime> gpu;   // of the latest frame that is known, as a rule four frames ago
+  Wait present;                 // for presenting; software devices finish the frame here
+  std::optional<GpuTime> gpu;   // of the latest frame with a known time, usually four frames ago
   Apart apart = Apart::kNo;
   bool presented = false;  // windowed: shown; headless: drawn
 
+  // Sum of all waits.
   double wait_ms() const { return device.ms + acquire.ms + present.ms; }
 };
 
-// A mesh as it was submitted.
+// A mesh as it was submitted. Indices and vertices count from the start of their buffers.
 struct DrawnMesh {
   core::VertexLayout layout = core::VertexLayout::kModel;
   std::uint32_t pool_block = 0;
   bool shared = false;  // indices from the shared lists, else from the pool block
   std::uint32_t first_index = 0, index_count = 0;
   std::int32_t vertex_offset = 0;
-  glm::vec3 place{0.0F};  // terrain: its corner; model: the middle of its box
+  glm::vec3 place{0.0F};  // relative to the camera; terrain: its corner; model: middle of its box
 };
 
-// Rows from the top, 4 bytes a pixel (red, green, blue, alpha) as shown on a display.
+// A picture: rows from the top, 4 bytes per pixel (red, green, blue, alpha), as for a display.
 struct Picture {
   std::uint32_t width = 0;
   std::uint32_t height = 0;

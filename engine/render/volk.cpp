@@ -1,4 +1,4 @@
-// The one place where volk's functions are compiled. Nothing else belongs here.
+// Compiles volk's functions, and nothing else.
 #define VK_NO_PROTOTYPES
 #define VOLK_IMPLEMENTATION
 #include <volk.h>

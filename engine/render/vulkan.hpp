@@ -1,5 +1,5 @@
-// Vulkan as this folder sees it: volk's function tables, owning handles, results as errors.
-// Private to engine/render.
+// Vulkan for this folder: volk's function tables, owning handles, and results as errors. All other
+// files include Vulkan through it. Private to engine/render.
 #pragma once
 
 #define VK_NO_PROTOTYPES
@@ -13,17 +13,21 @@
 
 namespace psygen::render {
 
-// kOutOfMemory, kDeviceLost or kInternal with a sentence "<what> failed: <result>".
+// A failed result as an error: kOutOfMemory, kDeviceLost or kInternal with a sentence "<what>
+// failed: <result>".
 core::Error vulkan_error(VkResult result, const char* what);
 
+// The same for a return statement.
 inline tl::unexpected<core::Error> vulkan_failure(VkResult result, const char* what) {
   return tl::unexpected(vulkan_error(result, what));
 }
 
-// An object of a VkDevice that ends with its owner. `Destroy` is the table's function for it.
+// An owning handle of an object of a VkDevice. `Destroy` is the function of the table that destroys
+// it. Move-only. The table and the device must outlive it.
 template <class T, auto Destroy>
 class DeviceHandle {
  public:
+  // Empty, or the owner of `handle`.
   DeviceHandle() = default;
   DeviceHandle(const VolkDeviceTable& vk, VkDevice device, T handle)
       : vk_(&vk), device_(device), handle_(handle) {}
@@ -38,6 +42,7 @@ class DeviceHandle {
   ~DeviceHandle() {
     if (handle_ != T{}) (vk_->*Destroy)(device_, handle_, nullptr);
   }
+  // The handle, null if empty, and its address for Vulkan's arrays.
   T get() const { return handle_; }
   const T* address() const { return &handle_; }
 
@@ -47,6 +52,7 @@ class DeviceHandle {
   T handle_{};
 };
 
+// Owning handles of the objects that the renderer uses.
 using UniqueBuffer = DeviceHandle<VkBuffer, &VolkDeviceTable::vkDestroyBuffer>;
 using UniqueImage = DeviceHandle<VkImage, &VolkDeviceTable::vkDestroyImage>;
 using UniqueImageView = DeviceHandle<VkImageView, &VolkDeviceTable::vkDestroyImageView>;

@@ -22,21 +22,21 @@ constexpr double kDust = 0.004, kDustExtinction = 0.0044, kDustForward = 0.76;
 constexpr dvec3 kOzoneDepth{0.0098, 0.0282, 0.0013};  // straight up through all of it
 constexpr double kCloudHeight = 2.0;
 constexpr int kSteps = 24;
-// Light that was scattered more than once, as a share of what was scattered once.
+// Light that was scattered more than once, relative to single scattering.
 constexpr double kMoreScattering = 0.5;
-// Stars and the glow of the air, as a share of the radiance of a clear day; and how much of a loss
-// of light the eye does not make up for.
+// Stars and airglow, relative to the radiance of a clear day. Then the exponent of adaptation: the
+// share of a change in brightness (in logarithms) that the eye compensates.
 constexpr double kNight = 2e-4;
 constexpr double kAdaptation = 0.36;
-// Light that the sky itself scatters again is as bright and much bluer: its share away from the
-// sun.
+// Light that the sky scatters again is equally bright but much bluer. Below: its share in the
+// directions away from the sun.
 constexpr dvec3 kSkyBlue{0.72, 1.0, 1.55};
 constexpr double kZenithFill = 0.55, kHorizonFill = 0.6, kHazeFill = 0.7;
 constexpr dvec3 kLuminance{0.2126, 0.7152, 0.0722};
 
-// Optical depth along a ray from a place where the depth straight up is `depth_up`, as a multiple
-// of it (Chapman's function for an exponential atmosphere, Schüler's approximation). `x`: distance
-// to the centre of the Earth over the scale height; `cosine` of the ray against the vertical.
+// Optical depth along a ray, relative to the depth straight up from its start (Chapman's function
+// for an exponential atmosphere, Schüler's approximation). `x`: distance from the centre of the
+// Earth over the scale height. `cosine`: of the angle between the ray and the vertical.
 double air_mass(double x, double cosine) {
   const double c = std::sqrt(std::numbers::pi / 2 * x);
   const double up = c / ((c - 1) * std::abs(cosine) + 1);
@@ -45,14 +45,15 @@ double air_mass(double x, double cosine) {
   return 2 * std::sqrt(std::numbers::pi / 2 * lowest) * std::exp(std::min(x - lowest, 30.0)) - up;
 }
 
-// Share of the light that reaches height `h` from a body `cosine` off the vertical.
+// Share of light that reaches height `h` in km. `cosine`: of the angle between the light and the
+// vertical.
 dvec3 transmittance(double h, double cosine) {
   const double r = kEarth + h;
   const double air = std::exp(-h / kAirHeight) * kAirHeight * air_mass(r / kAirHeight, cosine);
   const double dust = std::exp(-h / kDustHeight) * kDustHeight * air_mass(r / kDustHeight, cosine);
   const double ozone = air_mass((kEarth + 25) / 6.0, std::max(cosine, 0.08));
   const dvec3 depth = kAir * air + kDustExtinction * dust + kOzoneDepth * ozone;
-  // The Earth's edge over half a degree.
+  // The Earth hides the sun gradually, over about half a degree.
   const double edge = -std::sqrt(std::max(0.0, 1 - kEarth * kEarth / (r * r)));
   return glm::exp(-glm::min(depth, dvec3(60.0))) *
          glm::smoothstep(edge - 0.006, edge + 0.006, cosine);
@@ -66,7 +67,8 @@ double dust_phase(double cosine) {
   return (1 - g * g) / (4 * std::numbers::pi * d * std::sqrt(d));
 }
 
-// Radiance of the sky from direction `d` with the sun in direction `sun`, both unit, +Y up.
+// Radiance of the sky in direction `d` with the sun in direction `sun`. Both are unit vectors, +Y
+// is up.
 dvec3 sky(dvec3 d, dvec3 sun) {
   const double cosine = glm::dot(d, sun);
   const double air = air_phase(cosine) + kMoreScattering / (4 * std::numbers::pi);
@@ -114,7 +116,7 @@ Daylight daylight(double sun_elevation_deg) {
   const dvec3 glow =
       glm::max(sky(direction(near_sun, 0), sun) - sky(direction(near_sun, aside), sun), dvec3(0.0));
   const dvec3 direct = transmittance(0, sun.y);
-  // Light from below: what the ground reflects of sun and sky.
+  // Light from below: sun and sky reflected by the ground.
   const dvec3 ground = std::max(sun.y, 0.0) * direct + std::numbers::pi * 0.5 * (zenith + horizon);
   const double bright = std::pow(glm::dot(ground, kLuminance), -kAdaptation);
   const auto seen = [bright](dvec3 light) { return glm::vec3(light * bright); };

@@ -1,24 +1,27 @@
-// The colours of sun and sky for a height of the sun: light that is scattered once on its way
-// through an atmosphere of air, dust and ozone, seen by an eye that has got used to it. Pure
-// functions of the elevation; a few microseconds a call. Not part of any mesh: libm is fine here.
+// The colours of sun and sky for an elevation of the sun: single scattering in an atmosphere of
+// air, dust and ozone, as seen by an eye that has adapted to the brightness. Pure functions of the
+// elevation, for any thread; a few microseconds a call. The results go into no mesh, so libm may be
+// used.
 #pragma once
 
 #include <glm/vec3.hpp>
 
 namespace psygen::world {
 
-// Relative radiance: only ratios of two of these mean something (Sky::light_at).
+// Relative radiance in red, green and blue. Only ratios of two of these have a meaning (with_sun()
+// in world.hpp).
 struct Daylight {
-  glm::vec3 sun;      // on ground that faces it; 0 below the horizon
+  glm::vec3 sun;      // on ground that faces the sun; 0 below the horizon
   glm::vec3 zenith;   // of the sky straight above
-  glm::vec3 horizon;  // of the sky some way above the horizon, aside of the sun
-  glm::vec3 haze;     // of the sky just above the horizon, aside of the sun
-  glm::vec3 ground;   // from below
-  glm::vec3 glow;     // what the sky is brighter around the sun, over `haze`
-  glm::vec3 cloud;    // of the sun on clouds, which it reaches longer than the ground
+  glm::vec3 horizon;  // of the sky at 14° above the horizon, 90° from the sun
+  glm::vec3 haze;     // of the sky at 4° above the horizon, 90° from the sun
+  glm::vec3 ground;   // light from below
+  glm::vec3 glow;     // additional brightness of the sky around the sun
+  glm::vec3 cloud;    // of the sun on clouds, which it lights longer than the ground
 };
 
-// `sun_elevation_deg` in [-90, 90]. Smooth; every colour is > 0 but the sun's at night.
+// The colours for an elevation of the sun, clamped to [-90, 90]. Smooth. All are > 0, except sun,
+// cloud and glow at night.
 Daylight daylight(double sun_elevation_deg);
 
 }  // namespace psygen::world

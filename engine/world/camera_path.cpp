@@ -14,7 +14,7 @@
 namespace psygen::world {
 namespace {
 
-// Ground samples within smoothing_s.
+// Number of ground samples within smoothing_s.
 constexpr int kSteps = 8;
 
 Spline spline_of(std::span<const PathPoint> points, const auto& value_of) {
@@ -26,13 +26,13 @@ Spline spline_of(std::span<const PathPoint> points, const auto& value_of) {
   return {times, values};
 }
 
-// Heading of a direction on the map, or `otherwise` for none.
+// Heading of a direction in x and z, in radians; `otherwise` for a direction of length 0.
 double heading_of(glm::dvec2 direction, double otherwise) {
   return glm::length(direction) > 1e-6 ? std::atan2(direction.x, -direction.y) : otherwise;
 }
 
-// Between two points with a heading the camera turns by their difference as written; all other
-// turns go the short way.
+// Between two points with a heading, the camera turns by their difference as written. All other
+// turns take the shorter way.
 std::vector<double> yaws_of(std::span<const PathPoint> points, const Spline& x, const Spline& z) {
   std::vector<double> yaws;
   bool written_before = false;
@@ -54,7 +54,7 @@ std::vector<double> yaws_of(std::span<const PathPoint> points, const Spline& x, 
   return yaws;
 }
 
-// The cubic B-spline, 0 outside of (−2, 2).
+// The cubic B-spline; 0 outside (−2, 2).
 double b_spline(double u) {
   const double a = std::abs(u);
   if (a >= 2) return 0;
@@ -93,16 +93,16 @@ const CameraPath::Run& CameraPath::run_at(double t) const {
   return after == runs_.begin() ? runs_.front() : *std::prev(after);
 }
 
-// Metres from the corner of `block`.
+// The place on the path at time `t`, in metres from the corner of `block`.
 glm::dvec2 CameraPath::local_of(double t, const Run& run, double block_size_m,
                                 core::BlockCoord block) const {
   const glm::dvec3 corner = core::offset_m(settings_.origin_block, {block, {}}, block_size_m);
   return {corner.x + run.x.value(t), corner.z + run.z.value(t)};
 }
 
-// A smooth curve over the ground along the path. Samples lie at fixed times; at each the highest
-// ground within smoothing_s is taken, and a smooth kernel as wide averages these. Every one of them
-// is at least as high as the samples around `t`, so the average is, too.
+// The height of a smooth curve above the ground along the path. Samples lie at fixed times. Each
+// takes the highest ground within smoothing_s, and a smooth kernel of the same width averages them.
+// Every one is at least as high as the samples around `t`, so the average is too.
 double CameraPath::smooth_ground_m(double t, const Run& run, const World& world,
                                    core::BlockCoord block, double& ground_here_m) const {
   const double step = settings_.smoothing_s / kSteps;

@@ -1,7 +1,7 @@
-// A flight of the camera: points in time over the ground, joined so that velocity and turn are
-// smooth but where it jumps, read from TOML files (files/path_file.hpp). Heights are above the
-// ground of whichever world is flown through. Not a simulation: any time can be asked for.
-// Immutable; any thread.
+// A flight of the camera: points in time over the ground, joined with smooth velocity and rotation
+// except at jumps. Read from TOML files (files/path_file.hpp). Heights are above the ground of the
+// world that is flown through. Not a simulation: pose_at() works for any time in any order.
+// Immutable, any thread.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -16,52 +16,56 @@
 
 namespace psygen::world {
 
+// One point of a path.
 struct PathPoint {
   double time_s = 0;
   glm::dvec2 at_m{0.0};  // x and z from the corner of the path's origin block
   double height_m = 2;   // above the ground
-  // Where to look: at a heading, at a place, or, with neither, along the flight.
+  // The view direction: a heading, towards a place, or, with neither, along the flight.
   std::optional<double> heading_deg;  // 0 along −Z (north), 90 along +X (east)
   std::optional<glm::dvec2> look_at_m;
   double pitch_deg = 0;  // upwards
-  // The camera is here at once; until then it stands at the point before. Not of the first point.
+  // The camera jumps here and stays at the previous point until then. Not for the first point.
   bool jump = false;
 };
 
+// A whole flight.
 class CameraPath {
  public:
-  // Of a point above the ground. Lower, and the nearest that is drawn cuts into slopes.
+  // Range of a point's height. Below it, the near plane would cut into slopes.
   static constexpr double kLeastHeightM = 0.5, kMostHeightM = 1e5;
-  // The camera never comes nearer to the ground than this, or than its lowest point where that is
-  // lower.
+  // Smallest distance of the camera from the ground. A path between jumps with a lower point uses
+  // that point's height instead.
   static constexpr double kClearance_m = 2;
 
+  // Settings of the whole path.
   struct Settings {
     std::string name;
     core::BlockCoord origin_block;
-    // The height follows the highest ground within this time before and after, so that the flight
-    // over rough ground is calm. In (0, 10].
+    // The height follows the highest ground within this time before and after, which makes flights
+    // over rough ground calm. In (0, 10].
     double smoothing_s = 1.5;
   };
 
-  // At least one point, times strictly growing.
+  // At least one point; times grow strictly. Linear in the points.
   CameraPath(Settings settings, std::vector<PathPoint> points);
 
+  // The inputs.
   const std::string& name() const { return settings_.name; }
   const std::vector<PathPoint>& points() const { return points_; }
   // The time of the last point.
   double duration_seconds() const { return points_.back().time_s; }
 
-  // Where the camera is at time `t` in seconds; the ends are held before the first and after the
-  // last point (and the beginning for NaN). Normalised and valid. About 50 µs.
+  // The pose at time `t` in seconds. Before the first and after the last point it is that of the
+  // end; for NaN that of the beginning. Normalised and valid. About 50 µs.
   core::CameraPose pose_at(double t, const World& world) const;
 
  private:
-  // Points without a jump between them.
+  // Successive points without a jump between them.
   struct Run {
     explicit Run(std::span<const PathPoint> points);
     double start_s;
-    double clearance_m;  // from the ground
+    double clearance_m;  // smallest distance from the ground
     Spline x, z, height, yaw, pitch;
   };
   const Run& run_at(double t) const;
@@ -71,7 +75,7 @@ class CameraPath {
 
   Settings settings_;
   std::vector<PathPoint> points_;
-  std::vector<Run> runs_;  // by start
+  std::vector<Run> runs_;  // ordered by start_s
 };
 
 }  // namespace psygen::world

@@ -11,14 +11,15 @@
 namespace psygen::world {
 namespace {
 
-// A coordinate that is a float and inside of the block, so that the height is that of the very
-// point that is handed out.
+// A random coordinate inside the block that a float represents exactly. So the height is that of
+// the returned point.
 double draw_coordinate(core::RandomStream& random, float block_size_m) {
   const auto drawn = static_cast<float>(random.next_unit() * static_cast<double>(block_size_m));
   return static_cast<double>(drawn < block_size_m ? drawn : std::nextafter(block_size_m, 0.0F));
 }
 
-// Where an instance of a scatter may stand; `least_up` is the least y of the ground's normal.
+// Whether an instance of a scatter may stand here. `least_up` is the smallest allowed y of the
+// ground's normal.
 bool may_stand(const Scatter& scatter, float least_up, const models::GroundPoint& ground) {
   return ground.height_m >= scatter.min_height_m && ground.height_m <= scatter.max_height_m &&
          ground.normal.y >= least_up;
@@ -62,7 +63,7 @@ models::Parameters Scattering::parameters(std::uint32_t index, const glm::vec3& 
     } else if (specs_[i].type == models::ParameterType::kInteger) {
       p.set_integer(i, values.next_integer(std::llround(range.low), std::llround(range.high)));
     } else {
-      // One number for each parameter, so that a changed range leaves the others as they are.
+      // Always draws one number per parameter, so a changed range does not affect the others.
       const double drawn = values.next_real(range.low, range.high);
       p.set_real(i, range.low == range.high ? range.low : std::min(drawn, range.high));
     }
@@ -120,7 +121,7 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,
                    double value) {
   if (type.parameters()[i].type == models::ParameterType::kInteger) {
-    // Not 2^63 itself, which no integer of 64 bits holds.
+    // The upper limit is below 2^63, which a 64-bit integer cannot hold.
     parameters.set_integer(i, std::llround(std::clamp(value, -0x1.0p63, 0x1.fffffffffffffp62)));
   } else {
     parameters.set_real(i, value);

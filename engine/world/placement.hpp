@@ -1,5 +1,6 @@
-// What stands where: the models of a block with their parameters, a pure function of world and
-// block. The same on every machine and in any order of blocks. Knows no meshes. Any thread.
+// Places models: the models of a block with their parameters, as a pure function of world and
+// block. The same on every machine and in any order of blocks. Any thread. Knows no meshes.
+// docs/models.md.
 #pragma once
 
 #include <array>
@@ -16,41 +17,43 @@
 
 namespace psygen::world {
 
-// The index of a block's terrain among its meshes; models count from 0.
+// The index of a block's terrain among its meshes. Models count from 0.
 inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
 
+// One model on a block.
 struct Placement {
   models::ModelIndex model = 0;
-  std::uint32_t index = 0;   // within the block; names the instance
+  std::uint32_t index = 0;   // of the instance within the block
   glm::vec3 position{0.0F};  // metres from the block's corner; y is the ground under the foot
   models::Parameters parameters;
 };
 
-// Tries of an instance to find a place that its Scatter allows.
+// Number of random places that an instance tries until its Scatter allows one.
 inline constexpr int kPlacementTries = 24;
 
-// Where a type has `slope_x` and `slope_z` as placed parameters; −1: it has not.
+// Positions of the placed parameters `slope_x` and `slope_z` in a schema; −1 where it has none.
 using SlopeParameters = std::array<int, 2>;
+// The positions in the schema of a type.
 SlopeParameters slope_parameters(const models::ModelType& type);
 
-// One scatter on one block: what place_models() does, instance by instance. All arguments must
-// outlive it.
+// One scatter on one block: the steps of place_models(), instance by instance.
 class Scattering {
  public:
+  // All arguments must outlive it, except `block`.
   Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
              core::BlockCoord block);
 
-  // The first allowed one of the places that instance `index` of the block tries, in metres from
-  // the block's corner. `ground` is that of the block, or of a larger node that has the block's
-  // corner at `corner_m`.
+  // A place of an instance, in metres from the block's corner.
   struct Foothold {
     glm::vec3 position{0.0F};
     glm::vec3 normal{0, 1, 0};  // of the ground
   };
+  // The first allowed place that instance `index` of the block tries, or nothing. `ground` is that
+  // of the block, or of a larger node that has the block's corner at `corner_m`.
   std::optional<Foothold> place(const models::BlockGround& ground, std::uint32_t index,
                                 glm::dvec2 corner_m = {0, 0}) const;
-  // On ground with this normal: types that have the placed parameters `slope_x` and `slope_z`
-  // follow it.
+  // The parameters of instance `index` on ground with this normal. Types with the placed parameters
+  // `slope_x` and `slope_z` get the slope.
   models::Parameters parameters(std::uint32_t index, const glm::vec3& normal = {0, 1, 0}) const;
 
  private:
@@ -65,11 +68,11 @@ class Scattering {
   SlopeParameters slope_;
 };
 
-// Steps in degrees in which the terrain's shadows follow the sun: each makes new meshes.
+// Steps in degrees in which the terrain's shadows follow the sun. Every step needs new meshes.
 inline constexpr double kSunAzimuthStep = 2, kSunElevationStep = 1;
 
-// Sets the sun of a terrain to the nearest step. One value for all suns that are down, one for all
-// that stand in the zenith.
+// Sets the sun of a terrain to the nearest step. All suns below the horizon get the same values,
+// and so do all suns in the zenith.
 void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_deg);
 
 // The terrain of one block in the light of the world's sky.
@@ -81,31 +84,32 @@ std::size_t models_per_block(const World& world);
 
 // Replaces `out` by the placements of `block`, by growing index. An instance that finds no allowed
 // place in kPlacementTries tries is left out; the indices of the others do not change. About 10 µs
-// for the block's heights and 0.1 µs for each model. Does not ask whether the world contains the
+// for the block's heights and 0.1 µs for each model. Does not check whether the world contains the
 // block. Needs 350 KiB of stack.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out);
-// The same with the block's ground at hand.
+// The same with the block's ground already made.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out);
 
-// The mean number of instances of each scatter that find a place in a block: exact where nothing
-// has a filter, else over kSizeBlocks blocks, always the same ones.
+// The mean number of instances of each scatter that find a place in a block. Exact if no scatter
+// has a filter; otherwise the mean over kSizeBlocks blocks, always the same ones.
 std::vector<double> placed_per_block(const World& world, const models::Registry& registry);
 
-// Sets a parameter of either type; integers are rounded to nearest.
+// Sets parameter `i`, of either type. Integers are rounded to nearest and limited to 64 bits.
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,
                    double value);
 
-// Sets them to the rise of the ground per metre, within their ranges.
+// Sets the slope parameters at `indices` to the rise of the ground per metre along x and z, limited
+// to their hard ranges.
 void set_slope(const models::ModelType& type, const SlopeParameters& indices, glm::vec2 slope,
                models::Parameters& parameters);
 
-// The parameters of a scatter with everything at the low end of its range.
+// The parameters of a scatter with every value at the low end of its range.
 models::Parameters scatter_parameters(const models::Registry& registry, const Scatter& scatter);
 
-// The parameters of instance `index` of `block`, which belongs to `scatter`; the same that
-// place_models() gives it, but on level ground.
+// The parameters of instance `index` of `block`, which must belong to `scatter`: those of
+// place_models(), but on level ground.
 models::Parameters draw_parameters(const World& world, const models::Registry& registry,
                                    const Scatter& scatter, core::BlockCoord block,
                                    std::uint32_t index);

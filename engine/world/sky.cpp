@@ -1,4 +1,4 @@
-// Where the sun stands and what colours it makes.
+// The place of the sun, and the colours of the sky under it.
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -11,10 +11,10 @@
 namespace psygen::world {
 namespace {
 
-constexpr double kDeclinationDeg = 12;  // of the sun: late in spring
-constexpr float kMostChange = 32;       // of a colour, where the file's own sun stands too low
+constexpr double kDeclinationDeg = 12;  // of the sun, as in spring
+constexpr float kMostChange = 32;       // largest factor, for files with a very low sun
 
-// What `colour`, right under the sun of `then`, becomes under the sun of `now`.
+// Scales `colour`, which is correct for daylight `then`, to daylight `now`.
 glm::vec3 changed(glm::vec3 colour, glm::vec3 then, glm::vec3 now) {
   const glm::vec3 dark(1e-6F);
   return colour * glm::min((now + dark) / (then + dark), glm::vec3(kMostChange));

@@ -6,7 +6,7 @@
 
 namespace psygen::world {
 
-// The second derivatives solve a tridiagonal system; forward elimination, then substitution.
+// The second derivatives solve a tridiagonal system by forward elimination and back substitution.
 Spline::Spline(std::span<const double> times, std::span<const double> values)
     : times_(times.begin(), times.end()),
       values_(values.begin(), values.end()),

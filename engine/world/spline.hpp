@@ -1,5 +1,5 @@
-// A natural cubic spline through points in time: value, velocity and acceleration are continuous.
-// Evaluation takes O(log points). Immutable; any thread.
+// A natural cubic spline through points in time, with continuous value, velocity and acceleration.
+// Evaluation takes O(log points). Immutable, any thread. Does not extrapolate.
 #pragma once
 
 #include <span>
@@ -7,15 +7,18 @@
 
 namespace psygen::world {
 
+// One value over time.
 class Spline {
  public:
+  // Empty; only to be assigned to.
   Spline() = default;
-  // At least one point; times grow strictly. One point makes a constant.
+  // At least one point, as many times as values; times grow strictly. One point makes a constant.
+  // Linear in the points.
   Spline(std::span<const double> times, std::span<const double> values);
 
-  // Before the first and after the last point the value of that point is held.
+  // The value at a time. Before the first and after the last point it is the value of that point.
   double value(double time) const;
-  // Per unit of time; 0 before the first and after the last point.
+  // The derivative per unit of time; 0 before the first and after the last point.
   double slope(double time) const;
 
  private:

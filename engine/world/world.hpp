@@ -1,6 +1,7 @@
-// A world: a few numbers that stand for terabytes of geometry (paper, section 4.1). Read from and
-// written to TOML files (files/world_file.hpp). Plain values, valid once they come from a file; not
-// geometry, which models synthesise from the parameters. Immutable in use, so any thread may read.
+// A world: a few numbers that define terabytes of geometry (paper, section 4.1). Read from and
+// written to TOML files (files/world_file.hpp). Plain values, valid if they come from a file. It
+// has no geometry; models synthesise that from the parameters. Immutable in use, so any thread may
+// read.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@
 
 namespace psygen::world {
 
-inline constexpr int kWorldFormat = 1;
+inline constexpr int kWorldFormat = 1;  // version of the file format
 inline constexpr std::uint32_t kMaxModelsPerBlock = 16'384;
 
 // A parameter of one instance is drawn uniformly from [low, high]; integers include both ends.
@@ -27,12 +28,14 @@ struct ParameterRange {
 // One kind of model that is scattered over every block.
 struct Scatter {
   models::ModelIndex model = 0;
-  std::uint32_t count = 0;             // per block
+  std::uint32_t count = 0;             // instances per block
   std::vector<ParameterRange> ranges;  // one per parameter of the schema; kPlaced ones are unused
-  // Where instances may stand. One that finds no such place is left out (placement.hpp).
+  // Limits of the ground under an instance. One that finds no such place is left out
+  // (placement.hpp).
   double min_height_m = -std::numeric_limits<double>::infinity();
   double max_height_m = std::numeric_limits<double>::infinity();
   double max_slope_deg = 90;  // of the ground, against the horizontal
+  // Whether any limit excludes ground.
   bool has_filter() const {
     return min_height_m > -std::numeric_limits<double>::infinity() ||
            max_height_m < std::numeric_limits<double>::infinity() || max_slope_deg < 90;
@@ -40,13 +43,14 @@ struct Scatter {
   friend bool operator==(const Scatter&, const Scatter&) = default;
 };
 
-// Where the sun stands: azimuth from −Z (north) over +X (east), elevation over the horizon.
+// The place of the sun: azimuth from −Z (north) over +X (east), elevation above the horizon.
 struct SunPlace {
   double azimuth_deg = 0, elevation_deg = 0;
   glm::vec3 direction() const;  // unit vector towards the sun
 };
 
-// Sun, sky and air. Colours are linear radiance before `exposure`, those of the sun's elevation.
+// Sun, sky and air. Colours are linear radiance before `exposure`, at the sun's elevation given
+// here.
 struct Sky {
   double sun_azimuth_deg = 128;  // from −Z (north) over +X (east)
   double sun_elevation_deg = 44;
@@ -55,14 +59,15 @@ struct Sky {
   glm::vec3 horizon_colour{0.50F, 0.62F, 0.78F};
   glm::vec3 ground_colour{0.16F, 0.15F, 0.11F};  // light from below
   glm::vec3 haze_colour{0.66F, 0.72F, 0.80F};
-  double visibility_m = 32000;  // at height 0: where 2 % of the contrast is left
-  double haze_height_m = 1200;  // the haze thins out by a factor e in this height
+  double visibility_m = 32000;  // distance at height 0 at which 2 % of the contrast is left
+  double haze_height_m = 1200;  // height in which the haze thins out by a factor e
   double exposure = 1;
   double cloud_cover = 0.5;  // 0 clear … 1 overcast
-  double day_length_s = 0;   // of 24 hours; 0: the sun stands still where the two angles say
-  double start_hour = 9;     // at the time 0; the sun is highest at 12
-  double latitude_deg = 42;  // how high the sun climbs
+  double day_length_s = 0;   // seconds for 24 hours; 0: the sun stays at the two angles
+  double start_hour = 9;     // hour of the day at time 0; the sun is highest at 12
+  double latitude_deg = 42;  // decides how high the sun climbs
 
+  // The place of the sun at a time, and the unit vector towards the sun at the two angles.
   SunPlace sun_at(double time_s) const;
   glm::vec3 sun_direction() const {
     return SunPlace{sun_azimuth_deg, sun_elevation_deg}.direction();
@@ -72,25 +77,26 @@ struct Sky {
   friend bool operator==(const Sky&, const Sky&) = default;
 };
 
-// The same air with the sun elsewhere: every colour as the atmosphere changes it (atmosphere.hpp).
-// With the sun at the same elevation nothing changes.
+// The same air with the sun at another place. Every colour changes as in the atmosphere
+// (atmosphere.hpp); at the same elevation no colour changes.
 Sky with_sun(const Sky& sky, SunPlace sun);
-// At a moment of the day.
+// The sky at a time, in seconds.
 inline Sky sky_at(const Sky& sky, double time_s) {
   return with_sun(sky, sky.sun_at(time_s));
 }
 
-// A plane of water. Off while `level_m` is not set.
+// A plane of water. There is none by default.
 struct Water {
   double level_m = -1e7;  // height of the surface in metres of the world; below −10^6: no water
   glm::vec3 colour{0.010F, 0.045F, 0.050F};  // of deep water: linear albedo
-  double shore_m = 1.5;                      // the beach reaches so far above the surface
+  double shore_m = 1.5;                      // height of the beach above the surface
+  // Whether there is water.
   bool exists() const { return level_m > -1e6; }
   friend bool operator==(const Water&, const Water&) = default;
 };
 
-// Linear albedo of the ground and where each kind of ground is. Heights in metres of the world;
-// slopes are 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
+// Linear albedos of the ground, and the extent of each kind of ground. Heights are in metres of the
+// world; slopes are 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
 struct Palette {
   glm::vec3 grass{0.085F, 0.125F, 0.030F};
   glm::vec3 forest{0.045F, 0.070F, 0.022F};
@@ -98,14 +104,15 @@ struct Palette {
   glm::vec3 rock{0.175F, 0.160F, 0.145F};
   glm::vec3 snow{0.80F, 0.83F, 0.88F};
   glm::vec3 sand{0.36F, 0.30F, 0.19F};
-  double sand_end_m = -1e6, sand_blend_m = 2;    // sand below
-  double dry_start_m = 60, dry_blend_m = 40;     // dry meadow above
-  double snow_start_m = 1e6, snow_blend_m = 15;  // snow above, except where steep
+  double sand_end_m = -1e6, sand_blend_m = 2;    // sand below this height
+  double dry_start_m = 60, dry_blend_m = 40;     // dry meadow above this height
+  double snow_start_m = 1e6, snow_blend_m = 15;  // snow above this height, except where steep
   double rock_slope_start = 0.16, rock_slope_full = 0.34;
-  double snow_slope_max = 0.40;  // steeper ground sheds its snow
+  double snow_slope_max = 0.40;  // no snow on steeper ground
   friend bool operator==(const Palette&, const Palette&) = default;
 };
 
+// A whole world.
 struct World {
   int format = kWorldFormat;
   std::string name;
@@ -113,7 +120,7 @@ struct World {
   std::int64_t blocks_x = 512, blocks_z = 512;  // 0: endless; else blocks 0 … n − 1 exist
   models::ModelIndex terrain_model = 0;
   models::Parameters terrain;            // of the block (0, 0)
-  std::vector<models::Species> species;  // that the file defines; models of the registry
+  std::vector<models::Species> species;  // defined by the file; types of the registry
   std::vector<Scatter> scatter;
   Sky sky;
   Water water;
@@ -121,13 +128,14 @@ struct World {
 
   double block_size_m() const;  // metres along one side of a block
   double cell_m() const;        // between neighbouring vertices of the terrain
+  // Whether a block exists, and whether the world is endless along any axis.
   bool contains(core::BlockCoord block) const;
   bool is_endless() const { return blocks_x == 0 || blocks_z == 0; }
   friend bool operator==(const World&, const World&) = default;
 };
 
-// The palette that the ground is drawn with: the shore of the water is sand. What draws or exports
-// ground takes this one.
+// The palette with which ground is drawn and exported: World::palette with sand on the shore of the
+// water.
 Palette drawn_palette(const World& world);
 
 // The world if all of it were generated at full detail. Terrain counts without its skirts. An
@@ -136,16 +144,17 @@ struct WorldSize {
   std::uint64_t blocks = 0;
   std::uint64_t models = 0;  // at most 2^64 − 1
   double triangles = 0;
-  double bytes = 0;        // vertices and indices as this engine packs them, shared lists apart
-  double bytes_paper = 0;  // 256 bytes a triangle, as the paper counts
+  double bytes = 0;        // packed vertices and indices, without shared index lists
+  double bytes_paper = 0;  // 256 bytes per triangle, as in the paper
   bool endless = false;
-  // The average of one block; of endless worlds too.
+  // Means per block, also for endless worlds.
   double block_models = 0, block_triangles = 0, block_bytes = 0;
 };
 
-// Without generating anything. Exact for models whose size depends on no random parameter (terrain,
-// rocks of one subdivision); for others the mean over kSizeSamples parameter sets, always the same
-// ones. Where instances must find a place, the share that does is taken from kSizeBlocks blocks.
+// The size of a world, computed without synthesis. Exact for models whose size depends on no random
+// parameter (terrain, rocks with a fixed subdivision). For others it is the mean over kSizeSamples
+// parameter sets, always the same ones. With filters, the share of instances that find a place is
+// measured on kSizeBlocks blocks.
 inline constexpr std::uint32_t kSizeSamples = 1024;
 inline constexpr std::uint32_t kSizeBlocks = 64;
 WorldSize world_size(const World& world, const models::Registry& registry);

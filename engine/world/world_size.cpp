@@ -13,7 +13,7 @@ double mesh_bytes(const models::MeshSize& size) {
 }
 
 // Mean size of one instance of a scatter whose first instance has the index `first`. The samples
-// are instances of the world itself, of blocks in a row.
+// are real instances of the world, from consecutive blocks.
 struct MeanSize {
   double triangles = 0, bytes = 0;
 };

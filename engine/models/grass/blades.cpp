@@ -11,16 +11,16 @@
 namespace psygen::models {
 namespace {
 
-// Albedos of mean 1, as they are stored: of fresh and of dry blades.
+// Stored colours of fresh and of dry blades. Their albedos have a mean of 1.
 constexpr glm::vec3 kFresh{1.03F, 1.25F, 0.61F}, kDry{1.16F, 1.06F, 0.71F};
-constexpr float kShake = 1.2F;  // of tufts, of about half the distance between them
+constexpr float kShake = 1.2F;  // random shift of tufts, over about half the distance between them
 constexpr std::uint32_t kFirstTuft = 1U << 30;
-constexpr float kMiddleWidth = 0.9F;  // of a blade where it bends, of that at the foot
-constexpr float kLowEdge = 0.45F;     // how much lower the blades of the patch's border are
+constexpr float kMiddleWidth = 0.9F;  // width of a blade at its bend over that at its foot
+constexpr float kLowEdge = 0.45F;     // share of their height that blades at the border lack
 constexpr float kStemHeight = 1.2F, kStemWidth = 0.5F;
-constexpr float kHead = 1.3F;  // half of a flower's width, of a blade's
+constexpr float kHead = 1.3F;  // half of a flower's width over a blade's width
 
-// Four numbers in [0, 1) that belong to an item of the patch.
+// Four random numbers in [0, 1) of one item of the patch.
 struct Fractions {
   float f[4];
   Fractions(std::uint64_t key, std::uint32_t item) {
@@ -31,7 +31,7 @@ struct Fractions {
   }
 };
 
-// A unit vector, without sines; not quite uniform.
+// A unit vector from `turn` in [0, 1), without sines. Its distribution is not quite uniform.
 glm::vec2 direction(float turn) {
   const float quarter = std::floor(turn * 4), t = turn * 4 - quarter;
   const float scale = 1 / (1 + t * t);
@@ -42,8 +42,8 @@ glm::vec2 direction(float turn) {
   return {v.y, -v.x};
 }
 
-// Tuft `k` in the unit disc: an additive recurrence (the plastic number's) that fills the square
-// evenly however many there are, drawn to the disc, and shaken so that no rows show.
+// Place of tuft `k` in the unit disc. The additive recurrence of the plastic number fills a square
+// evenly for any number of tufts. Points are mapped to the disc and shifted at random to hide rows.
 glm::vec2 tuft_place(std::uint64_t key, std::uint32_t k, std::uint32_t count) {
   const auto coordinate = [](std::uint32_t v) {
     return static_cast<float>(static_cast<std::int32_t>(v)) * 0x1.0p-31F;
@@ -108,8 +108,8 @@ void GrassWriter::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c
     out_.indices[indices_++] = static_cast<std::uint16_t>(i);
 }
 
-// Normals are nearly those of the ground, whose light the blades take on; towards the tip they
-// follow the bend.
+// Normals are close to the ground's, so blades are lit like the ground. Towards the tip they turn
+// with the bend.
 GrassWriter::Point GrassWriter::at_foot(const GrassBlade& blade, float side) const {
   const glm::vec2 w = blade.across * side;
   return {blade.foot + glm::vec3(w.x, 0, w.y), up_, blade.colour * 0.85F, 0.55F, 0};

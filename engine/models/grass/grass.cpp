@@ -43,7 +43,7 @@ std::uint32_t blades_of(const Parameters& p) {
 std::uint32_t flowers_of(const Parameters& p) {
   return static_cast<std::uint32_t>(p.integer(kGrassFlowers));
 }
-// How many of `all` a level has.
+// How many of `all` blades or flowers a level keeps.
 std::uint32_t left(std::uint32_t all, int level) {
   const std::uint32_t each = level < 2 ? 1 : level == 2 ? 3 : 9;
   return (all + each - 1) / each;
@@ -99,7 +99,7 @@ class GrassType final : public ModelType {
   }
 };
 
-// Level 1 lacks the bends, level 2 the neighbours in a tuft, level 3 whole tufts.
+// Level 1 leaves out the bends, level 2 most blades of a tuft, level 3 whole tufts.
 double GrassType::level_error_m(const Parameters& p, int level) const {
   const int at = std::min(level, level_count_of(p) - 1);
   if (at == 0) return 0;
@@ -115,7 +115,7 @@ double GrassType::level_error_m(const Parameters& p, int level) const {
 
 core::Bounds GrassType::bounds(const Parameters& p) const {
   const GrassPatch patch = patch_of(p);
-  // Level 3 has up to 9 times as broad blades.
+  // Blades of level 3 are up to 9 times as wide.
   const float broadest = kBroadBlade * 9 * patch.width;
   const float feet = patch.radius + 1.5F * kTuftSpread * patch.height;
   const float aside = (feet + patch.lean * patch.height + broadest) * 1.001F;

@@ -1,6 +1,6 @@
-// A patch of grass: tufts of bent blades on a piece of ground that may slope, perhaps with flowers.
-// Nothing but triangles: no textures, no growth. Standing in the ground, so that uneven ground
-// shows no gaps. Not seen from far: merged meshes and the colour of far ground leave it out.
+// A patch of grass: tufts of bent blades on ground that may slope, with or without flowers. Plain
+// triangles, no textures and no growth. Feet reach below the ground, so uneven ground shows no
+// gaps. Not visible from far away: merged meshes and the colour of far ground leave it out.
 // docs/models.md, "Grass".
 #pragma once
 
@@ -31,9 +31,10 @@ enum GrassParameter : std::size_t {
 // Values of kGrassFlower.
 enum GrassFlower : int { kWhiteFlower = 0, kYellowFlower, kPinkFlower, kBlueFlower, kFlowerCount };
 
-// Level 0 has blades of 3 triangles and flowers of 3 + 4, level 1 one triangle for each of either;
-// levels 2 and 3 a third and a ninth of those, broader by so much. Own indices. Scalar code: about
-// 0.25 µs a blade of level 0 (psygen amplify of a world of nothing else).
+// The model type "grass". Level 0 has 3 triangles a blade and 3 + 4 a flower. Level 1 has one
+// triangle for each blade and each flower. Levels 2 and 3 keep a third and a ninth of these and
+// widen them to cover as much. Meshes have their own indices. Scalar code: about 0.25 µs a blade of
+// level 0 (psygen amplify of a world that has only grass).
 std::unique_ptr<ModelType> make_grass_type();
 
 }  // namespace psygen::models

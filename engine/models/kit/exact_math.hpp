@@ -1,7 +1,7 @@
-// Powers and sines whose bits do not depend on the C library or the CPU: only additions,
-// multiplications and divisions in double precision, each rounded on its own. For constants of a
-// model (amplitudes of octaves), not for kernels. Relative error below 1e-14 for results within
-// 1e±30.
+// Powers and sines whose bits depend on neither the C library nor the CPU: only additions,
+// multiplications and divisions in double precision, each rounded separately. For constants of a
+// model, such as amplitudes of octaves, not for kernels. Pure, about 20 steps a call. The relative
+// error is below 1e-14 for results within 1e±30.
 #pragma once
 
 #include <cmath>
@@ -38,7 +38,8 @@ inline double exact_pow(double base, double exponent) {
   return exact_exp(exponent * exact_log(base));
 }
 
-// Sine and cosine of degrees. Errors below 1e-15; exact at multiples of 180° and 90° off them.
+// Sine and cosine of an angle in degrees. Errors are below 1e-15. The sine is exact at multiples of
+// 180°, the cosine 90° away from them.
 inline double exact_sin_degrees(double degrees) {
   double r = degrees - 360 * std::floor(degrees / 360 + 0.5);  // −180 … 180
   if (r > 90) r = 180 - r;

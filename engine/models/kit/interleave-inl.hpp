@@ -1,5 +1,5 @@
-// Stores three vectors interleaved. Included once per instruction set, by kernels between
-// foreach_target.h and their own namespaces; hence its include guard.
+// Stores three vectors interleaved, element by element. Kernels include it after foreach_target.h
+// and before their own namespace, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_INTERLEAVE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_INTERLEAVE_INL
 #undef PSYGEN_MODELS_INTERLEAVE_INL
@@ -18,15 +18,16 @@ namespace psygen::models::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Element i of vector v belongs at place 3 · i + v of three vectors in a row. As 3 has an inverse
-// modulo the number of lanes, the elements of one vector never meet in a lane: one permutation each
-// and two selections for every result, half of what hn::StoreInterleaved3 takes.
+// Element i of vector v goes to place 3 · i + v. Because 3 has an inverse modulo the number of
+// lanes, no two elements of one vector go to the same lane. A result costs one permutation per
+// vector and two selections, half the time of hn::StoreInterleaved3.
 class Interleave3 {
  public:
+  // Vectors of at most 16 words.
   using Tag = hn::CappedTag<std::uint32_t, 16>;
   using V = hn::Vec<Tag>;
 
-  // To any address.
+  // Writes a0 b0 c0 a1 b1 c1 … to `bytes`: 3 · lanes words, at any alignment.
   HWY_INLINE void store(V a, V b, V c, void* bytes) const {
     const Tag d;
     auto* const to = static_cast<std::uint32_t*>(bytes);
@@ -57,7 +58,7 @@ class Interleave3 {
   HWY_ALIGN static constexpr std::uint32_t kThirds[16] = {0, 1, 2, 0, 1, 2, 0, 1,
                                                           2, 0, 1, 2, 0, 1, 2, 0};
 
-  // The lane of vector v that belongs in each lane.
+  // For each lane, the lane of vector `v` whose element goes there.
   static Lanes lanes_of(std::uint32_t v) {
     const Tag d;
     const auto last = static_cast<std::uint32_t>(hn::Lanes(d)) - 1;

@@ -1,4 +1,5 @@
-// The 32-bit hash of docs/models.md, "mix32"; in lanes: simd_hash-inl.hpp.
+// The 32-bit hash of docs/models.md, "mix32". simd_hash-inl.hpp has the same function for vectors.
+// Pure, constant time. Not for hash tables that an attacker can fill.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Octahedral normals in lanes (packing.hpp). Included once per instruction set, by kernels between
-// foreach_target.h and their own namespaces; hence its include guard.
+// Octahedral normals (packing.hpp) for SIMD lanes. Kernels include it after foreach_target.h and
+// before their own namespace, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_OCTAHEDRAL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_OCTAHEDRAL_INL
 #undef PSYGEN_MODELS_OCTAHEDRAL_INL
@@ -12,12 +12,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// The pair of a direction whose |x| + |y| + |z| is `one`: what points down is folded outwards. The
-// pair is in the same unit, and rounded by whoever packs it.
+// The two stored components of octahedral normals.
 template <class V>
 struct OctahedralPair {
   V x, z;
 };
+// Folds directions with y < 0 outwards. Requires |x| + |y| + |z| = `one`; the pair is in the same
+// unit and not yet rounded.
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_INLINE OctahedralPair<V> fold_octahedral(D d, V x, V y, V z, float one) {
   namespace hn = hwy::HWY_NAMESPACE;

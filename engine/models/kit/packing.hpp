@@ -1,6 +1,7 @@
-// How numbers become the bytes of a vertex (engine/core/vertex_layout.hpp): snorm and unorm with
-// rounding to nearest, octahedral normals, colours stored as square roots. Same bits everywhere:
-// only additions, multiplications, divisions and square roots. Not a general pixel-format library.
+// Packs numbers into the bytes of a vertex (engine/core/vertex_layout.hpp): snorm and unorm rounded
+// to nearest, octahedral normals, colours stored as square roots. Same bits on every CPU: only
+// additions, multiplications, divisions and square roots. Pure, any thread, constant time. Not a
+// general pixel-format library.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +16,14 @@
 
 namespace psygen::models {
 
-// Nearest integer to `v`, halves to even. Requires |v| < 2^22. In the sum with 1.5 · 2^23 the last
-// bit counts ones.
+// Nearest integer to `v`, halves to even. Requires |v| < 2^22. Adding 1.5 · 2^23 leaves a float
+// whose lowest bit is worth 1.
 inline std::int32_t round_to_int(float v) {
   return std::bit_cast<std::int32_t>(v + 12582912.0F) - std::bit_cast<std::int32_t>(12582912.0F);
 }
 
-// v in [-1, 1] to snorm8 (±127) and snorm16 (±32767); v in [0, 1] to unorm8. Outside: clamped.
+// Pack [-1, 1] as snorm8 (±127) or snorm16 (±32767), or [0, 1] as unorm8. Values outside the range
+// are clamped.
 inline std::int8_t pack_snorm8(float v) {
   return static_cast<std::int8_t>(round_to_int(std::clamp(v, -1.0F, 1.0F) * 127.0F));
 }
@@ -36,9 +38,9 @@ inline std::uint8_t pack_albedo(float albedo) {
   return pack_unorm8(std::sqrt(std::max(albedo, 0.0F)));
 }
 
-// Octahedral mapping around +Y: directions with y >= 0 fill the diamond |e.x| + |e.y| <= 1, where
-// e = (x, z) / (|x| + |y| + |z|); those with y < 0 are folded outwards into the corners of the
-// square. `n` need not have unit length but must not be zero.
+// Octahedral mapping about +Y, to [-1, 1]². Let e = (x, z) / (|x| + |y| + |z|). Directions with
+// y >= 0 fill the diamond |e.x| + |e.y| <= 1; those with y < 0 are folded outwards into the corners
+// of the square. `n` may have any length except zero.
 inline glm::vec2 encode_octahedral(const glm::vec3& n) {
   const float scale = 1.0F / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
   const float x = n.x * scale, z = n.z * scale;
@@ -47,7 +49,7 @@ inline glm::vec2 encode_octahedral(const glm::vec3& n) {
   const bool above = n.y >= 0.0F;
   return {above ? x : folded_x, above ? z : folded_z};
 }
-// The unit vector of an encoded direction (what the shaders do).
+// The unit vector of a pair from encode_octahedral(). The shaders compute the same.
 inline glm::vec3 decode_octahedral(glm::vec2 e) {
   glm::vec3 n{e.x, 1.0F - std::abs(e.x) - std::abs(e.y), e.y};
   const float fold = std::max(-n.y, 0.0F);
@@ -59,11 +61,13 @@ inline glm::vec3 decode_octahedral(glm::vec2 e) {
 // Packs points of one box as snorm16: p = center + half_extent · packed / 32767.
 class BoxPacker {
  public:
+  // Along an axis where `box` has no extent, every point packs to 0.
   explicit BoxPacker(const core::Bounds& box) : center_(box.center()) {
     const glm::vec3 half = box.half_extent();
     scale_ = {half.x > 0 ? 1 / half.x : 0, half.y > 0 ? 1 / half.y : 0,
               half.z > 0 ? 1 / half.z : 0};
   }
+  // Points outside the box are clamped to its faces.
   void pack(const glm::vec3& p, std::int16_t (&out)[3]) const {
     out[0] = pack_snorm16((p.x - center_.x) * scale_.x);
     out[1] = pack_snorm16((p.y - center_.y) * scale_.y);
@@ -75,6 +79,7 @@ class BoxPacker {
   glm::vec3 scale_;
 };
 
+// The position of a vertex in metres. `box` is the one that it was packed in.
 inline glm::vec3 unpack_position(const core::ModelVertex& v, const core::Bounds& box) {
   return box.center() +
          box.half_extent() *

@@ -1,5 +1,6 @@
-// The 32-bit hash of mix32.hpp in lanes, and lanes that count. Included once per instruction set,
-// by kernels between foreach_target.h and their own namespaces; hence its include guard.
+// The 32-bit hash of mix32.hpp for SIMD lanes, and vectors of consecutive integers. Kernels include
+// it after foreach_target.h and before their own namespace, once per instruction set; hence the
+// unusual include guard.
 #if defined(PSYGEN_MODELS_SIMD_HASH_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_SIMD_HASH_INL
 #undef PSYGEN_MODELS_SIMD_HASH_INL
@@ -14,6 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
+// models::mix32() of every lane.
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_INLINE V mix32(D d, V h) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -22,8 +24,8 @@ HWY_INLINE V mix32(D d, V h) {
   return hn::Xor(h, hn::ShiftRight<16>(h));
 }
 
-// first, first + 1, … hn::Iota() of a number that is not known beforehand writes every lane to
-// memory and waits for it to read the vector back.
+// The integers first, first + 1, … in order of the lanes. hn::Iota() of a run-time value is slower:
+// it writes every lane to memory and stalls when it reads the vector back.
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_INLINE V counting_from(D d, std::uint32_t first) {
   namespace hn = hwy::HWY_NAMESPACE;

@@ -31,8 +31,8 @@ std::string_view name_of(std::int64_t bit) {
   }
 }
 
-// What the CPU supports, asked before anything is pinned. Highway lists the best first and does not
-// count its fallback, which needs nothing, among what a CPU supports.
+// The sets that the CPU supports, determined before anything is pinned. Highway lists the best
+// first. Its list of supported sets lacks the fallback, which runs on any CPU.
 const std::vector<Target>& available() {
   static const std::vector<Target> targets = [] {
     constexpr std::int64_t kFallback = HWY_TARGETS & (HWY_SCALAR | HWY_EMU128);

@@ -1,7 +1,7 @@
-// Which instruction sets the SIMD kernels of this library are compiled for, and a way to pin one.
-// Kernels choose the best set of the CPU at run time (Highway); every set gives the same bits
-// (docs/models.md, "Arithmetic"). For tests, which compare the sets, and for measurements, which
-// tell how fast each is (`psygen amplify --simd`): the engine calls nothing of this.
+// The instruction sets that the SIMD kernels of this library are compiled for, and how to pin one.
+// Kernels select the best set of the CPU at run time (Highway). Every set gives the same bits
+// (docs/models.md, "Arithmetic"). For tests, which compare the sets, and for measurements of each
+// set (`psygen amplify --simd`). The engine itself calls nothing of this.
 #pragma once
 
 #include <string_view>
@@ -9,15 +9,15 @@
 
 namespace psygen::models {
 
-// Sets that this CPU can run, best first: of "avx512", "avx2", "sse4" and, always, "scalar" (on
-// processors other than x86-64 the names are Highway's). The same whether one is pinned or not.
+// Sets that this CPU can run, best first: some of "avx512", "avx2" and "sse4", and always "scalar".
+// On processors other than x86-64 the names are Highway's. Pinning does not change the list.
 std::vector<std::string_view> simd_targets();
 
-// From now on kernels use this set, which must be one of simd_targets(). Not while another thread
-// synthesises.
+// Makes kernels use this set from now on. `name` must be one of simd_targets(), which is checked.
+// Not to be called while another thread synthesises.
 void pin_simd_target(std::string_view name);
 
-// Back to the best set. Not while another thread synthesises.
+// Returns to the best set. Not to be called while another thread synthesises.
 void unpin_simd_target();
 
 }  // namespace psygen::models

@@ -1,6 +1,6 @@
-// Vertices of one rock are the lanes. What is looked up through the topology is kept as items of
-// four floats, so that a look-up is one load; everything else runs on separate vectors. Faceted
-// rocks take one more step from vertices to the corners of triangles.
+// The lanes are vertices of one rock. Values that are looked up through the topology are kept as
+// items of four floats, so a look-up is one load. Everything else runs on separate vectors. Faceted
+// rocks take one more step, from vertices to the corners of triangles.
 #include "engine/models/rock/kernel.hpp"
 
 #include <algorithm>
@@ -62,12 +62,12 @@ class RockMesher {
         find_midpoints(Wide(), v, amplitude, have_children);
       if (v < end) find_midpoints(Narrow(), v, amplitude, have_children);
     }
-    // Whole groups of four for box().
+    // box() reads whole groups of four.
     for (std::size_t v = vertex_count_; v % 4 != 0; ++v)
       std::memcpy(place_ + 4 * v, place_, 4 * sizeof(float));
   }
 
-  // Numbers 0 and 1, or 2 and 3, of the items of vertices.
+  // Random numbers 0 and 1 (`word` is the key), or 2 and 3 (its upper half), of vertices.
   template <class D>
   HWY_INLINE hn::Vec<D> numbers(D d, Uint<D> steps, std::uint64_t word, hn::Vec<D>& second) const {
     const hn::RebindToUnsigned<D> du;
@@ -108,7 +108,8 @@ class RockMesher {
              hn::Add(hn::Set(d, 1.0F), hn::Mul(hn::Set(d, s_.amplitude), r.w)), true);
     }
   }
-  // By the quaternion q = (a, w): v |q|² + 2 w a × v + 2 a × (a × v) with |q|² = a² + w².
+  // Rotated by the quaternion q = (a, w) and scaled by |q|² = a² + w²:
+  // v |q|² + 2 w a × v + 2 a × (a × v).
   HWY_INLINE Vectors<Small> turned(const Vectors<Small>& v) const {
     const Small d;
     const float* const q = s_.turn;
@@ -122,7 +123,7 @@ class RockMesher {
     return {sum(v.x, a.x, b.x), sum(v.y, a.y, b.y), sum(v.z, a.z, b.z), v.w};
   }
 
-  // Beyond the last midpoint of a step this writes vertices of no meaning.
+  // Writes whole vectors: vertices beyond the last midpoint of a step have no meaning.
   template <class D>
   HWY_INLINE void find_midpoints(D d, std::size_t first, float amplitude, bool have_children) {
     const Vectors<D> m =
@@ -136,8 +137,9 @@ class RockMesher {
            have_children);
   }
 
-  // Vertices in the direction of `m`, whose length is 1 / `unit`, at a distance from the centre:
-  // for the midpoints of further steps, and in metres after layers, stretch and lift.
+  // Stores vertices in the direction of `m`, whose length is 1 / `unit`, at distance `radius` from
+  // the centre. unit_ is for the midpoints of further steps; place_ has metres after layers,
+  // stretch and lift.
   template <class D>
   HWY_INLINE void settle(D d, std::size_t v, const Vectors<D>& m, hn::Vec<D> unit,
                          hn::Vec<D> radius, bool have_children) {
@@ -178,7 +180,7 @@ class RockMesher {
     }
     return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
   }
-  // Four numbers, or one on the scalar target, from those of all blocks.
+  // Folds the blocks of a vector to four numbers, or to one on the scalar target.
   template <class D, class Fold>
   HWY_INLINE static void store_folded(D d, hn::Vec<D> v, float* to,
                                       [[maybe_unused]] const Fold& fold) {
@@ -193,7 +195,8 @@ class RockMesher {
 
   // ---- Vertices ----
 
-  // All vertices as core::ModelVertex; for facets their normals apart, 1 − facet long.
+  // Writes all vertices as core::ModelVertex. For facets the normals go to normal_, of length
+  // 1 − facet.
   template <bool kFaceted>
   void finish(std::byte* out) {
     std::size_t v = 0;
@@ -227,13 +230,14 @@ class RockMesher {
     paint(d, v, height, hn::Mul(n.y, scale), ambient, colour);
     hn::StoreInterleaved4(pair(d, x, y), pair(d, z, ambient), normal, colour, du, out);
   }
-  // As snorm16; the box has room on all sides.
+  // As snorm16. No clamping: the box is larger than the rock.
   template <class D>
   HWY_INLINE static Uint<D> packed(D d, hn::Vec<D> place, float centre, float scale) {
     return rounded(d, hn::Mul(hn::Sub(place, hn::Set(d, centre)), hn::Set(d, scale)));
   }
 
-  // Twice the area of the ring of neighbours, as a vector: the sum of the triangles' own.
+  // The sum of the area vectors of the triangles around each vertex: twice the area of the ring of
+  // neighbours.
   template <class D>
   HWY_INLINE Vectors<D> normals(D d, std::size_t v) const {
     const std::array<RockTopology::Offsets, 6>& rings = topology_.rings(subdivisions_);
@@ -253,7 +257,7 @@ class RockMesher {
     return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z), a.w};
   }
 
-  // Places of vertices by their offsets where all of them fit into three vectors, no matter which.
+  // Places of any vertices by their offsets. Requires that all vertices fit into three vectors.
   template <class D>
   HWY_INLINE Vectors<D> look_up(D d, const std::uint16_t* offsets) const {
     const hn::RebindToSigned<D> di;
@@ -275,7 +279,8 @@ class RockMesher {
     return {of(x_), of(y_), of(z_), hn::Zero(d)};
   }
 
-  // Ambient light, and the root of the albedo, of vertices at a height with normals so steep.
+  // Ambient light and stored colour of vertices. `height` is in metres, `up` the scaled y of the
+  // normal.
   template <class D>
   HWY_INLINE void paint(D d, std::size_t v, hn::Vec<D> height, hn::Vec<D> up, Uint<D>& ambient,
                         Uint<D>& colour) const {
@@ -300,7 +305,7 @@ class RockMesher {
     const auto sum = hn::Add(hn::Add(red, hn::ShiftLeft<8>(middle)), hn::ShiftLeft<16>(blue));
     colour = hn::Sub(sum, hn::Set(du, kRounding + (kRounding << 8)));
   }
-  // 0 … 255 plus kRounding.
+  // A channel of the colour, 0 … 255, plus kRounding.
   template <class D>
   HWY_INLINE static Uint<D> channel(D d, float stone_colour, hn::Vec<D> tone, float moss_colour,
                                     hn::Vec<D> cover) {
@@ -311,7 +316,7 @@ class RockMesher {
 
   // ---- Facets ----
 
-  // The corners of all triangles, with normals between the triangle's and the vertex's.
+  // Writes the corners of all triangles. Their normals lie between the triangle's and the vertex's.
   void write_facets(std::byte* out) const {
     const Wide d;
     const std::array<RockTopology::Offsets, 3>& corners = topology_.corners(subdivisions_);
@@ -344,7 +349,8 @@ class RockMesher {
   const RockTopology& topology_;
   const int subdivisions_;
   const std::size_t vertex_count_;
-  // Items: places from the centre with the distance, places in metres, normals. Then components.
+  // Items of four: places in units from the centre with their distance, places in metres, normals.
+  // Then packed vertices, and separate components.
   HWY_ALIGN float unit_[4 * (kVertices + kPad)];
   HWY_ALIGN float place_[4 * (kVertices + kPad)];
   HWY_ALIGN float normal_[4 * (kVertices + kPad)];

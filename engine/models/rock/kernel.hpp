@@ -1,5 +1,6 @@
 // The seam between the parameters of a rock (rock.cpp) and the SIMD kernel that makes its mesh
-// (kernel.cpp), compiled once for every instruction set. Not for other files.
+// (kernel.cpp), which is compiled once per instruction set. Internal to the rock. Pure, any thread.
+// docs/models.md, "Rock".
 #pragma once
 
 #include <cstddef>
@@ -12,9 +13,10 @@
 
 namespace psygen::models {
 
-// Numbers in [−1, 1) that belong to item `index` of the rock of this key.
+// Four random numbers in [−1, 1) of item `index` of the rock with this key.
 struct RockRandom {
   float f[4];
+  // Computes them by hashing, in constant time.
   RockRandom(std::uint64_t key, std::uint32_t index) {
     for (std::uint32_t i = 0; i < 4; ++i) {
       const auto word = static_cast<std::uint32_t>(key >> (32 * (i / 2)));
@@ -25,32 +27,33 @@ struct RockRandom {
   static constexpr std::uint32_t kStep = 0x9E3779B9U;
 };
 
-// A rock as docs/models.md, "Rock" has it; the item of vertex v is 2 + v.
+// The numbers of one rock (docs/models.md, "Rock"). Vertex v uses the random numbers of item 2 + v.
 struct RockShape {
   std::uint64_t key;
-  float turn[4];  // quaternion x, y, z, w of any length
-  float amplitude, decay;
-  glm::vec3 stretch;  // metres
-  float lift;         // metres
-  float rise;         // of light and colour, per metre
-  glm::vec3 colour;   // albedo as it is stored, its root, times 255
-  float moss;
-  float facet;           // share of the triangle's own normal in its vertices'; 0: shared vertices
-  float ledge, tint;     // of layers: how far they stand out, how much their colour differs
-  glm::vec3 layer_axis;  // across the layers, times their number per unit
-  float layer_phase;     // 0 … 1
-  glm::vec3 box_centre, box_scale;  // to snorm16; the box is larger than the rock
+  float turn[4];           // quaternion x, y, z, w of any length
+  float amplitude, decay;  // displacement over the radius; ratio from one subdivision to the next
+  glm::vec3 stretch;       // metres of a unit along each axis
+  float lift;              // metres from the foot up to the centre
+  float rise;              // increase of light and colour per metre of height
+  glm::vec3 colour;        // square root of the albedo, times 255
+  float moss;              // largest cover, 0 … 1
+  float facet;             // weight of the triangle's normal at its corners; 0: shared vertices
+  float ledge, tint;       // of layers: distance they stand out, difference of their colour
+  glm::vec3 layer_axis;    // across the layers, times their number per unit
+  float layer_phase;       // −1 … 1
+  glm::vec3 box_centre, box_scale;  // metres to snorm16; the box is larger than the rock
 };
 inline constexpr float kRockJitter = 0.15F;  // of the tetrahedron's corners; below 1 / (3·√3)
-inline constexpr float kRiseAtFoot = 0.16F;
+inline constexpr float kRiseAtFoot = 0.16F;  // light and colour at height 0
 
-// Vertices of the mesh: one a place, or three a triangle where triangles show.
+// Vertices of the mesh: one per place, or three per triangle where the rock is faceted.
 constexpr std::uint32_t rock_mesh_vertices(int subdivisions, bool faceted) {
   return faceted ? rock_triangles(subdivisions) * 3 : rock_vertices(subdivisions);
 }
 
-// Writes so many core::ModelVertex to `out` and returns their box. Needs 700 KiB of stack for 6
-// subdivisions, 5 KiB for 2.
+// Writes rock_mesh_vertices() of core::ModelVertex to `out`, which is not read, and returns their
+// box in metres. 0 <= subdivisions <= kMaxSubdivisions; time is linear in the vertices. Needs 700
+// KiB of stack for 6 subdivisions, 5 KiB for 2.
 core::Bounds mesh_rock(const RockShape& shape, const RockTopology& topology, int subdivisions,
                        std::byte* out);
 

@@ -1,6 +1,6 @@
-// Lanes of the rock kernel: items of four floats gathered into separate vectors, and numbers
-// rounded into the words of a vertex. Included once per instruction set, by the kernel between
-// foreach_target.h and its own namespace; hence its include guard.
+// SIMD primitives of the rock kernel: items of four floats gathered into separate vectors, and
+// numbers rounded into the words of a vertex. The kernel includes it after foreach_target.h and
+// before its own namespace, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_ROCK_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_ROCK_LANES_INL
 #undef PSYGEN_MODELS_ROCK_LANES_INL
@@ -20,25 +20,26 @@ namespace psygen::models::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// As many unsigned words as D has floats.
 template <class D>
 using Uint = hn::Vec<hn::RebindToUnsigned<D>>;
 
 // ---- Items -------------------------------------------------------------------------------------
 
-// The items of as many vertices as D has lanes. Block b of rows[r] is the item of lane 4b + r; on
-// the scalar target rows[r] is component r of the only item.
+// Items of as many vertices as D has lanes. Block b of rows[r] is the item of lane 4b + r. On the
+// scalar target rows[r] is component r of the only item.
 template <class D>
 struct Items {
   hn::Vec<D> rows[4];
 };
 
-// Component by component.
+// The same as one vector per component.
 template <class D>
 struct Vectors {
   hn::Vec<D> x, y, z, w;
 };
 
-// Item at `base` + offsets[lane] for each lane.
+// Loads the item at `base` + offsets[lane] for each lane. Offsets count floats.
 template <class D>
 HWY_INLINE Items<D> load_items(D d, const float* base, const std::uint16_t* offsets) {
   Items<D> items;
@@ -64,6 +65,7 @@ HWY_INLINE Items<D> load_items(D d, const float* base, const std::uint16_t* offs
   return items;
 }
 
+// a + b
 template <class D>
 HWY_INLINE Items<D> add(const Items<D>& a, const Items<D>& b) {
   Items<D> sum;
@@ -72,6 +74,7 @@ HWY_INLINE Items<D> add(const Items<D>& a, const Items<D>& b) {
   return sum;
 }
 
+// Transposes items to components.
 template <class D>
 HWY_INLINE Vectors<D> to_lanes(D d, const Items<D>& items) {
   const auto& r = items.rows;
@@ -88,7 +91,7 @@ HWY_INLINE Vectors<D> to_lanes(D d, const Items<D>& items) {
 #endif
 }
 
-// a − b
+// a − b, transposed.
 template <class D>
 HWY_INLINE Vectors<D> difference(D d, const Items<D>& a, const Items<D>& b) {
   Items<D> items;
@@ -99,11 +102,11 @@ HWY_INLINE Vectors<D> difference(D d, const Items<D>& a, const Items<D>& b) {
 
 // ---- Vectors -----------------------------------------------------------------------------------
 
+// Products and differences of x, y and z. They ignore the fourth component; results have 0 there.
 template <class D>
 HWY_INLINE hn::Vec<D> dot(const Vectors<D>& a, const Vectors<D>& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
-// Without the fourth component, as cross().
 template <class D>
 HWY_INLINE Vectors<D> minus(const Vectors<D>& a, const Vectors<D>& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z), hn::Zero(D())};
@@ -117,18 +120,19 @@ HWY_INLINE Vectors<D> cross(const Vectors<D>& a, const Vectors<D>& b) {
 
 // ---- Words -------------------------------------------------------------------------------------
 
+// `v` limited to [low, high].
 template <class D>
 HWY_INLINE hn::Vec<D> clamp(D d, hn::Vec<D> v, float low, float high) {
   return hn::Min(hn::Max(v, hn::Set(d, low)), hn::Set(d, high));
 }
-// The bits of the nearest integer, halves to even, as in kit/packing.hpp, plus kRounding, whose
-// lower half is 0.
+// The nearest integer, halves to even, as in kit/packing.hpp, plus kRounding. The lower 16 bits of
+// kRounding are 0.
 inline constexpr std::uint32_t kRounding = 0x4B400000U;
 template <class D>
 HWY_INLINE Uint<D> rounded(D d, hn::Vec<D> v) {
   return hn::BitCast(hn::RebindToUnsigned<D>(), hn::Add(v, hn::Set(d, 12582912.0F)));
 }
-// The lower halves of two words as one.
+// The lower halves of two words as one word.
 template <class D>
 HWY_INLINE Uint<D> pair(D, Uint<D> low, Uint<D> high) {
 #if HWY_TARGET == HWY_SCALAR
@@ -145,13 +149,14 @@ HWY_INLINE Uint<D> pair(D, Uint<D> low, Uint<D> high) {
 // Octahedral normal around +Y, snorm16 twice (kit/packing.hpp). `scale` is 1 / (|x| + |y| + |z|).
 template <class D>
 HWY_INLINE Uint<D> octahedral(D d, const Vectors<D>& n, hn::Vec<D> scale) {
-  const auto zero = hn::Zero(d);  // to which −0 is added to become 0
+  const auto zero = hn::Zero(d);  // adding it turns −0 into 0
   const auto p = fold_octahedral(d, hn::Mul(hn::Add(n.x, zero), scale), n.y,
                                  hn::Mul(hn::Add(n.z, zero), scale), 1.0F);
-  // Within [−1, 1] but for a rounding that cannot reach the next integer.
+  // In [−1, 1] up to a rounding error that cannot reach the next integer.
   const auto to_snorm = hn::Set(d, 32767.0F);
   return pair(d, rounded(d, hn::Mul(p.x, to_snorm)), rounded(d, hn::Mul(p.z, to_snorm)));
 }
+// 1 / (|x| + |y| + |z|), which octahedral() needs.
 template <class D>
 HWY_INLINE hn::Vec<D> octahedral_scale(D d, const Vectors<D>& n) {
   return hn::Div(hn::Set(d, 1.0F), hn::Add(hn::Add(hn::Abs(n.x), hn::Abs(n.y)), hn::Abs(n.z)));

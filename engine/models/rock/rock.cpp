@@ -31,17 +31,17 @@ constexpr ParameterSpec kSchema[kRockParameterCount] = {
      "0 rounded, 1 faceted, 2 layered"},
 };
 
-constexpr float kLift = 0.45F;    // height of the centre over the ground, of the half-height
+constexpr float kLift = 0.45F;    // height of the centre above the ground over the half-height
 constexpr float kWidest = 1.2F;   // largest stretch along x and z
 constexpr float kHighest = 0.9F;  // largest stretch along y
 constexpr std::uint32_t kLayerItem = 1U << 31;
 
-// What distinguishes the families.
+// The differences between the families.
 struct Family {
-  float amplitude;    // of the parameter
-  float height;       // of the stretch along y
-  float facet;        // share of the triangle's own normal in its vertices'; 0: shared vertices
-  float ledge, tint;  // of layers: of the distance from the centre, of the stored colour
+  float amplitude;    // factor of the parameter
+  float height;       // factor of the stretch along y
+  float facet;        // weight of the triangle's normal at its corners; 0: shared vertices
+  float ledge, tint;  // of layers: shares of the distance from the centre and of the stored colour
 };
 constexpr Family kFamilies[kRockFamilyCount] = {
     {0.8F, 1.0F, 0, 0, 0}, {1.0F, 1.0F, 0.7F, 0, 0}, {0.8F, 0.75F, 0, 0.13F, 0.14F}};
@@ -90,7 +90,7 @@ int subdivisions_at(const Parameters& p, int level) {
   return std::max(static_cast<int>(p.integer(kRockSubdivisions)) - level, 0);
 }
 
-// The id of the shared list of triangles.
+// The id of a shared index list.
 constexpr std::uint32_t index_list(int subdivisions, bool faceted) {
   return (2U << 24) | (faceted ? 0x100U : 0U) | static_cast<std::uint32_t>(subdivisions + 1);
 }
@@ -121,8 +121,8 @@ class RockType final : public ModelType {
   RockTopology topology_;
 };
 
-// How far the surface of a sphere of radius 1 lies from its tetrahedron of n subdivisions, and the
-// displacements that are left out.
+// The distance of a unit sphere from its tetrahedron of n subdivisions, plus the displacements that
+// the level leaves out.
 double RockType::level_error_m(const Parameters& p, int level) const {
   constexpr std::array<double, kMaxSubdivisions + 1> kSagitta{0.667, 0.423, 0.130, 0.036,
                                                               0.009, 0.002, 0.0006};
@@ -161,8 +161,8 @@ double RockType::complexity(const Parameters& p, int level) const {
   return n == 0 ? 0.25 : std::ldexp(n, 2 * (n - 1));
 }
 
-// In the time of a vertex (1.25 ns, AVX-512, Zen 5). Faceted rocks, whose triangles share none,
-// have the most; the smallest rocks take longer to set up than to make.
+// A step is the time of a vertex (1.25 ns, AVX-512, Zen 5). Faceted rocks have the most vertices,
+// because their triangles share none. For the smallest rocks the set-up dominates.
 double RockType::steps(const Parameters& p, int level) const {
   constexpr double kSetUp = 70, kFirstMidpoints = 15, kTriangle = 0.6;
   const int n = subdivisions_at(p, level);

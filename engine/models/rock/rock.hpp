@@ -1,7 +1,6 @@
 // A rock: midpoint displacement on a tetrahedron (paper, section 5.2, eq. 1; docs/models.md,
-// "Rock"). Watertight, outward-facing and around its own centre for all legal parameters; stands in
-// the ground with its lower third. Vertices are shared, but for faceted rocks, whose triangles have
-// vertices of their own.
+// "Rock"). Watertight, facing outwards and around its own centre for all legal parameters. Its
+// lower third is in the ground. Triangles share vertices, except those of faceted rocks.
 #pragma once
 
 #include <cstddef>
@@ -28,9 +27,9 @@ enum RockParameter : std::size_t {
 // Values of kRockFamily.
 enum RockFamily : int { kRockRounded = 0, kRockFaceted, kRockLayered, kRockFamilyCount };
 
-// Level l has max(subdivisions − l, 0) subdivisions: 4·4^n triangles exactly and 2·4^n + 2
-// core::ModelVertex, or three a triangle where faceted. Corners that two levels share have the same
-// places. Needs 700 KiB of stack; nothing on the heap.
+// The model type "rock". Level l has n = max(subdivisions − l, 0) subdivisions: exactly 4·4^n
+// triangles and 2·4^n + 2 core::ModelVertex, or three per triangle where faceted. Corners that two
+// levels share have the same places. Synthesis needs 700 KiB of stack and nothing on the heap.
 std::unique_ptr<ModelType> make_rock_type();
 
 }  // namespace psygen::models

@@ -9,7 +9,7 @@ struct Edge {
   std::uint16_t a, b;
 };
 
-// A triangle with its edges: edge i runs between corner i and corner i + 1.
+// A triangle with its edges. Edge i joins corners i and i + 1.
 struct Triangle {
   std::array<std::uint16_t, 3> corner;
   std::array<std::uint32_t, 3> edge;
@@ -20,8 +20,8 @@ struct Surface {
   std::vector<Triangle> triangles;
 };
 
-// Halves of edge e become edges 2e (at its end a) and 2e + 1 (at its end b); its midpoint is vertex
-// first_midpoint + e.
+// The halves of edge e become edges 2e (at its end a) and 2e + 1 (at its end b). Its midpoint is
+// vertex first_midpoint + e.
 Surface split(const Surface& coarse, std::uint32_t first_midpoint) {
   Surface fine;
   const auto midpoint = [&](std::uint32_t edge) {
@@ -66,7 +66,8 @@ std::array<RockTopology::Offsets, 3> corners_of(std::span<const std::uint16_t> i
   return corners;
 }
 
-// The neighbours of a vertex in order; of each triangle around it, the two other corners are given.
+// The neighbours of a vertex in order. `sides` has the two other corners of each triangle around
+// it.
 std::array<std::uint16_t, 6> ring_of(std::span<const std::array<std::uint16_t, 2>> sides) {
   std::array<std::uint16_t, 6> ring{};
   std::uint16_t at = sides[0][0];

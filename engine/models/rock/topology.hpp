@@ -1,7 +1,8 @@
-// The surface of a tetrahedron whose triangles are split into four again and again: who is the
-// midpoint of whom, the triangles of each step and the ring of neighbours around every vertex.
-// Constant, so all rocks share it. Vertex numbers are nested: those of n subdivisions are the first
-// ones of n + 1. Built once, then read-only.
+// The surface of a tetrahedron whose triangles are repeatedly split into four: the edge that each
+// vertex halves, the triangles of each step and the ring of neighbours around every vertex. The
+// same for all rocks, which share it; it knows no positions. Vertex numbers are nested: the
+// vertices of n subdivisions are the first ones of n + 1. Built once, then read-only and usable
+// from any thread.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@ namespace psygen::models {
 
 inline constexpr int kMaxSubdivisions = 6;
 
+// Triangles and shared vertices after n subdivisions: 4·4^n and 2·4^n + 2.
 constexpr std::uint32_t rock_triangles(int subdivisions) {
   return 4U << (2 * subdivisions);
 }
@@ -20,29 +22,31 @@ constexpr std::uint32_t rock_vertices(int subdivisions) {
   return rock_triangles(subdivisions) / 2 + 2;
 }
 
+// The tables of 0 … kMaxSubdivisions subdivisions. References stay valid while it lives.
 class RockTopology {
  public:
-  // Tables for kernels hold 4 · vertex, the offset of a vertex in an array of four floats for each,
-  // and at least kPad zeros behind their end.
+  // Tables for kernels hold 4 · vertex, the offset of a vertex in an array with four floats for
+  // each. At least kPad zeros follow the last entry.
   static constexpr std::size_t kPad = 16;
   using Offsets = std::vector<std::uint16_t>;
 
+  // Builds all tables, linear in their size.
   RockTopology();
 
-  // The ends of the edge that vertex v >= 4 halves, at [v − 4]. Vertices 0 … 3 are the
-  // tetrahedron's.
+  // The two ends of the edge that vertex v >= 4 halves, at [v − 4]. Vertices 0 … 3 are the corners
+  // of the tetrahedron.
   const std::array<Offsets, 2>& parents() const { return parents_; }
   // Triangles of n subdivisions, three vertices each, counter-clockwise from outside when the
   // tetrahedron is (+ + +), (+ − −), (− + −), (− − +). The four parts of a triangle stay together.
   std::span<const std::uint16_t> indices(int subdivisions) const {
     return indices_[static_cast<std::size_t>(subdivisions)];
   }
-  // The same as offsets: corner i of triangle t at [i][t].
+  // The same triangles as offsets: corner i of triangle t is at [i][t].
   const std::array<Offsets, 3>& corners(int subdivisions) const {
     return corners_[static_cast<std::size_t>(subdivisions)];
   }
-  // The neighbours of vertex v counter-clockwise from outside, at [0 … 5][v]. Where there are only
-  // three, they stand as 0 1 2 2 2 0, which encloses the same area.
+  // The neighbours of vertex v, counter-clockwise seen from outside, at [0 … 5][v]. Three
+  // neighbours are repeated as 0 1 2 2 2 0, which encloses the same area.
   const std::array<Offsets, 6>& rings(int subdivisions) const {
     return rings_[static_cast<std::size_t>(subdivisions)];
   }

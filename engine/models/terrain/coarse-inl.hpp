@@ -1,7 +1,7 @@
-// Quantised heights, and those of the next coarser level on its triangles. Heights and their
-// weighted sums are integers below 2^24, which single precision represents exactly: fused or not,
-// sums are the same. Included once per instruction set, by kernel.cpp only; hence its
-// include guard.
+// Quantised heights, and the heights that the next coarser level has at the same vertices. Heights
+// and their weighted sums are integers below 2^24, which single precision represents exactly. So
+// sums have the same bits with and without fused multiply-add. Only kernel.cpp includes it, once
+// per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_TERRAIN_COARSE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_TERRAIN_COARSE_INL
 #undef PSYGEN_MODELS_TERRAIN_COARSE_INL
@@ -23,6 +23,7 @@ namespace psygen::models::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Vectors of at most 16 numbers.
 using FloatTag = hn::CappedTag<float, 16>;
 using IntTag = hn::RebindToSigned<FloatTag>;
 using UintTag = hn::RebindToUnsigned<FloatTag>;
@@ -30,24 +31,26 @@ using Float = hn::Vec<FloatTag>;
 
 constexpr std::size_t kRow = kMaxTerrainSize + 16;  // a row of vertices and the padding of vectors
 
+// `value` in every lane.
 HWY_INLINE Float set(float value) {
   return hn::Set(FloatTag(), value);
 }
 
-// Sums with this number have the nearest integer (halves to even) in their low bits, as in
+// Adding this number leaves the nearest integer (halves to even) in the low bits, as in
 // kit/packing.hpp.
 constexpr float kToInteger = 12582912.0F;
 
-// A height, at most 65535, plus kToInteger.
+// A quantised height, at most 65535, plus kToInteger.
 HWY_INLINE Float quantise(Float noise, Float quantum) {
   return hn::Add(hn::Min(hn::Mul(noise, quantum), set(65535.0F)), set(kToInteger));
 }
 
-// Heights on the triangles of coarser samples, `ratio` vertices apart. On the lower left
-// half of a cell the sum of the corners' heights with whole weights is linear in the row, and so it
-// is on the upper right half: what depends on the column is found once per row of cells.
+// Heights on the triangles of coarser samples, `ratio` vertices apart, row after row. On each of
+// the two triangles of a cell, the sum of the corners' heights with integer weights is linear in
+// the row. So the part that depends on the column is computed once per row of cells.
 class CoarseHeights {
  public:
+  // Starts at the first row. `surface` must outlive it.
   explicit CoarseHeights(const TerrainSurface& surface)
       : s_(surface),
         c_(surface.coarse),
@@ -74,7 +77,7 @@ class CoarseHeights {
     find_planes(std::min(row_ + 1, last_row_));
   }
 
-  // The heights of the vertices from x on, in the low 16 bits: rounded to nearest, halves upwards.
+  // Coarse heights of the vertices from x on, in the low 16 bits: rounded to nearest, halves up.
   HWY_INLINE hn::Vec<IntTag> at(std::size_t x) const {
     const FloatTag d;
     const Float across = set(across_), rest = set(ratio_ - across_);
@@ -83,7 +86,7 @@ class CoarseHeights {
     const Float sum = hn::IfThenElse(hn::Le(hn::Load(d, along_ + x), rest), low, high);
     if (c_.ratio <= kLargestRatio)
       return hn::BitCast(IntTag(), hn::MulAdd(sum, set(inverse_), set(kToInteger)));
-    // An estimate from below is right or one too low, which the remainder tells.
+    // An estimate from below is correct or one too low. The remainder shows which.
     const Float divisor = set(2.0F * ratio_);
     const Float dividend = hn::Add(hn::Add(sum, sum), set(ratio_));
     const Float inverse = set((1.0F - 0x1p-20F) / (2.0F * ratio_));
@@ -94,12 +97,12 @@ class CoarseHeights {
   }
 
  private:
-  // The number of the sample at the level's end or, where there is none, of the first beyond.
+  // The number of the sample at the level's end, or of the first one beyond if there is none.
   std::size_t last_of(std::size_t phase) const {
     return (s_.n - 1 + phase + c_.ratio - 1) / c_.ratio;
   }
 
-  // All samples beforehand: loading what single numbers have just been written to stalls.
+  // All samples beforehand: a vector load stalls on memory that scalar stores have just written.
   void quantise_samples() {
     const FloatTag d;
     stride_ = columns_ / 16 * 16 + 16;
@@ -114,7 +117,7 @@ class CoarseHeights {
   HWY_INLINE void copy_samples(const float* from, float* to) const {
     const FloatTag d;
     std::size_t i = 0;
-    // Blocks of 64 vertices have every third of them at level 1.
+    // Level 1 of a block of 64 vertices has every third of them.
     if (c_.step == 2 || c_.step == 3) {
       for (; i + hn::Lanes(d) < columns_; i += hn::Lanes(d)) {
         Float wanted, second, third;
@@ -128,7 +131,7 @@ class CoarseHeights {
     }
     for (; i < columns_; ++i)
       to[i] = from[i * c_.step];
-    to[columns_] = to[columns_ - 1];  // right of the last; vertices have nothing from further on
+    to[columns_] = to[columns_ - 1];  // right of the last; vertices read nothing further right
   }
 
   void place_columns() {
@@ -146,14 +149,15 @@ class CoarseHeights {
     }
   }
 
-  // Of the coarse row that starts at `from`, left of the vertices from x on; right, one further on.
+  // Heights of the coarse samples to the left of the vertices from x on, in the coarse row that
+  // starts at `from`. With `from` + 1: of the samples to their right.
   HWY_INLINE Float height(std::size_t from, std::size_t x) const {
     const FloatTag d;
     const auto slots = hn::IndicesFromVec(d, hn::Load(IntTag(), slot_ + x));
     return hn::TableLookupLanes(hn::LoadU(d, heights_ + from + first_[x / hn::Lanes(d)]), slots);
   }
 
-  // From the row of samples before, whose heights it replaces, to this one.
+  // Finds the planes between the previous row of samples, whose heights it replaces, and this one.
   void find_planes(std::size_t row) {
     const FloatTag d;
     const Float quarter = set(c_.ratio <= kLargestRatio ? 0.25F : 0.0F);
@@ -171,25 +175,25 @@ class CoarseHeights {
     }
   }
 
-  // Sums are a quarter too large up to this ratio: it decides halves, and outweighs the errors of
-  // single precision.
+  // Up to this ratio, sums are a quarter too large. The quarter rounds halves up and is larger than
+  // the rounding errors of single precision.
   static constexpr std::size_t kLargestRatio = 32;
-  // Coarse samples along one side.
+  // Largest number of coarse samples along one side.
   static constexpr std::size_t kMost = kMaxTerrainSize / 2 + 2;
 
   const TerrainSurface& s_;
   const CoarseSamples& c_;
   const std::size_t columns_, last_row_;  // of the coarse samples
   const float ratio_, inverse_;
-  float across_;                 // cells from the coarse row before
-  std::size_t row_ = 0;          // the number of that
+  float across_;                 // cells from the previous coarse row
+  std::size_t row_ = 0;          // number of that row
   HWY_ALIGN float along_[kRow];  // cells from the coarse vertex on the left
-  // The coarse vertex on the left is number first + slot, first being that of the whole vector.
+  // The coarse vertex on the left has number first + slot; `first` is the same for a whole vector.
   HWY_ALIGN std::int32_t slot_[kRow];
   std::size_t first_[kRow];
   std::size_t stride_;
   HWY_ALIGN float heights_[kMost * (kMost + 16) + 32];
-  HWY_ALIGN float left_[kRow], right_[kRow];  // of the vertices, of one coarse row
+  HWY_ALIGN float left_[kRow], right_[kRow];  // coarse heights beside the vertices, of one row
   HWY_ALIGN float low_[kRow];
   HWY_ALIGN float low_rise_[kRow];
   HWY_ALIGN float high_[kRow];

@@ -7,8 +7,8 @@
 namespace psygen::models {
 namespace {
 
-// Two rows of vertices of so many cells are the 32 that GPUs keep after shading them: of wider ones
-// every vertex would be shaded twice.
+// Two rows of vertices of this many cells are 32 vertices, the number that GPUs keep after shading.
+// In wider strips every vertex would be shaded twice.
 constexpr int kStripCells = 15;
 
 }  // namespace

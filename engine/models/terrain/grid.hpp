@@ -1,5 +1,6 @@
-// The topology of a terrain mesh: which vertices a level has, where they lie in the vertex array,
-// and the index list that all blocks of one size share. Heights are terrain.cpp's subject.
+// The topology of a terrain mesh: the vertices of each level, their order in the vertex array, and
+// the index list that all blocks of one size share. It has no heights; those are in terrain.cpp.
+// Plain values, usable from any thread. docs/models.md, "Mesh".
 #pragma once
 
 #include <array>
@@ -11,51 +12,56 @@
 namespace psygen::models {
 
 inline constexpr int kTerrainLevels = 4;
-inline constexpr int kMinTerrainSize = 4;
+inline constexpr int kMinTerrainSize = 4;    // vertices per side at level 0
 inline constexpr int kMaxTerrainSize = 128;  // grid indices have seven bits
 inline constexpr int kMostTilesPerSide = 3;
 
-// Grid distance between neighbouring vertices of each level: 1, then growing by whole factors until
-// size − 1, so that a level's vertices are a subset of the level before. The prime factors of
-// size − 1, smallest first, the smallest two multiplied while there are more than three. 63 gives
-// 1, 3, 9, 63. Where there are fewer factors than levels, the last levels are the same.
+// Grid distance between neighbouring vertices of each level: 1, then growing by whole factors up to
+// size − 1. So the vertices of a level are a subset of those of the level before. The factors are
+// the prime factors of size − 1, smallest first; the smallest two are multiplied while there are
+// more than three. 63 cells give 1, 3, 9, 63. With fewer factors, the last levels are the same.
 std::array<int, kTerrainLevels> terrain_strides(int size);
 
 // One level of a block: n × n surface vertices, row by row (z outer, x inner), then 4·(n − 1) skirt
-// vertices, the twins of the border in the order of border_vertex().
+// vertices. These are the twins of the border vertices, in the order of border_vertex().
 struct TerrainGrid {
   int size;    // vertices per side at level 0
   int stride;  // of this level
   int n;       // vertices per side of this level
 
+  // kMinTerrainSize <= size_at_level_0 <= kMaxTerrainSize, 0 <= level < kTerrainLevels.
   TerrainGrid(int size_at_level_0, int level);
+  // Sizes of the mesh. triangles() includes the skirts, two per border vertex.
   std::uint32_t surface_vertices() const { return static_cast<std::uint32_t>(n * n); }
   std::uint32_t border_vertices() const { return static_cast<std::uint32_t>(4 * (n - 1)); }
   std::uint32_t surface_triangles() const {
     return static_cast<std::uint32_t>(2 * (n - 1) * (n - 1));
   }
   std::uint32_t triangles() const { return surface_triangles() + 2 * border_vertices(); }
-  // The k-th surface vertex of the border, from (0, 0) along +x, +z, −x and −z.
+  // The surface vertex that is k-th along the border, from (0, 0) along +x, +z, −x and −z.
+  // k < border_vertices().
   std::uint32_t border_vertex(std::uint32_t k) const;
 
-  // Squares of cells ("tiles"), of which a part can be drawn: 3 along each side, or as many as
-  // there are cells. At level 0 they are divided as the cells of level 1 are.
+  // Tiles are rectangles of cells that can be drawn separately: 3 along each side, or as many as
+  // there are cells. At level 0 the tile lines lie on vertices of level 1.
   int tiles_per_side() const { return tiles_; }
-  // The vertex of a side where column or row i of the tiles begins; of tiles_per_side(), its last.
+  // The vertex along a side where column or row i of the tiles begins, or the last vertex for
+  // i = tiles_per_side().
   int tile_line(int i) const { return tile_lines_[static_cast<std::size_t>(i)]; }
 
-  // Names the index list of this (size, stride); never 0 and never a rock's.
+  // The id of the index list of this (size, stride). Never 0 and never that of a rock.
   std::uint32_t index_list() const {
     return (1U << 24) | static_cast<std::uint32_t>(size << 8) | static_cast<std::uint32_t>(stride);
   }
+  // The grid of an id from index_list(). Other ids are refused by an assertion, also in release.
   static TerrainGrid of_index_list(std::uint32_t id);
 
-  // Writes triangles() · 3 indices, counter-clockwise seen from outside: the surface tile by tile,
-  // in strips of at most 15 cells row by row, each cell cut from (x, z + 1) to (x + 1, z), then the
-  // skirts.
+  // Writes triangles() · 3 indices, counter-clockwise seen from outside. The surface comes first,
+  // tile by tile, in strips of at most 15 cells, row by row. Each cell is cut from (x, z + 1) to
+  // (x + 1, z). The skirts follow.
   void write_indices(std::span<std::uint16_t> out) const;
-  // Where a tile lies in that list, and the skirt of a side: 0 at z = 0, then at the greatest x, at
-  // the greatest z, at x = 0.
+  // The part of that list with one tile, and the part with the skirt of one side. The sides are 0
+  // at z = 0, 1 at the greatest x, 2 at the greatest z, 3 at x = 0.
   core::IndexPart tile(int column, int row) const;
   core::IndexPart skirt(int side) const;
 

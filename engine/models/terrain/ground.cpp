@@ -9,7 +9,7 @@
 namespace psygen::models {
 namespace {
 
-// So many vertices of a grid take about as long as one point by itself, whose time is that of
+// This many vertices of a grid take about as long as one single point, which spends its time on
 // finding the lattices.
 constexpr std::size_t kVerticesPerPoint = 128;
 
@@ -27,7 +27,7 @@ std::uint16_t height_in_mesh(std::span<const std::byte> mesh, std::size_t vertex
 
 }  // namespace
 
-// The noise is left unset where it is not evaluated: writing it would take as long as its reading.
+// noise_ stays uninitialised where it is not evaluated: clearing it would take as long as using it.
 BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions)
     : shape_(terrain), block_(block) {
   const auto size = static_cast<std::size_t>(shape_.size);

@@ -1,7 +1,7 @@
-// The ground of one block for many questions, such as where everything on it stands. Where they pay
-// for it, the heights of all vertices of the block are evaluated at once, in the time of ten single
-// points. The answers have the same bits either way, and are those of sample_ground()
-// (terrain.hpp).
+// The ground of one block for many queries, such as the feet of everything on it. If there are
+// enough queries, it evaluates the heights of all vertices of the block at once, in the time of ten
+// single points. The results have the same bits either way, and equal those of sample_ground()
+// (terrain.hpp). It makes no mesh.
 #pragma once
 
 #include <array>
@@ -16,19 +16,21 @@
 
 namespace psygen::models {
 
-// 66 KiB, of which nothing is on the heap. Immutable once it is made; any thread.
+// The heights of one block. 66 KiB, nothing on the heap. Immutable after construction; any thread.
 class BlockGround {
  public:
-  // `questions` is about how often at() will be called. The block coordinates in `terrain` are
+  // `questions` is the approximate number of calls of at(). The block coordinates in `terrain` are
   // ignored. Needs 256 KiB of stack.
   BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions);
 
-  // Reads the heights from the block's mesh of level 0, which must outlive it unchanged.
+  // Reads the heights from `mesh`, the vertices of the block's mesh of level 0, which must outlive
+  // it unchanged. A mesh with too few vertices fails an assertion, also in release.
   BlockGround(const Parameters& terrain, core::BlockCoord block, std::span<const std::byte> mesh);
 
-  // The ground under a point in metres from the block's corner, which may lie outside of the block
-  // (within 10^6 cells). About 20 ns inside of a block whose heights are there, else 1 µs.
-  // Or, with the stride of a coarser level (terrain_strides()), the ground as that level has it.
+  // The ground under a point, in metres from the block's corner. The point may lie outside the
+  // block (within 10^6 cells). About 20 ns inside a block whose heights were evaluated or read,
+  // else 1 µs. With the stride of a coarser level (terrain_strides()): the ground as that level has
+  // it.
   GroundPoint at(glm::dvec2 local_xz, int stride = 1) const;
 
  private:
@@ -42,8 +44,8 @@ class BlockGround {
 
   TerrainShape shape_;
   core::BlockCoord block_;
-  std::size_t vertices_ = 0;         // per side whose heights are there; 0: none
-  std::span<const std::byte> mesh_;  // empty: they are in noise_
+  std::size_t vertices_ = 0;         // per side, of which the heights are known; 0: none
+  std::span<const std::byte> mesh_;  // empty: the heights are in noise_
   std::array<float, std::size_t{kMaxTerrainSize} * kMaxTerrainSize> noise_;  // of the vertices
 };
 

@@ -1,5 +1,5 @@
-// A row of vertices at a time: heights are quantised, normals come from the samples on four sides,
-// and the heights of the next coarser level from its triangles.
+// Packs a row of vertices at a time. Heights are quantised, normals come from the samples on four
+// sides, and the heights of the next coarser level come from its triangles.
 #include "engine/models/terrain/kernel.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// The light of one row of vertices after another.
+// The light of the vertices, row after row.
 class LightRows {
  public:
   explicit LightRows(const TerrainSurface& s)
@@ -43,7 +43,7 @@ class LightRows {
     row_ = row;
   }
 
-  // Sun in the low byte and ambient above it, of the vertices from x on.
+  // Light of the vertices from x on: sun in the low byte, ambient in the next.
   HWY_INLINE hn::Vec<UintTag> at(std::size_t x) const {
     const auto both = hn::Or(low_byte(near_->sun + x, far_->sun + x),
                              hn::ShiftLeft<8>(low_byte(near_->ambient + x, far_->ambient + x)));
@@ -68,7 +68,7 @@ class LightRows {
 
   void find_weight() { weight_ = static_cast<float>(rest_) / static_cast<float>(l_.spacing); }
 
-  // At most 255 in the low 16 bits.
+  // The rounded light, at most 255, in the low 16 bits.
   HWY_INLINE hn::Vec<UintTag> low_byte(const float* near, const float* far) const {
     const FloatTag d;
     const Float a = hn::Load(d, near), b = hn::Load(d, far);
@@ -79,13 +79,13 @@ class LightRows {
   const TerrainSurface& s_;
   const LightSamples& l_;
   const Spread<kMaxTerrainSize> spread_;
-  std::size_t row_ = 0, rest_;  // of the light above, and cells from there
+  std::size_t row_ = 0, rest_;  // number of the light row above, and cells below it
   float weight_;
   Row rows_[2];
   Row *near_ = &rows_[0], *far_ = &rows_[1];
 };
 
-// The samples of one row of vertices and those on their four sides.
+// The samples of one row of vertices, and the samples on their four sides.
 struct SampleRow {
   const float *centre, *west, *east, *north, *south;
   HWY_ALIGN float copies[5 * kRow];
@@ -108,12 +108,12 @@ struct SampleRow {
   }
 };
 
-// The component of an octahedral normal as snorm8 in the low byte.
+// One component of an octahedral normal as snorm8, in the low byte.
 HWY_INLINE hn::Vec<UintTag> component(Float slope, Float to_snorm8) {
   return hn::BitCast(UintTag(), hn::Add(hn::Mul(slope, to_snorm8), set(kToInteger)));
 }
 
-// Both components in the upper half of 32 bits.
+// Both components of the normals, in the upper 16 bits.
 HWY_INLINE hn::Vec<UintTag> normals(const SampleRow& row, std::size_t x, Float scale) {
   const FloatTag d;
   const UintTag du;
@@ -126,7 +126,7 @@ HWY_INLINE hn::Vec<UintTag> normals(const SampleRow& row, std::size_t x, Float s
   return hn::Or(hn::And(low, hn::Set(du, 0xFF0000U)), hn::ShiftLeft<24>(component(nz, to_snorm8)));
 }
 
-// The columns of the vertices in their low bytes.
+// Writes the grid columns of the vertices, in the low bytes.
 void number_columns(const TerrainSurface& s, std::uint32_t* to) {
   const UintTag du;
   const auto stride = hn::Set(du, static_cast<std::uint32_t>(s.stride));
@@ -154,7 +154,7 @@ HeightRange pack(const TerrainSurface& s, std::byte* out) {
   for (std::size_t z = 0; z < n; ++z, out += n * kVertexBytes) {
     samples.load(s, z);
     const bool border = z == 0 || z == last;
-    VertexWords row;  // of a border
+    VertexWords row;  // only for the first and the last row
     const auto grid_z = hn::Set(du, static_cast<std::uint32_t>(z * s.stride) << 8);
     for (std::size_t x = 0; x < n; x += lanes) {
       Float height = quantise(hn::LoadU(d, samples.centre + x), quantum);

@@ -12,7 +12,7 @@ std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
   return a / b - (a % b < 0 ? 1 : 0);
 }
 
-// The wanted points of one grid along one axis, counted from the world's origin.
+// The wanted points of one grid along one axis, counted from the world's origin. `last` included.
 struct LightAxis {
   std::int64_t first, last;
   LightAxis over(std::int64_t spacing) const {
@@ -24,7 +24,7 @@ struct LightAxis {
   }
 };
 
-// The cells of a node.
+// The first and the last vertex of a node along one axis, in cells.
 LightAxis cells_of(const TerrainShape& shape, std::int64_t block) {
   const std::int64_t first = block * (shape.size - 1);
   return {first, first + shape.size - 1};
@@ -49,7 +49,7 @@ SunRays rays_of(const SunDirection& sun) {
   return rays;
 }
 
-// Steps of a grid that a hill of the whole relief could hide the sun at.
+// The number of steps at which a hill as high as the whole relief could hide the sun.
 std::size_t useful_steps(const SunRays& rays, float spacing_m, float relief_m) {
   std::size_t count = 0;
   while (count < kLightSteps && rays.steps[count].length * spacing_m * rays.low <= relief_m)
@@ -57,7 +57,7 @@ std::size_t useful_steps(const SunRays& rays, float spacing_m, float relief_m) {
   return count;
 }
 
-// A grid without heights whose wanted points are these.
+// A grid with these wanted points, still without heights.
 LightGrid grid_over(const LightAxis& x, const LightAxis& z) {
   LightGrid grid{};
   grid.stride = (x.count() + 2 * kLightReach + 15) / 16 * 16 + 16;
@@ -74,7 +74,7 @@ struct PlannedGrid {
 
   std::size_t columns() const { return grid.count_x + 2 * kLightReach; }
   std::size_t rows() const { return grid.count_z + 2 * kLightReach; }
-  // In cells of node level 0, as the noise counts.
+  // In cells of node level 0, the unit of the noise.
   double spacing_of_noise(const TerrainShape& shape) const {
     return std::ldexp(static_cast<double>(spacing), shape.node_level);
   }
@@ -83,7 +83,7 @@ struct PlannedGrid {
   }
 };
 
-// What the light of a node is found from.
+// The grids and rays that give the light of a node.
 struct LightPlan {
   std::array<PlannedGrid, kMaxLightGrids> grids;
   std::size_t count = 0;
@@ -119,7 +119,7 @@ LightPlan::LightPlan(const TerrainShape& shape, const SunDirection& sun, std::in
   }
 }
 
-// The heights of all grids, as values of the noise.
+// The heights of all grids, in units of the noise.
 class LightHeights {
  public:
   explicit LightHeights(const TerrainShape& shape) : shape_(shape) {}

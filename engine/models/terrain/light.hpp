@@ -1,6 +1,7 @@
-// Light that is baked into the vertices of a terrain (docs/models.md, "Light"): how much of the sun
-// and of the sky is seen over the hills around. A function of the place in the world: neighbouring
-// nodes of one level agree bit for bit along their seams. Knows no vertices.
+// Light that is baked into the vertices of a terrain (docs/models.md, "Light"): the shares of the
+// sun and of the sky that are visible over the surrounding hills. A pure function of the place in
+// the world, so neighbouring nodes of one level agree bit for bit along their seams. Any thread.
+// Knows no vertices.
 #pragma once
 
 #include <array>
@@ -14,35 +15,39 @@
 
 namespace psygen::models {
 
-// Points of the finest grid lie this many cells apart: on the vertices of level 1 of 64 per side.
+// Cells between the points of the finest grid. For 64 vertices per side these are the vertices of
+// level 1.
 inline constexpr int kLightCells = 3;
-// Grids, each with points kLightRatio times as far apart as those of the one before.
+// Largest number of grids. Each has its points kLightRatio times as far apart as the one before.
 inline constexpr std::size_t kMaxLightGrids = 5;
-// Octaves count whose lattice cells are as wide as the distance of so many points.
+// A grid uses the octaves whose lattice cells are at least this many points wide.
 inline constexpr double kOctavePoints = 2;
 // Half the width of the sun's disc, softened to hide the distances between points.
 inline constexpr double kSunSoftness = 2.5;  // degrees
-// Grids whose points are further apart than so many times the relief see no horizon worth counting.
+// Grids ignore the horizon if their points are further apart than this many times the relief.
 inline constexpr double kSkyReach = 2;
 
-// The sun of `terrain`; azimuth from −Z (north) over +X (east), in degrees.
+// The sun of a terrain. Azimuth from −Z (north) over +X (east), elevation above the horizon.
 struct SunDirection {
   double azimuth_deg, elevation_deg;
+  // No sunlight at all, or no shadows.
   bool is_down() const { return elevation_deg <= 0; }
   bool is_overhead() const { return elevation_deg >= 90; }
 };
 
+// The light of one node, computed by the constructor. About 23 KiB, nothing on the heap.
 class TerrainLight {
  public:
-  // The light of a node whose points are those of grid number `finest`, 0 or 1. About 5 µs for 0.
+  // Evaluates the light at the points of grid number `finest`, 0 or 1. About 5 µs for 0.
   TerrainLight(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
                std::int64_t block_z, std::size_t finest);
   TerrainLight(const TerrainLight&) = delete;
   TerrainLight& operator=(const TerrainLight&) = delete;
 
+  // The light for pack_terrain(). Points into this object.
   LightSamples samples() const;
 
-  // Of the noise (RidgedNoise::work) that the heights for it take.
+  // The part of the noise in the constructor's time, in units of RidgedNoise::work().
   static double noise_work(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
                            std::int64_t block_z, std::size_t finest);
 

@@ -1,6 +1,6 @@
-// From the widest grid to the finest: each takes what the next wider one saw, spread over its own
-// points, and looks at its own heights around every point. Every value is made from the same
-// numbers in the same order wherever a node begins.
+// Works from the widest grid to the finest. Each grid interpolates the results of the next wider
+// one to its own points and adds its own heights around every point. Every value uses the same
+// numbers in the same order, wherever a node begins.
 #include "engine/models/terrain/light_kernel.hpp"
 
 #include <algorithm>
@@ -28,21 +28,22 @@ HWY_INLINE Float set(float value) {
 constexpr std::size_t kDirections = 8;
 constexpr std::size_t kFields = kDirections + 2;  // slopes of the horizon, then the two shadows
 constexpr float kNoShadow = -1e30F;               // a height
-constexpr float kSteepest = 1e4F;                 // slope of a horizon that counts
+constexpr float kSteepest = 1e4F;                 // steeper horizons count as this slope
 
-// What is seen from the points of a grid.
+// The horizons and shadows at the points of a grid.
 struct Fields {
   static constexpr std::size_t kStride = kLightCoarseRow + 16;
   HWY_ALIGN float rows[kFields][kLightCoarseRow][kStride];
 };
 
-// What is seen from the points of one vector.
+// The same at the points of one vector.
 struct Seen {
   Float horizon[kDirections];
-  Float lit_above, dark_below;  // heights of the point that the sun's disc is wholly above or below
+  // A point above `lit_above` sees the whole disc of the sun, one below `dark_below` none of it.
+  Float lit_above, dark_below;
 };
 
-// One row of a wider grid at the place of a row of a finer one.
+// A row of a wider grid, interpolated at a row of the finer one.
 struct WideRow {
   HWY_ALIGN float field[kFields][Fields::kStride];
 
@@ -64,7 +65,7 @@ struct WideRow {
 class Viewpoints {
  public:
   Viewpoints(const LightGrid& grid, const SunRays* sun) : g_(grid), sun_(sun) {
-    // Of the near and the far point: slope over difference of heights.
+    // Slope per difference of heights, for the near and the far point.
     const float near = 1.0F / grid.spacing;
     straight_[0] = near;
     straight_[1] = near * (1.0F / kLightReach);
@@ -131,8 +132,8 @@ HWY_INLINE Float sun_of(const Seen& seen, Float height) {
                         hn::Mul(hn::Min(part, set(1.0F)), set(255.0F)));
 }
 
-// The sky above horizons with the slopes t: the mean of the squared cosines, 1 / (1 + t²). Two
-// fractions at a time.
+// The visible share of the sky above horizons of slope t: the mean of their squared cosines,
+// 1 / (1 + t²). Two fractions share one division.
 HWY_INLINE Float ambient_of(const Seen& seen) {
   Float sum = set(0.0F);
   for (std::size_t k = 0; k < kDirections; k += 2) {
@@ -144,7 +145,8 @@ HWY_INLINE Float ambient_of(const Seen& seen) {
   return hn::Mul(sum, set(255.0F / kDirections));
 }
 
-// One grid after another; the widest first, which has no wider one.
+// Calls `store` for the points of one grid. `wide` has the next wider grid, or is null for the
+// widest.
 template <class Store>
 HWY_INLINE void view(const LightGrid& grid, const SunRays* sun, const Fields* wide,
                      std::size_t wide_columns, const Store& store) {

@@ -1,5 +1,6 @@
-// The seam between the light of a terrain (light.cpp) and its SIMD kernel
-// (light_kernel.cpp), compiled once for every instruction set. Not for other files.
+// The seam between the light of a terrain (light.cpp) and its SIMD kernel (light_kernel.cpp), which
+// is compiled once per instruction set. Internal to the terrain. Pure, any thread. docs/models.md,
+// "Light".
 #pragma once
 
 #include <array>
@@ -8,35 +9,37 @@
 
 namespace psygen::models {
 
-// Rays leave a point of a grid no further than this many points.
+// Rays from a point end at most this many points of the grid away.
 inline constexpr int kLightReach = 3;
-// Points of a grid that lie between two of the next.
+// Spacing of a grid's points over that of the next finer grid.
 inline constexpr int kLightRatio = 4;
 inline constexpr std::size_t kLightSteps = 4;
 
-// A point on the way to the sun, in points of a grid: between `x`, `z` and the next ones.
+// A place on a ray to the sun, in points of a grid from the ray's origin: (x, z) plus the
+// fractions.
 struct LightStep {
   int x, z;
-  float fraction_x, fraction_z;
-  float length;
+  float fraction_x, fraction_z;  // [0, 1)
+  float length;                  // distance from the origin
 };
 
-// The sun: slopes of rays to the lower and upper edges of its softened disc.
+// The sun: places along a ray, and the slopes of rays to the lower and the upper edge of its
+// softened disc.
 struct SunRays {
   std::array<LightStep, kLightSteps> steps;
   float low, high;
 };
 
 // Heights at points of one grid around a node, in any unit of length. The light is wanted at
-// count_x · count_z of them; kLightReach further rows and columns lie on each side.
+// count_x · count_z of them; kLightReach more rows and columns lie on each side.
 struct LightGrid {
-  const float* heights;  // of the first row and column
+  const float* heights;  // from the first row and column on, including those beyond the wanted ones
   std::size_t stride;
   std::size_t count_x, count_z;
-  std::size_t phase_x, phase_z;  // of the wanted ones from the first point wanted of the next grid
-  float spacing;                 // of its points, in the same unit
-  std::size_t sun_steps;         // steps that are taken, from the first
-  bool sky;                      // whether the horizon is looked for
+  std::size_t phase_x, phase_z;  // first wanted point, counted from that of the next wider grid
+  float spacing;                 // of its points, in the unit of the heights
+  std::size_t sun_steps;         // number of SunRays::steps that are used
+  bool sky;                      // whether this grid contributes to the horizon
 };
 
 // Where light is written: in [0, 255], row by row.
@@ -48,8 +51,9 @@ struct LightOutput {
 // Longest row of wanted points of the finest grid and of the others.
 inline constexpr std::size_t kLightRow = 48, kLightCoarseRow = 16;
 
-// The light at the points of grids[0] (docs/models.md, "Light"). Rows of heights may be read 16
-// points beyond the last. `sun` may be null: everything is lit.
+// Writes the light at the wanted points of grids[0], the finest; grids get wider from there.
+// 1 <= grid_count. Rows of heights may be read 16 points beyond the last. With `sun` null,
+// everything is lit.
 void light_terrain(const LightGrid* grids, std::size_t grid_count, const SunRays* sun,
                    const LightOutput& out);
 

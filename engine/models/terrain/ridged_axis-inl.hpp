@@ -1,6 +1,6 @@
-// Where the samples of a call lie on the lattices of ridged noise, along one axis: exact positions,
-// and the cells, fractions and fades that follow from them. Included once per instruction set, by
-// ridged_kernel.cpp only; hence its include guard.
+// Positions of the samples of a call on the lattices of ridged noise, along one axis: exact
+// positions, and the cells, fractions and fades that follow from them. Only ridged_kernel.cpp
+// includes it, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_RIDGED_AXIS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_RIDGED_AXIS_INL
 #undef PSYGEN_MODELS_RIDGED_AXIS_INL
@@ -20,25 +20,26 @@ namespace psygen::models::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The most lanes that are used; octaves of a row are padded to this number.
+// Largest number of lanes. Octaves of a row are padded to it.
 constexpr std::size_t kPad = 16;
 using FloatTag = hn::CappedTag<float, kPad>;
 using IntTag = hn::RebindToSigned<FloatTag>;
 using UintTag = hn::RebindToUnsigned<FloatTag>;
 using Float = hn::Vec<FloatTag>;
 
-// Arrays over columns are padded to whole vectors.
+// `n` rounded up to whole vectors, the size of arrays over columns.
 HWY_INLINE std::size_t padded(std::size_t n) {
   const std::size_t lanes = hn::Lanes(FloatTag());
   return (n + lanes - 1) / lanes * lanes;
 }
 
-// The integers of an axis, and whether neighbours all have the same distance.
+// The integers of an axis, and whether all neighbours have the same distance.
 struct Axis {
   std::span<const std::int64_t> at;
-  bool even = true;
-  std::uint64_t distance = 1;
+  bool even = true;            // all distances are `distance`
+  std::uint64_t distance = 1;  // between the first two
 
+  // `integers` has at least one element and must outlive the axis.
   explicit Axis(std::span<const std::int64_t> integers) : at(integers) {
     if (at.size() > 1) distance = difference(1);
     std::uint64_t odd = 0;
@@ -46,17 +47,19 @@ struct Axis {
       odd |= difference(i) ^ distance;
     even = odd == 0;
   }
+  // at[i] − at[i − 1], modulo 2^64. 1 <= i < at.size().
   std::uint64_t difference(std::size_t i) const {
     return static_cast<std::uint64_t>(at[i]) - static_cast<std::uint64_t>(at[i - 1]);
   }
-  // Whether each lies in the lattice cell of the one before or in the next.
+  // Whether each integer lies in the lattice cell of the one before or in the next cell. `step` is
+  // Q32.32 cells per integer.
   bool contiguous(std::uint64_t step) const {
     constexpr std::uint64_t kCell = std::uint64_t{1} << 32;
     return even && distance * step <= kCell && distance <= kCell && step <= kCell;
   }
 
-  // 0, `of`, 2 · `of`, …: with the bits of a lane's number, for few sets multiply 64 bits, and
-  // loading what single numbers have just been written to stalls.
+  // 0, `of`, 2 · `of`, … Sums multiples for the bits of each lane's number: few instruction sets
+  // multiply 64 bits, and a vector load stalls on memory that scalar stores have just written.
   template <class D>
   static HWY_INLINE hn::Vec<D> multiples(D d, std::uint64_t of) {
     const auto lane = hn::Iota(d, 0);
@@ -68,7 +71,7 @@ struct Axis {
     return sum;
   }
 
-  // Positions on a lattice of `step` from `origin`, padded.
+  // Writes the Q32.32 positions on a lattice with this step and origin, padded to whole vectors.
   void place(std::uint64_t step, std::uint64_t origin, std::uint64_t* HWY_RESTRICT position) const {
     const std::size_t count = at.size();
     if (!even) {
@@ -89,8 +92,8 @@ struct Axis {
   }
 };
 
-// Where Q32.32 positions lie on a lattice: cell, fraction in [0, 1) of 24 bits, fade. All arrays
-// are aligned and padded.
+// Splits Q32.32 positions into cells, fractions in [0, 1) of 24 bits, and fades
+// (6 f^5 − 15 f^4 + 10 f^3). All arrays are aligned and padded.
 void locate(const std::uint64_t* HWY_RESTRICT position, std::size_t count,
             std::uint32_t* HWY_RESTRICT cell, float* HWY_RESTRICT fraction,
             float* HWY_RESTRICT fade) {

@@ -1,6 +1,6 @@
-// Ridged noise with rows as lanes: positions of all rows, and the samples of the last columns of a
-// call, which would leave most lanes of a vector along x unused. Included once per instruction set,
-// by ridged_kernel.cpp only; hence its include guard.
+// Ridged noise with rows as lanes: the positions of all rows, and the samples of the last columns
+// of a call, which would leave most lanes of a vector along x unused. Only ridged_kernel.cpp
+// includes it, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_RIDGED_ENDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_RIDGED_ENDS_INL
 #undef PSYGEN_MODELS_RIDGED_ENDS_INL
@@ -20,18 +20,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// The rows' positions on the lattices, octave after octave, kMaxNoiseAxis apart. All computed
-// before the first row of samples, which would otherwise wait for them.
+// The positions of the rows on the lattices, octave after octave, kMaxNoiseAxis apart. They are all
+// computed before the first row of samples, which would otherwise wait for them.
 struct RowOctaves {
-  std::size_t count, width;  // rows; padded
+  std::size_t count, width;  // number of rows; the same padded to whole vectors
   HWY_ALIGN std::uint32_t cell[kMaxOctaves * kMaxNoiseAxis + kPad];
   HWY_ALIGN float fraction[kMaxOctaves * kMaxNoiseAxis];
   HWY_ALIGN float fade[kMaxOctaves * kMaxNoiseAxis];
   float next_limit[kMaxOctaves];
-  bool contiguous = true;  // none skips a lattice row of any octave
+  bool contiguous = true;  // no row of samples skips a lattice row of any octave
   std::uint32_t
-      changed[kMaxNoiseAxis + 1];  // a bit for each octave in another cell than a row before
+      changed[kMaxNoiseAxis + 1];  // of each row: bits of the octaves that enter another cell
 
+  // At most kMaxNoiseAxis rows.
   RowOctaves(const RidgedKernel& kernel, const Axis& rows)
       : count(rows.at.size()), width(padded(rows.at.size())) {
     const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
@@ -63,15 +64,16 @@ struct RowOctaves {
   }
 };
 
-// Rows follow each other closely: none skips a lattice row of any octave.
+// The last columns of a call. Requires RowOctaves::contiguous.
 class EndColumns {
  public:
-  // How many of the columns are worth it.
+  // The number of columns, from the last, that are faster with rows as lanes.
   static std::size_t count(std::size_t columns, std::size_t rows) {
     const std::size_t lanes = hn::Lanes(FloatTag()), rest = columns % lanes;
     return rest <= kMost && columns > lanes && rows >= 16 * rest ? rest : 0;
   }
 
+  // Prepares count() columns. `kernel` and `rows` must outlive it.
   EndColumns(const RidgedKernel& kernel, const RowOctaves& rows,
              std::span<const std::int64_t> columns)
       : kernel_(kernel), rows_(rows), count_(columns.size()) {
@@ -81,6 +83,7 @@ class EndColumns {
       blend_rows(o);
   }
 
+  // Writes values[r · stride + c] for all rows and these columns.
   void write(const RowSettings& settings, float* values, std::size_t stride) const {
     const FloatTag d;
     HWY_ALIGN float result[kMaxNoiseAxis];
@@ -96,7 +99,7 @@ class EndColumns {
   static constexpr std::size_t kMost = 3;
   static constexpr std::size_t kLines = kMaxNoiseAxis + 3 * kPad;
 
-  // Of one column, on the lattice of each octave.
+  // The position of one column on the lattice of each octave.
   struct Place {
     HWY_ALIGN std::uint32_t cell[kPad];
     HWY_ALIGN float fraction[kPad], fade[kPad];
@@ -110,7 +113,7 @@ class EndColumns {
     }
   };
 
-  // All lattice rows of an octave, blended along x at every column.
+  // Blends all lattice rows of an octave along x, at every column.
   void blend_rows(std::size_t o) {
     const FloatTag d;
     const UintTag du;
@@ -140,7 +143,7 @@ class EndColumns {
     }
   }
 
-  // The samples of a column, of one vector of rows.
+  // The samples of column `c` for the vector of rows from r on.
   HWY_INLINE Float one(const RowSettings& settings, std::size_t c, std::size_t r) const {
     const FloatTag d;
     const UintTag du;

@@ -1,7 +1,7 @@
 // The ridged multifractal on a grid. Between two lattice rows the noise of a column is
 //   N = a + fz·b + u(fz)·(c + fz·d),
-// where a … d are blended along x once per lattice row: three products a sample and octave, without
-// hashing and without look-ups. A row of samples runs through all octaves in registers.
+// where a … d are blended along x once per lattice row. So a sample takes three products per octave
+// and neither hashing nor look-ups. A row of samples runs through all octaves in registers.
 #include "engine/models/terrain/ridged_kernel.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// The working memory of one call; everything starts at a multiple of 64 bytes.
+// The working memory of one call. Every array starts at a multiple of 64 bytes.
 struct Workspace {
   HWY_ALIGN float floats[kMaxOctaves * 9 * kMaxNoiseAxis];
   HWY_ALIGN float fractions[kMaxNoiseAxis];
@@ -59,7 +59,8 @@ struct Workspace {
   }
 };
 
-// Moves the octaves whose samples lie in rows on to the lattice cells of row r.
+// Moves the octaves in the bit set `in_rows`, whose samples lie in rows, to the lattice cells of
+// row r.
 void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
              const RowOctaves& along_z, Workspace& memory) {
   for (std::uint32_t changed = along_z.changed[r] & in_rows; changed != 0; changed &= changed - 1) {
@@ -71,14 +72,14 @@ void move_to(std::size_t r, std::uint32_t in_rows, const RidgedKernel& kernel,
     const bool next = r > 0 && cell == octave.lattice_row + 1;
     if (!next) raise_to<true>(octave, row, key, kernel.amplitude);
     raise_to<false>(octave, row, key + 1, kernel.amplitude);
-    // Those of the row that is next are there when it comes, instead of being waited for.
+    // Hashes the next lattice row ahead of its use, to hide the latency.
     const std::uint32_t last = along_z.cell[o * kMaxNoiseAxis + along_z.count - 1];
     if (next && along_z.contiguous && cell != last) row.hold(octave, key + 2, kernel.amplitude);
     octave.lattice_row = cell;
   }
 }
 
-// `warp` may be null.
+// Writes all rows of samples. `warp` may be null.
 void write_rows(const RidgedKernel& kernel, std::span<const std::int64_t> rows,
                 const RowOctaves& along_z, const RowSettings& settings, std::size_t column_count,
                 const Warp* warp, Workspace& memory, float* values, std::size_t stride) {

@@ -1,6 +1,6 @@
 // The lattices of ridged noise under the samples of a call: values and gradients of lattice points,
-// and their blending along one lattice row. Included once per instruction set, by
-// ridged_kernel.cpp only; hence its include guard.
+// and their blending along one lattice row. Only ridged_kernel.cpp includes it, once per
+// instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_RIDGED_LATTICE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_RIDGED_LATTICE_INL
 #undef PSYGEN_MODELS_RIDGED_LATTICE_INL
@@ -24,20 +24,21 @@ namespace psygen::models::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Whole vectors of zeros.
+// Writes `count` zeros, rounded up to whole vectors, to aligned memory.
 HWY_INLINE void clear_vectors(float* to, std::size_t count) {
   const FloatTag d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d))
     hn::Store(hn::Zero(d), d, to + i);
 }
 
-// The lattice lines of an octave around the samples of an axis: keys before mixing; those of the
-// lines before samples i … start at first[block of i], and slot[i] counts from there, less than the
-// lanes of a vector. Those of the lines behind are `to_next` further on.
+// The lattice lines of an octave around the samples of an axis, as keys before mixing. The line
+// before sample i has the key first[start of its block] + slot[i]; slot[i] is less than the lanes
+// of a vector. The line behind it is `to_next` keys further on. A block is a vector of samples.
 struct LatticeLines {
+  // How the keys of a block fit into vectors.
   enum class Fit {
     kOneVector,   // all keys lie in one vector, all blocks start at 0
-    kEachVector,  // those of the lines before and behind the samples of a block lie in one
+    kEachVector,  // the keys before and behind the samples of a block lie in one vector
     kNone
   };
   std::uint32_t* key;
@@ -46,7 +47,7 @@ struct LatticeLines {
   std::int32_t* slot;
   Fit fit;
 
-  // From the cells of `width` samples, padded.
+  // Fills everything from the cells of `width` samples, padded to whole vectors.
   void place(const std::uint32_t* HWY_RESTRICT cell, std::size_t width, bool contiguous,
              std::uint32_t key_offset) {
     const UintTag du;
@@ -77,32 +78,34 @@ struct LatticeLines {
   }
 };
 
-// One octave on the columns of a call, each array `stride` elements.
+// One octave on the columns of a call. Arrays have `stride` elements, or 2 · `stride` for pairs.
 struct ColumnOctave {
   std::size_t stride;
-  // Along x, of each column: how much the gradients' x to the left and right, and values and the
-  // gradients' z to the right, count.
+  // Weights along x, of each column: of the gradients' x on the left and on the right, and of the
+  // values and the gradients' z on the right.
   float *left_x, *right_x, *fade;
   LatticeLines lines;
-  // Blended along x (Blend), of the lower and the upper lattice row: pairs of vectors, one of
-  // values and one of slopes. Pairs lie in one line of the cache, in different banks.
+  // The lower and the upper lattice row, blended along x (Blend): pairs of vectors, one of values
+  // and one of slopes. A pair lies in one cache line, in different banks.
   float *lower, *upper;
-  float* rise;                // c and d in such pairs
-  std::uint32_t lattice_row;  // the lower of the two
+  float* rise;                // c and d of ridged_kernel.cpp, in such pairs
+  std::uint32_t lattice_row;  // number of the lower row
 
+  // Sets the lower row and the rise to 0.
   void clear() const {
     clear_vectors(lower, 2 * stride);
     clear_vectors(rise, 2 * stride);
   }
 };
 
-// What the hash of a lattice point gives it: a value and a gradient.
+// The value and the gradient of a lattice point.
 struct LatticePoint {
   Float value, x, z;
 };
-// The value is uniform in ± length / 2. The gradient lies t quarter turns from the x axis, t
-// uniform in [−1, 1], mirrored at the z axis by a further bit. Sine and cosine of quarter turns are
-// polynomials (docs/models.md); gradients are as long as `length` but for one in a thousand.
+// The lattice point of a hash. The value is uniform in ± length / 2. The gradient lies t quarter
+// turns from the x axis, with t uniform in [−1, 1], and one more bit mirrors it at the z axis. Sine
+// and cosine of quarter turns are polynomials (docs/models.md), so gradients have `length` up to
+// one part in a thousand.
 HWY_INLINE LatticePoint lattice_point(hn::Vec<UintTag> key, hn::Vec<UintTag> row_hash,
                                       Float length) {
   const FloatTag d;
@@ -121,7 +124,7 @@ HWY_INLINE LatticePoint lattice_point(hn::Vec<UintTag> key, hn::Vec<UintTag> row
           hn::Mul(hn::Mul(sine, t), length)};
 }
 
-// Points along one lattice row of an octave.
+// The points along one lattice row of an octave.
 struct LatticeRow {
   HWY_ALIGN float value[2 * kMaxNoiseAxis + 3 * kPad];
   HWY_ALIGN float x[2 * kMaxNoiseAxis + 3 * kPad];
@@ -129,7 +132,7 @@ struct LatticeRow {
   std::uint32_t key;  // of the lattice row
   bool filled = false;
 
-  // Fills it unless it has those of this lattice row already.
+  // Fills it with the points of a lattice row, unless it holds them already.
   void hold(const ColumnOctave& column, std::uint32_t row_key, float amplitude) {
     if (filled && key == row_key) return;
     fill(column, row_key, amplitude);
@@ -156,7 +159,7 @@ struct LatticeRow {
 struct Blend {
   Float value, slope;
 };
-// `left_x`, `right_x` and `fade` as in ColumnOctave.
+// Blends two neighbouring lattice points. `left_x`, `right_x` and `fade` as in ColumnOctave.
 HWY_INLINE Blend blend(const LatticePoint& left, const LatticePoint& right, Float left_x,
                        Float right_x, Float fade) {
   const Float value = hn::Add(left.value, hn::Mul(fade, hn::Sub(right.value, left.value)));
@@ -164,20 +167,21 @@ HWY_INLINE Blend blend(const LatticePoint& left, const LatticePoint& right, Floa
           hn::Add(left.z, hn::Mul(fade, hn::Sub(right.z, left.z)))};
 }
 
-// A vector of the row's points, from `first` on.
+// A vector of the row's points from `first` on.
 HWY_INLINE LatticePoint load(const LatticeRow& row, std::size_t first) {
   const FloatTag d;
   return {hn::LoadU(d, row.value + first), hn::LoadU(d, row.x + first),
           hn::LoadU(d, row.z + first)};
 }
+// Of each lane, the point in the lane `slots`.
 HWY_INLINE LatticePoint look_up(const LatticePoint& points, hn::Vec<IntTag> slots) {
   const auto indices = hn::IndicesFromVec(FloatTag(), slots);
   return {hn::TableLookupLanes(points.value, indices), hn::TableLookupLanes(points.x, indices),
           hn::TableLookupLanes(points.z, indices)};
 }
 
-// Makes the lattice row the octave's upper one; unless it is the first, what was the upper one
-// becomes the lower.
+// Makes `row` the octave's upper lattice row; the previous upper row becomes the lower one. With
+// kFirst there is no previous row, and the rise is not computed.
 template <LatticeLines::Fit kFit, bool kFirst>
 void raise(ColumnOctave& octave, const LatticeRow& row) {
   const ColumnOctave o = octave;
@@ -208,6 +212,7 @@ void raise(ColumnOctave& octave, const LatticeRow& row) {
   octave.upper = above;
 }
 
+// The same for the lattice row of a key, which `row` is filled with.
 template <bool kFirst>
 void raise_to(ColumnOctave& octave, LatticeRow& row, std::uint32_t row_key, float length) {
   using Fit = LatticeLines::Fit;

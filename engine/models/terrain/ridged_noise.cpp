@@ -10,12 +10,12 @@
 namespace psygen::models {
 namespace {
 
-// Where all four gradients of a lattice cell point at its centre: ½ + 1.0005/√2.
+// Reached where all four gradients of a lattice cell point at its centre: ½ + 1.0005/√2.
 constexpr double kMaxNoise = 1.2075;
 constexpr double kTwo32 = 4294967296.0;
 
-// Lattice cells per integer modulo 2^32 as Q32.32, rounded to nearest. Exact but for the rounding:
-// `frequency` is positive and the divisor a power of two.
+// Lattice cells per integer modulo 2^32 as Q32.32, rounded to nearest. Exact up to this rounding,
+// because `frequency` is positive and the divisor is a power of two.
 std::uint64_t fixed_point(double frequency) {
   const double rest = frequency - std::floor(frequency / kTwo32) * kTwo32;
   return static_cast<std::uint64_t>(rest * kTwo32 + 0.5);
@@ -41,7 +41,7 @@ RidgedNoise::RidgedNoise(const RidgedSettings& s)
   const double deepest = s.offset - kMaxNoise;
   const double highest = std::max(s.offset * s.offset, deepest * deepest);
   const double ratio = exact_pow(s.lacunarity, -s.height);
-  // Gains so small that further octaves cannot be seen in single precision leave only the first.
+  // With a gain so small that further octaves vanish in single precision, only the first is kept.
   const double square = s.gain * ratio;
   const bool one_octave = square < 1e-8;
   const double scale = one_octave ? 1 : std::sqrt(square);
@@ -77,7 +77,7 @@ int RidgedNoise::octaves_wider_than(double steps) const {
   return octaves;
 }
 
-// Measured (AVX-512, Zen 5): 0.14 ns a sample and octave, 0.55 ns where a lattice row is blended
+// Measured (AVX-512, Zen 5): 0.14 ns per sample and octave, 0.55 ns where a lattice row is blended
 // for it, 2.6 ns where a warp moves it.
 double RidgedNoise::work(std::size_t columns, std::size_t rows, double spacing, int octaves) const {
   constexpr double kBlend = 4, kFree = 18, kWarpFields = 2;

@@ -1,5 +1,5 @@
-// Rows of samples of ridged noise: all octaves of a row in registers. Included once per instruction
-// set, by ridged_kernel.cpp only; hence its include guard.
+// Rows of samples of ridged noise, with all octaves of a row in registers. Only ridged_kernel.cpp
+// includes it, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_RIDGED_ROW_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_RIDGED_ROW_INL
 #undef PSYGEN_MODELS_RIDGED_ROW_INL
@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// Adds an octave to the sums.
+// Adds an octave's ridges, squared, to the sums, and finds the weights of the next octave.
 template <class V>
 HWY_INLINE void add_octave(V square, V limit, V& weight, V& sum) {
   const V signal = hn::Mul(weight, square);
@@ -25,8 +25,9 @@ HWY_INLINE void add_octave(V square, V limit, V& weight, V& sum) {
   weight = hn::Min(signal, limit);
 }
 
-// The square of a ridge: of the value and the slope of noise on the lower lattice row, and how much
-// those of the upper one are more.
+// The square of a ridge. `value` and `slope` are those of the noise on the lower lattice row;
+// `value_rise` and `slope_rise` lead to the upper row; `f` and `fade` are the position between
+// them.
 template <class V>
 HWY_INLINE V square_of(V value, V slope, V value_rise, V slope_rise, V f, V fade, V offset) {
   const V low = hn::Add(value, hn::Mul(f, slope));
@@ -36,26 +37,26 @@ HWY_INLINE V square_of(V value, V slope, V value_rise, V slope_rise, V f, V fade
   return hn::Mul(ridge, ridge);
 }
 
-// Of one row: where it lies between two lattice rows of each octave, kMaxNoiseAxis apart.
+// The position of one row between two lattice rows of each octave, kMaxNoiseAxis elements apart.
 struct RowPlace {
   const float *fraction, *fade;
 };
 
-// What is the same in all rows.
+// Settings that all rows share.
 struct RowSettings {
-  const float* next_limit;  // of each octave
+  const float* next_limit;  // of each octave: largest weight of the next one
   std::size_t octave_count;
   float offset, scale;
 };
 
-// The sums of one row of samples.
+// Computes one row of samples.
 struct RowKernel {
   const ColumnOctave* columns;
   RowSettings settings;
   RowPlace row;
 
-  // The squares of an octave's ridges, of the columns `at` elements into the pairs of vectors
-  // (ColumnOctave).
+  // The squares of octave o's ridges, for the columns that are `at` elements into the pairs of
+  // vectors (ColumnOctave).
   template <class D, class V = hn::Vec<D>>
   HWY_INLINE V square(D d, std::size_t o, std::size_t at, V f, V fade, V offset) const {
     const float *const lower = columns[o].lower + at, *const rise = columns[o].rise + at;
@@ -64,7 +65,7 @@ struct RowKernel {
                      hn::Load(d, rise + second), f, fade, offset);
   }
 
-  // One vector from column i on; with fewer lanes than the kernel's vectors where D has fewer.
+  // One vector of samples from column i on. D may have fewer lanes than the kernel's vectors.
   template <class D>
   HWY_INLINE hn::Vec<D> one(D d, std::size_t i) const {
     const RowSettings& s = settings;
@@ -77,7 +78,7 @@ struct RowKernel {
     return hn::Mul(sum, hn::Set(d, s.scale));
   }
 
-  // Four vectors at once, which share the row's numbers and hide each other's latency.
+  // Four vectors at once. They share the row's numbers and hide each other's latency.
   HWY_INLINE void four(std::size_t i, float* HWY_RESTRICT out) const {
     const FloatTag d;
     const RowSettings& s = settings;
@@ -100,6 +101,7 @@ struct RowKernel {
     hn::StoreU(hn::Mul(sum3, scale), d, out + i + 3 * n);
   }
 
+  // Writes `count` samples to `out`, which needs no alignment.
   void run(std::size_t count, float* HWY_RESTRICT out) const {
     const FloatTag d;
     const hn::CappedTag<float, 4> few;

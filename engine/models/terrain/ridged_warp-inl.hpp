@@ -1,7 +1,7 @@
-// Domain warp: the coarse octaves of ridged noise, sampled where a field of low frequency moves
-// them. Every sample finds lattice points of its own, which takes about ten times as long as
-// sharing them. Included once per instruction set, by ridged_kernel.cpp only; hence its include
-// guard.
+// Domain warp: the coarse octaves of ridged noise, sampled at points that a field of low frequency
+// displaces. Every sample finds its own lattice points, which takes about ten times as long as
+// sharing them. Only ridged_kernel.cpp includes it, once per instruction set; hence the unusual
+// include guard.
 #if defined(PSYGEN_MODELS_RIDGED_WARP_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_RIDGED_WARP_INL
 #undef PSYGEN_MODELS_RIDGED_WARP_INL
@@ -19,13 +19,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-// The columns of an octave whose samples do not lie in rows: without any sharing.
+// The columns of an octave whose samples do not lie in rows, so nothing is shared.
 struct FreeOctave {
   HWY_ALIGN std::uint32_t cell[kMaxNoiseAxis];
   HWY_ALIGN float fraction[kMaxNoiseAxis];
   RidgedOctave settings;
   float amplitude;
 
+  // Finds the cells and fractions of the columns. `length` is that of gradients.
   void prepare(const RidgedOctave& octave, float length, const Axis& axis) {
     HWY_ALIGN std::uint64_t position[kMaxNoiseAxis];
     HWY_ALIGN float fade[kMaxNoiseAxis];
@@ -35,7 +36,7 @@ struct FreeOctave {
     locate(position, padded(axis.at.size()), cell, fraction, fade);
   }
 
-  // Noise of the columns from i on in a row, dx and dz cells away.
+  // The noise of the columns from i on in row `row`, displaced by dx and dz cells.
   Float at(std::size_t i, std::int64_t row, Float dx, Float dz) const {
     const FloatTag d;
     const UintTag du;
@@ -75,22 +76,23 @@ struct FreeOctave {
   }
 };
 
-// Moves the coarse octaves by a field of low frequency.
+// Displaces the coarse octaves by a field of low frequency.
 struct Warp {
   FreeOctave field_x, field_z;
   FreeOctave octaves[kWarpedOctaves];
   std::size_t octave_count;
 
+  // For the columns of `axis`. Requires kernel.warp > 0.
   Warp(const RidgedKernel& kernel, const Axis& axis)
       : octave_count(static_cast<std::size_t>(std::min(kernel.octave_count, kWarpedOctaves))) {
-    constexpr float kLength = 0.828427125F;  // for which noise is no more than 1
+    constexpr float kLength = 0.828427125F;  // with it, noise is at most 1
     field_x.prepare(kernel.warp_field[0], kernel.warp * kLength, axis);
     field_z.prepare(kernel.warp_field[1], kernel.warp * kLength, axis);
     for (std::size_t o = 0; o < octave_count; ++o)
       octaves[o].prepare(kernel.octaves[o], kernel.amplitude, axis);
   }
 
-  // Leaves the noise of one row in the columns, as octaves that are constant along z.
+  // Writes the noise of one row into the columns, as octaves that are constant along z.
   void write(std::int64_t row, const std::array<float, kWarpedOctaves>& cells_ratio,
              ColumnOctave* columns) const {
     const FloatTag d;

@@ -1,5 +1,5 @@
-// The parameters of a terrain as its kernels use them. Shared by the mesh (terrain.cpp) and the
-// ground queries (ground.cpp).
+// The parameters of a terrain in the form that its kernels use. Shared by the mesh (terrain.cpp)
+// and the ground queries (ground.cpp). Immutable, any thread. Internal to the terrain.
 #pragma once
 
 #include <algorithm>
@@ -11,23 +11,26 @@
 
 namespace psygen::models {
 
+// The noise and the scales of one node of terrain.
 struct TerrainShape {
   RidgedNoise noise;
-  int size;
-  int node_level;
-  double cell_m;   // between neighbouring vertices of level 0, of this node level
-  float relief_m;  // height of the quantised value 65535; 0 is height 0
-  float quantum;   // noise → quantised value
-  float metres;    // noise → metres
+  int size;        // vertices per side at level 0
+  int node_level;  // 0: a block; each further level doubles the cells
+  double cell_m;   // between neighbouring vertices of level 0, at this node level
+  float relief_m;  // height of the quantised value 65535; the value 0 has height 0
+  float quantum;   // quantised height of noise 1
+  float metres;    // height of noise 1, in metres
 
+  // Requires legal parameters.
   explicit TerrainShape(const Parameters& p);
 
-  // World coordinate of vertex i of a block, which need not be one of its own, in cells of node
-  // level 0.
+  // World coordinate of vertex i of a block, in cells of node level 0. Vertices outside the block
+  // are allowed.
   std::int64_t world_of(std::int64_t block, std::int64_t i) const {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(block * (size - 1) + i)
                                      << node_level);
   }
+  // The quantised height of a value of the noise, 0 … 65535. The same bits as in the kernel.
   std::uint16_t quantise(float noise_value) const {
     return static_cast<std::uint16_t>(round_to_int(std::min(noise_value * quantum, 65535.0F)));
   }

@@ -1,5 +1,5 @@
-// Spreads a row of coarse samples over the finer ones between them, linearly. Included once per
-// instruction set, by kernels of terrain only; hence its include guard.
+// Interpolates a row of coarse samples linearly at finer samples between them. Only kernels of the
+// terrain include it, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_TERRAIN_SPREAD_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_TERRAIN_SPREAD_INL
 #undef PSYGEN_MODELS_TERRAIN_SPREAD_INL
@@ -17,17 +17,18 @@ namespace psygen::models::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Fine sample i lies `phase` + i · `step` from the first coarse one, the coarse ones `spacing` from
-// each other. A place depends on its remainder by `spacing` alone, so that rows which begin
-// elsewhere give the same bits.
+// Fine sample i lies at `phase` + i · `step`, coarse sample k at k · `spacing`. A weight depends
+// only on the remainder of its place by `spacing`, so rows with another start give the same bits.
 template <std::size_t kLongest>
 class Spread {
  public:
+  // Vectors of at most 16 numbers.
   using FloatTag = hn::CappedTag<float, 16>;
   using IntTag = hn::RebindToSigned<FloatTag>;
   using Float = hn::Vec<FloatTag>;
   static constexpr std::size_t kRow = kLongest + 16;
 
+  // Prepares `count` fine samples, at most kLongest.
   Spread(std::size_t count, std::size_t phase, std::size_t step, std::size_t spacing)
       : dense_(step <= spacing) {
     const FloatTag d;
@@ -47,7 +48,8 @@ class Spread {
     }
   }
 
-  // Fine samples i, i + 1, … of a row that may be read 16 samples beyond its last.
+  // Fine samples i, i + 1, … of a row. `coarse` may be read 16 samples beyond the row's last. i is
+  // a multiple of the lanes.
   HWY_INLINE Float at(const float* coarse, std::size_t i) const {
     const FloatTag d;
     const float* const from = coarse + first_[i / hn::Lanes(d)];
@@ -65,7 +67,7 @@ class Spread {
   }
 
  private:
-  bool dense_;  // no fine sample is a coarse one further on than its place in the vector
+  bool dense_;  // in a vector, fine sample k is at most k coarse samples from the first
   std::size_t first_[kRow];
   HWY_ALIGN std::int32_t slot_[kRow];
   HWY_ALIGN float weight_[kRow];

@@ -47,8 +47,8 @@ constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
      "of the sun that casts shadows: 90 none, 0 and below all in the dark", kPlaced},
 };
 
-// Sample positions along one axis: every vertex of the level with its neighbours one cell away.
-// Vertex k is sample vertex(k); samples are grid positions −1 … size.
+// Sample positions along one axis: every vertex of the level, and its neighbours one cell away.
+// Vertex k is sample vertex(k). Samples are grid positions −1 … size.
 struct SampleAxis {
   std::array<std::int64_t, RidgedNoise::kMaxAxis> world;
   std::size_t count = 0;
@@ -96,7 +96,7 @@ TerrainGrid grid_of(const Parameters& p, int level) {
   return {static_cast<int>(p.integer(kTerrainSize)), level};
 }
 
-// The finest grid of the light of a level (TerrainLight).
+// The number of the finest grid of light for a level (TerrainLight).
 std::size_t light_grid_of(int level) {
   return level < 2 ? 0 : 1;
 }
@@ -105,8 +105,8 @@ double cell_of(const Parameters& p) {
   return std::ldexp(p.real(kTerrainCellM), static_cast<int>(p.integer(kTerrainNodeLevel)));
 }
 
-// The samples of the parent's mesh of level 1 that a node's mesh of level 1 lies on: every second
-// of the node's own vertices and, where the parent has none at the node's border, those beyond.
+// The samples of the parent's mesh of level 1 under a node's mesh of level 1: every second of the
+// node's own vertices and, where the parent has none at the node's border, the next one beyond.
 struct ParentSamples {
   static constexpr std::size_t kStride = (kMaxTerrainSize + 1) / 2 + 1;
   std::array<float, kStride * kStride> noise;
@@ -137,8 +137,8 @@ struct ParentSamples {
   };
 };
 
-// An octave of wavelength λ and amplitude A (half a ridge's height counts) leaves A · d/λ when it
-// is sampled d apart, at most A. Amplitudes add up to half the relief.
+// An octave of wavelength λ and amplitude A (half of a ridge's height) has the error A · d/λ, at
+// most A, when it is sampled d apart. Amplitudes add up to half the relief.
 double TerrainType::level_error_m(const Parameters& p, int level) const {
   const TerrainShape shape(p);
   const double gap = (grid_of(p, level).stride - 1) * shape.cell_m;
@@ -172,8 +172,8 @@ double TerrainType::complexity(const Parameters& p, int level) const {
   return static_cast<double>(p.integer(kTerrainOctaves)) * samples_per_side * samples_per_side;
 }
 
-// The work of the noise: of the samples, of those of the parent's mesh, of the heights for the
-// light. Nodes whose octaves are narrower than their cells take five times as long as blocks.
+// The work of the noise: the samples, those of the parent's mesh, and the heights for the light.
+// Nodes whose octaves are narrower than their cells take five times as long as blocks.
 double TerrainType::steps(const Parameters& p, int level) const {
   const TerrainShape shape(p);
   const TerrainGrid grid = grid_of(p, level);
@@ -183,7 +183,7 @@ double TerrainType::steps(const Parameters& p, int level) const {
   if (grid.stride <= 3) {
     const auto samples = static_cast<std::size_t>(grid.size) + 2;
     work = shape.noise.work(samples, samples, cell);
-  } else {  // vertices with their neighbours, and gaps between them
+  } else {  // groups of a vertex and its two neighbours, with gaps between the groups
     work = (2 * shape.noise.work(3 * n, 3 * n, cell) +
             shape.noise.work(3 * n, 3 * n, cell * (grid.stride - 2))) /
            3;
@@ -209,7 +209,7 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
   const SampleAxis rows(grid, shape, p.integer(kTerrainBlockZ));
   constexpr std::size_t kMaxStride = RidgedNoise::kMaxAxis;
   alignas(64) std::array<float, kMaxStride*(kMaxTerrainSize + 2) + 16> noise;
-  const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at lines of the cache
+  const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at cache lines
   shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
                        noise, stride);
   const TerrainLight light(shape, {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)},

@@ -14,7 +14,7 @@ struct TerrainTiles::Rect {
 
 namespace {
 
-// Writes triangles of vertices that are named by their place in the grid.
+// Writes triangles whose vertices are given as places in the grid.
 class Writer {
  public:
   struct Place {
@@ -28,8 +28,8 @@ class Writer {
       out_[at_++] = static_cast<std::uint16_t>(p.z * width_ + p.x);
   }
 
-  // The triangle (corner, `one`, `other`) with a right angle at the corner; its sides from there
-  // in steps of `stride` along `one` and `other` where they are to be divided.
+  // Writes the triangle (corner, `one`, `other`), which has a right angle at the corner. The sides
+  // from the corner to `one` and to `other` are split into `stride` steps where requested.
   void half_cell(Place corner, Place one, bool divide_one, Place other, bool divide_other,
                  int stride) {
     const auto along = [&](Place end, int i) {

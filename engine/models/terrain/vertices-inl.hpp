@@ -1,5 +1,5 @@
-// Vectors of packed terrain vertices on their way to memory, and the skirt. Included once per
-// instruction set, by kernel.cpp only; hence its include guard.
+// Stores vectors of packed terrain vertices, and collects the skirt. Only kernel.cpp includes it,
+// once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_TERRAIN_VERTICES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_TERRAIN_VERTICES_INL
 #undef PSYGEN_MODELS_TERRAIN_VERTICES_INL
@@ -23,14 +23,15 @@ namespace psygen::models::HWY_NAMESPACE {
 static_assert(sizeof(core::TerrainVertex) == 3 * sizeof(std::uint32_t));
 constexpr std::size_t kVertexBytes = sizeof(core::TerrainVertex);
 
-// The three words of vertices, one array each: a vector loaded from what single vertices have just
-// been written to would have to wait.
+// The three words of vertices, one array each. Whole vertices would be slower: a vector load stalls
+// on memory that scalar stores have just written.
 struct VertexWords {
   static constexpr std::size_t kMost = 4 * kMaxTerrainSize + 16;
   HWY_ALIGN std::uint32_t low[kMost];
   HWY_ALIGN std::uint32_t high[kMost];
   HWY_ALIGN std::uint32_t light[kMost];
 
+  // Sets vertex i < kMost.
   HWY_INLINE void put(std::size_t i, std::uint32_t to_low, std::uint32_t to_high,
                       std::uint32_t to_light) {
     low[i] = to_low;
@@ -39,17 +40,18 @@ struct VertexWords {
   }
 };
 
-// A vector of vertices.
+// The three words of a vector of vertices.
 struct VertexVector {
   hn::Vec<UintTag> low, high, light;
 
-  // The first `count` of them, or all, as vertices lie in memory.
+  // Writes the first `count` vertices, or all if there are fewer, to any address.
   HWY_INLINE void store(const Interleave3& interleave, std::size_t count, std::byte* out) const {
     if (HWY_LIKELY(count >= hn::Lanes(UintTag()))) return interleave.store(low, high, light, out);
     HWY_ALIGN std::byte all[16 * kVertexBytes];
     interleave.store(low, high, light, all);
     std::memcpy(out, all, count * kVertexBytes);
   }
+  // Stores all vertices from index i on.
   HWY_INLINE void store_words(VertexWords& to, std::size_t i) const {
     const UintTag du;
     hn::Store(low, du, to.low + i);
@@ -58,26 +60,28 @@ struct VertexVector {
   }
 };
 
-// The vertices of the border, which runs along +x, +z, −x and −z; every side has its first corner.
+// Collects the vertices of the border, which runs along +x, +z, −x and −z. Every side includes its
+// first corner.
 struct Skirt {
   const std::size_t last;
   VertexWords words;
 
+  // `last_vertex`: number of the last vertex along a side.
   explicit Skirt(std::size_t last_vertex) : last(last_vertex) {}
 
-  // A whole row: the first or the last.
+  // Adds a whole row: the first (z = 0) or the last.
   void add_row(std::size_t z, const VertexWords& row) {
     for (std::size_t k = 0; k < last; ++k) {
       const std::size_t x = z == 0 ? k : last - k;
       words.put(z == 0 ? k : 2 * last + k, row.low[x], row.high[x], row.light[x]);
     }
   }
-  // The vector at the beginning of row z.
+  // Adds the first vertex of row z from the vector at the row's beginning.
   HWY_INLINE void add_first(std::size_t z, const VertexVector& v) {
     if (z > 0)
       words.put(4 * last - z, hn::GetLane(v.low), hn::GetLane(v.high), hn::GetLane(v.light));
   }
-  // The vector at the end of row z, its last vertex in the lane `at`.
+  // Adds the last vertex of row z, which is in lane `at` of the vector at the row's end.
   template <class Indices>
   HWY_INLINE void add_last(std::size_t z, const VertexVector& v, Indices at) {
     const auto lane = [&](auto words_of) {
@@ -85,6 +89,7 @@ struct Skirt {
     };
     if (z < last) words.put(last + z, lane(v.low), lane(v.high), lane(v.light));
   }
+  // Writes the 4 · last vertices of the skirt, with their skirt bit.
   void write(const Interleave3& interleave, std::byte* out) const {
     const UintTag du;
     const auto bit = hn::Set(du, core::kTerrainSkirtBit);

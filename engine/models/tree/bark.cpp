@@ -1,5 +1,5 @@
-// Trunk and branches: tapering tubes around the skeleton's curves, with the branches of one kind
-// and depth as lanes; where a depth has few branches, with the rings of all of them as lanes.
+// Trunk and branches: tapering tubes around the skeleton's curves. The lanes are the branches of
+// one kind and depth; where a depth has few branches, the lanes are the rings of all of them.
 #include "engine/models/tree/indices.hpp"
 #include "engine/models/tree/mesh.hpp"
 
@@ -17,8 +17,8 @@ struct Circle {
   float x[kMaxSides], z[kMaxSides];
 };
 
-// Branches, or rings with the rows of their branch, side by side; after the last one, copies of it
-// up to full lanes.
+// BarkLanes holds branches, or rings with the rows of their branch. Copies of the last one follow,
+// up to a whole vector.
 inline constexpr std::size_t kMaxRingLanes = 128;
 // Noise of vertex k: (noise + 0x9E3779B9 k) · kNoiseFactor, multiplied out.
 inline constexpr std::uint32_t kNoiseFactor = 0x846CA68BU;
@@ -27,26 +27,26 @@ struct BarkLanes {
   alignas(64) float rows[kTreeRows][kMaxTreeNodes + 2 * kTreeLanes];
   alignas(64) std::uint32_t key[kMaxTreeNodes + 2 * kTreeLanes];
   std::size_t count = 0;
-  // Where rings are in their branch; for rings as lanes only.
+  // Places of rings on their branch and widening there; only for rings as lanes.
   alignas(64) float t[kMaxRingLanes + kTreeLanes], flare[kMaxRingLanes + kTreeLanes];
   alignas(64) std::uint32_t ring[kMaxRingLanes + kTreeLanes];
   BarkLanes() {}
 };
 
-// Where the rings of one branch are, up to a whole vector.
+// The places of the rings of one branch, padded to a whole vector.
 struct RingPlaces {
   alignas(32) float t[8] = {}, flare[8] = {};
   std::uint32_t count = 0;
 };
 static_assert(kMaxSegments + 1 <= 8);
 
-// What the branches of one depth have in common.
+// Values that the branches of one depth share.
 struct BarkJob {
   const TreePlan& plan;
   const TreeCrown& crown;
   const TubePlan& tube;
   const Circle& circle;
-  const std::uint32_t* colours;  // eight, of which the noise chooses, twice
+  const std::uint32_t* colours;  // eight that the noise selects from, stored twice
   float sway_start, sway_end;
   bool trunk, tip;
 };
@@ -81,7 +81,7 @@ HWY_INLINE void gather(const BarkJob& job, const BarkLanes& lanes, std::size_t i
   b.point_normal = job.tip ? octahedral(b.direction) : u1(0);
 }
 
-// One of eight steps for vertex k of each branch; `ahead` is kNoiseStep · k.
+// The random step, 0 … 7, of vertex k of each branch. `ahead` is kNoiseStep · k.
 HWY_INLINE VU noise_step(VU noise, VU ahead) {
   return hn::ShiftRight<29>(noise + ahead);
 }
@@ -93,12 +93,12 @@ HWY_INLINE VU chosen(const std::uint32_t* table, VU step) {
 #endif
 }
 
-// Where a ring is: anywhere, at the foot of a branch that is not the trunk, or at the end of a tip.
-// The last two give the same bits as the first, with less arithmetic.
+// The place of a ring: anywhere, at the foot of a branch other than the trunk, or at the end of a
+// tip. The last two give the same bits as the first, with less arithmetic.
 enum class RingAt { kAny, kFoot, kPoint };
 
-// The vertices of one ring of every lane, handed to `store` with the number of their corner.
-// `place`: kNoiseStep times the number of its first vertex.
+// Passes the vertices of one ring of every lane to `store`, with the number of their corner.
+// `place` is kNoiseStep times the number of the ring's first vertex.
 template <RingAt kAt, class Store>
 HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWriter& box, VF t,
                            VU place, VF flare, const Store& store, Extent& extent) {
@@ -157,7 +157,7 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
   }
 }
 
-// Rings as lanes: vertices follow each other ring by ring.
+// Rings as lanes. Vertices follow each other ring by ring.
 void mesh_rings(const BarkJob& job, const BarkLanes& rings, MeshWriter& box, std::byte* to) {
   const std::size_t n = hn::Lanes(DF()), sides = job.tube.sides;
   Extent extent;
@@ -177,7 +177,7 @@ void mesh_rings(const BarkJob& job, const BarkLanes& rings, MeshWriter& box, std
   extent.widen(box.low, box.high);
 }
 
-// Branches as lanes: 16 by 16 in blocks, vertex by vertex; the rest branch by branch.
+// Branches as lanes: blocks of 16 branches, vertex by vertex; the rest branch by branch.
 void mesh_branches(const BarkJob& job, const BarkLanes& all, MeshWriter& box, std::byte* to) {
   const std::size_t n = hn::Lanes(DF()), stride = job.tube.vertices();
   const std::size_t blocked = all.count / kTreeLanes * kTreeLanes;
@@ -231,7 +231,7 @@ void add_branches(const TreeSkeleton& s, const TreeGroup& group, BarkLanes& out)
   out.count += group.count;
 }
 
-// The rings of every branch of a group.
+// Appends the rings of every branch of a group.
 void add_rings(const TreeSkeleton& s, const TreeGroup& group, const RingPlaces& places,
                BarkLanes& out) {
   const HWY_CAPPED(float, 8) d;
@@ -251,7 +251,7 @@ void add_rings(const TreeSkeleton& s, const TreeGroup& group, const RingPlaces& 
   }
 }
 
-// Copies of the last lane behind it.
+// Writes copies of the last lane behind it.
 void fill_up(bool rings, BarkLanes& out) {
   const DF d;
   const DU du;
@@ -265,7 +265,8 @@ void fill_up(bool rings, BarkLanes& out) {
   hn::StoreU(hn::Set(du, out.ring[n - 1]), du, &out.ring[n]);
 }
 
-// indices = pattern + base, over and over: `pattern` holds the indices of sixteen tubes.
+// Writes `total` indices: `pattern`, the indices of sixteen tubes, repeated with growing first
+// vertices.
 void repeat_pattern(const std::uint16_t* pattern, std::size_t length, std::uint32_t first,
                     std::uint32_t step, std::size_t total, std::uint16_t* to) {
   const HWY_CAPPED(std::uint16_t, 32) wide;
@@ -298,7 +299,7 @@ HWY_EXPORT(add_branches);
 HWY_EXPORT(add_rings);
 HWY_EXPORT(fill_up);
 
-// Unit circle with `sides` corners, for the numbers of sides that the plans use.
+// The unit circle with `sides` corners: 3, 4, 5, 6 or 8, the numbers that the plans use.
 const Circle& circle(std::uint32_t sides) {
   static constexpr float kHalf = 0.5F, kR3 = 0.866025404F, kR2 = 0.707106781F;
   static constexpr Circle kThree{{1, -kHalf, -kHalf}, {0, kR3, -kR3}};
@@ -319,7 +320,7 @@ float sway_at(int depth, int tips_depth) {
   return static_cast<float>(std::min(30 + 170 * depth / std::max(tips_depth, 1), 200));
 }
 
-// The indices of `count` tubes from vertex `first` on, of which the first `blocked` are in blocks.
+// Appends the indices of `count` tubes from vertex `first` on. The first `blocked` are in blocks.
 void write_indices(const TubePlan& tube, std::uint32_t count, std::uint32_t blocked,
                    std::uint32_t first, MeshWriter& out) {
   const auto repeat = [&](std::uint32_t tubes, std::uint32_t start, bool in_blocks) {
@@ -332,7 +333,7 @@ void write_indices(const TubePlan& tube, std::uint32_t count, std::uint32_t bloc
   if (count > blocked) repeat(count - blocked, first + blocked * tube.vertices(), false);
 }
 
-// Three triangles from a ring about `from` to the crown's centre.
+// Appends three triangles from a ring around `from` to the crown's centre.
 void write_cone(const TreePlan& plan, const glm::vec3& from, float radius, std::uint8_t ambient,
                 const TreeCrown& crown, MeshWriter& out) {
   const std::uint32_t first = out.vertex_count();
@@ -352,7 +353,7 @@ void write_cone(const TreePlan& plan, const glm::vec3& from, float radius, std::
 
 namespace {
 
-// Of leafy and of bare trees, each level and depth, inside and at tips.
+// Indexed by leafy or bare tree, level, depth, and inner branch or tip.
 using TubePlans = std::array<std::array<std::array<TubePlan, 2>, 4>, kTreeLevels>;
 constexpr std::array<TubePlans, 2> kTubePlans = [] {
   constexpr TubePlan kPlans[4][4] = {
@@ -386,7 +387,8 @@ namespace {
 
 using Colours = std::array<std::uint32_t, 16>;
 
-// From dark to bright, twice: tables are as long as the widest lanes.
+// Eight colours from dark to bright, stored twice, because tables are as long as the widest
+// vectors.
 Colours bark_colours(const TreePlan& plan) {
   Colours words;
   for (std::size_t i = 0; i < 8; ++i) {
@@ -400,7 +402,7 @@ Colours bark_colours(const TreePlan& plan) {
   return words;
 }
 
-// Where rings are: on the trunk closer together at its foot, where it also widens.
+// The places of rings. On the trunk they are closer together at its foot, where it also widens.
 RingPlaces places_of_rings(const BarkJob& job) {
   static constexpr float kSix[] = {0.0F, 0.06F, 0.16F, 0.34F, 0.55F, 0.78F, 1.0F};
   static constexpr float kThree[] = {0.0F, 0.14F, 0.5F, 1.0F};
@@ -420,7 +422,7 @@ RingPlaces places_of_rings(const BarkJob& job) {
   return places;
 }
 
-// The tubes of one depth that are not pointed, or all that are.
+// Appends the tubes of one depth: the pointed ones if job.tip, else the others.
 void mesh_depth(const BarkJob& job, const TreeSkeleton& s, std::size_t first, std::size_t last,
                 BarkLanes& lanes, MeshWriter& out) {
   std::uint32_t tubes = 0;

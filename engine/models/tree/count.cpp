@@ -1,23 +1,23 @@
-// How many branches a tree has, by hashing alone: the exact sizes of meshes before anything grows.
+// Counts the branches of a tree by hashing alone, for the exact sizes of meshes before synthesis.
 #include "engine/models/tree/paths.hpp"
 #include "engine/models/tree/skeleton.hpp"
 
 namespace psygen::models {
 namespace {
 
-// The nodes of one depth, kind by kind. Only what grows further is kept.
+// The nodes of one depth, kind by kind. Only kinds that grow further are kept.
 struct Generation {
   using Words = std::array<std::uint32_t, kMaxTreeNodes + 2 * kTreeLanes>;
   alignas(64) Words draw;
   alignas(64) Words key;
   alignas(64) Words budget;
-  alignas(64) Words stars;                         // of whole trees, where the kind has one rule
+  alignas(64) Words stars;                         // whole trees only, for kinds with one rule
   std::array<std::uint32_t, kMaxKinds + 1> first;  // of each kind
   Generation() {}
   std::uint32_t count(std::size_t kind) const { return first[kind + 1] - first[kind]; }
 };
 
-// The children of a generation by kind, and, where wanted, the next generation.
+// Counts the children of a generation by kind, and makes the next generation.
 class Counter {
  public:
   Counter(const TreePlan& plan, bool limited) : plan_(plan), limited_(limited) {}
@@ -78,7 +78,7 @@ class Counter {
                      });
   }
 
-  // Kind by kind, so that what is written too far is overwritten by the kind that comes next.
+  // Works kind by kind: values written beyond the end of one kind are overwritten by the next.
   void append_children(const Generation& parents, Generation& out) const {
     for (std::size_t c = 0; c < plan_.grammar->kinds; ++c) {
       if (!plan_.grammar->grows(c)) continue;
@@ -91,7 +91,7 @@ class Counter {
                               : only->count[c] + (only->star == c ? parents.stars[p] : 0U);
           const std::uint32_t first = unmixed_child_key(parents.key[p], c, 0);
           std::uint32_t rank = 0;
-          do {  // at least once: how many there are is not to be foreseen
+          do {  // at least once: the count is unpredictable, and this saves a branch
             for (std::uint32_t i = 0; i < kAtOnce; ++i)
               to[rank + i] = first + kChildStep * (rank + i);
             rank += kAtOnce;

@@ -1,4 +1,4 @@
-// The crown's colour, and the closed hull that stands for it at levels 4 and 5.
+// The crown's colour, and the closed hull that represents it at levels 4 and 5.
 #include "engine/models/tree/mesh.hpp"
 #include "engine/models/tree/random.hpp"
 
@@ -59,8 +59,8 @@ constexpr float kOctahedron[kOctahedronVertices][3] = {{0, 1, 0},  {1, 0, 0},  {
 constexpr std::uint32_t kOctahedronIndices[3 * kOctahedronTriangles] = {
     0, 2, 1, 0, 3, 2, 0, 4, 3, 0, 1, 4, 5, 1, 2, 5, 2, 3, 5, 3, 4, 5, 4, 1};
 
-// From a corner of the sphere to one of the crown, relative to its middle. The ring of the wider
-// half is the closer to its end, the more a crown narrows towards the other one.
+// Maps a corner of the unit sphere to the crown, relative to its middle. The more a crown narrows
+// towards one end, the closer the ring of its wider half is to the other end.
 glm::vec3 stretched(const float (&corner)[3], bool ball, const CrownOutline& o) {
   const bool end = corner[0] == 0.0F && corner[2] == 0.0F;
   const float narrow = (o.upper - o.lower) / (o.upper + o.lower);

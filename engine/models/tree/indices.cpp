@@ -11,12 +11,12 @@ struct alignas(64) Pattern {
   std::uint16_t indices[kSize];
 };
 
-// Index `k` of each of sixteen, from those of one.
+// The index, in a block of sixteen, of vertex `index` of object i.
 constexpr std::uint16_t in_block(std::uint32_t index, std::uint32_t i) {
   return static_cast<std::uint16_t>(index * kTreeLanes + i % 4 * 4 + i / 4);
 }
 
-// The indices of one tube; segment by segment, corner by corner.
+// Calls `put` with the indices of one tube, segment by segment and corner by corner.
 template <class Put>
 constexpr void visit_tube(const TubePlan& tube, const Put& put) {
   for (std::uint32_t ring = 0; ring < tube.segments; ++ring) {

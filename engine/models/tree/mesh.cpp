@@ -90,7 +90,7 @@ MeshSize tree_mesh_size(const TreePlan& plan, int level) {
 }
 
 double tree_steps(const TreePlan& plan, int level) {
-  // In branches: a group of however few branches, and hashing one to see where the tree ends.
+  // In branches: the fixed cost of a group, and of hashing a branch to find the tree's depth.
   constexpr double kPerGroup = 12, kPerCounted = 0.06;
   const auto grown = [](const TreeCount& count) {
     return count.nodes + kPerGroup * static_cast<double>(count.group_count);

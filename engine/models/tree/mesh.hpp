@@ -1,6 +1,8 @@
 // From a tree's skeleton to packed vertices: the plan of each level of detail, the crown that all
-// levels share, bark (bark.cpp), sprays of leaves (sprays.cpp) and hulls (hull.cpp).
-// Everything is appended to one MeshWriter, into memory of exactly the size that the plan predicts.
+// levels share, bark (bark.cpp), sprays of leaves (sprays.cpp) and hulls (hull.cpp). Everything is
+// appended to one MeshWriter, into memory of exactly the size that the plan predicts. Functions are
+// pure apart from their output, for any thread. Grows nothing (skeleton.hpp). docs/models.md,
+// "Tree".
 #pragma once
 
 #include <cmath>
@@ -14,28 +16,33 @@
 namespace psygen::models {
 
 inline constexpr int kTreeLevels = 6;
-// Share of level 0 in the time of each level, and of the crown's radius in its error.
+// Time of each level over that of level 0, and its error over the crown's radius.
 inline constexpr double kLevelShares[kTreeLevels] = {1.0, 0.25, 0.06, 0.02, 0.01, 0.01};
 inline constexpr double kLevelErrors[kTreeLevels] = {0.0, 0.05, 0.085, 0.17, 0.33, 0.6};
-// Paths that give the crown its place and extent, and the foliage of level 3.
+// Paths whose ends define the crown's place and extent, and carry the foliage of level 3.
 inline constexpr std::uint32_t kCrownPaths = 16;
 
-// Appends to the destination, which may be mapped device memory: it is not read. Positions are
-// relative to `box`: packed = (position - center) · scale, clamped to ±32767, rounded to nearest.
+// Appends to a destination, which may be mapped device memory and is never read. The caller takes
+// care that it is large enough. Positions are packed = (position − center) · scale, clamped to
+// ±32767 and rounded to nearest.
 class MeshWriter {
  public:
+  // Positions are relative to `box`. The memory of `out` must outlive the writer.
   MeshWriter(const core::Bounds& box, const MeshView& out);
 
+  // A vertex without its position: fields of core::ModelVertex. The normal may have any length
+  // except zero.
   struct Look {
     std::uint8_t ambient, sway;
     glm::vec3 normal;
     std::array<std::uint8_t, 3> colour;
     std::uint8_t material;
   };
+  // Appends one vertex (position in metres), and one triangle of vertex numbers below 65,536.
   void vertex(const glm::vec3& position, const Look& look);
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
-  // Room that kernels fill; they widen `low` and `high` themselves.
+  // Reserve room that kernels fill. Kernels widen `low` and `high` themselves.
   std::byte* append_vertices(std::uint32_t count) {
     std::byte* first = vertices_ + std::size_t{vertex_count_} * sizeof(core::ModelVertex);
     vertex_count_ += count;
@@ -46,11 +53,13 @@ class MeshWriter {
     index_count_ += count;
     return first;
   }
+  // Appended so far.
   std::uint32_t vertex_count() const { return vertex_count_; }
   std::uint32_t index_count() const { return index_count_; }
-  // The box of all vertices written, as a reader will unpack them.
+  // The box of all vertices written, in metres, as a reader will unpack them.
   core::Bounds written() const;
 
+  // The packing of positions, and the smallest and largest packed positions so far.
   float center[3], scale[3];
   std::int16_t low[3] = {32767, 32767, 32767}, high[3] = {-32767, -32767, -32767};
 
@@ -61,64 +70,73 @@ class MeshWriter {
   std::uint32_t vertex_count_ = 0, index_count_ = 0;
 };
 
-// The ellipsoid that the tips of kCrownPaths paths lie in: place of hulls, of ambient light, and of
-// the normals of leaves.
+// The ellipsoid around the ends of kCrownPaths paths. Hulls, ambient light and the normals of
+// leaves follow it.
 struct TreeCrown {
-  glm::vec3 center;
-  glm::vec3 half;  // half axes in metres; x and z are equal
+  glm::vec3 center;  // metres from the tree's foot
+  glm::vec3 half;    // half axes in metres; x and z are equal
   glm::vec3 inverse_half;
-  float radius;  // their mean
+  float radius;  // mean of the half axes
 };
-// From the whole tree, or from the paths grown with kCrownPaths: the same bits.
+// The crown, with the same bits from the whole tree (`whole`) or from a skeleton grown with
+// kCrownPaths.
 TreeCrown crown_of(const TreePlan& plan, const TreeSkeleton& skeleton, bool whole);
+// Baked ambient visibility at `p`, in metres from the foot; in (0, 1].
 float crown_ambient(const TreeCrown& crown, const glm::vec3& p);
 
-// The outline of a crown about its vertical axis: where the same ends lie, and room for leaves.
+// The outline of a crown about its vertical axis, from the same ends with room for leaves. Metres.
 struct CrownOutline {
-  float middle, half_height;  // of top and bottom
+  float middle, half_height;  // height of the middle between top and bottom; half their distance
   float upper, lower;         // radius in the upper and in the lower half
 };
-// `paths` are those grown with kCrownPaths.
+// The outline. `paths` is a skeleton grown with kCrownPaths.
 CrownOutline outline_of(const TreePlan& plan, const TreeSkeleton& paths, const TreeCrown& crown);
 
-// Sides and segments of the tube of a branch at a depth; 0 sides: not drawn. A tip ends in one
-// vertex.
+// Sides and segments of the tube of a branch. 0 sides: not drawn.
 struct TubePlan {
   std::uint32_t sides = 0, segments = 0;
-  bool pointed = false;
+  bool pointed = false;  // ends in one vertex instead of a ring
+  // Sizes of one tube.
   constexpr std::uint32_t vertices() const {
     return sides == 0 ? 0 : sides * segments + (pointed ? 1 : sides);
   }
   constexpr std::uint32_t triangles() const { return sides * 2 * segments - (pointed ? sides : 0); }
 };
 inline constexpr std::uint32_t kMaxSides = 8, kMaxSegments = 6;
+// The tube of branches at a depth; `tip`: nothing grows from them. The reference is to static data.
 const TubePlan& tube_plan(const TreePlan& plan, int level, int depth, bool tip);
 
-// Which paths a level follows, and the depth of the last branches that it draws.
+// The number of paths that a level follows (kWholeTree: all), and the depth of the last branches
+// that it draws.
 std::uint32_t paths_of(const TreePlan& plan, int level);
 int last_bark_depth(const TreePlan& plan, int level);
 
-// Sprays of levels 0 … 3, a multiple of 16: for a tree with so many bearers, whose other vertices
-// leave room for so many.
+// The form of the sprays of a level, for plans with foliage.
 const SprayForm& spray_form(const TreePlan& plan, int level);
+// The number of sprays of a level: a multiple of kSprayBlock, 0 at levels 4 and 5 and without
+// foliage. It grows with the number of bearers, as far as `bark_vertices` leave room.
 std::uint32_t spray_count(const TreePlan& plan, int level, std::uint32_t bearers,
                           std::uint32_t bark_vertices);
 inline constexpr std::uint32_t kSprayBlock = 16;
-// Levels 4 and 5: the crown as one closed, bumpy hull.
+// The crown as one closed, bumpy hull: a ball at level 4, an octahedron at level 5.
 inline constexpr std::uint32_t kBallVertices = 12, kBallTriangles = 20;
 inline constexpr std::uint32_t kOctahedronVertices = 6, kOctahedronTriangles = 8;
-// Cones of 4 vertices and 3 triangles into the crown: from the trunk's end where the branches in
-// between are left out (levels 2 and 3), from the foot (levels 4 and 5).
+// A cone into the crown, in place of branches that a level leaves out: from the trunk's end at
+// levels 2 and 3, from the foot at levels 4 and 5.
 inline constexpr std::uint32_t kConeVertices = 4, kConeTriangles = 3;
 
-// Stored (square root) colour of leaves.
+// The stored colour of leaves (square root of the albedo), from TreePlan::ramp. A hue outside [0,
+// 1] wraps around for cyclic ramps and is clamped for others.
 std::array<float, 3> leaf_colour(const TreePlan& plan, float hue);
-// Hue and brightness of a whole tree, about which its leaves vary.
+// Mean hue and brightness of one tree; its leaves vary around them.
 struct LeafTint {
   float hue, brightness;
 };
+// The tint of the tree with the plan's key.
 LeafTint leaf_tint(const TreePlan& plan);
 
+// The parts of a mesh, each appended to `out`: the tubes of all drawn branches, the cone from the
+// trunk's end, the cone from the foot, `sprays` sprays of leaves, and the hull.
 void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                const TreeCrown& crown, MeshWriter& out);
 void mesh_core(const TreePlan& plan, const TreeSkeleton& skeleton, const TreeCrown& crown,
@@ -129,13 +147,14 @@ void mesh_sprays(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
 void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const CrownOutline& outline,
                MeshWriter& out);
 
-// All of them: what synthesize() and mesh_size() of every tree do.
+// ModelType::synthesize(), mesh_size() and steps() of every tree. A step is about the time of one
+// branch; steps count the branches that are grown and a fixed cost of each group. Synthesis needs
+// about 900 KiB of stack.
 core::Bounds synthesize_tree(const TreePlan& plan, int level, const MeshView& out);
 MeshSize tree_mesh_size(const TreePlan& plan, int level);
-// Branches that are grown for it, and what each group of them takes by itself.
 double tree_steps(const TreePlan& plan, int level);
 
-// Metres that the trunk reaches below the foot, so that it meets sloping ground.
+// Metres that the trunk reaches below the foot, to meet sloping ground.
 inline float sink_m(const TreePlan& plan) {
   return 2.0F * plan.radius_m;
 }

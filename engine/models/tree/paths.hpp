@@ -1,6 +1,6 @@
-// Following only some paths through a tree, for coarse levels of detail: a number of paths is
-// shared out among the children of every node by the tips that are expected under each. Internal to
-// trees.
+// Follows only some paths through a tree, for coarse levels of detail. Every node shares out its
+// number of paths among its children, by the number of tips that are expected under each. Pure, any
+// thread. Internal to trees. docs/models.md, "Tree".
 #pragma once
 
 #include "engine/models/tree/random.hpp"
@@ -8,26 +8,28 @@
 
 namespace psygen::models {
 
+// Numbers of children by kind.
 using ChildTotals = std::array<std::uint32_t, kMaxKinds>;
 
+// Whether the grammar puts leaves on the branches of a group.
 inline bool bears_leaves(const TreePlan& plan, const TreeGroup& group) {
   const LeavesOn on = plan.kinds[group.kind].leaves;
   return on == LeavesOn::kAll || (on == LeavesOn::kTips && group.tip);
 }
 
-// Whether leaves grow on these branches as the grammar says; it may be that none of them bears any:
-// then the tips do.
+// Whether the grammar puts leaves on any of the grown branches. If not, the tips bear the leaves.
 inline bool has_bearers(const TreePlan& plan, const TreeSkeleton& s) {
   for (std::size_t g = 0; plan.foliage.near != nullptr && g < s.group_count; ++g)
     if (bears_leaves(plan, s.groups[g])) return true;
   return false;
 }
 
-// How a node's paths are shared out among its children: child after child, in order of kind and
-// rank, `next` gives the paths of one. Systematic sampling: with weights w of sum W and a phase φ
-// from the node's draw, child j gets ⌊B (w_0 + … + w_j) / W + φ⌋ − ⌊B (w_0 + … + w_{j−1}) / W + φ⌋.
+// Shares out the paths of a node among its children by systematic sampling. With weights w of sum
+// W, B paths and a phase φ from the node's draw, child j gets
+// ⌊B (w_0 + … + w_j) / W + φ⌋ − ⌊B (w_0 + … + w_{j−1}) / W + φ⌋.
 class Shares {
  public:
+  // `remaining`: iterations left below the children. `plan` must outlive it.
   Shares(const TreePlan& plan, const Children& children, std::uint32_t budget, int remaining,
          std::uint32_t draw)
       : plan_(plan), budget_(budget), remaining_(static_cast<std::size_t>(remaining)) {
@@ -35,6 +37,8 @@ class Shares {
       total_ += std::uint64_t{children.of_kind(kind)} * weight(kind);
     needed_ = total_ * (65536U - (draw & 0xFFFFU));
   }
+  // The paths of the next child, which is of this kind. Call it child after child, in order of kind
+  // and rank.
   std::uint32_t next(std::size_t kind) {
     sum_ += weight(kind);
     std::uint32_t share = 0;
@@ -53,7 +57,8 @@ class Shares {
   std::uint64_t total_ = 0, sum_ = 0, needed_ = 0;
 };
 
-// Children of a path-limited tree, one by one.
+// Visits the children of a node that are on its paths, in order of kind and rank:
+// visit(kind, rank, children of that kind, paths).
 template <class Visit>
 void for_children(const TreePlan& plan, std::size_t kind, std::uint32_t draw, std::uint32_t budget,
                   int remaining, const Visit& visit) {

@@ -1,7 +1,7 @@
-// What one tree is grown and meshed from: the grammar as counts of children, and the numbers of
-// each kind of branch after all parameters have been put in. Plain values in single precision, made
-// once per call (plan_of_tree, SpeciesType) and read by every kernel. Not the user's description of
-// a species (species.hpp).
+// The input for growing and meshing one tree: the grammar as counts of children, and the numbers of
+// each kind of branch with all parameters applied. Plain values in single precision, made once per
+// call (plan_of_tree, SpeciesType) and read by every kernel. Not the user's description of a
+// species (species.hpp).
 #pragma once
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 
 namespace psygen::models {
 
+// Limits of a grammar.
 inline constexpr std::size_t kMaxKinds = 8;
 inline constexpr std::size_t kMaxRules = 16;
 inline constexpr int kMaxTreeIterations = 12;
@@ -25,35 +26,41 @@ inline constexpr std::uint8_t kNoKind = 0xFF;
 // Which branches of a kind bear leaves.
 enum class LeavesOn : std::uint8_t { kNone, kTips, kAll };
 
-// One way in which a node becomes branches. Chosen where the lower 16 bits of the node's draw are
-// below `until`.
+// One way in which a node becomes branches. The first rule of its kind is used whose `until` is
+// above the lower 16 bits of the node's draw.
 struct GrammarRule {
   std::uint32_t until = 65536;
   std::array<std::uint8_t, kMaxKinds> count{};  // children of each kind
   std::uint32_t fixed = 0;                      // their sum
-  std::uint8_t star = kNoKind;                  // this kind fills up to the drawn number
+  std::uint8_t star = kNoKind;                  // the kind that fills up to the drawn number
 };
 
+// A grammar: kinds of branches, and the rules of each. A kind without rules never branches.
 struct Grammar {
   std::uint8_t kinds = 0;
-  std::array<std::uint8_t, kMaxKinds + 1> first_rule{};  // of each kind; none: it never branches
+  std::array<std::uint8_t, kMaxKinds + 1> first_rule{};  // of each kind; the last is the end
   std::array<GrammarRule, kMaxRules> rules;
   int spread = 2;  // the number drawn for `star` is within branches ± spread, at least 1
+  // Whether branches of a kind branch again.
   bool grows(std::size_t kind) const { return first_rule[kind] < first_rule[kind + 1]; }
 };
 
-// Angles in turns. "low" is at the lower end of `along`; lengths are relative to the parent's.
+// The numbers of one kind of branch. Angles are in turns; lengths are relative to the parent's.
 struct KindPlan {
+  // Angle to the parent at `along_high` and `along_low`, its relative variation, and the turn
+  // around the parent from one sibling to the next.
   float angle_high, angle_low, angle_variation, whorl;
-  float along_low, along_high;
+  float along_low, along_high;     // range of places on the parent, 0 foot … 1 end
   float length_high, length_foot;  // at the parent's end and at its foot
-  float radius;                    // over the parent's there
+  float radius;                    // over the parent's radius at that place
+  // Added to the direction along Y; bend along Y; strength of the random bend.
   float lift, bend_up, curvature;
-  bool leader;  // goes on in its parent's direction
+  bool leader;  // continues its parent from the end, in its direction
   LeavesOn leaves;
 };
 
-// Corners of a spray: along its axis, across, and against its normal, in spray lengths.
+// The shape of a spray of leaves. Corners are given along its axis, across, and against its normal,
+// in spray lengths.
 inline constexpr std::uint32_t kMaxSprayVertices = 10, kMaxSprayTriangles = 8;
 struct SprayForm {
   std::uint32_t vertices, triangles;
@@ -61,7 +68,8 @@ struct SprayForm {
   std::uint8_t indices[3 * kMaxSprayTriangles];
 };
 
-// Directions of a spray: axis = unit(random · o + out · outwards + branch · along it + up · Y),
+// The foliage. The directions of a spray are, with random vectors o and o',
+// axis = unit(random · o + out · outwards + branch · (direction of the branch) + up · Y),
 // side = unit((side_out · outwards + side_random · o' + side_up · Y) × axis),
 // normal = unit(outwards + 0.3 · axis + normal_up · Y).
 struct FoliagePlan {
@@ -69,36 +77,40 @@ struct FoliagePlan {
   const SprayForm* far = nullptr;   // levels 2 and 3
   float random, out, branch, up;
   float side_random, side_out, side_up, normal_up;
-  float from;         // where on a branch they begin
+  float from;         // lowest place of leaves on a branch, 0 foot … 1 end
   float cluster;      // radius of clusters, relative
   float fill;         // size of leaves over the size that just fills the crown
   float density;      // sprays per bearer at level 0
   float hull = 1.0F;  // size of hulls over the size that holds the crown
 };
 
+// One tree. The objects that it points to must outlive it.
 struct TreePlan {
   const Grammar* grammar;
-  std::uint8_t axiom;
-  std::uint32_t key, salt;  // of the trunk; of all random numbers
-  int iterations, branches;
-  bool always_complete;  // no seed makes it stop before the last iteration
-  // Expected tips of a kind after so many iterations more, [kind][iterations]; null: all equal.
+  std::uint8_t axiom;        // kind of the trunk
+  std::uint32_t key, salt;   // key of the trunk; salt of all random numbers
+  int iterations, branches;  // branches: mean number that starred kinds fill up to
+  bool always_complete;      // no seed exceeds kMaxTreeNodes before the last iteration
+  // Expected tips of a kind after more iterations, [kind][iterations]; null: all equal.
   const std::array<std::array<std::uint32_t, kMaxTreeIterations + 1>, kMaxKinds>* weights;
   std::array<KindPlan, kMaxKinds> kinds;
+  // Length and radius of the trunk, radius of a branch at its end over that at its foot, widening
+  // of the trunk at its foot.
   float size_m, radius_m, taper, flare;
   float trunk_curvature;
-  // The ellipsoid that branches are kept in: centre (0, envelope_y, 0); inverse half axes, 0: none.
+  // The ellipsoid around the crown in metres: centre (0, envelope_y, 0), half axes across and up.
+  // Branches are kept inside if the inverse half axes `limit_` are not 0.
   float envelope_y, envelope_across, envelope_up;
   float limit_across, limit_up;
   FoliagePlan foliage;
-  // Stored colours of leaves over [0, 1], five of them evenly spaced; `cyclic`: the last is the
-  // first.
+  // Five stored colours of leaves, evenly spaced over hues 0 … 1. In a cyclic ramp the last equals
+  // the first.
   std::array<std::array<float, 3>, 5> ramp;
   bool cyclic;
   float hue, colour_variation;
   std::array<float, 3> bark;  // stored colour
-  float bark_contrast;
-  core::Bounds bounds;
+  float bark_contrast;        // largest change of brightness, ±
+  core::Bounds bounds;        // ModelType::bounds()
 };
 
 }  // namespace psygen::models

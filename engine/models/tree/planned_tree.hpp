@@ -1,6 +1,6 @@
-// What all trees have in common as model types, whatever they are described by: one plan per set of
-// parameters, from which bounds, sizes, errors and meshes follow. Types say how the plan is made
-// and what it costs (tree.cpp, species_type.cpp).
+// The base of all trees as model types: one plan per set of parameters, from which bounds, sizes,
+// errors and meshes follow. Derived types make the plan and know its cost (tree.cpp,
+// species_type.cpp). Immutable, any thread. Has no parameters of its own.
 #pragma once
 
 #include "engine/core/assert.hpp"
@@ -10,10 +10,13 @@
 
 namespace psygen::models {
 
+// A model type that is a tree.
 class PlannedTree : public ModelType {
  public:
+  // The plan of one tree. Requires legal parameters. The plan may point into this type.
   virtual TreePlan plan(const Parameters& p) const = 0;
 
+  // ModelType, from the plan.
   int level_count() const final { return kTreeLevels; }
   bool may_run_on_main_thread() const final { return true; }
   double level_error_m(const Parameters& p, int level) const final {

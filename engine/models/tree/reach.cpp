@@ -14,7 +14,7 @@ double d(float v) {
 // The largest angle from upright (0 … 180°), as its cosine and sine.
 struct Lean {
   double cos = 1, sin = 0;
-  double across() const { return cos >= 0 ? sin : 1; }  // of any direction that leans so far
+  double across() const { return cos >= 0 ? sin : 1; }  // largest sine up to this angle
 };
 constexpr Lean kAnywhere{-1, 0};
 
@@ -28,8 +28,7 @@ Lean unit(double cos, double sin) {
   return length > 1e-9 ? Lean{cos / length, sin / length} : kAnywhere;
 }
 
-// What a branch is bent by, beside the direction that it sets out in: at most so much along each
-// axis, and what is the same for all.
+// The largest bend of a branch away from its initial direction, along each axis, over its length.
 struct Bend {
   double aside = 0;         // along x or z
   double up = 0, down = 0;  // both above 0
@@ -43,7 +42,7 @@ Bend bend_of_trunk(const TreePlan& plan) {
   return {0.25 * d(plan.trunk_curvature), 0, 0};
 }
 
-// At any place of a branch that sets out leaning so far.
+// The lean at any place of a branch that starts with this lean.
 Lean bent(const Lean& lean, const Bend& bend) {
   const double turn = 2 * bend.most();
   const Lean turned = turn < 1 ? sum(lean, {std::sqrt(1 - turn * turn), turn}) : kAnywhere;
@@ -53,7 +52,7 @@ Lean bent(const Lean& lean, const Bend& bend) {
   return shifted.cos > turned.cos ? shifted : turned;
 }
 
-// Of unit(direction + lift · Y).
+// The lean of unit(direction + lift · Y).
 Lean lifted(Lean lean, double lift) {
   if (lift <= -1) return kAnywhere;
   if (lift >= 1 && lean.cos < -1 / lift) lean = {-1 / lift, std::sqrt(1 - 1 / (lift * lift))};
@@ -67,7 +66,7 @@ Lean tilt_of(const KindPlan& k) {
   return {exact_cos_degrees(360 * turns), exact_sin_degrees(360 * turns)};
 }
 
-// Of the branches of one kind at one depth: the longest, and what any of them reaches.
+// The worst of all branches of one kind at one depth.
 struct Worst {
   bool any = false;
   double length = 0;
@@ -112,7 +111,8 @@ bool becomes(const Grammar& grammar, std::size_t from, std::size_t to) {
   return false;
 }
 
-// How far from the crown's centre the places of the trunk are from which branches grow.
+// The largest distance from the crown's centre of a place on the trunk from which branches grow, in
+// radii of the crown.
 double trunk_in_crown(const TreePlan& plan, double middle, double radius) {
   double low = 1;
   for (std::size_t k = 0; k < plan.grammar->kinds; ++k)

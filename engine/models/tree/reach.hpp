@@ -1,7 +1,7 @@
-// How far the branches of a tree can be from its foot, whatever its seed: worked out from the plan
-// by following the worst branch of each kind from depth to depth. For bounds(), which vertices are
-// packed in: no libm, the same bits everywhere. Not the box of one tree; sprays and radii of
-// branches come on top. Pure.
+// The largest distance of branches from a tree's foot, over all seeds. Computed from the plan by
+// following the worst branch of each kind from depth to depth. For bounds(), in which vertices are
+// packed: no libm, the same bits everywhere. Not the box of one tree, and without sprays and radii
+// of branches. Pure, any thread.
 #pragma once
 
 #include <algorithm>
@@ -10,18 +10,20 @@
 
 namespace psygen::models {
 
-// Of the middle lines of all branches, in lengths of the trunk (plan.size_m) from its foot.
+// Extents of the centre lines of all branches, in lengths of the trunk (plan.size_m) from the foot.
 struct TreeReach {
-  double side = 0;  // along x or z
-  double top = 0, low = 0;
+  double side = 0;          // largest |x| or |z|
+  double top = 0, low = 0;  // largest and smallest y
 };
 
-// `plan` needs its grammar, kinds, trunk and envelope; the envelope's size_m is that of the plan.
+// The reach of a plan. It needs the grammar, kinds, trunk and envelope, all for the same size_m.
+// Time is linear in iterations · kinds².
 TreeReach reach_of(const TreePlan& plan);
 
-// Branches are shortened by the square of where they would end, if that is outside of the sphere
-// that limits the crown. How far from its centre one can come that begins within `start` and is at
-// most `length` long, in radii of the sphere; `bend`: the most that it is crooked, over its length.
+// A branch that would end outside the sphere around the crown is divided in length by the square of
+// that end's distance. Returns the largest distance from the centre that a branch can reach if it
+// begins within `start` and is at most `length` long, in radii of the sphere. `bend` is its largest
+// deviation from a straight line, over its length.
 inline double reach_in_crown(double start, double length, double bend) {
   double end = start + length * (1 + bend);
   if (end > 1) {
@@ -32,12 +34,13 @@ inline double reach_in_crown(double start, double length, double bend) {
   return sag > gain ? end + (sag - gain) * (sag - gain) / (4 * sag) : end;
 }
 
-// The most that the trunk's end is off its foot along x or z, in lengths of the trunk.
+// The largest offset of the trunk's end from its foot along x or z, in lengths of the trunk.
 inline double trunk_side(const TreePlan& plan) {
   return 1.1 * (0.08 + 0.25 * static_cast<double>(plan.trunk_curvature));
 }
 
-// The farthest vertex of a ring around a crooked branch, over the branch's radius at its foot.
+// The largest distance of a ring's vertex from a crooked branch, over the branch's radius at its
+// foot.
 inline double ring_reach(double most_bend) {
   return 1.15 * (1 + 2 * most_bend * most_bend);  // above sqrt(1 + (2 bend)²)
 }

@@ -10,7 +10,7 @@
 #ifndef PSYGEN_MODELS_TREE_SKELETON_ONCE
 #define PSYGEN_MODELS_TREE_SKELETON_ONCE
 namespace psygen::models {
-// 1 / n.
+// 1 / n; element 0 is unused.
 inline constexpr std::array<float, kMaxChildren + 1> kInverse = [] {
   std::array<float, kMaxChildren + 1> inverse{};
   for (std::size_t n = 1; n <= kMaxChildren; ++n)
@@ -30,7 +30,7 @@ struct Parents {
   Vec3 base, direction, bend;
   VF length, radius;
 };
-// `row_of(r)` and `keys` look numbers up at the parents' slots.
+// Parents with these keys. `row_of(r)` looks up row r at the parents' slots.
 template <class RowOf>
 HWY_INLINE Parents parents_by(VU key, const RowOf& row_of) {
   const auto three = [&](std::size_t r) HWY_ATTR {
@@ -38,7 +38,8 @@ HWY_INLINE Parents parents_by(VU key, const RowOf& row_of) {
   };
   return {key, three(kBase), three(kDirection), three(kBend), row_of(kLength), row_of(kRadius)};
 }
-// Siblings are neighbours, so that the parents of neighbouring branches mostly fit one vector.
+// The parents of the branches from slot i on. Siblings are neighbours, so the parents of
+// neighbouring branches mostly fit into one vector.
 HWY_INLINE Parents parents_of(const TreeSkeleton& s, std::size_t i) {
   const DF d;
   const DU du;
@@ -59,7 +60,7 @@ HWY_INLINE Parents parents_of(const TreeSkeleton& s, std::size_t i) {
   });
 }
 
-// From slots that hold their parents, ranks and shares to branches of `kind`.
+// Computes the branches of a group, whose slots already have parents, ranks and shares.
 void shape_group(const TreePlan& plan, const TreeGroup& group, TreeSkeleton& s) {
   const DF d;
   const DU du;
@@ -125,7 +126,7 @@ void shape_group(const TreePlan& plan, const TreeGroup& group, TreeSkeleton& s) 
   }
 }
 
-// Makes `parent` that of `count` slots from `to`, and perhaps of a few more.
+// Links `count` slots from `to` on to `parent`. Writes up to a vector beyond the end.
 HWY_INLINE void link(TreeSkeleton& s, std::uint32_t parent, std::size_t to, std::uint32_t count) {
   const hn::CappedTag<float, 8> d;
   const hn::CappedTag<std::uint32_t, 8> du;
@@ -134,7 +135,7 @@ HWY_INLINE void link(TreeSkeleton& s, std::uint32_t parent, std::size_t to, std:
   const auto iota = hn::Iota(du, 0);
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   std::uint32_t c = 0;
-  do {  // for no slots as well: how many there are is not to be foreseen
+  do {  // even for no slots: the count is unpredictable, and this saves a branch
     hn::StoreU(slot, du, &s.parent[to + c]);
     hn::StoreU(share, d, &s.share[to + c]);
     hn::StoreU(iota + hn::Set(du, c), du, &s.rank[to + c]);
@@ -142,7 +143,7 @@ HWY_INLINE void link(TreeSkeleton& s, std::uint32_t parent, std::size_t to, std:
   } while (HWY_UNLIKELY(c < count));
 }
 
-// Every parent of a group gets one slot.
+// Links one slot to each parent of a group.
 HWY_INLINE void link_singly(const TreeGroup& parents, TreeSkeleton& s, std::size_t to) {
   const DU du;
   for (std::uint32_t i = 0; i < parents.count; i += static_cast<std::uint32_t>(hn::Lanes(du))) {
@@ -181,7 +182,7 @@ void link_group(const TreePlan& plan, const TreeGroup& group, std::size_t first,
   }
 }
 
-// The slots behind a group's last one, up to a whole vector, have its parent.
+// Gives the slots behind a group's last one, up to a whole vector, the same parent.
 void fill_up_parents(const TreeGroup& group, TreeSkeleton& s) {
   const DU du;
   const std::size_t end = group.first + group.count, rest = end % hn::Lanes(du);
@@ -268,7 +269,8 @@ struct PathChild {
   std::uint8_t kind;
 };
 
-// The children of the groups [first, last) that are on paths, in order of their parents.
+// Writes the children of the groups [first, last) that are on paths, in order of their parents.
+// Returns their number.
 std::uint32_t path_children(const TreePlan& plan, const TreeSkeleton& s, std::size_t first,
                             std::size_t last, int remaining, PathChild* out) {
   std::uint32_t count = 0;
@@ -285,8 +287,8 @@ std::uint32_t path_children(const TreePlan& plan, const TreeSkeleton& s, std::si
   return count;
 }
 
-// The children of all nodes of the groups [first, last), by kind; notes how many each node has of
-// the kind that fills up.
+// The numbers of children of the groups [first, last), by kind. Stores in s.stars how many each
+// node has of its starred kind.
 ChildTotals all_children(const TreePlan& plan, TreeSkeleton& s, std::size_t first,
                          std::size_t last) {
   ChildTotals totals{};

@@ -1,6 +1,7 @@
-// The skeleton of a tree: its branches as a structure of arrays, grown level by level. Every random
-// number is keyed on the branch's path from the root, so a branch is the same whichever others are
-// grown beside it, and all levels of detail share one skeleton. Not meshed here (mesh.hpp).
+// The skeleton of a tree: its branches as a structure of arrays, grown depth by depth. Every random
+// number is keyed on the branch's path from the root. So a branch does not depend on the others
+// that are grown, and all levels of detail share one skeleton. It makes no mesh (mesh.hpp).
+// Functions are pure, for any thread, and linear in the branches. docs/models.md, "Tree".
 #pragma once
 
 #include <array>
@@ -11,38 +12,38 @@
 
 namespace psygen::models {
 
-inline constexpr std::uint32_t kWholeTree = UINT32_MAX;
-inline constexpr std::uint32_t kTreeLanes = 16;  // groups begin at multiples of this
+inline constexpr std::uint32_t kWholeTree = UINT32_MAX;  // for `max_tips`: all paths
+inline constexpr std::uint32_t kTreeLanes = 16;          // groups begin at multiples of this
 inline constexpr std::size_t kMaxTreeGroups = kMaxKinds * kMaxTreeIterations + 1;
 inline constexpr std::uint32_t kMaxTreeSlots =
     kMaxTreeNodes + kTreeLanes * static_cast<std::uint32_t>(kMaxTreeGroups + 4);
 
-// Branches of one kind and depth.
+// The branches of one kind and depth: slots [first, first + count) of a skeleton.
 struct TreeGroup {
   std::uint32_t first = 0, count = 0;
   std::uint8_t kind = 0, depth = 0;
-  bool tip = false;  // they end in points: nothing grows from them
+  bool tip = false;  // nothing grows from them, so they end in points
 };
 
-// How many branches each kind has at each depth. Found by hashing alone.
+// The number of branches of each kind at each depth.
 struct TreeCount {
   std::array<TreeGroup, kMaxTreeGroups> groups;  // `first` is unused
   std::size_t group_count = 0;
   int depth = 0;
   std::uint32_t bearers = 0;  // branches with leaves
-  std::uint32_t nodes = 0;
+  std::uint32_t nodes = 0;    // branches
   std::uint32_t tips = 0;
-  TreeCount() {}
+  TreeCount() {}  // leaves `groups` unwritten
 };
-// Of the branches on at most `max_tips` paths; `depth` as for grow_tree, `last` the deepest that is
-// wanted.
+// Counts the branches on at most `max_tips` paths by hashing, without growing them. `depth` as for
+// grow_tree; branches deeper than `last` are not counted.
 TreeCount count_tree(const TreePlan& plan, int depth, std::uint32_t max_tips = kWholeTree,
                      int last = kMaxTreeIterations);
 // The iteration after which the whole tree stops growing.
 int tree_depth(const TreePlan& plan);
 
-// Rows of numbers that branches have: places and directions take three each; the radius is that at
-// the foot (at the end times the taper, or 0 at tips).
+// Rows of numbers of a skeleton, in metres. Places and directions take three rows each. The radius
+// is that at the foot; at the end it is the radius times the taper, or 0 at tips.
 enum TreeRow : std::size_t {
   kBase = 0,
   kDirection = 3,
@@ -52,27 +53,29 @@ enum TreeRow : std::size_t {
   kTreeRows = 11
 };
 
-// Branch i runs from base along base + length · (t · direction + t² · bend), t in [0, 1].
-// Groups are in order of depth, then kind; branches in order of their parents, then their rank
-// among siblings of their kind. About 470 KiB, meant for the stack; what lies between groups is not
-// meant to be read.
+// The branches of a tree. Branch i is the curve base + length · (t · direction + t² · bend), t in
+// [0, 1], in metres from the tree's foot. Groups are in order of depth, then kind. Branches are in
+// order of their parents, then their rank among siblings of their kind. Slots between groups have
+// no meaning. About 470 KiB, for the stack.
 struct TreeSkeleton {
+  // One number for each slot.
   using Row = std::array<float, kMaxTreeSlots>;
   using Words = std::array<std::uint32_t, kMaxTreeSlots>;
   alignas(64) Row rows[kTreeRows];
-  alignas(64) Words key;
-  alignas(64) Words draw;
-  alignas(64) Words parent;  // its slot
+  alignas(64) Words key;     // random.hpp
+  alignas(64) Words draw;    // random number that decides the children
+  alignas(64) Words parent;  // slot of the parent
   alignas(64) Words rank;    // among siblings of the kind
   alignas(64) Row share;     // 1 / number of siblings of the kind
-  alignas(64) Words budget;  // paths
-  // Of the whole tree only: the first child of each kind, and how many there are of the kind that
-  // fills up, where the grammar has one rule for the branch.
+  alignas(64) Words budget;  // paths through the branch
+  // Only for the whole tree: the slot of the first child of each kind, and, where the grammar has
+  // one rule for the branch, the number of children of its starred kind.
   Words child[kMaxKinds], stars;
   std::array<TreeGroup, kMaxTreeGroups> groups;
   std::size_t group_count;
-  int depth;
+  int depth;  // of the deepest group
 
+  // The point of branch i at t, 0 foot … 1 end.
   glm::vec3 point(std::uint32_t i, float t) const {
     const float q = t * t;
     const auto along = [&](std::size_t c) {
@@ -84,24 +87,27 @@ struct TreeSkeleton {
   TreeSkeleton() {}  // leaves the arrays unwritten
 };
 
-// Grows the skeleton to `depth` (tree_depth(); with the whole tree also plan.iterations), following
-// at most `max_tips` paths from the root to tips, shared out by the expected number of tips. The
-// trunk and every branch on a path are exactly those of the whole tree.
+// Grows the skeleton to `depth`, which is tree_depth(), or also plan.iterations for the whole tree.
+// It follows kWholeTree or at most `max_tips` <= kMaxPaths paths from the root to tips, shared out
+// by the expected number of tips. The trunk and every branch on a path are exactly those of the
+// whole tree. A tree stops before the depth that would exceed kMaxTreeNodes.
 void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkeleton& out);
 
 // The branches on some paths of a tree, in order of depth, kind and parents.
 inline constexpr std::uint32_t kMaxPaths = 64;
 struct TreePaths {
+  // Slot in the whole tree, and paths through the branch.
   struct Node {
     std::uint32_t slot, budget;
     std::uint8_t kind, depth;
   };
   std::array<Node, kMaxPaths*(kMaxTreeIterations + 1)> nodes;
   std::uint32_t count;
-  int depth;
-  TreePaths() {}
+  int depth;      // of the last node
+  TreePaths() {}  // leaves everything unwritten
 };
-// Finds in the whole tree `s` what grow_tree() with this depth and `max_tips` <= kMaxPaths grows.
+// Finds in the whole tree `s` the branches that grow_tree() would grow with its depth and
+// `max_tips` <= kMaxPaths.
 void find_paths(const TreePlan& plan, const TreeSkeleton& s, std::uint32_t max_tips,
                 TreePaths& out);
 

@@ -1,4 +1,4 @@
-// What a species may be.
+// The rules that a species must keep.
 #include "engine/models/tree/species.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@ namespace {
 
 using Fault = std::optional<SpeciesFault>;
 
-// More than the tree's own limit, so that only unlucky seeds are cut short.
+// Above kMaxTreeNodes, so only trees with unlucky seeds are cut short.
 constexpr double kMaxLog2Branches = 13;
 constexpr std::int64_t kMaxBranches = 8, kMaxSpread = 8;
 constexpr double kLeastCrownLimit = 0.05;  // smaller crowns hold nothing

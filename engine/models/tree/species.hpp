@@ -1,7 +1,7 @@
-// A species of trees as data: a stochastic L-system whose letters are kinds of branches, and how it
-// looks. Read from world files (engine/world/files/species_file.hpp) or filled by programs;
-// validated here and made into a model type of its own. Plain values; nothing is grown here
-// (skeleton.hpp).
+// A species of trees as data: a stochastic L-system whose letters are kinds of branches, and its
+// looks. Read from world files (engine/world/files/species_file.hpp) or filled in by programs. It
+// is validated here and made into a model type of its own. Plain values, pure functions, any
+// thread. Nothing is grown here (skeleton.hpp). docs/species.md.
 #pragma once
 
 #include <array>
@@ -16,43 +16,46 @@
 
 namespace psygen::models {
 
-// One letter of the grammar. Lengths and radii are relative to the parent's; "low" is at the lower
-// end of `along`, angles are measured from the parent.
+// One letter of the grammar: a kind of branch. Angles are measured from the parent; lengths and
+// radii are relative to the parent's. The ranges are in visit_kind_numbers().
 struct SpeciesKind {
   std::string symbol;   // one letter
-  bool leader = false;  // goes on in its parent's direction, from its end
+  bool leader = false;  // continues its parent from the end, in its direction
+  // At `along_high` and at `along_low`.
   double angle_deg = 45, angle_low_deg = 45;
-  double angle_variation = 0.3;            // share
-  double whorl_deg = 137.508;              // around the parent, from one to the next
-  double along_low = 0.4, along_high = 1;  // where on the parent
+  double angle_variation = 0.3;            // relative to the angle
+  double whorl_deg = 137.508;              // around the parent, from one sibling to the next
+  double along_low = 0.4, along_high = 1;  // range of places on the parent, 0 foot … 1 end
   double length = 0.75;                    // at the parent's end
-  double length_low = 0.75;                // as if it grew at the parent's foot
+  double length_low = 0.75;                // extrapolated to the parent's foot
   double radius = 0.6;
-  double tropism = 0, curvature = 0.4;
-  std::string leaves = "tips";  // "none", "tips", "all"
+  double tropism = 0, curvature = 0.4;  // bend upwards (negative: downwards); crookedness
+  std::string leaves = "tips";          // "none", "tips", "all"
   friend bool operator==(const SpeciesKind&, const SpeciesKind&) = default;
 };
 
-// `to` lists the branches that a node of kind `from` gets: letters, each with an optional number
-// ("LB3": one L and three B) or a star ("LB*": as many B as make up the number drawn from
-// branches ± spread).
+// A rule of the grammar. `to` lists the branches that a node of kind `from` gets: letters, each
+// with an optional number ("LB3": one L and three B) or a star ("LB*"). A star stands for as many
+// as are missing from the number drawn from branches ± spread.
 struct SpeciesRule {
   std::string from, to;
-  double probability = 1;
+  double probability = 1;  // above 0; those of one `from` sum up to 1
   friend bool operator==(const SpeciesRule&, const SpeciesRule&) = default;
 };
 
+// The leaves. FoliagePlan (plan.hpp) has the meaning of the numbers, visit_foliage_numbers() their
+// ranges.
 struct SpeciesFoliage {
   std::string form = "leaflets";  // "leaflets", "needles", "fronds", "clump", "none"
   double random = 0.7, out = 0.7, branch = 0, up = -0.25;   // directions of sprays
-  double side_random = 0.9, side_out = 0.7, side_up = 0.3;  // and of their width
+  double side_random = 0.9, side_out = 0.7, side_up = 0.3;  // directions of their width
   double normal_up = 0.25, from = 0, cluster = 1, size = 1, density = 1.6;
-  // Share of the leaves that are there in the middle of each season.
+  // Share of the leaves on the tree in the middle of each season.
   double density_spring = 1, density_summer = 1, density_autumn = 1, density_winter = 1;
   friend bool operator==(const SpeciesFoliage&, const SpeciesFoliage&) = default;
 };
 
-// Stored colours, the square roots of linear albedo.
+// Stored colours, 0 … 1: square roots of the linear albedo. Seasons from spring to winter.
 struct SpeciesColours {
   std::array<std::array<double, 3>, 4> season = {
       {{0.36, 0.46, 0.18}, {0.23, 0.36, 0.16}, {0.64, 0.42, 0.14}, {0.40, 0.34, 0.26}}};
@@ -61,14 +64,18 @@ struct SpeciesColours {
   friend bool operator==(const SpeciesColours&, const SpeciesColours&) = default;
 };
 
+// A whole species. The ranges are in visit_numbers().
 struct Species {
-  std::string name, doc;
+  std::string name, doc;  // name: snake_case, at most 64 characters
+  // 1 … 12 iterations, 1 … 8 branches (mean number drawn for a star), 0 … 8 spread.
   std::int64_t iterations = 4, branches = 3, spread = 2;
+  // Length and radius of the trunk, its widening at the foot, radius of a branch at its end over
+  // that at its foot.
   double size_m = 2.4, radius_m = 0.17, flare = 0.7, taper = 0.72, trunk_curvature = 0.3;
   double crown_limit =
       1;  // branches end within an ellipsoid of this size, 0.05 or more; 0: anywhere
   double colour_variation = 0.5;
-  std::string axiom;
+  std::string axiom;  // symbol of the trunk
   std::vector<SpeciesKind> kinds;
   std::vector<SpeciesRule> rules;
   SpeciesFoliage foliage;
@@ -76,7 +83,8 @@ struct Species {
   friend bool operator==(const Species&, const Species&) = default;
 };
 
-// The numbers of a species, of a kind and of its foliage: visit(name, value, lowest, highest).
+// Visit the numbers of a species, of a kind and of the foliage in a fixed order, with their allowed
+// ranges: visit(name, value, lowest, highest).
 template <class S, class Visit>
 void visit_numbers(S& s, const Visit& visit) {
   visit("size_m", s.size_m, 0.05, 30.0);
@@ -121,20 +129,21 @@ void visit_foliage_numbers(F& f, const Visit& visit) {
   visit("density_winter", f.density_winter, 0.0, 1.0);
 }
 
-// What is wrong with a species, and where: part "" (the species itself), "kind", "rule", "foliage"
-// or "colours", with the number of the kind or rule.
+// A fault of a species. `part` is "" (the species itself), "kind", "rule", "foliage" or "colours".
 struct SpeciesFault {
   std::string part;
-  std::size_t number = 0;
+  std::size_t number = 0;  // of the kind or rule
   std::string field, sentence;
   core::ErrorCode code = core::ErrorCode::kInvalidArgument;
 };
-// Nothing is allocated by the size of a number; costs are worked out as logarithms.
+// The first fault, or nothing. Safe for hostile values: no allocation depends on a number, and
+// costs are computed as logarithms.
 std::optional<SpeciesFault> find_fault(const Species& species);
+// The same as an error: kInvalidArgument, or kOverBudget if the grammar grows too fast.
 core::Result<void> validate(const Species& species);
 
-// Expected branches of one tree, if nothing stopped it from growing, as log2. Requires a grammar
-// whose letters are known; any numbers.
+// log2 of the expected number of branches of one tree without any limit. Requires a grammar whose
+// letters are known; works for any numbers.
 double log2_expected_branches(const Species& species, double iterations, double branches);
 
 // Positions in the schema of every species.
@@ -150,10 +159,13 @@ enum SpeciesParameter : std::size_t {
   kSpeciesParameterCount
 };
 
-// A model type of the species' name, whose identity() changes with every number of the species.
+// A model type with the species' name. Its identity() changes with every number of the species.
+// Fails like validate().
 core::Result<std::unique_ptr<ModelType>> make_species_type(const Species& species);
+// Whether a type was made by make_species_type().
 bool is_species_type(const ModelType& type);
-// The numbers of one tree of a type made by make_species_type.
+// The plan of one tree of such a type, which must outlive the plan. Requires legal parameters.
+// Other types fail an assertion, also in release.
 TreePlan plan_of_species(const ModelType& type, const Parameters& p);
 
 }  // namespace psygen::models

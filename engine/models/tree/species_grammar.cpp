@@ -11,7 +11,7 @@ namespace {
 
 using Shares = std::array<double, kMaxKinds>;
 
-// Children of a kind that a rule gives, expected over the draws or at most.
+// The starred children that a rule gives: the largest number (`most`) or the mean over all draws.
 double star_children(const GrammarRule& rule, int spread, double branches, bool most) {
   const double fixed = rule.fixed;
   if (most) return std::max(std::max(branches + spread, 1.0) - fixed, 0.0);
@@ -21,7 +21,7 @@ double star_children(const GrammarRule& rule, int spread, double branches, bool 
   return sum / (2 * spread + 1);
 }
 
-// The children of one node of a kind.
+// The children of one node of a kind, by kind: the largest numbers or the means.
 Shares children(const Grammar& g, std::size_t kind, double branches, bool most) {
   Shares result{};
   std::uint32_t before = 0;
@@ -56,7 +56,7 @@ ParsedRule parse_rule(const Species& species, std::string_view to) {
   std::uint32_t total = 0;
   for (std::size_t i = 0; i < to.size();) {
     const std::string_view letter =
-        to.substr(i, core::first_code_point(to.substr(i)).bytes);  // whole in what is said of it
+        to.substr(i, core::first_code_point(to.substr(i)).bytes);  // a whole one, for messages
     i += letter.size();
     if (letter == " ") continue;
     const std::uint8_t kind = kind_of(species, letter);
@@ -122,7 +122,7 @@ double log2_branches(const Grammar& grammar, std::size_t axiom, double iteration
                      bool most) {
   Shares now{};
   now[axiom] = 1;
-  double total = 1, scale = 0;  // real numbers are these times 2^scale
+  double total = 1, scale = 0;  // `now` and `total` are scaled by 2^-scale
   std::array<Shares, kMaxKinds> matrix;
   for (std::size_t kind = 0; kind < grammar.kinds; ++kind)
     matrix[kind] = children(grammar, kind, branches, most);

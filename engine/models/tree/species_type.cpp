@@ -1,4 +1,4 @@
-// A species as a model type: schema, bounds, costs, and the numbers of one tree.
+// A species as a model type: schema, bounds, costs, and the plan of one tree.
 #include <cmath>
 
 #include "engine/core/assert.hpp"
@@ -133,7 +133,7 @@ class SpeciesType final : public PlannedTree {
   double log2_cost(const Parameters& p) const override {
     const auto n = static_cast<double>(p.integer(kSpeciesIterations));
     const auto m = static_cast<double>(p.integer(kSpeciesBranches));
-    // Of bark at most 30 triangles a branch, of leaves eight a spray; both have a least number.
+    // At most 30 triangles of bark per branch and eight per spray; the total has a lower limit.
     const double each = 30 + 8 * std::max(species_.foliage.density, 0.0);
     const double grown =
         std::max(branches_log2(n, std::max(m, 0.0), true) + std::log2(each), 12.0) + 0.9;
@@ -157,11 +157,11 @@ class SpeciesType final : public PlannedTree {
   std::array<ParameterSpec, kSpeciesParameterCount> schema_;
   std::array<PathWeights, kMostBranches + 1> weights_;
   std::array<std::array<double, kMaxTreeIterations + 1>, kMostBranches + 1> mean_log2_, most_log2_;
-  std::array<TreeReach, kMaxTreeIterations + 1> reach_;  // by iterations
+  std::array<TreeReach, kMaxTreeIterations + 1> reach_;  // indexed by iterations
   std::uint64_t identity_ = 0;
-  float decay_ = 0.3F;  // of lengths, by the longest kind
+  float decay_ = 0.3F;  // length over the parent's, of the longest kind
   double ring_ = 0;     // farthest vertex of a branch's rings, over the trunk's radius
-  TreePlan plan_{};     // what is the same for every tree of the species
+  TreePlan plan_{};     // the part that all trees of the species share
 };
 
 void SpeciesType::set_schema() {
@@ -183,7 +183,7 @@ void SpeciesType::set_schema() {
       {"colour_variation", kReal, "1", species_.colour_variation, 0, 1, 0, 1,
        "spread of colour between leaves and trees"},
   }};
-  for (ParameterSpec& spec : schema_)  // narrow ranges about extreme defaults
+  for (ParameterSpec& spec : schema_)  // ranges around extreme defaults
     spec.soft_min = std::max(spec.soft_min, spec.hard_min);
 }
 
@@ -212,7 +212,7 @@ void SpeciesType::set_plan() {
   plan_.bark_contrast = f(species_.colours.bark_contrast);
 }
 
-// Of a tree that has its size and iterations.
+// Sets the envelope of a tree from its size and iterations.
 void SpeciesType::set_envelope(TreePlan& tree) const {
   float length = tree.size_m, sum = 0.0F;
   for (int i = 0; i < tree.iterations; ++i) {
@@ -243,7 +243,7 @@ core::Bounds SpeciesType::bounds_of(const TreePlan& tree) const {
           {side, top, side}};
 }
 
-// Fewer leaves of the same size; none where hardly any would be left.
+// Removes leaves by season; those that stay keep their size. Below 5 % all leaves are removed.
 void SpeciesType::shed_leaves(float season, FoliagePlan& foliage) const {
   const SpeciesFoliage& s = species_.foliage;
   const float shares[5] = {f(s.density_spring), f(s.density_summer), f(s.density_autumn),

@@ -1,9 +1,9 @@
-// Sprays: the foliage of levels 0 … 3, twigs of eight triangles near by and patches of four
-// further out, in clusters about the branches that bear leaves. A coarser level has fewer and
-// larger ones on the same skeleton, drawn towards the crown's centre by what they are larger, so
-// that the outline stays. Normals follow the crown rather than the leaf, which shades it as one
-// soft volume. Spray k hangs on bearer k mod M, so that neighbouring lanes read neighbouring
-// bearers.
+// Sprays: the foliage of levels 0 … 3, in clusters around the branches that bear leaves. A spray is
+// a twig of eight triangles at levels 0 and 1, a patch of four at levels 2 and 3. Coarser levels
+// have fewer and larger sprays on the same skeleton. These are moved towards the crown's centre by
+// the difference in size, which keeps the outline. Normals follow the crown rather than the leaf,
+// which shades it as one soft volume. Spray k hangs on bearer k mod M, so neighbouring lanes read
+// neighbouring bearers.
 #include <utility>
 
 #include "engine/models/tree/indices.hpp"
@@ -21,8 +21,8 @@
 #define PSYGEN_MODELS_TREE_SPRAYS_ONCE
 namespace psygen::models {
 
-// The branches with leaves, one after the other, the first ones once more at the end, as curves
-// from the crown's centre: `rows` are base, length · direction, length · bend, all times the pull.
+// The branches with leaves as curves from the crown's centre. `rows` are base, length · direction
+// and length · bend, all times the pull. The first branches are repeated behind the last.
 struct Bearers {
   static constexpr std::size_t kRows = 9;
   alignas(64) float rows[kRows][kMaxTreeNodes + 2 * kTreeLanes];
@@ -30,18 +30,18 @@ struct Bearers {
   Bearers() {}
 };
 
-// What all sprays of one mesh have in common. Random numbers enter as integers of 16 bits: "raw".
+// Values that all sprays of one mesh share. "raw" values are factors of random integers of 16 bits.
 struct SprayJob {
   const SprayForm& form;
-  std::uint32_t key;                  // of their random numbers
-  float from, from_raw;               // where on their bearer
+  std::uint32_t key;                  // of the random numbers
+  float from, from_raw;               // place on the bearer
   float cluster, cluster_fall;        // cluster · o = (cluster − cluster_fall · raw²) · raw
   float inverse_half[3], outward[3];  // of the crown
   float random_raw, out, branch, up;  // of the axis
   float side_random_raw, side_out, side_up, normal_up;
   float length, length_raw;        // of a spray
   float scale[3], center[3];       // packed = (place from the crown's centre) · scale + center
-  float room;                      // what the largest spray needs around its place, in lengths
+  float room;                      // distance to keep from the box, in lengths of the spray
   float colour[3], colour_raw[3];  // outer corners, stored bytes
   float bright, bright_raw;
 };
@@ -53,9 +53,8 @@ HWY_BEFORE_NAMESPACE();
 namespace psygen::models {
 namespace HWY_NAMESPACE {
 
-// Some sprays at a time go through three steps before their corners are written. Each step is a
-// short loop, so that the long chains of arithmetic of neighbouring vectors overlap; what it hands
-// on are rows of these.
+// A chunk of sprays goes through three steps before the corners are written. Each step is a short
+// loop, so the long dependency chains of neighbouring vectors overlap. Steps pass rows of a Chunk.
 constexpr std::size_t kChunk = 64;
 struct Chunk {
   using Row = float[kChunk];
@@ -76,7 +75,7 @@ HWY_INLINE Vec3 row3(const Chunk::Row (&from)[3], std::size_t i) {
   return {hn::Load(d, from[0] + i), hn::Load(d, from[1] + i), hn::Load(d, from[2] + i)};
 }
 
-// Random numbers; where the sprays are, and about where they point.
+// Step 1: random numbers, places, and unnormalised directions. `bearer` is the next bearer.
 HWY_INLINE void place_sprays(const SprayJob& job, const Bearers& bearers, std::size_t& bearer,
                              std::uint32_t first, std::size_t count, Chunk& c) {
   const DF d;
@@ -112,7 +111,7 @@ HWY_INLINE void place_sprays(const SprayJob& job, const Bearers& bearers, std::s
   }
 }
 
-// Their exact directions and lengths.
+// Step 2: exact directions and lengths.
 HWY_INLINE void orient_sprays(const SprayJob& job, std::size_t count, Chunk& c) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(DF())) {
     const Vec3 axis = unit(row3(c.axis, i));
@@ -161,12 +160,13 @@ HWY_INLINE void colour_sprays(const SprayJob& job, std::size_t count, Chunk& c) 
   }
 }
 
-// Corner kCorner of the sprays in the lanes, which are those from number `part` on of their block.
+// Writes corner kCorner of the sprays in the lanes, which are numbers `part`, `part` + 1, … of
+// their block.
 template <const SprayForm& kForm, std::size_t kCorner>
 HWY_INLINE void write_corner(Vec3 p, Vec3 along, Vec3 across, Vec3 face, VU light, Pair look,
                              std::size_t part, std::uint32_t* block, Extent& extent) {
   if constexpr (kForm.along[kCorner] != 0.0F) p = p + f1(kForm.along[kCorner]) * along;
-  // Left and right corners share the product.
+  // The same product as at the mirrored corner.
   if constexpr (kForm.across[kCorner] > 0.0F) p = p + f1(kForm.across[kCorner]) * across;
   if constexpr (kForm.across[kCorner] < 0.0F) p = p - f1(-kForm.across[kCorner]) * across;
   if constexpr (kForm.droop[kCorner] != 0.0F) p = p - f1(kForm.droop[kCorner]) * face;
@@ -176,8 +176,7 @@ HWY_INLINE void write_corner(Vec3 p, Vec3 along, Vec3 across, Vec3 face, VU ligh
   store_in_block(vertices_of(xy, zl, look), part, block + 64 * kCorner);
 }
 
-// Corners 1, 9, 2, 8, …: a corner of the left side after that of the right side like it, so that
-// what they share need not be kept for long.
+// Corners 1, 9, 2, 8, …: mirrored corners follow each other, so common terms are reused soon.
 constexpr std::size_t corner_at(std::size_t i, std::size_t corners) {
   return i % 2 == 0 ? 1 + i / 2 : corners - 1 - i / 2;
 }
@@ -199,7 +198,7 @@ HWY_INLINE void write_corners(const Chunk& c, std::size_t i, std::uint32_t* bloc
    ...);
 }
 
-// From rows of the skeleton to what the kernel reads.
+// Copies the bearers from the rows of the skeleton.
 void collect(const TreePlan& plan, const TreeSkeleton& s, const TreeCrown& crown, float pull,
              Bearers& b) {
   const DF d;
@@ -249,7 +248,7 @@ void write_blocks(const SprayJob& job, const Bearers& bearers, std::uint32_t spr
   extent.widen(box.low, box.high);
 }
 
-// `sprays` is a multiple of 16; they are written in blocks of 16, corner by corner.
+// Writes `sprays` sprays, a multiple of 16, in blocks of 16, corner by corner.
 void write_sprays(const SprayJob& job, const Bearers& bearers, std::uint32_t sprays,
                   MeshWriter& box, std::byte* to) {
   if (&job.form == &kLeaflets) return write_blocks<kLeaflets>(job, bearers, sprays, box, to);
@@ -282,10 +281,11 @@ HWY_EXPORT(collect);
 HWY_EXPORT(write_sprays);
 HWY_EXPORT(repeat_block);
 
-// Length of a spray such that `count` of them fill a crown of radius 1, times √count.
+// Length of a spray times √count, at each level, with which `count` sprays fill a crown of radius
+// 1.
 constexpr float kFillingLength[4] = {5.3F, 6.0F, 4.4F, 4.4F};
 
-// Length of a spray, and how far sprays are drawn towards the crown's centre.
+// Length of a spray in metres, and the factor that pulls sprays towards the crown's centre.
 struct SpraySize {
   float length, pull;
 };

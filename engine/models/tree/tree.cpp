@@ -37,8 +37,8 @@ constexpr ParameterSpec kSchema[kTreeParameterCount] = {
     {"bark_tone", kReal, "1", 0.55, 0, 1, 0, 1, "from grey (0) to brown (1)"},
 };
 
-// Kinds: the trunk, the leader that goes on, the limbs of the trunk, the side branches of others.
-// Every node becomes a leader and as many others as are drawn.
+// Kinds: the trunk, the leader that continues it, the limbs of the trunk, the side branches of
+// other branches. Every node becomes a leader and a drawn number of others.
 enum Kind : std::uint8_t { kTrunk, kLeader, kLimb, kSide };
 constexpr Grammar kGrammar = [] {
   Grammar g;
@@ -52,13 +52,13 @@ constexpr Grammar kGrammar = [] {
   return g;
 }();
 
-// The reach of reach.hpp in closed form, because it is wanted for every tree.
+// The reach of reach.hpp in closed form, because every call of plan_of_tree() needs it.
 core::Bounds bounds_of(const Parameters& p, const TreePlan& plan) {
   const double bend = 0.4331 * p.real(kTreeCurvature) + 0.35 * std::abs(p.real(kTreeTropism));
   const double size = p.real(kTreeSizeM), trunk = 1.1 * size;
   const double middle = plan.envelope_y, radius = plan.envelope_across;
   const double aside = size * trunk_side(plan);
-  const double low = std::max(middle - 0.62 * size, trunk - middle);  // limbs begin at 0.7
+  const double low = std::max(middle - 0.62 * size, trunk - middle);  // limbs grow from 0.7 up
   double in_crown = std::sqrt(low * low + 2 * aside * aside) / radius;
   double length = trunk, sum = 0;
   for (int i = 0; i < plan.iterations; ++i) {

@@ -1,4 +1,4 @@
-// How much of the ground a world's models cover, and in which colour.
+// The share of the ground that a world's models cover, and its colour.
 #include <algorithm>
 
 #include "engine/models/kit/exact_math.hpp"
@@ -9,7 +9,7 @@
 namespace psygen::world {
 namespace {
 
-// What is seen of an instance from above, weighted as if it were its upper half.
+// The albedo of an instance seen from above, weighted like that of its upper half.
 glm::vec3 albedo_of(const Outline& outline) {
   const auto reflected = [](const Corner& c) { return c.colour * c.colour * c.ambient; };
   glm::vec3 sum = reflected(outline.top) * 0.5F;
@@ -38,7 +38,7 @@ FarCover far_cover(const World& world, const models::Registry& registry) {
     }
   }
   if (covered <= 0) return {};
-  // Models that stand at random places overlap at random.
+  // Models at random places overlap at random.
   return {light / static_cast<float>(covered),
           static_cast<float>(1 - models::exact_exp(-std::min(covered, 100.0)))};
 }

@@ -29,11 +29,11 @@ core::Bounds FormWriter::finish() {
   const auto place = [this](const std::array<std::int16_t, 3>& q) {
     return box_.center() + box_.half_extent() * (glm::vec3(q[0], q[1], q[2]) * (1.0F / 32767.0F));
   };
-  const glm::vec3 around(reach_m_, 0, reach_m_);  // up to the box but for rounding
+  const glm::vec3 around(reach_m_, 0, reach_m_);  // inside the box, up to rounding
   return {glm::max(place(low_) - around, box_.min), glm::min(place(high_) + around, box_.max)};
 }
 
-// As far as there is room around `axis`, whichever way it turns.
+// `aside` shortened to the room that the box leaves around `axis` in every direction.
 glm::vec2 FormWriter::limited(glm::vec2 aside, const glm::vec3& axis) const {
   const float room = std::min(
       {axis.x - box_.min.x, box_.max.x - axis.x, axis.z - box_.min.z, box_.max.z - axis.z});

@@ -1,5 +1,6 @@
-// Writes far forms into the mesh of a node, and fills what is left over with triangles that cannot
-// be seen. For one mesh and one thread.
+// Writes far forms into the mesh of a node, and fills the rest of the mesh with degenerate
+// triangles. One writer per mesh, one thread. It decides neither forms nor places
+// (merged_models.cpp).
 #pragma once
 
 #include <array>
@@ -9,16 +10,19 @@
 
 namespace psygen::world {
 
+// Appends forms to one mesh of core::ModelVertex.
 class FormWriter {
  public:
-  // Positions are in `box`; what reaches beyond is moved onto it, and billboards are made narrower.
-  // `out` has room for all forms.
+  // Positions are packed in `box`. Points outside are moved onto it, and billboards that reach
+  // outside are made narrower. `out` must have room for all forms and outlive the writer.
   FormWriter(const core::Bounds& box, const models::MeshView& out)
       : box_(box), packer_(box), out_(out) {}
 
-  // `foot` is where the model stands, in the frame of the box.
+  // Appends a form. `foot` is the place of the model in the frame of the box, in metres. Without
+  // `sways` the sway of all vertices is 0.
   void add(Form form, const FormMesh& mesh, const glm::vec3& foot, bool sways);
-  // The box of what was added; the middle of the whole box if that is nothing.
+  // Fills the rest of the mesh and returns the box of the forms added, in metres. Without any forms
+  // it is the centre of the whole box. Call it once, last.
   core::Bounds finish();
 
  private:
@@ -30,7 +34,7 @@ class FormWriter {
   models::MeshView out_;
   std::size_t vertices_ = 0, indices_ = 0;
   std::array<std::int16_t, 3> low_{32767, 32767, 32767}, high_{-32767, -32767, -32767};
-  float reach_m_ = 0;  // of billboards, beyond their positions
+  float reach_m_ = 0;  // largest distance of a billboard's corner from its position
 };
 
 }  // namespace psygen::world

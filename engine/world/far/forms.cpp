@@ -9,10 +9,10 @@ namespace psygen::world {
 namespace {
 
 constexpr glm::vec3 kUp{0, 1, 0};
-// The second corner on top of a chunk is so much lower, in parts of its height.
+// Height of a chunk's second upper corner below the first, over the chunk's height.
 constexpr float kChunkStep = 0.4F;
 
-// Billboards lie flat to the light where crowns shade themselves.
+// Ambient light of flat billboards over that of a crown, which shades itself.
 constexpr float kBillboardShade = 0.6F;
 
 template <std::size_t N>
@@ -28,7 +28,7 @@ Corner placed(Corner corner, const glm::vec3& position, const glm::vec3& normal)
   return corner;
 }
 
-// The light of the upper and of the lower part of a crown, over all that is seen of it.
+// The mean light and colour of the visible upper and lower part of a crown.
 Corner upper_light(const Outline& o) {
   return mixed(o.top, o.mean_ring(), 0.35F);
 }
@@ -46,8 +46,8 @@ glm::vec3 axis_of(const Outline& o) {
   return {axis.x, 0, axis.y};
 }
 
-// `along` times the turn and `aside` times the direction a quarter turn from it, towards +z from
-// +x.
+// `along` times the direction `turn`, plus `aside` times the direction a quarter turn from it (from
+// +x towards +z).
 glm::vec3 turned(glm::vec2 turn, float along, float aside) {
   return {along * turn.x - aside * turn.y, 0, along * turn.y + aside * turn.x};
 }
@@ -63,7 +63,7 @@ void make_spindle(const Outline& o, float width, FormMesh& out) {
   set_indices(out, {0, 2, 1, 0, 3, 2, 0, 4, 3, 0, 1, 4, 5, 1, 2, 5, 2, 3, 5, 3, 4, 5, 4, 1});
 }
 
-// After so many vertices and indices.
+// Appends a trunk after `vertices` vertices and `indices` indices.
 void add_trunk(const Outline& o, std::size_t vertices, std::size_t indices, FormMesh& out) {
   const auto first = static_cast<std::uint16_t>(vertices);
   const auto second = static_cast<std::uint16_t>(vertices + 1);
@@ -92,7 +92,7 @@ void make_chunk(const Outline& o, float width, glm::vec2 turn, FormMesh& out) {
   set_indices(out, {0, 1, 2, 1, 0, 3, 0, 2, 3, 1, 3, 2});
 }
 
-// The kite is broadest where the crown is.
+// A kite is widest at the height where the crown is.
 void make_kite(const Outline& o, const Billboard& b, FormMesh& out) {
   const glm::vec3 axis = axis_of(o);
   const float top = o.top.position.y, bottom = o.bottom.position.y;
@@ -111,16 +111,16 @@ void make_kite(const Outline& o, const Billboard& b, FormMesh& out) {
   set_indices(out, {0, 1, 2, 1, 0, 3});
 }
 
-// What the crown leaves free of the trunk's triangle.
+// The area of the trunk's triangle that the crown does not hide.
 float seen_trunk_m2(const Outline& o) {
   const float tip = std::max(o.ring_height(), 1e-3F);
   const float hidden = std::clamp(1 - o.bottom.position.y / tip, 0.0F, 1.0F);
   return o.trunk_radius * tip * (1 - hidden * hidden);
 }
 
-// A tent with a base of 2a and the height h has the area a h, as has a kite 2a wide. Crowns keep
-// their width, other things may be narrower so that they reach down to where they begin; both are
-// wider where they would have to reach into the ground.
+// A tent with base 2a and height h has the area a h, and so has a kite of width 2a. Crowns keep
+// their width. Other models may become narrower, to reach down to their lower end. Both become
+// wider where they would otherwise reach into the ground.
 float half_width(const Outline& o, float side_m2, float models) {
   const float top = std::max(o.top.position.y, 1e-3F);
   const float height = std::max(top - std::max(o.bottom.position.y, 0.0F), 1e-3F);

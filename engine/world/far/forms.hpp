@@ -1,5 +1,6 @@
-// The few triangles that stand for a model far away, made from its outline. A form has always the
-// same number of vertices and triangles. Pure functions.
+// Forms: the few triangles that represent a distant model, made from its outline. Every form has a
+// fixed number of vertices and triangles. Pure functions, any thread, constant time.
+// docs/models.md, "Vegetation".
 #pragma once
 
 #include <array>
@@ -10,22 +11,24 @@
 
 namespace psygen::world {
 
+// The forms, from the most detailed.
 enum class Form : std::uint8_t {
-  kSpindleTrunk,  // a spindle, and a billboard of one triangle to the ground
-  kSpindle,       // the crown as a double pyramid of four sides
-  kChunk,         // a tetrahedron on its edge: broad at the top and at the bottom
-  kKiteTrunk,     // a kite, and the trunk as above
-  kKite,          // the crown as a billboard of two triangles, broadest in the middle
-  kTent,          // a billboard of one triangle, broadest at its foot, for one or several models
+  kSpindleTrunk,  // a spindle, and a trunk: a billboard of one triangle down to the ground
+  kSpindle,       // the crown as a double pyramid with four sides
+  kChunk,         // a tetrahedron on its edge: wide at the top and at the bottom
+  kKiteTrunk,     // a kite, and the same trunk
+  kKite,          // the crown as a billboard of two triangles, widest in the middle
+  kTent,          // a billboard of one triangle, widest at its foot, for one or several models
 };
 inline constexpr std::size_t kFormCount = 6;
-// The first vertices are of a solid, the others of billboards, which turn about their axes towards
-// the camera.
+// Sizes of a form. The first `solid_vertices` belong to a solid, the others to billboards, which
+// turn about their vertical axes towards the camera.
 struct FormSize {
   std::uint32_t vertices, triangles, solid_vertices;
 };
 inline constexpr std::array<FormSize, kFormCount> kFormSizes{
     {{9, 9, 6}, {6, 8, 6}, {4, 4, 4}, {7, 3, 0}, {4, 2, 0}, {3, 1, 0}}};
+// The sizes of a form, and whether it has no solid part.
 constexpr FormSize size_of(Form form) {
   return kFormSizes[static_cast<std::size_t>(form)];
 }
@@ -33,28 +36,30 @@ constexpr bool is_billboard(Form form) {
   return size_of(form).solid_vertices == 0;
 }
 
-// Metres from the model's foot; the first size_of(form) elements are used. Counter-clockwise seen
-// from outside. Corners of billboards are on their axis, and `aside` says how far they are to the
-// right and behind as the camera sees them.
+// The mesh of one form, in metres from the model's foot. The first size_of(form) elements are used.
+// Triangles are counter-clockwise seen from outside. Corners of billboards lie on their axis;
+// `aside` is their distance to the right of it and behind it, as seen from the camera.
 struct FormMesh {
   std::array<Corner, 9> corners;
   std::array<glm::vec2, 9> aside;
   std::array<std::uint16_t, 27> indices;
 };
 
-// Any form but billboards, so many times as wide. `turn` is a unit vector that the asymmetric ones
-// point along.
+// Makes a form that is not a billboard, `width` times as wide as the outline. Asymmetric forms
+// point along the unit vector `turn`, in x and z.
 void make_form(Form form, const Outline& outline, float width, glm::vec2 turn, FormMesh& out);
 
-// A billboard whose width and height give as much area from the side as `models` of them have
-// together, and whose lean gives half as much from above; a kite is always for one. Where many
-// would be a long wall it has less.
+// The dimensions of a billboard. From the side it has the area of `models` models together, from
+// above half of theirs. Kites are always for one model. The width is limited, so many models do not
+// become a long wall; then the area is smaller.
 struct Billboard {
-  float half_width_m, lean_m;
-  float base_m;  // height of the lowest corner above the ground
+  float half_width_m, lean_m;  // lean: horizontal distance of the top behind the base
+  float base_m;                // height of the lowest corner above the ground
 };
+// The dimensions for `models` models with this outline and silhouette.
 Billboard billboard_of(Form form, const Outline& outline, const Silhouette& silhouette,
                        float models);
+// Makes a form that is a billboard, with these dimensions.
 void make_billboard(Form form, const Outline& outline, const Billboard& billboard, FormMesh& out);
 
 }  // namespace psygen::world

@@ -23,7 +23,7 @@ using models::ParameterSpec;
 
 constexpr models::ParameterType kInteger = models::ParameterType::kInteger;
 constexpr models::ParameterSource kPlaced = models::ParameterSource::kPlaced;
-constexpr std::uint64_t kEdition = 4;  // of what this file makes of a world
+constexpr std::uint64_t kEdition = 4;  // version of the meshes that this file makes
 
 constexpr ParameterSpec kSchema[kMergedParameterCount] = {
     {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
@@ -35,8 +35,8 @@ constexpr ParameterSpec kSchema[kMergedParameterCount] = {
 };
 
 constexpr int kDetails = 2;
-// What the forms of the next node level are off, in parts of the height of what they stand for;
-// with every node level twice as much.
+// Error of the forms of the next node level, relative to the height of the models. It doubles with
+// every node level.
 constexpr double kNextFormsError = 0.2;
 
 int level_of(const Parameters& p) {
@@ -118,14 +118,14 @@ class MergedType final : public models::ModelType {
   }
 
  private:
-  struct Making;    // one call of synthesize()
-  struct Instance;  // that is added to the mesh
+  struct Making;    // state of one call of synthesize()
+  struct Instance;  // an instance to be added to the mesh
 
   void make_plans(int level) {
     auto& [own, next] = plans_[static_cast<std::size_t>(level)];
     own = plan_level(*world_, scatters_, level, level);
     next = plan_level(*world_, scatters_, level, level + 1);
-    if (next.vertices == 0) next = own;  // all too small: better finer than nothing
+    if (next.vertices == 0) next = own;  // all too small: keep the finer forms
     own.box = next.box = {glm::min(own.box.min, next.box.min), glm::max(own.box.max, next.box.max)};
   }
   const LevelPlan& plan(const Parameters& p, int level) const {
@@ -138,18 +138,19 @@ class MergedType final : public models::ModelType {
   std::shared_ptr<const World> world_;
   std::uint64_t identity_;
   std::vector<FarScatter> scatters_;
-  bool may_run_on_main_thread_ = true;  // as all may that it is made of
-  // By node level, of which 0 is not used, and level of detail; boxes of one node level are equal.
+  bool may_run_on_main_thread_ = true;  // true if it is for all scattered types
+  // Indexed by node level (0 is unused) and level of detail. Plans of one node level have equal
+  // boxes.
   std::array<std::array<LevelPlan, kDetails>, kMaxMergedLevel + 1> plans_;
 };
 
 struct MergedType::Making {
   const LevelPlan& plan;
-  std::uint64_t key;  // of the node
+  std::uint64_t key;  // of the node's random numbers
   FormWriter writer;
   models::BlockGround node_ground;            // of the whole node
-  int drawn_stride;                           // for what is drawn of it
-  std::optional<models::BlockGround> ground;  // of the tile, for slopes and heights of places
+  int drawn_stride;                           // stride at which it is drawn
+  std::optional<models::BlockGround> ground;  // of the current tile, for slopes and heights
   CoarsestMesh mesh;
   FormMesh form;
 };
@@ -158,12 +159,12 @@ struct MergedType::Instance {
   std::size_t scatter;
   const NodeBlock& block;
   std::uint32_t index;     // in the block
-  std::uint32_t together;  // for how many it stands
+  std::uint32_t together;  // number of models that it represents
   std::uint64_t hash;
-  glm::vec3 place{0.0F};  // in the block
+  glm::vec3 place{0.0F};  // metres from the block's corner
 };
 
-// A unit vector; not uniform, but without sines.
+// A unit vector from a hash, without sines. Its distribution is not uniform.
 glm::vec2 direction_of(std::uint64_t hash) {
   const float t = static_cast<float>(hash >> 40) * 0x1.0p-24F;
   const float scale = 1 / (1 + t * t);
@@ -180,7 +181,7 @@ glm::vec2 direction_of(std::uint64_t hash) {
   }
 }
 
-// A representative in place of an instance that is not synthesised.
+// Makes the form of an instance from a representative, without synthesis.
 void MergedType::make_from_like(const Instance& instance, const Parameters& p,
                                 Making& making) const {
   const FarScatter& far = scatters_[instance.scatter];
@@ -221,8 +222,8 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   making.writer.add(how.form, making.form, corner + instance.place, making.plan.form_level == 1);
 }
 
-// Instances of the whole node are numbered block by block; `together` numbers in a row are one
-// group, of which one member, drawn at random, stands for all.
+// Instances of the whole node are numbered block by block. Every `together` consecutive numbers
+// form a group, and one random member represents all of it.
 void MergedType::add_scatter(std::size_t s, const NodeBlock& block, Making& making) const {
   const FarScatter& far = scatters_[s];
   const ScatterPlan& how = making.plan.scatters[s];

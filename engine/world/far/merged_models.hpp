@@ -1,8 +1,9 @@
-// The model type "vegetation": one mesh for everything that is scattered over the 2^k × 2^k blocks
-// of a node of level k, each tree or rock as a few triangles, from level 4 on one form for several.
-// It stands where place_models() puts the single models (from level 3 on by the slopes of a coarser
-// lattice of the same ground), as high as the ground that the node draws, so changing from one to
-// the other moves nothing but up or down with the ground. docs/models.md, "Vegetation".
+// The model type "vegetation": one mesh for all models scattered over the 2^k × 2^k blocks of a
+// node of level k. Each tree or rock has a few triangles; from level 4 on, several share one form.
+// Places are those of place_models(); from level 3 on, slopes come from a coarser lattice of the
+// same ground. Heights are those of the ground that the node draws. So a change from single models
+// to their merged mesh moves them only up or down, with the ground. Knows no single type of model.
+// docs/models.md, "Vegetation".
 #pragma once
 
 #include <memory>
@@ -20,26 +21,28 @@ enum MergedParameter : std::size_t {
   kMergedParameterCount
 };
 
+// Highest level of a node with a merged mesh; the lowest is 1.
 inline constexpr int kMaxMergedLevel = 5;
 
-// Two levels of detail: what belongs to the node level, and, coarser than anything single but the
-// smallest stones, the forms of the next one. Positions are metres from the node's corner. Models
-// that find no place leave degenerate triangles at the end of the mesh. Needs 1.1 MiB of stack.
-// Makes a few instances of every scatter at once (about 0.1 ms a scatter). The model types of
-// `registry` must outlive the result, which may become one of them; `world` must be one of this
-// registry.
+// The model type of a world. It has two levels of detail: the forms of the node level, and those of
+// the next node level, which are coarser than all single models except the smallest stones.
+// Positions are in metres from the node's corner. Models that find no place leave degenerate
+// triangles at the end of the mesh. Synthesis needs 1.1 MiB of stack. This function synthesises a
+// few instances of every scatter (about 0.1 ms a scatter). The model types of `registry` must
+// outlive the result, which may be added to it; `world` must belong to this registry.
 std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
                                                     const models::Registry& registry);
 
+// The parameters of one node, which is counted in nodes of its level, 1 … kMaxMergedLevel.
 models::Parameters merged_parameters(core::BlockCoord node, int node_level);
 
-// Of a world's models as they are seen from above, for colouring the ground further out.
+// A world's models seen from above, for the colour of distant ground.
 struct FarCover {
-  glm::vec3 albedo{0.0F};  // linear, mean over the ground that they cover, darkened by their own
-                           // ambient visibility
-  float share = 0;         // of the ground that they cover, on average over the world
+  glm::vec3 albedo{0.0F};  // linear; mean over the covered ground, darkened by the models' ambient
+                           // visibility
+  float share = 0;         // of the ground that is covered, mean over the world; 0 … 1
 };
-// Takes about 2 ms: it looks for places on kSizeBlocks blocks.
+// The cover of a world. Takes about 2 ms, because it places models on kSizeBlocks blocks.
 FarCover far_cover(const World& world, const models::Registry& registry);
 
 }  // namespace psygen::world

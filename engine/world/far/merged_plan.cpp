@@ -9,15 +9,15 @@
 namespace psygen::world {
 namespace {
 
-// A node of side s is drawn from about 2.4 s on, by 700 pixels a radian; what is less wide and high
-// than 1.2 of them then is left out, but trees and bushes are first put together, up to so many or
-// twice as many as all are.
+// A node of side s is drawn from a distance of about 2.4 s, at 700 pixels per radian. Models
+// smaller than 1.2 pixels there are left out. Trees and bushes first share a form, up to
+// kMostTogether of them or twice the thinning.
 constexpr double kNearestSides = 2.4, kPixelsPerRadian = 700, kLeastPixels = 1.2;
 constexpr std::uint32_t kMostTogether = 8;
-constexpr std::uint32_t kMostThinning = 1U << 26;  // more than there are in any node
+constexpr std::uint32_t kMostThinning = 1U << 26;  // more than the instances of any node
 constexpr std::uint64_t kMostVertices = 65'536;
 
-// How many models of this size must be together so that they can be seen.
+// The number of models of this size, in pixels, that must share a form to be visible.
 std::uint32_t least_together(double pixels) {
   const double ratio = kLeastPixels / pixels;
   return static_cast<std::uint32_t>(std::ceil(std::min(ratio * ratio, 1e6)));
@@ -40,7 +40,7 @@ void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint3
       how.forms = (instances + how.together - 1) / how.together;
       how.each_is_synthesised = plan.form_level == 1 && !is_billboard(how.form) && far.is_cheap();
     }
-    // Only worlds of thousands of scatters do not fit, however much is put together.
+    // Only worlds with thousands of scatters do not fit, even with the largest thinning.
     if (thinning >= kMostThinning &&
         plan.vertices + how.forms * size_of(how.form).vertices > kMostVertices)
       how.forms = 0;
@@ -88,7 +88,7 @@ double work_of(const World& world, std::span<const FarScatter> scatters, const L
   const double ground = 0.35 * vertices * vertices *
                         static_cast<double>(world.terrain.integer(models::kTerrainOctaves)) *
                         (world.terrain.real(models::kTerrainWarp) > 0 ? 8 : 1);
-  double sum = ground * static_cast<double>(ground_tiles(plan.level) + 1);  // and the whole node
+  double sum = ground * static_cast<double>(ground_tiles(plan.level) + 1);  // 1: the whole node
   for (std::size_t s = 0; s < scatters.size(); ++s) {
     const ScatterPlan& how = plan.scatters[s];
     const FarScatter& far = scatters[s];

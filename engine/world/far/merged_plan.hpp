@@ -1,6 +1,6 @@
-// What becomes of each scatter of a world at one node level and level of detail: which form, for
-// how many models, and so the size of the mesh. Depends on counts and sizes alone, not on what
-// finds a place.
+// Plans the merged mesh of a node level and level of detail: the form of each scatter, the number
+// of models per form, and from these the size of the mesh. Depends only on counts and sizes, not on
+// the places that models find. Pure functions, any thread, linear in the scatters.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,30 @@
 
 namespace psygen::world {
 
+// One scatter in a node's mesh.
 struct ScatterPlan {
   Form form = Form::kTent;
-  std::uint32_t together = 1;        // instances that one form stands for
-  std::uint64_t forms = 0;           // 0: left out
-  bool each_is_synthesised = false;  // else representatives stand for them
+  std::uint32_t together = 1;        // instances per form
+  std::uint64_t forms = 0;           // number of forms in the node; 0: left out
+  bool each_is_synthesised = false;  // false: forms are made from representatives
 };
 
+// A node's mesh.
 struct LevelPlan {
-  int level = 1;                      // of the node
-  int form_level = 1;                 // of the nodes that have the same forms, from `level` on
-  std::vector<ScatterPlan> scatters;  // in the order of the world's
-  std::uint64_t vertices = 0, triangles = 0;
-  core::Bounds box;  // metres from the node's corner
+  int level = 1;                              // of the node
+  int form_level = 1;                         // node level whose forms are used, >= level
+  std::vector<ScatterPlan> scatters;          // in the order of World::scatter
+  std::uint64_t vertices = 0, triangles = 0;  // exact size of the mesh
+  core::Bounds box;                           // metres from the node's corner
 };
 
-// At most 65,536 vertices.
+// The plan for nodes of `level` with the forms of `form_level`. At most 65,536 vertices: if needed,
+// more models share a form.
 LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters, int level,
                      int form_level);
 
-// What making the mesh takes, in nanoseconds of one machine of which only the proportions count.
+// Relative time of making the mesh. The unit is close to a nanosecond; only ratios are meant to be
+// used.
 double work_of(const World& world, std::span<const FarScatter> scatters, const LevelPlan& plan);
 
 }  // namespace psygen::world

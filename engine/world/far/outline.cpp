@@ -25,7 +25,7 @@ core::ModelVertex vertex_at(std::span<const std::byte> vertices, std::size_t i) 
   return v;
 }
 
-// The vertices furthest along ±x, ±y, ±z among those of one material, or of any.
+// The vertices furthest along ±x, ±y, ±z, among those that are added.
 struct Extremes {
   std::array<std::size_t, 6> at{};  // −x, −y, −z, +x, +y, +z
   std::size_t count = 0;
@@ -49,7 +49,8 @@ struct Extremes {
   std::array<std::int16_t, 3> least_{}, most_{};
 };
 
-// The mean of what is not leaf, and how far its lowest tenth is from the foot.
+// Sets the foot to the mean of the vertices that are not leaves, and the trunk's radius to the
+// largest distance of their lowest tenth from the axis through the foot.
 void measure_trunk(std::span<const std::byte> vertices, const core::Bounds& box, Outline& outline) {
   const std::size_t count = vertices.size() / sizeof(core::ModelVertex);
   float lowest = 0, highest = 0, solids = 0;

@@ -1,6 +1,6 @@
-// What remains of a model that is a few pixels large: the extreme corners of its mesh, its trunk,
-// and how much of the picture it covers from the side and of the ground from above. Knows no model
-// type: everything is measured on a mesh. Pure functions; the same bits on every machine.
+// Measures a model for views where it is a few pixels large: the extreme corners of its mesh, its
+// trunk, and its areas from the side and from above. Knows no model type: everything is measured on
+// a mesh. Pure functions, any thread, linear in the vertices; the same bits on every machine.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ namespace psygen::world {
 
 inline constexpr std::uint8_t kLeaf = 1;  // core::ModelVertex::material
 
-// A vertex as numbers: metres from the model's foot, unit normal, colour as stored (square root of
-// the albedo), ambient and sway in [0, 1].
+// An unpacked vertex: position in metres from the model's foot, unit normal, stored colour (square
+// root of the albedo), ambient and sway in [0, 1].
 struct Corner {
   glm::vec3 position{0.0F};
   glm::vec3 normal{0, 1, 0};
@@ -29,50 +29,53 @@ struct Corner {
   std::uint8_t material = 0;
 };
 
-// Everything between two corners, at `t` in [0, 1]; the material is that of `a`.
+// Linear interpolation from `a` (t = 0) to `b` (t = 1). The material is that of `a`; the normal is
+// not normalised.
 Corner mixed(const Corner& a, const Corner& b, float t);
 
-// The corners furthest up, down and along +x, +z, −x, −z: of the leaves, or of all of it where
-// there are none. A crown that is an octahedron is given back exactly.
+// The corners furthest up, down and along +x, +z, −x, −z: of the leaves, or of the whole mesh if it
+// has none. The corners of a crown that is an octahedron are returned exactly.
 struct Outline {
   Corner top, bottom;
   std::array<Corner, 4> ring;
-  Corner foot;             // mean of what is not leaf, at its lowest point
+  Corner foot;             // mean of the vertices that are not leaves, at their lowest height
   float trunk_radius = 0;  // at the foot; 0: no trunk apart from the crown
-  bool leafy = false;
+  bool leafy = false;      // the mesh has leaves
 
-  glm::vec2 axis() const;     // x, z of the middle of the ring
+  glm::vec2 axis() const;     // x and z of the middle of the ring
   float ring_height() const;  // mean y of the ring
-  float ring_radius() const;  // mean distance from the axis
-  Corner mean_ring() const;   // all of it the mean, the normal upwards
-  // The same, so many times as wide and as high.
+  float ring_radius() const;  // mean distance of the ring from the axis
+  Corner mean_ring() const;   // mean of the ring, with the normal upwards
+  // The outline of the model made `across` times as wide and `up` times as high.
   Outline scaled(float across, float up) const;
 };
 
-// Of core::ModelVertex, whose positions are in `box`; nothing for no vertices.
+// The outline of core::ModelVertex whose positions are packed in `box`. Nothing for no vertices.
 std::optional<Outline> outline_of(std::span<const std::byte> vertices, const core::Bounds& box);
 
-// Areas in m² of what stands above y = 0: seen from the side (the mean of four directions), and
-// from above. Overlapping triangles count once. To about 3 %.
+// Areas in m² of a mesh: from the side (mean of four directions, only above y = 0), and from above.
+// Overlapping triangles count once. Accurate to about 3 %.
 struct Silhouette {
   float side_m2 = 0, plan_m2 = 0;
 
-  // Of the same, so many times as wide and as high.
+  // The areas of the model made `across` times as wide and `up` times as high.
   Silhouette scaled(float across, float up) const {
     return {side_m2 * across * up, plan_m2 * across * across};
   }
 };
+// The silhouette of triangles over `places`, in metres.
 Silhouette silhouette_of(std::span<const glm::vec3> places, std::span<const std::uint16_t> indices);
 
-// Room for the coarsest mesh of one model after the other.
+// Holds the coarsest mesh of one model. The memory is reused from model to model.
 class CoarsestMesh {
  public:
-  // Synthesises it. Types of users may throw; the layout must be core::VertexLayout::kModel.
+  // Synthesises the mesh. User types may throw. The layout must be core::VertexLayout::kModel.
   void make(const models::ModelType& type, const models::Parameters& p);
+  // The mesh, its bounds and its outline. The span is valid until the next make().
   std::span<const std::byte> vertices() const { return vertices_; }
   const core::Bounds& box() const { return box_; }
   std::optional<Outline> outline() const { return outline_of(vertices_, box_); }
-  // Reads the shared indices too.
+  // Its silhouette. `type` is that of make(); its shared indices are read if needed.
   Silhouette silhouette(const models::ModelType& type) const;
 
  private:

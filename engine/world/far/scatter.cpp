@@ -9,13 +9,13 @@
 namespace psygen::world {
 namespace {
 
-// A coarsest mesh of more vertices than this is not made for every instance.
+// A coarsest mesh with more vertices than this is not made for every instance.
 constexpr std::size_t kCheapVertices = 128;
 // Bounds that differ by less than this factor are alike.
 constexpr float kAlike = 1.04F;
-// Of what is no wider or higher than this it cannot be seen that it is flat.
+// Up to this size on screen, a flat form cannot be told from a solid one.
 constexpr double kSmallPixels = 6;
-// Instances beyond the representatives may be so much larger; what reaches further is cut.
+// Other instances may be larger than the representatives by this factor; parts beyond are cut.
 constexpr float kRoom = 1.25F;
 
 float ratio(float a, float b) {
@@ -31,7 +31,8 @@ FarScatter::Reach larger(const FarScatter::Reach& a, const FarScatter::Reach& b)
   return {std::max(a.aside, b.aside), std::max(a.up, b.up), std::max(a.down, b.down)};
 }
 
-// Trunks in the middle of their turns.
+// Displacement of a billboard's corner along x; 0 for corners of solids. For the silhouette, the
+// trunk faces one fixed direction.
 float aside_of(Form form, const FormMesh& mesh, std::size_t corner) {
   return corner < size_of(form).solid_vertices ? 0 : mesh.aside[corner].x;
 }
@@ -53,7 +54,7 @@ FarScatter::FarScatter(const World& world, const models::ModelType& type, const 
                        std::uint32_t first)
     : type_(&type), scatter_(&scatter), first_(first) {
   if (scatter.count == 0 || !type.is_seen_from_far()) return;
-  try {  // types of users may throw; nothing of ours does unless memory ends
+  try {  // user types may throw; our own code throws only when memory is exhausted
     measure(world);
   } catch (const std::bad_alloc&) {
     throw;
@@ -70,7 +71,7 @@ void FarScatter::measure(const World& world) {
   CoarsestMesh mesh;
   std::size_t vertices = 0;
   for (std::uint32_t k = 0; k < kRepresentatives; ++k) {
-    // Blocks that exist in any world; those of one block differ as much as those of many.
+    // These blocks exist in every world. Instances of one block vary as much as those of many.
     const Scattering scattering(world, *type_, *scatter_,
                                 {static_cast<std::int32_t>(k / scatter_->count), 0});
     const models::Parameters p = scattering.parameters(first_ + k % scatter_->count);

@@ -1,5 +1,5 @@
-// One scatter as it is seen from far away: a few of its instances, measured once, that stand for
-// all. Immutable after construction; any thread.
+// One scatter as it appears from far away: a few instances, measured once, represent all of them.
+// Immutable after construction, any thread. Places nothing (node_walk.hpp, placement.hpp).
 #pragma once
 
 #include <array>
@@ -11,55 +11,60 @@
 
 namespace psygen::world {
 
-// An instance of which everything is known, and the size of its bounds, by which others are found
-// to be like it.
+// A measured instance. Other instances are matched to it by the size of their bounds.
 struct Representative {
   Outline outline;
   Silhouette silhouette;
   float bounds_width_m = 0, bounds_height_m = 0;
 };
 
-// A representative that is like an instance once it is so many times as wide and as high.
+// The match of an instance: a representative, and its factors of width and height.
 struct Likeness {
   const Representative* model;
   float across, up;
 };
 
+// The representatives of one scatter.
 class FarScatter {
  public:
   static constexpr std::uint32_t kRepresentatives = 32;
 
   // Draws and synthesises kRepresentatives instances of `scatter`, whose first instance in a block
-  // has the index `first`. `world` and the type must outlive it. Where the type throws, makes
-  // nothing that can be seen or is not seen from far, there are none.
+  // has the index `first`. `world`, `type` and `scatter` must outlive it. There are no
+  // representatives if the type throws, makes nothing visible or is not seen from far.
   FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,
              std::uint32_t first);
 
+  // The inputs, and the representatives; empty() if there are none.
   bool empty() const { return representatives_.empty(); }
   const models::ModelType& type() const { return *type_; }
   const Scatter& scatter() const { return *scatter_; }
   std::uint32_t first_index() const { return first_; }
   std::span<const Representative> representatives() const { return representatives_; }
-  // Of one instance, on average.
+  // Mean silhouette of one instance.
   Silhouette mean_silhouette() const { return mean_; }
+  // Whether most representatives have leaves.
   bool is_leafy() const { return leafy_; }
-  // Whether the coarsest meshes are small enough to be made for every single instance.
+  // Whether the coarsest meshes are small enough to be made for every instance.
   bool is_cheap() const { return cheap_; }
 
-  // The form for single instances at a node level >= 1 that is first seen so large, and how much
-  // wider it must be to cover as much of the picture as the coarsest meshes do on average; not for
-  // billboards, which are made to measure.
+  // The form of single instances at a node level >= 1, if `pixels_per_m` is their size on screen at
+  // the distance where such nodes begin.
   Form form_at(int node_level, double pixels_per_m) const;
+  // The factor of a form's width with which it covers, on average, as many pixels as the coarsest
+  // mesh. Not for billboards, which have dimensions of their own.
   float width_of(Form form) const { return widths_[static_cast<std::size_t>(form)]; }
 
-  // One that is like the instance with these bounds; which one of those is up to `hash`.
+  // A representative like an instance with bounds of this size. `hash` selects one of those that
+  // are close enough. Requires !empty(); linear in the representatives. The pointer lives as long
+  // as this object.
   Likeness like(float width_m, float height_m, std::uint64_t hash) const;
 
-  // Largest reach of any corner from the foot: to the side, up and down (positive), with forms that
-  // stand for up to `models` instances.
+  // Largest distances in metres of any corner from the foot; all >= 0.
   struct Reach {
     float aside = 0, up = 0, down = 0;
   };
+  // The reach of forms that represent up to `models` instances.
   Reach reach(float models) const;
 
  private:
@@ -73,7 +78,7 @@ class FarScatter {
   std::vector<Representative> representatives_;
   Silhouette mean_;
   Reach reach_;         // of the type's bounds
-  float extent_m_ = 0;  // mean width or height, what is larger
+  float extent_m_ = 0;  // mean of the larger of width and height
   std::array<float, kFormCount> widths_{};
   bool leafy_ = false, conical_ = false, trunk_ = false, slender_ = false, cheap_ = false;
 };

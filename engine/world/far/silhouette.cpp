@@ -1,4 +1,4 @@
-// Areas of meshes as seen from the side and from above, and the meshes that are measured.
+// Areas of meshes from the side and from above, and the meshes that are measured.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kCells = 48;  // per side of the raster
 
-// A raster over the triangles' extent in one projection; only what lies above `floor` counts.
+// A raster over the extent of the triangles in one projection. Only parts above `floor` count.
 class Raster {
  public:
   Raster(std::span<const glm::vec2> points, float floor) : low_(points[0]), high_(points[0]) {

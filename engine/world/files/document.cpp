@@ -15,14 +15,14 @@
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"
 #include <toml++/impl/preprocessor.h>
-// Version 3.3 assumes that a key follows "[", checked or not, and has a proper error for what else
-// may stand there a few lines further down: without the assumption all is well.
+// Version 3.3 assumes that a key follows "[", although it reports an error a few lines later if
+// none does. The assumption would be undefined behaviour; without it, the error is reported.
 #undef TOML_ASSERT_ASSUME
 #define TOML_ASSERT_ASSUME(condition) static_assert(true)
-// Asked about a character that may follow a key or a number, is_non_ascii_horizontal_whitespace()
-// has no answer for U+00A1 to 0499, U+2C5E to 3057 and U+FB26 to FEFE, ö among them, but undefined
-// behaviour. The text is screened for them; yet after a number the parser reads on into what is a
-// string to others (1"ö"). So the function gets the answer that it lacks.
+// The parser calls is_non_ascii_horizontal_whitespace() for characters after a key or a number. For
+// U+00A1 to 0499, U+2C5E to 3057 and U+FB26 to FEFE (ö, for example) this is undefined behaviour.
+// text_screen.hpp refuses these outside strings. But after a number the parser reads on into a
+// string (1"ö"), so the missing case must return false.
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE return false
@@ -80,7 +80,7 @@ Node convert(const toml::node& from) {
   return to;
 }
 
-// The parser's words, with what it does not say.
+// The parser's message, with a hint about large integers.
 std::string sentence_of(const toml::parse_error& error) {
   const std::string said = core::shown(error.description());
   const bool too_large = said.ends_with("is not representable in 64 bits");

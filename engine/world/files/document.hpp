@@ -1,6 +1,6 @@
-// A TOML document as a plain tree that remembers lines. The only place that knows the parser, so
-// that world and path files are read from values of our own. Not a validator: table_reader.hpp
-// says what is allowed. Hostile texts are refused, whatever they contain.
+// A TOML document as a plain tree with line numbers. Only this file's source knows the parser;
+// world and path files are read from these nodes. Not a validator: table_reader.hpp checks what is
+// allowed. Safe for hostile texts. Plain values, any thread. docs/world-files.md.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +14,36 @@ namespace psygen::world {
 
 struct Member;
 
+// A value. Only the field of its kind is set.
 struct Node {
+  // kTime: any date or time; its value is not kept.
   enum class Kind : std::uint8_t { kInteger, kReal, kText, kBoolean, kTime, kArray, kTable };
   Kind kind = Kind::kTable;
-  int line = 1;  // where it begins, from 1
+  int line = 1;  // first line, counted from 1
   std::int64_t integer = 0;
-  double real = 0;  // of integers too
+  double real = 0;  // set for integers too
   bool boolean = false;
   std::string text;
   std::vector<Node> items;      // of an array
   std::vector<Member> members;  // of a table, sorted by key
 };
 
+// A key of a table, with its line, and its value.
 struct Member {
   std::string key;
   int line = 1;
   Node value;
 };
 
-// Values and tables may be nested this deep.
+// Largest depth of nested values and tables.
 inline constexpr int kMaxNesting = 16;
 
-// The root table. Fails with kParse, naming file and line, for anything that is not TOML 1.0 in
-// UTF-8, for nesting and dotted keys deeper than kMaxNesting, and for strings over several lines.
+// Parses a text and returns its root table. Fails with kParse, naming file and line, for anything
+// that is not TOML 1.0 in UTF-8, for nesting and dotted keys deeper than kMaxNesting, and for
+// strings over several lines. `file_name` is for messages only.
 core::Result<Node> parse_document(std::string_view text, std::string_view file_name);
 
-// "an integer", "a table", …
+// A kind for messages: "an integer", "a table", …
 std::string_view kind_name(Node::Kind kind);
 
 }  // namespace psygen::world

@@ -1,5 +1,6 @@
-// The fields of sky, water and palette, once, for reading and for writing. `visit(name, field,
-// limits)` is called for each of them. Internal to world.
+// The fields of sky, water and palette in one place, for reading and for writing. Each visitor
+// calls visit(name, field, limits) for every field, in the order of the file. It reads no text
+// (table_reader.hpp). Internal to world.
 #pragma once
 
 #include "engine/world/files/table_reader.hpp"
@@ -7,11 +8,12 @@
 
 namespace psygen::world {
 
-inline constexpr Limits kAnyHeight{-1e7, 1e7};
-inline constexpr Limits kBlend{0.01, 1e6};
+inline constexpr Limits kAnyHeight{-1e7, 1e7};  // metres
+inline constexpr Limits kBlend{0.01, 1e6};      // metres
 inline constexpr Limits kRadiance{0, 1000};
 inline constexpr Limits kShare{0, 1};
 
+// The fields of Sky.
 template <class S, class Visit>
 void visit_sky(S& sky, const Visit& visit) {
   visit("sun_azimuth_deg", sky.sun_azimuth_deg, Limits{-360, 360});
@@ -30,6 +32,7 @@ void visit_sky(S& sky, const Visit& visit) {
   visit("latitude_deg", sky.latitude_deg, Limits{-80, 80});
 }
 
+// The fields of Water.
 template <class W, class Visit>
 void visit_water(W& water, const Visit& visit) {
   visit("level_m", water.level_m, kAnyHeight);
@@ -37,6 +40,7 @@ void visit_water(W& water, const Visit& visit) {
   visit("shore_m", water.shore_m, Limits{0, 1000});
 }
 
+// The fields of Palette.
 template <class P, class Visit>
 void visit_palette(P& palette, const Visit& visit) {
   visit("grass", palette.grass, kShare);
@@ -56,13 +60,14 @@ void visit_palette(P& palette, const Visit& visit) {
   visit("snow_slope_max", palette.snow_slope_max, kShare);
 }
 
-// Parameters of the terrain that stand in [world] under these names, and not in [terrain].
+// Parameters of the terrain that the table [world] has under these keys, instead of [terrain].
 struct TerrainAlias {
   std::string_view key, parameter;
 };
 inline constexpr TerrainAlias kWorldKeys[] = {{"cell_m", "cell_m"}, {"block_vertices", "size"}};
 
-inline constexpr Limits kPlaceHeights{-1e7, 1e7};
-inline constexpr Limits kSlopes{0, 90};
+// Of the filters of a [[scatter]].
+inline constexpr Limits kPlaceHeights{-1e7, 1e7};  // metres
+inline constexpr Limits kSlopes{0, 90};            // degrees
 
 }  // namespace psygen::world

@@ -5,7 +5,7 @@
 namespace psygen::world {
 namespace {
 
-enum class Sight : std::uint8_t { kSeen, kUnseen };  // unseen: also what joins its neighbours
+enum class Sight : std::uint8_t { kSeen, kUnseen };  // kUnseen includes combining characters
 
 struct Range {
   char32_t first, last;
@@ -68,7 +68,7 @@ constexpr Range kRanges[] = {
     {0xE0000, 0xE0FFF, Sight::kUnseen, kInvisible, kDelete},
 };
 
-// The ASCII character that a full-width form stands for, or 0.
+// The ASCII character of a full-width form, or 0.
 char ascii_of_full_width(char32_t c) {
   return c >= 0xFF01 && c <= 0xFF5E ? static_cast<char>(c - 0xFF01 + '!') : '\0';
 }
@@ -78,7 +78,7 @@ char ascii_of_full_width(char32_t c) {
 ForeignCharacter describe(const core::CodePoint& point, std::string_view bytes) {
   const std::string number = fmt::format("U+{:04X}", static_cast<std::uint32_t>(point.value));
   const auto seen = [&](std::string_view kind) {
-    // What {fmt} does not call printable either has only its number.
+    // Characters that {fmt} calls unprintable are given only by number.
     const std::string glyph = core::shown(bytes);
     return glyph == bytes ? fmt::format("'{}' ({}{})", glyph, number, kind) : number;
   };

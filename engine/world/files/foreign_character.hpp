@@ -1,5 +1,6 @@
-// Names characters beyond ASCII that stand where only ASCII may: as people see them, by number, and
-// those that are easily mistaken for ASCII, or cannot be seen, in words. Pure; any thread.
+// Describes non-ASCII characters in places where only ASCII is allowed. Gives the glyph, the
+// number, and a description in words for characters that are invisible or easily mistaken for
+// ASCII. It does not find them (text_screen.hpp). Pure, any thread.
 #pragma once
 
 #include <string>
@@ -8,12 +9,13 @@
 
 namespace psygen::world {
 
+// A description for an error message.
 struct ForeignCharacter {
   std::string name;    // "'ö' (U+00F6)", "U+200B (an invisible space)"
-  std::string advice;  // what to do about it: "write -"; empty for most
+  std::string advice;  // how to correct it: "write -"; empty for most
 };
 
-// `bytes` are those of the code point.
+// Describes a code point. `bytes` is its UTF-8 text.
 ForeignCharacter describe(const core::CodePoint& point, std::string_view bytes);
 
 }  // namespace psygen::world

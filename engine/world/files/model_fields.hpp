@@ -1,4 +1,5 @@
-// The parameters of one model as a world file gives them: read, and checked against its type.
+// The parameters of one model in a world file: reads them and checks them against the model's type.
+// Internal to world; one thread per file. It knows no tables (scatter_file.cpp, world_file.cpp).
 #pragma once
 
 #include <cstdint>
@@ -11,29 +12,32 @@
 
 namespace psygen::world {
 
-// The ranges of one model as the file gives them, with the lines for messages.
+// The ranges of one model in the file, in the order of its schema, with lines and names for
+// messages.
 struct ModelFields {
   const models::ModelType* type = nullptr;
   std::vector<ParameterRange> ranges;
   std::vector<int> lines;
-  std::vector<std::string> names;  // as the file calls them
+  std::vector<std::string> names;  // full names in the file
 };
 
-// Every parameter at its default, as if it stood in `line`.
+// All parameters at their defaults, attributed to `line`. `type` must outlive the result.
 ModelFields fields_of(const models::ModelType& type, int line);
 
-// Reads parameter `i` from `key`: a number or, if `is_range`, also [lowest, highest].
+// Reads parameter `i` from `key`: a number or, if `is_range`, also [lowest, highest]. Adds problems
+// to the reader's; then and for missing keys the range keeps its value.
 void read_parameter(TableReader& reader, std::string_view key, std::size_t i, bool is_range,
                     ModelFields& fields);
 
-// The parameters at one corner of the ranges: bit b of `corner` chooses the end of the b-th range
+// The parameters at one corner of the ranges: bit b of `corner` selects the end of the b-th range
 // that is not a single value.
 models::Parameters corner_of(const ModelFields& fields, std::uint32_t corner);
 
-// Asks the model about every corner of its ranges. False after a problem.
+// Validates every corner of the ranges. Adds the first problem and returns false if there is one.
+// Exponential in the number of ranges, which is at most Parameters::kMaxCount.
 bool check_model(const ModelFields& fields, Problems& problems);
 
-// The largest cost of any of them, as log2 of triangles, whether they are allowed or not.
+// The largest cost of any corner, as log2 of triangles, for allowed and for refused corners.
 double log2_cost(const ModelFields& fields);
 
 }  // namespace psygen::world

@@ -1,4 +1,4 @@
-// Path files: text → CameraPath. The format is in docs/world-files.md.
+// Path files: text → CameraPath. docs/world-files.md describes the format.
 #include "engine/world/files/path_file.hpp"
 
 #include <fmt/format.h>
@@ -58,7 +58,7 @@ PathPoint read_point(const Node& node, std::size_t number, Problems& problems) {
   return point;
 }
 
-// What is wrong between a point and the one before it.
+// Checks a point against the one before it.
 void check_order(const PathPoint& before, const PathPoint& point, const Node& node,
                  std::size_t number, Problems& problems) {
   const double dt = point.time_s - before.time_s;
@@ -94,7 +94,7 @@ core::Result<CameraPath> parse_camera_path(std::string_view text, std::string_vi
   Problems problems(file_name);
   TableReader root(*document, "", 1, problems);
   read_format(root, kPathFormat);
-  // Another version may break any other rule of this one.
+  // For another version, errors about other fields would be misleading.
   if (problems.any()) return tl::unexpected(problems.first());
   CameraPath::Settings settings = read_settings(root, problems);
   std::vector<PathPoint> points = read_points(root, problems);

@@ -1,4 +1,5 @@
-// Path files: TOML text to CameraPath (docs/world-files.md).
+// Reads path files: TOML text to CameraPath. Pure apart from reading the file, any thread. Writes
+// none. Format: docs/world-files.md.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +10,10 @@
 
 namespace psygen::world {
 
-inline constexpr int kPathFormat = 1;
+inline constexpr int kPathFormat = 1;  // version of the format
 
-// Reads a path file. kParse for texts that are no path file (naming file, line and field), kIo and
-// kOverBudget as load_world().
+// Reads a path file. Fails with kParse for texts that are not path files, naming file, line and
+// field; with kIo and kOverBudget like load_world().
 core::Result<CameraPath> load_camera_path(const std::filesystem::path& file);
 
 // The same for a text in memory; `file_name` is for messages only.

@@ -14,7 +14,7 @@ namespace psygen::world {
 namespace {
 
 constexpr std::size_t kMaxScatters = 64;
-// Of the triangles that the models of one block can have at most, as log2.
+// log2 of the largest allowed number of triangles of all models of one block.
 constexpr double kMaxLog2BlockCost = 26;
 
 // The index of the named model, or −1 after a problem.
@@ -33,8 +33,8 @@ int read_model_name(TableReader& reader, const World& world, const models::Regis
   return -1;
 }
 
-// How many models of a [[scatter]] stand on a block, or 0 after a problem. What is too large is
-// returned all the same, to be refused with what it would cost.
+// The number of models of a [[scatter]] per block, or 0 after a problem. Too large numbers are
+// returned too, so the caller can refuse them with their cost.
 std::int64_t read_count(TableReader& reader) {
   const Member* member = reader.find("count");
   if (member != nullptr && member->value.kind == Node::Kind::kInteger &&
@@ -45,7 +45,7 @@ std::int64_t read_count(TableReader& reader) {
   return count;
 }
 
-// Reads one [[scatter]]; returns log2 of the triangles that it can have in one block.
+// Reads one [[scatter]]. Returns log2 of its largest number of triangles per block.
 double read_scatter(const Node& node, std::size_t number, const models::Registry& registry,
                     World& world, Problems& problems) {
   TableReader reader(node, fmt::format("scatter[{}]", number), node.line, problems);

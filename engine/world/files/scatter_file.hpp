@@ -1,4 +1,5 @@
-// The [[scatter]] tables of a world file: which models stand on each block.
+// Reads the [[scatter]] tables of a world file: the models on each block. Internal to world.
+// Writing is in write_world.cpp. Format: docs/world-files.md.
 #pragma once
 
 #include "engine/world/files/table_reader.hpp"
@@ -6,8 +7,8 @@
 
 namespace psygen::world {
 
-// Reads all of them into world.scatter. Refuses unknown models, parameters that their types do not
-// allow, and more models or triangles on a block than there may be. world.terrain_model is set.
+// Reads all tables into world.scatter. Adds problems for unknown models, for parameters that their
+// types refuse, and for too many models or triangles on a block. Requires world.terrain_model.
 void read_scatters(TableReader& root, const models::Registry& registry, World& world,
                    Problems& problems);
 

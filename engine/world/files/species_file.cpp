@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kMaxTextBytes = 256;
 constexpr Limits kAnyInteger{-0x1.0p63, 0x1.0p63};
 
-// Numbers may be anything here: find_fault() judges them, and tells the cost where it matters.
+// Accepts any number. find_fault() checks the range later, and reports the cost where it matters.
 void read_number(TableReader& reader, std::string_view key, double& value) {
   const Member* member = reader.find(key);
   if (member == nullptr) return;
@@ -60,13 +60,14 @@ void read_colours(TableReader& reader, models::SpeciesColours& colours) {
   read_number(reader, "bark_contrast", colours.bark_contrast);
 }
 
-// The lines of everything that find_fault() may name.
+// The lines of all parts that find_fault() can report.
 class Lines {
  public:
   void add(const std::string& part, std::size_t number, const Node& node) {
     entries_.push_back({part, number, &node});
   }
-  // Line and full name of a field of a species whose own path is `path`.
+  // Adds a fault to the problems, with the line and the full name of its field. `path` names the
+  // species.
   void report(const models::SpeciesFault& fault, const std::string& path,
               Problems& problems) const {
     for (const Entry& entry : entries_) {
@@ -156,7 +157,7 @@ namespace {
 
 using Text = std::back_insert_iterator<std::string>;
 
-// Names and letters of valid species need no escapes; texts of people may.
+// A TOML string. Names and letters of valid species need no escapes, but user texts may.
 std::string quoted(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {

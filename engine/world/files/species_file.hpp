@@ -1,4 +1,5 @@
-// The tables [[species]] of world files (docs/species.md): reading and writing. Internal to world.
+// Reads and writes the [[species]] tables of world files. Rules for species are in
+// engine/models/tree/species.hpp. Internal to world. Format: docs/species.md.
 #pragma once
 
 #include <string>
@@ -9,13 +10,13 @@
 
 namespace psygen::world {
 
-inline constexpr std::size_t kMaxSpecies = 32;
+inline constexpr std::size_t kMaxSpecies = 32;  // per file
 
-// All species of a file whose root is being read. What is wrong is added to the problems, with the
-// line of the field; such species are left out.
+// Reads all species from the root table. Faults are added to `problems`, with the line of the
+// field; then the result must not be used.
 std::vector<models::Species> read_species(TableReader& root, Problems& problems);
 
-// Appends the tables that read_species() turns into equal species.
+// Appends tables to `out` from which read_species() makes equal species.
 void write_species(const std::vector<models::Species>& species, std::string& out);
 
 }  // namespace psygen::world

@@ -12,9 +12,9 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMostShownBytes = 60;  // of a key that a stranger wrote
+constexpr std::size_t kMostShownBytes = 60;  // of an unknown key, in messages
 
-// What may be written: "an integer from 1 to 9".
+// The allowed values: "an integer from 1 to 9".
 std::string allowed_text(Limits limits, bool integer) {
   constexpr double kExact = 0x1.0p53;  // larger integers are shown rounded
   if (integer && limits.low >= -kExact && limits.high <= kExact)
@@ -27,7 +27,7 @@ bool is_number(const Node& node) {
   return node.kind == Node::Kind::kInteger || node.kind == Node::Kind::kReal;
 }
 
-// Those of ASCII and of Latin-1.
+// Control characters of ASCII and of Latin-1.
 bool has_control_characters(std::string_view text) {
   while (!text.empty()) {
     const core::CodePoint point = core::first_code_point(text);
@@ -42,7 +42,7 @@ bool has_control_characters(std::string_view text) {
 void Problems::keep_first(int line, int rank, std::string_view field, std::string_view sentence,
                           core::ErrorCode code) {
   if (first_ && rank >= first_rank_) return;
-  // Words of the file may be part of the sentence.
+  // shown(), because the sentence may contain text from the file.
   first_ = core::Error{code, fmt::format("{}:{}: {}", file_, line,
                                          core::shown(fmt::format("{}: {}", field, sentence)))};
   first_rank_ = rank;

@@ -1,7 +1,7 @@
-// Reads the fields of a table into variables and finds everything that is wrong with it: types,
-// ranges, missing and unknown keys. Errors name file, line and field and say what is allowed. The
-// first problem of the file (by line) is what the user is told; missing fields come last, for they
-// may have been misspelt.
+// Reads the fields of a table into variables and checks types, ranges, missing keys and unknown
+// keys. Errors name file, line and field and say what is allowed. The user gets the first problem
+// of the file, by line. Missing fields come last, because they may be misspelt. One thread per
+// file. It parses no text (document.hpp).
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,17 @@
 
 namespace psygen::world {
 
+// Collects the problems of one file and keeps the first.
 class Problems {
  public:
+  // `file` is the name for messages.
   explicit Problems(std::string_view file) : file_(file) {}
+  // Adds a problem with a field, or a missing required field. `line` counts from 1.
   void add(int line, std::string_view field, std::string_view sentence,
            core::ErrorCode code = core::ErrorCode::kParse);
   void add_missing(int line, std::string_view field);
+  // Whether there was a problem, and the first one; first() requires any().
   bool any() const { return first_.has_value(); }
-  // Requires any().
   core::Error first() const { return *first_; }
 
  private:
@@ -36,29 +39,33 @@ class Problems {
   int first_rank_ = 0;
 };
 
-// What a number may be; both ends are allowed.
+// The allowed range of a number, both ends included.
 struct Limits {
   double low = 0;
   double high = 0;
 };
 
+// Whether a missing key is a problem.
 enum class Presence : std::uint8_t { kOptional, kRequired };
 
-// Numbers that are given as one number or as [low, high], not yet checked against any limits.
+// A value written as one number or as [low, high], not yet checked against limits. Both are finite
+// and low <= high.
 struct NumberRange {
   double low = 0, high = 0;
   bool integers = false;  // both ends were written as integers
   int line = 0;
 };
 
+// Reads one table.
 class TableReader {
  public:
-  // `path` names the table in messages ("sky", "scatter[2]"); empty for the root. `line` is where
-  // the table begins. The node and the problems outlive the reader.
+  // `path` names the table in messages ("sky", "scatter[2]"); it is empty for the root. `line` is
+  // the first line of the table. The node and the problems must outlive the reader.
   TableReader(const Node& table, std::string path, int line, Problems& problems);
 
-  // Each takes note of the key and leaves `value` as it is when the key is missing or wrong.
-  // Returns true if `value` was set.
+  // Read the value of a key. They register the key as known, and leave `value` unchanged if the key
+  // is missing or its value is wrong. Return true if `value` was set. Strings have 1 to `max_bytes`
+  // bytes and no control characters; read_range() returns nothing instead of false.
   bool read(std::string_view key, double& value, Limits limits, Presence = Presence::kOptional);
   bool read(std::string_view key, float& value, Limits limits, Presence = Presence::kOptional);
   bool read(std::string_view key, std::int64_t& value, Limits limits,
@@ -72,16 +79,18 @@ class TableReader {
                  Presence = Presence::kOptional);
   std::optional<NumberRange> read_range(std::string_view key);
 
-  // A sub-table, or null if it is missing.
+  // A sub-table, or null if it is missing or not a table. Pointers live as long as the node.
   const Member* table(std::string_view key, Presence = Presence::kOptional);
-  // The tables of an array of tables; empty if it is missing.
+  // The tables of an array of tables; empty if it is missing or wrong.
   std::vector<const Node*> tables(std::string_view key, std::size_t max_count);
 
-  // Every key that nobody asked for is unknown; the nearest known one is suggested.
+  // Call it last: adds a problem for every key that was never read, and suggests the nearest known
+  // key.
   void finish();
 
-  // A key that is there, or null; takes note of it.
+  // A member of the table, or null. Registers the key as known.
   const Member* find(std::string_view key, Presence = Presence::kOptional);
+  // The full name of a key ("sky.exposure"), the first line of the table, and a problem with a key.
   std::string field(std::string_view key) const;
   int line() const { return line_; }
   void problem(int line, std::string_view key, std::string_view sentence) {
@@ -100,10 +109,10 @@ class TableReader {
   std::vector<std::string> known_;
 };
 
-// A number as it was written, or what else the value is: "7", "a string".
+// A value for messages: a number as text, else its kind. "7", "a string".
 std::string value_text(const Node& node);
 
-// Reads the field `format` of a root table, which must be exactly `current`.
+// Checks the required field `format` of a root table, which must equal `current`.
 void read_format(TableReader& root, int current);
 
 }  // namespace psygen::world

@@ -1,4 +1,4 @@
-// Reads a text file whole. Not for data: files above the limit are refused.
+// Reads a whole text file. Not for binary data: files above the limit are refused. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,9 @@ namespace psygen::world {
 
 inline constexpr std::size_t kMaxFileBytes = std::size_t{1} << 20;
 
-// Fails with kIo if `file` is not a regular file that can be read, and with kOverBudget if it has
-// more than `limit_bytes`. Takes memory as it reads: for no more than twice the file.
+// The bytes of a file. Fails with kIo if `file` is not a readable regular file, and with
+// kOverBudget if it has more than `limit_bytes`. The buffer grows while reading, to at most twice
+// the file.
 core::Result<std::string> read_text_file(const std::filesystem::path& file,
                                          std::size_t limit_bytes = kMaxFileBytes);
 

@@ -72,8 +72,9 @@ class Screen {
     dots_ = 0;
   }
 
-  // The parser limits nested values, but not the parts of a dotted key, each of which is a table:
-  // long ones would exhaust the stack. Without strings over several lines a line break ends all.
+  // The parser limits the nesting of values, but not the parts of a dotted key. Each part is a
+  // table, so long keys would exhaust the stack. Because strings over several lines are refused, a
+  // line break ends every string and comment.
   core::Result<void> take_plain(char c) {
     if (c == '#') {
       within_ = Within::kComment;

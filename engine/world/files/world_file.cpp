@@ -1,5 +1,5 @@
-// World files: text → World, its [[scatter]] tables in scatter_file.cpp, its species in
-// species_file.cpp. Writing is in write_world.cpp, the format in docs/world-files.md.
+// World files: text → World. The [[scatter]] tables are read in scatter_file.cpp, the species in
+// species_file.cpp. Writing is in write_world.cpp. docs/world-files.md describes the format.
 #include "engine/world/files/world_file.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kMaxNameBytes = 128;
 constexpr double kMaxBlocks = 0x1.0p31;
 
-// Seeds have 64 bits. TOML has integers below 2^63, so that larger ones are strings of digits.
+// Seeds have 64 bits. TOML integers are below 2^63, so larger seeds are strings of digits.
 void read_seed(TableReader& reader, std::uint64_t& seed) {
   const Member* member = reader.find("seed", Presence::kRequired);
   if (member == nullptr) return;
@@ -85,7 +85,7 @@ void read_terrain_table(TableReader& root, ModelFields& terrain, Problems& probl
   reader.finish();
 }
 
-// `visit_fields` hands every field of the table to the function that it is given (fields.hpp).
+// Reads the fields of a table. `visit_fields` calls its argument for every field (fields.hpp).
 template <class VisitFields>
 void read_fields(TableReader& root, std::string_view name, Problems& problems,
                  const VisitFields& visit_fields) {
@@ -98,8 +98,8 @@ void read_fields(TableReader& root, std::string_view name, Problems& problems,
   reader.finish();
 }
 
-// The sky of a file that gives no colours: what the sun makes of the air at the file's elevation.
-// Wrong values are told when the table is read.
+// The default sky: its colours are computed for the sun's elevation in the file. Wrong values are
+// reported later, when the table is read.
 Sky usual_sky(TableReader& root) {
   const Sky usual;
   const Member* member = root.table("sky");
@@ -111,7 +111,7 @@ Sky usual_sky(TableReader& root) {
   return with_sun(usual, sun);
 }
 
-// Makes the species of a world models of the registry; `grown` is null where it cannot grow.
+// Adds the species of a world to the registry `grown`, which is null if the registry cannot grow.
 void register_species(TableReader& root, const World& world, const models::Registry& registry,
                       models::Registry* grown, Problems& problems) {
   const std::vector<const Node*> nodes = root.tables("species", kMaxSpecies);
@@ -149,7 +149,7 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
   world.terrain_model = static_cast<models::ModelIndex>(terrain_model);
   ModelFields terrain = fields_of(registry[world.terrain_model], 1);
   read_format(root, kWorldFormat);
-  // Another version may break any other rule of this one.
+  // For another version, errors about other fields would be misleading.
   if (problems.any()) return tl::unexpected(problems.first());
   read_world_table(root, world, terrain, problems);
   read_terrain_table(root, terrain, problems);

@@ -1,4 +1,6 @@
-// World files: TOML text to World and back (docs/world-files.md).
+// Reads and writes world files: TOML text to World and back. Safe for hostile files. Any thread, if
+// no other thread uses the same registry meanwhile. It synthesises nothing. Format:
+// docs/world-files.md.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +12,22 @@
 
 namespace psygen::world {
 
-// Reads a world file. Errors name file, line and field and say what is allowed: kParse for texts
-// that are no world file, kInvalidArgument and kOverBudget for parameters that a model refuses
-// (with the predicted cost), kOverBudget for files above 1 MiB, kIo for files that cannot be read.
-// The species of the file become model types of the registry, unless it has equal ones already; if
-// anything fails, the registry is as it was.
+// Reads a world file. Errors name file, line and field and say what is allowed. Fails with kParse
+// for texts that are not world files, with kOverBudget for files above 1 MiB, and with kIo for
+// files that cannot be read. Parameters that a model refuses give kInvalidArgument or kOverBudget
+// (with the predicted cost). The species of the file are added to the registry as model types,
+// unless it already has equal ones. After an error the registry is unchanged.
 core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry);
 
 // The same for a text in memory; `file_name` is for messages only.
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
                                 models::Registry& registry);
-// With a registry that cannot grow: worlds with species that it lacks are refused.
+// The same with a registry that cannot grow: worlds with species that it lacks are refused.
 core::Result<World> load_world(const std::filesystem::path& file, const models::Registry& registry);
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
                                 const models::Registry& registry);
 
-// The text of a world file that parse_world() turns into an equal world.
+// The text of a world file from which parse_world() makes an equal world.
 std::string write_world(const World& world, const models::Registry& registry);
 
 }  // namespace psygen::world

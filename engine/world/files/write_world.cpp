@@ -23,7 +23,7 @@ std::string toml_string(std::string_view text) {
   return out + '"';
 }
 
-// TOML has no integers from 2^63 on.
+// As a string from 2^63 on, because TOML has no larger integers.
 std::string seed_text(std::uint64_t seed) {
   return seed <= INT64_MAX ? fmt::format("{}", seed) : fmt::format("\"{}\"", seed);
 }
