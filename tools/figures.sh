@@ -1,5 +1,5 @@
 #!/bin/sh
-# Measures the figures of docs/performance.md, "What was to be reached". These are the flights, also
+# Measures the figures of docs/performance.md, "Targets". These are the flights, also
 # stopped midway, far from the origin and in a huge world; and the benchmarks of PLP and of the tick
 # without drawing. Needs a machine with nothing else running, and about twelve minutes.
 #
