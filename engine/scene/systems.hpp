@@ -45,7 +45,7 @@ void synthesis_system(const Settings& settings, Synthesis& synthesis, Counters& 
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
 using UploadQuery = ecs::Query<const Source, Mesh, MeshParts, OldParts, Fading, Demand, Node,
-                               GroundRelief, GroundSun>;
+                               Lacking, GroundRelief, GroundSun>;
 void upload_system(const Settings& settings, const Clock& clock, const WorldFacts& facts,
                    UploadQuery entities, Synthesis& synthesis, Output& output, Counters& counters,
                    Totals& totals);
