@@ -52,7 +52,7 @@ void synthesis_system(const Settings& settings, const Rules& rules, synthesis::M
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
 using UploadQuery = ecs::Query<const Source, Mesh, MeshParts, OldParts, Fading, Demand, Node,
-                               GroundRelief, GroundSun>;
+                               Lacking, GroundRelief, GroundSun>;
 void upload_system(const Settings& settings, const Rules& rules, const Clock& clock,
                    const WorldFacts& facts, const Found& found, UploadQuery entities,
                    synthesis::MeshSupply& meshes, Output& output, Counters& counters,

@@ -145,7 +145,12 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     if (Fading* fading = entities.get<Fading>(owner))
       before_goes = replace_mesh(*fading, before, level_before);
   }
-  if (node != nullptr) note_ground(owner, *node, record, facts, entities);
+  if (node != nullptr) {
+    note_ground(owner, *node, record, facts, entities);
+    // The next tick's cut is drawn by what is there, before the cache system looks again.
+    Lacking& lacking = *entities.get<Lacking>(owner);
+    if (level_before == kNoLevel && lacking.meshes > 0) --lacking.meshes;
+  }
   if (MeshParts* parts = entities.get<MeshParts>(owner)) {
     if (before_goes) entities.get<OldParts>(owner)->parts = *parts;
     *parts = note_of<MeshParts>(record);

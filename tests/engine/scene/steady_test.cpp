@@ -250,6 +250,33 @@ TEST(Steady, AJumpShowsNoHoleWhereverItLeads) {
   expect_consistent(*scene);
 }
 
+// Nodes whose ground is there while their models are not wait for these: what stands for them has
+// landed in the tick before.
+TEST(Steady, AfterAJumpNoNodeIsDrawnWithoutItsModels) {
+  Settings settings = far_settings();
+  settings.view_distance_m = 16'000;
+  const auto scene = make_scene(settings);
+  State& s = scene->state();
+  const core::CameraPose home = pose_at(128, 128, 0.3);
+  scene->settle(home);
+  tick_at(*scene, home);
+  for (int i = 0; i < 60; ++i)
+    tick_at(*scene, pose_at(366, 318, 2.0));
+  std::size_t released = 0;
+  for (const synthesis::MeshRecord& record : s.meshes.records()) {
+    if (record.state != synthesis::MeshState::kReady || record.key.model != s.facts.merged_model)
+      continue;
+    s.meshes.forget(s.meshes.find(record.key));
+    ++released;
+  }
+  EXPECT_GT(released, 20u);
+  s.settings.plan_seconds_ahead = 0;  // and nobody makes them anew
+  for (int i = 0; i < 10; ++i) {
+    tick_at(*scene, home);
+    EXPECT_EQ(s.counters.holes, 0u) << "tick " << i;
+  }
+}
+
 TEST(Steady, AfterAFallFrom2000MetresNothingIsMissing) {
   fly_a_second(far_settings(), [](int i) {
     core::CameraPose pose = pose_at(256, 256, 0.6);
