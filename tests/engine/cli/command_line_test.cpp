@@ -187,7 +187,7 @@ TEST(CommandLine, APictureOfAnHourNeedsAWorldThatHasOne) {
                                      std::string("fly --headless --frames 1 --hour 12")}) {
     const Outcome outcome = run_psygen(command);
     EXPECT_EQ(outcome.code, 1) << command;
-    EXPECT_TRUE(mentions(outcome.err, "game/worlds/paper.toml: this world has no hours"))
+    EXPECT_TRUE(mentions(outcome.err, "/worlds/paper.toml: this world has no hours"))
         << outcome.err;
   }
 }
