@@ -14,6 +14,7 @@ MAY_KNOW = {
     "engine/core": set(),
     "engine/models": {"engine/core"},
     "engine/world": {"engine/core", "engine/models"},
+    "engine/query": {"engine/core", "engine/models", "engine/world"},
     "engine/synthesis": {"engine/core", "engine/models"},
     "engine/exchange": {"engine/core", "engine/models", "engine/world"},
     "engine/amplify": {"engine/core", "engine/models", "engine/world", "engine/synthesis",
@@ -23,7 +24,8 @@ MAY_KNOW = {
     "engine/render": {"engine/core", "engine/image", "shaders"},
     "engine/platform": {"engine/core"},
     "engine/telemetry": {"engine/core"},
-    "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/synthesis",
+    "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/query",
+                     "engine/synthesis",
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
                      "engine/telemetry"},
     "shaders": set(),
@@ -64,7 +66,8 @@ ONLY_IN = {
     r"^Q[A-Z]|^Qt": {"editor"},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
-NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/visibility", "engine/exchange"}
+NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/query", "engine/visibility",
+              "engine/exchange"}
 BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
