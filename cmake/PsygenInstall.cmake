@@ -12,5 +12,6 @@ configure_package_config_file(cmake/psygen-config.cmake.in psygen-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
 write_basic_package_version_file(psygen-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
+              ${CMAKE_CURRENT_SOURCE_DIR}/cmake/FindBulletDouble.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/psygen-config-version.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)

@@ -104,6 +104,9 @@ class World {
   const BlockSolids& solids(core::BlockCoord block) { return cache_.solids(block); }
   std::span<const world::Placement> models(core::BlockCoord block) { return cache_.models(block); }
 
+  // How far models may reach sideways from their feet, in metres.
+  double models_reach_m() const { return reach_m_; }
+
   // The block's ground or models have changed; they are made again when next asked for.
   void forget(core::BlockCoord block) { cache_.forget(block); }
   // What the world looks like to queries, and the memory of the cache.

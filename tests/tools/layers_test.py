@@ -15,6 +15,7 @@ MAY_KNOW = {
     "engine/models": {"engine/core"},
     "engine/world": {"engine/core", "engine/models"},
     "engine/query": {"engine/core", "engine/models", "engine/world"},
+    "engine/physics": {"engine/core", "engine/models", "engine/world", "engine/query"},
     "engine/synthesis": {"engine/core", "engine/models"},
     "engine/exchange": {"engine/core", "engine/models", "engine/world"},
     "engine/amplify": {"engine/core", "engine/models", "engine/world", "engine/synthesis",
@@ -24,7 +25,7 @@ MAY_KNOW = {
     "engine/render": {"engine/core", "engine/image", "shaders"},
     "engine/platform": {"engine/core"},
     "engine/telemetry": {"engine/core"},
-    "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/query",
+    "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/query", "engine/physics",
                      "engine/synthesis",
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
                      "engine/telemetry"},
@@ -56,6 +57,7 @@ NOT_UP = {"engine/models/kit"}
 # library header -> the only folders that may include it
 ONLY_IN = {
     r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform"},
+    r"^(bt[A-Z]|Bullet|LinearMath/)": {"engine/physics"},
     r"^GLFW/": {"engine/platform"},
     r"^OpenImageIO/": {"engine/image"},
     r"^toml\+\+/": {"engine/world"},
@@ -66,7 +68,7 @@ ONLY_IN = {
     r"^Q[A-Z]|^Qt": {"editor"},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
-NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/query", "engine/visibility",
+NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/query", "engine/physics", "engine/visibility",
               "engine/exchange"}
 BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
