@@ -114,8 +114,8 @@ class EventReader {
   template <class F>
   std::size_t drain(F&& f) {
     const std::uint64_t from = std::max(next_, kept_->first);
-    const auto events = std::span<const T>(kept_->events)
-                            .subspan(static_cast<std::size_t>(from - kept_->first));
+    const auto events =
+        std::span<const T>(kept_->events).subspan(static_cast<std::size_t>(from - kept_->first));
     if (!events.empty()) f(events);
     next_ = kept_->end();
     const std::size_t count = events.size();

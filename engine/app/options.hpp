@@ -27,7 +27,7 @@ struct FlightReport;
 // Code that a game adds. Every member but the name may be empty. An exception of any of them ends
 // the session with an error that names the plugin.
 struct Plugin {
-  std::string name;
+  std::string name = {};
   // Registers model types before the world file is read.
   std::function<core::Result<void>(models::Registry&)> register_models = {};
   // Adds components, resources, events and systems. Once, before the cache is filled.

@@ -204,24 +204,20 @@ void Session::take_events() {
 
 // Hooks of a step are systems: they run however the session is driven, and what they cost is told.
 core::Result<void> Session::add_systems() {
+  scene::Systems systems = scene_->systems();
   for (const Plugin& plugin : options_.plugins) {
-    const auto added = scene_->add_systems([&](scene::Systems& systems) -> core::Result<void> {
-      if (plugin.add_systems) {
-        const auto ok =
-            call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
-        if (!ok) return ok;
-      }
-      if (plugin.on_step) {
-        systems.step.add(plugin.name + " on_step",
-                         [this, &plugin](const scene::FixedStep& step, ecs::World&) {
-                           plugin.on_step(*this, step.step_s);
-                         });
-      }
-      return {};
-    });
-    if (!added) return added;
+    if (plugin.add_systems) {
+      const auto ok =
+          call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
+      if (!ok) return ok;
+    }
+    if (!plugin.on_step) continue;
+    systems.step.add(plugin.name + " on_step",
+                     [this, &plugin](const scene::FixedStep& step, ecs::World&) {
+                       plugin.on_step(*this, step.step_s);
+                     });
   }
-  return {};
+  return scene_->arrange();
 }
 
 core::Result<void> Session::start() {

@@ -82,8 +82,7 @@ struct Collector {
       const Placed placed = placed_at(block, model.position, type.bounds(model.parameters),
                                       s.facts.usual_boxes[model.model]);
       const Detail detail = detail_of(type, model.parameters);
-      const float distance_m =
-          distance_to(placed, glm::vec3(corner) + model.position, near_m);
+      const float distance_m = distance_to(placed, glm::vec3(corner) + model.position, near_m);
       if (size_pixels(placed, detail, distance_m, pixels, near_m) <
           static_cast<float>(s.settings.min_size_pixels))
         continue;  // too small to be drawn
@@ -94,11 +93,10 @@ struct Collector {
   void add_model(core::BlockCoord block, const world::Placement& model, const Detail& detail,
                  float distance_m, double error_pixels) {
     const std::span<const float> errors(detail.error_m.data(), detail.level_count);
-    const int level =
-        s.settings.levels_of_detail
-            ? visibility::choose_level(errors, distance_m, s.camera.pixels_per_radian,
-                                       static_cast<float>(error_pixels), -1)
-            : 0;
+    const int level = s.settings.levels_of_detail
+                          ? visibility::choose_level(errors, distance_m, s.camera.pixels_per_radian,
+                                                     static_cast<float>(error_pixels), -1)
+                          : 0;
     add(block, model, level, distance_m);
   }
 };
@@ -110,9 +108,9 @@ core::Result<std::vector<Foresight::Mesh>> meshes_of(const State& s,
   if (!(std::isfinite(local.x) && std::isfinite(local.y) && std::isfinite(local.z)))
     return core::fail(core::ErrorCode::kInvalidArgument, "the position of a place is not finite");
   if (!(radius_m > 0 && radius_m <= kMostReadyRadiusM)) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the radius of a place must be above 0 and at most {} m",
-                                  kMostReadyRadiusM));
+    return core::fail(
+        core::ErrorCode::kInvalidArgument,
+        fmt::format("the radius of a place must be above 0 and at most {} m", kMostReadyRadiusM));
   }
   std::vector<Foresight::Mesh> meshes;
   const core::WorldPosition normal = core::normalised(position, s.facts.world.block_size_m());

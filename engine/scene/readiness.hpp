@@ -15,8 +15,8 @@ namespace psygen::scene {
 
 struct State;
 
-// Meshes of a place: the ground and the models up to a radius, at the levels of detail that a camera
-// there would choose.
+// Meshes of a place: the ground and the models up to a radius, at the levels of detail that a
+// camera there would choose.
 struct Readiness {
   std::uint32_t meshes = 0;
   std::uint32_t missing = 0;  // of these, not in the cache
@@ -39,8 +39,7 @@ struct PlaceReady {
 
 // Asks that a place become ready and stay so. Fails as readiness(), and with kOverBudget where it
 // needs more than half of the memory for meshes, or together with other places.
-core::Result<PlaceId> ask_ready(State& state, const core::WorldPosition& position,
-                                double radius_m);
+core::Result<PlaceId> ask_ready(State& state, const core::WorldPosition& position, double radius_m);
 // What is missing of it, as of the last tick. Ready with no meshes for an id that is not asked for.
 Readiness readiness(const State& state, PlaceId id);
 // Its meshes may go. Ids that are not asked for are ignored.

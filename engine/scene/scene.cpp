@@ -163,10 +163,8 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
 
 }  // namespace
 
-core::Result<void> Scene::add_systems(const std::function<core::Result<void>(Systems&)>& add) {
-  Systems systems{state_.entities, state_.tick, state_.simulation.systems};
-  if (auto added = add(systems); !added) return added;
-  for (ecs::Schedule* schedule : {&systems.frame, &systems.step}) {
+core::Result<void> Scene::arrange() {
+  for (ecs::Schedule* schedule : {&state_.tick, &state_.simulation.systems}) {
     if (std::string error = schedule->arrange(); !error.empty())
       return core::fail(core::ErrorCode::kInvalidArgument, std::move(error));
   }

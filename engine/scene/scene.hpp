@@ -48,10 +48,11 @@ class Scene {
   const State& state() const { return state_; }
   const synthesis::CalibrationReport& calibration() const { return calibration_; }
 
-  // Calls `add`, then puts all systems into the order of their places. Fails as `add`, and with
-  // kInvalidArgument where systems name others that there are not, or wait for each other. Before
-  // the first tick.
-  core::Result<void> add_systems(const std::function<core::Result<void>(Systems&)>& add);
+  // What code of a game adds to, before the first tick.
+  Systems systems() { return {state_.entities, state_.tick, state_.simulation.systems}; }
+  // Puts all systems into the order of their places. Fails with kInvalidArgument for two systems of
+  // one name, and for systems that name others that there are not, or wait for each other.
+  core::Result<void> arrange();
 
   // Fills the cache for a pose before the first frame (paper, section 4: the initial cache): ticks
   // without drawing and waits for the modelers, until nothing is missing, or nothing more can be

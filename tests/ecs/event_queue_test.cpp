@@ -10,9 +10,8 @@ namespace {
 
 std::vector<int> drained(EventReader<int>& reader) {
   std::vector<int> all;
-  reader.drain([&all](std::span<const int> events) {
-    all.insert(all.end(), events.begin(), events.end());
-  });
+  reader.drain(
+      [&all](std::span<const int> events) { all.insert(all.end(), events.begin(), events.end()); });
   return all;
 }
 

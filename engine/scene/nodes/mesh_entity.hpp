@@ -13,8 +13,8 @@ Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds&
                  const core::Bounds& usual);
 
 // Levels `first` … `last` of a model type, at most as many as differ.
-Detail detail_of(const models::ModelType& type, const models::Parameters& parameters,
-                 int first = 0, int last = INT_MAX);
+Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first = 0,
+                 int last = INT_MAX);
 
 // Metres from a point to the nearest of what is usually drawn of an entity, at least `least_m`.
 // `foot` is the entity's, relative to the point.

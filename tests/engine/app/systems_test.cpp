@@ -132,39 +132,58 @@ TEST(Systems, RunBesideTheOnesThatTheyNameAndAreReported) {
 
 TEST(Systems, HooksRunHoweverTheSessionIsDriven) {
   std::vector<std::string> calls;
-  const auto session = session_with(
-      {{.name = "hooks",
-        .on_start = [&](Session&) { calls.push_back("start"); },
-        .on_step = [&](Session&, double step_s) {
-          EXPECT_EQ(step_s, 1.0 / 60);
-          calls.push_back("step");
-        },
-        .on_frame = [&](Session&, double) { calls.push_back("frame"); }}});
+  const auto session =
+      session_with({{.name = "hooks",
+                     .on_start = [&](Session&) { calls.push_back("start"); },
+                     .on_step =
+                         [&](Session&, double step_s) {
+                           EXPECT_EQ(step_s, 1.0 / 60);
+                           calls.push_back("step");
+                         },
+                     .on_frame = [&](Session&, double) { calls.push_back("frame"); }}});
   for (int i = 0; i < 3; ++i)
     ASSERT_TRUE(session->tick(session->home(), 1.0 / 40));
-  EXPECT_EQ(calls, (std::vector<std::string>{"start", "frame", "step", "frame", "step", "step",
-                                             "frame"}));
+  EXPECT_EQ(calls,
+            (std::vector<std::string>{"start", "frame", "step", "frame", "step", "step", "frame"}));
 }
 
 TEST(Systems, WrongNamesAndCyclesAreErrorsThatNameThem) {
   const auto with_place = [](ecs::Place place) {
     return error_with({.add_systems = [place](Systems& systems) -> core::Result<void> {
-      systems.frame.add("howl", [](const scene::Clock&) {}, place);
+      systems.frame.add(
+          "howl", [](const scene::Clock&) {}, place);
       return {};
     }});
   };
   EXPECT_THAT(with_place(ecs::before("rendering")),
-              testing::StartsWith("plugin wolves: the system 'howl' should run before "
+              testing::StartsWith("the system 'howl' should run before "
                                   "'rendering', but there is no such system; there are "
                                   "'simulation', 'input'"));
   EXPECT_THAT(with_place({.before = {"input"}, .after = {"render"}}),
-              testing::StartsWith("plugin wolves: systems wait for each other: 'input' after "
+              testing::StartsWith("systems wait for each other: 'input' after "
                                   "'howl' after 'render'"));
   EXPECT_EQ(error_with({.add_systems = [](Systems& systems) -> core::Result<void> {
               systems.frame.add("render", [](const scene::Clock&) {});
               return {};
             }}),
-            "plugin wolves: two systems are called 'render'");
+            "two systems are called 'render'");
+}
+
+TEST(Systems, APluginMayNameSystemsOfPluginsThatComeLater) {
+  const auto session =
+      session_with({{.name = "sheep",
+                     .add_systems = [](Systems& systems) -> core::Result<void> {
+                       systems.frame.add(
+                           "flee", [](const scene::Clock&) {}, ecs::after("howl"));
+                       return {};
+                     }},
+                    {.name = "wolves", .add_systems = [](Systems& systems) -> core::Result<void> {
+                       systems.frame.add(
+                           "howl", [](const scene::Clock&) {}, ecs::before("input"));
+                       return {};
+                     }}});
+  const std::vector<std::string> names = scene::system_names(session->scene().state());
+  EXPECT_EQ(std::ranges::find(names, "howl") + 1, std::ranges::find(names, "flee"));
 }
 
 TEST(Systems, WhatThrowsEndsTheSessionWithAnErrorThatNamesIt) {
@@ -179,9 +198,8 @@ TEST(Systems, WhatThrowsEndsTheSessionWithAnErrorThatNamesIt) {
   EXPECT_EQ(tick_error_with({.on_frame = throws}), "plugin wolves: on_frame threw: no moon");
   EXPECT_EQ(tick_error_with({.on_step = throws}), "the system 'wolves on_step' threw: no moon");
   EXPECT_EQ(tick_error_with({.add_systems = [](Systems& systems) -> core::Result<void> {
-              systems.frame.add("howl", [](const scene::Clock&) {
-                throw std::runtime_error("no moon");
-              });
+              systems.frame.add("howl",
+                                [](const scene::Clock&) { throw std::runtime_error("no moon"); });
               return {};
             }}),
             "the system 'howl' threw: no moon");
@@ -192,14 +210,16 @@ TEST(Systems, EventsReachASystemOfAStep) {
     std::uint64_t models = 0;
   };
   std::uint64_t models = 0;
-  const auto session = session_with({{.name = "watch", .add_systems = [&](Systems& systems) {
-    Created& created = systems.resource<Created>();
-    systems.step.add("watch", [&models](Created& sum, ecs::EventReader<scene::ModelCreated>& e) {
-      models = sum.models += e.drain([](auto) {});
-    });
-    (void)created;
-    return core::Result<void>();
-  }}});
+  const auto session = session_with(
+      {{.name = "watch", .add_systems = [&](Systems& systems) {
+          Created& created = systems.resource<Created>();
+          systems.step.add("watch",
+                           [&models](Created& sum, ecs::EventReader<scene::ModelCreated>& e) {
+                             models = sum.models += e.drain([](auto) {});
+                           });
+          (void)created;
+          return core::Result<void>();
+        }}});
   ASSERT_TRUE(session->prepare(session->home()));
   ASSERT_TRUE(session->tick(session->home(), 1.0 / 60));
   ASSERT_TRUE(session->tick(session->home(), 1.0 / 60));

@@ -66,23 +66,20 @@ class WindowFlight : public ::testing::Test {
     constexpr std::uint64_t kFramesForAKey = 400;
     std::size_t next = 0;
     std::uint64_t frames = 0, pressed = kFramesForAKey;
-    made.session.plugins.push_back({.name = "person",
-                                    .on_frame =
-                                        [&](Session& session, double) {
-                                          ++frames;
-                                          if (next < steps.size() && pressed < kFramesForAKey &&
-                                              steps[next].done(session)) {
-                                            ++next;
-                                            pressed = kFramesForAKey;
-                                          }
-                                          if (next == steps.size() || frames > kMostFrames)
-                                            stop_ = true;
-                                          if (!stop_ && pressed++ >= kFramesForAKey) {
-                                            EXPECT_TRUE(press(steps[next].key));
-                                            pressed = 0;
-                                          }
-                                        },
-                                    {}});
+    made.session.plugins.push_back({.name = "person", .on_frame = [&](Session& session, double) {
+                                      ++frames;
+                                      if (next < steps.size() && pressed < kFramesForAKey &&
+                                          steps[next].done(session)) {
+                                        ++next;
+                                        pressed = kFramesForAKey;
+                                      }
+                                      if (next == steps.size() || frames > kMostFrames)
+                                        stop_ = true;
+                                      if (!stop_ && pressed++ >= kFramesForAKey) {
+                                        EXPECT_TRUE(press(steps[next].key));
+                                        pressed = 0;
+                                      }
+                                    }});
     auto flight = Flight::create(made);
     ASSERT_TRUE(flight) << flight.error().message;
     const auto report = (*flight)->run();
@@ -112,15 +109,16 @@ TEST_F(WindowFlight, TheWindowStaysWhenThePathHasEndedAndTheReportIsThatOfTheFli
              if (ends > 0) told = notices(session);
              if (frames == frames_at_end + 25) stop_ = true;
            },
-       [&](Session&, const FlightReport& report) {
-         ++ends;
-         frames_at_end = frames;
-         EXPECT_EQ(report.summary.run.frames, 15u);
-         for (const char* name :
-              {"frames.csv", "summary.json", "trace.json", "report.html", "frame_00010.png"}) {
-           EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
-         }
-       }});
+       .on_end =
+           [&](Session&, const FlightReport& report) {
+             ++ends;
+             frames_at_end = frames;
+             EXPECT_EQ(report.summary.run.frames, 15u);
+             for (const char* name :
+                  {"frames.csv", "summary.json", "trace.json", "report.html", "frame_00010.png"}) {
+               EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+             }
+           }});
   const auto flight = Flight::create(made);
   ASSERT_TRUE(flight) << flight.error().message;
   flown = flight->get();
@@ -153,19 +151,15 @@ TEST_F(WindowFlight, OutputsThatCannotBeWrittenAreToldInTheWindowAndInTheReport)
   FlightOptions made = options();
   std::string told;
   std::uint64_t frames = 0;
-  made.session.plugins.push_back({.name = "watch",
-                                  .on_frame =
-                                      [&](Session& session, double) {
-                                        if (++frames == 5) {  // in the way of a file
-                                          std::filesystem::create_directories(folder_ /
-                                                                              "frames.csv");
-                                        }
-                                        if (frames == 20) {
-                                          told = notices(session);
-                                          stop_ = true;
-                                        }
-                                      },
-                                  {}});
+  made.session.plugins.push_back({.name = "watch", .on_frame = [&](Session& session, double) {
+                                    if (++frames == 5) {  // in the way of a file
+                                      std::filesystem::create_directories(folder_ / "frames.csv");
+                                    }
+                                    if (frames == 20) {
+                                      told = notices(session);
+                                      stop_ = true;
+                                    }
+                                  }});
   const auto flight = Flight::create(made);
   ASSERT_TRUE(flight) << flight.error().message;
   const auto report = (*flight)->run();

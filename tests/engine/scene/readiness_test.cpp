@@ -110,8 +110,7 @@ TEST(Readiness, APlaceThatIsNoneOrTooLargeIsRefused) {
   tick_at(*scene, kHere);
   core::WorldPosition nowhere = kThere.position;
   nowhere.local.x = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(ask_ready(state, nowhere, 10).error().message,
-            "the position of a place is not finite");
+  EXPECT_EQ(ask_ready(state, nowhere, 10).error().message, "the position of a place is not finite");
   for (const double radius_m : {0.0, -1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_EQ(readiness(state, kThere.position, radius_m).error().message,
               "the radius of a place must be above 0 and at most 1000 m");

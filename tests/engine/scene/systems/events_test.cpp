@@ -13,7 +13,7 @@ namespace {
 // What follows from the events alone.
 struct Seen {
   std::set<visibility::NodeCoord> shown;
-  std::set<std::uint64_t> models;   // entities
+  std::set<std::uint64_t> models;                      // entities
   std::map<std::uint64_t, synthesis::MeshKey> meshes;  // by entity
   std::size_t wrong = 0, events = 0;
 };
@@ -27,7 +27,7 @@ void drain(ecs::EventReader<Event>& reader, Seen& seen, const F& f) {
   });
 }
 
-core::Result<void> add_watchers(Systems& systems) {
+void add_watchers(Systems systems) {
   systems.resource<Seen>();
   systems.frame.add("watch nodes", [](Seen& seen, ecs::EventReader<NodeHidden>& hidden,
                                       ecs::EventReader<NodeShown>& shown) {
@@ -53,7 +53,6 @@ core::Result<void> add_watchers(Systems& systems) {
       return true;
     });
   });
-  return {};
 }
 
 Seen& seen_by(State& state) {
@@ -69,7 +68,7 @@ TEST(Events, TellTheStateOfTheScene) {
   Settings settings = small_settings();
   settings.budget_bytes = 12ull << 20;
   auto scene = make_scene(settings);
-  ASSERT_TRUE(scene->add_systems(add_watchers));
+  add_watchers(scene->systems());
   State& state = scene->state();
   state.input.pose = pose_at(256, 256);
   Seen& seen = seen_by(state);

@@ -77,11 +77,11 @@ TEST(Simulation, IsTimedAndTracedSystemBySystem) {
   State& state = scene->state();
   state.trace.log = &log;
   state.trace.main = log.add_track("main thread");
-  ASSERT_TRUE(scene->add_systems([](Systems& systems) -> core::Result<void> {
-    systems.frame.add("look", [](const FixedStep&) {}, ecs::after("simulation"));
-    systems.step.add("walk", [](const WorldFacts&) {});
-    return {};
-  }));
+  Systems systems = scene->systems();
+  systems.frame.add(
+      "look", [](const FixedStep&) {}, ecs::after("simulation"));
+  systems.step.add("walk", [](const WorldFacts&) {});
+  ASSERT_TRUE(scene->arrange());
   EXPECT_EQ(system_names(state).front(), "simulation");
   EXPECT_EQ(system_names(state)[1], "look");
   EXPECT_EQ(system_names(state).back(), "step walk");
