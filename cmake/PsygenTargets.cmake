@@ -69,6 +69,7 @@ function(psygen_library name)
   add_library(${target} ${ARG_SOURCES})
   add_library(psygen::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES
+    PSYGEN_OWN ON  # a target of this project, not of one that contains it
     EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
     INSTALL_RPATH "$ORIGIN;$ORIGIN/psygen")
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
@@ -125,7 +126,7 @@ function(psygen_executable name)
   # dlopen() of sanitizers too.
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
-    PSYGEN_OWN_PROGRAM ON
+    PSYGEN_OWN ON
     BUILD_RPATH ${PROJECT_BINARY_DIR}/engine/image
     INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR};$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/psygen")
   target_link_options(${name} PRIVATE LINKER:--disable-new-dtags)
