@@ -9,7 +9,11 @@
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/platform/window.hpp"
 #include "engine/render/render_path.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/telemetry/trace_log.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::app {
@@ -49,6 +53,8 @@ core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins)
 }
 
 }  // namespace
+
+Session::Session(SessionOptions options) : options_(std::move(options)) {}
 
 Session::~Session() = default;
 
@@ -175,6 +181,14 @@ core::Result<void> Session::prepare(const core::CameraPose& first) {
 // The renderer knows a window's size only from the first frame on.
 core::Extent Session::picture_size() const {
   return window_ ? window_->framebuffer_size() : renderer_->size();
+}
+
+double Session::now_s() const {
+  return scene_->state().clock.now_s;
+}
+
+void Session::set_now(double now_s) {
+  scene_->state().clock.now_s = now_s;
 }
 
 bool Session::has_hung_modelers() const {
