@@ -143,8 +143,7 @@ void Audio::State::choose(const core::CameraPose& listener) {
     sound.chosen = false;
     if (sound.how.at) {
       const core::WorldPosition& at = *sound.how.at;
-      const glm::dvec3 corner =
-          core::offset_m(at.block, listener.position, options.block_size_m);
+      const glm::dvec3 corner = core::offset_m(at.block, listener.position, options.block_size_m);
       const glm::dvec3 place = corner + at.local;
       sound.gain *= attenuation(std::hypot(place.x, place.y, place.z), sound.how.range);
     }
@@ -192,8 +191,8 @@ void Audio::State::give_voice(Sound& sound) {
   if (sound.clip) {
     Loaded& entry = loaded[sound.clip.get()];
     if (entry.buffer == 0)
-      entry = {sound.clip, make_buffer(sound.clip->samples, sound.clip->channels,
-                                       sound.clip->rate_hz)};
+      entry = {sound.clip,
+               make_buffer(sound.clip->samples, sound.clip->channels, sound.clip->rate_hz)};
     alSourcei(sound.source, AL_BUFFER, static_cast<ALint>(entry.buffer));
     alSourcei(sound.source, AL_SAMPLE_OFFSET, static_cast<ALint>(sound.frame));
     return;
@@ -210,8 +209,10 @@ void Audio::State::give_voice(Sound& sound) {
 
 void Audio::State::take_voice(Sound& sound) {
   if (sound.source == 0) return;
-  ALint offset = 0;
+  ALint offset = 0, state = AL_INITIAL;
   alGetSourcei(sound.source, AL_SAMPLE_OFFSET, &offset);
+  alGetSourcei(sound.source, AL_SOURCE_STATE, &state);
+  if (sound.clip && state == AL_STOPPED) sound.ended = true;  // since the last update
   sound.frame = sound.clip ? offset : sound.frame + offset;
   if (sound.how.loop && sound.frames() > 0) sound.frame = std::fmod(sound.frame, sound.frames());
   alSourceStop(sound.source);
@@ -226,9 +227,8 @@ void Audio::State::take_voice(Sound& sound) {
 void Audio::State::set_source(const Sound& sound, const core::CameraPose& listener) const {
   glm::vec3 place{0};
   if (sound.how.at)
-    place = glm::vec3(
-        core::offset_m(sound.how.at->block, listener.position, options.block_size_m) +
-        sound.how.at->local);
+    place = glm::vec3(core::offset_m(sound.how.at->block, listener.position, options.block_size_m) +
+                      sound.how.at->local);
   alSource3f(sound.source, AL_POSITION, place.x, place.y, place.z);
   alSourcei(sound.source, AL_SOURCE_RELATIVE, sound.how.at ? AL_FALSE : AL_TRUE);
   alSourcef(sound.source, AL_GAIN, static_cast<float>(sound.gain));
@@ -289,8 +289,7 @@ Audio::~Audio() {
 }
 
 core::Result<SoundId> Audio::play(std::shared_ptr<const Clip> clip, const Play& how) {
-  if (clip == nullptr)
-    return core::fail(core::ErrorCode::kInvalidArgument, "a sound has no clip");
+  if (clip == nullptr) return core::fail(core::ErrorCode::kInvalidArgument, "a sound has no clip");
   if (auto ok = check_clip(*clip); !ok) return tl::unexpected(ok.error());
   if (auto ok = check(how, clip->channels); !ok) return tl::unexpected(ok.error());
   Sound& sound = state_->sounds.emplace_back();

@@ -16,9 +16,15 @@ ALCdevice* open_rendered() {
 std::unique_ptr<Output> Output::open(bool rendered) {
   ALCdevice* device = rendered ? open_rendered() : alcOpenDevice(nullptr);
   if (device == nullptr) return nullptr;
-  const ALCint attributes[] = {ALC_FORMAT_CHANNELS_SOFT, ALC_STEREO_SOFT, ALC_FORMAT_TYPE_SOFT,
-                               ALC_FLOAT_SOFT,           ALC_FREQUENCY,   kRenderRate,
-                               ALC_HRTF_SOFT,            ALC_FALSE,       0};
+  const ALCint attributes[] = {ALC_FORMAT_CHANNELS_SOFT,
+                               ALC_STEREO_SOFT,
+                               ALC_FORMAT_TYPE_SOFT,
+                               ALC_FLOAT_SOFT,
+                               ALC_FREQUENCY,
+                               kRenderRate,
+                               ALC_HRTF_SOFT,
+                               ALC_FALSE,
+                               0};
   ALCcontext* context = alcCreateContext(device, rendered ? attributes : nullptr);
   if (context == nullptr) {
     alcCloseDevice(device);
@@ -57,8 +63,8 @@ void Output::set_listener(const glm::vec3& forward, const glm::vec3& up) {
 
 std::vector<float> Output::render(std::size_t frames) {
   std::vector<float> samples(frames * 2);
-  const auto render = reinterpret_cast<LPALCRENDERSAMPLESSOFT>(
-      alcGetProcAddress(device_, "alcRenderSamplesSOFT"));
+  const auto render =
+      reinterpret_cast<LPALCRENDERSAMPLESSOFT>(alcGetProcAddress(device_, "alcRenderSamplesSOFT"));
   if (rendered_ && render != nullptr)
     render(device_, samples.data(), static_cast<ALCsizei>(frames));
   return samples;

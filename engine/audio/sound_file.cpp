@@ -17,8 +17,8 @@ int close_file(void* file) {
 
 bool is_known(int format) {
   const int container = format & SF_FORMAT_TYPEMASK;
-  return container == SF_FORMAT_WAV || container == SF_FORMAT_WAVEX ||
-         container == SF_FORMAT_OGG || container == SF_FORMAT_FLAC;
+  return container == SF_FORMAT_WAV || container == SF_FORMAT_WAVEX || container == SF_FORMAT_OGG ||
+         container == SF_FORMAT_FLAC;
 }
 
 }  // namespace
@@ -29,7 +29,8 @@ core::Result<SoundFile> SoundFile::open(const std::filesystem::path& file) {
   };
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return refuse(core::ErrorCode::kIo, "there is no such file");
+  if (!std::filesystem::exists(status))
+    return refuse(core::ErrorCode::kIo, "there is no such file");
   if (!std::filesystem::is_regular_file(status))
     return refuse(core::ErrorCode::kIo, "is not a regular file");
   SF_INFO info{};
@@ -56,7 +57,8 @@ core::Result<SoundFile> SoundFile::open(const std::filesystem::path& file) {
 
 std::size_t SoundFile::read(std::span<std::int16_t> samples) {
   const auto frames = static_cast<sf_count_t>(samples.size() / channels_);
-  const sf_count_t read = sf_readf_short(static_cast<SNDFILE*>(file_.get()), samples.data(), frames);
+  const sf_count_t read =
+      sf_readf_short(static_cast<SNDFILE*>(file_.get()), samples.data(), frames);
   return static_cast<std::size_t>(std::max<sf_count_t>(read, 0));
 }
 

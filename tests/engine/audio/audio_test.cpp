@@ -161,8 +161,7 @@ TEST(Audio, TheLoudestHaveTheVoicesAndTheOthersGoOnSilently) {
 
 TEST(Audio, AStreamSoundsLikeItsFileAndLoops) {
   const TemporaryFolder folder;
-  testing::write_sound(folder / "tone.ogg", testing::tone(1.5),
-                       SF_FORMAT_OGG | SF_FORMAT_VORBIS);
+  testing::write_sound(folder / "tone.ogg", testing::tone(1.5), SF_FORMAT_OGG | SF_FORMAT_VORBIS);
   Audio audio(rendered());
   ASSERT_TRUE(audio.play(shared_tone(1), {.loop = true}));
   const double clip = listen(audio, at({0, 0})).both();
