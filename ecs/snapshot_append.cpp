@@ -15,7 +15,7 @@ class Scratch {
  public:
   Scratch(const ComponentInfo& info, std::size_t rows)
       : alignment_(static_cast<std::align_val_t>(info.alignment)),
-        bytes_(::operator new(std::max<std::size_t>(rows * info.size_bytes, 1), alignment_)) {}
+        bytes_(::operator new(std::max<std::size_t>(rows* info.size_bytes, 1), alignment_)) {}
   ~Scratch() { ::operator delete(bytes_, alignment_); }
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
@@ -185,8 +185,7 @@ class Appender {
 WorldLimits limits_for(std::size_t bytes, const WorldLimits& limits) {
   WorldLimits part = limits;
   part.max_entities = std::min(limits.max_entities, bytes / sizeof(std::uint32_t) + 1);
-  part.max_rows_per_table =
-      std::min(limits.max_rows_per_table, bytes / sizeof(Entity) + 1);
+  part.max_rows_per_table = std::min(limits.max_rows_per_table, bytes / sizeof(Entity) + 1);
   return part;
 }
 

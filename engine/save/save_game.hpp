@@ -101,7 +101,7 @@ class SaveGame {
   // `values` stand for its question marks. The change is visible to query() at once and in the file
   // from the next save() on. Statements that failed saves have taken back run again, so one that
   // asks for the time or a random number may then give another. Fails with kInvalidArgument (SQL,
-  // another table), kIo or kParse. https://www.sqlite.org/lang.html. One of its own, it has no
+  // another table), kIo or kParse. https://www.sqlite.org/lang.html. The game's own tables have no
   // checksums.
   core::Result<void> execute(std::string_view sql, const std::vector<Value>& values = {});
   // Runs one SELECT on the game's own tables. Fails as execute().

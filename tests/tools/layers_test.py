@@ -26,6 +26,7 @@ MAY_KNOW = {
     "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/synthesis",
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
                      "engine/telemetry"},
+    "engine/audio": {"engine/core"},
     "engine/save": {"ecs", "engine/core", "engine/models", "engine/world"},
     "shaders": set(),
 }
@@ -62,6 +63,7 @@ ONLY_IN = {
     r"^CLI/": {"engine/cli", "game"},
     r"^tiny_gltf": {"engine/exchange"},
     r"^spdlog/": {"engine/core"},
+    r"^(AL/|sndfile)": {"engine/audio"},
     r"^sqlite3": {"engine/save"},
     r"^Q[A-Z]|^Qt": {"editor"},
 }
