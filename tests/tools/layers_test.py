@@ -29,6 +29,8 @@ MAY_KNOW = {
                      "engine/synthesis",
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
                      "engine/telemetry"},
+    "engine/audio": {"engine/core"},
+    "engine/save": {"ecs", "engine/core", "engine/models", "engine/world"},
     "shaders": set(),
 }
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange"}
@@ -65,11 +67,13 @@ ONLY_IN = {
     r"^CLI/": {"engine/cli", "game"},
     r"^tiny_gltf": {"engine/exchange"},
     r"^spdlog/": {"engine/core"},
+    r"^(AL/|sndfile)": {"engine/audio"},
+    r"^sqlite3": {"engine/save"},
     r"^Q[A-Z]|^Qt": {"editor"},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
 NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/query", "engine/physics", "engine/visibility",
-              "engine/exchange"}
+              "engine/exchange", "engine/save"}
 BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
