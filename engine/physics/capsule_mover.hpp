@@ -8,8 +8,8 @@ namespace psygen::physics {
 
 // How far a sweep came.
 struct Sweep {
-  double fraction = 1;         // of the way
-  btVector3 normal{0, 1, 0};   // of what was hit
+  double fraction = 1;        // of the way
+  btVector3 normal{0, 1, 0};  // of what was hit
   bool hit = false;
 };
 
@@ -18,8 +18,8 @@ class CapsuleMover {
   // The capsule keeps this distance from what it meets.
   static constexpr double kSkinM = 0.01;
 
-  // `self` is the character's body, `mass_kg` its mass: lighter dynamic bodies are ignored. All must
-  // outlive it.
+  // `self` is the character's body, `mass_kg` its mass: lighter dynamic bodies are ignored. All
+  // must outlive it.
   CapsuleMover(const btCollisionWorld& world, const btCollisionObject& self,
                const btConvexShape& capsule, double mass_kg)
       : world_(world), self_(self), capsule_(capsule), mass_kg_(mass_kg) {}

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kGroundAcceleration = 40, kAirAcceleration = 6;  // m/s²
 constexpr double kMostSlide = 12;  // m/s down ground that is too steep
-constexpr double kPieceM = 0.2;  // a longer way is gone in pieces
+constexpr double kPieceM = 0.2;    // a longer way is gone in pieces
 constexpr int kSlides = 4;
 
 btVector3 along_plane(const btVector3& way, const btVector3& normal) {
@@ -97,7 +97,8 @@ void Character::stop_at(const btVector3& normal) {
 bool Character::step_up(const btVector3& way) {
   const btVector3 from = centre(feet_), up(0, settings_.step_height_m, 0);
   const Sweep raise = mover_.sweep(from, from + up);
-  const double lifted = std::max(raise.fraction * settings_.step_height_m - CapsuleMover::kSkinM, 0.0);
+  const double lifted =
+      std::max(raise.fraction * settings_.step_height_m - CapsuleMover::kSkinM, 0.0);
   if (lifted < 2 * CapsuleMover::kSkinM) return false;
   const btVector3 above = from + btVector3(0, lifted, 0);
   // Far enough for the capsule's round foot to find the top of the step.
@@ -123,10 +124,10 @@ void Character::move_aside(btVector3 way) {
     const btVector3 from = centre(feet_);
     const double length = way.length();
     const Sweep sweep = mover_.sweep(from, from + way * (1 + CapsuleMover::kSkinM / length));
-    const double gone = sweep.hit ? std::max(sweep.fraction * (length + CapsuleMover::kSkinM) -
-                                                 CapsuleMover::kSkinM,
-                                             0.0)
-                                  : length;
+    const double gone =
+        sweep.hit
+            ? std::max(sweep.fraction * (length + CapsuleMover::kSkinM) - CapsuleMover::kSkinM, 0.0)
+            : length;
     feet_ = terrain_.inside(feet_ + way * (gone / length), settings_.radius_m);
     if (!sweep.hit) return;
     way *= 1 - gone / length;
@@ -144,7 +145,8 @@ void Character::move_aside(btVector3 way) {
 void Character::move_up(double rise) {
   const btVector3 from = centre(feet_);
   const Sweep sweep = mover_.sweep(from, from + btVector3(0, rise, 0));
-  feet_.setY(feet_.y() + std::max(rise * sweep.fraction - (sweep.hit ? CapsuleMover::kSkinM : 0), 0.0));
+  feet_.setY(feet_.y() +
+             std::max(rise * sweep.fraction - (sweep.hit ? CapsuleMover::kSkinM : 0), 0.0));
   if (sweep.hit) velocity.setY(0);
 }
 
@@ -157,8 +159,8 @@ void Character::move_down(double drop) {
   const models::GroundPoint ground = terrain_.ground(feet_);
   Support support{ground.height_m, to_bt(ground.normal)};
   if (sweep.hit) {
-    const double height = feet_.y() - sweep.fraction * (depth + CapsuleMover::kSkinM) +
-                          CapsuleMover::kSkinM;
+    const double height =
+        feet_.y() - sweep.fraction * (depth + CapsuleMover::kSkinM) + CapsuleMover::kSkinM;
     if (height > support.height) support = {height, sweep.normal};
   }
   const double lowest = feet_.y() - depth;

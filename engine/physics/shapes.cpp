@@ -25,8 +25,8 @@ PlacedShape make(const Collider::Sphere& s) {
 PlacedShape make(const Collider::Capsule& c) {
   const btVector3 from = to_bt(c.from), axis = to_bt(c.to) - from;
   const btScalar length = axis.length();
-  const btQuaternion turn = length > 0 ? shortestArcQuat(btVector3(0, 1, 0), axis / length)
-                                       : btQuaternion::getIdentity();
+  const btQuaternion turn =
+      length > 0 ? shortestArcQuat(btVector3(0, 1, 0), axis / length) : btQuaternion::getIdentity();
   return {std::make_unique<btCapsuleShape>(c.radius, length), btTransform(turn, from + axis / 2)};
 }
 

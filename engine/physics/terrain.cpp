@@ -54,7 +54,8 @@ btVector3 Terrain::inside(const btVector3& at, double margin_m) const {
     const double margin = std::min(margin_m, 0.25 * static_cast<double>(blocks) * size);
     return std::clamp(v, low + margin, high - margin);
   };
-  return {limit(at.x(), origin_.x, world.blocks_x), at.y(), limit(at.z(), origin_.z, world.blocks_z)};
+  return {limit(at.x(), origin_.x, world.blocks_x), at.y(),
+          limit(at.z(), origin_.z, world.blocks_z)};
 }
 
 models::GroundPoint Terrain::ground(const btVector3& at) {

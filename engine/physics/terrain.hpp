@@ -31,17 +31,18 @@ class Terrain {
 
   // The block from whose corner Bullet's coordinates count. Removes all blocks.
   void set_origin(core::BlockCoord origin);
-  // Makes what is missing of the blocks that reach into the square from `low` to `high`, in Bullet's
-  // x and z, and keeps them for this step.
+  // Makes what is missing of the blocks that reach into the square from `low` to `high`, in
+  // Bullet's x and z, and keeps them for this step.
   void need(const glm::dvec2& low, const glm::dvec2& high, std::uint64_t step);
-  // Removes blocks that were not needed for `keep_steps`, and the oldest of more than `most` others.
+  // Removes blocks that were not needed for `keep_steps`, and the oldest of more than `most`
+  // others.
   void drop_idle(std::uint64_t step, std::uint32_t keep_steps, std::size_t most);
   void remove(core::BlockCoord block);
   void clear();
   std::size_t size() const { return blocks_.size(); }
 
-  // The ground under a point in Bullet's coordinates, moved into a bounded world. From queries where
-  // the block is not here.
+  // The ground under a point in Bullet's coordinates, moved into a bounded world. From queries
+  // where the block is not here.
   models::GroundPoint ground(const btVector3& at);
   // The point inside the walls of a bounded world, at least `margin_m` from them.
   btVector3 inside(const btVector3& at, double margin_m) const;

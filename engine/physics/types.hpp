@@ -58,7 +58,7 @@ struct CharacterSettings {
   core::WorldPosition feet;
   double radius_m = 0.3, height_m = 1.8;  // height >= 2 · radius
   double walk_speed = 1.6, run_speed = 5;
-  double jump_speed = 4.5;   // upwards, when a jump begins
+  double jump_speed = 4.5;  // upwards, when a jump begins
   double step_height_m = 0.4;
   double steepest_deg = 50;  // 0 … 89: what it can climb and stand on
   double mass_kg = 80;       // lighter bodies are pushed aside, heavier ones stop it

@@ -20,9 +20,10 @@ tl::unexpected<core::Error> no_character(CharacterId id) {
 core::Result<void> check(const CharacterSettings& s) {
   const auto is_in = [](double v, double low, double high) { return v >= low && v <= high; };
   if (!is_in(s.radius_m, kLeastSizeM, kMostSizeM) || !is_in(s.height_m, 2 * s.radius_m, kMostSizeM))
-    return refuse(fmt::format("a character of radius {} m and height {} m: both are {} … {} m, and "
-                              "the height at least twice the radius",
-                              s.radius_m, s.height_m, kLeastSizeM, kMostSizeM));
+    return refuse(
+        fmt::format("a character of radius {} m and height {} m: both are {} … {} m, and "
+                    "the height at least twice the radius",
+                    s.radius_m, s.height_m, kLeastSizeM, kMostSizeM));
   if (!is_in(s.walk_speed, 0, 100) || !is_in(s.run_speed, 0, 100) || !is_in(s.jump_speed, 0, 100))
     return refuse("the speeds of a character are 0 … 100 m/s");
   if (!is_in(s.step_height_m, 0, s.height_m))
@@ -102,8 +103,8 @@ core::Result<void> World::set_velocity(CharacterId id, const glm::dvec3& velocit
   Character* character = impl_->find(id);
   if (character == nullptr) return no_character(id);
   if (!is_within(velocity, kMostSpeed))
-    return refuse(fmt::format("a velocity is finite, and at most {} m/s along each axis",
-                              kMostSpeed));
+    return refuse(
+        fmt::format("a velocity is finite, and at most {} m/s along each axis", kMostSpeed));
   character->velocity = to_bt(velocity);
   if (velocity.y > 0) character->on_ground = false;
   return {};

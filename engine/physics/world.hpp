@@ -38,8 +38,8 @@ class World {
   // Removes a body, and wakes all others.
   core::Result<void> remove(BodyId body);
   core::Result<BodyState> state(BodyId body) const;
-  // Teleports a body, and wakes it. A kinematic body moves there during the next step and pushes what
-  // is in its way, if that is nearer than a block.
+  // Teleports a body, and wakes it. A kinematic body moves there during the next step and pushes
+  // what is in its way, if that is nearer than a block.
   core::Result<void> set_pose(BodyId body, const core::WorldPosition& position,
                               const glm::dquat& rotation);
   core::Result<void> set_velocity(BodyId body, const glm::dvec3& velocity, const glm::dvec3& spin);

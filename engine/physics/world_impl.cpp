@@ -29,7 +29,8 @@ bool is_within(const glm::dvec3& v, double most) {
   return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;  // not NaN
 }
 
-World::Impl::Impl(query::World& queries, const Settings& wanted) : query(queries), settings(wanted) {
+World::Impl::Impl(query::World& queries, const Settings& wanted)
+    : query(queries), settings(wanted) {
   bullet.setGravity({0, -settings.gravity, 0});
   bullet.getDispatchInfo().m_deterministicOverlappingPairs = true;
   bullet.setForceUpdateAllAabbs(false);
@@ -54,8 +55,8 @@ core::Result<btVector3> World::Impl::place(const core::WorldPosition& at) {
   const auto sound = query::checked(at, query.world().block_size_m());
   if (!sound) return tl::unexpected(sound.error());
   if (!query.world().contains(sound->block))
-    return refuse(fmt::format("block ({}, {}) is outside the world", sound->block.x,
-                              sound->block.z));
+    return refuse(
+        fmt::format("block ({}, {}) is outside the world", sound->block.x, sound->block.z));
   const btVector3 to = terrain.coordinates(*sound);
   if (btVector3(to.x(), 0, to.z()).length() <= kMostFromOriginM || count() > 1) return to;
   move_origin(sound->block);
@@ -132,8 +133,8 @@ void World::Impl::rouse() {
     if (body.kind == Motion::kDynamic) body.rigid->activate(true);
 }
 
-// Bullet finds contacts at the end of a step only, so what is fast can be beyond the ground by then.
-// The way of the centre is checked against the exact ground.
+// Bullet finds contacts at the end of a step only, so what is fast can be beyond the ground by
+// then. The way of the centre is checked against the exact ground.
 void World::Impl::put_back(Body& body) {
   btRigidBody& rigid = *body.rigid;
   if (!rigid.isActive()) return;

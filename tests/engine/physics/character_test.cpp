@@ -45,7 +45,8 @@ struct Floor {
     ASSERT_TRUE(scene.physics.tell(character, {direction, run, jump}));
     scene.steps(steps);
   }
-  BodyId add_box(const glm::vec3& half, const glm::dvec3& place, Motion motion, double mass_kg = 1) {
+  BodyId add_box(const glm::vec3& half, const glm::dvec3& place, Motion motion,
+                 double mass_kg = 1) {
     core::WorldPosition p = middle;
     p.local += place;
     return *scene.physics.add(
@@ -161,7 +162,8 @@ TEST(Character, FollowsTheGroundDownhillWithoutHopping) {
     for (int i = 0; i < 12; ++i) {
       const core::WorldPosition start = scene.above({20 + 3 * i, 20}, 31, 31, 0);
       const auto ground = scene.query.ground(start);
-      const glm::dvec2 downhill(static_cast<double>(ground->normal.x), static_cast<double>(ground->normal.z));
+      const glm::dvec2 downhill(static_cast<double>(ground->normal.x),
+                                static_cast<double>(ground->normal.z));
       if (ground->normal.y < 0.75F || glm::length(downhill) < 0.05) continue;
       const auto id = scene.physics.add(CharacterSettings{.feet = start});
       ASSERT_TRUE(id);

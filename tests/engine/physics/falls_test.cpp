@@ -55,7 +55,8 @@ TEST_P(Falls, CharactersThatAreTeleportedAndDroppedStayAboveTheGround) {
     ASSERT_TRUE(scene.physics.set_feet(*id, at));
     const auto speed = [&] { return random.next_real(-200, 200); };
     ASSERT_TRUE(scene.physics.set_velocity(*id, {speed(), -random.next_real(0, 900), speed()}));
-    ASSERT_TRUE(scene.physics.tell(*id, {{random.next_real(-1, 1), random.next_real(-1, 1)}, true}));
+    ASSERT_TRUE(
+        scene.physics.tell(*id, {{random.next_real(-1, 1), random.next_real(-1, 1)}, true}));
     for (int k = 0; k < 12; ++k) {
       ASSERT_TRUE(scene.physics.step(kStep));
       const CharacterState s = *scene.physics.state(*id);
@@ -129,8 +130,9 @@ TEST(FallsOfMany, CharactersAndBodiesFarApartAllStandOnTheirGround) {
     const core::BlockCoord block{i * 97 - 1500, 5 * i * i};
     characters.push_back(
         *scene.physics.add(CharacterSettings{.feet = scene.above(block, 20, 20, 30)}));
-    bodies.push_back(*scene.physics.add(
-        {.shape = ball(0.3F), .position = scene.above(block, 40, 40, 200), .velocity = {0, -200, 0}}));
+    bodies.push_back(*scene.physics.add({.shape = ball(0.3F),
+                                         .position = scene.above(block, 40, 40, 200),
+                                         .velocity = {0, -200, 0}}));
   }
   for (int i = 0; i < 240; ++i) {
     ASSERT_TRUE(scene.physics.step(kStep));

@@ -54,7 +54,8 @@ TEST(Shapes, ThatAreNotLegalAreRefused) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(make_shape({}));
   for (const Collider::Shape& shape :
-       {Collider::Shape(Collider::Sphere{{0, 0, 0}, 0}), Collider::Shape(Collider::Sphere{{0, 0, 0}, -1}),
+       {Collider::Shape(Collider::Sphere{{0, 0, 0}, 0}),
+        Collider::Shape(Collider::Sphere{{0, 0, 0}, -1}),
         Collider::Shape(Collider::Sphere{{kNan, 0, 0}, 1}),
         Collider::Shape(Collider::Sphere{{0, 0, 0}, 5000}),
         Collider::Shape(Collider::Capsule{{0, 0, 0}, {0, 1, 0}, 0}),

@@ -61,7 +61,8 @@ TEST(PhysicsTerrain, ModelsAreThoseThatRaysMeet) {
     if (!(m.block == core::BlockCoord{7, 9})) continue;
     const btVector3 foot = terrain.coordinates(m.position), up(0, 20, 0);
     const double hit = bare.cast(foot + up, foot, kModels);
-    const auto expected = query.cast({.origin = terrain.position(foot + up), .longest_m = 20, .ground = false});
+    const auto expected =
+        query.cast({.origin = terrain.position(foot + up), .longest_m = 20, .ground = false});
     ASSERT_TRUE(expected);
     ASSERT_EQ(hit < 1, expected->kind == query::HitKind::kModel);
     if (hit == 1) continue;

@@ -36,8 +36,8 @@ TEST_P(Walk, OfKilometresNeitherFallsThroughTheGroundNorGetsStuck) {
       ASSERT_LE(s.feet.local.y, scene.ground_m(s.feet) + 25);
     }
     const core::WorldPosition now = scene.physics.state(*id)->feet;
-    const glm::dvec3 way = core::offset_m(now.block, before, size) +
-                           glm::dvec3(now.local.x, now.local.y, now.local.z);
+    const glm::dvec3 way =
+        core::offset_m(now.block, before, size) + glm::dvec3(now.local.x, now.local.y, now.local.z);
     const double metres = glm::length(glm::dvec2(way.x, way.z));
     walked_m += metres;
     wait = metres < 1 ? wait + 1 : 0;

@@ -18,8 +18,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(PhysicsBodies, FallByGravityAndComeToRestOnTheGround) {
   Scene scene(Loaded::shipped("silver_combe"));
-  const auto body =
-      scene.physics.add({.shape = box(glm::vec3(0.5F)), .position = scene.above({5, 5}, 20, 20, 30)});
+  const auto body = scene.physics.add(
+      {.shape = box(glm::vec3(0.5F)), .position = scene.above({5, 5}, 20, 20, 30)});
   ASSERT_TRUE(body);
   const double start = scene.physics.state(*body)->position.local.y;
   scene.steps(60);
@@ -92,8 +92,8 @@ TEST(PhysicsBodies, KinematicOnesPushDynamicOnes) {
   on.local.y += 1;
   const auto crate = scene.physics.add({.shape = box(glm::vec3(0.45F)), .position = on});
   on.local.x -= 3;
-  const auto plough =
-      scene.physics.add({.shape = box(glm::vec3(0.4F)), .motion = Motion::kKinematic, .position = on});
+  const auto plough = scene.physics.add(
+      {.shape = box(glm::vec3(0.4F)), .motion = Motion::kKinematic, .position = on});
   ASSERT_TRUE(floor && crate && plough);
   scene.steps(60);
   for (int i = 0; i < 120; ++i) {

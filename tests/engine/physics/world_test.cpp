@@ -25,10 +25,10 @@ std::vector<double> simulated(Scene& scene, const core::BlockCoord& block) {
   std::vector<CharacterId> characters;
   for (int i = 0; i < 25; ++i) {
     core::WorldPosition at = scene.above(block, 20 + 0.8 * (i % 5), 20 + 0.9 * (i / 5), 3 + i);
-    bodies.push_back(*scene.physics.add(
-        {.shape = i % 2 == 0 ? ball(0.4F) : box(glm::vec3(0.4F)), .position = at, .velocity = {1, 0, 2}}));
-    if (i % 5 == 0)
-      characters.push_back(*scene.physics.add(CharacterSettings{.feet = at}));
+    bodies.push_back(*scene.physics.add({.shape = i % 2 == 0 ? ball(0.4F) : box(glm::vec3(0.4F)),
+                                         .position = at,
+                                         .velocity = {1, 0, 2}}));
+    if (i % 5 == 0) characters.push_back(*scene.physics.add(CharacterSettings{.feet = at}));
   }
   std::vector<double> bits;
   for (int step = 0; step < 400; ++step) {
@@ -60,7 +60,8 @@ TEST(PhysicsWorld, TheSameInputsGiveTheSameBits) {
     Scene first(Loaded::shipped(name)), second(Loaded::shipped(name));
     // Other blocks were asked about before, in another order.
     for (int i = 30; i-- > 0;)
-      (void)second.query.cast({.origin = {{35 - i % 9, 30 + i}, {5, 400, 5}}, .direction = {1, -1, 1}});
+      (void)second.query.cast(
+          {.origin = {{35 - i % 9, 30 + i}, {5, 400, 5}}, .direction = {1, -1, 1}});
     const std::vector<double> a = simulated(first, {33, 33}), b = simulated(second, {33, 33});
     EXPECT_TRUE(same_bits(a, b)) << name;
     for (const double v : a)
@@ -90,7 +91,8 @@ relief_m = 0.01
     moved = std::max(moved, std::abs(b[i]));
   }
   EXPECT_GT(moved, 1);
-  const auto id = far.physics.add(CharacterSettings{.feet = far.above({1 << 30, -(1 << 30)}, 5, 5, 0)});
+  const auto id =
+      far.physics.add(CharacterSettings{.feet = far.above({1 << 30, -(1 << 30)}, 5, 5, 0)});
   ASSERT_TRUE(id);
   ASSERT_TRUE(far.physics.tell(*id, {{1, 0}}));
   far.steps(60);
@@ -102,7 +104,8 @@ relief_m = 0.01
 TEST(PhysicsWorld, CoordinatesFollowTheFirstActorOverManyKilometres) {
   Scene scene(Loaded::shipped("endless"));
   const auto id = scene.physics.add(CharacterSettings{.feet = scene.above({0, 0}, 5, 5, 300)});
-  const auto body = scene.physics.add({.shape = ball(0.5F), .position = scene.above({0, 0}, 9, 9, 300)});
+  const auto body =
+      scene.physics.add({.shape = ball(0.5F), .position = scene.above({0, 0}, 9, 9, 300)});
   ASSERT_TRUE(id && body);
   core::WorldPosition last = scene.physics.state(*id)->feet;
   for (int i = 0; i < 1500; ++i) {  // 7.5 km: past a move of the origin
@@ -121,8 +124,8 @@ TEST(PhysicsWorld, CoordinatesFollowTheFirstActorOverManyKilometres) {
 TEST(PhysicsWorld, RaysMeetBodiesAndCharactersAndNothingElse) {
   Scene scene(Loaded::shipped("paper"));
   core::WorldPosition at = scene.above({9, 9}, 30, 30, 50);
-  const auto body = scene.physics.add(
-      {.shape = ball(1), .motion = Motion::kKinematic, .position = at});
+  const auto body =
+      scene.physics.add({.shape = ball(1), .motion = Motion::kKinematic, .position = at});
   core::WorldPosition feet = at;
   feet.local.x += 10;
   feet.local.y -= 1;
