@@ -22,13 +22,14 @@ MAY_KNOW = {
     "engine/image": {"engine/core"},
     "engine/render": {"engine/core", "engine/image", "shaders"},
     "engine/platform": {"engine/core"},
+    "engine/input": {"engine/core", "engine/platform", "engine/world"},
     "engine/telemetry": {"engine/core"},
     "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/synthesis",
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
                      "engine/telemetry"},
     "shaders": set(),
 }
-MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange"}
+MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/input"}
 MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["game"] = MAY_KNOW["engine/cli"] | {"engine/cli"}
 MAY_KNOW["editor"] = MAY_KNOW["game"]
@@ -55,6 +56,7 @@ NOT_UP = {"engine/models/kit"}
 ONLY_IN = {
     r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform"},
     r"^GLFW/": {"engine/platform"},
+    r"^imgui/": {"engine/render", "engine/app", "game"},
     r"^OpenImageIO/": {"engine/image"},
     r"^toml\+\+/": {"engine/world"},
     r"^nlohmann/": {"engine/telemetry", "engine/cli"},
