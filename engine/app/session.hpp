@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/app/gui.hpp"
 #include "engine/app/options.hpp"
 #include "engine/image/image.hpp"
+#include "engine/input/actions.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
@@ -46,8 +48,20 @@ class Session {
   // Whether SessionOptions::stop is set.
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  // What the user did since the last poll but one. Nothing when headless.
+  // What the user did since the last poll but one, without what ImGui takes. Nothing when headless.
   const platform::InputState& input() const { return input_; }
+  // The actions of a game (docs/input.md). poll() feeds them; the game takes their fixed steps.
+  input::Actions& actions() { return actions_; }
+
+  // While a session is paused, ticks draw, but the clock stands still and plugins are told that no
+  // time has passed. The same for what the user does: input() goes on.
+  void set_paused(bool paused) { paused_ = paused; }
+  bool paused() const { return paused_; }
+
+  // What the game writes over the next pictures, until it writes something else (docs/hud.md).
+  render::HudDrawing& hud() { return scene_->state().input.hud; }
+  // The ImGui of the plugins' on_gui; it is made when it is first asked for.
+  Gui& gui();
   // The clock: seconds, at which the next tick is drawn.
   double now_s() const { return scene_->state().clock.now_s; }
   void set_now(double now_s) { scene_->state().clock.now_s = now_s; }
@@ -88,6 +102,7 @@ class Session {
   core::Result<void> open_renderer(Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
+  void draw_gui(double dt_s);
   void start();
 
   SessionOptions options_;
@@ -96,7 +111,11 @@ class Session {
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<telemetry::TraceLog> trace_;
   std::unique_ptr<scene::Scene> scene_;
-  platform::InputState input_;
+  std::unique_ptr<Gui> gui_;                // null until it is needed
+  platform::InputState all_input_, input_;  // the latter without what ImGui takes
+  platform::InputFilter filter_;
+  input::Actions actions_;
+  bool paused_ = false;
   bool closed_ = false;
   bool started_ = false;
   std::vector<std::filesystem::path> saved_;

@@ -73,7 +73,8 @@ core::Result<ActionId> Actions::add(std::string_view name, std::vector<Binding> 
                       fmt::format("there are {} actions, which is the most", kMostActions));
   }
   if (auto ok = check(name, defaults); !ok) return tl::unexpected(ok.error());
-  Action action{.name = std::string(name), .bindings = defaults, .defaults = defaults, .inputs = {}};
+  Action action{
+      .name = std::string(name), .bindings = defaults, .defaults = defaults, .inputs = {}};
   action.inputs.resize(defaults.size());
   actions_.push_back(std::move(action));
   states_.emplace_back();

@@ -1,6 +1,6 @@
-// Actions: what a game asks about ("jump", "move_x") instead of keys. Each has bindings to controls,
-// which may change at any time. Frames come in with feed(), fixed steps take their states with
-// step(). Where several steps or none fall into a frame, every press arrives exactly once, and
+// Actions: what a game asks about ("jump", "move_x") instead of keys. Each has bindings to
+// controls, which may change at any time. Frames come in with feed(), fixed steps take their states
+// with step(). Where several steps or none fall into a frame, every press arrives exactly once, and
 // every bit of movement in exactly one step. No clock, no window. One thread; linear in bindings.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace psygen::input {
 // One control of an action.
 struct Binding {
   Control control;
-  float scale = 1;         // of the control's value; negative: the other way
+  float scale = 1;          // of the control's value; negative: the other way
   float dead_zone = 0.15F;  // of gamepad axes: up to here they are 0; the rest is stretched to 1
 
   friend bool operator==(const Binding&, const Binding&) = default;
@@ -54,8 +54,8 @@ class Actions {
 
   std::span<const Binding> bindings(ActionId action) const { return actions_[action].bindings; }
   // Replaces the bindings. What the action holds is released in the next step, unless the new ones
-  // hold it. Fails with kInvalidArgument for scales that are not finite, 0 or beyond ±1000, and dead
-  // zones outside 0 … 0.95, and with kOverBudget beyond kMostBindings; nothing changes then.
+  // hold it. Fails with kInvalidArgument for scales that are not finite, 0 or beyond ±1000, and
+  // dead zones outside 0 … 0.95, and with kOverBudget beyond kMostBindings; nothing changes then.
   core::Result<void> set_bindings(ActionId action, std::vector<Binding> bindings);
   // All actions have the bindings again with which they were added.
   void reset_bindings();
@@ -80,11 +80,11 @@ class Actions {
  private:
   // What was fed and no step has taken yet.
   struct Input {
-    double level = 0;       // of the control now: after the dead zone, 0 … 1
-    bool down = false;      // the control counts as pressed
-    bool latched = false;   // it went down since the last step
-    double moved = 0;       // relative controls: since the last step
-    double notches = 0;     // of the wheel, not yet counted as a press
+    double level = 0;      // of the control now: after the dead zone, 0 … 1
+    bool down = false;     // the control counts as pressed
+    bool latched = false;  // it went down since the last step
+    double moved = 0;      // relative controls: since the last step
+    double notches = 0;    // of the wheel, not yet counted as a press
   };
   struct Action {
     std::string name;

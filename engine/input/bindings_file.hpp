@@ -1,6 +1,6 @@
-// Bindings as TOML: one [[action]] each, with its [[action.binding]]s (docs/input.md). Actions that a
-// file does not mention keep their bindings; one without bindings loses its own. A bad file changes
-// nothing. One thread per file.
+// Bindings as TOML: one [[action]] each, with its [[action.binding]]s (docs/input.md). Actions that
+// a file does not mention keep their bindings; one without bindings loses its own. A bad file
+// changes nothing. One thread per file.
 #pragma once
 
 #include <filesystem>
@@ -21,8 +21,8 @@ std::string bindings_text(const Actions& actions);
 core::Result<void> apply_bindings(std::string_view text, std::string_view file_name,
                                   Actions& actions);
 
-// The same from and to a file, which is replaced as a whole. Fail with kIo, too, and load_bindings()
-// with kOverBudget for files over 1 MiB.
+// The same from and to a file, which is replaced as a whole. Fail with kIo, too, and
+// load_bindings() with kOverBudget for files over 1 MiB.
 core::Result<void> save_bindings(const Actions& actions, const std::filesystem::path& file);
 core::Result<void> load_bindings(const std::filesystem::path& file, Actions& actions);
 

@@ -20,11 +20,11 @@ using platform::PadAxis;
 constexpr std::array kWheelNames{"Wheel Up"sv, "Wheel Down"sv, "Wheel Left"sv, "Wheel Right"sv};
 constexpr std::array kMouseNames{"Mouse Move Up"sv, "Mouse Move Down"sv, "Mouse Move Left"sv,
                                  "Mouse Move Right"sv};
-constexpr std::array kPadNames{
-    "Gamepad Left Stick Up"sv,    "Gamepad Left Stick Down"sv,  "Gamepad Left Stick Left"sv,
-    "Gamepad Left Stick Right"sv, "Gamepad Right Stick Up"sv,   "Gamepad Right Stick Down"sv,
-    "Gamepad Right Stick Left"sv, "Gamepad Right Stick Right"sv, "Gamepad Left Trigger"sv,
-    "Gamepad Right Trigger"sv};
+constexpr std::array kPadNames{"Gamepad Left Stick Up"sv,    "Gamepad Left Stick Down"sv,
+                               "Gamepad Left Stick Left"sv,  "Gamepad Left Stick Right"sv,
+                               "Gamepad Right Stick Up"sv,   "Gamepad Right Stick Down"sv,
+                               "Gamepad Right Stick Left"sv, "Gamepad Right Stick Right"sv,
+                               "Gamepad Left Trigger"sv,     "Gamepad Right Trigger"sv};
 static_assert(kWheelNames.size() == static_cast<std::size_t>(WheelWay::kCount));
 static_assert(kMouseNames.size() == static_cast<std::size_t>(MouseWay::kCount));
 static_assert(kPadNames.size() == static_cast<std::size_t>(PadWay::kCount));
@@ -34,11 +34,11 @@ struct Half {
   PadAxis axis;
   float sign;
 };
-constexpr std::array kHalves{
-    Half{PadAxis::kLeftY, 1},  Half{PadAxis::kLeftY, -1},  Half{PadAxis::kLeftX, -1},
-    Half{PadAxis::kLeftX, 1},  Half{PadAxis::kRightY, 1},  Half{PadAxis::kRightY, -1},
-    Half{PadAxis::kRightX, -1}, Half{PadAxis::kRightX, 1}, Half{PadAxis::kLeftTrigger, 1},
-    Half{PadAxis::kRightTrigger, 1}};
+constexpr std::array kHalves{Half{PadAxis::kLeftY, 1},       Half{PadAxis::kLeftY, -1},
+                             Half{PadAxis::kLeftX, -1},      Half{PadAxis::kLeftX, 1},
+                             Half{PadAxis::kRightY, 1},      Half{PadAxis::kRightY, -1},
+                             Half{PadAxis::kRightX, -1},     Half{PadAxis::kRightX, 1},
+                             Half{PadAxis::kLeftTrigger, 1}, Half{PadAxis::kRightTrigger, 1}};
 static_assert(kHalves.size() == kPadNames.size());
 
 constexpr double kMostMoved = 1e6;
@@ -67,19 +67,27 @@ Reading read_pads(Control control, const InputState& input, std::optional<std::s
 
 double wheel_of(WheelWay way, const InputState& input) {
   switch (way) {
-    case WheelWay::kUp: return input.wheel;
-    case WheelWay::kDown: return -input.wheel;
-    case WheelWay::kLeft: return input.wheel_x;
-    default: return -input.wheel_x;
+    case WheelWay::kUp:
+      return input.wheel;
+    case WheelWay::kDown:
+      return -input.wheel;
+    case WheelWay::kLeft:
+      return input.wheel_x;
+    default:
+      return -input.wheel_x;
   }
 }
 
 double moved(MouseWay way, const InputState& input) {
   switch (way) {
-    case MouseWay::kUp: return -input.move_px.y;
-    case MouseWay::kDown: return input.move_px.y;
-    case MouseWay::kLeft: return -input.move_px.x;
-    default: return input.move_px.x;
+    case MouseWay::kUp:
+      return -input.move_px.y;
+    case MouseWay::kDown:
+      return input.move_px.y;
+    case MouseWay::kLeft:
+      return -input.move_px.x;
+    default:
+      return input.move_px.x;
   }
 }
 
@@ -109,14 +117,18 @@ std::span<const Control> all_controls() {
 
 std::string_view name_of(Control control) {
   switch (control.device) {
-    case Device::kKey: return platform::name_of(static_cast<platform::Key>(control.code));
+    case Device::kKey:
+      return platform::name_of(static_cast<platform::Key>(control.code));
     case Device::kMouseButton:
       return platform::name_of(static_cast<platform::MouseButton>(control.code));
-    case Device::kWheel: return kWheelNames[control.code];
-    case Device::kMouse: return kMouseNames[control.code];
+    case Device::kWheel:
+      return kWheelNames[control.code];
+    case Device::kMouse:
+      return kMouseNames[control.code];
     case Device::kPadButton:
       return platform::name_of(static_cast<platform::PadButton>(control.code));
-    case Device::kPadAxis: return kPadNames[control.code];
+    case Device::kPadAxis:
+      return kPadNames[control.code];
   }
   return "";
 }
@@ -128,11 +140,12 @@ core::Result<Control> control_named(std::string_view name) {
     names.emplace_back(name_of(control));
   }
   const std::string_view nearest = core::nearest_word(name, names);
-  return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("there is no control \"{}\"{}", core::shown(name, 64),
-                                nearest.empty() ? "; controls are such as \"Space\", \"Mouse Left\", "
-                                                  "\"Wheel Up\", \"Gamepad A\""
-                                                : fmt::format("; did you mean \"{}\"?", nearest)));
+  return core::fail(
+      core::ErrorCode::kInvalidArgument,
+      fmt::format("there is no control \"{}\"{}", core::shown(name, 64),
+                  nearest.empty() ? "; controls are such as \"Space\", \"Mouse Left\", "
+                                    "\"Wheel Up\", \"Gamepad A\""
+                                  : fmt::format("; did you mean \"{}\"?", nearest)));
 }
 
 bool is_relative(Control control) {
@@ -152,10 +165,13 @@ Reading read(Control control, const InputState& input, std::optional<std::size_t
     case Device::kMouseButton:
       return {input.buttons_held[control.code] ? 1.0 : 0.0, input.buttons_went_down[control.code],
               input.buttons_went_up[control.code]};
-    case Device::kWheel: return {forward(wheel_of(static_cast<WheelWay>(control.code), input))};
-    case Device::kMouse: return {forward(moved(static_cast<MouseWay>(control.code), input))};
+    case Device::kWheel:
+      return {forward(wheel_of(static_cast<WheelWay>(control.code), input))};
+    case Device::kMouse:
+      return {forward(moved(static_cast<MouseWay>(control.code), input))};
     case Device::kPadButton:
-    case Device::kPadAxis: return read_pads(control, input, pad_slot);
+    case Device::kPadAxis:
+      return read_pads(control, input, pad_slot);
   }
   return {};
 }

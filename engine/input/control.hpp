@@ -64,7 +64,7 @@ bool is_digital(Control control);
 
 // What a control does in a frame.
 struct Reading {
-  double value = 0;        // digital: 0 or 1; axes: 0 … 1; wheel: steps; mouse: screen coordinates
+  double value = 0;  // digital: 0 or 1; axes: 0 … 1; wheel: steps; mouse: screen coordinates
   bool went_down = false;  // digital only; pressed during the frame
   bool went_up = false;
 };

@@ -71,11 +71,10 @@ std::uint64_t hash_of(std::string_view bytes) {
   return core::hash_bytes(std::as_bytes(std::span(bytes.data(), bytes.size())));
 }
 
-
 void put_change(std::string& out, std::uint8_t action, const ActionState& before,
                 const ActionState& now) {
-  const bool value = std::bit_cast<std::uint32_t>(before.value) !=
-                     std::bit_cast<std::uint32_t>(now.value);
+  const bool value =
+      std::bit_cast<std::uint32_t>(before.value) != std::bit_cast<std::uint32_t>(now.value);
   put(out, action);
   put(out, static_cast<std::uint8_t>((now.held ? kHeld : 0) | (now.pressed ? kPressed : 0) |
                                      (now.released ? kReleased : 0) | (value ? kValue : 0)));

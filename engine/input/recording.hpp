@@ -1,10 +1,10 @@
 // A recording of actions: their states in every fixed step, as a compact file. Replaying gives the
-// very same states, bit by bit. Records no clock and nothing about the world: whether a game does the
-// same with the same actions is the game's. Plain values, one thread. Adding a step is linear in the
-// actions; a step without changes takes no bytes.
+// very same states, bit by bit. Records no clock and nothing about the world: whether a game does
+// the same with the same actions is the game's. Plain values, one thread. Adding a step is linear
+// in the actions; a step without changes takes no bytes.
 //
-// The file, little-endian: "psygenIN", u32 format, f64 seconds of a step, u32 actions, u64 steps, u64
-// bytes of changes; of each action u8 length and name; the changes; u64 hash of all before. The
+// The file, little-endian: "psygenIN", u32 format, f64 seconds of a step, u32 actions, u64 steps,
+// u64 bytes of changes; of each action u8 length and name; the changes; u64 hash of all before. The
 // changes of a step that has any: varint steps since the last such step, varint count, and for each
 // u8 action, u8 flags (1 held, 2 pressed, 4 released, 8 a new value follows), f32 value.
 #pragma once
@@ -54,8 +54,8 @@ class Recording {
   double step_s_ = 0;
   std::uint64_t steps_ = 0;
   std::string changes_;
-  std::vector<ActionState> last_;        // of the step that was added last
-  std::uint64_t last_changed_ = 0;       // number of the last step with changes, from 1
+  std::vector<ActionState> last_;   // of the step that was added last
+  std::uint64_t last_changed_ = 0;  // number of the last step with changes, from 1
 };
 
 // Puts the states of a recording into the actions, step by step.

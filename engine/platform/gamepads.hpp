@@ -1,6 +1,6 @@
 // Gamepads as values: what is held, and what changed since the last poll. Where readings come from
-// is the caller's (the window asks GLFW, tests make them up). Gamepads come and go at run time; none
-// is no error. Knows no mapping of devices. Main thread.
+// is the caller's (the window asks GLFW, tests make them up). Gamepads come and go at run time;
+// none is no error. Knows no mapping of devices. Main thread.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ inline constexpr std::size_t kGamepads = 16;  // slots; a gamepad keeps its slot
 // One slot. Everything is 0 and false without a gamepad.
 struct Gamepad {
   bool connected = false;
-  bool came = false, went = false;         // connected or disconnected since the last poll
-  PadButtonSet held, went_down, went_up;   // as InputState's
-  std::array<float, kPadAxes> axes{};      // without a dead zone; see PadAxis
+  bool came = false, went = false;        // connected or disconnected since the last poll
+  PadButtonSet held, went_down, went_up;  // as InputState's
+  std::array<float, kPadAxes> axes{};     // without a dead zone; see PadAxis
 
   bool is_held(PadButton button) const { return held[static_cast<std::size_t>(button)]; }
   float axis(PadAxis which) const { return axes[static_cast<std::size_t>(which)]; }

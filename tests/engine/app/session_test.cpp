@@ -74,5 +74,59 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
   EXPECT_EQ((*session)->renderer().preset(), render::Preset::kMedium);
 }
 
+TEST(Session, StandsStillAndGoesOnDrawingWhileItIsPaused) {
+  std::vector<double> told;
+  SessionOptions options = short_session();
+  options.plugins.push_back(
+      {"clock", {}, {}, [&](Session&, double dt_s) { told.push_back(dt_s); }});
+  auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  const core::CameraPose pose = (*session)->home();
+  ASSERT_TRUE((*session)->tick(pose, 0.5));
+  (*session)->set_paused(true);
+  const std::uint64_t frame = (*session)->scene().state().counters.frame.frame;
+  for (int i = 0; i < 3; ++i)
+    ASSERT_TRUE((*session)->tick(pose, 0.5));
+  EXPECT_TRUE((*session)->paused());
+  EXPECT_EQ((*session)->now_s(), 0.5);
+  EXPECT_EQ((*session)->scene().state().counters.frame.frame, frame + 3) << "drawing goes on";
+  (*session)->set_paused(false);
+  ASSERT_TRUE((*session)->tick(pose, 0.5));
+  EXPECT_EQ((*session)->now_s(), 1.0);
+  EXPECT_EQ(told, (std::vector<double>{0.5, 0, 0, 0, 0.5}));
+}
+
+TEST(Session, WritesWhatTheGameWritesOverThePicture) {
+  SessionOptions options = short_session();
+  options.preset = render::Preset::kLow;
+  auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  const auto red = [&] {
+    EXPECT_TRUE((*session)->tick((*session)->home(), 0));
+    const auto picture = (*session)->picture();
+    int count = 0;
+    for (std::size_t i = 0; picture && i < picture->rgba.size(); i += 4)
+      count += picture->rgba[i] > 200 && picture->rgba[i + 1] < 60 ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(red(), 0);
+  render::HudText text;
+  text.text =
+      "Gr\xC3\xBC\xC3\x9F"
+      "e";
+  text.at = {{0.5F, 0.5F}, {}};
+  text.align = render::HudAlign::kCentre;
+  text.size_px = 48.5F;
+  text.colour = {1, 0, 0, 1};
+  text.outline_px = 2;
+  (*session)->hud().texts.push_back(text);
+  const int letters = red();
+  EXPECT_GT(letters, 500);
+  EXPECT_LT(letters, 4000);
+  (*session)->hud() = {};
+  EXPECT_EQ(red(), 0);
+  EXPECT_TRUE((*session)->renderer().validation_messages().empty());
+}
+
 }  // namespace
 }  // namespace psygen::app

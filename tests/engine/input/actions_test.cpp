@@ -11,11 +11,11 @@
 namespace psygen::input {
 namespace {
 
-using ::testing::HasSubstr;
 using platform::Key;
 using platform::MouseButton;
 using platform::PadAxis;
 using platform::PadButton;
+using ::testing::HasSubstr;
 
 class ActionsOfAPerson : public testing::Test {
  protected:
@@ -183,8 +183,7 @@ TEST_F(ActionsOfAPerson, PressAnAxisWithoutTremblingAtItsThreshold) {
 }
 
 TEST_F(ActionsOfAPerson, GetEveryBitOfMovementInExactlyOneStep) {
-  const ActionId look =
-      add("look_x", {{MouseWay::kRight, 0.5F}, {MouseWay::kLeft, -0.5F}});
+  const ActionId look = add("look_x", {{MouseWay::kRight, 0.5F}, {MouseWay::kLeft, -0.5F}});
   person_.move(10, 0);
   frame();
   person_.move(-4, 0);
@@ -260,9 +259,9 @@ TEST(Actions, RefuseNamesAndBindingsThatMakeNoSense) {
     EXPECT_EQ(refused.error().code, core::ErrorCode::kInvalidArgument);
   }
   EXPECT_FALSE(actions.add(std::string(65, 'a')));
-  for (const Binding& binding : {Binding{Key::kA, NAN}, Binding{Key::kA, 0}, Binding{Key::kA, 1e9F},
-                                 Binding{Key::kA, 1, NAN}, Binding{Key::kA, 1, 1.0F},
-                                 Binding{Key::kA, 1, -0.1F}}) {
+  for (const Binding& binding :
+       {Binding{Key::kA, NAN}, Binding{Key::kA, 0}, Binding{Key::kA, 1e9F},
+        Binding{Key::kA, 1, NAN}, Binding{Key::kA, 1, 1.0F}, Binding{Key::kA, 1, -0.1F}}) {
     const auto refused = actions.set_bindings(0, {binding});
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, HasSubstr("action jump, A: "));

@@ -10,9 +10,9 @@
 namespace psygen::input {
 namespace {
 
+using platform::Key;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using platform::Key;
 
 Actions game() {
   Actions actions;
@@ -48,9 +48,10 @@ TEST(BindingsFile, WhatIsSavedIsLoadedAgain) {
 TEST(BindingsFile, ActionsThatAreNotMentionedKeepTheirBindings) {
   Actions actions = game();
   const auto before = all_bindings(actions);
-  ASSERT_TRUE(apply_bindings("format = 1\n[[action]]\nname = \"jump\"\n[[action.binding]]\n"
-                             "control = \"Mouse 4\"\n",
-                             "b.toml", actions));
+  ASSERT_TRUE(
+      apply_bindings("format = 1\n[[action]]\nname = \"jump\"\n[[action.binding]]\n"
+                     "control = \"Mouse 4\"\n",
+                     "b.toml", actions));
   EXPECT_EQ(actions.bindings(0).size(), 1u);
   EXPECT_EQ(name_of(actions.bindings(0)[0].control), "Mouse 4");
   EXPECT_EQ(all_bindings(actions)[1], before[1]);
@@ -59,8 +60,9 @@ TEST(BindingsFile, ActionsThatAreNotMentionedKeepTheirBindings) {
 }
 
 TEST(BindingsFile, ABadFileIsASentenceWithItsLineAndChangesNothing) {
-  const std::string good = "format = 1\n[[action]]\nname = \"move_x\"\n[[action.binding]]\n"
-                           "control = \"Left\"\n";
+  const std::string good =
+      "format = 1\n[[action]]\nname = \"move_x\"\n[[action.binding]]\n"
+      "control = \"Left\"\n";
   const std::vector<std::pair<std::string, std::string>> bad{
       {"", "format"},
       {"format = 2\n", "2"},

@@ -11,10 +11,10 @@
 namespace psygen::input {
 namespace {
 
-using ::testing::HasSubstr;
 using platform::Key;
 using platform::PadAxis;
 using platform::PadButton;
+using ::testing::HasSubstr;
 
 TEST(Control, EveryOneHasANameOfItsOwnByWhichItIsFound) {
   std::set<std::string_view> names;

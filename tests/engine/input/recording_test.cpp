@@ -15,8 +15,8 @@
 namespace psygen::input {
 namespace {
 
-using ::testing::HasSubstr;
 using platform::Key;
+using ::testing::HasSubstr;
 
 constexpr double kStepS = 1.0 / 60;
 
@@ -154,8 +154,7 @@ TEST(Recording, RefusesWhatContradictsItselfAlthoughItsHashIsRight) {
   for (int i = 0; i < 3000; ++i) {
     std::string made = whole.substr(0, whole.size() - 8);
     made[8 + random() % (made.size() - 8)] = static_cast<char>(random());
-    const std::uint64_t hash =
-        core::hash_bytes(std::as_bytes(std::span(made.data(), made.size())));
+    const std::uint64_t hash = core::hash_bytes(std::as_bytes(std::span(made.data(), made.size())));
     made.append(reinterpret_cast<const char*>(&hash), sizeof(hash));
     const auto parsed = Recording::parse(made, "a.input");
     if (!parsed) {

@@ -72,8 +72,7 @@ TEST(Gamepads, AxesStayInTheirRangeWhateverADriverSays) {
   Devices devices;
   Gamepads pads;
   devices.slots[0] = PadReading{
-      {},
-      {9.0F, -9.0F, std::numeric_limits<float>::quiet_NaN(), -INFINITY, -0.5F, 2.0F}};
+      {}, {9.0F, -9.0F, std::numeric_limits<float>::quiet_NaN(), -INFINITY, -0.5F, 2.0F}};
   update_gamepads(devices.read(), pads);
   EXPECT_EQ(pads[0].axes, (std::array<float, kPadAxes>{1, -1, 0, 0, 0, 1}));
 }
