@@ -74,11 +74,16 @@ void feed_keys(const platform::InputState& input, ImGuiIO& io) {
 void feed_gamepads(const platform::InputState& input, ImGuiIO& io) {
   using enum platform::PadButton;
   constexpr std::pair<ImGuiNavInput_, platform::PadButton> kButtons[] = {
-      {ImGuiNavInput_Activate, kA},       {ImGuiNavInput_Cancel, kB},
-      {ImGuiNavInput_Menu, kX},           {ImGuiNavInput_Input, kY},
-      {ImGuiNavInput_DpadLeft, kLeft},    {ImGuiNavInput_DpadRight, kRight},
-      {ImGuiNavInput_DpadUp, kUp},        {ImGuiNavInput_DpadDown, kDown},
-      {ImGuiNavInput_FocusPrev, kLeftBumper}, {ImGuiNavInput_FocusNext, kRightBumper}};
+      {ImGuiNavInput_Activate, kA},
+      {ImGuiNavInput_Cancel, kB},
+      {ImGuiNavInput_Menu, kX},
+      {ImGuiNavInput_Input, kY},
+      {ImGuiNavInput_DpadLeft, kLeft},
+      {ImGuiNavInput_DpadRight, kRight},
+      {ImGuiNavInput_DpadUp, kUp},
+      {ImGuiNavInput_DpadDown, kDown},
+      {ImGuiNavInput_FocusPrev, kLeftBumper},
+      {ImGuiNavInput_FocusNext, kRightBumper}};
   std::fill(std::begin(io.NavInputs), std::end(io.NavInputs), 0.0F);
   io.BackendFlags &= ~ImGuiBackendFlags_HasGamepad;
   for (const platform::Gamepad& pad : input.pads) {
@@ -151,15 +156,14 @@ Gui::~Gui() {
   ImGui::DestroyContext(context_);
 }
 
-void Gui::begin(const platform::InputState& input, core::Extent picture, float scale,
-                double dt_s) {
+void Gui::begin(const platform::InputState& input, core::Extent picture, float scale, double dt_s) {
   ImGui::SetCurrentContext(context_);
   const float whole = std::isfinite(scale) ? std::clamp(scale, 0.5F, 8.0F) : 1.0F;
   if (whole != styled_scale_) ImGui::GetStyle() = style_at(styled_scale_ = whole);
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(picture.width), static_cast<float>(picture.height)};
-  io.DeltaTime = static_cast<float>(
-      std::isfinite(dt_s) ? std::clamp(dt_s, 1e-4, kLongestFrameS) : kLongestFrameS);
+  io.DeltaTime = static_cast<float>(std::isfinite(dt_s) ? std::clamp(dt_s, 1e-4, kLongestFrameS)
+                                                        : kLongestFrameS);
   io.FontGlobalScale = kTextPx * whole / io.Fonts->Fonts[0]->FontSize;
   feed_mouse(input, io);
   feed_keys(input, io);

@@ -15,8 +15,8 @@
 namespace psygen::app {
 namespace {
 
-constexpr int kBands = 120;     // of the sky
-constexpr int kColumns = 400;   // of a ridge
+constexpr int kBands = 120;    // of the sky
+constexpr int kColumns = 400;  // of a ridge
 constexpr float kHorizon = 0.72F;
 constexpr glm::vec3 kZenith{0.05F, 0.085F, 0.14F};
 constexpr glm::vec3 kGlow{0.78F, 0.56F, 0.38F};
@@ -67,13 +67,26 @@ void add_ridge(const Ridge& ridge, std::uint64_t seed, render::HudDrawing& drawi
   }
 }
 
+// Makes a text that is wider than `room_px` smaller, and shortens it where it would be too small.
+void fit(render::HudText& text, float least_px, float room_px) {
+  const float share = room_px / std::max(render::measure(text).x, 1.0F);
+  text.size_px = std::max(std::min(text.size_px, text.size_px * share), least_px);
+  std::string rest = text.text;
+  while (render::measure(text).x > room_px && !rest.empty()) {
+    while (rest.size() > 1 && (static_cast<unsigned char>(rest.back()) & 0xC0U) == 0x80)
+      rest.pop_back();  // the last byte of a letter first
+    rest.pop_back();
+    text.text = rest + "\u2026";
+  }
+}
+
 }  // namespace
 
 render::HudDrawing loading_picture(std::string_view world, std::string_view label, double fraction,
                                    core::Extent picture) {
   render::HudDrawing drawing;
-  const float done = std::isfinite(fraction) ? std::clamp(static_cast<float>(fraction), 0.0F, 1.0F)
-                                             : 0.0F;
+  const float done =
+      std::isfinite(fraction) ? std::clamp(static_cast<float>(fraction), 0.0F, 1.0F) : 0.0F;
   add_sky(drawing);
   std::uint64_t seed = core::hash_bytes(std::as_bytes(std::span(world.data(), world.size())));
   for (const Ridge& ridge : kRidges)
@@ -90,12 +103,11 @@ render::HudDrawing loading_picture(std::string_view world, std::string_view labe
   text.at = {{kLeft, 0.9F}, {0, -7.0F * unit}};
   text.vertical = render::HudVertical::kBottom;
   text.size_px = 9 * unit;
-  // A long name is written smaller rather than over the edge.
-  const float room = (kRight - kLeft) * static_cast<float>(picture.width);
-  text.size_px *= std::min(1.0F, room / std::max(render::measure(text).x, 1.0F));
+  const float small_px = std::max(3.2F * unit, 11.0F);
+  fit(text, small_px, (kRight - kLeft) * static_cast<float>(picture.width));
   drawing.texts.push_back(text);
   text.colour = kSoftText;
-  text.size_px = std::max(3.2F * unit, 11.0F);
+  text.size_px = small_px;
   text.at.px = {0, -1.8F * unit};
   text.text = label;
   drawing.texts.push_back(text);

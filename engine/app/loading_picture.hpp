@@ -1,5 +1,6 @@
-// The picture of a window while its world is made: hills in the evening, the name of the world, a bar
-// and what goes on. A pure function of its arguments; the hills follow from the name. Any thread.
+// The picture of a window while its world is made: hills in the evening, the name of the world, a
+// bar and what goes on. A pure function of its arguments; the hills follow from the name. Any
+// thread.
 #pragma once
 
 #include <string_view>

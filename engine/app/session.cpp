@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/app/loading.hpp"
+#include "engine/app/plugin_call.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
@@ -42,10 +43,9 @@ core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins)
   models::Registry registry = models::make_standard_registry();
   for (const Plugin& plugin : plugins) {
     if (!plugin.register_models) continue;
-    if (auto ok = plugin.register_models(registry); !ok) {
-      return core::fail(ok.error().code,
-                        fmt::format("plugin {}: {}", plugin.name, ok.error().message));
-    }
+    const auto ok =
+        call_plugin(plugin, "register_models", [&] { return plugin.register_models(registry); });
+    if (!ok) return tl::unexpected(ok.error());
   }
   return registry;
 }
@@ -128,6 +128,7 @@ core::Result<void> Session::open_scene(world::World world, models::Registry regi
   if (!scene) return tl::unexpected(scene.error());
   if (loading.closed()) return closed_early();
   scene_ = std::move(*scene);
+  if (auto ok = add_systems(); !ok) return ok;
   scene_->state().input.size = picture_size();  // levels of detail depend on it
   if (const synthesis::CalibrationReport& costs = scene_->calibration(); costs.measurements > 0) {
     core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
@@ -208,11 +209,46 @@ void Session::take_events() {
   if (window_->should_close()) closed_ = true;
 }
 
-void Session::start() {
-  if (std::exchange(started_, true)) return;
-  for (const Plugin& plugin : options_.plugins) {
-    if (plugin.on_start) plugin.on_start(*this);
+// Hooks of a step are systems: they run however the session is driven, and what they cost is told.
+core::Result<void> Session::add_systems() {
+  scene::Systems systems = scene_->systems();
+  const auto simulates = [](const Plugin& plugin) {
+    return plugin.add_systems != nullptr || plugin.on_step != nullptr;
+  };
+  if (std::ranges::any_of(options_.plugins, simulates)) {
+    systems.frame.provide(actions_);
+    systems.step.provide(actions_);
+    systems.step.add("actions", [this](input::Actions& actions) { step_actions(actions); });
   }
+  for (const Plugin& plugin : options_.plugins) {
+    if (plugin.add_systems) {
+      const auto ok =
+          call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
+      if (!ok) return ok;
+    }
+    if (!plugin.on_step) continue;
+    systems.step.add(plugin.name + " on_step",
+                     [this, &plugin](const scene::FixedStep& step, ecs::World&) {
+                       plugin.on_step(*this, step.step_s);
+                     });
+  }
+  return scene_->arrange();
+}
+
+void Session::step_actions(input::Actions& actions) {
+  if (!replay_) return actions.step();
+  if (replay_->step(actions)) return;
+  replay_.reset();
+  actions.clear();
+}
+
+core::Result<void> Session::start() {
+  if (std::exchange(started_, true)) return {};
+  for (const Plugin& plugin : options_.plugins) {
+    if (!plugin.on_start) continue;
+    if (auto ok = call_plugin(plugin, "on_start", [&] { plugin.on_start(*this); }); !ok) return ok;
+  }
+  return {};
 }
 
 Gui& Session::gui() {
@@ -220,29 +256,35 @@ Gui& Session::gui() {
   return *gui_;
 }
 
-void Session::draw_gui(double dt_s) {
+core::Result<void> Session::draw_gui(double dt_s) {
   const auto draws = [](const Plugin& plugin) { return plugin.on_gui != nullptr; };
-  if (std::ranges::none_of(options_.plugins, draws)) return;
+  if (std::ranges::none_of(options_.plugins, draws)) return {};
   const core::Extent size = picture_size();
   gui().begin(all_input_, size, text_scale(window_ ? window_->content_scale() : 1.0F, size), dt_s);
-  for (const Plugin& plugin : options_.plugins)
-    if (plugin.on_gui) plugin.on_gui(*this);
+  core::Result<void> drawn;
+  for (const Plugin& plugin : options_.plugins) {
+    if (drawn && plugin.on_gui)
+      drawn = call_plugin(plugin, "on_gui", [&] { plugin.on_gui(*this); });
+  }
   scene_->state().input.gui = gui_->end();
+  return drawn;
 }
 
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
-  start();
+  if (auto ok = start(); !ok) return ok;
   scene::State& state = scene_->state();
   state.input.pose = pose;
   state.input.size = picture_size();
-  draw_gui(dt_s);
+  if (auto ok = draw_gui(dt_s); !ok) return ok;
   if (paused_) dt_s = 0;
   scene::tick(state);
   state.input.gui = nullptr;
   state.clock.now_s += dt_s;
   if (state.output.error) return tl::unexpected(*state.output.error);
   for (const Plugin& plugin : options_.plugins) {
-    if (plugin.on_frame) plugin.on_frame(*this, dt_s);
+    if (!plugin.on_frame) continue;
+    if (auto ok = call_plugin(plugin, "on_frame", [&] { plugin.on_frame(*this, dt_s); }); !ok)
+      return ok;
   }
   return {};
 }

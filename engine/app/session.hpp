@@ -7,13 +7,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/app/gui.hpp"
 #include "engine/app/options.hpp"
 #include "engine/image/image.hpp"
-#include "engine/input/actions.hpp"
+#include "engine/input/recording.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
@@ -50,8 +51,12 @@ class Session {
 
   // What the user did since the last poll but one, without what ImGui takes. Nothing when headless.
   const platform::InputState& input() const { return input_; }
-  // The actions of a game (docs/input.md). poll() feeds them; the game takes their fixed steps.
+  // The actions of a game (docs/input.md). poll() feeds them, and every fixed step of the
+  // simulation begins with theirs. A resource of all systems: input::Actions.
   input::Actions& actions() { return actions_; }
+  // From the next fixed step on the states come from a recording, until its end.
+  void replay(input::Replay replay) { replay_ = std::move(replay); }
+  bool replays() const { return replay_.has_value(); }
 
   // While a session is paused, ticks draw, but the clock stands still and plugins are told that no
   // time has passed. The same for what the user does: input() goes on.
@@ -102,19 +107,22 @@ class Session {
   core::Result<void> open_renderer(Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
-  void draw_gui(double dt_s);
-  void start();
+  core::Result<void> draw_gui(double dt_s);
+  core::Result<void> add_systems();
+  void step_actions(input::Actions& actions);
+  core::Result<void> start();
 
   SessionOptions options_;
   // Destroyed in the opposite order: the scene gives its memory back to the renderer.
   std::unique_ptr<platform::Window> window_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<telemetry::TraceLog> trace_;
+  input::Actions actions_;
+  std::optional<input::Replay> replay_;
   std::unique_ptr<scene::Scene> scene_;
   std::unique_ptr<Gui> gui_;                // null until it is needed
   platform::InputState all_input_, input_;  // the latter without what ImGui takes
   platform::InputFilter filter_;
-  input::Actions actions_;
   bool paused_ = false;
   bool closed_ = false;
   bool started_ = false;

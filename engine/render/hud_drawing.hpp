@@ -1,6 +1,6 @@
-// What a game writes and draws over the picture: text of any size anywhere, and areas of one colour.
-// Plain values, any thread. Positions are shares of the picture plus pixels, so that they hold for
-// every size of window. Panels for debugging are TextPanels (text_panel.hpp). docs/hud.md.
+// What a game writes and draws over the picture: text of any size anywhere, and areas of one
+// colour. Plain values, any thread. Positions are shares of the picture plus pixels, so that they
+// hold for every size of window. Panels for debugging are TextPanels (text_panel.hpp). docs/hud.md.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ struct HudText {
 
 // A rectangle: a bar, a panel, a crosshair.
 struct HudArea {
-  HudPlace at;     // of its upper left corner
+  HudPlace at;  // of its upper left corner
   HudPlace size;
   glm::vec4 colour{0.0F, 0.0F, 0.0F, 0.6F};
 };

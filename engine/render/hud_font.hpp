@@ -21,7 +21,7 @@ struct BakedLetter {
 
 // All of it, for the whole program. Letters ascend by code.
 struct HudFont {
-  core::Extent size;                // of the texture
+  core::Extent size;                  // of the texture
   std::span<const std::byte> texels;  // 128 on an edge, more inside
   std::span<const BakedLetter> letters;
   float em = 0;      // from ascender to descender

@@ -91,8 +91,7 @@ class TextLayout {
       add_letters(text_.shadow_px, text_.shadow_colour, {bolder, 1 + soft});
     }
     if (text_.outline_px > 0) {
-      add_letters({}, text_.outline_colour,
-                  {std::min(bolder + text_.outline_px, most_px), 1});
+      add_letters({}, text_.outline_colour, {std::min(bolder + text_.outline_px, most_px), 1});
     }
     add_letters({}, text_.colour, {bolder, 1});
   }
@@ -148,8 +147,9 @@ void lay_out_hud(const HudDrawing& drawing, core::Extent picture, const HudAtlas
     const glm::vec2 from = glm::round(pixels_of(area.at, picture));
     const glm::vec2 to = glm::round(from + pixels_of(area.size, picture));
     if (!is_finite(from) || !is_finite(to) || out.size() >= kMaxHudQuads * 6) continue;
-    add_quad(out, glm::clamp(from, -kMostOffPx, kMostOffPx), glm::clamp(to, -kMostOffPx, kMostOffPx),
-             atlas.white_uv, atlas.white_uv, area.colour, glm::vec4(0.0F));
+    add_quad(out, glm::clamp(from, -kMostOffPx, kMostOffPx),
+             glm::clamp(to, -kMostOffPx, kMostOffPx), atlas.white_uv, atlas.white_uv, area.colour,
+             glm::vec4(0.0F));
   }
   for (const HudText& text : drawing.texts)
     if (std::isfinite(text.size_px)) TextLayout(text, picture, atlas, out).add();

@@ -1,6 +1,7 @@
-// Runs at build time: bakes the letters of a TrueType font into signed distances, from which text of
-// any size is drawn sharply (Green, "Improved Alpha-Tested Magnification", SIGGRAPH 2007). Writes a
-// C++ header with one texture and the metrics of each letter; engine/render/hud_font.cpp includes it.
+// Runs at build time: bakes the letters of a TrueType font into signed distances, from which text
+// of any size is drawn sharply (Green, "Improved Alpha-Tested Magnification", SIGGRAPH 2007).
+// Writes a C++ header with one texture and the metrics of each letter; engine/render/hud_font.cpp
+// includes it.
 //
 // usage: bake_font FONT.ttf OUTPUT.h
 #include <stb/stb_rect_pack.h>
@@ -68,9 +69,9 @@ int main(int count, char** arguments) {
       if (glyph == 0) continue;
       Letter letter{.code = code};
       stbtt_GetGlyphHMetrics(&font, glyph, &letter.advance, nullptr);
-      letter.distances =
-          stbtt_GetGlyphSDF(&font, scale, glyph, kSpread, kEdge, static_cast<float>(kEdge) / kSpread,
-                            &letter.width, &letter.height, &letter.x, &letter.y);
+      letter.distances = stbtt_GetGlyphSDF(&font, scale, glyph, kSpread, kEdge,
+                                           static_cast<float>(kEdge) / kSpread, &letter.width,
+                                           &letter.height, &letter.x, &letter.y);
       stbrp_rect place{};
       place.id = static_cast<int>(letters.size());
       place.w = static_cast<stbrp_coord>(letter.width);
@@ -88,7 +89,8 @@ int main(int count, char** arguments) {
   for (const stbrp_rect& place : places)
     rows = std::max(rows, static_cast<int>(place.y) + static_cast<int>(place.h));
 
-  std::vector<unsigned char> texels(static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(rows));
+  std::vector<unsigned char> texels(static_cast<std::size_t>(kWidth) *
+                                    static_cast<std::size_t>(rows));
   std::ofstream out(arguments[2]);
   out << std::showpoint << "// Written by bake_font.\n"
       << "constexpr int kBakedWidth = " << kWidth << ", kBakedHeight = " << rows << ";\n"

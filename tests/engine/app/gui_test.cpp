@@ -146,7 +146,9 @@ TEST(GuiInASession, IsInPicturesWithoutAWindowAndTakesNoTimeOfAnother) {
         ImGui::SetNextWindowPos({40, 20});
         ImGui::SetNextWindowSize({160, 100});
         ImGui::Begin("Menu");
-        ImGui::Text("Stra\xC3\x9F" "e");
+        ImGui::Text(
+            "Stra\xC3\x9F"
+            "e");
         ImGui::End();
       };
       options.plugins.push_back(std::move(plugin));

@@ -37,12 +37,22 @@ TEST(LoadingPicture, HasABarAsLongAsWhatIsDone) {
 }
 
 TEST(LoadingPicture, KeepsALongNameInThePictureAndFollowsItsHeight) {
-  const std::string name(120, 'W');
+  std::string name = "\u00C4";
+  name.append(120, 'W');
   for (const core::Extent picture : {core::Extent{1280, 720}, {320, 180}, {3840, 2160}}) {
     const render::HudDrawing drawing = loading_picture(name, "l", 0, picture);
-    EXPECT_LT(render::measure(*find(drawing, name)).x, static_cast<float>(picture.width));
+    const render::HudText& shown = drawing.texts.front();
+    EXPECT_LT(render::measure(shown).x, static_cast<float>(picture.width));
+    EXPECT_TRUE(shown.text.ends_with("W\u2026")) << shown.text;
     EXPECT_NEAR(find(drawing, "0 %")->size_px, std::max(11.0, 0.032 * picture.height), 0.1);
   }
+}
+
+TEST(LoadingPicture, WritesANameSmallerBeforeItIsShortened) {
+  const std::string name(30, 'W');
+  const render::HudDrawing drawing = loading_picture(name, "l", 0, kPicture);
+  ASSERT_NE(find(drawing, name), nullptr);
+  EXPECT_LT(find(drawing, name)->size_px, 60);
 }
 
 TEST(LoadingPicture, HasHillsOfItsOwnForEachWorld) {
