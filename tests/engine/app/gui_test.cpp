@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 
 #include "engine/image/image.hpp"
 #include "engine/render/overlay.hpp"
 #include "tests/engine/app/fixture.hpp"
+#include "tests/engine/platform/virtual_display.hpp"
 
 namespace psygen::app {
 namespace {
@@ -132,6 +134,51 @@ TEST_F(GuiOfAPerson, StandsTimesAndSizesThatMakeNoSense) {
   }
   input_.pointer_px = {std::nan(""), 1e300};
   frame();
+}
+
+TEST(GuiInAWindow, KeepsClicksOnAMenuFromTheGameAndLetsOthersThrough) {
+  const auto display = platform::VirtualDisplay::start();
+  ASSERT_NE(display, nullptr) << "these tests need xvfb, openbox and xdotool";
+  int presses = 0;
+  SessionOptions options = short_session();
+  options.headless = options.vsync = false;
+  options.scene.view_distance_m = 64;
+  options.plugins.push_back({.name = "menu", .on_gui = [&](Session&) {
+                               ImGui::SetNextWindowPos({20, 20});
+                               ImGui::SetNextWindowSize({160, 120});
+                               ImGui::Begin("Menu");
+                               presses += ImGui::Button("Go on", {120, 60}) ? 1 : 0;
+                               ImGui::End();
+                             }});
+  auto created = Session::create(options);
+  ASSERT_TRUE(created) << created.error().message;
+  Session& session = **created;
+  int clicks_of_the_game = 0;
+  const auto frames_until = [&](const std::function<bool()>& done) {
+    for (int i = 0; i < 20'000 && !done(); ++i) {
+      ASSERT_TRUE(session.poll());
+      clicks_of_the_game += session.input().was_pressed(MouseButton::kLeft) ? 1 : 0;
+      ASSERT_TRUE(session.tick(session.home(), 1.0 / 60));
+    }
+    EXPECT_TRUE(done());
+  };
+  const auto move_to = [&](const char* x, const char* y) {
+    EXPECT_TRUE(
+        display->xdotool({"search", "--sync", "--onlyvisible", "--name", "psygen: paper",
+                          "windowactivate", "--sync", "mousemove", "--window", "%1", x, y}));
+  };
+  move_to("90", "90");
+  frames_until([&] { return session.gui().takes_mouse(); });
+  ASSERT_TRUE(display->xdotool({"mousedown", "1"}));
+  frames_until([&] { return ImGui::GetIO().MouseDown[0]; });
+  ASSERT_TRUE(display->xdotool({"mouseup", "1"}));
+  frames_until([&] { return presses == 1; });
+  EXPECT_EQ(clicks_of_the_game, 0);
+  move_to("280", "150");
+  frames_until([&] { return !session.gui().takes_mouse(); });
+  ASSERT_TRUE(display->xdotool({"click", "1"}));
+  frames_until([&] { return clicks_of_the_game == 1; });
+  EXPECT_EQ(presses, 1);
 }
 
 TEST(GuiInASession, IsInPicturesWithoutAWindowAndTakesNoTimeOfAnother) {
