@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/app/gui.hpp"
 #include "engine/app/loading.hpp"
 #include "engine/app/plugin_call.hpp"
 #include "engine/core/clock.hpp"
@@ -11,7 +12,11 @@
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/platform/window.hpp"
 #include "engine/render/render_path.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/telemetry/trace_log.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::app {
@@ -51,6 +56,8 @@ core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins)
 }
 
 }  // namespace
+
+Session::Session(SessionOptions options) : options_(std::move(options)) {}
 
 Session::~Session() = default;
 
@@ -182,6 +189,14 @@ core::Extent Session::picture_size() const {
   return window_ ? window_->framebuffer_size() : renderer_->size();
 }
 
+double Session::now_s() const {
+  return scene_->state().clock.now_s;
+}
+
+void Session::set_now(double now_s) {
+  scene_->state().clock.now_s = now_s;
+}
+
 bool Session::has_hung_modelers() const {
   return !scene_->state().meshes.hung().empty();
 }
@@ -249,6 +264,10 @@ core::Result<void> Session::start() {
     if (auto ok = call_plugin(plugin, "on_start", [&] { plugin.on_start(*this); }); !ok) return ok;
   }
   return {};
+}
+
+render::HudDrawing& Session::hud() {
+  return scene_->state().input.hud;
 }
 
 Gui& Session::gui() {

@@ -11,17 +11,32 @@
 #include <utility>
 #include <vector>
 
-#include "engine/app/gui.hpp"
 #include "engine/app/options.hpp"
 #include "engine/image/image.hpp"
 #include "engine/input/recording.hpp"
-#include "engine/platform/window.hpp"
-#include "engine/render/renderer.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/telemetry/trace_log.hpp"
+#include "engine/platform/input.hpp"
+
+// Include the header of what you use of these: most programs need none (docs/package.md).
+namespace psygen::platform {
+class Window;
+}
+namespace psygen::render {
+class Renderer;
+struct HudDrawing;
+}
+namespace psygen::scene {
+class Scene;
+}
+namespace psygen::telemetry {
+class TraceLog;
+}
+namespace psygen::world {
+struct World;
+}
 
 namespace psygen::app {
 
+class Gui;
 class Loading;
 
 class Session {
@@ -64,12 +79,12 @@ class Session {
   bool paused() const { return paused_; }
 
   // What the game writes over the next pictures, until it writes something else (docs/hud.md).
-  render::HudDrawing& hud() { return scene_->state().input.hud; }
+  render::HudDrawing& hud();
   // The ImGui of the plugins' on_gui; it is made when it is first asked for.
   Gui& gui();
   // The clock: seconds, at which the next tick is drawn.
-  double now_s() const { return scene_->state().clock.now_s; }
-  void set_now(double now_s) { scene_->state().clock.now_s = now_s; }
+  double now_s() const;
+  void set_now(double now_s);
   // Pixels of the next picture; {0, 0} while the window is minimised.
   core::Extent picture_size() const;
 
@@ -101,7 +116,7 @@ class Session {
   bool has_hung_modelers() const;
 
  private:
-  explicit Session(SessionOptions options) : options_(std::move(options)) {}
+  explicit Session(SessionOptions options);
   core::Result<void> open();
   core::Result<void> open_window(const std::string& title);
   core::Result<void> open_renderer(Loading& loading);

@@ -14,12 +14,9 @@ namespace {
 using core::ErrorCode;
 
 bool starts_with(std::string_view name, std::string_view prefix) {
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == b;
-  };
-  return name.size() >= prefix.size() &&
-         std::equal(prefix.begin(), prefix.end(), name.begin(),
-                    [&](char p, char n) { return same(n, p); });
+  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+  return name.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), name.begin(),
+                                                    [&](char p, char n) { return same(n, p); });
 }
 
 // What SQL of the game may do. SQLite asks it about each part of a statement while preparing it.

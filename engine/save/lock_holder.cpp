@@ -29,8 +29,8 @@ pid_t owner_of(const std::string& line, const std::string& file) {
 std::string lock_holder(const std::filesystem::path& file) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) return "another program";
-  const std::string place = fmt::format("{:02x}:{:02x}:{}", major(status.st_dev),
-                                        minor(status.st_dev), status.st_ino);
+  const std::string place =
+      fmt::format("{:02x}:{:02x}:{}", major(status.st_dev), minor(status.st_dev), status.st_ino);
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
     const pid_t owner = owner_of(line, place);

@@ -105,9 +105,9 @@ core::Result<void> lock(Database& database) {
       sqlite3_exec(database.get(), "PRAGMA locking_mode=EXCLUSIVE; BEGIN EXCLUSIVE; COMMIT",
                    nullptr, nullptr, nullptr);
   if ((code & 0xFF) == SQLITE_BUSY)
-    return core::fail(core::ErrorCode::kIo,
-                      fmt::format("{}: is in use by {}", database.file().string(),
-                                  lock_holder(database.file())));
+    return core::fail(
+        core::ErrorCode::kIo,
+        fmt::format("{}: is in use by {}", database.file().string(), lock_holder(database.file())));
   if (code != SQLITE_OK) return database.error("cannot be opened");
   return {};
 }
@@ -117,9 +117,9 @@ core::Result<void> lock(Database& database) {
 core::Result<void> configure(Database& database) {
   sqlite3* raw = database.get();
   sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  for (const int unsafe : {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER,
-                           SQLITE_DBCONFIG_ENABLE_VIEW, SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION,
-                           SQLITE_DBCONFIG_DQS_DDL, SQLITE_DBCONFIG_DQS_DML})
+  for (const int unsafe :
+       {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW,
+        SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, SQLITE_DBCONFIG_DQS_DDL, SQLITE_DBCONFIG_DQS_DML})
     sqlite3_db_config(raw, unsafe, 0, nullptr);
   sqlite3_limit(raw, SQLITE_LIMIT_ATTACHED, 0);
   return database.run(
@@ -158,8 +158,8 @@ core::Result<void> check_place(const std::filesystem::path& file) {
 core::Result<void> create_file(const std::filesystem::path& file, const WorldIdentity& world) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   if (!std::filesystem::is_directory(folder))
-    return core::fail(core::ErrorCode::kIo, fmt::format("{}: there is no folder {}", file.string(),
-                                                        folder.string()));
+    return core::fail(core::ErrorCode::kIo,
+                      fmt::format("{}: there is no folder {}", file.string(), folder.string()));
   core::remove_stale_partials(folder);
   const auto bytes = empty_save(world);
   if (!bytes) return tl::unexpected(bytes.error());
@@ -177,8 +177,8 @@ core::Result<void> create_file(const std::filesystem::path& file, const WorldIde
   if (code == 0) return {};
   unlink(fresh.c_str());
   if (reason == EEXIST) return {};
-  return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be made: {}", file.string(),
-                                                      std::strerror(reason)));
+  return core::fail(core::ErrorCode::kIo,
+                    fmt::format("{}: cannot be made: {}", file.string(), std::strerror(reason)));
 }
 
 core::Result<Database> open_file(const std::filesystem::path& file) {
@@ -205,8 +205,8 @@ void close_file(Database& database) {
 }
 
 core::Result<void> check_tables(const Database& database) {
-  auto list = database.prepare("SELECT type, tbl_name, name, sql FROM sqlite_schema",
-                               "cannot be read");
+  auto list =
+      database.prepare("SELECT type, tbl_name, name, sql FROM sqlite_schema", "cannot be read");
   if (!list) return tl::unexpected(list.error());
   std::size_t found = 0;
   int code = list->step();
@@ -240,7 +240,8 @@ core::Result<WorldIdentity> read_world(const Database& database) {
   if (select->step() != SQLITE_ROW) return database.error("cannot be read");
   if (!select->is(0, SQLITE_TEXT) || !select->is(1, SQLITE_INTEGER))
     return refuse(database.file(), "does not say which world it belongs to; the file is damaged");
-  return WorldIdentity{std::string(select->text(0)), static_cast<std::uint64_t>(select->integer(1))};
+  return WorldIdentity{std::string(select->text(0)),
+                       static_cast<std::uint64_t>(select->integer(1))};
 }
 
 }  // namespace psygen::save

@@ -128,8 +128,8 @@ core::Result<void> SaveGame::State::check_row(const Statement& row, core::BlockC
   if (version >= 0 && version <= UINT32_MAX && bytes.size() <= kMaxEditBytes &&
       checksum_of(block, static_cast<std::uint32_t>(version), bytes) == row.integer(first + 1))
     return {};
-  return damaged(fmt::format("the edits of block ({}, {}) do not match their checksum", block.x,
-                             block.z));
+  return damaged(
+      fmt::format("the edits of block ({}, {}) do not match their checksum", block.x, block.z));
 }
 
 core::Result<void> SaveGame::State::write_edits() {
@@ -190,9 +190,10 @@ core::Result<SaveGame> SaveGame::open(const std::filesystem::path& file, const W
   if (*found != world)
     return core::fail(
         ErrorCode::kInvalidArgument,
-        fmt::format("{}: belongs to the world '{}' with hash {:016x}, not to '{}' with hash {:016x}",
-                    file.string(), core::shown(found->name, 80), found->hash,
-                    core::shown(world.name, 80), world.hash));
+        fmt::format(
+            "{}: belongs to the world '{}' with hash {:016x}, not to '{}' with hash {:016x}",
+            file.string(), core::shown(found->name, 80), found->hash, core::shown(world.name, 80),
+            world.hash));
   if (auto ok = state->prepare(); !ok) return tl::unexpected(ok.error());
   return SaveGame(std::move(state));
 }
@@ -205,11 +206,11 @@ SaveGame& SaveGame::operator=(SaveGame&&) noexcept = default;
 core::Result<void> SaveGame::put_edits(core::BlockCoord block, std::uint32_t version,
                                        std::span<const std::byte> bytes) {
   if (bytes.size() > kMaxEditBytes)
-    return core::fail(ErrorCode::kOverBudget,
-                      fmt::format("the edits of block ({}, {}) have {} bytes; at most {} are allowed",
-                                  block.x, block.z, bytes.size(), kMaxEditBytes));
-  state_->edits.insert_or_assign(block,
-                                 BlockEdits{version, Bytes(bytes.begin(), bytes.end())});
+    return core::fail(
+        ErrorCode::kOverBudget,
+        fmt::format("the edits of block ({}, {}) have {} bytes; at most {} are allowed", block.x,
+                    block.z, bytes.size(), kMaxEditBytes));
+  state_->edits.insert_or_assign(block, BlockEdits{version, Bytes(bytes.begin(), bytes.end())});
   return {};
 }
 
@@ -253,7 +254,10 @@ core::Result<void> SaveGame::for_each_edits(const EditVisitor& visit) const {
 }
 
 core::Result<void> SaveGame::put_entities(const ecs::World& entities) {
-  Bytes bytes = ecs::save_snapshot(entities);
+  return put_snapshot(ecs::save_snapshot(entities));
+}
+
+core::Result<void> SaveGame::put_snapshot(Bytes bytes) {
   if (bytes.size() > kMaxSnapshotBytes)
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("the entities have {} bytes; at most {} are allowed",
@@ -263,21 +267,29 @@ core::Result<void> SaveGame::put_entities(const ecs::World& entities) {
 }
 
 core::Result<bool> SaveGame::load_entities(ecs::World& entities) const {
+  return with_snapshot([&](auto bytes) { return ecs::load_snapshot(bytes, entities); });
+}
+
+core::Result<bool> SaveGame::append_entities(ecs::World& entities) const {
+  return with_snapshot([&](auto bytes) { return ecs::append_snapshot(bytes, entities); });
+}
+
+core::Result<bool> SaveGame::with_snapshot(
+    const std::function<ecs::SnapshotResult(std::span<const std::byte>)>& load) const {
   State& s = *state_;
-  const auto load = [&](std::span<const std::byte> bytes) -> core::Result<bool> {
-    const ecs::SnapshotResult loaded = ecs::load_snapshot(bytes, entities);
+  const auto tell = [&](const ecs::SnapshotResult& loaded) -> core::Result<bool> {
     if (loaded) return true;
     return core::fail(ErrorCode::kParse, fmt::format("{}: the entities cannot be loaded: {}",
                                                      file().string(), loaded.sentence));
   };
-  if (s.entities) return load(*s.entities);
+  if (s.entities) return tell(load(*s.entities));
   const Reset reset(s.get_fact);
   s.get_fact.bind(1, std::string_view("entities"));
   const int code = s.get_fact.step();
   if (code == SQLITE_DONE) return false;
   if (code != SQLITE_ROW) return s.database.error("cannot be read");
   if (!s.get_fact.is(0, SQLITE_BLOB)) return s.damaged("the entities are not bytes");
-  return load(s.get_fact.bytes(0));
+  return tell(load(s.get_fact.bytes(0)));
 }
 
 core::Result<void> SaveGame::put_value(std::string_view name, Value value) {

@@ -4,10 +4,10 @@
 //
 // Safety. save() is one transaction with a rollback journal: the pages that change are copied to
 // FILE-journal and flushed (fsync) before the first of them is overwritten; the new pages are
-// flushed; then the journal is made invalid and flushed. A process that is killed, or a machine that
-// loses power, at any moment leaves the old state or the new one. A journal, unlike a write-ahead
-// log, leaves a single file when the save is closed. After a crash FILE-journal belongs to the file
-// until it is opened again. Every blob has a checksum.
+// flushed; then the journal is made invalid and flushed. A process that is killed, or a machine
+// that loses power, at any moment leaves the old state or the new one. A journal, unlike a
+// write-ahead log, leaves a single file when the save is closed. After a crash FILE-journal belongs
+// to the file until it is opened again. Every blob has a checksum.
 //
 // A save is locked while it is open. One thread at a time; it may be another one each time. save()
 // waits for the disk: a game that must not miss a frame calls it where a pause is allowed.
@@ -22,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ecs/snapshot.hpp"
 #include "ecs/world.hpp"
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
@@ -30,10 +31,10 @@
 
 namespace psygen::save {
 
-inline constexpr std::uint32_t kSaveFormat = 1;                        // version of the file format
-inline constexpr std::size_t kMaxEditBytes = std::size_t{16} << 20;    // of one block
+inline constexpr std::uint32_t kSaveFormat = 1;                      // version of the file format
+inline constexpr std::size_t kMaxEditBytes = std::size_t{16} << 20;  // of one block
 inline constexpr std::size_t kMaxSnapshotBytes = std::size_t{900} << 20;  // of the entities
-inline constexpr std::size_t kMaxNameBytes = 256;                      // of a value
+inline constexpr std::size_t kMaxNameBytes = 256;                         // of a value
 
 // What open() does with files that exist and that do not.
 enum class OpenMode : std::uint8_t { kOpenOrCreate, kOpenExisting, kCreateNew };
@@ -78,10 +79,17 @@ class SaveGame {
   // Takes a snapshot of the world's entities (ecs/snapshot.hpp) for the next save(). Fails with
   // kOverBudget above kMaxSnapshotBytes.
   core::Result<void> put_entities(const ecs::World& entities);
+  // The same of the entities that have C alone: those of the game in the world of a scene.
+  template <ecs::Component C>
+  core::Result<void> put_entities_with(const ecs::World& entities) {
+    return put_snapshot(ecs::save_snapshot_of<C>(entities));
+  }
   // Fills a world that never had an entity. False if the save has no entities. Fails with kParse,
   // and the sentence of load_snapshot(), where the snapshot does not fit; the world is then as it
   // was.
   core::Result<bool> load_entities(ecs::World& entities) const;
+  // The same for a world that may have others; the entities get new handles (append_snapshot()).
+  core::Result<bool> append_entities(ecs::World& entities) const;
 
   // Stores a value under a name of 1 to kMaxNameBytes bytes, at the next save(). No value removes
   // the name. Fails with kInvalidArgument (name, NaN) or kOverBudget (kMaxValueBytes).
@@ -114,6 +122,10 @@ class SaveGame {
  private:
   struct State;
   explicit SaveGame(std::unique_ptr<State> state);
+  core::Result<void> put_snapshot(Bytes bytes);
+  // Calls f with the snapshot, if there is one.
+  core::Result<bool> with_snapshot(
+      const std::function<ecs::SnapshotResult(std::span<const std::byte>)>& load) const;
   std::unique_ptr<State> state_;
 };
 

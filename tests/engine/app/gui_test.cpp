@@ -10,6 +10,7 @@
 
 #include "engine/image/image.hpp"
 #include "engine/render/overlay.hpp"
+#include "engine/render/renderer.hpp"
 #include "tests/engine/app/fixture.hpp"
 #include "tests/engine/platform/virtual_display.hpp"
 

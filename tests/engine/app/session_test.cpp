@@ -1,6 +1,8 @@
 // A session without a flight: what a program with a loop of its own relies on.
 #include "engine/app/session.hpp"
 
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 #include "tests/engine/app/fixture.hpp"
 
 namespace psygen::app {

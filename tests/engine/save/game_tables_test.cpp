@@ -20,8 +20,9 @@ TEST(GameTables, KeepRowsBetweenRuns) {
   const TemporaryFolder folder;
   {
     SaveGame save = testing::opened(folder / "game.save");
-    ASSERT_TRUE(save.execute("CREATE TABLE game_chest(id INTEGER PRIMARY KEY AUTOINCREMENT, "
-                             "item TEXT UNIQUE, weight_kg REAL)"));
+    ASSERT_TRUE(
+        save.execute("CREATE TABLE game_chest(id INTEGER PRIMARY KEY AUTOINCREMENT, "
+                     "item TEXT UNIQUE, weight_kg REAL)"));
     ASSERT_TRUE(save.execute("CREATE INDEX game_by_weight ON game_chest(weight_kg)"));
     ASSERT_TRUE(save.execute("INSERT INTO game_chest(item, weight_kg) VALUES(?, ?)",
                              {std::string("axe"), 1.5}));
@@ -60,15 +61,27 @@ TEST(GameTables, TouchNothingButThemselves) {
   const TemporaryFolder folder;
   SaveGame save = testing::opened(folder / "game.save");
   ASSERT_TRUE(save.execute("CREATE TABLE game_a(x)"));
-  for (const char* sql :
-       {"DELETE FROM psygen_edits", "CREATE TABLE chest(x)", "DROP TABLE psygen_facts",
-        "UPDATE psygen_facts SET value = 1", "INSERT INTO game_a SELECT value FROM psygen_facts",
-        "PRAGMA user_version=7", "COMMIT", "BEGIN", "SAVEPOINT s", "VACUUM", "ANALYZE",
-        "ATTACH 'other' AS other", "CREATE TRIGGER game_t AFTER INSERT ON game_a BEGIN SELECT 1; END",
-        "CREATE VIEW game_v AS SELECT 1", "CREATE TEMP TABLE game_t(x)",
-        "CREATE VIRTUAL TABLE game_f USING fts5(x)", "CREATE INDEX other ON game_a(x)",
-        "CREATE INDEX game_i ON psygen_edits(x)", "DELETE FROM sqlite_schema",
-        "ALTER TABLE game_a RENAME TO psygen_b", "SELECT load_extension('x')"}) {
+  for (const char* sql : {"DELETE FROM psygen_edits",
+                          "CREATE TABLE chest(x)",
+                          "DROP TABLE psygen_facts",
+                          "UPDATE psygen_facts SET value = 1",
+                          "INSERT INTO game_a SELECT value FROM psygen_facts",
+                          "PRAGMA user_version=7",
+                          "COMMIT",
+                          "BEGIN",
+                          "SAVEPOINT s",
+                          "VACUUM",
+                          "ANALYZE",
+                          "ATTACH 'other' AS other",
+                          "CREATE TRIGGER game_t AFTER INSERT ON game_a BEGIN SELECT 1; END",
+                          "CREATE VIEW game_v AS SELECT 1",
+                          "CREATE TEMP TABLE game_t(x)",
+                          "CREATE VIRTUAL TABLE game_f USING fts5(x)",
+                          "CREATE INDEX other ON game_a(x)",
+                          "CREATE INDEX game_i ON psygen_edits(x)",
+                          "DELETE FROM sqlite_schema",
+                          "ALTER TABLE game_a RENAME TO psygen_b",
+                          "SELECT load_extension('x')"}) {
     const std::string message = refusal(save, sql);
     EXPECT_EQ(message.find(std::string("SQL \"") + sql), 0U) << message;
   }
@@ -101,8 +114,9 @@ TEST(GameTables, AStatementThatFailsHalfWayChangesNothing) {
   SaveGame save = testing::opened(folder / "game.save");
   ASSERT_TRUE(save.execute("CREATE TABLE game_a(x UNIQUE)"));
   ASSERT_TRUE(save.execute("INSERT INTO game_a VALUES(3)"));
-  EXPECT_NE(refusal(save, "INSERT INTO game_a VALUES(1), (2), (3)").find("UNIQUE constraint failed"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(save, "INSERT INTO game_a VALUES(1), (2), (3)").find("UNIQUE constraint failed"),
+      std::string::npos);
   EXPECT_EQ(save.query("SELECT x FROM game_a")->rows.size(), 1U);
   ASSERT_TRUE(save.save());
   EXPECT_EQ(save.query("SELECT x FROM game_a")->rows.size(), 1U);

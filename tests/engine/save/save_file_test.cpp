@@ -60,9 +60,9 @@ TEST(SaveFile, DatabasesOfOtherProgramsAreRefused) {
   const TemporaryFolder folder;
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open((folder / "game.save").c_str(), &other), SQLITE_OK);
-  EXPECT_EQ(sqlite3_exec(other, "PRAGMA application_id=7; CREATE TABLE t(x)", nullptr, nullptr,
-                         nullptr),
-            SQLITE_OK);
+  EXPECT_EQ(
+      sqlite3_exec(other, "PRAGMA application_id=7; CREATE TABLE t(x)", nullptr, nullptr, nullptr),
+      SQLITE_OK);
   sqlite3_close(other);
   EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), kForeign);
 }
@@ -88,7 +88,8 @@ TEST(SaveFile, ForeignTablesAndChangedOnesAreRefused) {
   const std::pair<const char*, const char*> cases[] = {
       {"CREATE TABLE other(x)", "has a table 'other' that is not of this program"},
       {"CREATE VIEW game_view AS SELECT 1", "has a view 'game_view' that is not of this program"},
-      {"CREATE TRIGGER game_trigger AFTER INSERT ON psygen_edits BEGIN DELETE FROM psygen_edits; END",
+      {"CREATE TRIGGER game_trigger AFTER INSERT ON psygen_edits BEGIN DELETE FROM psygen_edits; "
+       "END",
        "has a trigger 'game_trigger' that is not of this program"},
       {"CREATE VIRTUAL TABLE game_text USING fts5(x)",
        "has a table 'game_text' that is not of this program"},
@@ -141,9 +142,9 @@ TEST(SaveFile, MissingFoldersAndThingsThatAreNoFilesAreRefused) {
   const TemporaryFolder folder;
   const auto missing = SaveGame::open(folder / "none/game.save", testing::kWorld);
   ASSERT_FALSE(missing);
-  EXPECT_EQ(missing.error().message, fmt::format("{}: there is no folder {}",
-                                                 (folder / "none/game.save").string(),
-                                                 (folder / "none").string()));
+  EXPECT_EQ(missing.error().message,
+            fmt::format("{}: there is no folder {}", (folder / "none/game.save").string(),
+                        (folder / "none").string()));
   std::filesystem::create_directory(folder / "folder");
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   std::filesystem::create_symlink(folder / "nowhere", folder / "link");

@@ -19,7 +19,8 @@ void expect_printable(const core::Error& error) {
 bool read_everything(const SaveGame& save) {
   bool whole = true;
   const auto visited = save.for_each_edits([](core::BlockCoord block, std::uint32_t, auto bytes) {
-    EXPECT_EQ(Bytes(bytes.begin(), bytes.end()), testing::bytes_of(testing::edits_text(1, block.x)));
+    EXPECT_EQ(Bytes(bytes.begin(), bytes.end()),
+              testing::bytes_of(testing::edits_text(1, block.x)));
   });
   if (!visited) expect_printable(visited.error());
   whole = whole && visited;

@@ -19,7 +19,8 @@ TEST(Value, AbsurdSizesAreRefused) {
   const auto large = check_value(std::string(kMaxValueBytes + 1, 'x'), "map");
   ASSERT_FALSE(large);
   EXPECT_EQ(large.error().code, core::ErrorCode::kOverBudget);
-  EXPECT_EQ(large.error().message, "map: a value has 268435457 bytes; at most 268435456 are allowed");
+  EXPECT_EQ(large.error().message,
+            "map: a value has 268435457 bytes; at most 268435456 are allowed");
 }
 
 }  // namespace

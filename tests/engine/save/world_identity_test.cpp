@@ -20,8 +20,10 @@ TEST(WorldIdentity, IsTheSameForTheSameWorld) {
 
 TEST(WorldIdentity, DiffersWhereThingsStandElsewhere) {
   const auto hash = identity_of(parsed(kSmallWorld), registry()).hash;
-  for (const auto& [from, to] : {std::pair{"seed = 5", "seed = 6"}, {"count = 3", "count = 4"},
-                                 {"relief_m = 60", "relief_m = 61"}, {"[8, 4]", "[8, 5]"}})
+  for (const auto& [from, to] : {std::pair{"seed = 5", "seed = 6"},
+                                 {"count = 3", "count = 4"},
+                                 {"relief_m = 60", "relief_m = 61"},
+                                 {"[8, 4]", "[8, 5]"}})
     EXPECT_NE(identity_of(parsed(replaced(kSmallWorld, from, to)), registry()).hash, hash) << to;
 }
 
