@@ -20,12 +20,12 @@ namespace psygen::models {
 
 // A model that was placed by hand, or moved to this block.
 struct PlacedModel {
-  std::uint32_t id = 0;      // unique in the layer, from 1
+  std::uint32_t id = 0;  // unique in the layer, from 1
   ModelIndex model = 0;
-  glm::vec2 local_m{0.0F};   // from the block's corner along x and z
-  float above_m = 0;         // of its foot, over the ground
-  glm::vec3 reach_m{0.0F};   // of its bounds from the foot: sideways, up, down; all >= 0
-  Parameters parameters;     // without the slope of the ground
+  glm::vec2 local_m{0.0F};  // from the block's corner along x and z
+  float above_m = 0;        // of its foot, over the ground
+  glm::vec3 reach_m{0.0F};  // of its bounds from the foot: sideways, up, down; all >= 0
+  Parameters parameters;    // without the slope of the ground
 };
 
 // A model of the world's function that is not there any more.

@@ -93,8 +93,8 @@ class QuadMap {
 
   // Sets the value of a square; an empty value takes it away. O(path).
   void set(const QuadPlace& place, V value) {
-    root_ = with(root_, place,
-                 value.empty() ? nullptr : std::make_shared<const V>(std::move(value)));
+    root_ =
+        with(root_, place, value.empty() ? nullptr : std::make_shared<const V>(std::move(value)));
   }
 
   // visit(place, value) for all values. O(values).
@@ -201,7 +201,8 @@ class QuadMap {
     const Cell* large = grown ? after : before;
     const Cell* small = grown ? before : after;
     if (large->value)
-      visit(large->place, grown ? nullptr : large->value.get(), grown ? large->value.get() : nullptr);
+      visit(large->place, grown ? nullptr : large->value.get(),
+            grown ? large->value.get() : nullptr);
     for (std::size_t q = 0; q < 4; ++q) {
       const Cell* part = large->place.quarter_of(small->place) == q ? small : nullptr;
       const Cell* quarter = large->quarters[q].get();

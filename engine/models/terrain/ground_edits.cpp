@@ -43,7 +43,8 @@ void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
   const double reach_m = GroundEdits::kInfluence * edit.radius_m + 1e-3 * block_m;
   const Area area = area_of(edit, reach_m, block_m);
   std::uint32_t level = 0;
-  while (level < QuadPlace::kMaxLevel && std::ldexp(1.0, static_cast<int>(level)) < area.x1 - area.x0)
+  while (level < QuadPlace::kMaxLevel &&
+         std::ldexp(1.0, static_cast<int>(level)) < area.x1 - area.x0)
     ++level;
   const auto square = [level](double block) {
     constexpr double kLast = 4294967295.0;
@@ -81,7 +82,8 @@ float steepness_of(const GroundEdit& edit, float change_m) {
 
 // The weight of an edit at a distance from its centre: smooth from 1 to 0.
 double weight_of(const GroundEdit& edit, double dx, double dz) {
-  const double away = edit.square ? std::max(std::abs(dx), std::abs(dz)) : std::sqrt(dx * dx + dz * dz);
+  const double away =
+      edit.square ? std::max(std::abs(dx), std::abs(dz)) : std::sqrt(dx * dx + dz * dz);
   if (!(away <= edit.radius_m)) return 0;
   const double fades = edit.falloff * edit.radius_m;
   const double left = edit.radius_m - away;
@@ -291,10 +293,12 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
 
 std::uint64_t content_hash(const GroundEdit& edit) {
   std::uint64_t hash = 0x6D0E;
-  const auto add = [&hash](double v) { hash = core::combine(hash, std::bit_cast<std::uint64_t>(v)); };
+  const auto add = [&hash](double v) {
+    hash = core::combine(hash, std::bit_cast<std::uint64_t>(v));
+  };
   hash = core::combine(hash, static_cast<std::uint64_t>(edit.change) * 2 + (edit.square ? 1 : 0));
-  hash = core::combine(hash, QuadPlace::of(edit.centre.block).x << 32 |
-                                 QuadPlace::of(edit.centre.block).z);
+  hash = core::combine(
+      hash, QuadPlace::of(edit.centre.block).x << 32 | QuadPlace::of(edit.centre.block).z);
   for (const double v :
        {edit.centre.local.x, edit.centre.local.z, edit.radius_m, edit.falloff, edit.height_m})
     add(v);

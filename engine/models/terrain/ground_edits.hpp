@@ -49,8 +49,8 @@ std::uint64_t content_hash(const GroundEdit& edit);
 struct GroundScale {
   std::int64_t cells_per_block = 63;
   double cell_m = 1;
-  double unit_m = 1;     // a height of 1 in metres
-  float highest = 1;     // heights lie in [0, highest]
+  double unit_m = 1;  // a height of 1 in metres
+  float highest = 1;  // heights lie in [0, highest]
   double block_m() const { return static_cast<double>(cells_per_block) * cell_m; }
 };
 
@@ -98,8 +98,9 @@ class GroundEdits {
   // of edits between them. An upper bound in metres; 0: there are none.
   double error_m(const QuadPlace& node, double spacing_m, double block_m) const;
 
-  // Applies the edits to heights at the lattice points (x[i], z[k]), values[k · stride + i]. x and z
-  // ascend. Edits of a radius below `narrowest_m` are left out. Linear in the heights that change.
+  // Applies the edits to heights at the lattice points (x[i], z[k]), values[k · stride + i]. x and
+  // z ascend. Edits of a radius below `narrowest_m` are left out. Linear in the heights that
+  // change.
   void apply(const GroundScale& scale, std::span<const std::int64_t> x,
              std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
              double narrowest_m = 0) const;

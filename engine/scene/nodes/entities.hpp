@@ -1,6 +1,6 @@
 // The entities of a node: its ground, and the models on it or the one mesh of all of them. Creates
-// them, and changes them when the edits of the world change. Decides nothing about which nodes exist
-// (systems/streaming.cpp). Main thread only.
+// them, and changes them when the edits of the world change. Decides nothing about which nodes
+// exist (systems/streaming.cpp). Main thread only.
 #pragma once
 
 #include <vector>

@@ -1,10 +1,11 @@
 // Takes over edits of the world: the ground and the models that they change get new parameters or
 // other places, models come and go. What is drawn stays until the new mesh is there; that is
 // synthesis like any other.
+#include "engine/models/edits.hpp"
+
 #include <glm/common.hpp>
 #include <utility>
 
-#include "engine/models/edits.hpp"
 #include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/systems.hpp"
 

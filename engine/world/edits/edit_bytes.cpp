@@ -91,12 +91,12 @@ class BlockReader {
     if (in_.get<std::uint32_t>() != kMagic) return broken("they are not edits of a block");
     const auto version = in_.get<std::uint16_t>();
     if (version != kEditFormat) {
-      return broken(fmt::format("their version is {}, and this program reads {}", version,
-                                kEditFormat));
+      return broken(
+          fmt::format("their version is {}, and this program reads {}", version, kEditFormat));
     }
     BlockEdits edits;
-    for (const auto read : {&BlockReader::read_removed, &BlockReader::read_placed,
-                            &BlockReader::read_ground}) {
+    for (const auto read :
+         {&BlockReader::read_removed, &BlockReader::read_placed, &BlockReader::read_ground}) {
       auto ok = (this->*read)(edits);
       if (in_.failed()) return broken("they end too early");
       if (!ok) return broken(ok.error().message);
@@ -109,8 +109,9 @@ class BlockReader {
 
  private:
   tl::unexpected<core::Error> broken(std::string_view why) const {
-    return core::fail(core::ErrorCode::kParse, fmt::format("the edits of block ({}, {}) cannot be read: {}",
-                                                           block_.x, block_.z, why));
+    return core::fail(
+        core::ErrorCode::kParse,
+        fmt::format("the edits of block ({}, {}) cannot be read: {}", block_.x, block_.z, why));
   }
   static tl::unexpected<core::Error> wrong(std::string why) {
     return core::fail(core::ErrorCode::kParse, std::move(why));
@@ -152,7 +153,8 @@ class BlockReader {
     return static_cast<models::ModelIndex>(index);
   }
   static std::string printable(std::string name) {
-    std::ranges::replace_if(name, [](char c) { return c < ' ' || c > '~'; }, '?');
+    std::ranges::replace_if(
+        name, [](char c) { return c < ' ' || c > '~'; }, '?');
     return name;
   }
 
@@ -173,9 +175,11 @@ class BlockReader {
       for (std::size_t k = 0; k < values; ++k)
         p.parameters.set_integer(k, in_.get<std::int64_t>());
       if (in_.failed()) return {};
-      if (!is_next_id(p.id, i > 0 ? edits.placed.back().id : 0)) return wrong("ids are not in order");
+      if (!is_next_id(p.id, i > 0 ? edits.placed.back().id : 0))
+        return wrong("ids are not in order");
       if (auto ok = check_inside(double{p.local_m.x}, double{p.local_m.y}); !ok) return ok;
-      if (auto ok = check_model(registry_, p.model, p.parameters, double{p.above_m}); !ok) return ok;
+      if (auto ok = check_model(registry_, p.model, p.parameters, double{p.above_m}); !ok)
+        return ok;
       p.reach_m = placed_reach(registry_[p.model], p.parameters, double{p.above_m});
       edits.placed.push_back(std::move(p));
     }
@@ -200,7 +204,8 @@ class BlockReader {
       e.height_m = in_.get<double>();
       if (e.change >= models::GroundChange::kStampAdd) e.map = read_map();
       if (in_.failed()) return {};
-      if (!is_next_id(e.id, i > 0 ? edits.ground.back()->id : 0)) return wrong("ids are not in order");
+      if (!is_next_id(e.id, i > 0 ? edits.ground.back()->id : 0))
+        return wrong("ids are not in order");
       if (auto ok = check_inside(e.centre.local.x, e.centre.local.z); !ok) return ok;
       if (auto ok = check_ground(world_, e); !ok) return ok;
       e.content = content_hash(e);

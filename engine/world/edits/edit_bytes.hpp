@@ -26,8 +26,8 @@ core::Result<models::BlockEdits> decode_block(const World& world, const models::
                                               core::BlockCoord block,
                                               std::span<const std::byte> bytes);
 
-// Replaces the edits of a block by those in the bytes. Blocks may be loaded in any order. On failure
-// `edits` stays as it was.
+// Replaces the edits of a block by those in the bytes. Blocks may be loaded in any order. On
+// failure `edits` stays as it was.
 core::Result<void> load_block(Edits& edits, const World& world, const models::Registry& registry,
                               core::BlockCoord block, std::span<const std::byte> bytes);
 

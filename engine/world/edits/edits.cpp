@@ -45,7 +45,8 @@ core::Result<void> check_removed(const World& world, core::BlockCoord block, std
   if (auto ok = check_block(world, block); !ok) return ok;
   const std::size_t count = models_per_block(world);
   if (index < count) return {};
-  return refuse(fmt::format("{} has no model {}: there are {} a block", text_of(block), index, count));
+  return refuse(
+      fmt::format("{} has no model {}: there are {} a block", text_of(block), index, count));
 }
 
 // A coordinate in a block as a float, which must not round up to the next block.
@@ -69,8 +70,9 @@ core::Result<void> check_heightmap(const models::Heightmap* map, double relief_m
   const double lowest = adds ? -relief_m : 0;
   for (const float h : map->heights_m) {
     if (static_cast<double>(h) >= lowest && static_cast<double>(h) <= relief_m) continue;
-    return refuse(fmt::format("a height of {:g} m in the heightmap is not allowed: it must be {:g} to {:g} m",
-                              h, lowest, relief_m));
+    return refuse(
+        fmt::format("a height of {:g} m in the heightmap is not allowed: it must be {:g} to {:g} m",
+                    h, lowest, relief_m));
   }
   return {};
 }
@@ -110,8 +112,9 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
   switch (edit.change) {
     case models::GroundChange::kRaise:
       if (std::abs(edit.height_m) <= relief_m) return {};
-      return refuse(fmt::format("raising ground by {:g} m is not allowed: at most {:g} m, up or down",
-                                edit.height_m, relief_m));
+      return refuse(
+          fmt::format("raising ground by {:g} m is not allowed: at most {:g} m, up or down",
+                      edit.height_m, relief_m));
     case models::GroundChange::kFlatten:
       if (edit.height_m >= 0 && edit.height_m <= relief_m) return {};
       return refuse(fmt::format(
@@ -261,7 +264,8 @@ core::Result<void> Edits::remove_placed(const EditName& model) {
   const BlockEdits* before = block(model.block);
   BlockEdits edits = before != nullptr ? *before : BlockEdits{};
   if (std::erase_if(edits.placed, [&](const PlacedModel& p) { return p.id == model.id; }) == 0) {
-    return refuse(fmt::format("{} has no placed model of the id {}", text_of(model.block), model.id));
+    return refuse(
+        fmt::format("{} has no placed model of the id {}", text_of(model.block), model.id));
   }
   EditLayer layer = *layer_;
   layer.blocks.set(QuadPlace::of(model.block), std::move(edits));

@@ -36,8 +36,8 @@ QuadPlace any_place(std::mt19937& random) {
 using Expected = std::map<std::tuple<std::uint32_t, std::uint64_t, std::uint64_t>, std::uint64_t>;
 
 TEST(QuadPlace, BlocksAndCornersAreInverse) {
-  for (const core::BlockCoord block : {core::BlockCoord{0, 0}, core::BlockCoord{-1, 5},
-                                       core::BlockCoord{INT32_MIN, INT32_MAX}})
+  for (const core::BlockCoord block :
+       {core::BlockCoord{0, 0}, core::BlockCoord{-1, 5}, core::BlockCoord{INT32_MIN, INT32_MAX}})
     EXPECT_EQ(QuadPlace::of(block).corner(), block);
   EXPECT_TRUE(QuadPlace::of({-1, -1}, 3).covers(QuadPlace::of({-8, -1})));
   EXPECT_FALSE(QuadPlace::of({-1, -1}, 3).covers(QuadPlace::of({0, -1})));
@@ -123,12 +123,11 @@ TEST(QuadMap, DifferencesAreTheSquaresWhoseValuesDiffer) {
     for (int i = 0; i < static_cast<int>(random() % 8); ++i)
       after.set(any_place(random), {random() % 3});
     std::map<std::tuple<std::uint32_t, std::uint64_t, std::uint64_t>, int> reported;
-    Map::each_difference(before, after,
-                         [&](const QuadPlace& p, const Number* a, const Number* b) {
-                           EXPECT_EQ(before.find(p), a);
-                           EXPECT_EQ(after.find(p), b);
-                           ++reported[{p.level, p.x, p.z}];
-                         });
+    Map::each_difference(before, after, [&](const QuadPlace& p, const Number* a, const Number* b) {
+      EXPECT_EQ(before.find(p), a);
+      EXPECT_EQ(after.find(p), b);
+      ++reported[{p.level, p.x, p.z}];
+    });
     const auto expect_reported = [&](const Map& one, const Map& two) {
       one.each([&](const QuadPlace& p, const Number& value) {
         const Number* other = two.find(p);

@@ -56,11 +56,12 @@ class EditedTerrain : public ::testing::Test {
                    {kBlockM * unit(random), 0, kBlockM * unit(random)}};
     edit.radius_m = std::exp(unit(random) * 5) * 0.5;
     edit.falloff = random() % 4 == 0 ? 0 : unit(random);
-    edit.height_m = edit.change == GroundChange::kRaise ? 80 * unit(random) - 40 : 100 * unit(random);
+    edit.height_m =
+        edit.change == GroundChange::kRaise ? 80 * unit(random) - 40 : 100 * unit(random);
     if (edit.change >= GroundChange::kStampAdd) {
       auto map = std::make_shared<Heightmap>();
-      map->columns = 2 + random() % 9;
-      map->rows = 2 + random() % 9;
+      map->columns = 2 + static_cast<std::uint32_t>(random() % 9);
+      map->rows = 2 + static_cast<std::uint32_t>(random() % 9);
       for (std::uint32_t i = 0; i < map->columns * map->rows; ++i)
         map->heights_m.push_back(static_cast<float>(60 * unit(random)));
       edit.map = map;
@@ -99,8 +100,8 @@ TEST_F(EditedTerrain, ARaisedHillIsInTheMeshAndInTheQueriesAlike) {
   for (int z = 0; z < 64; z += 7) {
     for (int x = 0; x < 64; x += 7) {
       const glm::dvec2 at(x, z);
-      EXPECT_NEAR(ground.at(at).height_m, after[static_cast<std::size_t>(z * 64 + x)].height * quantum_m,
-                  1e-3);
+      EXPECT_NEAR(ground.at(at).height_m,
+                  after[static_cast<std::size_t>(z * 64 + x)].height * quantum_m, 1e-3);
       EXPECT_EQ(ground.at(at).height_m, single.at(at).height_m);
     }
   }
@@ -239,7 +240,9 @@ TEST_F(EditedTerrain, SameInNeverMissesAChangeOfTheHash) {
     const bool says_same = GroundEdits::same_in(
         before.ground, layer.ground, QuadPlace::of(at, static_cast<std::uint32_t>(level)),
         std::ldexp(4 / 63.0, level));
-    if (says_same) EXPECT_EQ(hash_of(x, z, level), hash);
+    if (says_same) {
+      EXPECT_EQ(hash_of(x, z, level), hash);
+    }
     same += says_same ? 1 : 0;
   }
   EXPECT_GT(same, 20u);
@@ -251,7 +254,8 @@ TEST_F(EditedTerrain, NoMeshIsFurtherFromTheGroundThanTheErrorSays) {
     layer = {};
     edits.clear();
     for (int i = 0; i < 3; ++i) {
-      GroundEdit edit = raised({{0, 0}, {20.0 + 10 * i, 0, 30}}, 4.0 + random() % 30, 10.0 + i);
+      GroundEdit edit = raised({{0, 0}, {20.0 + 10 * i, 0, 30}},
+                               4.0 + static_cast<double>(random() % 30), 10.0 + i);
       edit.falloff = 0.3;
       add(edit);
     }

@@ -1,10 +1,11 @@
 // Edits while a scene runs: what they change is made anew without a hole, everything else stays as
 // it is, and taking them back restores the very same meshes.
+#include "engine/models/edits.hpp"
+
 #include <algorithm>
 #include <map>
 #include <random>
 
-#include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "tests/engine/scene/fixture.hpp"
@@ -32,7 +33,7 @@ std::map<Name, Shown> shown_in(const Scene& scene) {
     const Source& source = *entities.get<Source>(entity);
     const Demand& demand = *entities.get<Demand>(entity);
     all[{placed.block.x, placed.block.z, level, source.index}] = {
-        entity,       source.parameters_hash,           entities.get<Mesh>(entity)->handle,
+        entity,       source.parameters_hash,         entities.get<Mesh>(entity)->handle,
         demand.stale, demand.drawn_level != kNoLevel, placed.position};
   };
   entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node> nodes) {
@@ -46,8 +47,8 @@ std::map<Name, Shown> shown_in(const Scene& scene) {
 }
 
 std::size_t count_stale(const Scene& scene) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      shown_in(scene), [](const auto& named) { return named.second.stale; }));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(shown_in(scene), [](const auto& named) { return named.second.stale; }));
 }
 
 // Ticks until nothing is stale any more; no tick has a hole.
@@ -95,7 +96,9 @@ TEST(Edits, AFelledTreeIsGoneInTheNextTickAndNothingElseOfTheBlockChanges) {
     EXPECT_EQ(old.entity, shown.entity);
     EXPECT_EQ(old.mesh, shown.mesh);
     changed += old.hash != shown.hash;
-    if (old.hash != shown.hash) EXPECT_EQ(std::get<3>(name), kMergedIndex);
+    if (old.hash != shown.hash) {
+      EXPECT_EQ(std::get<3>(name), kMergedIndex);
+    }
   }
   // The meshes for all models of the nodes above the block, up to the last level that has them.
   const auto merged_above = std::ranges::count_if(before, [](const auto& named) {
@@ -198,8 +201,9 @@ TEST(Edits, ASceneThatStartsWithEditsShowsWhatOneThatGotThemShows) {
     const auto level = [&](const Scene& scene, const Shown& shown) {
       return scene.state().meshes.get(shown.mesh)->key.level;
     };
-    if (level(*first, restarted.at(name)) == level(*later, ran.at(name)))
+    if (level(*first, restarted.at(name)) == level(*later, ran.at(name))) {
       EXPECT_EQ(hash, b.at(name));
+    }
   }
 }
 
@@ -282,13 +286,14 @@ TEST(Edits, ManyEditsWhileFlyingLeaveTheSceneConsistent) {
   scene->settle(pose_at(256, 256));
   std::mt19937 random(4);
   std::vector<world::Edits> history{world::Edits()};
+  const auto below = [&random](unsigned n) { return static_cast<double>(random() % n); };
   for (int i = 0; i < 150; ++i) {
     const world::World& world = scene->state().facts.world;
     const models::Registry& registry = scene->state().facts.registry;
     world::Edits edits = scene->edits();
     const core::BlockCoord block{254 + static_cast<std::int32_t>(random() % 8),
                                  254 + static_cast<std::int32_t>(random() % 5)};
-    const core::WorldPosition at{block, {random() % 63 + 0.25, 0, random() % 63 + 0.75}};
+    const core::WorldPosition at{block, {below(63) + 0.25, 0, below(63) + 0.75}};
     const auto index = static_cast<std::uint32_t>(random() % 60);
     switch (random() % 6) {
       case 0:
@@ -298,10 +303,10 @@ TEST(Edits, ManyEditsWhileFlyingLeaveTheSceneConsistent) {
         (void)edits.move(world, registry, {block, index}, at);
         break;
       case 2:
-        (void)edits.raise(world, at, 1.0 + random() % 50, 12.0 - random() % 24);
+        (void)edits.raise(world, at, 1.0 + below(50), 12.0 - below(24));
         break;
       case 3:
-        (void)edits.flatten(world, at, 1.0 + random() % 50, 40);
+        (void)edits.flatten(world, at, 1.0 + below(50), 40);
         break;
       case 4:
         edits = history[random() % history.size()];

@@ -15,8 +15,8 @@
 namespace psygen::world {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::EditedWorld;
+using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -156,7 +156,7 @@ TEST_F(EditsTest, WhatIsImpossibleIsRefusedWithASentenceAndChangesNothing) {
   wrong = rock;
   wrong.model = world.terrain_model;
   wrong.parameters = world.terrain;
-  refused(edits.place(world, registry, wrong), "cannot be placed");
+  refused(edits.place(world, registry, wrong), "not a model that can be placed");
   wrong = rock;
   wrong.parameters.set_integer(0, -5);
   wrong.parameters.set_real(1, kNan);

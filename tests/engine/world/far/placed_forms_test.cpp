@@ -66,8 +66,7 @@ TEST_F(FarEdits, AFelledTreeIsMissingInTheMeshesOfAllNodesThatShowItAlone) {
   EXPECT_EQ(vertices_near(after, {2, 2}, 1, at), 0u);
   for (int level = 2; level <= kMaxMergedLevel; ++level) {
     const core::BlockCoord node{4 >> level, 4 >> level};
-    EXPECT_NE(merged_parameters(world, node, level).hash(),
-              merged_parameters(node, level).hash());
+    EXPECT_NE(merged_parameters(world, node, level).hash(), merged_parameters(node, level).hash());
   }
   EXPECT_EQ(merged_parameters(world, {3, 2}, 1).hash(), merged_parameters({3, 2}, 1).hash());
 }
@@ -90,8 +89,8 @@ TEST_F(FarEdits, APlacedTreeIsInTheMeshesOfItsNodesAndInsideTheirBox) {
   const core::WorldPosition place{{5, 5}, {1, 0, 1}};
   const auto placed = edits.place(world, registry, {tree.model, tree.parameters, place, 0});
   ASSERT_TRUE(placed);
-  const std::size_t unedited_near = vertices_near(
-      synthesize(*type, merged_parameters({2, 2}, 1), 0), {2, 2}, 1, {64, 64});
+  const std::size_t unedited_near =
+      vertices_near(synthesize(*type, merged_parameters({2, 2}, 1), 0), {2, 2}, 1, {64, 64});
   EXPECT_GT(vertices_near(mesh({2, 2}, 1), {2, 2}, 1, {64, 64}), unedited_near);
   for (int level = 1; level <= kMaxMergedLevel; ++level) {
     const models::Parameters p = merged_parameters(world, {4 >> level, 4 >> level}, level);
