@@ -88,7 +88,8 @@ class Session {
   core::Result<void> open_renderer(Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
-  void start();
+  core::Result<void> add_systems();
+  core::Result<void> start();
 
   SessionOptions options_;
   // Destroyed in the opposite order: the scene gives its memory back to the renderer.

@@ -141,7 +141,7 @@ core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
 }
 
 Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
-                   const models::Registry& registry, const ecs::Schedule& tick) {
+                   const models::Registry& registry) {
   Tracing tracing;
   if (log == nullptr) return tracing;
   tracing.log = log;
@@ -152,8 +152,6 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
   tracing.device_wait = log->intern("wait for the device");
   tracing.acquire = log->intern("wait for the window");
   tracing.present = log->intern("present");
-  for (const ecs::SystemInfo& system : tick.systems())
-    tracing.systems.push_back(log->intern(system.name));
   for (std::uint32_t i = 0; i < modelers; ++i) {
     tracing.modelers.push_back(log->add_track(fmt::format("modeler {}", i)));
   }
@@ -164,6 +162,14 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
 }
 
 }  // namespace
+
+core::Result<void> Scene::arrange() {
+  for (ecs::Schedule* schedule : {&state_.tick, &state_.simulation.systems}) {
+    if (std::string error = schedule->arrange(); !error.empty())
+      return core::fail(core::ErrorCode::kInvalidArgument, std::move(error));
+  }
+  return {};
+}
 
 core::Result<void> Scene::check(const Settings& settings) {
   const auto refuse = [](std::string sentence) {
@@ -183,6 +189,9 @@ core::Result<void> Scene::check(const Settings& settings) {
   }
   if (!(settings.fade_seconds >= 0 && settings.fade_seconds <= 60)) {
     return refuse("models come and go within 0 to 60 seconds");
+  }
+  if (!(settings.step_hz >= 1 && settings.step_hz <= 10'000)) {
+    return refuse("the simulation must have between 1 and 10000 steps a second");
   }
   if (settings.streaming_ticks < 1) return refuse("nodes are created over at least one tick");
   if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
@@ -259,8 +268,9 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
     return tl::unexpected(ok.error());
   s.quality.governor =
       Governor({.target_ms = settings.target_frame_ms, .max_factor = settings.max_error_factor});
+  s.simulation.step.step_s = 1 / settings.step_hz;
   build_tick(s);
-  s.trace = tracing_of(trace, s.settings.modelers, facts.registry, s.tick);
+  s.trace = tracing_of(trace, s.settings.modelers, facts.registry);
   return scene;
 }
 

@@ -26,6 +26,7 @@ MAY_KNOW = {
     "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/synthesis",
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
                      "engine/telemetry"},
+    "engine/save": {"ecs", "engine/core", "engine/models", "engine/world"},
     "shaders": set(),
 }
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange"}
@@ -62,10 +63,12 @@ ONLY_IN = {
     r"^CLI/": {"engine/cli", "game"},
     r"^tiny_gltf": {"engine/exchange"},
     r"^spdlog/": {"engine/core"},
+    r"^sqlite3": {"engine/save"},
     r"^Q[A-Z]|^Qt": {"editor"},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
-NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/visibility", "engine/exchange"}
+NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/visibility", "engine/exchange",
+              "engine/save"}
 BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -4,37 +4,12 @@
 #include <climits>
 
 #include "engine/scene/nodes/levels.hpp"
+#include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/nodes/solidity.hpp"
 #include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {
-
-// `usual`: in what part of the box its mesh lies (WorldFacts).
-Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box,
-                 const core::Bounds& usual) {
-  Placed placed;
-  placed.block = block;
-  placed.position = position;
-  placed.box_center = box.center();
-  placed.box_half_extent = box.half_extent();
-  placed.middle = placed.box_center + placed.box_half_extent * usual.center();
-  placed.radius_m = glm::length(placed.box_half_extent * usual.half_extent());
-  return placed;
-}
-
-// Levels `first` … `last` of a model type, at most as many as differ.
-Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first,
-                 int last) {
-  Detail detail;
-  detail.seen_size_m = static_cast<float>(type.seen_size_m(parameters));
-  for (int level = first; level <= std::min(last, type.level_count_of(parameters) - 1); ++level) {
-    if (detail.level_count == kMaxLevels) break;
-    detail.error_m[detail.level_count++] =
-        static_cast<float>(type.level_error_m(parameters, level));
-  }
-  return detail;
-}
 
 // The values of the columns that nodes and models share; of the type only these levels are used.
 struct MeshColumns {
@@ -74,6 +49,16 @@ std::span<const ecs::Entity> create_meshes(const WorldFacts& facts, core::BlockC
   return models.entities;
 }
 
+void tell_created(std::span<const ecs::Entity> models, core::BlockCoord block,
+                  std::span<const world::Placement> placements,
+                  ecs::EventQueue<ModelCreated>& created) {
+  if (!created.has_readers()) return;
+  std::vector<ModelCreated> events;
+  for (std::size_t i = 0; i < models.size(); ++i)
+    events.push_back({models[i], block, placements[i].index, placements[i].model});
+  created.emit(events);
+}
+
 world::Placement merged_placement(const WorldFacts& facts, const visibility::NodeCoord& at) {
   return {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
           world::merged_parameters(facts.world, at.coord, at.level)};
@@ -81,11 +66,14 @@ world::Placement merged_placement(const WorldFacts& facts, const visibility::Nod
 
 // The models of a block, or the one mesh of all models on a coarser node.
 void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
-                   std::vector<world::Placement>& scratch, ecs::World& entities) {
+                   std::vector<world::Placement>& scratch, ecs::World& entities,
+                   ecs::EventQueue<ModelCreated>& created) {
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
     world::place_models(facts.world, facts.registry, block, scratch);
-    entities.set_children(node, create_meshes(facts, block, scratch, entities));
+    const std::span<const ecs::Entity> models = create_meshes(facts, block, scratch, entities);
+    entities.set_children(node, models);
+    tell_created(models, block, scratch, created);
   } else if (facts.levels[at.level].merged) {
     scratch.assign(1, merged_placement(facts, at));
     entities.set_children(node,
@@ -131,18 +119,22 @@ void place_anew(const WorldFacts& facts, core::BlockCoord block, const world::Pl
 }
 
 void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& meshes,
-                    ecs::World& entities) {
+                    ecs::World& entities, ecs::EventQueue<ModelRemoved>& removed) {
+  std::vector<ModelRemoved> events;
   for (const ecs::Entity model : models) {
     if (entities.get<Demand>(model)->drawn_level != kNoLevel)
       meshes.rank(entities.get<Mesh>(model)->handle, synthesis::Rank::unwanted());
+    const Source& source = *entities.get<Source>(model);
+    events.push_back({model, entities.get<Placed>(model)->block, source.index, source.model});
   }
+  if (removed.has_readers()) removed.emit(events);
   entities.destroy(models);
 }
 
 // Entities of models that stay are kept, with what is drawn of them.
 void update_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
                    std::vector<world::Placement>& scratch, synthesis::MeshSupply& meshes,
-                   ecs::World& entities) {
+                   ecs::World& entities, const ModelEvents& events) {
   world::place_models(facts.world, facts.registry, block, scratch);
   const std::span<const ecs::Entity> now = entities.children(node);
   std::vector<ecs::Entity> before(now.begin(), now.end()), kept, gone;
@@ -160,8 +152,9 @@ void update_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity 
     (stays ? kept : gone).push_back(model);
   }
   created.insert(created.end(), scratch.begin() + static_cast<std::ptrdiff_t>(next), scratch.end());
-  destroy_models(gone, meshes, entities);
+  destroy_models(gone, meshes, entities, events.removed);
   const std::span<const ecs::Entity> added = create_meshes(facts, block, created, entities, true);
+  tell_created(added, block, created, events.created);
   kept.insert(kept.end(), added.begin(), added.end());
   std::ranges::sort(kept, {},
                     [&](ecs::Entity model) { return entities.get<Source>(model)->index; });
@@ -172,7 +165,7 @@ void update_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity 
 
 ecs::Entity create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
                         const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
-                        ecs::World& entities) {
+                        ecs::World& entities, ecs::EventQueue<ModelCreated>& created_models) {
   const NodeLevel& level = facts.levels[at.level];
   const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundRelief,
                                        GroundSun, Placed, Detail, Source, Demand, Mesh>(1);
@@ -185,13 +178,13 @@ ecs::Entity create_node(const Settings& settings, const WorldFacts& facts, const
                    lit_ground(facts, daylight, at)},
                   at.level == 0 ? 0 : level.mesh_level, level.mesh_level));
   const ecs::Entity node = created.entities[0];
-  create_models(facts, at, node, scratch, entities);
+  create_models(facts, at, node, scratch, entities, created_models);
   return node;
 }
 
 void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity node,
                  const NodeChange& change, std::vector<world::Placement>& scratch,
-                 synthesis::MeshSupply& meshes, ecs::World& entities) {
+                 synthesis::MeshSupply& meshes, ecs::World& entities, const ModelEvents& events) {
   const visibility::NodeCoord at = entities.get<Node>(node)->at;
   if (change.ground) {
     renew(lit_ground(facts, daylight, at), facts, node, meshes, entities);
@@ -201,7 +194,7 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
     if (change.ground || change.models)
-      update_models(facts, block, node, scratch, meshes, entities);
+      update_models(facts, block, node, scratch, meshes, entities, events);
     return;
   }
   for (const ecs::Entity model : entities.children(node)) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/scene/draws/seen.hpp"
+#include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/visibility/level_choice.hpp"
 
@@ -93,9 +94,8 @@ class Chooser {
     Demand& demand = row.demand;
     const glm::vec3 foot = node.corner + placed.position;
     const bool near = is_ground || node.level > 0;  // as near as the node itself
-    const float distance_m = near ? node.visibility->distance_m
-                                  : std::max(glm::length(foot + placed.middle) - placed.radius_m,
-                                             camera_.projection.near_m);
+    const float distance_m =
+        near ? node.visibility->distance_m : distance_to(placed, foot, camera_.projection.near_m);
     const bool in_view = node.in_view && (near || mesh_can_be_seen(box_of(row), foot, view_));
     demand.wanted_level = is_ground ? ground_level(row.detail, demand, node)
                                     : wanted_level(placed, row.detail, demand, distance_m, node);
@@ -127,11 +127,9 @@ class Chooser {
 
   std::uint8_t wanted_level(const Placed& placed, const Detail& detail, const Demand& demand,
                             float distance_m, const NodeView& node) const {
-    const float size_m = detail.seen_size_m > 0 ? detail.seen_size_m : 2 * placed.radius_m;
-    const float size_pixels = size_m * camera_.pixels_per_radian /
-                              std::max(distance_m + placed.radius_m, camera_.projection.near_m);
-    if (node.level == 0 && size_pixels < static_cast<float>(settings_.min_size_pixels))
-      return kNoLevel;
+    const float pixels = size_pixels(placed, detail, distance_m, camera_.pixels_per_radian,
+                                     camera_.projection.near_m);
+    if (node.level == 0 && pixels < static_cast<float>(settings_.min_size_pixels)) return kNoLevel;
     if (!settings_.levels_of_detail) return 0;
     const std::span<const float> errors(detail.error_m.data(), detail.level_count);
     const bool keep = demand.drawn_level != kNoLevel && !rules_.settle;
@@ -217,7 +215,7 @@ class Chooser {
   std::uint8_t level_to_request(const MeshEntity& row, bool hole) const {
     const Demand& demand = row.demand;
     const auto levels = static_cast<int>(row.detail.level_count);
-    const bool coarse_first = hole && rules_.coarse_first;
+    const bool coarse_first = hole && rules_.coarse_first && !is_cached(row, demand.wanted_level);
     // A modeler that holds the coarsest one may not get a processor for a while: then the next one.
     // Not where it waits for room.
     const bool stuck = !rules_.settle && quality_.coarsening <= 1 && pressure_.waiting == 0 &&
@@ -235,13 +233,21 @@ class Chooser {
     return kNoLevel;
   }
 
+  synthesis::MeshKey key_of(const MeshEntity& row, std::uint8_t level) const {
+    const Source& source = row.source;
+    return {row.placed.block, source.index, source.model,
+            static_cast<std::uint16_t>(source.first_level + level), source.parameters_hash};
+  }
+
+  bool is_cached(const MeshEntity& row, std::uint8_t level) const {
+    return meshes_.ready(meshes_.find(key_of(row, level))) != nullptr;
+  }
+
   void request(const MeshEntity& row, std::uint8_t level, RankGroup group, bool at_once,
                const NodeView& node, float distance_m) {
     const Source& source = row.source;
     Demand& demand = row.demand;
-    const auto type_level = static_cast<std::uint16_t>(source.first_level + level);
-    const synthesis::MeshKey key{row.placed.block, source.index, source.model, type_level,
-                                 source.parameters_hash};
+    const synthesis::MeshKey key = key_of(row, level);
     const bool first_time = demand.requested_level != level;
     demand.requested_level = level;
     const synthesis::MeshHandle handle = first_time ? meshes_.look_up(key) : meshes_.find(key);
@@ -348,9 +354,11 @@ void forget_last_frame(const CacheQuery& entities, synthesis::MeshSupply& supply
 }
 
 // Entities whose mesh was taken to make room draw nothing until they get another one.
-void drop_evicted(const CacheQuery& entities, synthesis::MeshSupply& meshes) {
+void drop_evicted(const CacheQuery& entities, synthesis::MeshSupply& meshes,
+                  ecs::EventQueue<MeshEvicted>& evicted) {
   for (const synthesis::Eviction& eviction : meshes.take_evictions()) {
     const ecs::Entity owner = entity_of(eviction.owner);
+    evicted.emit({owner, eviction.key});
     const Mesh* mesh = entities.get<Mesh>(owner);
     if (mesh != nullptr && mesh->handle == eviction.handle) {
       entities.get<Demand>(owner)->drawn_level = kNoLevel;
@@ -387,11 +395,15 @@ synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, 
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Streaming& streaming, const View& view, CacheQuery entities,
-                  synthesis::MeshSupply& meshes, Found& found, Pressure& pressure,
-                  Counters& counters) {
+                  synthesis::MeshSupply& meshes, Found& found, Foresight& foresight,
+                  Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
+                  ecs::EventQueue<PlaceReady>& places_ready, Counters& counters) {
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
   found.meshes.clear();
+  // Before the picture's wants: where both want a mesh, it is the picture's.
+  if (rules.request && !rules.settle)
+    want_places(settings.modelers, foresight, meshes, places_ready);
 
   Chooser chooser(settings, rules, clock, camera, quality, facts, view, pressure, meshes, found,
                   counters);
@@ -406,7 +418,7 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
   }
   const synthesis::PlanReport report = meshes.plan(
       plan_limits(settings, rules, clock, quality, streaming, pressure), settings.policy);
-  drop_evicted(entities, meshes);
+  drop_evicted(entities, meshes, evicted);
   counters.requests = static_cast<std::uint32_t>(meshes.wants().size());
   counters.refused = report.refused;
   counters.refused_visible = report.refused_visible;

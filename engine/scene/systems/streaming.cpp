@@ -66,9 +66,28 @@ class Window {
   std::vector<double> reach_m_;
 };
 
+// `nodes` are about to be destroyed, and the models on them.
+void tell_removed(std::span<const ecs::Entity> nodes, const ecs::World& entities,
+                  ecs::EventQueue<ModelRemoved>& removed) {
+  if (!removed.has_readers()) return;
+  std::vector<ModelRemoved> events;
+  for (const ecs::Entity node : nodes) {
+    if (entities.get<Node>(node)->at.level != 0) continue;
+    entities.each_of<const Placed, const Source>(
+        entities.children(node),
+        [&events](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
+                  std::span<const Source> sources) {
+          for (std::size_t i = 0; i < rows.size(); ++i)
+            events.push_back({rows[i], placed[i].block, sources[i].index, sources[i].model});
+        });
+  }
+  removed.emit(events);
+}
+
 // Their meshes stay in the cache while there is room: the camera may come back.
 void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs::World& entities,
-                           synthesis::MeshSupply& supply, Counters& counters) {
+                           synthesis::MeshSupply& supply, ecs::EventQueue<ModelRemoved>& removed,
+                           Counters& counters) {
   std::vector<ecs::Entity> leaving;
   entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node> nodes) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -88,6 +107,7 @@ void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs
   entities.each_of<const Demand, const Mesh>(leaving, give_back);
   for (const ecs::Entity node : leaving)
     entities.each_of<const Demand, const Mesh>(entities.children(node), give_back);
+  tell_removed(leaving, entities, removed);
   entities.destroy_with_children(leaving);
 }
 
@@ -130,7 +150,8 @@ void spread_missing(const Settings& settings, Streaming& streaming) {
 void streaming_system(const Settings& settings, const Rules& rules, const Camera& camera,
                       const Quality& quality, const WorldFacts& facts, const Daylight& daylight,
                       Streaming& streaming, ecs::World& entities, synthesis::MeshSupply& meshes,
-                      Counters& counters) {
+                      ecs::EventQueue<ModelCreated>& created_models,
+                      ecs::EventQueue<ModelRemoved>& removed_models, Counters& counters) {
   split_distances(facts.levels, settings, camera.pixels_per_radian, quality.error_pixels,
                   streaming.distances);
   const core::BlockCoord place = camera.pose.position.block;
@@ -145,7 +166,7 @@ void streaming_system(const Settings& settings, const Rules& rules, const Camera
     streaming.listed_split_m = reach;
     streaming.listed_at = place;
     const Window window(settings, camera, facts, streaming);
-    destroy_leaving_nodes(window, streaming, entities, meshes, counters);
+    destroy_leaving_nodes(window, streaming, entities, meshes, removed_models, counters);
     list_missing_nodes(window, camera, facts, entities, streaming);
     spread_missing(settings, streaming);
   }
@@ -165,7 +186,7 @@ void streaming_system(const Settings& settings, const Rules& rules, const Camera
     const std::size_t before = entities.size();
     const visibility::NodeCoord& at = streaming.missing.back();
     streaming.grids[at.level].entity_of(at.coord) =
-        create_node(settings, facts, daylight, at, scratch, entities);
+        create_node(settings, facts, daylight, at, scratch, entities, created_models);
     spent.charge(kEntitySeconds * static_cast<double>(entities.size() - before));
     streaming.missing.pop_back();
     ++counters.nodes_created;
