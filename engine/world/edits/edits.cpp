@@ -33,6 +33,20 @@ core::Result<void> check_block(const World& world, core::BlockCoord block) {
   return refuse(fmt::format("{} is outside of the world", text_of(block)));
 }
 
+std::size_t heights_in(const GroundEdit& edit) {
+  return edit.map ? edit.map->heights_m.size() : 0;
+}
+
+core::Result<void> check_heights(const BlockEdits& edits, core::BlockCoord block) {
+  std::size_t count = 0;
+  for (const auto& edit : edits.ground)
+    count += heights_in(*edit);
+  if (count <= kMaxHeightsPerBlock) return {};
+  return core::fail(ErrorCode::kOverBudget,
+                    fmt::format("the heightmaps of {} have {} heights, and at most {} are allowed",
+                                text_of(block), count, kMaxHeightsPerBlock));
+}
+
 core::Result<void> check_room(const BlockEdits& edits, core::BlockCoord block) {
   const std::size_t count = edits.removed.size() + edits.placed.size() + edits.ground.size();
   if (count < kMaxEditsPerBlock) return {};
@@ -287,13 +301,14 @@ core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
   edit.id = *id;
   edit.content = content_hash(edit);
   const auto shared = std::make_shared<const GroundEdit>(std::move(edit));
+  edits.ground.push_back(shared);
+  if (auto ok = check_heights(edits, at->block); !ok) return tl::unexpected(ok.error());
   if (!layer.ground.add(shared, world.block_size_m())) {
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("{} edits of the ground lie on top of each other at {}, and no "
                                   "more are allowed; a heightmap can replace many of them",
                                   models::GroundEdits::kMostTogether, text_of(at->block)));
   }
-  edits.ground.push_back(shared);
   layer.next_id = *id + 1;
   layer.blocks.set(QuadPlace::of(at->block), std::move(edits));
   commit(std::move(layer));
@@ -339,6 +354,7 @@ core::Result<void> Edits::remove_ground(const World& world, const EditName& edit
 core::Result<void> Edits::replace_block(const World& world, core::BlockCoord block,
                                         BlockEdits edits) {
   if (auto ok = check_block(world, block); !ok) return ok;
+  if (auto ok = check_heights(edits, block); !ok) return ok;
   EditLayer layer = layer_ ? *layer_ : EditLayer{};
   const double block_m = world.block_size_m();
   if (const BlockEdits* before = layer.block(block)) {

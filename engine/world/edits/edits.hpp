@@ -43,6 +43,8 @@ struct NewModel {
 inline constexpr double kMinEditRadiusM = 0.1, kMaxEditRadiusM = 20'000;
 inline constexpr std::uint32_t kMaxHeightmapSide = 1024;
 inline constexpr std::size_t kMaxEditsPerBlock = 16'384;
+// Heights in all heightmaps of one block, so that its bytes stay below 16 MiB (save/save_game.hpp).
+inline constexpr std::size_t kMaxHeightsPerBlock = std::size_t{3} << 20;
 
 // How many edits there are.
 struct EditCounts {

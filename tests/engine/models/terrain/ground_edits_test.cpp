@@ -166,7 +166,7 @@ TEST_F(EditedTerrain, SharedVerticesOfNeighboursAndLevelsAgreeWithManyEdits) {
 TEST_F(EditedTerrain, WhatTheHashDoesNotNameDoesNotChangeAnyBitOfAMesh) {
   std::mt19937 random(9);
   std::size_t untouched = 0, touched = 0;
-  for (int round = 0; round < 120; ++round) {
+  for (int round = 0; round < 600; ++round) {
     layer = {};
     edits.clear();
     GroundEdit edit = any_edit(random);
@@ -174,8 +174,8 @@ TEST_F(EditedTerrain, WhatTheHashDoesNotNameDoesNotChangeAnyBitOfAMesh) {
     add(edit);
     const int level = static_cast<int>(random() % 4);
     const core::BlockCoord block = edits[0]->centre.block;
-    const std::int64_t x = (block.x >> level) + static_cast<std::int64_t>(random() % 7) - 3;
-    const std::int64_t z = (block.z >> level) + static_cast<std::int64_t>(random() % 7) - 3;
+    const auto step = [&random] { return static_cast<std::int64_t>(random() % 5) - 2; };
+    const std::int64_t x = (block.x >> level) + step(), z = (block.z >> level) + step();
     const Parameters p = node(x, z, level);
     Parameters forced = p;
     forced.set_edits(&layer, 1);
@@ -195,15 +195,19 @@ TEST_F(EditedTerrain, WhatTheHashDoesNotNameDoesNotChangeAnyBitOfAMesh) {
 
 TEST_F(EditedTerrain, ALargeHillDarkensTheGroundBehindIt) {
   add(raised({{0, 0}, {31, 0, 31}}, 60, 60));
-  // The sun stands in the south-east, so the shadow falls to the north-west.
-  const auto base = vertices(node(-2, -2, 0, false), 0), edited = vertices(node(-2, -2, 0), 0);
+  // The sun stands in the south-east, so the shadow falls to the north-west, beyond the hill's
+  // foot.
+  const auto base = vertices(node(-1, -1, 0, false), 0), edited = vertices(node(-1, -1, 0), 0);
   double before = 0, after = 0;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < base.size(); ++i) {
-    EXPECT_EQ(base[i].height, edited[i].height);
+    if (base[i].height != edited[i].height) continue;
     before += base[i].sun;
     after += edited[i].sun;
+    ++count;
   }
-  EXPECT_LT(after, before);
+  EXPECT_GT(count, base.size() / 2);
+  EXPECT_LT(after, 0.95 * before);
 }
 
 TEST_F(EditedTerrain, TakingAnEditBackRestoresEveryHash) {

@@ -150,6 +150,13 @@ TEST_F(EditsTest, WhatIsImpossibleIsRefusedWithASentenceAndChangesNothing) {
   refused(edits.edit_ground(world, stamp), "3 heights");
   *map = {2, 2, {1, 2, 3, std::numeric_limits<float>::quiet_NaN()}};
   refused(edits.edit_ground(world, stamp), "nan m in the heightmap");
+  *map = {1024, 1024, std::vector<float>(1024 * 1024, 1.0F)};
+  Edits full = edits;
+  for (int i = 0; i < 3; ++i)
+    ASSERT_TRUE(full.edit_ground(world, stamp));
+  const auto fourth = full.edit_ground(world, stamp);
+  ASSERT_FALSE(fourth);
+  EXPECT_THAT(fourth.error().message, HasSubstr("4194304 heights"));
   NewModel wrong = rock;
   wrong.model = 999;
   refused(edits.place(world, registry, wrong), "no model type 999");
