@@ -193,8 +193,7 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
   }
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
-    if (change.ground || change.models)
-      update_models(facts, block, node, scratch, meshes, entities, events);
+    if (change.models) update_models(facts, block, node, scratch, meshes, entities, events);
     return;
   }
   for (const ecs::Entity model : entities.children(node)) {

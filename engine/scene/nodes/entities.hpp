@@ -27,7 +27,7 @@ struct ModelEvents {
 // What changed of the edits of a node.
 struct NodeChange {
   bool ground = true;  // heights or light may differ
-  bool models = true;  // the edits of its blocks differ
+  bool models = true;  // the edits of its blocks differ, or heights under its models
 };
 
 // Gives a node and its models what they are in the world's present edits. What is drawn of them

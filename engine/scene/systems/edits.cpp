@@ -29,8 +29,12 @@ class LayerChange {
   NodeChange of(const visibility::NodeCoord& node) const {
     const auto at = models::QuadPlace::of(node.coord, node.level);
     const double margin = world::ground_margin(world_, node.level);
-    return {!models::GroundEdits::same_in(before_.ground, after_.ground, at, margin),
-            hash_in(before_.blocks, at) != hash_in(after_.blocks, at)};
+    const bool ground = !models::GroundEdits::same_in(before_.ground, after_.ground, at, margin);
+    // Light reaches further than heights.
+    const double block_m = world_.block_size_m();
+    const bool heights =
+        ground && (before_.ground.reaches(at, block_m) || after_.ground.reaches(at, block_m));
+    return {ground, heights || hash_in(before_.blocks, at) != hash_in(after_.blocks, at)};
   }
 
  private:

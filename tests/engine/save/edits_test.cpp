@@ -16,9 +16,8 @@ namespace {
 
 class SavedEdits : public ::testing::Test, protected world::testing::EditedWorld {
  protected:
-  std::filesystem::path folder_ =
-      std::filesystem::path(PSYGEN_BINARY_DIR) / "saved_edits" /
-      ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::filesystem::path folder_ = std::filesystem::path(PSYGEN_BINARY_DIR) / "saved_edits" /
+                                  ::testing::UnitTest::GetInstance()->current_test_info()->name();
   std::filesystem::path file_ = folder_ / "game.save";
 
   void SetUp() override {
@@ -46,15 +45,15 @@ class SavedEdits : public ::testing::Test, protected world::testing::EditedWorld
     EXPECT_TRUE(save.save());
   }
   world::Edits loaded() {
-    world::Edits edits;
+    world::Edits read;
     const SaveGame save = open();
     const auto visited = save.for_each_edits(
         [&](core::BlockCoord block, std::uint32_t, std::span<const std::byte> bytes) {
-          const auto ok = world::load_block(edits, world, registry, block, bytes);
+          const auto ok = world::load_block(read, world, registry, block, bytes);
           EXPECT_TRUE(ok) << ok.error().message;
         });
     EXPECT_TRUE(visited);
-    return edits;
+    return read;
   }
 };
 
