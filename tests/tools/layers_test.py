@@ -54,6 +54,7 @@ INSIDE = {
     "engine/world": set(),
     "engine/world/files": set(),
     "engine/world/far": set(),
+    "engine/world/edits": set(),
 }
 NOT_UP = {"engine/models/kit"}
 
