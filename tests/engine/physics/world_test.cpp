@@ -178,9 +178,9 @@ TEST(PhysicsWorld, TerrainIsThereBeforeTheFirstStepEndsAndGoesWhenNobodyIsThere)
 TEST(PhysicsWorld, BodiesAndCharactersFollowEditsOfTheGround) {
   Scene scene(Loaded::shipped("five_species"));
   const core::WorldPosition place = scene.above({3, 4}, 20, 20, 0.5);
-  const auto ball = scene.physics.add(BodySettings{.shape = ball(0.4F), .position = place});
+  const auto body = scene.physics.add(BodySettings{.shape = ball(0.4F), .position = place});
   const auto walker = scene.physics.add(CharacterSettings{.feet = scene.above({3, 4}, 26, 20, 0)});
-  ASSERT_TRUE(ball);
+  ASSERT_TRUE(body);
   ASSERT_TRUE(walker);
   scene.steps(120);
   const double before_m = scene.ground_m(place);
@@ -190,7 +190,7 @@ TEST(PhysicsWorld, BodiesAndCharactersFollowEditsOfTheGround) {
   scene.steps(240);
   const double after_m = scene.ground_m(place);
   EXPECT_NEAR(before_m - after_m, 4, 0.2);
-  const core::WorldPosition lies = scene.physics.state(*ball)->position;
+  const core::WorldPosition lies = scene.physics.state(*body)->position;
   EXPECT_LT(lies.local.y - scene.ground_m(lies), 0.6) << "it does not hang in the air";
   const core::WorldPosition feet = scene.physics.state(*walker)->feet;
   EXPECT_NEAR(feet.local.y, scene.ground_m(feet), 0.05);
