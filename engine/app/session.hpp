@@ -23,7 +23,7 @@ class Window;
 namespace psygen::render {
 class Renderer;
 struct HudDrawing;
-}
+}  // namespace psygen::render
 namespace psygen::scene {
 class Scene;
 }
