@@ -254,7 +254,10 @@ core::Result<void> SaveGame::for_each_edits(const EditVisitor& visit) const {
 }
 
 core::Result<void> SaveGame::put_entities(const ecs::World& entities) {
-  Bytes bytes = ecs::save_snapshot(entities);
+  return put_snapshot(ecs::save_snapshot(entities));
+}
+
+core::Result<void> SaveGame::put_snapshot(Bytes bytes) {
   if (bytes.size() > kMaxSnapshotBytes)
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("the entities have {} bytes; at most {} are allowed",
@@ -264,21 +267,29 @@ core::Result<void> SaveGame::put_entities(const ecs::World& entities) {
 }
 
 core::Result<bool> SaveGame::load_entities(ecs::World& entities) const {
+  return with_snapshot([&](auto bytes) { return ecs::load_snapshot(bytes, entities); });
+}
+
+core::Result<bool> SaveGame::append_entities(ecs::World& entities) const {
+  return with_snapshot([&](auto bytes) { return ecs::append_snapshot(bytes, entities); });
+}
+
+core::Result<bool> SaveGame::with_snapshot(
+    const std::function<ecs::SnapshotResult(std::span<const std::byte>)>& load) const {
   State& s = *state_;
-  const auto load = [&](std::span<const std::byte> bytes) -> core::Result<bool> {
-    const ecs::SnapshotResult loaded = ecs::load_snapshot(bytes, entities);
+  const auto tell = [&](const ecs::SnapshotResult& loaded) -> core::Result<bool> {
     if (loaded) return true;
     return core::fail(ErrorCode::kParse, fmt::format("{}: the entities cannot be loaded: {}",
                                                      file().string(), loaded.sentence));
   };
-  if (s.entities) return load(*s.entities);
+  if (s.entities) return tell(load(*s.entities));
   const Reset reset(s.get_fact);
   s.get_fact.bind(1, std::string_view("entities"));
   const int code = s.get_fact.step();
   if (code == SQLITE_DONE) return false;
   if (code != SQLITE_ROW) return s.database.error("cannot be read");
   if (!s.get_fact.is(0, SQLITE_BLOB)) return s.damaged("the entities are not bytes");
-  return load(s.get_fact.bytes(0));
+  return tell(load(s.get_fact.bytes(0)));
 }
 
 core::Result<void> SaveGame::put_value(std::string_view name, Value value) {

@@ -22,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ecs/snapshot.hpp"
 #include "ecs/world.hpp"
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
@@ -78,10 +79,17 @@ class SaveGame {
   // Takes a snapshot of the world's entities (ecs/snapshot.hpp) for the next save(). Fails with
   // kOverBudget above kMaxSnapshotBytes.
   core::Result<void> put_entities(const ecs::World& entities);
+  // The same of the entities that have C alone: those of the game in the world of a scene.
+  template <ecs::Component C>
+  core::Result<void> put_entities_with(const ecs::World& entities) {
+    return put_snapshot(ecs::save_snapshot_of<C>(entities));
+  }
   // Fills a world that never had an entity. False if the save has no entities. Fails with kParse,
   // and the sentence of load_snapshot(), where the snapshot does not fit; the world is then as it
   // was.
   core::Result<bool> load_entities(ecs::World& entities) const;
+  // The same for a world that may have others; the entities get new handles (append_snapshot()).
+  core::Result<bool> append_entities(ecs::World& entities) const;
 
   // Stores a value under a name of 1 to kMaxNameBytes bytes, at the next save(). No value removes
   // the name. Fails with kInvalidArgument (name, NaN) or kOverBudget (kMaxValueBytes).
@@ -93,7 +101,7 @@ class SaveGame {
   // `values` stand for its question marks. The change is visible to query() at once and in the file
   // from the next save() on. Statements that failed saves have taken back run again, so one that
   // asks for the time or a random number may then give another. Fails with kInvalidArgument (SQL,
-  // another table), kIo or kParse. https://www.sqlite.org/lang.html. One of its own, it has no
+  // another table), kIo or kParse. https://www.sqlite.org/lang.html. The game's own tables have no
   // checksums.
   core::Result<void> execute(std::string_view sql, const std::vector<Value>& values = {});
   // Runs one SELECT on the game's own tables. Fails as execute().
@@ -114,6 +122,10 @@ class SaveGame {
  private:
   struct State;
   explicit SaveGame(std::unique_ptr<State> state);
+  core::Result<void> put_snapshot(Bytes bytes);
+  // Calls f with the snapshot, if there is one.
+  core::Result<bool> with_snapshot(
+      const std::function<ecs::SnapshotResult(std::span<const std::byte>)>& load) const;
   std::unique_ptr<State> state_;
 };
 

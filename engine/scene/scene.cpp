@@ -16,12 +16,10 @@
 #include "engine/scene/nodes/usual_boxes.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/world/far/merged_models.hpp"
+#include "engine/world/models_reach.hpp"
 
 namespace psygen::scene {
 namespace {
-
-// Of the parameters with a range, so many are tried at both ends together.
-constexpr std::size_t kMaxVaried = 12;
 
 // Of the window of a level: a square that holds all nodes of the world within reach.
 std::uint32_t largest_radius(const world::World& world, std::span<const NodeLevel> levels,
@@ -72,35 +70,6 @@ core::Result<void> check_size(const world::World& world, const models::Registry&
           "each (count) needs {:.3g} entities; at most {:.0f} are allowed",
           settings.view_distance_m, world.block_size_m(), world::models_per_block(world), entities,
           Scene::kMaxEntities));
-}
-
-// How far models may reach from their foot, sideways and up: the largest boxes over the corners of
-// their ranges.
-glm::vec2 models_reach(const world::World& world, const models::Registry& registry) {
-  glm::vec2 reach_m(0.0F);
-  for (const world::Scatter& scatter : world.scatter) {
-    const models::ModelType& type = registry[scatter.model];
-    const auto specs = type.parameters();
-    std::vector<std::size_t> ranged;
-    for (std::size_t i = 0; i < specs.size(); ++i) {
-      if (scatter.ranges[i].low != scatter.ranges[i].high) ranged.push_back(i);
-    }
-    const std::size_t varied = std::min(ranged.size(), kMaxVaried);
-    for (std::uint32_t corner = 0; corner < (1u << varied); ++corner) {
-      models::Parameters p = world::scatter_parameters(registry, scatter);
-      for (std::size_t k = 0; k < varied; ++k) {
-        const world::ParameterRange& range = scatter.ranges[ranged[k]];
-        world::set_parameter(type, p, ranged[k], (corner >> k & 1) != 0 ? range.high : range.low);
-      }
-      const auto steepest =
-          static_cast<float>(std::tan(scatter.max_slope_deg * std::numbers::pi / 180));
-      world::set_slope(type, world::slope_parameters(type), glm::vec2(steepest), p);
-      const core::Bounds box = type.bounds(p);
-      reach_m.x = std::max({reach_m.x, -box.min.x, -box.min.z, box.max.x, box.max.z});
-      reach_m.y = std::max(reach_m.y, box.max.y);
-    }
-  }
-  return reach_m;
 }
 
 // The levels of the quadtree, and the type of the meshes that stand for everything on a node.
@@ -235,7 +204,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.palette = palette_of(facts.world);
   facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(facts.world));
   facts.cell_m = static_cast<float>(facts.world.cell_m());
-  facts.scattered_reach_m = models_reach(facts.world, facts.registry);
+  facts.scattered_reach_m = world::models_reach_m(facts.world, facts.registry);
   facts.models_reach_m = facts.scattered_reach_m;
   facts.standing = standing_on_block(facts.world, facts.registry);
 

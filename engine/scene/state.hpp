@@ -43,8 +43,11 @@ namespace psygen::scene {
 struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
-  std::vector<render::TextPanel> panels;  // over the picture
-  float text_scale = 1;                   // of their text
+  // Over the picture, in this order (docs/hud.md).
+  render::HudDrawing hud;
+  std::vector<render::TextPanel> panels;
+  float text_scale = 1;             // of the panels' text
+  const ImDrawData* gui = nullptr;  // valid during the tick; null: none
   render::View view = render::View::kNormal;
   // What the last frame took, without waiting for a display, and drew; 0: unknown.
   double frame_ms = 0, frame_triangles = 0;

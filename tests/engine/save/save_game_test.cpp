@@ -37,6 +37,35 @@ TEST(SaveGame, HoldsEverythingAfterItWasClosed) {
   EXPECT_EQ(testing::generation_of(opened(folder / "game.save")), 1);
 }
 
+struct Tree {
+  int height_m = 9;
+};
+
+TEST(SaveGame, HoldsTheEntitiesOfTheGameAloneAndAddsThemToAWorldWithOthers) {
+  const TemporaryFolder folder;
+  ecs::World scene;
+  scene.create<Tree>(100);
+  scene.create<testing::Creature>(3).column<testing::Creature>()[1].generation = 7;
+  {
+    SaveGame save = opened(folder / "game.save");
+    ASSERT_TRUE(save.put_entities_with<testing::Creature>(scene));
+    ASSERT_TRUE(save.save());
+  }
+  ecs::World again;
+  again.declare<testing::Creature>();
+  again.create<Tree>(40);
+  const auto added = opened(folder / "game.save").append_entities(again);
+  ASSERT_TRUE(added) << added.error().message;
+  EXPECT_TRUE(*added);
+  EXPECT_EQ(again.size(), 43U);
+  std::int64_t sum = 0;
+  again.each<const testing::Creature>([&](auto, std::span<const testing::Creature> creatures) {
+    for (const testing::Creature& creature : creatures)
+      sum += creature.generation;
+  });
+  EXPECT_EQ(sum, 7);
+}
+
 TEST(SaveGame, WhatIsNotSavedIsNotInTheFile) {
   const TemporaryFolder folder;
   {
