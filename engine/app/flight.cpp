@@ -93,7 +93,7 @@ core::CameraPose Flight::next_pose(double dt_s) {
 }
 
 bool Flight::saves_picture() const {
-  return recorded_ && !pictures_failed_ && options_.images_every > 0 &&
+  return recorded_ && !session_->paused() && !pictures_failed_ && options_.images_every > 0 &&
          frames_ % options_.images_every == 0;
 }
 
@@ -103,7 +103,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   const double now_s = session_->now_s();
   const double start_s = core::monotonic_seconds();
   const double cpu_start_s = core::thread_cpu_seconds();
-  if (auto ok = session_->tick(next_pose(dt_s), dt_s); !ok) return ok;
+  if (auto ok = session_->tick(next_pose(session_->paused() ? 0 : dt_s), dt_s); !ok) return ok;
   // The flight's clock goes on while a picture waits for the device, as if the next frames had.
   if (saves_picture()) session_->renderer().wait_idle();
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
@@ -115,7 +115,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   record.time_s = now_s;
   record.frame_ms = frame_ms;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
-  if (recorded_) log_frame();
+  if (recorded_ && !session_->paused()) log_frame();
   const bool like_others = record.apart == telemetry::Apart::kNo;
   if (like_others) hud_.add_frame(frame_ms);
   state.input.frame_ms = like_others ? governed_ms(frame_ms) : 0.0;
@@ -155,6 +155,10 @@ core::Result<void> Flight::loop() {
     }
     if (photograph_) save_screenshot();
     if (wanted_preset_) change_preset();
+    if (session_->paused()) {
+      session_->set_now(now_s);
+      continue;
+    }
     ++frames_;
     session_->set_now(hz > 0 ? static_cast<double>(frames_) / hz : now_s + dt_s);
   }

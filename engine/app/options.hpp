@@ -40,6 +40,9 @@ struct Plugin {
   std::function<void(Session&, double)> on_frame = {};
   // Called once when a flight has ended and its outputs are written. A window may stay open.
   std::function<void(Session&, const FlightReport&)> on_end = {};
+  // Draws windows of Dear ImGui over the picture, once a tick, before the systems run
+  // (docs/hud.md). Input that ImGui takes does not reach Session::input().
+  std::function<void(Session&)> on_gui = {};
 };
 
 struct SessionOptions {
@@ -47,6 +50,7 @@ struct SessionOptions {
   core::Extent size{1280, 720};
   bool headless = false;
   bool validation = false;
+  bool fullscreen = false;               // windows only: cover the monitor from the start on
   bool vsync = true;                     // windows only
   std::string device_name;               // part of a name; empty: the best device
   std::optional<render::Preset> preset;  // none: what suits the device

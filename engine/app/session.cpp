@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "engine/app/gui.hpp"
 #include "engine/app/loading.hpp"
 #include "engine/app/plugin_call.hpp"
 #include "engine/core/clock.hpp"
@@ -75,7 +78,7 @@ core::Result<void> Session::open() {
   if (auto ok = set_hour(options_, *world); !ok) return ok;
   const std::string title = "psygen: " + world->name;
   if (auto ok = open_window(title); !ok) return ok;
-  Loading loading(title, window_.get(), options_.stop);
+  Loading loading(world->name, window_.get(), options_.stop);
   if (auto ok = open_renderer(loading); !ok) return loading.closed() ? closed_early() : ok;
   return open_scene(std::move(*world), std::move(*registry), loading);
 }
@@ -88,6 +91,9 @@ core::Result<void> Session::open_window(const std::string& title) {
                       window.error().message + " (a headless flight needs no display)");
   }
   window_ = std::move(*window);
+  if (options_.fullscreen) {
+    if (auto ok = window_->set_fullscreen(true); !ok) core::log_warning(ok.error().message);
+  }
   return {};
 }
 
@@ -154,7 +160,7 @@ core::CameraPose Session::home() const {
 }
 
 core::Result<void> Session::prepare(const core::CameraPose& first) {
-  Loading loading("psygen: " + scene_->state().facts.world.name, window_.get(), options_.stop);
+  Loading loading(scene_->state().facts.world.name, window_.get(), options_.stop);
   const auto progress = [&](std::string_view label, double fraction) {
     return loading.update(label, fraction, renderer_.get());
   };
@@ -206,7 +212,9 @@ bool Session::poll() {
 }
 
 void Session::take_events() {
-  input_ = window_->poll();
+  all_input_ = window_->poll();
+  input_ = filter_.apply(all_input_, gui_ && gui_->takes_keyboard(), gui_ && gui_->takes_mouse());
+  actions_.feed(input_);
   if (input_.resized) {
     if (auto ok = renderer_->resize(window_->framebuffer_size()); !ok) {
       core::log_error(ok.error().message);
@@ -219,6 +227,14 @@ void Session::take_events() {
 // Hooks of a step are systems: they run however the session is driven, and what they cost is told.
 core::Result<void> Session::add_systems() {
   scene::Systems systems = scene_->systems();
+  const auto simulates = [](const Plugin& plugin) {
+    return plugin.add_systems != nullptr || plugin.on_step != nullptr;
+  };
+  if (std::ranges::any_of(options_.plugins, simulates)) {
+    systems.frame.provide(actions_);
+    systems.step.provide(actions_);
+    systems.step.add("actions", [this](input::Actions& actions) { step_actions(actions); });
+  }
   for (const Plugin& plugin : options_.plugins) {
     if (plugin.add_systems) {
       const auto ok =
@@ -234,6 +250,13 @@ core::Result<void> Session::add_systems() {
   return scene_->arrange();
 }
 
+void Session::step_actions(input::Actions& actions) {
+  if (!replay_) return actions.step();
+  if (replay_->step(actions)) return;
+  replay_.reset();
+  actions.clear();
+}
+
 core::Result<void> Session::start() {
   if (std::exchange(started_, true)) return {};
   for (const Plugin& plugin : options_.plugins) {
@@ -243,12 +266,38 @@ core::Result<void> Session::start() {
   return {};
 }
 
+render::HudDrawing& Session::hud() {
+  return scene_->state().input.hud;
+}
+
+Gui& Session::gui() {
+  if (!gui_) gui_ = std::make_unique<Gui>(renderer_->font_atlas(), window_.get());
+  return *gui_;
+}
+
+core::Result<void> Session::draw_gui(double dt_s) {
+  const auto draws = [](const Plugin& plugin) { return plugin.on_gui != nullptr; };
+  if (std::ranges::none_of(options_.plugins, draws)) return {};
+  const core::Extent size = picture_size();
+  gui().begin(all_input_, size, text_scale(window_ ? window_->content_scale() : 1.0F, size), dt_s);
+  core::Result<void> drawn;
+  for (const Plugin& plugin : options_.plugins) {
+    if (drawn && plugin.on_gui)
+      drawn = call_plugin(plugin, "on_gui", [&] { plugin.on_gui(*this); });
+  }
+  scene_->state().input.gui = gui_->end();
+  return drawn;
+}
+
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
   if (auto ok = start(); !ok) return ok;
   scene::State& state = scene_->state();
   state.input.pose = pose;
   state.input.size = picture_size();
+  if (auto ok = draw_gui(dt_s); !ok) return ok;
+  if (paused_) dt_s = 0;
   scene::tick(state);
+  state.input.gui = nullptr;
   state.clock.now_s += dt_s;
   if (state.output.error) return tl::unexpected(*state.output.error);
   for (const Plugin& plugin : options_.plugins) {

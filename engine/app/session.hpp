@@ -7,11 +7,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/app/options.hpp"
 #include "engine/image/image.hpp"
+#include "engine/input/recording.hpp"
 #include "engine/platform/input.hpp"
 
 // Include the header of what you use of these: most programs need none (docs/package.md).
@@ -20,7 +22,8 @@ class Window;
 }
 namespace psygen::render {
 class Renderer;
-}
+struct HudDrawing;
+}  // namespace psygen::render
 namespace psygen::scene {
 class Scene;
 }
@@ -33,6 +36,7 @@ struct World;
 
 namespace psygen::app {
 
+class Gui;
 class Loading;
 
 class Session {
@@ -60,8 +64,24 @@ class Session {
   // Whether SessionOptions::stop is set.
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  // What the user did since the last poll but one. Nothing when headless.
+  // What the user did since the last poll but one, without what ImGui takes. Nothing when headless.
   const platform::InputState& input() const { return input_; }
+  // The actions of a game (docs/input.md). poll() feeds them, and every fixed step of the
+  // simulation begins with theirs. A resource of all systems: input::Actions.
+  input::Actions& actions() { return actions_; }
+  // From the next fixed step on the states come from a recording, until its end.
+  void replay(input::Replay replay) { replay_ = std::move(replay); }
+  bool replays() const { return replay_.has_value(); }
+
+  // While a session is paused, ticks draw, but the clock stands still and plugins are told that no
+  // time has passed. The same for what the user does: input() goes on.
+  void set_paused(bool paused) { paused_ = paused; }
+  bool paused() const { return paused_; }
+
+  // What the game writes over the next pictures, until it writes something else (docs/hud.md).
+  render::HudDrawing& hud();
+  // The ImGui of the plugins' on_gui; it is made when it is first asked for.
+  Gui& gui();
   // The clock: seconds, at which the next tick is drawn.
   double now_s() const;
   void set_now(double now_s);
@@ -102,7 +122,9 @@ class Session {
   core::Result<void> open_renderer(Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
+  core::Result<void> draw_gui(double dt_s);
   core::Result<void> add_systems();
+  void step_actions(input::Actions& actions);
   core::Result<void> start();
 
   SessionOptions options_;
@@ -110,8 +132,13 @@ class Session {
   std::unique_ptr<platform::Window> window_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<telemetry::TraceLog> trace_;
+  input::Actions actions_;
+  std::optional<input::Replay> replay_;
   std::unique_ptr<scene::Scene> scene_;
-  platform::InputState input_;
+  std::unique_ptr<Gui> gui_;                // null until it is needed
+  platform::InputState all_input_, input_;  // the latter without what ImGui takes
+  platform::InputFilter filter_;
+  bool paused_ = false;
   bool closed_ = false;
   bool started_ = false;
   std::vector<std::filesystem::path> saved_;

@@ -44,7 +44,9 @@ class RendererImpl {
     return shared_.add(indices);
   }
   core::Result<FrameResult> render(const FrameInput& input);
-  core::Result<void> show(std::span<const TextPanel> panels, float text_scale);
+  core::Result<void> show(std::span<const TextPanel> panels, float text_scale,
+                          const HudDrawing& hud);
+  ImFontAtlas& font_atlas() { return overlay_.font_atlas(); }
   core::Result<void> set_preset(Preset preset, const Progress& progress);
   Preset preset() const { return preset_; }
   core::Result<Picture> capture();
@@ -89,6 +91,7 @@ class RendererImpl {
   core::Result<bool> present();
   core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
   Apart apart_now();
+  void lay_out_overlay(const FrameInput& input);
   void add_lines(std::span<const Line> lines);
   void remember_valid(const FrameInput& input);
   // Stores in lost_ that the device was lost. After that nothing more is submitted.
@@ -132,8 +135,9 @@ class RendererImpl {
   std::vector<TerrainDraw> chosen_terrain_;  // with FrameInput::choose
   std::vector<MeshDraw> chosen_models_;
   shaders::FrameData frame_{};
-  std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines
-  std::uint32_t line_vertices_ = 0;
+  std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines, then ImGui's
+  std::uint32_t text_vertices_ = 0, line_vertices_ = 0;
+  std::vector<GuiRun> gui_runs_;
   View view_ = View::kNormal;
   bool water_ = false;
   std::optional<GpuTime> gpu_;

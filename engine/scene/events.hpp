@@ -25,7 +25,7 @@ struct NodeHidden {
 };
 
 // The entity of a model on a block, near enough to be drawn alone, was created; or is destroyed in
-// this tick, because the camera went away.
+// this tick, because the camera went away or an edit removed it.
 struct ModelCreated {
   ecs::Entity entity;
   core::BlockCoord block;

@@ -95,6 +95,8 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
   input_system(s.input, s.clock, s.facts, s.camera);
   quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
+  edits_system(s.daylight, s.editing, s.facts, s.entities, s.meshes, s.foresight, s.events.created,
+               s.events.removed);
   streaming_system(s.settings, s.rules, s.camera, s.quality, s.facts, s.daylight, s.streaming,
                    s.entities, s.meshes, s.events.created, s.events.removed, s.counters);
   visibility_system(s.settings, s.rules, s.camera, s.facts, s.streaming,
@@ -157,6 +159,8 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
   input_system(s.input, s.clock, s.facts, s.camera);
   quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
+  edits_system(s.daylight, s.editing, s.facts, s.entities, s.meshes, s.foresight, s.events.created,
+               s.events.removed);
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("amplifying", fraction); };
   if (!create_all_nodes(s, go_on)) return 0;

@@ -68,7 +68,8 @@ struct Collector {
     const core::BlockCoord block = visibility::corner_block(node.node);
     if (node.node.level > 0) {
       if (!s.facts.levels[node.node.level].merged) return;
-      const models::Parameters merged = world::merged_parameters(node.node.coord, node.node.level);
+      const models::Parameters merged =
+          world::merged_parameters(s.facts.world, node.node.coord, node.node.level);
       add_model(block, {s.facts.merged_model, kMergedIndex, glm::vec3(0.0F), merged},
                 detail_of(s.facts.registry[s.facts.merged_model], merged), node.distance_m,
                 s.quality.error_pixels);

@@ -172,6 +172,10 @@ core::Result<void> Scene::check(const Settings& settings) {
   return {};
 }
 
+void Scene::edit(world::Edits edits) {
+  state_.editing = {std::move(edits), true};
+}
+
 void Scene::take_over_preset() {
   const render::Renderer* const renderer = state_.output.renderer;
   state_.facts.shadows = renderer != nullptr && renderer->casts_shadows();
@@ -192,13 +196,16 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   };
   if (settings.virtual_time) s.clock.read_real_s = [&s] { return s.clock.now_s; };
   WorldFacts& facts = s.facts;
+  scene->edit(world::Edits(world.edits));
+  world::set_edits(world, nullptr);
   facts.world = std::move(world);
   facts.registry = std::move(registry);
   facts.light = light_of(facts.world, settings.view_distance_m);
   facts.palette = palette_of(facts.world);
   facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(facts.world));
   facts.cell_m = static_cast<float>(facts.world.cell_m());
-  facts.models_reach_m = world::models_reach_m(facts.world, facts.registry);
+  facts.scattered_reach_m = world::models_reach_m(facts.world, facts.registry);
+  facts.models_reach_m = facts.scattered_reach_m;
   facts.standing = standing_on_block(facts.world, facts.registry);
 
   if (auto ok = find_levels(settings, facts); !ok) return tl::unexpected(ok.error());

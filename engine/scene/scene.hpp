@@ -35,9 +35,10 @@ struct Systems {
 
 class Scene {
  public:
-  // `renderer` (may be null) and `trace` (may be null) outlive the scene. Starts the modelers and
-  // calibrates the cost model (below 0.5 s). Fails as check(), and with kOverBudget for a view with
-  // more than kMaxEntities nodes and models or kMaxPlaces places for nodes.
+  // `world` may have edits. `renderer` (may be null) and `trace` (may be null) outlive the scene.
+  // Starts the modelers and calibrates the cost model (below 0.5 s). Fails as check(), and with
+  // kOverBudget for a view with more than kMaxEntities nodes and models or kMaxPlaces places for
+  // nodes.
   static core::Result<std::unique_ptr<Scene>> create(world::World world, models::Registry registry,
                                                      const Settings& settings,
                                                      render::Renderer* renderer,
@@ -64,6 +65,13 @@ class Scene {
   // Data amplification (section 3.3.1): synthesises all models around the pose at every level that
   // a flight can want, once and for all. Fails with kOverBudget, saying how much it would need.
   core::Result<std::uint64_t> amplify(const core::CameraPose& pose, const Progress& progress = {});
+
+  // The edits of the world: all that were asked for, though some may be drawn only in a few ticks.
+  // A copy is O(1), and editing a copy changes nothing here.
+  const world::Edits& edits() const { return state_.editing.edits; }
+  // Replaces them, from the next tick on. `edits` must be made for this world and registry. What is
+  // drawn stays until the new meshes are there. An edit taken back restores the very same meshes.
+  void edit(world::Edits edits);
 
   // Fails with kInvalidArgument for settings that make no sense, and with kOverBudget for a budget
   // below kMinBudgetBytes or above kMaxBudgetBytes.

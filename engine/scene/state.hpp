@@ -33,6 +33,7 @@
 #include "engine/visibility/frustum.hpp"
 #include "engine/visibility/plp.hpp"
 #include "engine/visibility/solidity.hpp"
+#include "engine/world/edits/edits.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 
@@ -42,8 +43,11 @@ namespace psygen::scene {
 struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
-  std::vector<render::TextPanel> panels;  // over the picture
-  float text_scale = 1;                   // of their text
+  // Over the picture, in this order (docs/hud.md).
+  render::HudDrawing hud;
+  std::vector<render::TextPanel> panels;
+  float text_scale = 1;             // of the panels' text
+  const ImDrawData* gui = nullptr;  // valid during the tick; null: none
   render::View view = render::View::kNormal;
   // What the last frame took, without waiting for a display, and drew; 0: unknown.
   double frame_ms = 0, frame_triangles = 0;
@@ -93,7 +97,8 @@ struct Camera {
   std::vector<Prediction> predictions;
 };
 
-// The unchanging world and what is derived from it once.
+// The unchanging world and what is derived from it once. Only its edits change, and how far models
+// reach because of them (edits_system); everything else was derived without edits.
 struct WorldFacts {
   world::World world;
   models::Registry registry;
@@ -111,13 +116,20 @@ struct WorldFacts {
   std::vector<core::Bounds> usual_boxes;
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
-  glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
+  glm::vec2 models_reach_m{0.0F};     // from their foot: sideways, up
+  glm::vec2 scattered_reach_m{0.0F};  // the same without what was placed by hand
   bool shadows = false;  // what is drawn casts some into the picture, though it may be out of view
 };
 
 // Where the sun stands that the ground is lit by (world::set_sun).
 struct Daylight {
   double azimuth_deg = 0, elevation_deg = 90;
+};
+
+// Edits that the world shall have from the next tick on.
+struct Editing {
+  world::Edits edits;
+  bool pending = false;  // not in WorldFacts yet
 };
 
 struct Streaming {
@@ -269,6 +281,7 @@ struct State {
   Pressure pressure;
   Quality quality;
   Daylight daylight;
+  Editing editing;
   Streaming streaming;
   View view;
   std::unique_ptr<core::GeometryMemory> heap;  // the null device's memory; unused with a renderer

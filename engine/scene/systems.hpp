@@ -27,6 +27,12 @@ using DaylightQuery = ecs::Query<const Node, Source, Demand>;
 void daylight_system(const Clock& clock, const WorldFacts& facts, DaylightQuery nodes,
                      Daylight& daylight);
 
+// Takes over the edits of the world that were wanted since the last tick.
+void edits_system(const Daylight& daylight, Editing& editing, WorldFacts& facts,
+                  ecs::World& entities, synthesis::MeshSupply& meshes, Foresight& foresight,
+                  ecs::EventQueue<ModelCreated>& created_models,
+                  ecs::EventQueue<ModelRemoved>& removed_models);
+
 // Creates and destroys nodes with their models around the camera, in batches.
 void streaming_system(const Settings& settings, const Rules& rules, const Camera& camera,
                       const Quality& quality, const WorldFacts& facts, const Daylight& daylight,

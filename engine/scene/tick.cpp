@@ -19,7 +19,7 @@ constexpr std::string_view kRenderSystem = "render", kSimulationSystem = "simula
 }  // namespace
 
 void build_tick(State& s) {
-  s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight,
+  s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight, s.editing,
                  s.streaming, s.view, s.output, s.meshes, s.found, s.draws, s.counters, s.totals,
                  s.trace, s.record, s.rules, s.pressure, s.shown, s.simulation, s.simulation.step,
                  s.events.shown, s.events.hidden, s.events.created, s.events.removed,
@@ -28,6 +28,7 @@ void build_tick(State& s) {
   s.tick.add("input", input_system);
   s.tick.add("quality", quality_system);
   s.tick.add("daylight", daylight_system);
+  s.tick.add("edits", edits_system);
   s.tick.add("streaming", streaming_system);
   s.tick.add("visibility", visibility_system);
   s.tick.add("cache", cache_system);

@@ -24,6 +24,7 @@ MAY_KNOW = {
     "engine/image": {"engine/core"},
     "engine/render": {"engine/core", "engine/image", "shaders"},
     "engine/platform": {"engine/core"},
+    "engine/input": {"engine/core", "engine/platform", "engine/world"},
     "engine/telemetry": {"engine/core"},
     "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/query", "engine/physics",
                      "engine/synthesis",
@@ -33,7 +34,7 @@ MAY_KNOW = {
     "engine/save": {"ecs", "engine/core", "engine/models", "engine/world"},
     "shaders": set(),
 }
-MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange"}
+MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/input"}
 MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["game"] = MAY_KNOW["engine/cli"] | {"engine/cli"}
 MAY_KNOW["editor"] = MAY_KNOW["game"]
@@ -53,6 +54,7 @@ INSIDE = {
     "engine/world": set(),
     "engine/world/files": set(),
     "engine/world/far": set(),
+    "engine/world/edits": set(),
 }
 NOT_UP = {"engine/models/kit"}
 
@@ -61,6 +63,7 @@ ONLY_IN = {
     r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform"},
     r"^(bt[A-Z]|Bullet|LinearMath/)": {"engine/physics"},
     r"^GLFW/": {"engine/platform"},
+    r"^imgui/": {"engine/render", "engine/app", "game"},
     r"^OpenImageIO/": {"engine/image"},
     r"^toml\+\+/": {"engine/world"},
     r"^nlohmann/": {"engine/telemetry", "engine/cli"},

@@ -57,7 +57,7 @@ void BlockGround::evaluate_vertices() {
   const std::span x = std::span(columns).first(vertices_), z = std::span(rows).first(vertices_);
   world_of(block_.x, 0, x);
   world_of(block_.z, 0, z);
-  shape_.noise.evaluate(x, z, noise_, vertices_);
+  shape_.evaluate(x, z, noise_, vertices_);
 }
 
 bool BlockGround::is_inside(double x, double z, int step) const {
@@ -81,7 +81,7 @@ BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const
   const std::array rows{shape_.world_of(block_.z, first_z),
                         shape_.world_of(block_.z, first_z + step)};
   std::array<float, 4> noise;
-  shape_.noise.evaluate(columns, rows, noise, 2);
+  shape_.evaluate(columns, rows, noise, 2);
   for (std::size_t i = 0; i < 4; ++i)
     heights[i] = shape_.quantise(noise[i]);
   return heights;

@@ -107,7 +107,7 @@ class Chooser {
     }
     provide(row, node, in_view, is_ground, distance_m);
     const unsigned all_levels = (1U << row.detail.level_count) - 1;
-    return demand.drawn_level != kNoLevel || demand.failed_levels == all_levels;
+    return demand.drawn_level != kNoLevel || demand.failed_levels == all_levels || demand.added;
   }
 
  private:

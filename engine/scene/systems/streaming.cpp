@@ -2,14 +2,11 @@
 // created and destroyed in batches, coarse nodes before fine ones and nearest first, within a time
 // budget per tick.
 #include <algorithm>
-#include <climits>
 #include <cmath>
 
 #include "engine/core/clock.hpp"
-#include "engine/scene/nodes/mesh_entity.hpp"
-#include "engine/scene/nodes/solidity.hpp"
+#include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -22,80 +19,6 @@ constexpr std::size_t kFewestCreated = 3;
 constexpr double kEntitySeconds = 0.5e-6;
 // If more than this are missing the camera has leapt: as many as time allows.
 constexpr std::size_t kLeapt = 256;
-
-// Fills row `i` of the shared columns of nodes and models; of the type only these levels are used.
-template <class Created>
-void fill(const Created& created, std::size_t i, const WorldFacts& facts, core::BlockCoord block,
-          const world::Placement& placement, int first_level = 0, int last_level = INT_MAX) {
-  const models::ModelType& type = facts.registry[placement.model];
-  created.template column<Placed>()[i] =
-      placed_at(block, placement.position, type.bounds(placement.parameters),
-                facts.usual_boxes[placement.model]);
-  created.template column<Detail>()[i] =
-      detail_of(type, placement.parameters, first_level, last_level);
-  created.template column<Source>()[i] = {
-      placement.parameters, models::parameters_hash(type, placement.parameters), placement.index,
-      placement.model, static_cast<std::uint16_t>(first_level)};
-}
-
-// Creates the mesh entities of a node, with the components of all such and `Also`.
-template <class... Also>
-std::span<const ecs::Entity> create_children(const WorldFacts& facts, core::BlockCoord block,
-                                             ecs::Entity node,
-                                             std::span<const world::Placement> placements,
-                                             ecs::World& entities) {
-  const auto models =
-      entities.create<Placed, Detail, Source, Demand, Mesh, Fading, Also...>(placements.size());
-  for (std::size_t i = 0; i < placements.size(); ++i)
-    fill(models, i, facts, block, placements[i]);
-  entities.set_children(node, models.entities);
-  return models.entities;
-}
-
-void tell_created(std::span<const ecs::Entity> models, core::BlockCoord block,
-                  std::span<const world::Placement> placements,
-                  ecs::EventQueue<ModelCreated>& created) {
-  if (!created.has_readers()) return;
-  std::vector<ModelCreated> events;
-  for (std::size_t i = 0; i < models.size(); ++i)
-    events.push_back({models[i], block, placements[i].index, placements[i].model});
-  created.emit(events);
-}
-
-// The models of a block, or the one mesh of all models on a coarser node.
-void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
-                   std::vector<world::Placement>& scratch, ecs::World& entities,
-                   ecs::EventQueue<ModelCreated>& created) {
-  const core::BlockCoord block = visibility::corner_block(at);
-  if (at.level == 0) {
-    world::place_models(facts.world, facts.registry, block, scratch);
-    tell_created(create_children(facts, block, node, scratch, entities), block, scratch, created);
-  } else if (facts.levels[at.level].merged) {
-    scratch.assign(1, {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
-                       world::merged_parameters(at.coord, at.level)});
-    create_children<MeshParts, OldParts>(facts, block, node, scratch, entities);
-  }
-}
-
-void create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
-                 const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
-                 Streaming& streaming, ecs::World& entities,
-                 ecs::EventQueue<ModelCreated>& created_models) {
-  const NodeLevel& level = facts.levels[at.level];
-  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundRelief,
-                                       GroundSun, Placed, Detail, Source, Demand, Mesh>(1);
-  models::Parameters ground = node_terrain(facts.world, at);
-  world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
-  const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
-  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y,
-                               solid ? node_solidity(facts.world, facts.standing, at) : 0.0F};
-  fill(created, 0, facts, visibility::corner_block(at),
-       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground},
-       at.level == 0 ? 0 : level.mesh_level, level.mesh_level);
-  const ecs::Entity node = created.entities[0];
-  streaming.grids[at.level].entity_of(at.coord) = node;
-  create_models(facts, at, node, scratch, entities, created_models);
-}
 
 // How far the middle of the camera's block is from a node's square.
 double distance_m(const Camera& camera, const WorldFacts& facts, const visibility::NodeCoord& at) {
@@ -261,8 +184,9 @@ void streaming_system(const Settings& settings, const Rules& rules, const Camera
   };
   while (!streaming.missing.empty() && !may_wait(streaming.missing.back())) {
     const std::size_t before = entities.size();
-    create_node(settings, facts, daylight, streaming.missing.back(), scratch, streaming, entities,
-                created_models);
+    const visibility::NodeCoord& at = streaming.missing.back();
+    streaming.grids[at.level].entity_of(at.coord) =
+        create_node(settings, facts, daylight, at, scratch, entities, created_models);
     spent.charge(kEntitySeconds * static_cast<double>(entities.size() - before));
     streaming.missing.pop_back();
     ++counters.nodes_created;

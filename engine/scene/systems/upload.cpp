@@ -100,10 +100,11 @@ const T& note_of(const synthesis::MeshRecord& record) {
 void note_ground(ecs::Entity owner, Node& node, const synthesis::MeshRecord& record,
                  const WorldFacts& facts, const UploadQuery& entities) {
   const core::Bounds& bounds = facts.levels[node.at.level].bounds;
-  const float possible_m = possible_error_m(facts, node.at.level, record.key.level);
+  const GroundNote& note = note_of<GroundNote>(record);
+  const float possible_m =
+      possible_error_m(facts, node.at.level, record.key.level) + note.edits_error_m;
   node.low_m = std::max(bounds.min.y, record.tight.min.y - possible_m);
   node.high_m = std::min(bounds.max.y, record.tight.max.y + possible_m);
-  const GroundNote& note = note_of<GroundNote>(record);
   *entities.get<GroundRelief>(owner) = note.relief;
   *entities.get<GroundSun>(owner) = note.sun;
 }

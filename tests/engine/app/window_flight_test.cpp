@@ -205,6 +205,8 @@ TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
        {"F2", text_has(Anchor::kTopRight, "view: bounds")},
        {"F11", size_is({1280, 1024})},
        {"F11", size_is({320, 180})},
+       {"p", [](Session& session) { return session.paused(); }},
+       {"p", [](Session& session) { return !session.paused(); }},
        {"F12", text_has(Anchor::kBottom, "screenshot_0000.png")},
        {"F3", preset_is(render::Preset::kHigh)},
        {"F1", text_has(Anchor::kBottom, "preset high")}});
