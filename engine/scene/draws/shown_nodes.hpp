@@ -16,7 +16,8 @@ void find_ready(const View& view, const RenderQuery& entities, DrawLists& draws)
 // stands for is shown too, as a hole or as far as it goes.
 void list_shown(const View& view, DrawLists& draws);
 
-// By how many levels the finest node in view that the node `index` of the cut is drawn for is finer.
+// By how many levels the finest node in view that the node `index` of the cut is drawn for is
+// finer.
 std::uint32_t coarser_by(const View& view, std::uint32_t index);
 
 // Half of the distance up to which a node's mesh is finer than what is drawn of it: nearer, that

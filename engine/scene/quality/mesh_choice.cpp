@@ -69,8 +69,8 @@ MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Det
   MeshChoice choice;
   choice.there = demand.drawn_level == demand.wanted_level && !demand.stale;
   if (!choice.there) choice.request = level_to_request(rules, detail, demand, hole);
-  const bool too_fine = !is_ground && !nothing && choice.request != kNoLevel &&
-                        choice.request > demand.drawn_level;
+  const bool too_fine =
+      !is_ground && !nothing && choice.request != kNoLevel && choice.request > demand.drawn_level;
   const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;
   choice.drawn = wanted ? drawn : RankGroup::kPrefetch;
   if (hole) {
@@ -79,8 +79,8 @@ MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Det
     // Ground that is only lit anew waits for what lacks detail: with a fast sun it is all of it.
     choice.requested = RankGroup::kDrawn;
   } else if (wanted) {  // what frees room is urgent only where room is short
-    choice.requested = too_fine && rules.short_of_memory ? RankGroup::kVisibleFine
-                                                         : RankGroup::kVisibleCoarse;
+    choice.requested =
+        too_fine && rules.short_of_memory ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
   }
   // The coarsest nodes are few, and each fills much of the picture.
   choice.at_once = hole && is_ground && node.level + std::size_t{1} == rules.node_levels;

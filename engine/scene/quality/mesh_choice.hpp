@@ -53,7 +53,7 @@ std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const D
 struct MeshChoice {
   // Of the mesh that is drawn; meaningless if there is none.
   synthesis::RankGroup drawn = synthesis::RankGroup::kUnwanted;
-  bool there = false;              // what is drawn is what is wanted
+  bool there = false;               // what is drawn is what is wanted
   std::uint8_t request = kNoLevel;  // the level to ask for; kNoLevel: none is better
   synthesis::RankGroup requested = synthesis::RankGroup::kPrefetch;  // of the request
   bool at_once = false;  // the request fills so much of the picture that nothing goes before it

@@ -115,8 +115,7 @@ TEST(MeshChoice, AHoleThatWaitsTooLongAsksForTheNextLevelUnlessItWaitsForMemory)
 TEST(MeshChoice, WhatAnAncestorCoversIsNoHole) {
   NodeView node = in_view();
   node.covered = true;
-  const MeshChoice choice =
-      choose_mesh({}, node, four_levels(), demand(kNoLevel, 1), true, false);
+  const MeshChoice choice = choose_mesh({}, node, four_levels(), demand(kNoLevel, 1), true, false);
   EXPECT_EQ(choice.request, 1);
   EXPECT_EQ(choice.requested, RankGroup::kVisibleCoarse);
 }
@@ -172,7 +171,8 @@ TEST(MeshChoice, RanksOrderHolesByLevelAndWhatIsOutOfViewByDeadline) {
   NodeView coarse = in_view(), fine = in_view();
   coarse.level = 3;
   coarse.visibility.layer = 9;
-  EXPECT_LT(rank_on(coarse, RankGroup::kVisibleHole, 50), rank_on(fine, RankGroup::kVisibleHole, 5));
+  EXPECT_LT(rank_on(coarse, RankGroup::kVisibleHole, 50),
+            rank_on(fine, RankGroup::kVisibleHole, 5));
   NodeView expected, around;
   expected.visibility.deadline_s = 2;
   around.visibility.deadline_s = kNever;
