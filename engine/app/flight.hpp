@@ -1,6 +1,6 @@
-// A flight through a world: along a path or as the user likes, with what is written about it. In a
-// window it obeys the keys of keys.hpp. `psygen fly` is one. Games drive a Session themselves. Main
-// thread only.
+// A flight through a world along a path, or where the user flies, with its log and its outputs. In
+// a window it obeys the keys of keys.hpp. `psygen fly` runs one. Games drive a Session themselves.
+// Main thread only.
 #pragma once
 
 #include <memory>
@@ -39,6 +39,7 @@ class Flight {
   // Whether what happens now belongs to the report. False before the flight, and after its end.
   bool is_recorded() const { return recorded_; }
 
+  // The session that it stands on; lives as long as the flight.
   Session& session() { return *session_; }
 
  private:

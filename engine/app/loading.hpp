@@ -1,6 +1,5 @@
-// What a person sees while something long goes on before the first frame: a bar on the terminal,
-// nothing where stderr is none, and in a window a picture of its own. Keeps the window alive and
-// notices when it is closed. Main thread.
+// Shows progress before the first frame: a bar on the terminal if stderr is one, and a picture in
+// the window. Keeps the window alive and notices when it is closed. Main thread.
 #pragma once
 
 #include <atomic>
@@ -19,12 +18,12 @@ class Loading {
   // `window` and `stop` may be null, and outlive this.
   Loading(std::string title, platform::Window* window, const std::atomic<bool>* stop);
 
-  // How far something has come, a fraction in [0, 1]; what goes back is shown as it was. `renderer`
-  // draws the picture, null until there is one. False, to end what is going on, once the window was
-  // closed or `stop` set.
+  // Shows a fraction in [0, 1]; a smaller one than before changes nothing. `renderer` draws the
+  // picture and may be null. Returns false once the window was closed or `stop` was set: the caller
+  // should then end its work.
   bool update(std::string_view label, double fraction, render::Renderer* renderer);
   double fraction() const { return fraction_; }  // as it is shown
-  // The person closed the window.
+  // Whether the user closed the window.
   bool closed() const { return closed_; }
   // Removes the bar from the terminal.
   void finish() { bar_.reset(); }

@@ -20,7 +20,7 @@
 namespace psygen::scene {
 namespace {
 
-// Of the parameters with a range, so many are tried at both ends together.
+// How many parameters with a range are tried at both ends in all combinations.
 constexpr std::size_t kMaxVaried = 12;
 
 // Of the window of a level: a square that holds all nodes of the world within reach.
@@ -124,7 +124,7 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
   return {};
 }
 
-// As many as there are from now on. Without any no mesh would ever be made.
+// Takes over how many modelers started. Fails if there are none: no mesh would ever be made.
 core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
                                   synthesis::MeshSupply& meshes, Settings& settings) {
   const unsigned wanted = synthesis::modeler_count_for(settings.modelers);

@@ -15,6 +15,7 @@ namespace psygen::scene {
 // to stay alive. False ends filling the cache early; creating a scene is not ended.
 using Progress = std::function<bool(std::string_view, double)>;
 
+// See above.
 class Scene {
  public:
   // `renderer` (may be null) and `trace` (may be null) outlive the scene. Starts the modelers and
@@ -26,6 +27,7 @@ class Scene {
                                                      telemetry::TraceLog* trace = nullptr,
                                                      const Progress& progress = {});
 
+  // All that the tick reads and writes.
   State& state() { return state_; }
   const State& state() const { return state_; }
   const synthesis::CalibrationReport& calibration() const { return calibration_; }

@@ -65,10 +65,12 @@ class Modeler {
   // Main thread: whether a request that runs now was started before `limit_s`.
   bool is_older(double limit_s) const;
 
+  // Whether the main thread has given it up. Any thread.
   bool given_up() const {
     return (state_.load(std::memory_order_acquire) & kPhaseMask) == kGivenUp;
   }
 
+  // Its number, its view of the board, its completions and its counters.
   std::uint32_t number() const { return number_; }
   const std::shared_ptr<PlanBoard::Reader>& reader() const { return reader_; }
   CompletionQueue& queue() { return queue_; }

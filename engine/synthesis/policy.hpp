@@ -10,6 +10,7 @@
 
 namespace psygen::synthesis {
 
+// In which order requests are synthesised.
 enum class Policy : std::uint8_t {
   kFifo,      // first come, first served (the paper's prototype)
   kPlp,       // by rank: group, PLP key, distance; then the shorter one
@@ -20,6 +21,7 @@ enum class Policy : std::uint8_t {
 inline constexpr Policy kAllPolicies[] = {Policy::kFifo, Policy::kPlp, Policy::kShortest,
                                           Policy::kLongest, Policy::kDeadline};
 
+// The names of policies on the command line; policy_from() gives nothing for others.
 std::string_view name_of(Policy policy);  // "fifo", "plp", "shortest", "longest", "deadline"
 std::optional<Policy> policy_from(std::string_view name);
 

@@ -36,7 +36,7 @@ struct PolicyFigures {
   double lateness_mean_s = 0, lateness_max_s = 0;
 };
 
-// How much there is to do for so many modelers.
+// How much work recorded jobs are for a number of modelers.
 struct StreamLoad {
   std::size_t requests = 0;
   double span_s = 0;   // from the first to the last arrival

@@ -76,7 +76,7 @@ class SynthesisManager {
   SynthesisManager(const SynthesisManager&) = delete;
   SynthesisManager& operator=(const SynthesisManager&) = delete;
 
-  // Replaces the plan. Modelers take requests from the front. What nobody claimed of the plan
+  // Replaces the plan. Modelers take requests from the front. What was not claimed of the plan
   // before is not lost: the next reclaim() returns it.
   void publish(std::vector<Request>&& plan);
   // Executes a request that was never published, in the calling thread; its completion is collected
@@ -84,12 +84,12 @@ class SynthesisManager {
   // may not get a processor for a while.
   void execute_here(const Request& request);
   // From now on modelers take only what other threads leave of the processors: nice 19 per thread,
-  // where the system can. For when frames begin; before, whoever waits for meshes has nothing else
-  // to do. With a virtual clock the caller waits for them, and they stay as they are.
+  // where the system can. For when frames begin; before, the thread that waits for meshes has
+  // nothing else to do. With a virtual clock the caller waits for them, and they stay as they are.
   void lower_priority() {
     if (!virtual_) workshop_->lowest_priority.store(true, std::memory_order_relaxed);
   }
-  // Closes the plan; returns what nobody claimed, in order. Everything else was or will be
+  // Closes the plan; returns what was not claimed, in order. Everything else was or will be
   // collected.
   std::vector<Request> reclaim();
   // What was finished when the plan was last closed: the next collect() returns it.

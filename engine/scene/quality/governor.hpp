@@ -14,6 +14,7 @@
 
 namespace psygen::scene {
 
+// What the governor holds, and how far it may go.
 struct GovernorSettings {
   double target_ms = 0;      // of a frame; 0: the error stays at its lower bound
   double max_factor = 4;     // upper bound of the error over its lower bound, >= 1

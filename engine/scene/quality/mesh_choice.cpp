@@ -76,9 +76,9 @@ MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Det
   if (hole) {
     choice.requested = RankGroup::kVisibleHole;
   } else if (wanted && choice.request == demand.drawn_level) {
-    // Ground that is only lit anew waits for what lacks detail: with a fast sun it is all of it.
+    // New light on ground waits for missing detail: a fast sun changes the light of all ground.
     choice.requested = RankGroup::kDrawn;
-  } else if (wanted) {  // what frees room is urgent only where room is short
+  } else if (wanted) {  // freeing memory is urgent only while memory is short
     choice.requested =
         too_fine && rules.short_of_memory ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
   }

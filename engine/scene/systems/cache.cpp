@@ -31,7 +31,7 @@ struct CacheTick {
   ChoiceRules choice;
   std::uint32_t tick = 0;
   bool request = true;   // what is missing is synthesised
-  bool roomy = false;    // ranks do not matter: only what nobody wants need go
+  bool roomy = false;    // ranks do not matter: only unwanted meshes will be evicted
   bool shadows = false;  // what is out of view may cast some into the picture
 };
 
@@ -51,8 +51,8 @@ bool is_roomy(const synthesis::CacheStats& stats) {
          kRoomyShare * static_cast<double>(stats.limit_bytes);
 }
 
-// What is seen, as a share of what there is room for. What is kept only because it was there gives
-// way, and says nothing of how much is needed.
+// The bytes of what is seen as a share of the limit. Meshes that are only kept do not count: they
+// give way.
 double seen_share(const synthesis::CacheStats& stats) {
   return static_cast<double>(stats.visible_bytes) / static_cast<double>(stats.limit_bytes);
 }
@@ -74,8 +74,9 @@ ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clo
   return choice;
 }
 
-// Around what is or was drawn, or all that could be; from the foot. What a mesh taught outlasts it:
-// otherwise one that is out of view would be a hole again as soon as it is evicted.
+// The box around the mesh that is or was drawn, else around all that is possible; from the foot.
+// The box of an evicted mesh is kept: otherwise a mesh out of view would be a hole after its
+// eviction.
 core::Bounds box_of(const MeshEntity& row, bool shadows) {
   if (row.mesh.tight != core::Bounds{} && !shadows) return row.mesh.tight;
   return core::Bounds::around(row.placed.box_center, row.placed.box_half_extent);
@@ -93,7 +94,7 @@ void note_in_view(const CacheTick& tick, bool leaf, Demand& demand, Counters& co
   }
 }
 
-// Tells the cache how important the drawn mesh is, where that is due.
+// Tells the cache how important the drawn mesh is, if it is due (kRankTurns).
 void keep(const CacheTick& tick, const NodeView& node, const MeshEntity& row, RankGroup group,
           float distance_m, synthesis::MeshSupply& meshes) {
   const bool turn =
