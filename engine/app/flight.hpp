@@ -16,6 +16,7 @@
 
 namespace psygen::app {
 
+// The result of a flight.
 struct FlightReport {
   telemetry::Summary summary;
   std::vector<std::filesystem::path> files;  // what was written
@@ -25,6 +26,7 @@ struct FlightReport {
   std::vector<std::string> validation_messages;
 };
 
+// One flight. Owns its session.
 class Flight {
  public:
   // Creates the output folder, reads the path and creates the session; fails as Session::create(),

@@ -20,7 +20,7 @@ struct HudFacts {
   double key_speed_m_s = 0;  // at which the keys move the camera
 };
 
-// See above. Shows figures at first.
+// Shows figures at first.
 class Hud {
  public:
   static constexpr double kNoticeSeconds = 5;

@@ -7,6 +7,7 @@
 
 namespace psygen::app {
 
+// A key and what it does.
 struct KeyHelp {
   std::string_view keys, meaning;
 };

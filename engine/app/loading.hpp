@@ -13,6 +13,7 @@
 
 namespace psygen::app {
 
+// The progress shown during one start.
 class Loading {
  public:
   // `window` and `stop` may be null, and outlive this.

@@ -32,6 +32,7 @@ struct Plugin {
   std::function<void(Session&, const FlightReport&)> on_end = {};
 };
 
+// Options of a session.
 struct SessionOptions {
   std::filesystem::path world_file;
   core::Extent size{1280, 720};
@@ -54,6 +55,7 @@ struct SessionOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
+// Options of a flight.
 struct FlightOptions {
   SessionOptions session;
   std::filesystem::path path_file;   // empty: the camera stands and turns, or the user flies

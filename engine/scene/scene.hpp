@@ -15,7 +15,7 @@ namespace psygen::scene {
 // to stay alive. False ends filling the cache early; creating a scene is not ended.
 using Progress = std::function<bool(std::string_view, double)>;
 
-// See above.
+// One world with its entities, its meshes and its tick.
 class Scene {
  public:
   // `renderer` (may be null) and `trace` (may be null) outlive the scene. Starts the modelers and

@@ -23,7 +23,7 @@ core::Result<Paradigm> paradigm_from(std::string_view name);
 std::string_view to_string(visibility::PlpMode mode);
 core::Result<visibility::PlpMode> plp_mode_from(std::string_view name);
 
-// See above. The defaults suit a machine with a few cores.
+// The defaults suit a machine with a few cores.
 struct Settings {
   Paradigm paradigm = Paradigm::kParallelLazyAmplification;
   synthesis::Policy policy = synthesis::Policy::kDeadline;

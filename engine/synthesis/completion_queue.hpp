@@ -13,7 +13,7 @@
 
 namespace psygen::synthesis {
 
-// See above. Destroyed when neither side uses it any more.
+// Destroyed when neither side uses it any more.
 class CompletionQueue {
  public:
   CompletionQueue() : tail_(new Segment), head_(tail_) {}

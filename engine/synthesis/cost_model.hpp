@@ -74,7 +74,7 @@ struct CostError {
   double p95_percent = 0;
 };
 
-// See above. The registry must outlive it.
+// The registry must outlive it.
 class CostModel {
  public:
   // Before calibration every step takes what its type says, and a triangle 5 ns.

@@ -27,6 +27,7 @@
 
 namespace psygen::synthesis {
 
+// All that the cache knows of one mesh.
 struct MeshRecord {
   MeshKey key;
   models::MeshSize size;
@@ -90,6 +91,7 @@ class EvictedKeys {
   std::vector<std::uint64_t> table_;
 };
 
+// One cache in one memory.
 class GeometryCache {
  public:
   static constexpr std::size_t kMaxFailures = 1u << 16;  // remembered; the oldest are forgotten

@@ -11,7 +11,7 @@
 
 namespace psygen::synthesis {
 
-// See above. Empty at first.
+// Empty at first.
 class KeyIndex {
  public:
   KeyIndex() : entries_(64) {}

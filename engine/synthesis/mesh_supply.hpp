@@ -21,7 +21,7 @@
 
 namespace psygen::synthesis {
 
-// See above. One for each scene.
+// One for each scene.
 class MeshSupply {
  public:
   // Nothing else may be called before open().

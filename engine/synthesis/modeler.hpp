@@ -48,6 +48,7 @@ struct ModelerCounters {
   std::atomic<std::uint64_t> locks{0}, retries{0};
 };
 
+// One modeler. Its functions are for its own thread unless they say otherwise.
 class Modeler {
  public:
   Modeler(std::uint32_t number, std::shared_ptr<PlanBoard::Reader> reader)

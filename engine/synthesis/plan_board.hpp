@@ -13,6 +13,7 @@
 
 namespace psygen::synthesis {
 
+// The board on which the newest plan is published.
 class PlanBoard {
   struct Plan {
     std::vector<Request> requests;

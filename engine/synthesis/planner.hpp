@@ -19,6 +19,7 @@
 
 namespace psygen::synthesis {
 
+// A mesh that is wanted, and how urgently.
 struct Want {
   MeshKey key;
   const models::Parameters* parameters = nullptr;  // read during plan() only
@@ -28,6 +29,7 @@ struct Want {
   bool at_once = false;  // made by this thread if it may be, even beyond PlanLimits::seconds_here
 };
 
+// Limits of one plan.
 struct PlanLimits {
   double seconds_ahead = 0.25;  // predicted work per modeler in one plan
   std::uint32_t max_requests = 4096;
@@ -45,6 +47,7 @@ struct PlanLimits {
   std::uint32_t max_new_hidden = UINT32_MAX;
 };
 
+// What planning did.
 struct PlanReport {
   std::uint32_t published = 0;  // requests in the new plan: carried + reserved − executed
   std::uint32_t carried = 0;    // unclaimed ones of the last plan that are wanted still
@@ -59,6 +62,7 @@ struct PlanReport {
   double predicted_seconds = 0;       // of the whole plan, one core
 };
 
+// Makes the plans of one cache. Keeps what is requested from plan to plan.
 class Planner {
  public:
   // Replaces the manager's plan. Wants may repeat a key (the first in the order counts). A ready or

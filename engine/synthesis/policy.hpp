@@ -25,6 +25,7 @@ inline constexpr Policy kAllPolicies[] = {Policy::kFifo, Policy::kPlp, Policy::k
 std::string_view name_of(Policy policy);  // "fifo", "plp", "shortest", "longest", "deadline"
 std::optional<Policy> policy_from(std::string_view name);
 
+// The values of a request that policies sort by.
 struct ScheduleKey {
   Rank rank;
   float deadline_s = 0;  // seconds from now until it is visible; 0 for what is in view

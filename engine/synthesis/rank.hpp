@@ -31,7 +31,7 @@ constexpr bool is_visible(RankGroup group) {
   return group <= RankGroup::kDrawn;
 }
 
-// See above. Default: unwanted().
+// Default: unwanted().
 class Rank {
  public:
   static constexpr std::uint32_t kMaxMajor = (1u << 24) - 1;

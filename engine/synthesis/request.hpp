@@ -14,6 +14,7 @@
 
 namespace psygen::synthesis {
 
+// One mesh to synthesise, and where it goes.
 struct Request {
   MeshHandle handle;
   MeshKey key;
@@ -30,6 +31,7 @@ struct Request {
 // several at once. A std::exception fails the request.
 using Annotate = std::function<std::any(const Request&, const models::MeshView& mesh)>;
 
+// The result of one request.
 struct Completion {
   MeshHandle handle;
   MeshKey key;

@@ -23,6 +23,7 @@ std::string stream_text(std::vector<SimulatedJob> jobs);
 // Fails with kParse, naming `file` and the line. Times must be finite and not negative.
 core::Result<std::vector<SimulatedJob>> parse_stream(std::string_view text, std::string_view file);
 
+// How one policy serves the recorded requests.
 struct PolicyFigures {
   Policy policy = Policy::kFifo;
   // What was wanted first of all, alone (the initial fill): its makespan, and how much of it

@@ -22,6 +22,7 @@
 
 namespace psygen::synthesis {
 
+// Options of the modelers.
 struct SynthesisOptions {
   unsigned modelers = 0;               // 0: number of cores − 1, at least 1
   bool hash_content = false;           // fill Completion::content_hash
@@ -40,6 +41,7 @@ struct SynthesisOptions {
 // Number of modelers that `requested` (0: default) stands for on this machine.
 unsigned modeler_count_for(unsigned requested);
 
+// Figures of one modeler.
 struct ModelerStats {
   std::uint32_t modeler = 0;  // kMainThreadModeler: execute_here()
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
@@ -48,6 +50,7 @@ struct ModelerStats {
   std::uint64_t locks = 0, retries = 0;  // see ModelerCounters
 };
 
+// Figures of all modelers.
 struct SynthesisStats {
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
   double cpu_seconds = 0;  // of all modelers
@@ -64,6 +67,7 @@ struct HungRequest {
   double started_s = 0;
 };
 
+// Owns the modelers.
 class SynthesisManager {
  public:
   // Starts as many modelers as it gets threads and memory for; with none nothing is ever finished.

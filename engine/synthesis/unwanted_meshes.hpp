@@ -12,7 +12,7 @@
 
 namespace psygen::synthesis {
 
-// See above. Empty at first.
+// Empty at first.
 class UnwantedMeshes {
  public:
   // Adds a mesh. Of several entries for a slot only the last counts.

@@ -12,6 +12,7 @@
 
 namespace psygen::synthesis {
 
+// Modelers of a virtual clock, all free at 0 s.
 class VirtualModelers {
  public:
   // A request that a modeler claimed, and from when to when it works on it.

@@ -12,7 +12,7 @@
 
 namespace psygen::scene {
 
-// See above.
+// The window of one level.
 class NodeGrid {
  public:
   // A window of 2·radius + 1 nodes of `level` a side, which is the largest that it can have.

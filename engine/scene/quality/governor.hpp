@@ -21,6 +21,7 @@ struct GovernorSettings {
   double rest_share = 0.85;  // of the target: between it and the target nothing changes
 };
 
+// The factor on the allowed error. Follows every observe().
 class Governor {
  public:
   explicit Governor(const GovernorSettings& settings = {})
