@@ -44,7 +44,7 @@ void Loading::watch_window(render::Renderer* renderer) {
       render::Anchor::kMiddle,
       {{title_},
        {fmt::format("{} {:.0f} %", label_, fraction_ * 100), {}, static_cast<float>(fraction_)}}};
-  // A picture that cannot be drawn is told by the first frame.
+  // The first frame reports a picture that cannot be drawn.
   (void)renderer->show({&panel, 1},
                        text_scale(window_->content_scale(), window_->framebuffer_size()));
 }

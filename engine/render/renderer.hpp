@@ -38,8 +38,9 @@ class Renderer {
   core::Result<std::uint32_t> upload_shared_indices(std::span<const std::uint16_t> indices);
 
   // Draws and submits one frame. Waits at most for the frame before the last. While the window is
-  // minimised it does nothing and presents nothing. Instead of an invalid camera it uses the last
-  // valid one. Fails with kDeviceLost, and with kOutOfMemory if there is no memory for the draws.
+  // minimised it does nothing and presents nothing. Fails with kInvalidArgument for a camera that
+  // FrameInput does not allow, with kDeviceLost, and with kOutOfMemory if there is no memory for
+  // the draws.
   core::Result<FrameResult> render(const FrameInput& input);
 
   // Draws a picture with only text, for example while there is no scene yet, and waits for it.
