@@ -7,7 +7,10 @@
 #include "engine/app/loading.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/platform/window.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen::app {
 namespace {

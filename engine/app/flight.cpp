@@ -9,11 +9,15 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/app/plugin_call.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/platform/window.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/world/files/path_file.hpp"
@@ -47,10 +51,7 @@ core::Result<void> Flight::open() {
   auto session = Session::create(options_.session);
   if (!session) return tl::unexpected(session.error());
   session_ = std::move(*session);
-  std::vector<std::string> systems;
-  for (const ecs::SystemInfo& system : session_->scene().state().tick.systems())
-    systems.push_back(system.name);
-  log_ = std::make_unique<telemetry::FrameLog>(std::move(systems));
+  log_ = std::make_unique<telemetry::FrameLog>(scene::system_names(session_->scene().state()));
   return {};
 }
 
@@ -186,7 +187,7 @@ core::Result<void> Flight::save_numbered_picture() {
 // The last frame, and what is known now of earlier ones.
 void Flight::log_frame() {
   const scene::State& state = session_->scene().state();
-  log_->add(state.record);
+  log_->add(state.record, state.system_ms);
   if (const auto& gpu = state.counters.frame.gpu)
     log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
   for (const float ms : state.counters.time_to_visible_ms)
@@ -230,7 +231,9 @@ core::Result<FlightReport> Flight::run() {
     return tl::unexpected(flown.error());
   }
   for (const Plugin& plugin : options_.session.plugins) {
-    if (plugin.on_end) plugin.on_end(*session_, report);
+    if (!plugin.on_end) continue;
+    const auto ok = call_plugin(plugin, "on_end", [&] { plugin.on_end(*session_, report); });
+    if (!ok) return tl::unexpected(ok.error());
   }
   if (!stays_open()) return report;
   tell_end(report);

@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 
 #include "engine/app/loading.hpp"
+#include "engine/app/plugin_call.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/platform/window.hpp"
 #include "engine/render/render_path.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/telemetry/trace_log.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::app {
@@ -40,15 +45,16 @@ core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins)
   models::Registry registry = models::make_standard_registry();
   for (const Plugin& plugin : plugins) {
     if (!plugin.register_models) continue;
-    if (auto ok = plugin.register_models(registry); !ok) {
-      return core::fail(ok.error().code,
-                        fmt::format("plugin {}: {}", plugin.name, ok.error().message));
-    }
+    const auto ok =
+        call_plugin(plugin, "register_models", [&] { return plugin.register_models(registry); });
+    if (!ok) return tl::unexpected(ok.error());
   }
   return registry;
 }
 
 }  // namespace
+
+Session::Session(SessionOptions options) : options_(std::move(options)) {}
 
 Session::~Session() = default;
 
@@ -123,6 +129,7 @@ core::Result<void> Session::open_scene(world::World world, models::Registry regi
   if (!scene) return tl::unexpected(scene.error());
   if (loading.closed()) return closed_early();
   scene_ = std::move(*scene);
+  if (auto ok = add_systems(); !ok) return ok;
   scene_->state().input.size = picture_size();  // levels of detail depend on it
   if (const synthesis::CalibrationReport& costs = scene_->calibration(); costs.measurements > 0) {
     core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
@@ -176,6 +183,14 @@ core::Extent Session::picture_size() const {
   return window_ ? window_->framebuffer_size() : renderer_->size();
 }
 
+double Session::now_s() const {
+  return scene_->state().clock.now_s;
+}
+
+void Session::set_now(double now_s) {
+  scene_->state().clock.now_s = now_s;
+}
+
 bool Session::has_hung_modelers() const {
   return !scene_->state().meshes.hung().empty();
 }
@@ -201,15 +216,35 @@ void Session::take_events() {
   if (window_->should_close()) closed_ = true;
 }
 
-void Session::start() {
-  if (std::exchange(started_, true)) return;
+// Hooks of a step are systems: they run however the session is driven, and what they cost is told.
+core::Result<void> Session::add_systems() {
+  scene::Systems systems = scene_->systems();
   for (const Plugin& plugin : options_.plugins) {
-    if (plugin.on_start) plugin.on_start(*this);
+    if (plugin.add_systems) {
+      const auto ok =
+          call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
+      if (!ok) return ok;
+    }
+    if (!plugin.on_step) continue;
+    systems.step.add(plugin.name + " on_step",
+                     [this, &plugin](const scene::FixedStep& step, ecs::World&) {
+                       plugin.on_step(*this, step.step_s);
+                     });
   }
+  return scene_->arrange();
+}
+
+core::Result<void> Session::start() {
+  if (std::exchange(started_, true)) return {};
+  for (const Plugin& plugin : options_.plugins) {
+    if (!plugin.on_start) continue;
+    if (auto ok = call_plugin(plugin, "on_start", [&] { plugin.on_start(*this); }); !ok) return ok;
+  }
+  return {};
 }
 
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
-  start();
+  if (auto ok = start(); !ok) return ok;
   scene::State& state = scene_->state();
   state.input.pose = pose;
   state.input.size = picture_size();
@@ -217,7 +252,9 @@ core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
   state.clock.now_s += dt_s;
   if (state.output.error) return tl::unexpected(*state.output.error);
   for (const Plugin& plugin : options_.plugins) {
-    if (plugin.on_frame) plugin.on_frame(*this, dt_s);
+    if (!plugin.on_frame) continue;
+    if (auto ok = call_plugin(plugin, "on_frame", [&] { plugin.on_frame(*this, dt_s); }); !ok)
+      return ok;
   }
   return {};
 }

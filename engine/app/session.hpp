@@ -12,10 +12,24 @@
 
 #include "engine/app/options.hpp"
 #include "engine/image/image.hpp"
-#include "engine/platform/window.hpp"
-#include "engine/render/renderer.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/telemetry/trace_log.hpp"
+#include "engine/platform/input.hpp"
+
+// Include the header of what you use of these: most programs need none (docs/package.md).
+namespace psygen::platform {
+class Window;
+}
+namespace psygen::render {
+class Renderer;
+}
+namespace psygen::scene {
+class Scene;
+}
+namespace psygen::telemetry {
+class TraceLog;
+}
+namespace psygen::world {
+struct World;
+}
 
 namespace psygen::app {
 
@@ -49,8 +63,8 @@ class Session {
   // What the user did since the last poll but one. Nothing when headless.
   const platform::InputState& input() const { return input_; }
   // The clock: seconds, at which the next tick is drawn.
-  double now_s() const { return scene_->state().clock.now_s; }
-  void set_now(double now_s) { scene_->state().clock.now_s = now_s; }
+  double now_s() const;
+  void set_now(double now_s);
   // Pixels of the next picture; {0, 0} while the window is minimised.
   core::Extent picture_size() const;
 
@@ -82,13 +96,14 @@ class Session {
   bool has_hung_modelers() const;
 
  private:
-  explicit Session(SessionOptions options) : options_(std::move(options)) {}
+  explicit Session(SessionOptions options);
   core::Result<void> open();
   core::Result<void> open_window(const std::string& title);
   core::Result<void> open_renderer(Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
-  void start();
+  core::Result<void> add_systems();
+  core::Result<void> start();
 
   SessionOptions options_;
   // Destroyed in the opposite order: the scene gives its memory back to the renderer.

@@ -11,7 +11,9 @@
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/image/image_io.hpp"
+#include "engine/render/renderer.hpp"
 #include "engine/render/software_tuning.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen::cli {
 FlyCommand::FlyCommand(CLI::App& cli)

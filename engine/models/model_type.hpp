@@ -16,6 +16,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/vertex_layout.hpp"
+#include "engine/models/collider.hpp"
 
 namespace psygen::models {
 
@@ -133,6 +134,10 @@ class ModelType {
   // The size in metres that decides whether a single model is large enough on screen to be drawn.
   // A model of many small things returns the size of one of them. 0: the sphere around its mesh.
   virtual double seen_size_m(const Parameters&) const { return 0; }
+  // The solid parts, in metres from the foot, within bounds(p) along x and z. None by default. They
+  // approximate the mesh of level 0; the type says how well. Works without the user's mesh and in
+  // microseconds: queries ask for the colliders of a whole block at once (engine/query/).
+  virtual Collider collider(const Parameters&) const { return {}; }
   // True only if synthesis always ends, in about the predicted time, for all parameters. Then the
   // main thread may synthesise a mesh itself when its absence would be visible. A type that could
   // hang must leave this to the modelers, which are watched.

@@ -15,6 +15,24 @@ namespace psygen::scene {
 // to stay alive. False ends filling the cache early; creating a scene is not ended.
 using Progress = std::function<bool(std::string_view, double)>;
 
+// What code of a game adds to: components and entities of its own, systems that run once a frame
+// among the engine's (docs/architecture.md lists their names), and systems that run once a fixed
+// step. Systems of a frame may take any part of State, systems of a step WorldFacts and FixedStep;
+// both take queues of events and what resource() made.
+struct Systems {
+  ecs::World& entities;
+  ecs::Schedule& frame;
+  ecs::Schedule& step;
+
+  // A resource for both kinds of systems. It lives as long as the scene.
+  template <class R, class... Args>
+  R& resource(Args&&... args) {
+    R& made = frame.emplace<R>(std::forward<Args>(args)...);
+    step.provide(made);
+    return made;
+  }
+};
+
 // One world with its entities, its meshes and its tick.
 class Scene {
  public:
@@ -31,6 +49,12 @@ class Scene {
   State& state() { return state_; }
   const State& state() const { return state_; }
   const synthesis::CalibrationReport& calibration() const { return calibration_; }
+
+  // What code of a game adds to, before the first tick.
+  Systems systems() { return {state_.entities, state_.tick, state_.simulation.systems}; }
+  // Puts all systems into the order of their places. Fails with kInvalidArgument for two systems of
+  // one name, and for systems that name others that there are not, or wait for each other.
+  core::Result<void> arrange();
 
   // Fills the cache for a pose before the first frame (paper, section 4: the initial cache): ticks
   // without drawing and waits for the modelers, until nothing is missing, or nothing more can be

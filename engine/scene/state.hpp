@@ -17,12 +17,15 @@
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/draws/fading.hpp"
+#include "engine/scene/events.hpp"
 #include "engine/scene/nodes/grid.hpp"
 #include "engine/scene/nodes/ground_relief.hpp"
 #include "engine/scene/nodes/ground_sun.hpp"
 #include "engine/scene/nodes/levels.hpp"
 #include "engine/scene/quality/governor.hpp"
+#include "engine/scene/readiness.hpp"
 #include "engine/scene/settings.hpp"
+#include "engine/scene/simulation.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/trace_log.hpp"
@@ -193,6 +196,15 @@ struct DrawLists {
   double now_s = 0;        // the clock's then
 };
 
+// The nodes that the last frame showed, in order. Empty while nobody asks.
+struct ShownNode {
+  ecs::Entity entity;
+  visibility::NodeCoord at;
+};
+struct ShownNodes {
+  std::vector<ShownNode> nodes;
+};
+
 // Counts of one tick, reset by the tick.
 struct Counters {
   std::uint32_t nodes_created = 0, nodes_destroyed = 0;
@@ -242,6 +254,7 @@ struct Tracing {
   telemetry::TraceLog::Track main = 0, cache_bytes = 0, requests = 0, gpu_ms = 0;
   std::uint64_t gpu_frame = 0;                                          // the last one in gpu_ms
   std::vector<telemetry::TraceLog::Name> systems;                       // in the order of the tick
+  std::vector<telemetry::TraceLog::Name> steps;                         // of the simulation
   telemetry::TraceLog::Name device_wait = 0, acquire = 0, present = 0;  // within a system
   std::vector<telemetry::TraceLog::Track> modelers;                     // by number
   std::vector<telemetry::TraceLog::Name> models;                        // by index in the registry
@@ -253,6 +266,8 @@ struct State {
   Rules rules;
   WorldFacts facts;
   ecs::World entities;
+  Events events;
+  Simulation simulation{entities};
   ecs::Schedule tick{entities};  // filled by build_tick
   Input input;
   Clock clock;
@@ -267,11 +282,14 @@ struct State {
   Output output;
   synthesis::MeshSupply meshes;
   Found found;
+  Foresight foresight;
   DrawLists draws;
+  ShownNodes shown;
   Counters counters;
   Totals totals;
   Tracing trace;
   telemetry::FrameRecord record;  // of the last tick; the main loop adds frame_ms
+  std::vector<float> system_ms;   // of the last tick, in the order of system_names()
 };
 
 }  // namespace psygen::scene

@@ -87,6 +87,13 @@ BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const
   return heights;
 }
 
+void BlockGround::heights(std::span<std::uint16_t> out) const {
+  PSYGEN_CHECK(vertices_ > 0 && out.size() == vertices_ * vertices_,
+               "all heights are known, and there is room for each");
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = mesh_.empty() ? shape_.quantise(noise_[i]) : height_in_mesh(mesh_, i);
+}
+
 GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {
   const double cell_m = stride * shape_.cell_m;
   const glm::dvec2 cells = local_xz / cell_m;

@@ -162,8 +162,8 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
 
 void upload_system(const Settings& settings, const Rules& rules, const Clock& clock,
                    const WorldFacts& facts, const Found& found, UploadQuery entities,
-                   synthesis::MeshSupply& meshes, Output& output, Counters& counters,
-                   Totals& totals) {
+                   synthesis::MeshSupply& meshes, Output& output,
+                   ecs::EventQueue<MeshLanded>& landed_meshes, Counters& counters, Totals& totals) {
   std::vector<ecs::Landing<Mesh>> landings;
   const auto offer_to = [&](ecs::Entity entity, synthesis::MeshHandle handle,
                             const synthesis::MeshRecord& record) {
@@ -187,6 +187,8 @@ void upload_system(const Settings& settings, const Rules& rules, const Clock& cl
     offer_to(entity_of(job.owner), job.handle, *record);
   }
   entities.land<Mesh>(std::span<const ecs::Landing<Mesh>>(landings));
+  for (const ecs::Landing<Mesh>& landing : landings)
+    landed_meshes.emit({landing.entity, meshes.get(landing.value.handle)->key});
 }
 
 }  // namespace psygen::scene

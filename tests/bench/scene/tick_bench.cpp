@@ -38,9 +38,7 @@ std::vector<std::vector<double>> fly(const world::World& world, const world::Cam
   Scene& scene = **made;
   State& state = scene.state();
   scene.settle(path.pose_at(0, world));
-  names.clear();
-  for (const ecs::SystemInfo& system : state.tick.systems())
-    names.push_back(system.name);
+  names = system_names(state);
   std::vector<std::vector<double>> times(names.size());
   const auto ticks = static_cast<int>(path.duration_seconds() * hz);
   for (int i = 0; i < ticks; ++i) {
@@ -48,7 +46,7 @@ std::vector<std::vector<double>> fly(const world::World& world, const world::Cam
     state.input.pose = path.pose_at(state.clock.now_s, world);
     tick(state);
     for (std::size_t k = 0; k < names.size(); ++k)
-      times[k].push_back(static_cast<double>(state.record.system_ms[k]));
+      times[k].push_back(static_cast<double>(state.system_ms[k]));
     state.meshes.wait();
   }
   return times;

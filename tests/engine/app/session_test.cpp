@@ -1,6 +1,8 @@
 // A session without a flight: what a program with a loop of its own relies on.
 #include "engine/app/session.hpp"
 
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 #include "tests/engine/app/fixture.hpp"
 
 namespace psygen::app {
@@ -40,13 +42,13 @@ TEST(Session, EndsWhenItIsStoppedFromOutside) {
 TEST(Session, CallsPluginsHoweverItIsDriven) {
   std::vector<std::string> calls;
   SessionOptions options = short_session();
-  options.plugins.push_back({"counter",
-                             {},
-                             [&](Session&) { calls.push_back("start"); },
-                             [&](Session&, double dt_s) {
-                               EXPECT_EQ(dt_s, 0.5);
-                               calls.push_back("frame");
-                             }});
+  options.plugins.push_back({.name = "counter",
+                             .on_start = [&](Session&) { calls.push_back("start"); },
+                             .on_frame =
+                                 [&](Session&, double dt_s) {
+                                   EXPECT_EQ(dt_s, 0.5);
+                                   calls.push_back("frame");
+                                 }});
   auto session = Session::create(options);
   ASSERT_TRUE(session) << session.error().message;
   EXPECT_TRUE(calls.empty()) << "before the first tick";
