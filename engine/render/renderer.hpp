@@ -1,7 +1,7 @@
 // The renderer: draws lists of meshes from its geometry memory, into a window or headless, with
 // Vulkan 1.3. It knows nothing of entities, models or synthesis. It leaves out only meshes that are
-// not visible, and chooses levels of detail only if asked to (FrameInput::choose). Main thread; two
-// frames are in flight. The paper's Renderer (section 4). docs/gpu.md.
+// not visible, and chooses no levels of detail. Main thread; two frames are in flight. The paper's
+// Renderer (section 4). docs/gpu.md.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,9 @@ class Renderer {
   core::Result<std::uint32_t> upload_shared_indices(std::span<const std::uint16_t> indices);
 
   // Draws and submits one frame. Waits at most for the frame before the last. While the window is
-  // minimised it does nothing and presents nothing. Instead of an invalid camera it uses the last
-  // valid one. Fails with kDeviceLost, and with kOutOfMemory if there is no memory for the draws.
+  // minimised it does nothing and presents nothing. Fails with kInvalidArgument for a camera that
+  // FrameInput does not allow, with kDeviceLost, and with kOutOfMemory if there is no memory for
+  // the draws.
   core::Result<FrameResult> render(const FrameInput& input);
 
   // Draws a picture without a scene, for example while there is none yet, and waits for it: the

@@ -128,30 +128,19 @@ struct WorldEdge {
 };
 
 // Linear albedos of the ground, and the extent of each kind of ground. Heights are in metres of the
-// world. Slope is 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
+// world. Slope is 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical. The defaults are black: the
+// values come from the world (world::Palette).
 struct TerrainPalette {
-  glm::vec3 grass{0.085F, 0.125F, 0.030F};
-  glm::vec3 forest{0.045F, 0.070F, 0.022F};
-  glm::vec3 dry{0.200F, 0.165F, 0.075F};
-  glm::vec3 rock{0.150F, 0.138F, 0.125F};
-  glm::vec3 snow{0.74F, 0.78F, 0.84F};
-  glm::vec3 sand{0.36F, 0.30F, 0.19F};
-  float sand_end_m = -1e6F, sand_blend_m = 2.0F;    // sand below this height
-  float dry_start_m = 60.0F, dry_blend_m = 40.0F;   // dry meadow above this height
-  float snow_start_m = 1e6F, snow_blend_m = 15.0F;  // snow above this height, except where steep
-  float rock_slope_start = 0.16F, rock_slope_full = 0.34F;
-  float snow_slope_max = 0.40F;  // no snow on steeper ground
+  glm::vec3 grass{0.0F}, forest{0.0F}, dry{0.0F}, rock{0.0F}, snow{0.0F}, sand{0.0F};
+  float sand_end_m = 0, sand_blend_m = 0;    // sand below this height
+  float dry_start_m = 0, dry_blend_m = 0;    // dry meadow above this height
+  float snow_start_m = 0, snow_blend_m = 0;  // snow above this height, except where steep
+  float rock_slope_start = 0, rock_slope_full = 0;
+  float snow_slope_max = 0;  // no snow on steeper ground
 };
 
 // The id for "no shared list": the mesh has its own indices.
 inline constexpr std::uint32_t kNoSharedIndices = 0;
-
-// A coarser mesh at the same place and in the same box.
-struct DrawLevel {
-  core::GeometryRange range;
-  std::uint32_t shared_indices = kNoSharedIndices;
-  float error_m = 0.0F;  // distance from the full surface; grows from level to level
-};
 
 // Largest displacement of a vertex by the wind in metres, in both directions (shaders/model.vert).
 inline constexpr glm::vec3 kSwayM{0.12F, 0.0F, 0.09F};
@@ -165,11 +154,10 @@ struct MeshDraw {
   glm::vec3 origin{0.0F};                           // the mesh's foot
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
-  core::IndexPart part;                     // of its indices; empty: all; not with `coarser`
-  float fade = 1.0F;                        // 1: all of its pixels
-  float sun = 1.0F;                         // share of the sun that no terrain hides, 0 … 1
-  std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
-  std::span<const DrawLevel> coarser = {};  // used with FrameInput::choose
+  core::IndexPart part;                   // of its indices; empty: all
+  float fade = 1.0F;                      // 1: all of its pixels
+  float sun = 1.0F;                       // share of the sun that no terrain hides, 0 … 1
+  std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };
 
 // A grid of core::VertexLayout::kTerrain.
@@ -183,9 +171,8 @@ struct TerrainDraw {
   float morph = 0.0F;    // 0 fine heights … 1 coarse heights; kMorphByDistance: FrameInput::morph
   core::IndexPart part;  // of the shared list; empty: all of it
   float side_m = 0.0F;   // of the square that the grid covers; 0: the largest possible grid
-  std::span<const DrawLevel> coarser = {};  // used with FrameInput::choose
-  float cover = 0.0F;                       // share of the ground that far forests hide (Canopy)
-  std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
+  float cover = 0.0F;    // share of the ground that far forests hide (Canopy)
+  std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };
 
 // A line between two points relative to the camera.
@@ -202,7 +189,9 @@ struct Morph {
   float from_m = 0, to_m = 0;  // distances at which it begins, and at which heights are coarse
 };
 
-// Everything that a frame shows. Spans must stay valid during render().
+// Everything that a frame shows. Spans must stay valid during render(). The pose is
+// core::is_valid(); the field of view is between 0.001 and 3.13 rad, aspect and near plane between
+// 1e-6 and 1e6.
 struct FrameInput {
   core::CameraPose pose;
   core::Projection projection;
@@ -216,11 +205,7 @@ struct FrameInput {
   double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
-  // The lists also have draws outside the picture, and `coarser` levels. The renderer chooses, on
-  // both paths, the coarsest level with an error of at most `max_error_pixels`.
-  bool choose = false;
-  float max_error_pixels = 1.0F;
-  std::span<const Line> lines;  // at most kMaxLines are drawn, in every view
+  std::span<const Line> lines;           // at most kMaxLines are drawn, in every view
   // Over the picture, in this order.
   const HudDrawing* hud = nullptr;  // of the game; null: none
   std::span<const TextPanel> panels;
