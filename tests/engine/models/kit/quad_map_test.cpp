@@ -113,6 +113,22 @@ TEST(QuadMap, EqualContentHasEqualHashesWhateverTheHistory) {
   EXPECT_TRUE(other.empty());
 }
 
+TEST(QuadMap, TheSameValueAtAnotherPlaceHasAnotherHashInEverySquareAround) {
+  Map here, beside;
+  here.set(QuadPlace::of({12, 7}), {5});
+  beside.set(QuadPlace::of({13, 7}), {5});
+  for (std::uint32_t level = 1; level <= QuadPlace::kMaxLevel; ++level) {
+    const QuadPlace around = QuadPlace::of({12 >> level, 7 >> level}, level);
+    ASSERT_NE(here.at_or_below(around), nullptr);
+    ASSERT_NE(beside.at_or_below(around), nullptr);
+    EXPECT_NE(here.at_or_below(around)->hash, beside.at_or_below(around)->hash) << level;
+  }
+  // The same pair of values, moved as a whole.
+  here.set(QuadPlace::of({14, 7}), {6});
+  beside.set(QuadPlace::of({15, 7}), {6});
+  EXPECT_NE(here.root()->hash, beside.root()->hash);
+}
+
 TEST(QuadMap, DifferencesAreTheSquaresWhoseValuesDiffer) {
   std::mt19937 random(11);
   for (int round = 0; round < 50; ++round) {
