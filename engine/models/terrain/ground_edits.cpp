@@ -12,8 +12,11 @@ using EditPtr = std::shared_ptr<const GroundEdit>;
 
 // The steepest slope of the curve by which edits fade out.
 constexpr double kSteepest = 1.5;
-// Cells this many levels below a node's are taken as a whole where they touch its margin.
-constexpr int kMarginLevels = 4;
+// Cells of this level and below are taken as a whole where they touch a node's margin.
+int whole_level(const QuadPlace& node) {
+  constexpr int kMarginLevels = 4;
+  return static_cast<int>(node.level) - kMarginLevels;
+}
 
 // A rectangle in blocks from block −2^31.
 struct Area {
@@ -36,6 +39,34 @@ Area area_of(const GroundEdit& edit, double reach_m, double block_m) {
   return {x - reach, z - reach, x + reach, z + reach};
 }
 
+std::uint64_t content_hash(const GroundEdit& edit) {
+  std::uint64_t hash = core::combine(0x6D0E, edit.id);  // the order of the edits matters
+  const auto add = [&hash](double v) {
+    hash = core::combine(hash, std::bit_cast<std::uint64_t>(v));
+  };
+  hash = core::combine(hash, static_cast<std::uint64_t>(edit.change) * 2 + (edit.square ? 1 : 0));
+  hash = core::combine(
+      hash, QuadPlace::of(edit.centre.block).x << 32 | QuadPlace::of(edit.centre.block).z);
+  for (const double v :
+       {edit.centre.local.x, edit.centre.local.z, edit.radius_m, edit.falloff, edit.height_m})
+    add(v);
+  if (edit.map) {
+    hash = core::combine(hash, (std::uint64_t{edit.map->columns} << 32) | edit.map->rows);
+    hash = core::combine(hash, core::hash_bytes(std::as_bytes(std::span(edit.map->heights_m))));
+  }
+  return hash;
+}
+
+// How far an edit moves a height at most.
+float most_of(const GroundEdit& edit) {
+  if (edit.change == GroundChange::kRaise) return static_cast<float>(std::abs(edit.height_m));
+  if (edit.change != GroundChange::kStampAdd) return 1e30F;  // the relief limits it
+  float most = 0;
+  for (const float h : edit.map->heights_m)
+    most = std::max(most, std::abs(h));
+  return most;
+}
+
 // visit(place) for the at most four squares that list an edit: as large as its influence, with some
 // room for rounding.
 template <class Visit>
@@ -56,28 +87,13 @@ void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
   }
 }
 
-float change_of(const GroundEdit& edit) {
-  switch (edit.change) {
-    case GroundChange::kRaise:
-      return static_cast<float>(std::abs(edit.height_m));
-    case GroundChange::kStampAdd: {
-      float most = 0;
-      for (const float h : edit.map->heights_m)
-        most = std::max(most, std::abs(h));
-      return most;
-    }
-    default:
-      return 1e30F;  // depends on the ground; the relief limits it
-  }
-}
-
-float steepness_of(const GroundEdit& edit, float change_m) {
+float steepness_of(const GroundEdit& edit) {
   double slope = kSteepest / std::max(edit.falloff * edit.radius_m, 1e-6);
   if (edit.map) {
     const double points = std::max(edit.map->columns, edit.map->rows);
     slope += points / edit.radius_m;
   }
-  return std::min(change_m, 1e6F) * static_cast<float>(slope);
+  return std::min(edit.most_m, 1e6F) * static_cast<float>(slope);
 }
 
 // The weight of an edit at a distance from its centre: smooth from 1 to 0.
@@ -187,7 +203,7 @@ class Application {
   void act(Range columns, Range rows) {
     if (active_.empty()) return;
     ordered_ = active_;
-    std::ranges::sort(ordered_, {}, &GroundEdit::id);
+    std::ranges::sort(ordered_, {}, &GroundEdit::order);
     for (const GroundEdit* edit : ordered_)
       act(*edit, columns, rows);
   }
@@ -222,12 +238,12 @@ class Application {
   std::vector<const GroundEdit*> active_, ordered_;
 };
 
-void add_hashes(const Cell* cell, const Area& area, int whole_level, double block_m,
+void add_hashes(const Cell* cell, const Area& area, int whole, double block_m,
                 std::uint64_t& hash) {
   if (cell == nullptr) return;
   const Area own = area_of(cell->place);
   if (!own.touches(area)) return;
-  if (static_cast<int>(cell->place.level) <= whole_level || area.holds(own)) {
+  if (static_cast<int>(cell->place.level) <= whole || area.holds(own)) {
     hash = core::combine(hash, cell->hash);
     return;
   }
@@ -238,19 +254,21 @@ void add_hashes(const Cell* cell, const Area& area, int whole_level, double bloc
     }
   }
   for (const auto& quarter : cell->quarters)
-    add_hashes(quarter.get(), area, whole_level, block_m, hash);
+    add_hashes(quarter.get(), area, whole, block_m, hash);
 }
 
-bool same(const Cell* a, const Cell* b, const Area& area) {
+// Cells that add_hashes() takes as a whole are compared as a whole.
+bool same(const Cell* a, const Cell* b, const Area& area, int whole) {
   if (a == b) return true;
   const auto outside = [&](const Cell* c) {
     return c == nullptr || !area_of(c->place).touches(area);
   };
   if (a == nullptr || b == nullptr || a->place != b->place) return outside(a) && outside(b);
   if (outside(a)) return true;
+  if (static_cast<int>(a->place.level) <= whole) return a->hash == b->hash;
   if (a->value != b->value) return false;
   for (std::size_t q = 0; q < 4; ++q) {
-    if (!same(a->quarters[q].get(), b->quarters[q].get(), area)) return false;
+    if (!same(a->quarters[q].get(), b->quarters[q].get(), area, whole)) return false;
   }
   return true;
 }
@@ -279,9 +297,8 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
   if (cell->value) {
     for (const EditPtr& edit : cell->value->edits) {
       if (!area_of(*edit, edit->radius_m, block_m).touches(area)) continue;
-      const float change_m = change_of(*edit);
-      most.change_m += change_m;
-      most.steepness += steepness_of(*edit, change_m);
+      most.change_m += edit->most_m;
+      most.steepness += steepness_of(*edit);
     }
   }
   for (const auto& quarter : cell->quarters)
@@ -291,22 +308,9 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
 
 }  // namespace
 
-std::uint64_t content_hash(const GroundEdit& edit) {
-  std::uint64_t hash = 0x6D0E;
-  const auto add = [&hash](double v) {
-    hash = core::combine(hash, std::bit_cast<std::uint64_t>(v));
-  };
-  hash = core::combine(hash, static_cast<std::uint64_t>(edit.change) * 2 + (edit.square ? 1 : 0));
-  hash = core::combine(
-      hash, QuadPlace::of(edit.centre.block).x << 32 | QuadPlace::of(edit.centre.block).z);
-  for (const double v :
-       {edit.centre.local.x, edit.centre.local.z, edit.radius_m, edit.falloff, edit.height_m})
-    add(v);
-  if (edit.map) {
-    hash = core::combine(hash, (std::uint64_t{edit.map->columns} << 32) | edit.map->rows);
-    hash = core::combine(hash, core::hash_bytes(std::as_bytes(std::span(edit.map->heights_m))));
-  }
-  return hash;
+void seal(GroundEdit& edit) {
+  edit.content = content_hash(edit);
+  edit.most_m = most_of(edit);
 }
 
 void GroundCell::Summary::add(const Summary& quarter) {
@@ -324,9 +328,8 @@ std::uint64_t GroundCell::hash() const {
 GroundCell::Summary GroundCell::summary() const {
   Summary sum;
   for (const EditPtr& edit : edits) {
-    const float change_m = change_of(*edit);
-    sum.change_m += change_m;
-    sum.steepness += steepness_of(*edit, change_m);
+    sum.change_m += edit->most_m;
+    sum.steepness += steepness_of(*edit);
   }
   return sum;
 }
@@ -341,7 +344,7 @@ bool GroundEdits::add(const EditPtr& edit, double block_m) {
   each_place(*edit, block_m, [&](const QuadPlace& place) {
     const GroundCell* before = cells_.find(place);
     GroundCell cell = before != nullptr ? *before : GroundCell{};
-    const auto at = std::ranges::upper_bound(cell.edits, edit->id, {}, &GroundEdit::id);
+    const auto at = std::ranges::upper_bound(cell.edits, edit->order(), {}, &GroundEdit::order);
     cell.edits.insert(at, edit);
     cells_.set(place, std::move(cell));
   });
@@ -353,21 +356,20 @@ void GroundEdits::remove(const GroundEdit& edit, double block_m) {
     const GroundCell* before = cells_.find(place);
     if (before == nullptr) return;
     GroundCell cell = *before;
-    std::erase_if(cell.edits, [&](const EditPtr& e) { return e->id == edit.id; });
+    std::erase_if(cell.edits, [&](const EditPtr& e) { return e->order() == edit.order(); });
     cells_.set(place, std::move(cell));
   });
 }
 
 std::uint64_t GroundEdits::hash_of(const QuadPlace& node, double margin, double block_m) const {
   std::uint64_t hash = 0;
-  const int whole = static_cast<int>(node.level) - kMarginLevels;
-  add_hashes(cells_.root(), area_of(node, margin), whole, block_m, hash);
+  add_hashes(cells_.root(), area_of(node, margin), whole_level(node), block_m, hash);
   return hash;
 }
 
 bool GroundEdits::same_in(const GroundEdits& a, const GroundEdits& b, const QuadPlace& node,
                           double margin) {
-  return same(a.cells_.root(), b.cells_.root(), area_of(node, margin));
+  return same(a.cells_.root(), b.cells_.root(), area_of(node, margin), whole_level(node));
 }
 
 bool GroundEdits::reaches(const QuadPlace& node, double block_m) const {

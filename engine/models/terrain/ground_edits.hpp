@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
@@ -39,11 +40,17 @@ struct GroundEdit {
   double falloff = 0.5;        // share of the radius over which the edit fades out; 0: a cliff
   double height_m = 0;         // kRaise: difference; kFlatten: height above 0
   std::shared_ptr<const Heightmap> map;  // of the two stamps
-  std::uint32_t id = 0;                  // edits act in the order of their ids
-  std::uint64_t content = 0;             // content_hash()
+  std::uint32_t id = 0;                  // unique in the block of the centre
+  // Set by seal():
+  std::uint64_t content = 0;  // identifies everything above
+  float most_m = 0;  // how far it moves a height at most; 1e30: as far as the relief allows
+
+  // Edits act in this order.
+  std::pair<std::uint32_t, core::BlockCoord> order() const { return {id, centre.block}; }
 };
-// Identifies everything but the id.
-std::uint64_t content_hash(const GroundEdit& edit);
+// Sets the last two members of an edit from the others, once these are final. Linear in the
+// heightmap.
+void seal(GroundEdit& edit);
 
 // The lattice of a terrain and its heights: vertices are counted in cells of node level 0.
 struct GroundScale {
@@ -54,7 +61,7 @@ struct GroundScale {
   double block_m() const { return static_cast<double>(cells_per_block) * cell_m; }
 };
 
-// The edits whose influence begins in one square of the quadtree, by growing id.
+// The edits whose influence begins in one square of the quadtree, in the order in which they act.
 struct GroundCell {
   std::vector<std::shared_ptr<const GroundEdit>> edits;
 
@@ -81,8 +88,8 @@ class GroundEdits {
   bool empty() const { return cells_.empty(); }
   std::uint64_t hash() const { return cells_.empty() ? 0 : cells_.root()->hash; }
 
-  // Adds an edit, or takes the one with this id away, in O(log n). add() returns false, and changes
-  // nothing, where kMostTogether are there already.
+  // Adds a sealed edit, or takes the one with this id and block away, in O(log n + kMostTogether).
+  // add() returns false, and changes nothing, where kMostTogether are there already.
   bool add(const std::shared_ptr<const GroundEdit>& edit, double block_m);
   void remove(const GroundEdit& edit, double block_m);
 

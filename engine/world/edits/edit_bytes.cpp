@@ -208,7 +208,7 @@ class BlockReader {
         return wrong("ids are not in order");
       if (auto ok = check_inside(e.centre.local.x, e.centre.local.z); !ok) return ok;
       if (auto ok = check_ground(world_, e); !ok) return ok;
-      e.content = content_hash(e);
+      seal(e);
       edits.ground.push_back(std::make_shared<const GroundEdit>(std::move(e)));
     }
     return {};

@@ -299,7 +299,7 @@ core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
   if (auto ok = check_room(edits, at->block); !ok) return tl::unexpected(ok.error());
   edit.centre = *at;
   edit.id = *id;
-  edit.content = content_hash(edit);
+  seal(edit);
   const auto shared = std::make_shared<const GroundEdit>(std::move(edit));
   edits.ground.push_back(shared);
   if (auto ok = check_heights(edits, at->block); !ok) return tl::unexpected(ok.error());
