@@ -23,6 +23,9 @@ enum class GroundChange : std::uint8_t {
   kStampAdd,  // adds the heightmap
   kStampSet,  // replaces it by the heightmap
 };
+constexpr bool is_stamp(GroundChange change) {
+  return change >= GroundChange::kStampAdd;
+}
 
 // Heights in metres over a square, row by row from its corner at the least x and z. Linear between
 // its points; the outer ones lie on the square's border.
@@ -34,7 +37,7 @@ struct Heightmap {
 // One edit. Immutable once it is part of a GroundEdits.
 struct GroundEdit {
   GroundChange change = GroundChange::kRaise;
-  bool square = false;         // else a disc; heightmaps are always square
+  bool square = false;         // else a disc; a stamp is always a square
   core::WorldPosition centre;  // normalised; y is not used
   double radius_m = 1;         // of the disc, or half the side of the square
   double falloff = 0.5;        // share of the radius over which the edit fades out; 0: a cliff

@@ -138,6 +138,9 @@ class BlockReader {
       if (i > 0 && r.index <= edits.removed.back().index) return wrong("models are not in order");
       if (r.index >= models_per_block(world_))
         return wrong(fmt::format("the block has no model {}", r.index));
+      if (r.moved_id > kMaxEditId)
+        return wrong(
+            fmt::format("a moved model has the id {}, and {} is the last", r.moved_id, kMaxEditId));
       edits.removed.push_back(r);
     }
     return {};
@@ -202,7 +205,10 @@ class BlockReader {
       e.radius_m = in_.get<double>();
       e.falloff = in_.get<double>();
       e.height_m = in_.get<double>();
-      if (e.change >= models::GroundChange::kStampAdd) e.map = read_map();
+      if (is_stamp(e.change)) {
+        e.square = true;
+        e.map = read_map();
+      }
       if (in_.failed()) return {};
       if (!is_next_id(e.id, i > 0 ? edits.ground.back()->id : 0))
         return wrong("ids are not in order");
@@ -250,7 +256,7 @@ void put_ground(const GroundEdit& e, Writer& out) {
   out.put(static_cast<std::uint8_t>(e.square ? 1 : 0));
   for (const double v : {e.centre.local.x, e.centre.local.z, e.radius_m, e.falloff, e.height_m})
     out.put(v);
-  if (e.change < models::GroundChange::kStampAdd) return;
+  if (!is_stamp(e.change)) return;
   out.put(e.map->columns);
   out.put(e.map->rows);
   out.put_all(std::span<const float>(e.map->heights_m));

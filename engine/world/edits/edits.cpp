@@ -291,6 +291,11 @@ core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
   const auto at = check_place(world, edit.centre);
   if (!at) return tl::unexpected(at.error());
   if (auto ok = check_ground(world, edit); !ok) return tl::unexpected(ok.error());
+  if (is_stamp(edit.change)) {
+    edit.square = true;
+  } else {
+    edit.map.reset();
+  }
   const auto id = next_id();
   if (!id) return tl::unexpected(id.error());
   EditLayer layer = layer_ ? *layer_ : EditLayer{};
@@ -371,6 +376,8 @@ core::Result<void> Edits::replace_block(const World& world, core::BlockCoord blo
   }
   for (const PlacedModel& placed : edits.placed)
     layer.next_id = std::max(layer.next_id, placed.id + 1);
+  for (const RemovedModel& removed : edits.removed)  // its block may come later, or never
+    layer.next_id = std::max(layer.next_id, removed.moved_id + 1);
   layer.blocks.set(QuadPlace::of(block), std::move(edits));
   commit(std::move(layer));
   return {};

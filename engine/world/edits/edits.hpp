@@ -1,9 +1,11 @@
 // Edits of a world that persist: models are removed, moved and placed, ground is raised, flattened
 // and shaped by heightmaps. A sparse layer over the world's function. Everything that shows the
 // world shows its edits: set_edits(world, edits.layer()), or Scene::edit() for a running scene.
-// A value: copies are O(1), and a copy that was kept takes everything back, exactly. Every change
-// is O(log n). What is impossible is refused with a sentence and changes nothing. One thread at a
-// time may change an object; layers that it gave away are immutable, for any thread.
+// A value: copies are O(1), and a copy that was kept takes everything back, exactly. A change
+// copies a path of the tree and the edits of its block; one of the ground also the edits that
+// overlap it: O(log n + edits copied). What is impossible is refused with a sentence and changes
+// nothing. One thread at a time may change an object; layers that it gave away are immutable, for
+// any thread.
 #pragma once
 
 #include <cstdint>
@@ -82,7 +84,8 @@ class Edits {
   core::Result<void> remove_placed(const EditName& model);
 
   // Ground -------------------------------------------------------------------------------------
-  // Adds an edit of the ground, after all others. `id` and `content` of the argument are not used.
+  // Adds an edit of the ground, after all others. Stamps are always squares, and only they have a
+  // heightmap. `id` of the argument, and what seal() sets, are not used.
   core::Result<EditName> edit_ground(const World& world, models::GroundEdit edit);
   // The usual ones: raises ground (or digs, with a negative height), and flattens it to a height,
   // in a disc of this radius whose outer half fades out.

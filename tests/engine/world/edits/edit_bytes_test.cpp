@@ -82,6 +82,62 @@ TEST_F(EditBytes, ANewerVersionIsRefusedByItsNumber) {
   EXPECT_THAT(decoded.error().message, HasSubstr("version is 9"));
 }
 
+// The block that the model was moved to is not loaded.
+TEST_F(EditBytes, TheIdOfAMovedModelIsNotGivenToAnother) {
+  Edits one;
+  const auto moved = one.move(world, registry, {{2, 3}, unedited({2, 3})[3].index}, {{4, 3}, {}});
+  ASSERT_TRUE(moved) << moved.error().message;
+  Edits loaded;
+  ASSERT_TRUE(load_block(loaded, world, registry, {2, 3}, encode_block(one, registry, {2, 3})));
+  const Scatter& rocks = world.scatter[1];
+  const auto placed = loaded.place(
+      world, registry, {rocks.model, scatter_parameters(registry, rocks), {{4, 3}, {5, 0, 5}}, 0});
+  ASSERT_TRUE(placed) << placed.error().message;
+  EXPECT_NE(placed->id, moved->id);
+  ASSERT_TRUE(loaded.restore({{2, 3}, unedited({2, 3})[3].index}));
+  EXPECT_EQ(loaded.counts().placed, 1u) << "the rock stays";
+}
+
+TEST_F(EditBytes, AMovedModelWithAnIdBeyondAllIsRefused) {
+  Edits one;
+  ASSERT_TRUE(one.move(world, registry, {{2, 3}, unedited({2, 3})[3].index}, {{4, 3}, {}}));
+  std::vector<std::byte> bytes = encode_block(one, registry, {2, 3});
+  constexpr std::size_t kMovedId = 4 + 2 + 4 + 4;  // magic, version, count, index
+  ASSERT_EQ(bytes[kMovedId], std::byte{1});
+  std::fill_n(bytes.begin() + kMovedId, 4, std::byte{0xFF});
+  Edits loaded;
+  const auto ok = load_block(loaded, world, registry, {2, 3}, bytes);
+  ASSERT_FALSE(ok);
+  EXPECT_THAT(ok.error().message, HasSubstr("id 4294967295"));
+}
+
+TEST_F(EditBytes, AStoredStampIsSquareWhateverItsBytesSay) {
+  const std::vector<std::byte> whole = encode_block(edits, registry, {2, 4});
+  constexpr std::size_t kSquare = 4 + 2 + 3 * 4 + 4 + 1;  // magic, version, counts, id, change
+  ASSERT_EQ(whole[kSquare], std::byte{1});
+  std::vector<std::byte> disc = whole;
+  disc[kSquare] = std::byte{0};
+  Edits loaded;
+  ASSERT_TRUE(load_block(loaded, world, registry, {2, 4}, disc));
+  EXPECT_EQ(encode_block(loaded, registry, {2, 4}), whole);
+}
+
+TEST_F(EditBytes, BlocksFromDifferentEditsMayHaveTheSameIds) {
+  Edits hill, flat, loaded;
+  const auto raised = hill.raise(world, {{2, 3}, {60, 0, 31}}, 20, 9);
+  const auto flattened = flat.flatten(world, {{3, 3}, {3, 0, 31}}, 20, 30);
+  ASSERT_TRUE(raised && flattened);
+  ASSERT_EQ(raised->id, flattened->id);
+  ASSERT_TRUE(load_block(loaded, world, registry, {2, 3}, encode_block(hill, registry, {2, 3})));
+  ASSERT_TRUE(load_block(loaded, world, registry, {3, 3}, encode_block(flat, registry, {3, 3})));
+  ASSERT_TRUE(loaded.remove_ground(world, *raised));
+  set_edits(world, loaded.layer());
+  const std::uint64_t left = terrain_parameters(world, {2, 3}).edits_hash();
+  set_edits(world, flat.layer());
+  EXPECT_EQ(left, terrain_parameters(world, {2, 3}).edits_hash());
+  EXPECT_NE(left, 0u);
+}
+
 // Whatever is decoded is legal: it can be used, and is the same when stored again.
 TEST_F(EditBytes, AnyBytesAreRefusedOrGiveLegalEdits) {
   std::mt19937 random(17);

@@ -82,6 +82,25 @@ TEST_F(EditsTest, ModelsKeepTheirPlacesAndStandOnTheEditedGround) {
   EXPECT_GT(lifted, after.size() / 4);
 }
 
+TEST_F(EditsTest, AHeightmapShapesItsWholeSquareAndNothingElseHasOne) {
+  auto map = std::make_shared<models::Heightmap>();
+  *map = {2, 2, {50, 50, 50, 50}};
+  models::GroundEdit stamp;
+  stamp.change = models::GroundChange::kStampSet;
+  stamp.centre = {{2, 3}, {31, 0, 31}};
+  stamp.radius_m = 20;
+  stamp.falloff = 0;
+  stamp.map = map;
+  ASSERT_TRUE(edits.edit_ground(world, stamp));
+  apply();
+  for (const glm::dvec2 corner : {glm::dvec2(12, 12), glm::dvec2(50, 50)})
+    EXPECT_NEAR(models::ground_height_m(world.terrain, {2, 3}, corner.x, corner.y), 50, 0.01);
+  stamp.change = models::GroundChange::kRaise;
+  stamp.centre.block = {8, 8};
+  ASSERT_TRUE(edits.edit_ground(world, stamp));
+  EXPECT_EQ(edits.layer()->block({8, 8})->ground[0]->map, nullptr);
+}
+
 TEST_F(EditsTest, KeysOfUneditedNodesAreThoseOfAnUneditedWorld) {
   ASSERT_TRUE(edits.remove(world, {{2, 3}, 0}));
   ASSERT_TRUE(edits.raise(world, {{2, 3}, {31, 0, 31}}, 5, 3));
