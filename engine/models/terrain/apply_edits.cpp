@@ -1,5 +1,5 @@
-// How edits of the ground act on heights: the curves of single edits, and the walk down the quadtree
-// to those that reach the samples.
+// How edits of the ground act on heights: the curves of single edits, and the walk down the
+// quadtree to those that reach the samples.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -136,7 +136,9 @@ class Application {
                std::int32_t block, double local_m) const {
     const auto all = at.subspan(range.first, range.end - range.first);
     const auto before = [&](std::int64_t i) { return away_m(i, block, local_m) < -edit.radius_m; };
-    const auto not_after = [&](std::int64_t i) { return away_m(i, block, local_m) <= edit.radius_m; };
+    const auto not_after = [&](std::int64_t i) {
+      return away_m(i, block, local_m) <= edit.radius_m;
+    };
     const auto first = std::ranges::partition_point(all, before);
     const auto end = std::ranges::partition_point(first, all.end(), not_after);
     return {range.first + static_cast<std::size_t>(first - all.begin()),

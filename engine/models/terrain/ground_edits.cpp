@@ -23,6 +23,10 @@ struct Area {
   double x0, z0, x1, z1;
   bool touches(const Area& o) const { return x0 <= o.x1 && o.x0 <= x1 && z0 <= o.z1 && o.z0 <= z1; }
   bool holds(const Area& o) const { return x0 <= o.x0 && o.x1 <= x1 && z0 <= o.z0 && o.z1 <= z1; }
+  Area common(const Area& o) const {
+    return {std::max(x0, o.x0), std::max(z0, o.z0), std::min(x1, o.x1), std::min(z1, o.z1)};
+  }
+  double size() const { return std::max(x1 - x0, 0.0) * std::max(z1 - z0, 0.0); }  // in blocks²
 };
 
 Area area_of(const QuadPlace& place, double margin = 0) {
@@ -164,6 +168,28 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
   return most;
 }
 
+// The time that an edit takes for a height, in units of a simple one. Measured.
+double weight_of(const GroundEdit& edit) {
+  return is_stamp(edit.change) ? 3 : 1;
+}
+
+// The weighted areas of edits within an area, added up, in blocks².
+double work_in(const Cell* cell, const Area& area, double block_m) {
+  if (cell == nullptr) return 0;
+  const Area own = area_of(cell->place);
+  if (!own.touches(area)) return 0;
+  if (area.holds(own)) return cell->summary.work_m2 / (block_m * block_m);
+  double sum = 0;
+  if (cell->value) {
+    const Area part = own.common(area);
+    for (const EditPtr& edit : cell->value->edits)
+      sum += weight_of(*edit) * area_of(*edit, edit->radius_m, block_m).common(part).size();
+  }
+  for (const auto& quarter : cell->quarters)
+    sum += work_in(quarter.get(), area, block_m);
+  return sum;
+}
+
 }  // namespace
 
 void seal(GroundEdit& edit) {
@@ -174,6 +200,7 @@ void seal(GroundEdit& edit) {
 void GroundCell::Summary::add(const Summary& quarter) {
   below_change_m = std::max(below_change_m, quarter.change_m + quarter.below_change_m);
   below_steepness = std::max(below_steepness, quarter.steepness + quarter.below_steepness);
+  work_m2 += quarter.work_m2;
 }
 
 std::uint64_t GroundCell::hash() const {
@@ -188,6 +215,7 @@ GroundCell::Summary GroundCell::summary() const {
   for (const EditPtr& edit : edits) {
     sum.change_m += edit->most_m;
     sum.steepness += steepness_of(*edit);
+    sum.work_m2 += weight_of(*edit) * 4 * edit->radius_m * edit->radius_m;
   }
   return sum;
 }
@@ -239,6 +267,14 @@ double GroundEdits::error_m(const QuadPlace& node, double spacing_m, double bloc
   const double change_m = double{most.change_m} + double{most.below_change_m};
   const double steepness = double{most.steepness} + double{most.below_steepness};
   return std::min(change_m, steepness * spacing_m);
+}
+
+double GroundEdits::edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const {
+  const auto block = [&scale](std::int64_t vertex) {
+    return static_cast<double>(vertex) / static_cast<double>(scale.cells_per_block) + 0x1.0p31;
+  };
+  const Area area{block(x.first), block(z.first), block(x.last), block(z.last)};
+  return area.size() > 0 ? work_in(cells_.root(), area, scale.block_m()) / area.size() : 0;
 }
 
 }  // namespace psygen::models

@@ -64,6 +64,11 @@ struct GroundScale {
   double block_m() const { return static_cast<double>(cells_per_block) * cell_m; }
 };
 
+// A range of a lattice along one axis: coordinates of vertices, both included.
+struct LatticeSpan {
+  std::int64_t first = 0, last = 0;
+};
+
 // The edits whose influence begins in one square of the quadtree, in the order in which they act.
 struct GroundCell {
   std::vector<std::shared_ptr<const GroundEdit>> edits;
@@ -72,6 +77,7 @@ struct GroundCell {
   struct Summary {
     float change_m = 0, steepness = 0;              // of this square's own edits, added up
     float below_change_m = 0, below_steepness = 0;  // the most in one of its quarters
+    double work_m2 = 0;  // of all edits in it: their areas, weighted by the time for a height
     void add(const Summary& quarter);
   };
   bool empty() const { return edits.empty(); }
@@ -107,6 +113,11 @@ class GroundEdits {
   // How far the ground may lie off a mesh of the node whose vertices are `spacing_m` apart, because
   // of edits between them. An upper bound in metres; 0: there are none.
   double error_m(const QuadPlace& node, double spacing_m, double block_m) const;
+
+  // About how many edits apply() makes on a height, on average over the rectangle, in units of the
+  // time for a simple one; a stamp counts as three. Up to four times too many where edits are much
+  // smaller than the rectangle. O(log n + edits at its border).
+  double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
 
   // Applies the edits to heights at the lattice points (x[i], z[k]), values[k · stride + i]. x and
   // z ascend. Edits of a radius below `narrowest_m` are left out. Linear in the heights that

@@ -311,6 +311,31 @@ TEST_F(EditedTerrain, SealingNotesHowFarAnEditMovesHeights) {
   EXPECT_GT(add(dug).most_m, 1e6);
 }
 
+TEST_F(EditedTerrain, ThePredictedStepsCountTheHeightsThatEditsChange) {
+  const auto more = [&](std::int64_t x, int mesh_level) {
+    return type->steps(node(x, 0, 0), mesh_level) - type->steps(node(x, 0, 0, false), mesh_level);
+  };
+  EXPECT_EQ(more(0, 0), 0);
+  GroundEdit cover = raised({{0, 0}, {31, 0, 31}}, 200, 5);
+  cover.square = true;
+  add(cover);
+  const double one = more(0, 0), coarse = more(0, 2);
+  EXPECT_GT(one, 64 * 64);
+  EXPECT_GT(coarse, 0);
+  EXPECT_LT(coarse, one);
+  for (int i = 1; i < 100; ++i)
+    add(cover);
+  EXPECT_NEAR(more(0, 0) / one, 100, 1);
+  // Far from the heights that its light can see.
+  EXPECT_LT(more(1000, 0), 0.01 * one);
+  layer = {};
+  GroundEdit small = cover;
+  small.radius_m = 3;  // of 63 m, so about a hundredth of the area
+  add(small);
+  EXPECT_GT(more(0, 0), 0.002 * one);
+  EXPECT_LT(more(0, 0), 0.05 * one);
+}
+
 TEST_F(EditedTerrain, NoMeshIsFurtherFromTheGroundThanTheErrorSays) {
   std::mt19937 random(31);
   for (int round = 0; round < 20; ++round) {
