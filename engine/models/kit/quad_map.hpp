@@ -97,11 +97,6 @@ class QuadMap {
         with(root_, place, value.empty() ? nullptr : std::make_shared<const V>(std::move(value)));
   }
 
-  // visit(place, value) for all values. O(values).
-  template <class Visit>
-  void each(const Visit& visit) const {
-    each_in(root_.get(), visit);
-  }
   // visit(place, before, after) for each square whose value is not the same object in both maps;
   // null where there is none. O(differences · path).
   template <class Visit>

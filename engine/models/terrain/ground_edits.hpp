@@ -95,7 +95,6 @@ class GroundEdits {
   static constexpr std::size_t kMostTogether = 1024;
 
   bool empty() const { return cells_.empty(); }
-  std::uint64_t hash() const { return cells_.empty() ? 0 : cells_.root()->hash; }
 
   // Adds a sealed edit, or takes the one with this id and block away, in O(log n + kMostTogether).
   // add() returns false, and changes nothing, where kMostTogether are there already.

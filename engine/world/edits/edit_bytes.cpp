@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/core/utf8.hpp"
+#include "engine/world/edits/edit_checks.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world {
@@ -152,13 +154,8 @@ class BlockReader {
     if (in_.failed()) return wrong("");
     const std::string name(letters.begin(), letters.end());
     const int index = registry_.find(name);
-    if (index < 0) return wrong(fmt::format("there is no model type \"{}\"", printable(name)));
+    if (index < 0) return wrong(fmt::format("there is no model type \"{}\"", core::shown(name)));
     return static_cast<models::ModelIndex>(index);
-  }
-  static std::string printable(std::string name) {
-    std::ranges::replace_if(
-        name, [](char c) { return c < ' ' || c > '~'; }, '?');
-    return name;
   }
 
   core::Result<void> read_placed(BlockEdits& edits) {
@@ -287,14 +284,9 @@ std::vector<std::byte> encode_block(const Edits& edits, const models::Registry& 
   return out.take();
 }
 
-core::Result<BlockEdits> decode_block(const World& world, const models::Registry& registry,
-                                      core::BlockCoord block, std::span<const std::byte> bytes) {
-  return BlockReader(world, registry, block, bytes).read();
-}
-
 core::Result<void> load_block(Edits& edits, const World& world, const models::Registry& registry,
                               core::BlockCoord block, std::span<const std::byte> bytes) {
-  auto decoded = decode_block(world, registry, block, bytes);
+  auto decoded = BlockReader(world, registry, block, bytes).read();
   if (!decoded) return tl::unexpected(decoded.error());
   return edits.replace_block(world, block, std::move(*decoded));
 }

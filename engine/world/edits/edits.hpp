@@ -65,8 +65,6 @@ class Edits {
   const std::shared_ptr<const models::EditLayer>& layer() const { return layer_; }
   bool empty() const { return layer_ == nullptr; }
   EditCounts counts() const;
-  // Identifies all edits; 0: none. Does not depend on their history, except for ids.
-  std::uint64_t hash() const;
 
   // Models -------------------------------------------------------------------------------------
   // Removes a model, such as a felled tree. Nothing happens if it is removed already.
@@ -103,8 +101,11 @@ class Edits {
 
  private:
   core::Result<std::uint32_t> next_id() const;
-  const models::BlockEdits* block(core::BlockCoord at) const;
-  void commit(models::EditLayer layer);
+  // Copies, to be changed: of all edits, and of those of a block.
+  models::EditLayer copy() const;
+  models::BlockEdits edits_of(core::BlockCoord block) const;
+  // Takes over a changed layer with these edits of a block.
+  void commit(models::EditLayer layer, core::BlockCoord block, models::BlockEdits edits);
 
   std::shared_ptr<const models::EditLayer> layer_;
 };
@@ -112,15 +113,5 @@ class Edits {
 // The blocks whose edits differ, in no particular order: those that must be stored again.
 // O(differences · log n).
 std::vector<core::BlockCoord> changed_blocks(const Edits& before, const Edits& after);
-
-// Fails with a sentence for edits that Edits would refuse. `block` is the one that they belong to.
-core::Result<void> check_ground(const World& world, const models::GroundEdit& edit);
-core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
-                               const models::Parameters& parameters, double above_m);
-// The normalised place, or why there is none: not finite, or outside the world.
-core::Result<core::WorldPosition> check_place(const World& world, const core::WorldPosition& at);
-// PlacedModel::reach_m of a model with its foot so high above the ground.
-glm::vec3 placed_reach(const models::ModelType& type, const models::Parameters& parameters,
-                       double above_m);
 
 }  // namespace psygen::world

@@ -67,7 +67,8 @@ TEST(QuadMap, BehavesLikeAMapAndCopiesStayAsTheyWere) {
       sum += value;
     }
     std::size_t count = 0;
-    copy.each([&](const QuadPlace&, const Number&) { ++count; });
+    Map::each_difference(Map(), copy,
+                         [&](const QuadPlace&, const Number*, const Number*) { ++count; });
     EXPECT_EQ(count, content.size());
     ASSERT_NE(copy.root(), nullptr);
     EXPECT_EQ(copy.root()->summary.sum, sum);
@@ -145,9 +146,8 @@ TEST(QuadMap, DifferencesAreTheSquaresWhoseValuesDiffer) {
       ++reported[{p.level, p.x, p.z}];
     });
     const auto expect_reported = [&](const Map& one, const Map& two) {
-      one.each([&](const QuadPlace& p, const Number& value) {
-        const Number* other = two.find(p);
-        const bool differs = other != &value;
+      Map::each_difference(Map(), one, [&](const QuadPlace& p, const Number*, const Number* value) {
+        const bool differs = two.find(p) != value;
         EXPECT_EQ((reported[{p.level, p.x, p.z}]), differs ? 1 : 0);
       });
     };

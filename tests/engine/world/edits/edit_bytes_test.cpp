@@ -12,6 +12,7 @@
 namespace psygen::world {
 namespace {
 
+using testing::hash_of;
 using ::testing::HasSubstr;
 
 class EditBytes : public ::testing::Test, protected testing::EditedWorld {
@@ -47,8 +48,10 @@ TEST_F(EditBytes, LoadingTheBlocksInAnyOrderGivesTheSameEdits) {
     ASSERT_TRUE(ok) << ok.error().message;
   }
   for (const Edits& loaded : {forward, backward}) {
-    EXPECT_EQ(loaded.hash(), edits.hash());
-    EXPECT_EQ(loaded.layer()->ground.hash(), edits.layer()->ground.hash());
+    EXPECT_EQ(hash_of(loaded), hash_of(edits));
+    const models::QuadPlace all{models::QuadPlace::kMaxLevel, 0, 0};
+    EXPECT_EQ(loaded.layer()->ground.hash_of(all, 0, world.block_size_m()),
+              edits.layer()->ground.hash_of(all, 0, world.block_size_m()));
     EXPECT_EQ(loaded.layer()->next_id, edits.layer()->next_id);
     EXPECT_EQ(encode_block(loaded, registry, {2, 3}), stored.begin()->second);
     EXPECT_EQ(loaded.layer()->blocks.root()->summary.reach_m,
@@ -63,23 +66,26 @@ TEST_F(EditBytes, BlocksWithoutEditsHaveNoBytes) {
 
 TEST_F(EditBytes, WhatIsCutShortAtAnyByteOrGoesOnIsRefused) {
   const std::vector<std::byte> whole = encode_block(edits, registry, {2, 3});
+  Edits loaded;
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    const auto decoded = decode_block(world, registry, {2, 3}, std::span(whole).first(length));
-    ASSERT_FALSE(decoded) << length;
-    EXPECT_THAT(decoded.error().message, HasSubstr("edits of block (2, 3) cannot be read"));
+    const auto ok = load_block(loaded, world, registry, {2, 3}, std::span(whole).first(length));
+    ASSERT_FALSE(ok) << length;
+    EXPECT_THAT(ok.error().message, HasSubstr("edits of block (2, 3) cannot be read"));
   }
   std::vector<std::byte> longer = whole;
   longer.push_back(std::byte{0});
-  EXPECT_FALSE(decode_block(world, registry, {2, 3}, longer));
-  EXPECT_FALSE(decode_block(world, registry, {-2, 3}, whole)) << "outside of the world";
+  EXPECT_FALSE(load_block(loaded, world, registry, {2, 3}, longer));
+  EXPECT_FALSE(load_block(loaded, world, registry, {-2, 3}, whole)) << "outside of the world";
+  EXPECT_TRUE(loaded.empty());
 }
 
 TEST_F(EditBytes, ANewerVersionIsRefusedByItsNumber) {
   std::vector<std::byte> newer = encode_block(edits, registry, {2, 3});
   newer[4] = std::byte{9};
-  const auto decoded = decode_block(world, registry, {2, 3}, newer);
-  ASSERT_FALSE(decoded);
-  EXPECT_THAT(decoded.error().message, HasSubstr("version is 9"));
+  Edits loaded;
+  const auto ok = load_block(loaded, world, registry, {2, 3}, newer);
+  ASSERT_FALSE(ok);
+  EXPECT_THAT(ok.error().message, HasSubstr("version is 9"));
 }
 
 // The block that the model was moved to is not loaded.
@@ -161,7 +167,7 @@ TEST_F(EditBytes, AnyBytesAreRefusedOrGiveLegalEdits) {
       if (round % 50 == 0) place_models(copy, registry, block, out);
       Edits again;
       EXPECT_TRUE(load_block(again, world, registry, block, encode_block(loaded, registry, block)));
-      EXPECT_EQ(again.hash(), loaded.hash());
+      EXPECT_EQ(hash_of(again), hash_of(loaded));
     }
   }
   EXPECT_GT(accepted, 100u);
