@@ -4,11 +4,9 @@
 
 #include <bit>
 #include <cmath>
-#include <concepts>
-#include <cstring>
-#include <optional>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/bytes.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"
@@ -24,48 +22,9 @@ constexpr std::uint8_t kHeld = 1, kPressed = 2, kReleased = 4, kValue = 8;
 constexpr std::size_t kHashBytes = 8;
 constexpr double kLongestStepS = 10;
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
-
-template <class Number>
-void put(std::string& out, Number value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof(value));
-}
-
-void put_varint(std::string& out, std::uint64_t value) {
-  for (; value >= 0x80; value >>= 7)
-    out += static_cast<char>(0x80 | (value & 0x7F));
-  out += static_cast<char>(value);
-}
-
-// Takes numbers from bytes; nothing once they are too few.
-struct Bytes {
-  std::string_view rest;
-
-  template <class Number>
-  std::optional<Number> take() {
-    if (rest.size() < sizeof(Number)) return std::nullopt;
-    Number value;
-    std::memcpy(&value, rest.data(), sizeof(value));
-    rest.remove_prefix(sizeof(value));
-    return value;
-  }
-  std::optional<std::string_view> take_text(std::size_t bytes) {
-    if (rest.size() < bytes) return std::nullopt;
-    const std::string_view text = rest.substr(0, bytes);
-    rest.remove_prefix(bytes);
-    return text;
-  }
-  std::optional<std::uint64_t> take_varint() {
-    std::uint64_t value = 0;
-    for (unsigned shift = 0; shift < 63; shift += 7) {
-      const auto byte = take<std::uint8_t>();
-      if (!byte) return std::nullopt;
-      value |= std::uint64_t{*byte & 0x7Fu} << shift;
-      if (*byte < 0x80) return value;
-    }
-    return std::nullopt;
-  }
-};
+using core::ByteReader;
+using core::put;
+using core::put_varint;
 
 std::uint64_t hash_of(std::string_view bytes) {
   return core::hash_bytes(std::as_bytes(std::span(bytes.data(), bytes.size())));
@@ -82,33 +41,33 @@ void put_change(std::string& out, std::uint8_t action, const ActionState& before
 }
 
 // Reads a change on top of the states before it; false for one that cannot be.
-bool take_change(Bytes& bytes, std::span<ActionState> states) {
-  const auto action = bytes.take<std::uint8_t>();
-  const auto flags = bytes.take<std::uint8_t>();
-  if (!action || !flags || *action >= states.size()) return false;
-  if ((*flags & ~(kHeld | kPressed | kReleased | kValue)) != 0) return false;
-  ActionState& state = states[*action];
-  if ((*flags & kValue) != 0) {
-    const auto value = bytes.take<float>();
-    if (!value || !std::isfinite(*value)) return false;
-    state.value = *value;
+bool take_change(ByteReader& bytes, std::span<ActionState> states) {
+  const auto action = bytes.get<std::uint8_t>();
+  const auto flags = bytes.get<std::uint8_t>();
+  if (bytes.failed() || action >= states.size()) return false;
+  if ((flags & ~(kHeld | kPressed | kReleased | kValue)) != 0) return false;
+  ActionState& state = states[action];
+  if ((flags & kValue) != 0) {
+    const auto value = bytes.get<float>();
+    if (bytes.failed() || !std::isfinite(value)) return false;
+    state.value = value;
   }
-  state.held = (*flags & kHeld) != 0;
-  state.pressed = (*flags & kPressed) != 0;
-  state.released = (*flags & kReleased) != 0;
+  state.held = (flags & kHeld) != 0;
+  state.pressed = (flags & kPressed) != 0;
+  state.released = (flags & kReleased) != 0;
   return true;
 }
 
 // Whether all changes can be read, and belong to steps that there are.
 bool are_whole(std::string_view changes, std::size_t actions, std::uint64_t steps) {
-  Bytes bytes{changes};
+  ByteReader bytes(changes);
   std::vector<ActionState> states(actions);
   std::uint64_t step = 0;
-  while (!bytes.rest.empty()) {
-    const auto skipped = bytes.take_varint(), count = bytes.take_varint();
-    if (!skipped || !count || *skipped == 0 || *skipped > steps - step || *count == 0) return false;
-    step += *skipped;
-    for (std::uint64_t i = 0; i < *count; ++i)
+  while (bytes.left() > 0) {
+    const std::uint64_t skipped = bytes.get_varint(), count = bytes.get_varint();
+    if (skipped == 0 || skipped > steps - step || count == 0) return false;  // 0: or failed
+    step += skipped;
+    for (std::uint64_t i = 0; i < count; ++i)
       if (!take_change(bytes, states)) return false;
   }
   return true;
@@ -175,36 +134,33 @@ std::string Recording::bytes() const {
 core::Result<Recording> Recording::parse(std::string_view bytes, std::string_view name) {
   if (bytes.substr(0, kMagic.size()) != kMagic)
     return refused(name, "this is not a recording of input");
-  Bytes rest{bytes.substr(kMagic.size())};
-  const auto format = rest.take<std::uint32_t>();
-  if (format && *format != kRecordingFormat) {
-    return refused(name, fmt::format("its format is {}; this program reads format {}", *format,
+  const std::size_t most_bytes = bytes.size() - std::min(bytes.size(), kHashBytes);
+  ByteReader rest(bytes.substr(kMagic.size()));
+  const auto format = rest.get<std::uint32_t>();
+  if (!rest.failed() && format != kRecordingFormat) {
+    return refused(name, fmt::format("its format is {}; this program reads format {}", format,
                                      kRecordingFormat));
   }
-  const std::size_t most_bytes = bytes.size() - std::min(bytes.size(), kHashBytes);
-  Bytes hash{bytes.substr(most_bytes)};
-  if (!format || hash.take<std::uint64_t>() != hash_of(bytes.substr(0, most_bytes)))
+  const auto hash = ByteReader(bytes.substr(most_bytes)).get<std::uint64_t>();
+  if (rest.failed() || hash != hash_of(bytes.substr(0, most_bytes)))
     return refused(name, "the recording is damaged or cut short");
   const tl::unexpected<core::Error> wrong = refused(name, "the recording contradicts itself");
-  rest.rest.remove_suffix(kHashBytes);
   Recording recording;
-  const auto step_s = rest.take<double>();
-  const auto actions = rest.take<std::uint32_t>();
-  const auto steps = rest.take<std::uint64_t>();
-  const auto changes = rest.take<std::uint64_t>();
-  if (!changes || !(*step_s > 0 && *step_s <= kLongestStepS) || *actions > Actions::kMostActions ||
-      *steps > kMostSteps)
+  const auto step_s = rest.get<double>();
+  const auto actions = rest.get<std::uint32_t>();
+  const auto steps = rest.get<std::uint64_t>();
+  const auto changes = rest.get<std::uint64_t>();
+  if (rest.failed() || !(step_s > 0 && step_s <= kLongestStepS) ||
+      actions > Actions::kMostActions || steps > kMostSteps)
     return wrong;
-  for (std::uint32_t i = 0; i < *actions; ++i) {
-    const auto length = rest.take<std::uint8_t>();
-    const auto text = length ? rest.take_text(*length) : std::nullopt;
-    if (!text) return wrong;
-    recording.names_.emplace_back(*text);
-  }
-  if (rest.rest.size() != *changes || !are_whole(rest.rest, *actions, *steps)) return wrong;
-  recording.step_s_ = *step_s;
-  recording.steps_ = *steps;
-  recording.changes_ = rest.rest;
+  for (std::uint32_t i = 0; i < actions; ++i)
+    recording.names_.emplace_back(rest.get_text(rest.get<std::uint8_t>()));
+  if (rest.failed() || rest.left() < kHashBytes || rest.left() - kHashBytes != changes)
+    return wrong;
+  recording.changes_ = rest.get_text(changes);
+  if (!are_whole(recording.changes_, actions, steps)) return wrong;
+  recording.step_s_ = step_s;
+  recording.steps_ = steps;
   return recording;
 }
 
@@ -235,9 +191,9 @@ core::Result<Replay> Replay::create(Recording recording, const Actions& actions,
     replay.ids_.push_back(*id);
   }
   replay.states_.resize(replay.ids_.size());
-  Bytes bytes{replay.recording_.changes_};
-  replay.next_change_ = bytes.take_varint().value_or(0);
-  replay.at_ = replay.recording_.changes_.size() - bytes.rest.size();
+  ByteReader bytes(replay.recording_.changes_);
+  replay.next_change_ = bytes.get_varint();  // 0: no change
+  replay.at_ = replay.recording_.changes_.size() - bytes.left();
   return replay;
 }
 
@@ -249,11 +205,11 @@ bool Replay::step(Actions& actions) {
   }
   ++step_;
   if (step_ == next_change_) {
-    Bytes bytes{std::string_view(recording_.changes_).substr(at_)};
-    for (std::uint64_t count = bytes.take_varint().value_or(0); count > 0; --count)
+    ByteReader bytes(std::string_view(recording_.changes_).substr(at_));
+    for (std::uint64_t count = bytes.get_varint(); count > 0; --count)
       take_change(bytes, states_);
-    if (const auto skipped = bytes.take_varint()) next_change_ += *skipped;
-    at_ = recording_.changes_.size() - bytes.rest.size();
+    next_change_ += bytes.get_varint();  // 0: that was the last one
+    at_ = recording_.changes_.size() - bytes.left();
   }
   for (std::size_t i = 0; i < ids_.size(); ++i)
     all[ids_[i]] = states_[i];

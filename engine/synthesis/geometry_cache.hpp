@@ -119,8 +119,8 @@ class GeometryCache {
   const models::Registry& registry() const { return registry_; }
 
   // Starts a batch of reservations (a tick): enforces the budget, forgets who waits for room, and
-  // keeps a little room free for this batch and the next ones, as long as there is something that
-  // unwanted: memory that is freed only when it is needed comes back some frames later.
+  // keeps a little room free for this batch and the next ones, as long as there are unwanted
+  // meshes. Memory that is freed only when it is needed comes back some frames later.
   void begin_batch();
 
   // Room for the mesh `key`, exactly as large as its type says, evicting ready meshes that

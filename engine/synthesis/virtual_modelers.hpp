@@ -24,7 +24,7 @@ class VirtualModelers {
 
   explicit VirtualModelers(unsigned modelers) : free_s_(modelers, 0.0) {}
 
-  // Hangs up a plan at `now_s`. Requires that the last one was reclaimed.
+  // Publishes a plan at `now_s`. Requires that the last one was reclaimed.
   void publish(std::vector<Request>&& plan, double now_s);
   // What is unclaimed at `now_s`, in order. Times never go back.
   std::vector<Request> reclaim(double now_s);

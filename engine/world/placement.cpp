@@ -26,6 +26,13 @@ bool may_stand(const Scatter& scatter, float least_up, const models::GroundPoint
          ground.normal.y >= least_up;
 }
 
+// The world's terrain as the function has it.
+models::Parameters unedited_terrain(const World& world) {
+  models::Parameters p = world.terrain;
+  p.set_edits(nullptr, 0);
+  return p;
+}
+
 }  // namespace
 
 Scattering::Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
@@ -108,17 +115,6 @@ double ground_margin(const World& world, int node_level) {
   return std::ldexp(cells / static_cast<double>(size - 1), node_level);
 }
 
-models::Parameters unedited_terrain(const World& world) {
-  models::Parameters p = world.terrain;
-  p.set_edits(nullptr, 0);
-  return p;
-}
-
-models::BlockGround edited_ground(const World& world, core::BlockCoord block,
-                                  std::size_t questions) {
-  return {world.terrain, block, questions};
-}
-
 std::size_t models_per_block(const World& world) {
   std::size_t count = 0;
   for (const Scatter& scatter : world.scatter)
@@ -177,7 +173,8 @@ void place_by_hand(const models::BlockEdits& edits, const models::Registry& regi
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out) {
-  place_models(world, registry, block, edited_ground(world, block, models_per_block(world)), out);
+  // world.terrain has the edits.
+  place_models(world, registry, block, {world.terrain, block, models_per_block(world)}, out);
 }
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,

@@ -85,13 +85,6 @@ models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
 // How far beyond a node's border its ground mesh depends on heights, in blocks.
 double ground_margin(const World& world, int node_level);
 
-// The world's terrain as the function has it, without edits.
-models::Parameters unedited_terrain(const World& world);
-// The ground of one block with its edits, for about `questions` queries. `world` and its edits must
-// outlive it.
-models::BlockGround edited_ground(const World& world, core::BlockCoord block,
-                                  std::size_t questions);
-
 // An upper bound of the placements of one block without edits: the sum of all counts. Exact where
 // no scatter has a filter.
 std::size_t models_per_block(const World& world);

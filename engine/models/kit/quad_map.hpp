@@ -1,7 +1,7 @@
 // A sparse map from squares of the quadtree to values, as an immutable tree: copies are O(1), and
 // changing a copy leaves all others as they were. Every square knows the hash and the summary of
 // everything in it, so large areas are compared and counted without a visit to their values. The
-// shape of the tree and its hashes depend on the content alone, not on the order of changes.
+// shape of the tree and its hashes depend on values and places alone, not on the order of changes.
 // Squares without values are left out: the tree has less than two nodes a value, and a path at most
 // 33. Any thread may read a map that nobody changes; different copies may be used at the same time.
 #pragma once
@@ -67,7 +67,7 @@ class QuadMap {
     QuadPlace place;
     std::shared_ptr<const V> value;  // null: none
     std::array<std::shared_ptr<const Cell>, 4> quarters;
-    std::uint64_t hash = 0;  // of all values in the square; never 0
+    std::uint64_t hash = 0;  // of all values in the square, and where they are; never 0
     Summary summary;         // of all of them
   };
 
@@ -97,11 +97,6 @@ class QuadMap {
         with(root_, place, value.empty() ? nullptr : std::make_shared<const V>(std::move(value)));
   }
 
-  // visit(place, value) for all values. O(values).
-  template <class Visit>
-  void each(const Visit& visit) const {
-    each_in(root_.get(), visit);
-  }
   // visit(place, before, after) for each square whose value is not the same object in both maps;
   // null where there is none. O(differences · path).
   template <class Visit>
@@ -115,15 +110,16 @@ class QuadMap {
 
   static CellPtr make(const QuadPlace& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
     auto cell = std::make_shared<Cell>();
-    std::uint64_t hash = core::mix64(place.level);
+    // Its place is part of it: the same values elsewhere are something else.
+    std::uint64_t hash = core::combine(core::combine(core::mix64(place.level), place.x), place.z);
     if (value) {
       hash = core::combine(hash, value->hash());
       cell->summary = value->summary();
     }
-    for (std::size_t q = 0; q < 4; ++q) {
-      if (!quarters[q]) continue;
-      hash = core::combine(core::combine(hash, q), quarters[q]->hash);
-      cell->summary.add(quarters[q]->summary);
+    for (const CellPtr& quarter : quarters) {
+      if (!quarter) continue;
+      hash = core::combine(hash, quarter->hash);
+      cell->summary.add(quarter->summary);
     }
     cell->place = place;
     cell->value = std::move(value);

@@ -12,14 +12,21 @@ using EditPtr = std::shared_ptr<const GroundEdit>;
 
 // The steepest slope of the curve by which edits fade out.
 constexpr double kSteepest = 1.5;
-// Cells this many levels below a node's are taken as a whole where they touch its margin.
-constexpr int kMarginLevels = 4;
+// Cells of this level and below are taken as a whole where they touch a node's margin.
+int whole_level(const QuadPlace& node) {
+  constexpr int kMarginLevels = 4;
+  return static_cast<int>(node.level) - kMarginLevels;
+}
 
 // A rectangle in blocks from block −2^31.
 struct Area {
   double x0, z0, x1, z1;
   bool touches(const Area& o) const { return x0 <= o.x1 && o.x0 <= x1 && z0 <= o.z1 && o.z0 <= z1; }
   bool holds(const Area& o) const { return x0 <= o.x0 && o.x1 <= x1 && z0 <= o.z0 && o.z1 <= z1; }
+  Area common(const Area& o) const {
+    return {std::max(x0, o.x0), std::max(z0, o.z0), std::min(x1, o.x1), std::min(z1, o.z1)};
+  }
+  double size() const { return std::max(x1 - x0, 0.0) * std::max(z1 - z0, 0.0); }  // in blocks²
 };
 
 Area area_of(const QuadPlace& place, double margin = 0) {
@@ -34,6 +41,34 @@ Area area_of(const GroundEdit& edit, double reach_m, double block_m) {
   const double z = static_cast<double>(block.z) + edit.centre.local.z / block_m;
   const double reach = reach_m / block_m;
   return {x - reach, z - reach, x + reach, z + reach};
+}
+
+std::uint64_t content_hash(const GroundEdit& edit) {
+  std::uint64_t hash = core::combine(0x6D0E, edit.id);  // the order of the edits matters
+  const auto add = [&hash](double v) {
+    hash = core::combine(hash, std::bit_cast<std::uint64_t>(v));
+  };
+  hash = core::combine(hash, static_cast<std::uint64_t>(edit.change) * 2 + (edit.square ? 1 : 0));
+  hash = core::combine(
+      hash, QuadPlace::of(edit.centre.block).x << 32 | QuadPlace::of(edit.centre.block).z);
+  for (const double v :
+       {edit.centre.local.x, edit.centre.local.z, edit.radius_m, edit.falloff, edit.height_m})
+    add(v);
+  if (edit.map) {
+    hash = core::combine(hash, (std::uint64_t{edit.map->columns} << 32) | edit.map->rows);
+    hash = core::combine(hash, core::hash_bytes(std::as_bytes(std::span(edit.map->heights_m))));
+  }
+  return hash;
+}
+
+// How far an edit moves a height at most.
+float most_of(const GroundEdit& edit) {
+  if (edit.change == GroundChange::kRaise) return static_cast<float>(std::abs(edit.height_m));
+  if (edit.change != GroundChange::kStampAdd) return 1e30F;  // the relief limits it
+  float most = 0;
+  for (const float h : edit.map->heights_m)
+    most = std::max(most, std::abs(h));
+  return most;
 }
 
 // visit(place) for the at most four squares that list an edit: as large as its influence, with some
@@ -56,178 +91,21 @@ void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
   }
 }
 
-float change_of(const GroundEdit& edit) {
-  switch (edit.change) {
-    case GroundChange::kRaise:
-      return static_cast<float>(std::abs(edit.height_m));
-    case GroundChange::kStampAdd: {
-      float most = 0;
-      for (const float h : edit.map->heights_m)
-        most = std::max(most, std::abs(h));
-      return most;
-    }
-    default:
-      return 1e30F;  // depends on the ground; the relief limits it
-  }
-}
-
-float steepness_of(const GroundEdit& edit, float change_m) {
+float steepness_of(const GroundEdit& edit) {
   double slope = kSteepest / std::max(edit.falloff * edit.radius_m, 1e-6);
   if (edit.map) {
     const double points = std::max(edit.map->columns, edit.map->rows);
     slope += points / edit.radius_m;
   }
-  return std::min(change_m, 1e6F) * static_cast<float>(slope);
+  return std::min(edit.most_m, 1e6F) * static_cast<float>(slope);
 }
 
-// The weight of an edit at a distance from its centre: smooth from 1 to 0.
-double weight_of(const GroundEdit& edit, double dx, double dz) {
-  const double away =
-      edit.square ? std::max(std::abs(dx), std::abs(dz)) : std::sqrt(dx * dx + dz * dz);
-  if (!(away <= edit.radius_m)) return 0;
-  const double fades = edit.falloff * edit.radius_m;
-  const double left = edit.radius_m - away;
-  if (left >= fades) return 1;
-  const double t = left / fades;
-  return t * t * (3 - 2 * t);
-}
-
-double height_in(const Heightmap& map, double u, double v) {
-  const auto place = [](double share, std::uint32_t points) {
-    const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(points - 1);
-    const double first = std::min(std::floor(at), static_cast<double>(points - 2));
-    return std::pair{static_cast<std::size_t>(first), at - first};
-  };
-  const auto [x, s] = place(u, map.columns);
-  const auto [z, t] = place(v, map.rows);
-  const float* const near = &map.heights_m[z * map.columns + x];
-  const float* const far = near + map.columns;
-  const double a = double{near[0]} + s * (double{near[1]} - double{near[0]});
-  const double b = double{far[0]} + s * (double{far[1]} - double{far[0]});
-  return a + t * (b - a);
-}
-
-// A height of the ground, in metres, as an edit leaves it.
-double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
-  const double weight = weight_of(edit, dx, dz);
-  const auto stamp = [&] {
-    return height_in(*edit.map, 0.5 + 0.5 * dx / edit.radius_m, 0.5 + 0.5 * dz / edit.radius_m);
-  };
-  switch (edit.change) {
-    case GroundChange::kRaise:
-      return height_m + weight * edit.height_m;
-    case GroundChange::kFlatten:
-      return height_m + weight * (edit.height_m - height_m);
-    case GroundChange::kStampAdd:
-      return height_m + weight * stamp();
-    case GroundChange::kStampSet:
-      return height_m + weight * (stamp() - height_m);
-  }
-  return height_m;
-}
-
-struct Range {
-  std::size_t first, end;
-  bool empty() const { return first >= end; }
-};
-
-// One call of GroundEdits::apply(): walks down the quadtree with the samples of each square.
-class Application {
- public:
-  Application(const GroundScale& scale, std::span<const std::int64_t> x,
-              std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
-              double narrowest_m)
-      : scale_(scale), x_(x), z_(z), values_(values), stride_(stride), narrowest_m_(narrowest_m) {}
-
-  void walk(const Cell* cell, QuadPlace region, Range columns, Range rows) {
-    if (cell != nullptr && active_.empty() && cell->place != region) {
-      region = cell->place;
-      columns = narrowed(x_, columns, region.x, region.level);
-      rows = narrowed(z_, rows, region.z, region.level);
-    }
-    if (columns.empty() || rows.empty()) return;
-    if (cell == nullptr) return act(columns, rows);
-    const std::size_t before = active_.size();
-    const bool itself = cell->place == region;
-    if (itself && cell->value) {
-      for (const EditPtr& edit : cell->value->edits) {
-        if (edit->radius_m >= narrowest_m_) active_.push_back(edit.get());
-      }
-    }
-    if (region.level == 0) {
-      act(columns, rows);
-    } else {
-      for (std::size_t q = 0; q < 4; ++q) {
-        const QuadPlace quarter = region.quarter(q);
-        const Cell* below = itself ? cell->quarters[q].get()
-                                   : (region.quarter_of(cell->place) == q ? cell : nullptr);
-        walk(below, quarter, narrowed(x_, columns, quarter.x, quarter.level),
-             narrowed(z_, rows, quarter.z, quarter.level));
-      }
-    }
-    active_.resize(before);
-  }
-
- private:
-  // The samples of `range` that lie in a square.
-  Range narrowed(std::span<const std::int64_t> at, Range range, std::uint64_t index,
-                 std::uint32_t level) const {
-    const auto cell = [&](std::uint64_t i) {
-      return (static_cast<std::int64_t>(i << level) - (std::int64_t{1} << 31)) *
-             scale_.cells_per_block;
-    };
-    const auto begin = at.begin() + static_cast<std::ptrdiff_t>(range.first);
-    const auto end = at.begin() + static_cast<std::ptrdiff_t>(std::max(range.end, range.first));
-    const auto first = std::lower_bound(begin, end, cell(index));
-    const auto last = std::lower_bound(first, end, cell(index + 1));
-    return {static_cast<std::size_t>(first - at.begin()),
-            static_cast<std::size_t>(last - at.begin())};
-  }
-
-  void act(Range columns, Range rows) {
-    if (active_.empty()) return;
-    ordered_ = active_;
-    std::ranges::sort(ordered_, {}, &GroundEdit::id);
-    for (const GroundEdit* edit : ordered_)
-      act(*edit, columns, rows);
-  }
-
-  // Metres from the centre of an edit to a lattice point, along one axis. Exact in the same way for
-  // every node that has the point.
-  double away_m(std::int64_t at, std::int32_t block, double local_m) const {
-    return static_cast<double>(at - std::int64_t{block} * scale_.cells_per_block) * scale_.cell_m -
-           local_m;
-  }
-
-  void act(const GroundEdit& edit, Range columns, Range rows) {
-    const core::WorldPosition& centre = edit.centre;
-    for (std::size_t k = rows.first; k < rows.end; ++k) {
-      const double dz = away_m(z_[k], centre.block.z, centre.local.z);
-      if (std::abs(dz) > edit.radius_m) continue;
-      for (std::size_t i = columns.first; i < columns.end; ++i) {
-        const double dx = away_m(x_[i], centre.block.x, centre.local.x);
-        if (std::abs(dx) > edit.radius_m) continue;
-        float& value = values_[k * stride_ + i];
-        const double height_m = edited(edit, double{value} * scale_.unit_m, dx, dz);
-        value = std::clamp(static_cast<float>(height_m / scale_.unit_m), 0.0F, scale_.highest);
-      }
-    }
-  }
-
-  const GroundScale& scale_;
-  std::span<const std::int64_t> x_, z_;
-  std::span<float> values_;
-  std::size_t stride_;
-  double narrowest_m_;
-  std::vector<const GroundEdit*> active_, ordered_;
-};
-
-void add_hashes(const Cell* cell, const Area& area, int whole_level, double block_m,
+void add_hashes(const Cell* cell, const Area& area, int whole, double block_m,
                 std::uint64_t& hash) {
   if (cell == nullptr) return;
   const Area own = area_of(cell->place);
   if (!own.touches(area)) return;
-  if (static_cast<int>(cell->place.level) <= whole_level || area.holds(own)) {
+  if (static_cast<int>(cell->place.level) <= whole || area.holds(own)) {
     hash = core::combine(hash, cell->hash);
     return;
   }
@@ -238,19 +116,21 @@ void add_hashes(const Cell* cell, const Area& area, int whole_level, double bloc
     }
   }
   for (const auto& quarter : cell->quarters)
-    add_hashes(quarter.get(), area, whole_level, block_m, hash);
+    add_hashes(quarter.get(), area, whole, block_m, hash);
 }
 
-bool same(const Cell* a, const Cell* b, const Area& area) {
+// Cells that add_hashes() takes as a whole are compared as a whole.
+bool same(const Cell* a, const Cell* b, const Area& area, int whole) {
   if (a == b) return true;
   const auto outside = [&](const Cell* c) {
     return c == nullptr || !area_of(c->place).touches(area);
   };
   if (a == nullptr || b == nullptr || a->place != b->place) return outside(a) && outside(b);
   if (outside(a)) return true;
+  if (static_cast<int>(a->place.level) <= whole) return a->hash == b->hash;
   if (a->value != b->value) return false;
   for (std::size_t q = 0; q < 4; ++q) {
-    if (!same(a->quarters[q].get(), b->quarters[q].get(), area)) return false;
+    if (!same(a->quarters[q].get(), b->quarters[q].get(), area, whole)) return false;
   }
   return true;
 }
@@ -279,9 +159,8 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
   if (cell->value) {
     for (const EditPtr& edit : cell->value->edits) {
       if (!area_of(*edit, edit->radius_m, block_m).touches(area)) continue;
-      const float change_m = change_of(*edit);
-      most.change_m += change_m;
-      most.steepness += steepness_of(*edit, change_m);
+      most.change_m += edit->most_m;
+      most.steepness += steepness_of(*edit);
     }
   }
   for (const auto& quarter : cell->quarters)
@@ -289,29 +168,39 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
   return most;
 }
 
+// The time that an edit takes for a height, in units of a simple one. Measured.
+double weight_of(const GroundEdit& edit) {
+  return is_stamp(edit.change) ? 3 : 1;
+}
+
+// The weighted areas of edits within an area, added up, in blocks².
+double work_in(const Cell* cell, const Area& area, double block_m) {
+  if (cell == nullptr) return 0;
+  const Area own = area_of(cell->place);
+  if (!own.touches(area)) return 0;
+  if (area.holds(own)) return cell->summary.work_m2 / (block_m * block_m);
+  double sum = 0;
+  if (cell->value) {
+    const Area part = own.common(area);
+    for (const EditPtr& edit : cell->value->edits)
+      sum += weight_of(*edit) * area_of(*edit, edit->radius_m, block_m).common(part).size();
+  }
+  for (const auto& quarter : cell->quarters)
+    sum += work_in(quarter.get(), area, block_m);
+  return sum;
+}
+
 }  // namespace
 
-std::uint64_t content_hash(const GroundEdit& edit) {
-  std::uint64_t hash = 0x6D0E;
-  const auto add = [&hash](double v) {
-    hash = core::combine(hash, std::bit_cast<std::uint64_t>(v));
-  };
-  hash = core::combine(hash, static_cast<std::uint64_t>(edit.change) * 2 + (edit.square ? 1 : 0));
-  hash = core::combine(
-      hash, QuadPlace::of(edit.centre.block).x << 32 | QuadPlace::of(edit.centre.block).z);
-  for (const double v :
-       {edit.centre.local.x, edit.centre.local.z, edit.radius_m, edit.falloff, edit.height_m})
-    add(v);
-  if (edit.map) {
-    hash = core::combine(hash, (std::uint64_t{edit.map->columns} << 32) | edit.map->rows);
-    hash = core::combine(hash, core::hash_bytes(std::as_bytes(std::span(edit.map->heights_m))));
-  }
-  return hash;
+void seal(GroundEdit& edit) {
+  edit.content = content_hash(edit);
+  edit.most_m = most_of(edit);
 }
 
 void GroundCell::Summary::add(const Summary& quarter) {
   below_change_m = std::max(below_change_m, quarter.change_m + quarter.below_change_m);
   below_steepness = std::max(below_steepness, quarter.steepness + quarter.below_steepness);
+  work_m2 += quarter.work_m2;
 }
 
 std::uint64_t GroundCell::hash() const {
@@ -324,9 +213,9 @@ std::uint64_t GroundCell::hash() const {
 GroundCell::Summary GroundCell::summary() const {
   Summary sum;
   for (const EditPtr& edit : edits) {
-    const float change_m = change_of(*edit);
-    sum.change_m += change_m;
-    sum.steepness += steepness_of(*edit, change_m);
+    sum.change_m += edit->most_m;
+    sum.steepness += steepness_of(*edit);
+    sum.work_m2 += weight_of(*edit) * 4 * edit->radius_m * edit->radius_m;
   }
   return sum;
 }
@@ -341,7 +230,7 @@ bool GroundEdits::add(const EditPtr& edit, double block_m) {
   each_place(*edit, block_m, [&](const QuadPlace& place) {
     const GroundCell* before = cells_.find(place);
     GroundCell cell = before != nullptr ? *before : GroundCell{};
-    const auto at = std::ranges::upper_bound(cell.edits, edit->id, {}, &GroundEdit::id);
+    const auto at = std::ranges::upper_bound(cell.edits, edit->order(), {}, &GroundEdit::order);
     cell.edits.insert(at, edit);
     cells_.set(place, std::move(cell));
   });
@@ -353,21 +242,20 @@ void GroundEdits::remove(const GroundEdit& edit, double block_m) {
     const GroundCell* before = cells_.find(place);
     if (before == nullptr) return;
     GroundCell cell = *before;
-    std::erase_if(cell.edits, [&](const EditPtr& e) { return e->id == edit.id; });
+    std::erase_if(cell.edits, [&](const EditPtr& e) { return e->order() == edit.order(); });
     cells_.set(place, std::move(cell));
   });
 }
 
 std::uint64_t GroundEdits::hash_of(const QuadPlace& node, double margin, double block_m) const {
   std::uint64_t hash = 0;
-  const int whole = static_cast<int>(node.level) - kMarginLevels;
-  add_hashes(cells_.root(), area_of(node, margin), whole, block_m, hash);
+  add_hashes(cells_.root(), area_of(node, margin), whole_level(node), block_m, hash);
   return hash;
 }
 
 bool GroundEdits::same_in(const GroundEdits& a, const GroundEdits& b, const QuadPlace& node,
                           double margin) {
-  return same(a.cells_.root(), b.cells_.root(), area_of(node, margin));
+  return same(a.cells_.root(), b.cells_.root(), area_of(node, margin), whole_level(node));
 }
 
 bool GroundEdits::reaches(const QuadPlace& node, double block_m) const {
@@ -381,12 +269,12 @@ double GroundEdits::error_m(const QuadPlace& node, double spacing_m, double bloc
   return std::min(change_m, steepness * spacing_m);
 }
 
-void GroundEdits::apply(const GroundScale& scale, std::span<const std::int64_t> x,
-                        std::span<const std::int64_t> z, std::span<float> values,
-                        std::size_t stride, double narrowest_m) const {
-  if (cells_.empty()) return;
-  Application(scale, x, z, values, stride, narrowest_m)
-      .walk(cells_.root(), {QuadPlace::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
+double GroundEdits::edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const {
+  const auto block = [&scale](std::int64_t vertex) {
+    return static_cast<double>(vertex) / static_cast<double>(scale.cells_per_block) + 0x1.0p31;
+  };
+  const Area area{block(x.first), block(z.first), block(x.last), block(z.last)};
+  return area.size() > 0 ? work_in(cells_.root(), area, scale.block_m()) / area.size() : 0;
 }
 
 }  // namespace psygen::models

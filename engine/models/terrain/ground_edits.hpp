@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
@@ -22,6 +23,9 @@ enum class GroundChange : std::uint8_t {
   kStampAdd,  // adds the heightmap
   kStampSet,  // replaces it by the heightmap
 };
+constexpr bool is_stamp(GroundChange change) {
+  return change >= GroundChange::kStampAdd;
+}
 
 // Heights in metres over a square, row by row from its corner at the least x and z. Linear between
 // its points; the outer ones lie on the square's border.
@@ -33,17 +37,23 @@ struct Heightmap {
 // One edit. Immutable once it is part of a GroundEdits.
 struct GroundEdit {
   GroundChange change = GroundChange::kRaise;
-  bool square = false;         // else a disc; heightmaps are always square
+  bool square = false;         // else a disc; a stamp is always a square
   core::WorldPosition centre;  // normalised; y is not used
   double radius_m = 1;         // of the disc, or half the side of the square
   double falloff = 0.5;        // share of the radius over which the edit fades out; 0: a cliff
   double height_m = 0;         // kRaise: difference; kFlatten: height above 0
   std::shared_ptr<const Heightmap> map;  // of the two stamps
-  std::uint32_t id = 0;                  // edits act in the order of their ids
-  std::uint64_t content = 0;             // content_hash()
+  std::uint32_t id = 0;                  // unique in the block of the centre
+  // Set by seal():
+  std::uint64_t content = 0;  // identifies everything above
+  float most_m = 0;  // how far it moves a height at most; 1e30: as far as the relief allows
+
+  // Edits act in this order.
+  std::pair<std::uint32_t, core::BlockCoord> order() const { return {id, centre.block}; }
 };
-// Identifies everything but the id.
-std::uint64_t content_hash(const GroundEdit& edit);
+// Sets the last two members of an edit from the others, once these are final. Linear in the
+// heightmap.
+void seal(GroundEdit& edit);
 
 // The lattice of a terrain and its heights: vertices are counted in cells of node level 0.
 struct GroundScale {
@@ -54,7 +64,12 @@ struct GroundScale {
   double block_m() const { return static_cast<double>(cells_per_block) * cell_m; }
 };
 
-// The edits whose influence begins in one square of the quadtree, by growing id.
+// A range of a lattice along one axis: coordinates of vertices, both included.
+struct LatticeSpan {
+  std::int64_t first = 0, last = 0;
+};
+
+// The edits whose influence begins in one square of the quadtree, in the order in which they act.
 struct GroundCell {
   std::vector<std::shared_ptr<const GroundEdit>> edits;
 
@@ -62,6 +77,7 @@ struct GroundCell {
   struct Summary {
     float change_m = 0, steepness = 0;              // of this square's own edits, added up
     float below_change_m = 0, below_steepness = 0;  // the most in one of its quarters
+    double work_m2 = 0;  // of all edits in it: their areas, weighted by the time for a height
     void add(const Summary& quarter);
   };
   bool empty() const { return edits.empty(); }
@@ -79,10 +95,9 @@ class GroundEdits {
   static constexpr std::size_t kMostTogether = 1024;
 
   bool empty() const { return cells_.empty(); }
-  std::uint64_t hash() const { return cells_.empty() ? 0 : cells_.root()->hash; }
 
-  // Adds an edit, or takes the one with this id away, in O(log n). add() returns false, and changes
-  // nothing, where kMostTogether are there already.
+  // Adds a sealed edit, or takes the one with this id and block away, in O(log n + kMostTogether).
+  // add() returns false, and changes nothing, where kMostTogether are there already.
   bool add(const std::shared_ptr<const GroundEdit>& edit, double block_m);
   void remove(const GroundEdit& edit, double block_m);
 
@@ -97,6 +112,11 @@ class GroundEdits {
   // How far the ground may lie off a mesh of the node whose vertices are `spacing_m` apart, because
   // of edits between them. An upper bound in metres; 0: there are none.
   double error_m(const QuadPlace& node, double spacing_m, double block_m) const;
+
+  // About how many edits apply() makes on a height, on average over the rectangle, in units of the
+  // time for a simple one; a stamp counts as three. Up to four times too many where edits are much
+  // smaller than the rectangle. O(log n + edits at its border).
+  double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
 
   // Applies the edits to heights at the lattice points (x[i], z[k]), values[k · stride + i]. x and
   // z ascend. Edits of a radius below `narrowest_m` are left out. Linear in the heights that

@@ -78,6 +78,11 @@ struct PlannedGrid {
   double spacing_of_noise(const TerrainShape& shape) const {
     return std::ldexp(static_cast<double>(spacing), shape.node_level);
   }
+  // From the first to the last of its points along an axis.
+  LatticeSpan lattice(const TerrainShape& shape, const LightAxis& axis) const {
+    return {shape.world_of(0, (axis.first - kLightReach) * spacing),
+            shape.world_of(0, (axis.last + kLightReach) * spacing)};
+  }
   int octaves(const TerrainShape& shape) const {
     return shape.noise.octaves_wider_than(kOctavePoints * spacing_of_noise(shape));
   }
@@ -177,14 +182,16 @@ TerrainLight::TerrainLight(const TerrainShape& shape, const SunDirection& sun, s
   if (sun.is_down()) sun_.fill(0);
 }
 
-double TerrainLight::noise_work(const TerrainShape& shape, const SunDirection& sun,
-                                std::int64_t block_x, std::int64_t block_z, std::size_t finest) {
+double TerrainLight::work(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
+                          std::int64_t block_z, std::size_t finest) {
   const LightPlan plan(shape, sun, block_x, block_z, finest);
   double work = 0;
   for (std::size_t g = 0; g < plan.count; ++g) {
     const PlannedGrid& grid = plan.grids[g];
     work += shape.noise.work(grid.columns(), grid.rows(), grid.spacing_of_noise(shape),
                              grid.octaves(shape));
+    const auto heights = static_cast<double>(grid.columns() * grid.rows());
+    work += shape.edit_work(grid.lattice(shape, grid.x), grid.lattice(shape, grid.z), heights);
   }
   return work;
 }

@@ -47,9 +47,10 @@ class TerrainLight {
   // The light for pack_terrain(). Points into this object.
   LightSamples samples() const;
 
-  // The part of the noise in the constructor's time, in units of RidgedNoise::work().
-  static double noise_work(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
-                           std::int64_t block_z, std::size_t finest);
+  // The part of the heights, of noise and edits, in the constructor's time, in units of
+  // RidgedNoise::work().
+  static double work(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
+                     std::int64_t block_z, std::size_t finest);
 
  private:
   static constexpr std::size_t kRows = (kMaxTerrainSize - 1) / kLightCells + 3;

@@ -41,12 +41,16 @@ struct TerrainShape {
     noise.evaluate(columns, rows, values, stride, octaves);
     if (edits != nullptr) edit(columns, rows, values, stride, narrowest_m);
   }
+  // The time that edits take in evaluate() of so many heights, spread evenly over a rectangle in
+  // cells of node level 0, in units of RidgedNoise::work(). 0 without edits.
+  double edit_work(LatticeSpan x, LatticeSpan z, double heights) const;
   // The quantised height of a value of the noise, 0 … 65535. The same bits as in the kernel.
   std::uint16_t quantise(float noise_value) const {
     return static_cast<std::uint16_t>(round_to_int(std::min(noise_value * quantum, 65535.0F)));
   }
 
  private:
+  GroundScale scale() const;
   void edit(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
             std::span<float> values, std::size_t stride, double narrowest_m) const;
 };

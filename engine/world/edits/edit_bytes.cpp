@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
-#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include "engine/core/bytes.hpp"
+#include "engine/core/utf8.hpp"
+#include "engine/world/edits/edit_checks.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world {
@@ -20,65 +21,7 @@ using models::PlacedModel;
 using models::RemovedModel;
 
 constexpr std::uint32_t kMagic = 0x44454750;  // "PGED"
-static_assert(std::endian::native == std::endian::little, "bytes are stored as they are");
-
-class Writer {
- public:
-  template <class T>
-  void put(T value) {
-    const auto* const from = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), from, from + sizeof value);
-  }
-  template <class T>
-  void put_all(std::span<const T> values) {
-    const auto from = std::as_bytes(values);
-    bytes_.insert(bytes_.end(), from.begin(), from.end());
-  }
-  std::vector<std::byte> take() { return std::move(bytes_); }
-
- private:
-  std::vector<std::byte> bytes_;
-};
-
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-
-  // The next value; 0 and failed() where there is none.
-  template <class T>
-  T get() {
-    T value{};
-    if (!has(sizeof value)) return value;
-    std::memcpy(&value, bytes_.data(), sizeof value);
-    bytes_ = bytes_.subspan(sizeof value);
-    return value;
-  }
-  template <class T>
-  std::vector<T> get_all(std::size_t count) {
-    if (count > bytes_.size() / sizeof(T)) failed_ = true;
-    if (failed_) return {};
-    std::vector<T> values(count);
-    if (count > 0) std::memcpy(values.data(), bytes_.data(), count * sizeof(T));
-    bytes_ = bytes_.subspan(count * sizeof(T));
-    return values;
-  }
-  // A count of things of at least `each_bytes`, all of which must be there.
-  std::size_t count(std::size_t each_bytes) {
-    const auto n = get<std::uint32_t>();
-    if (n > bytes_.size() / each_bytes) failed_ = true;
-    return failed_ ? 0 : n;
-  }
-  bool failed() const { return failed_; }
-  bool at_end() const { return bytes_.empty(); }
-
- private:
-  bool has(std::size_t count) {
-    if (bytes_.size() < count) failed_ = true;
-    return !failed_;
-  }
-  std::span<const std::byte> bytes_;
-  bool failed_ = false;
-};
+using Bytes = std::vector<std::byte>;
 
 // Decodes one block.
 class BlockReader {
@@ -101,7 +44,7 @@ class BlockReader {
       if (in_.failed()) return broken("they end too early");
       if (!ok) return broken(ok.error().message);
     }
-    if (!in_.at_end()) return broken("there are more than belong to it");
+    if (in_.left() > 0) return broken("there are more than belong to it");
     if (edits.removed.size() + edits.placed.size() + edits.ground.size() > kMaxEditsPerBlock)
       return broken(fmt::format("more than {} edits", kMaxEditsPerBlock));
     return edits;
@@ -128,7 +71,7 @@ class BlockReader {
   }
 
   core::Result<void> read_removed(BlockEdits& edits) {
-    const std::size_t count = in_.count(16);
+    const std::size_t count = in_.get_count(16);
     for (std::size_t i = 0; i < count; ++i) {
       RemovedModel r;
       r.index = in_.get<std::uint32_t>();
@@ -138,6 +81,9 @@ class BlockReader {
       if (i > 0 && r.index <= edits.removed.back().index) return wrong("models are not in order");
       if (r.index >= models_per_block(world_))
         return wrong(fmt::format("the block has no model {}", r.index));
+      if (r.moved_id > kMaxEditId)
+        return wrong(
+            fmt::format("a moved model has the id {}, and {} is the last", r.moved_id, kMaxEditId));
       edits.removed.push_back(r);
     }
     return {};
@@ -145,21 +91,15 @@ class BlockReader {
 
   // A model type by its name. A name of 255 letters is the longest.
   core::Result<models::ModelIndex> read_type() {
-    const std::vector<char> letters = in_.get_all<char>(in_.get<std::uint8_t>());
+    const std::string_view name = in_.get_text(in_.get<std::uint8_t>());
     if (in_.failed()) return wrong("");
-    const std::string name(letters.begin(), letters.end());
     const int index = registry_.find(name);
-    if (index < 0) return wrong(fmt::format("there is no model type \"{}\"", printable(name)));
+    if (index < 0) return wrong(fmt::format("there is no model type \"{}\"", core::shown(name)));
     return static_cast<models::ModelIndex>(index);
-  }
-  static std::string printable(std::string name) {
-    std::ranges::replace_if(
-        name, [](char c) { return c < ' ' || c > '~'; }, '?');
-    return name;
   }
 
   core::Result<void> read_placed(BlockEdits& edits) {
-    const std::size_t count = in_.count(18);
+    const std::size_t count = in_.get_count(18);
     for (std::size_t i = 0; i < count; ++i) {
       PlacedModel p;
       p.id = in_.get<std::uint32_t>();
@@ -187,7 +127,7 @@ class BlockReader {
   }
 
   core::Result<void> read_ground(BlockEdits& edits) {
-    const std::size_t count = in_.count(46);
+    const std::size_t count = in_.get_count(46);
     for (std::size_t i = 0; i < count; ++i) {
       GroundEdit e;
       e.id = in_.get<std::uint32_t>();
@@ -202,13 +142,16 @@ class BlockReader {
       e.radius_m = in_.get<double>();
       e.falloff = in_.get<double>();
       e.height_m = in_.get<double>();
-      if (e.change >= models::GroundChange::kStampAdd) e.map = read_map();
+      if (is_stamp(e.change)) {
+        e.square = true;
+        e.map = read_map();
+      }
       if (in_.failed()) return {};
       if (!is_next_id(e.id, i > 0 ? edits.ground.back()->id : 0))
         return wrong("ids are not in order");
       if (auto ok = check_inside(e.centre.local.x, e.centre.local.z); !ok) return ok;
       if (auto ok = check_ground(world_, e); !ok) return ok;
-      e.content = content_hash(e);
+      seal(e);
       edits.ground.push_back(std::make_shared<const GroundEdit>(std::move(e)));
     }
     return {};
@@ -226,34 +169,34 @@ class BlockReader {
   const World& world_;
   const models::Registry& registry_;
   core::BlockCoord block_;
-  Reader in_;
+  core::ByteReader in_;
 };
 
-void put_placed(const PlacedModel& p, const models::Registry& registry, Writer& out) {
+void put_placed(const PlacedModel& p, const models::Registry& registry, Bytes& out) {
   const models::ModelType& type = registry[p.model];
-  out.put(p.id);
-  out.put(p.local_m.x);
-  out.put(p.local_m.y);
-  out.put(p.above_m);
+  core::put(out, p.id);
+  core::put(out, p.local_m.x);
+  core::put(out, p.local_m.y);
+  core::put(out, p.above_m);
   const std::string_view name = type.name().substr(0, 255);
-  out.put(static_cast<std::uint8_t>(name.size()));
-  out.put_all(std::span<const char>(name));
+  core::put(out, static_cast<std::uint8_t>(name.size()));
+  core::put_all(out, std::span<const char>(name));
   const std::size_t values = type.parameters().size();
-  out.put(static_cast<std::uint8_t>(values));
+  core::put(out, static_cast<std::uint8_t>(values));
   for (std::size_t k = 0; k < values; ++k)
-    out.put(p.parameters.integer(k));
+    core::put(out, p.parameters.integer(k));
 }
 
-void put_ground(const GroundEdit& e, Writer& out) {
-  out.put(e.id);
-  out.put(static_cast<std::uint8_t>(e.change));
-  out.put(static_cast<std::uint8_t>(e.square ? 1 : 0));
+void put_ground(const GroundEdit& e, Bytes& out) {
+  core::put(out, e.id);
+  core::put(out, static_cast<std::uint8_t>(e.change));
+  core::put(out, static_cast<std::uint8_t>(e.square ? 1 : 0));
   for (const double v : {e.centre.local.x, e.centre.local.z, e.radius_m, e.falloff, e.height_m})
-    out.put(v);
-  if (e.change < models::GroundChange::kStampAdd) return;
-  out.put(e.map->columns);
-  out.put(e.map->rows);
-  out.put_all(std::span<const float>(e.map->heights_m));
+    core::put(out, v);
+  if (!is_stamp(e.change)) return;
+  core::put(out, e.map->columns);
+  core::put(out, e.map->rows);
+  core::put_all(out, std::span<const float>(e.map->heights_m));
 }
 
 }  // namespace
@@ -262,33 +205,28 @@ std::vector<std::byte> encode_block(const Edits& edits, const models::Registry& 
                                     core::BlockCoord block) {
   const BlockEdits* const of_block = edits.layer() ? edits.layer()->block(block) : nullptr;
   if (of_block == nullptr) return {};
-  Writer out;
-  out.put(kMagic);
-  out.put(kEditFormat);
-  out.put(static_cast<std::uint32_t>(of_block->removed.size()));
+  Bytes out;
+  core::put(out, kMagic);
+  core::put(out, kEditFormat);
+  core::put(out, static_cast<std::uint32_t>(of_block->removed.size()));
   for (const RemovedModel& r : of_block->removed) {
-    out.put(r.index);
-    out.put(r.moved_id);
-    out.put(r.moved_to.x);
-    out.put(r.moved_to.z);
+    core::put(out, r.index);
+    core::put(out, r.moved_id);
+    core::put(out, r.moved_to.x);
+    core::put(out, r.moved_to.z);
   }
-  out.put(static_cast<std::uint32_t>(of_block->placed.size()));
+  core::put(out, static_cast<std::uint32_t>(of_block->placed.size()));
   for (const PlacedModel& p : of_block->placed)
     put_placed(p, registry, out);
-  out.put(static_cast<std::uint32_t>(of_block->ground.size()));
+  core::put(out, static_cast<std::uint32_t>(of_block->ground.size()));
   for (const auto& e : of_block->ground)
     put_ground(*e, out);
-  return out.take();
-}
-
-core::Result<BlockEdits> decode_block(const World& world, const models::Registry& registry,
-                                      core::BlockCoord block, std::span<const std::byte> bytes) {
-  return BlockReader(world, registry, block, bytes).read();
+  return out;
 }
 
 core::Result<void> load_block(Edits& edits, const World& world, const models::Registry& registry,
                               core::BlockCoord block, std::span<const std::byte> bytes) {
-  auto decoded = decode_block(world, registry, block, bytes);
+  auto decoded = BlockReader(world, registry, block, bytes).read();
   if (!decoded) return tl::unexpected(decoded.error());
   return edits.replace_block(world, block, std::move(*decoded));
 }

@@ -20,14 +20,9 @@ inline constexpr std::uint16_t kEditFormat = 1;
 std::vector<std::byte> encode_block(const Edits& edits, const models::Registry& registry,
                                     core::BlockCoord block);
 
-// The edits of a block from its bytes. Fails with kParse for bytes of another kind, a newer version
-// or a broken content, and with the sentences of Edits for values that are not allowed in `world`.
-core::Result<models::BlockEdits> decode_block(const World& world, const models::Registry& registry,
-                                              core::BlockCoord block,
-                                              std::span<const std::byte> bytes);
-
-// Replaces the edits of a block by those in the bytes. Blocks may be loaded in any order. On
-// failure `edits` stays as it was.
+// Replaces the edits of a block by those in the bytes. Blocks may be loaded in any order. Fails
+// with kParse for bytes of another kind, a newer version, a broken content or values that Edits
+// would refuse in `world`. On failure `edits` stays as it was.
 core::Result<void> load_block(Edits& edits, const World& world, const models::Registry& registry,
                               core::BlockCoord block, std::span<const std::byte> bytes);
 

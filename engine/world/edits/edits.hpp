@@ -1,9 +1,11 @@
 // Edits of a world that persist: models are removed, moved and placed, ground is raised, flattened
 // and shaped by heightmaps. A sparse layer over the world's function. Everything that shows the
 // world shows its edits: set_edits(world, edits.layer()), or Scene::edit() for a running scene.
-// A value: copies are O(1), and a copy that was kept takes everything back, exactly. Every change
-// is O(log n). What is impossible is refused with a sentence and changes nothing. One thread at a
-// time may change an object; layers that it gave away are immutable, for any thread.
+// A value: copies are O(1), and a copy that was kept takes everything back, exactly. A change
+// copies a path of the tree and the edits of its block; one of the ground also the edits that
+// overlap it: O(log n + edits copied). What is impossible is refused with a sentence and changes
+// nothing. One thread at a time may change an object; layers that it gave away are immutable, for
+// any thread.
 #pragma once
 
 #include <cstdint>
@@ -63,8 +65,6 @@ class Edits {
   const std::shared_ptr<const models::EditLayer>& layer() const { return layer_; }
   bool empty() const { return layer_ == nullptr; }
   EditCounts counts() const;
-  // Identifies all edits; 0: none. Does not depend on their history, except for ids.
-  std::uint64_t hash() const;
 
   // Models -------------------------------------------------------------------------------------
   // Removes a model, such as a felled tree. Nothing happens if it is removed already.
@@ -82,7 +82,8 @@ class Edits {
   core::Result<void> remove_placed(const EditName& model);
 
   // Ground -------------------------------------------------------------------------------------
-  // Adds an edit of the ground, after all others. `id` and `content` of the argument are not used.
+  // Adds an edit of the ground, after all others. Stamps are always squares, and only they have a
+  // heightmap. `id` of the argument, and what seal() sets, are not used.
   core::Result<EditName> edit_ground(const World& world, models::GroundEdit edit);
   // The usual ones: raises ground (or digs, with a negative height), and flattens it to a height,
   // in a disc of this radius whose outer half fades out.
@@ -100,8 +101,11 @@ class Edits {
 
  private:
   core::Result<std::uint32_t> next_id() const;
-  const models::BlockEdits* block(core::BlockCoord at) const;
-  void commit(models::EditLayer layer);
+  // Copies, to be changed: of all edits, and of those of a block.
+  models::EditLayer copy() const;
+  models::BlockEdits edits_of(core::BlockCoord block) const;
+  // Takes over a changed layer with these edits of a block.
+  void commit(models::EditLayer layer, core::BlockCoord block, models::BlockEdits edits);
 
   std::shared_ptr<const models::EditLayer> layer_;
 };
@@ -109,15 +113,5 @@ class Edits {
 // The blocks whose edits differ, in no particular order: those that must be stored again.
 // O(differences · log n).
 std::vector<core::BlockCoord> changed_blocks(const Edits& before, const Edits& after);
-
-// Fails with a sentence for edits that Edits would refuse. `block` is the one that they belong to.
-core::Result<void> check_ground(const World& world, const models::GroundEdit& edit);
-core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
-                               const models::Parameters& parameters, double above_m);
-// The normalised place, or why there is none: not finite, or outside the world.
-core::Result<core::WorldPosition> check_place(const World& world, const core::WorldPosition& at);
-// PlacedModel::reach_m of a model with its foot so high above the ground.
-glm::vec3 placed_reach(const models::ModelType& type, const models::Parameters& parameters,
-                       double above_m);
 
 }  // namespace psygen::world

@@ -10,6 +10,7 @@
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/far/form_writer.hpp"
+#include "engine/world/far/merged_identity.hpp"
 #include "engine/world/far/merged_plan.hpp"
 #include "engine/world/far/node_walk.hpp"
 #include "engine/world/far/placed_forms.hpp"
@@ -23,19 +24,6 @@ using models::MeshView;
 using models::Parameters;
 using models::ParameterSpec;
 
-constexpr models::ParameterType kInteger = models::ParameterType::kInteger;
-constexpr models::ParameterSource kPlaced = models::ParameterSource::kPlaced;
-constexpr std::uint64_t kEdition = 4;  // version of the meshes that this file makes
-
-constexpr ParameterSpec kSchema[kMergedParameterCount] = {
-    {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
-     kPlaced},
-    {"block_z", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along z",
-     kPlaced},
-    {"node_level", kInteger, "", 1, 1, kMaxMergedLevel, 1, kMaxMergedLevel,
-     "the node is 2^node_level blocks wide and long", kPlaced},
-};
-
 constexpr int kDetails = 2;
 // Error of the forms of the next node level, relative to the height of the models. It doubles with
 // every node level.
@@ -46,40 +34,10 @@ int level_of(const Parameters& p) {
       std::clamp<std::int64_t>(p.integer(kMergedNodeLevel), 1, kMaxMergedLevel));
 }
 
-std::uint64_t identity_of(const World& world, const models::Registry& registry) {
-  std::uint64_t h = core::combine(kEdition, world.seed);
-  const auto add = [&h](std::uint64_t v) { h = core::combine(h, v); };
-  const auto add_real = [&add](double v) { add(std::bit_cast<std::uint64_t>(v)); };
-  add(static_cast<std::uint64_t>(world.blocks_x));
-  add(static_cast<std::uint64_t>(world.blocks_z));
-  add(models::parameters_hash(registry[world.terrain_model], world.terrain));
-  for (const Scatter& s : world.scatter) {
-    const models::ModelType& type = registry[s.model];
-    add(core::hash_bytes(std::as_bytes(std::span(type.name()))));
-    add(models::parameters_hash(type, models::default_parameters(type)));
-    add(s.count);
-    for (const ParameterRange& range : s.ranges) {
-      add_real(range.low);
-      add_real(range.high);
-    }
-    add_real(s.min_height_m);
-    add_real(s.max_height_m);
-    add_real(s.max_slope_deg);
-  }
-  return h;
-}
-
-std::shared_ptr<const World> without_edits(std::shared_ptr<const World> world) {
-  if (!world->edits) return world;
-  auto copy = std::make_shared<World>(*world);
-  set_edits(*copy, nullptr);
-  return copy;
-}
-
 class MergedType final : public models::ModelType {
  public:
   MergedType(std::shared_ptr<const World> world, const models::Registry& registry)
-      : world_(without_edits(std::move(world))), identity_(identity_of(*world_, registry)) {
+      : world_(without_edits(std::move(world))), identity_(merged_identity(*world_, registry)) {
     for (models::ModelIndex i = 0; i < registry.size(); ++i)
       types_.push_back(&registry[i]);
     std::uint32_t first = 0;
@@ -98,7 +56,7 @@ class MergedType final : public models::ModelType {
   std::string_view doc() const override {
     return "all trees and rocks of a node's blocks, a few triangles each";
   }
-  std::span<const ParameterSpec> parameters() const override { return kSchema; }
+  std::span<const ParameterSpec> parameters() const override { return merged_schema(); }
   int level_count() const override { return kDetails; }
   int level_count_of(const Parameters& p) const override {
     return plan(p, 0).form_level == plan(p, 1).form_level ? 1 : kDetails;

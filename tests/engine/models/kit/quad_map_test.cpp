@@ -67,7 +67,8 @@ TEST(QuadMap, BehavesLikeAMapAndCopiesStayAsTheyWere) {
       sum += value;
     }
     std::size_t count = 0;
-    copy.each([&](const QuadPlace&, const Number&) { ++count; });
+    Map::each_difference(Map(), copy,
+                         [&](const QuadPlace&, const Number*, const Number*) { ++count; });
     EXPECT_EQ(count, content.size());
     ASSERT_NE(copy.root(), nullptr);
     EXPECT_EQ(copy.root()->summary.sum, sum);
@@ -113,6 +114,22 @@ TEST(QuadMap, EqualContentHasEqualHashesWhateverTheHistory) {
   EXPECT_TRUE(other.empty());
 }
 
+TEST(QuadMap, TheSameValueAtAnotherPlaceHasAnotherHashInEverySquareAround) {
+  Map here, beside;
+  here.set(QuadPlace::of({12, 7}), {5});
+  beside.set(QuadPlace::of({13, 7}), {5});
+  for (std::uint32_t level = 1; level <= QuadPlace::kMaxLevel; ++level) {
+    const QuadPlace around = QuadPlace::of({12 >> level, 7 >> level}, level);
+    ASSERT_NE(here.at_or_below(around), nullptr);
+    ASSERT_NE(beside.at_or_below(around), nullptr);
+    EXPECT_NE(here.at_or_below(around)->hash, beside.at_or_below(around)->hash) << level;
+  }
+  // The same pair of values, moved as a whole.
+  here.set(QuadPlace::of({14, 7}), {6});
+  beside.set(QuadPlace::of({15, 7}), {6});
+  EXPECT_NE(here.root()->hash, beside.root()->hash);
+}
+
 TEST(QuadMap, DifferencesAreTheSquaresWhoseValuesDiffer) {
   std::mt19937 random(11);
   for (int round = 0; round < 50; ++round) {
@@ -129,9 +146,8 @@ TEST(QuadMap, DifferencesAreTheSquaresWhoseValuesDiffer) {
       ++reported[{p.level, p.x, p.z}];
     });
     const auto expect_reported = [&](const Map& one, const Map& two) {
-      one.each([&](const QuadPlace& p, const Number& value) {
-        const Number* other = two.find(p);
-        const bool differs = other != &value;
+      Map::each_difference(Map(), one, [&](const QuadPlace& p, const Number*, const Number* value) {
+        const bool differs = two.find(p) != value;
         EXPECT_EQ((reported[{p.level, p.x, p.z}]), differs ? 1 : 0);
       });
     };

@@ -34,7 +34,7 @@ class EditedTerrain : public ::testing::Test {
   const GroundEdit& add(GroundEdit edit) {
     edit.id = static_cast<std::uint32_t>(edits.size()) + 1;
     edit.centre = core::normalised(edit.centre, kBlockM);
-    edit.content = content_hash(edit);
+    seal(edit);
     edits.push_back(std::make_shared<const GroundEdit>(edit));
     EXPECT_TRUE(layer.ground.add(edits.back(), kBlockM));
     return *edits.back();
@@ -82,6 +82,9 @@ class EditedTerrain : public ::testing::Test {
     const core::BlockCoord at{static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
     return layer.ground.hash_of(QuadPlace::of(at, static_cast<std::uint32_t>(level)),
                                 std::ldexp(4 / 63.0, level), kBlockM);
+  }
+  std::uint64_t hash_of_all() const {
+    return layer.ground.hash_of({QuadPlace::kMaxLevel, 0, 0}, 0, kBlockM);
   }
   std::vector<TerrainVertex> vertices(const Parameters& p, int mesh_level) const {
     return synthesize(*type, p, mesh_level).vertices<TerrainVertex>();
@@ -214,42 +217,126 @@ TEST_F(EditedTerrain, TakingAnEditBackRestoresEveryHash) {
   std::mt19937 random(2);
   for (int i = 0; i < 100; ++i)
     add(any_edit(random));
-  const std::uint64_t all = layer.ground.hash();
+  const std::uint64_t all = hash_of_all();
   std::vector<std::uint64_t> hashes;
   for (int level = 0; level < 6; ++level)
     hashes.push_back(hash_of(-1, 0, level));
   const EditLayer before = layer;
   const GroundEdit last = add(any_edit(random));
-  EXPECT_NE(layer.ground.hash(), all);
+  EXPECT_NE(hash_of_all(), all);
   layer.ground.remove(last, kBlockM);
-  EXPECT_EQ(layer.ground.hash(), all);
+  EXPECT_EQ(hash_of_all(), all);
   for (int level = 0; level < 6; ++level)
     EXPECT_EQ(hash_of(-1, 0, level), hashes[static_cast<std::size_t>(level)]);
   EXPECT_TRUE(GroundEdits::same_in(before.ground, before.ground, QuadPlace::of({0, 0}, 3), 0.5));
 }
 
+// Wide enough that the nodes of all levels have edits at their margins.
 TEST_F(EditedTerrain, SameInNeverMissesAChangeOfTheHash) {
   std::mt19937 random(21);
+  const auto add_anywhere = [&] {
+    GroundEdit edit = any_edit(random);
+    edit.centre.block = {static_cast<std::int32_t>(random() % 80) - 40,
+                         static_cast<std::int32_t>(random() % 80) - 40};
+    add(edit);
+  };
   for (int i = 0; i < 60; ++i)
-    add(any_edit(random));
+    add_anywhere();
   std::size_t same = 0;
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 2000; ++round) {
     const EditLayer before = layer;
-    const int level = static_cast<int>(random() % 5);
-    const std::int64_t x = static_cast<std::int64_t>(random() % 17) - 8;
-    const std::int64_t z = static_cast<std::int64_t>(random() % 17) - 8;
+    const int level = static_cast<int>(random() % 9);
+    const unsigned span = level < 4 ? 17 : 4;
+    const std::int64_t x = static_cast<std::int64_t>(random() % span) - span / 2;
+    const std::int64_t z = static_cast<std::int64_t>(random() % span) - span / 2;
     const std::uint64_t hash = hash_of(x, z, level);
-    add(any_edit(random));
+    add_anywhere();
     const core::BlockCoord at{static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
     const bool says_same = GroundEdits::same_in(
         before.ground, layer.ground, QuadPlace::of(at, static_cast<std::uint32_t>(level)),
         std::ldexp(4 / 63.0, level));
     if (says_same) {
-      EXPECT_EQ(hash_of(x, z, level), hash);
+      EXPECT_EQ(hash_of(x, z, level), hash) << "level " << level;
     }
     same += says_same ? 1 : 0;
   }
-  EXPECT_GT(same, 20u);
+  EXPECT_GT(same, 200u);
+}
+
+TEST_F(EditedTerrain, TheHashNamesTheOrderOfTheEdits) {
+  GroundEdit flat = raised({{0, 0}, {31, 0, 31}}, 10, 60);
+  flat.change = GroundChange::kFlatten;
+  const GroundEdit first = add(flat);
+  add(raised({{0, 0}, {31, 0, 31}}, 40, 10));
+  const auto lifted = vertices(node(0, 0, 0), 0);
+  const std::uint64_t hash = hash_of(0, 0, 0);
+  layer.ground.remove(first, kBlockM);
+  add(flat);  // after the hill now, which it cuts off
+  const auto cut = vertices(node(0, 0, 0), 0);
+  constexpr std::size_t kMiddle = 31 * 64 + 31;
+  EXPECT_NE(cut[kMiddle].height, lifted[kMiddle].height);
+  EXPECT_NE(hash_of(0, 0, 0), hash);
+}
+
+// Ids are unique in a block; blocks that were loaded one by one may have the same ones.
+TEST_F(EditedTerrain, EditsOfTwoBlocksWithTheSameIdAreTwoEdits) {
+  GroundEdit hill = add(raised({{0, 0}, {62, 0, 31}}, 20, 30));
+  GroundEdit flat = raised({{1, 0}, {1, 0, 31}}, 20, 50);
+  flat.change = GroundChange::kFlatten;
+  flat.id = hill.id;
+  seal(flat);
+  const auto first = std::make_shared<const GroundEdit>(hill);
+  const auto second = std::make_shared<const GroundEdit>(flat);
+  layer = {};
+  ASSERT_TRUE(layer.ground.add(second, kBlockM));
+  const std::uint64_t alone = hash_of(0, 0, 0);
+  ASSERT_TRUE(layer.ground.add(first, kBlockM));
+  const std::uint64_t both = hash_of(0, 0, 0);
+  const auto here = vertices(node(0, 0, 0), 0);
+  layer.ground.remove(hill, kBlockM);
+  EXPECT_EQ(hash_of(0, 0, 0), alone);
+  layer = {};
+  ASSERT_TRUE(layer.ground.add(first, kBlockM));
+  ASSERT_TRUE(layer.ground.add(second, kBlockM));
+  EXPECT_EQ(hash_of(0, 0, 0), both);
+  const auto again = vertices(node(0, 0, 0), 0);
+  for (std::size_t i = 0; i < here.size(); ++i)
+    ASSERT_EQ(here[i].height, again[i].height) << i;
+}
+
+TEST_F(EditedTerrain, SealingNotesHowFarAnEditMovesHeights) {
+  GroundEdit dug = raised({{0, 0}, {31, 0, 31}}, 10, -7);
+  EXPECT_EQ(add(dug).most_m, 7);
+  dug.change = GroundChange::kStampAdd;
+  dug.map = std::make_shared<Heightmap>(Heightmap{2, 2, {1, -9, 3, 4}});
+  EXPECT_EQ(add(dug).most_m, 9);
+  dug.change = GroundChange::kStampSet;
+  EXPECT_GT(add(dug).most_m, 1e6);
+}
+
+TEST_F(EditedTerrain, ThePredictedStepsCountTheHeightsThatEditsChange) {
+  const auto more = [&](std::int64_t x, int mesh_level) {
+    return type->steps(node(x, 0, 0), mesh_level) - type->steps(node(x, 0, 0, false), mesh_level);
+  };
+  EXPECT_EQ(more(0, 0), 0);
+  GroundEdit cover = raised({{0, 0}, {31, 0, 31}}, 200, 5);
+  cover.square = true;
+  add(cover);
+  const double one = more(0, 0), coarse = more(0, 2);
+  EXPECT_GT(one, 64 * 64);
+  EXPECT_GT(coarse, 0);
+  EXPECT_LT(coarse, one);
+  for (int i = 1; i < 100; ++i)
+    add(cover);
+  EXPECT_NEAR(more(0, 0) / one, 100, 1);
+  // Far from the heights that its light can see.
+  EXPECT_LT(more(1000, 0), 0.01 * one);
+  layer = {};
+  GroundEdit small = cover;
+  small.radius_m = 3;  // of 63 m, so about a hundredth of the area
+  add(small);
+  EXPECT_GT(more(0, 0), 0.002 * one);
+  EXPECT_LT(more(0, 0), 0.05 * one);
 }
 
 TEST_F(EditedTerrain, NoMeshIsFurtherFromTheGroundThanTheErrorSays) {
@@ -280,11 +367,11 @@ TEST_F(EditedTerrain, NoMeshIsFurtherFromTheGroundThanTheErrorSays) {
 TEST_F(EditedTerrain, TooManyOnTopOfEachOtherAreRefusedAndChangeNothing) {
   for (std::size_t i = 0; i < GroundEdits::kMostTogether; ++i)
     add(raised({{0, 0}, {31, 0, 31}}, 5, 0.01));
-  const std::uint64_t hash = layer.ground.hash();
+  const std::uint64_t hash = hash_of_all();
   GroundEdit more = raised({{0, 0}, {31, 0, 31}}, 5, 0.01);
   more.id = 5000;
   EXPECT_FALSE(layer.ground.add(std::make_shared<const GroundEdit>(more), kBlockM));
-  EXPECT_EQ(layer.ground.hash(), hash);
+  EXPECT_EQ(hash_of_all(), hash);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 namespace psygen::world {
 namespace {
 
+using testing::hash_of;
 using ::testing::HasSubstr;
 
 class EditBytes : public ::testing::Test, protected testing::EditedWorld {
@@ -47,8 +48,10 @@ TEST_F(EditBytes, LoadingTheBlocksInAnyOrderGivesTheSameEdits) {
     ASSERT_TRUE(ok) << ok.error().message;
   }
   for (const Edits& loaded : {forward, backward}) {
-    EXPECT_EQ(loaded.hash(), edits.hash());
-    EXPECT_EQ(loaded.layer()->ground.hash(), edits.layer()->ground.hash());
+    EXPECT_EQ(hash_of(loaded), hash_of(edits));
+    const models::QuadPlace all{models::QuadPlace::kMaxLevel, 0, 0};
+    EXPECT_EQ(loaded.layer()->ground.hash_of(all, 0, world.block_size_m()),
+              edits.layer()->ground.hash_of(all, 0, world.block_size_m()));
     EXPECT_EQ(loaded.layer()->next_id, edits.layer()->next_id);
     EXPECT_EQ(encode_block(loaded, registry, {2, 3}), stored.begin()->second);
     EXPECT_EQ(loaded.layer()->blocks.root()->summary.reach_m,
@@ -63,23 +66,82 @@ TEST_F(EditBytes, BlocksWithoutEditsHaveNoBytes) {
 
 TEST_F(EditBytes, WhatIsCutShortAtAnyByteOrGoesOnIsRefused) {
   const std::vector<std::byte> whole = encode_block(edits, registry, {2, 3});
+  Edits loaded;
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    const auto decoded = decode_block(world, registry, {2, 3}, std::span(whole).first(length));
-    ASSERT_FALSE(decoded) << length;
-    EXPECT_THAT(decoded.error().message, HasSubstr("edits of block (2, 3) cannot be read"));
+    const auto ok = load_block(loaded, world, registry, {2, 3}, std::span(whole).first(length));
+    ASSERT_FALSE(ok) << length;
+    EXPECT_THAT(ok.error().message, HasSubstr("edits of block (2, 3) cannot be read"));
   }
   std::vector<std::byte> longer = whole;
   longer.push_back(std::byte{0});
-  EXPECT_FALSE(decode_block(world, registry, {2, 3}, longer));
-  EXPECT_FALSE(decode_block(world, registry, {-2, 3}, whole)) << "outside of the world";
+  EXPECT_FALSE(load_block(loaded, world, registry, {2, 3}, longer));
+  EXPECT_FALSE(load_block(loaded, world, registry, {-2, 3}, whole)) << "outside of the world";
+  EXPECT_TRUE(loaded.empty());
 }
 
 TEST_F(EditBytes, ANewerVersionIsRefusedByItsNumber) {
   std::vector<std::byte> newer = encode_block(edits, registry, {2, 3});
   newer[4] = std::byte{9};
-  const auto decoded = decode_block(world, registry, {2, 3}, newer);
-  ASSERT_FALSE(decoded);
-  EXPECT_THAT(decoded.error().message, HasSubstr("version is 9"));
+  Edits loaded;
+  const auto ok = load_block(loaded, world, registry, {2, 3}, newer);
+  ASSERT_FALSE(ok);
+  EXPECT_THAT(ok.error().message, HasSubstr("version is 9"));
+}
+
+// The block that the model was moved to is not loaded.
+TEST_F(EditBytes, TheIdOfAMovedModelIsNotGivenToAnother) {
+  Edits one;
+  const auto moved = one.move(world, registry, {{2, 3}, unedited({2, 3})[3].index}, {{4, 3}, {}});
+  ASSERT_TRUE(moved) << moved.error().message;
+  Edits loaded;
+  ASSERT_TRUE(load_block(loaded, world, registry, {2, 3}, encode_block(one, registry, {2, 3})));
+  const Scatter& rocks = world.scatter[1];
+  const auto placed = loaded.place(
+      world, registry, {rocks.model, scatter_parameters(registry, rocks), {{4, 3}, {5, 0, 5}}, 0});
+  ASSERT_TRUE(placed) << placed.error().message;
+  EXPECT_NE(placed->id, moved->id);
+  ASSERT_TRUE(loaded.restore({{2, 3}, unedited({2, 3})[3].index}));
+  EXPECT_EQ(loaded.counts().placed, 1u) << "the rock stays";
+}
+
+TEST_F(EditBytes, AMovedModelWithAnIdBeyondAllIsRefused) {
+  Edits one;
+  ASSERT_TRUE(one.move(world, registry, {{2, 3}, unedited({2, 3})[3].index}, {{4, 3}, {}}));
+  std::vector<std::byte> bytes = encode_block(one, registry, {2, 3});
+  constexpr std::size_t kMovedId = 4 + 2 + 4 + 4;  // magic, version, count, index
+  ASSERT_EQ(bytes[kMovedId], std::byte{1});
+  std::fill_n(bytes.begin() + kMovedId, 4, std::byte{0xFF});
+  Edits loaded;
+  const auto ok = load_block(loaded, world, registry, {2, 3}, bytes);
+  ASSERT_FALSE(ok);
+  EXPECT_THAT(ok.error().message, HasSubstr("id 4294967295"));
+}
+
+TEST_F(EditBytes, AStoredStampIsSquareWhateverItsBytesSay) {
+  const std::vector<std::byte> whole = encode_block(edits, registry, {2, 4});
+  constexpr std::size_t kSquare = 4 + 2 + 3 * 4 + 4 + 1;  // magic, version, counts, id, change
+  ASSERT_EQ(whole[kSquare], std::byte{1});
+  std::vector<std::byte> disc = whole;
+  disc[kSquare] = std::byte{0};
+  Edits loaded;
+  ASSERT_TRUE(load_block(loaded, world, registry, {2, 4}, disc));
+  EXPECT_EQ(encode_block(loaded, registry, {2, 4}), whole);
+}
+
+TEST_F(EditBytes, BlocksFromDifferentEditsMayHaveTheSameIds) {
+  Edits hill, flat, loaded;
+  const auto raised = hill.raise(world, {{2, 3}, {60, 0, 31}}, 20, 9);
+  const auto flattened = flat.flatten(world, {{3, 3}, {3, 0, 31}}, 20, 30);
+  ASSERT_TRUE(raised && flattened);
+  ASSERT_EQ(raised->id, flattened->id);
+  ASSERT_TRUE(load_block(loaded, world, registry, {2, 3}, encode_block(hill, registry, {2, 3})));
+  ASSERT_TRUE(load_block(loaded, world, registry, {3, 3}, encode_block(flat, registry, {3, 3})));
+  ASSERT_TRUE(loaded.remove_ground(world, *raised));
+  set_edits(world, loaded.layer());
+  const std::uint64_t left = terrain_parameters(world, {2, 3}).edits_hash();
+  set_edits(world, flat.layer());
+  EXPECT_EQ(left, terrain_parameters(world, {2, 3}).edits_hash());
+  EXPECT_NE(left, 0u);
 }
 
 // Whatever is decoded is legal: it can be used, and is the same when stored again.
@@ -105,7 +167,7 @@ TEST_F(EditBytes, AnyBytesAreRefusedOrGiveLegalEdits) {
       if (round % 50 == 0) place_models(copy, registry, block, out);
       Edits again;
       EXPECT_TRUE(load_block(again, world, registry, block, encode_block(loaded, registry, block)));
-      EXPECT_EQ(again.hash(), loaded.hash());
+      EXPECT_EQ(hash_of(again), hash_of(loaded));
     }
   }
   EXPECT_GT(accepted, 100u);

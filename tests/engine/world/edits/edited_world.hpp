@@ -3,14 +3,21 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/edits.hpp"
 #include "engine/world/edits/edits.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world::testing {
+
+// Identifies all edits; 0: none.
+inline std::uint64_t hash_of(const Edits& edits) {
+  return edits.empty() ? 0 : edits.layer()->blocks.root()->hash;
+}
 
 struct EditedWorld {
   models::Registry registry = models::make_standard_registry();

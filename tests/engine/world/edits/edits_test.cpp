@@ -16,6 +16,7 @@ namespace psygen::world {
 namespace {
 
 using testing::EditedWorld;
+using testing::hash_of;
 using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -59,9 +60,9 @@ TEST_F(EditsTest, AMovedModelKeepsItsParametersAndStandsOnTheGroundOfItsNewPlace
   EXPECT_EQ(edits.counts().removed, 1u);
   EXPECT_EQ(edits.counts().placed, 1u);
   // Moving it again would move what is not there any more.
-  const std::uint64_t hash = edits.hash();
+  const std::uint64_t hash = hash_of(edits);
   EXPECT_FALSE(edits.move(world, registry, {{2, 3}, tree.index}, {{4, 3}, {1, 0, 1}}));
-  EXPECT_EQ(edits.hash(), hash);
+  EXPECT_EQ(hash_of(edits), hash);
   ASSERT_TRUE(edits.restore({{2, 3}, tree.index}));
   EXPECT_TRUE(edits.empty());
 }
@@ -76,10 +77,29 @@ TEST_F(EditsTest, ModelsKeepTheirPlacesAndStandOnTheEditedGround) {
     EXPECT_EQ(after[i].position.x, before[i].position.x);
     EXPECT_EQ(after[i].position.z, before[i].position.z);
     const glm::dvec3 at(after[i].position);
-    EXPECT_NEAR(at.y, edited_ground(world, {2, 3}, 1).at({at.x, at.z}).height_m, 1e-3);
+    EXPECT_NEAR(at.y, models::ground_height_m(world.terrain, {2, 3}, at.x, at.z), 1e-3);
     lifted += after[i].position.y > before[i].position.y + 1;
   }
   EXPECT_GT(lifted, after.size() / 4);
+}
+
+TEST_F(EditsTest, AHeightmapShapesItsWholeSquareAndNothingElseHasOne) {
+  auto map = std::make_shared<models::Heightmap>();
+  *map = {2, 2, {50, 50, 50, 50}};
+  models::GroundEdit stamp;
+  stamp.change = models::GroundChange::kStampSet;
+  stamp.centre = {{2, 3}, {31, 0, 31}};
+  stamp.radius_m = 20;
+  stamp.falloff = 0;
+  stamp.map = map;
+  ASSERT_TRUE(edits.edit_ground(world, stamp));
+  apply();
+  for (const glm::dvec2 corner : {glm::dvec2(12, 12), glm::dvec2(50, 50)})
+    EXPECT_NEAR(models::ground_height_m(world.terrain, {2, 3}, corner.x, corner.y), 50, 0.01);
+  stamp.change = models::GroundChange::kRaise;
+  stamp.centre.block = {8, 8};
+  ASSERT_TRUE(edits.edit_ground(world, stamp));
+  EXPECT_EQ(edits.layer()->block({8, 8})->ground[0]->map, nullptr);
 }
 
 TEST_F(EditsTest, KeysOfUneditedNodesAreThoseOfAnUneditedWorld) {
@@ -95,11 +115,11 @@ TEST_F(EditsTest, KeysOfUneditedNodesAreThoseOfAnUneditedWorld) {
 TEST_F(EditsTest, ACopyTakesEverythingBackExactly) {
   ASSERT_TRUE(edits.remove(world, {{2, 3}, 1}));
   const Edits kept = edits;
-  const std::uint64_t hash = kept.hash();
+  const std::uint64_t hash = hash_of(kept);
   ASSERT_TRUE(edits.flatten(world, {{2, 3}, {5, 0, 5}}, 12, 30));
   ASSERT_TRUE(edits.remove(world, {{7, 7}, 2}));
-  EXPECT_NE(edits.hash(), hash);
-  EXPECT_EQ(kept.hash(), hash);
+  EXPECT_NE(hash_of(edits), hash);
+  EXPECT_EQ(hash_of(kept), hash);
   std::vector<core::BlockCoord> changed = changed_blocks(kept, edits);
   std::ranges::sort(changed);
   EXPECT_EQ(changed, (std::vector<core::BlockCoord>{{2, 3}, {7, 7}}));

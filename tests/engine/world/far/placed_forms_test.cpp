@@ -71,6 +71,20 @@ TEST_F(FarEdits, AFelledTreeIsMissingInTheMeshesOfAllNodesThatShowItAlone) {
   EXPECT_EQ(merged_parameters(world, {3, 2}, 1).hash(), merged_parameters({3, 2}, 1).hash());
 }
 
+TEST_F(FarEdits, FellingTheSameTreeOfANeighbouringBlockIsAnotherMesh) {
+  World beside = world;
+  Edits other;
+  ASSERT_TRUE(edits.remove(world, {{12, 7}, 3}));
+  ASSERT_TRUE(other.remove(world, {{13, 7}, 3}));
+  apply();
+  set_edits(beside, other.layer());
+  for (int level = 1; level <= kMaxMergedLevel; ++level) {
+    const core::BlockCoord node{12 >> level, 7 >> level};
+    EXPECT_NE(merged_parameters(world, node, level).hash(),
+              merged_parameters(beside, node, level).hash());
+  }
+}
+
 TEST_F(FarEdits, FellingEverythingLeavesNothingAtAnyLevel) {
   for (int z = 0; z < 4; ++z) {
     for (int x = 0; x < 4; ++x) {

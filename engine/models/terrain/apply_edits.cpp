@@ -1,0 +1,181 @@
+// How edits of the ground act on heights: the curves of single edits, and the walk down the
+// quadtree to those that reach the samples.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/models/terrain/ground_edits.hpp"
+
+namespace psygen::models {
+namespace {
+
+using Cell = QuadMap<GroundCell>::Cell;
+using EditPtr = std::shared_ptr<const GroundEdit>;
+
+// The weight of an edit at a distance from its centre: smooth from 1 to 0.
+double weight_of(const GroundEdit& edit, double dx, double dz) {
+  const double away =
+      edit.square ? std::max(std::abs(dx), std::abs(dz)) : std::sqrt(dx * dx + dz * dz);
+  if (!(away <= edit.radius_m)) return 0;
+  const double fades = edit.falloff * edit.radius_m;
+  const double left = edit.radius_m - away;
+  if (left >= fades) return 1;
+  const double t = left / fades;
+  return t * t * (3 - 2 * t);
+}
+
+double height_in(const Heightmap& map, double u, double v) {
+  const auto place = [](double share, std::uint32_t points) {
+    const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(points - 1);
+    const double first = std::min(std::floor(at), static_cast<double>(points - 2));
+    return std::pair{static_cast<std::size_t>(first), at - first};
+  };
+  const auto [x, s] = place(u, map.columns);
+  const auto [z, t] = place(v, map.rows);
+  const float* const near = &map.heights_m[z * map.columns + x];
+  const float* const far = near + map.columns;
+  const double a = double{near[0]} + s * (double{near[1]} - double{near[0]});
+  const double b = double{far[0]} + s * (double{far[1]} - double{far[0]});
+  return a + t * (b - a);
+}
+
+// A height of the ground, in metres, as an edit leaves it.
+double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
+  const double weight = weight_of(edit, dx, dz);
+  const auto stamp = [&] {
+    return height_in(*edit.map, 0.5 + 0.5 * dx / edit.radius_m, 0.5 + 0.5 * dz / edit.radius_m);
+  };
+  switch (edit.change) {
+    case GroundChange::kRaise:
+      return height_m + weight * edit.height_m;
+    case GroundChange::kFlatten:
+      return height_m + weight * (edit.height_m - height_m);
+    case GroundChange::kStampAdd:
+      return height_m + weight * stamp();
+    case GroundChange::kStampSet:
+      return height_m + weight * (stamp() - height_m);
+  }
+  return height_m;
+}
+
+struct Range {
+  std::size_t first, end;
+  bool empty() const { return first >= end; }
+};
+
+// One call of GroundEdits::apply(): walks down the quadtree with the samples of each square.
+class Application {
+ public:
+  Application(const GroundScale& scale, std::span<const std::int64_t> x,
+              std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
+              double narrowest_m)
+      : scale_(scale), x_(x), z_(z), values_(values), stride_(stride), narrowest_m_(narrowest_m) {}
+
+  void walk(const Cell* cell, QuadPlace region, Range columns, Range rows) {
+    if (cell != nullptr && active_.empty() && cell->place != region) {
+      region = cell->place;
+      columns = narrowed(x_, columns, region.x, region.level);
+      rows = narrowed(z_, rows, region.z, region.level);
+    }
+    if (columns.empty() || rows.empty()) return;
+    if (cell == nullptr) return act(columns, rows);
+    const std::size_t before = active_.size();
+    const bool itself = cell->place == region;
+    if (itself && cell->value) {
+      for (const EditPtr& edit : cell->value->edits) {
+        if (edit->radius_m >= narrowest_m_) active_.push_back(edit.get());
+      }
+    }
+    if (region.level == 0) {
+      act(columns, rows);
+    } else {
+      for (std::size_t q = 0; q < 4; ++q) {
+        const QuadPlace quarter = region.quarter(q);
+        const Cell* below = itself ? cell->quarters[q].get()
+                                   : (region.quarter_of(cell->place) == q ? cell : nullptr);
+        walk(below, quarter, narrowed(x_, columns, quarter.x, quarter.level),
+             narrowed(z_, rows, quarter.z, quarter.level));
+      }
+    }
+    active_.resize(before);
+  }
+
+ private:
+  // The samples of `range` that lie in a square.
+  Range narrowed(std::span<const std::int64_t> at, Range range, std::uint64_t index,
+                 std::uint32_t level) const {
+    const auto cell = [&](std::uint64_t i) {
+      return (static_cast<std::int64_t>(i << level) - (std::int64_t{1} << 31)) *
+             scale_.cells_per_block;
+    };
+    const auto begin = at.begin() + static_cast<std::ptrdiff_t>(range.first);
+    const auto end = at.begin() + static_cast<std::ptrdiff_t>(std::max(range.end, range.first));
+    const auto first = std::lower_bound(begin, end, cell(index));
+    const auto last = std::lower_bound(first, end, cell(index + 1));
+    return {static_cast<std::size_t>(first - at.begin()),
+            static_cast<std::size_t>(last - at.begin())};
+  }
+
+  void act(Range columns, Range rows) {
+    if (active_.empty()) return;
+    ordered_ = active_;
+    std::ranges::sort(ordered_, {}, &GroundEdit::order);
+    for (const GroundEdit* edit : ordered_)
+      act(*edit, columns, rows);
+  }
+
+  // Metres from the centre of an edit to a lattice point, along one axis. Exact in the same way for
+  // every node that has the point.
+  double away_m(std::int64_t at, std::int32_t block, double local_m) const {
+    return static_cast<double>(at - std::int64_t{block} * scale_.cells_per_block) * scale_.cell_m -
+           local_m;
+  }
+
+  // Those of `range` that lie within an edit's radius along one axis.
+  Range within(const GroundEdit& edit, std::span<const std::int64_t> at, Range range,
+               std::int32_t block, double local_m) const {
+    const auto all = at.subspan(range.first, range.end - range.first);
+    const auto before = [&](std::int64_t i) { return away_m(i, block, local_m) < -edit.radius_m; };
+    const auto not_after = [&](std::int64_t i) {
+      return away_m(i, block, local_m) <= edit.radius_m;
+    };
+    const auto first = std::ranges::partition_point(all, before);
+    const auto end = std::ranges::partition_point(first, all.end(), not_after);
+    return {range.first + static_cast<std::size_t>(first - all.begin()),
+            range.first + static_cast<std::size_t>(end - all.begin())};
+  }
+
+  void act(const GroundEdit& edit, Range columns, Range rows) {
+    const core::WorldPosition& centre = edit.centre;
+    columns = within(edit, x_, columns, centre.block.x, centre.local.x);
+    rows = within(edit, z_, rows, centre.block.z, centre.local.z);
+    for (std::size_t k = rows.first; k < rows.end; ++k) {
+      const double dz = away_m(z_[k], centre.block.z, centre.local.z);
+      for (std::size_t i = columns.first; i < columns.end; ++i) {
+        const double dx = away_m(x_[i], centre.block.x, centre.local.x);
+        float& value = values_[k * stride_ + i];
+        const double height_m = edited(edit, double{value} * scale_.unit_m, dx, dz);
+        value = std::clamp(static_cast<float>(height_m / scale_.unit_m), 0.0F, scale_.highest);
+      }
+    }
+  }
+
+  const GroundScale& scale_;
+  std::span<const std::int64_t> x_, z_;
+  std::span<float> values_;
+  std::size_t stride_;
+  double narrowest_m_;
+  std::vector<const GroundEdit*> active_, ordered_;
+};
+
+}  // namespace
+
+void GroundEdits::apply(const GroundScale& scale, std::span<const std::int64_t> x,
+                        std::span<const std::int64_t> z, std::span<float> values,
+                        std::size_t stride, double narrowest_m) const {
+  if (cells_.empty()) return;
+  Application(scale, x, z, values, stride, narrowest_m)
+      .walk(cells_.root(), {QuadPlace::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
+}
+
+}  // namespace psygen::models

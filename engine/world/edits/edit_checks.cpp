@@ -1,0 +1,155 @@
+#include "engine/world/edits/edit_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/edits/edits.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::world {
+namespace {
+
+using core::ErrorCode;
+using models::BlockEdits;
+using models::GroundEdit;
+
+core::Result<void> check_heightmap(const models::Heightmap* map, double relief_m, bool adds) {
+  if (map == nullptr) return refuse("the stamp has no heightmap");
+  const auto side = [](std::uint32_t n) { return n >= 2 && n <= kMaxHeightmapSide; };
+  if (!side(map->columns) || !side(map->rows)) {
+    return refuse(fmt::format("a heightmap of {} × {} points is not allowed: each side has 2 to {}",
+                              map->columns, map->rows, kMaxHeightmapSide));
+  }
+  const std::size_t points = std::size_t{map->columns} * map->rows;
+  if (map->heights_m.size() != points) {
+    return refuse(fmt::format("the heightmap has {} heights, not {} × {}", map->heights_m.size(),
+                              map->columns, map->rows));
+  }
+  const double lowest = adds ? -relief_m : 0;
+  for (const float h : map->heights_m) {
+    if (static_cast<double>(h) >= lowest && static_cast<double>(h) <= relief_m) continue;
+    return refuse(
+        fmt::format("a height of {:g} m in the heightmap is not allowed: it must be {:g} to {:g} m",
+                    h, lowest, relief_m));
+  }
+  return {};
+}
+
+}  // namespace
+
+tl::unexpected<core::Error> refuse(std::string sentence) {
+  return core::fail(ErrorCode::kInvalidArgument, std::move(sentence));
+}
+
+std::string text_of(core::BlockCoord block) {
+  return fmt::format("block ({}, {})", block.x, block.z);
+}
+
+core::Result<void> check_block(const World& world, core::BlockCoord block) {
+  if (world.contains(block)) return {};
+  return refuse(fmt::format("{} is outside of the world", text_of(block)));
+}
+
+core::Result<void> check_heights(const BlockEdits& edits, core::BlockCoord block) {
+  std::size_t count = 0;
+  for (const auto& edit : edits.ground)
+    count += edit->map ? edit->map->heights_m.size() : 0;
+  if (count <= kMaxHeightsPerBlock) return {};
+  return core::fail(ErrorCode::kOverBudget,
+                    fmt::format("the heightmaps of {} have {} heights, and at most {} are allowed",
+                                text_of(block), count, kMaxHeightsPerBlock));
+}
+
+core::Result<void> check_room(const BlockEdits& edits, core::BlockCoord block) {
+  const std::size_t count = edits.removed.size() + edits.placed.size() + edits.ground.size();
+  if (count < kMaxEditsPerBlock) return {};
+  return core::fail(ErrorCode::kOverBudget, fmt::format("{} has {} edits, and no more are allowed",
+                                                        text_of(block), kMaxEditsPerBlock));
+}
+
+core::Result<void> check_removed(const World& world, core::BlockCoord block, std::uint32_t index) {
+  if (auto ok = check_block(world, block); !ok) return ok;
+  const std::size_t count = models_per_block(world);
+  if (index < count) return {};
+  return refuse(
+      fmt::format("{} has no model {}: there are {} a block", text_of(block), index, count));
+}
+
+core::Result<core::WorldPosition> check_place(const World& world, const core::WorldPosition& at) {
+  constexpr double kFarthest = 1e9;
+  const auto usable = [](double v) { return std::abs(v) <= kFarthest; };  // false for NaN
+  if (!usable(at.local.x) || !usable(at.local.z)) {
+    return refuse(fmt::format("the place {:g}, {:g} m from {} is not a place in the world",
+                              at.local.x, at.local.z, text_of(at.block)));
+  }
+  const double size = world.block_size_m();
+  const auto index = [size](std::int32_t block, double local) {
+    return static_cast<double>(block) + std::floor(local / size);
+  };
+  const auto fits = [](double i) { return i >= INT32_MIN && i <= INT32_MAX; };
+  core::WorldPosition place = core::normalised(at, size);
+  const bool inside = fits(index(at.block.x, at.local.x)) && fits(index(at.block.z, at.local.z));
+  if (!inside || !world.contains(place.block)) {
+    return refuse(fmt::format("the place {:g}, {:g} m from {} is outside of the world", at.local.x,
+                              at.local.z, text_of(at.block)));
+  }
+  place.local.y = 0;
+  return place;
+}
+
+core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
+  const double relief_m = world.terrain.real(models::kTerrainReliefM);
+  if (!(edit.radius_m >= kMinEditRadiusM && edit.radius_m <= kMaxEditRadiusM)) {
+    return refuse(fmt::format("a radius of {:g} m is not allowed: it must be {:g} to {:g} m",
+                              edit.radius_m, kMinEditRadiusM, kMaxEditRadiusM));
+  }
+  if (!(edit.falloff >= 0 && edit.falloff <= 1))
+    return refuse(fmt::format("a falloff of {:g} is not allowed: it must be 0 to 1", edit.falloff));
+  switch (edit.change) {
+    case models::GroundChange::kRaise:
+      if (std::abs(edit.height_m) <= relief_m) return {};
+      return refuse(
+          fmt::format("raising ground by {:g} m is not allowed: at most {:g} m, up or down",
+                      edit.height_m, relief_m));
+    case models::GroundChange::kFlatten:
+      if (edit.height_m >= 0 && edit.height_m <= relief_m) return {};
+      return refuse(fmt::format(
+          "ground at {:g} m is not allowed: it must be 0 to {:g} m, the relief of the terrain",
+          edit.height_m, relief_m));
+    case models::GroundChange::kStampAdd:
+      return check_heightmap(edit.map.get(), relief_m, true);
+    case models::GroundChange::kStampSet:
+      return check_heightmap(edit.map.get(), relief_m, false);
+  }
+  return refuse("there is no such change of the ground");
+}
+
+core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
+                               const models::Parameters& parameters, double above_m) {
+  if (model >= registry.size())
+    return refuse(fmt::format("there is no model type {}: there are {}", model, registry.size()));
+  constexpr double kHighest = 1000;
+  if (!(std::abs(above_m) <= kHighest)) {
+    return refuse(fmt::format("{:g} m above the ground is not allowed: it must be {:g} to {:g} m",
+                              above_m, -kHighest, kHighest));
+  }
+  const models::ModelType& type = registry[model];
+  if (auto ok = models::validate(type, parameters); !ok) return ok;
+  if (type.mesh_size(parameters, 0).layout != core::VertexLayout::kModel)
+    return refuse(fmt::format("{} is not a model that can be placed", type.name()));
+  return {};
+}
+
+glm::vec3 placed_reach(const models::ModelType& type, const models::Parameters& parameters,
+                       double above_m) {
+  const core::Bounds box = type.bounds(parameters);
+  const auto above = static_cast<float>(above_m);
+  return {std::max({-box.min.x, -box.min.z, box.max.x, box.max.z, 0.0F}),
+          std::max(box.max.y + above, 0.0F), std::max(-box.min.y - above, 0.0F)};
+}
+
+}  // namespace psygen::world

@@ -1,0 +1,61 @@
+#include "engine/world/far/merged_identity.hpp"
+
+#include <bit>
+
+#include "engine/world/far/merged_models.hpp"
+
+namespace psygen::world {
+namespace {
+
+using models::ParameterSpec;
+
+constexpr models::ParameterType kInteger = models::ParameterType::kInteger;
+constexpr models::ParameterSource kPlaced = models::ParameterSource::kPlaced;
+constexpr std::uint64_t kEdition = 4;  // version of the meshes of merged_models.cpp
+
+constexpr ParameterSpec kSchema[kMergedParameterCount] = {
+    {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
+     kPlaced},
+    {"block_z", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along z",
+     kPlaced},
+    {"node_level", kInteger, "", 1, 1, kMaxMergedLevel, 1, kMaxMergedLevel,
+     "the node is 2^node_level blocks wide and long", kPlaced},
+};
+
+}  // namespace
+
+std::span<const ParameterSpec> merged_schema() {
+  return kSchema;
+}
+
+std::uint64_t merged_identity(const World& world, const models::Registry& registry) {
+  std::uint64_t h = core::combine(kEdition, world.seed);
+  const auto add = [&h](std::uint64_t v) { h = core::combine(h, v); };
+  const auto add_real = [&add](double v) { add(std::bit_cast<std::uint64_t>(v)); };
+  add(static_cast<std::uint64_t>(world.blocks_x));
+  add(static_cast<std::uint64_t>(world.blocks_z));
+  add(models::parameters_hash(registry[world.terrain_model], world.terrain));
+  for (const Scatter& s : world.scatter) {
+    const models::ModelType& type = registry[s.model];
+    add(core::hash_bytes(std::as_bytes(std::span(type.name()))));
+    add(models::parameters_hash(type, models::default_parameters(type)));
+    add(s.count);
+    for (const ParameterRange& range : s.ranges) {
+      add_real(range.low);
+      add_real(range.high);
+    }
+    add_real(s.min_height_m);
+    add_real(s.max_height_m);
+    add_real(s.max_slope_deg);
+  }
+  return h;
+}
+
+std::shared_ptr<const World> without_edits(std::shared_ptr<const World> world) {
+  if (!world->edits) return world;
+  auto copy = std::make_shared<World>(*world);
+  set_edits(*copy, nullptr);
+  return copy;
+}
+
+}  // namespace psygen::world

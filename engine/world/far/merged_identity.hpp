@@ -1,0 +1,25 @@
+// What distinguishes the model type "vegetation" of one world from that of another: its parameters,
+// and a hash of everything in the world that its meshes depend on. Pure functions, any thread.
+// Internal to world/far.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "engine/models/registry.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+
+// The parameters, at the positions of MergedParameter.
+std::span<const models::ParameterSpec> merged_schema();
+
+// ModelType::identity() for a world without edits. Every model type of the world's scatters is in
+// `registry`.
+std::uint64_t merged_identity(const World& world, const models::Registry& registry);
+
+// The world itself where it has no edits, else a copy that has none.
+std::shared_ptr<const World> without_edits(std::shared_ptr<const World> world);
+
+}  // namespace psygen::world
