@@ -45,8 +45,6 @@ class BlockCache {
   std::span<const world::Placement> models(core::BlockCoord block);
   BlockSolids& solids(core::BlockCoord block);
 
-  // Forgets one block.
-  void forget(core::BlockCoord block);
   // Held now. Above the bound only if a single block is.
   std::size_t bytes() const { return bytes_; }
   std::size_t size() const { return blocks_.size(); }
@@ -63,6 +61,7 @@ class BlockCache {
   using Order = std::list<Block>;  // most recently used first
 
   Block& touch(core::BlockCoord block);
+  void forget(core::BlockCoord block);
   void follow_edits();
   void charge(Block& block, std::size_t bytes);
 

@@ -111,9 +111,6 @@ class World {
   // placed. O(1).
   double models_reach_m() const { return static_cast<double>(most_reach_m().x); }
 
-  // Something other than edits has changed the block's ground or models; they are made again when
-  // next asked for.
-  void forget(core::BlockCoord block) { cache_.forget(block); }
   // What the world looks like to queries.
   const world::World& world() const { return *world_; }
   const models::Registry& registry() const { return *registry_; }
