@@ -31,6 +31,7 @@ btVector3 Terrain::coordinates(const core::WorldPosition& at) const {
 
 void Terrain::set_origin(core::BlockCoord origin) {
   origin_ = origin;
+  drop_idle(last_step_, 0, 0);
   for (auto& [at, block] : blocks_) {
     const btVector3 corner = to_bt(corner_of(at));
     for (const Part& part : block.parts) {
@@ -107,6 +108,7 @@ void Terrain::each_near(const glm::dvec2& low, const glm::dvec2& high, double re
 }
 
 void Terrain::need(const glm::dvec2& low, const glm::dvec2& high, std::uint64_t step) {
+  last_step_ = step;
   each_near(low, high, query_.models_reach_m(), [&](core::BlockCoord at) {
     if (!query_.world().contains(at)) return true;
     const auto [block, is_new] = blocks_.try_emplace(at);

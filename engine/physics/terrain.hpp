@@ -29,7 +29,8 @@ class Terrain {
   Terrain(const Terrain&) = delete;
   Terrain& operator=(const Terrain&) = delete;
 
-  // The block from whose corner Bullet's coordinates count. Moves all blocks. O(objects).
+  // The block from whose corner Bullet's coordinates count. Moves the blocks that were needed last,
+  // and removes the others. O(objects).
   void set_origin(core::BlockCoord origin);
   // Makes what is missing of the blocks that reach into the square from `low` to `high`, in
   // Bullet's x and z, and keeps them for this step.
@@ -88,6 +89,7 @@ class Terrain {
   query::World& query_;
   std::shared_ptr<const models::EditLayer> edits_;  // when they were last looked at
   double reach_m_ = 0;                              // of models, then
+  std::uint64_t last_step_ = 0;                     // of need()
   core::BlockCoord origin_;
   Blocks blocks_;
 };
