@@ -75,6 +75,8 @@ void World::Impl::shift_origin() {
 
 void World::Impl::move_origin(core::BlockCoord to) {
   const btVector3 by = terrain.coordinates({to, glm::dvec3(0)});
+  // Everything moves alike, so no new pairs are to be found.
+  broadphase.m_deferedcollide = true;
   terrain.set_origin(to);
   for (auto& [number, character] : characters)
     character.shift(by);
@@ -89,6 +91,7 @@ void World::Impl::move_origin(core::BlockCoord to) {
     body.motion.setWorldTransform(target);
     bullet.updateSingleAabb(body.rigid.get());
   }
+  broadphase.m_deferedcollide = false;
 }
 
 void World::Impl::make_terrain(double dt) {
