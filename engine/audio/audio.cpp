@@ -5,43 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <unordered_map>
 
 #include "engine/audio/output.hpp"
-#include "engine/audio/sound_file.hpp"
+#include "engine/audio/voice.hpp"
 #include "engine/core/log.hpp"
 
 namespace psygen::audio {
 namespace {
 
-constexpr double kRetrySeconds = 2;
-constexpr std::size_t kPieces = 4;  // of a stream that are queued, each a quarter of a second
-
-// A piece of a stream that OpenAL has.
-struct Piece {
-  ALuint buffer = 0;
-  std::size_t frames = 0;
-};
-
-struct Sound {
-  SoundId id = SoundId::kNone;
-  std::shared_ptr<const Clip> clip;  // or
-  std::optional<SoundFile> file;
-  Play how;
-  double frame = 0;  // of a clip without a voice, or of the stream's first piece
-  bool ended = false;
-  double gain = 0;  // as heard, in this update
-  bool chosen = false;
-  ALuint source = 0;  // 0: no voice
-  std::deque<Piece> pieces;
-  bool file_ended = false;
-
-  double rate_hz() const { return clip ? clip->rate_hz : file->rate_hz(); }
-  double frames() const {
-    return static_cast<double>(clip ? clip->frames() : static_cast<std::size_t>(file->frames()));
-  }
-};
+// A missing device is looked for after so many seconds, and then twice as long each time: looking
+// takes milliseconds, because the system's sound server is asked.
+constexpr double kFirstRetryS = 2, kLongestRetryS = 64;
+constexpr double kMostSecondsAtOnce = 60;
 
 core::Result<void> check(const Play& how, std::uint32_t channels) {
   const auto refuse = [](std::string_view what) {
@@ -68,7 +44,8 @@ core::Result<void> check(const Play& how, std::uint32_t channels) {
 struct Audio::State {
   AudioOptions options;
   std::unique_ptr<Output> output;
-  double retry_in_s = 0;
+  double retry_in_s = kFirstRetryS, next_retry_s = kFirstRetryS;
+  core::CameraPose listener;  // the last that was valid
   bool told = false;
   std::uint64_t last_id = 0;
   std::vector<Sound> sounds;
@@ -85,20 +62,16 @@ struct Audio::State {
   void close();
   void check_device(double dt_s);
   Sound* find(SoundId id);
-  void choose(const core::CameraPose& listener);
-  void give_voice(Sound& sound);
-  void take_voice(Sound& sound);
-  void set_source(const Sound& sound, const core::CameraPose& listener) const;
-  bool queue_piece(Sound& sound, ALuint buffer);
-  void follow(Sound& sound);
-  void pass_silently(Sound& sound, double dt_s) const;
+  void choose();
+  glm::vec3 place_of(const Sound& sound) const;
+  ALuint buffer_of(const Sound& sound);
+  void step(Sound& sound, double dt_s);
   void drop_unused();
 };
 
 void Audio::State::open() {
   if (options.destination == Destination::kNowhere) return;
   output = Output::open(options.destination == Destination::kRendered);
-  retry_in_s = kRetrySeconds;
   if (output == nullptr && !told) {
     told = true;
     core::log_warning("there is no sound device; the program goes on without sound");
@@ -123,9 +96,13 @@ void Audio::State::check_device(double dt_s) {
     core::log_warning("the sound device is gone; the program goes on without sound");
     told = true;
     close();
+    retry_in_s = next_retry_s = kFirstRetryS;
   }
   retry_in_s -= dt_s;
-  if (retry_in_s <= 0) open();
+  if (retry_in_s > 0) return;
+  next_retry_s = std::min(2 * next_retry_s, kLongestRetryS);
+  retry_in_s = next_retry_s;
+  open();
 }
 
 Sound* Audio::State::find(SoundId id) {
@@ -134,17 +111,22 @@ Sound* Audio::State::find(SoundId id) {
   return at == sounds.end() ? nullptr : &*at;
 }
 
+// Metres from the listener; of no meaning for a sound without a place.
+glm::vec3 Audio::State::place_of(const Sound& sound) const {
+  if (!sound.how.at) return glm::vec3(0);
+  return glm::vec3(core::offset_m(sound.how.at->block, listener.position, options.block_size_m) +
+                   sound.how.at->local);
+}
+
 // The loudest get voices. One that has a voice keeps it against one that is hardly louder.
-void Audio::State::choose(const core::CameraPose& listener) {
+void Audio::State::choose() {
   std::vector<Sound*> order;
   for (Sound& sound : sounds) {
     const auto bus = static_cast<std::size_t>(sound.how.bus);
     sound.gain = sound.how.gain * volumes[bus] * master;
     sound.chosen = false;
     if (sound.how.at) {
-      const core::WorldPosition& at = *sound.how.at;
-      const glm::dvec3 corner = core::offset_m(at.block, listener.position, options.block_size_m);
-      const glm::dvec3 place = corner + at.local;
+      const glm::dvec3 place(place_of(sound));
       sound.gain *= attenuation(std::hypot(place.x, place.y, place.z), sound.how.range);
     }
     if (sound.gain > 0 && !paused[bus] && !sound.ended) order.push_back(&sound);
@@ -157,114 +139,24 @@ void Audio::State::choose(const core::CameraPose& listener) {
     sound->chosen = true;
 }
 
-// Fills a buffer with the next quarter of a second and queues it. False at the end.
-bool Audio::State::queue_piece(Sound& sound, ALuint buffer) {
-  const std::uint32_t channels = sound.file->channels();
-  std::vector<std::int16_t> samples(std::size_t{sound.file->rate_hz()} / 4 * channels);
-  std::size_t filled = 0;
-  for (bool rewound = false; filled < samples.size();) {
-    const std::size_t read = sound.file->read(std::span(samples).subspan(filled)) * channels;
-    filled += read;
-    if (read > 0) rewound = false;
-    if (read > 0) continue;
-    if (!sound.how.loop || rewound) break;
-    sound.file->seek(0);
-    rewound = true;
-  }
-  if (filled == 0) return false;
-  alBufferData(buffer, channels == 2 ? AL_FORMAT_STEREO16 : AL_FORMAT_MONO16, samples.data(),
-               static_cast<ALsizei>(filled * sizeof(std::int16_t)),
-               static_cast<ALsizei>(sound.file->rate_hz()));
-  alSourceQueueBuffers(sound.source, 1, &buffer);
-  sound.pieces.push_back({buffer, filled / channels});
-  return true;
+// The buffer with the samples of a clip; 0 for a stream.
+ALuint Audio::State::buffer_of(const Sound& sound) {
+  if (!sound.clip) return 0;
+  Loaded& entry = loaded[sound.clip.get()];
+  if (entry.buffer == 0)
+    entry = {sound.clip,
+             make_buffer(sound.clip->samples, sound.clip->channels, sound.clip->rate_hz)};
+  return entry.buffer;
 }
 
-void Audio::State::give_voice(Sound& sound) {
-  alGetError();
-  alGenSources(1, &sound.source);
-  if (alGetError() != AL_NO_ERROR) {
-    sound.source = 0;  // the device has fewer voices than were asked for
-    return;
+void Audio::State::step(Sound& sound, double dt_s) {
+  if (output != nullptr && sound.chosen && sound.source == 0) give_voice(sound, buffer_of(sound));
+  if (sound.source != 0) {
+    set_source(sound, place_of(sound));
+    follow(sound);
+  } else if (!paused[static_cast<std::size_t>(sound.how.bus)]) {
+    pass_silently(sound, dt_s);
   }
-  alSourcef(sound.source, AL_MAX_GAIN, 4);
-  if (sound.clip) {
-    Loaded& entry = loaded[sound.clip.get()];
-    if (entry.buffer == 0)
-      entry = {sound.clip,
-               make_buffer(sound.clip->samples, sound.clip->channels, sound.clip->rate_hz)};
-    alSourcei(sound.source, AL_BUFFER, static_cast<ALint>(entry.buffer));
-    alSourcei(sound.source, AL_SAMPLE_OFFSET, static_cast<ALint>(sound.frame));
-    return;
-  }
-  sound.file->seek(static_cast<std::uint64_t>(sound.frame));
-  sound.file_ended = false;
-  for (std::size_t i = 0; i < kPieces && !sound.file_ended; ++i) {
-    ALuint buffer = 0;
-    alGenBuffers(1, &buffer);
-    sound.file_ended = !queue_piece(sound, buffer);
-    if (sound.file_ended) alDeleteBuffers(1, &buffer);
-  }
-}
-
-void Audio::State::take_voice(Sound& sound) {
-  if (sound.source == 0) return;
-  ALint offset = 0, state = AL_INITIAL;
-  alGetSourcei(sound.source, AL_SAMPLE_OFFSET, &offset);
-  alGetSourcei(sound.source, AL_SOURCE_STATE, &state);
-  if (sound.clip && state == AL_STOPPED) sound.ended = true;  // since the last update
-  sound.frame = sound.clip ? offset : sound.frame + offset;
-  if (sound.how.loop && sound.frames() > 0) sound.frame = std::fmod(sound.frame, sound.frames());
-  alSourceStop(sound.source);
-  alSourcei(sound.source, AL_BUFFER, 0);
-  alDeleteSources(1, &sound.source);
-  for (const Piece& piece : sound.pieces)
-    alDeleteBuffers(1, &piece.buffer);
-  sound.pieces.clear();
-  sound.source = 0;
-}
-
-void Audio::State::set_source(const Sound& sound, const core::CameraPose& listener) const {
-  glm::vec3 place{0};
-  if (sound.how.at)
-    place = glm::vec3(core::offset_m(sound.how.at->block, listener.position, options.block_size_m) +
-                      sound.how.at->local);
-  alSource3f(sound.source, AL_POSITION, place.x, place.y, place.z);
-  alSourcei(sound.source, AL_SOURCE_RELATIVE, sound.how.at ? AL_FALSE : AL_TRUE);
-  alSourcef(sound.source, AL_GAIN, static_cast<float>(sound.gain));
-  alSourcef(sound.source, AL_PITCH, static_cast<float>(sound.how.pitch));
-  if (sound.clip) alSourcei(sound.source, AL_LOOPING, sound.how.loop ? AL_TRUE : AL_FALSE);
-}
-
-// Starts what has a new voice, feeds streams, notices ends.
-void Audio::State::follow(Sound& sound) {
-  if (sound.file) {
-    ALint played = 0;
-    for (alGetSourcei(sound.source, AL_BUFFERS_PROCESSED, &played); played > 0; --played) {
-      ALuint buffer = 0;
-      alSourceUnqueueBuffers(sound.source, 1, &buffer);
-      sound.frame += static_cast<double>(sound.pieces.front().frames);
-      sound.pieces.pop_front();
-      if (!sound.file_ended) sound.file_ended = !queue_piece(sound, buffer);
-      if (sound.file_ended) alDeleteBuffers(1, &buffer);
-    }
-  }
-  ALint state = AL_INITIAL;
-  alGetSourcei(sound.source, AL_SOURCE_STATE, &state);
-  if (state == AL_PLAYING) return;
-  if (state == AL_INITIAL || (sound.file && !sound.pieces.empty())) {
-    alSourcePlay(sound.source);  // new, or a stream that was fed too late
-  } else {
-    sound.ended = true;
-  }
-}
-
-void Audio::State::pass_silently(Sound& sound, double dt_s) const {
-  if (paused[static_cast<std::size_t>(sound.how.bus)]) return;
-  sound.frame += dt_s * sound.rate_hz() * sound.how.pitch;
-  if (sound.frame < sound.frames()) return;
-  sound.ended = !sound.how.loop || sound.frames() <= 0;
-  if (!sound.ended) sound.frame = std::fmod(sound.frame, sound.frames());
 }
 
 void Audio::State::drop_unused() {
@@ -324,7 +216,7 @@ void Audio::stop(SoundId id) {
   if (sound == nullptr) return;
   if (state_->output != nullptr) {
     state_->output->use();
-    state_->take_voice(*sound);
+    take_voice(*sound);
   }
   state_->sounds.erase(state_->sounds.begin() + (sound - state_->sounds.data()));
 }
@@ -356,33 +248,26 @@ void Audio::set_paused(Bus bus, bool paused) {
 }
 
 void Audio::update(const core::CameraPose& listener, double dt_s) {
-  if (!core::is_valid(listener) || !(dt_s >= 0)) return;
   State& s = *state_;
+  if (core::is_valid(listener)) s.listener = listener;
+  dt_s = dt_s > 0 ? std::min(dt_s, kMostSecondsAtOnce) : 0;
   s.check_device(dt_s);
   if (s.output != nullptr) {
-    s.choose(listener);
-    const glm::mat4 view = core::view_rotation(listener);
-    s.output->set_listener(core::forward_of(listener), {view[0][1], view[1][1], view[2][1]});
+    s.choose();
+    const glm::mat4 view = core::view_rotation(s.listener);
+    s.output->set_listener(core::forward_of(s.listener), {view[0][1], view[1][1], view[2][1]});
     for (Sound& sound : s.sounds)
-      if (!sound.chosen) s.take_voice(sound);
+      if (!sound.chosen) take_voice(sound);
   }
-  for (Sound& sound : s.sounds) {
-    if (s.output != nullptr && sound.chosen) {
-      if (sound.source == 0) s.give_voice(sound);
-    }
-    if (sound.source == 0) {
-      s.pass_silently(sound, dt_s);
-    } else {
-      s.set_source(sound, listener);
-      s.follow(sound);
-    }
-  }
+  for (Sound& sound : s.sounds)
+    s.step(sound, dt_s);
   s.drop_unused();
 }
 
 void Audio::set_destination(Destination destination) {
   state_->close();
   state_->options.destination = destination;
+  state_->retry_in_s = state_->next_retry_s = kFirstRetryS;
   state_->open();
 }
 

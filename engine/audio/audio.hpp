@@ -1,9 +1,11 @@
 // Sound: clips and streams, with or without a place in the world, heard by a listener at the
-// camera. update() does all the work, once a frame; every other call only changes values. Without a
-// device everything works and nothing is heard. Not a mixer of effects (no echo). Main thread only;
-// one object that is audible per process, because OpenAL has one current context.
+// camera. Most calls only change values, and update() makes them heard, once a frame. The
+// constructor and set_destination() open a device, and stream() opens a file. Without a device
+// everything works and nothing is heard. Not a mixer of effects (no echo). Main thread only; one
+// object that is audible per process, because OpenAL has one current context.
 //
-// Streams are decoded by update(), in pieces of a quarter of a second, one second ahead.
+// Streams are decoded by update(), in pieces of a quarter of a second: at most two in one update,
+// up to one second ahead.
 #pragma once
 
 #include <cstdint>
@@ -85,8 +87,10 @@ class Audio {
   void set_paused(Bus bus, bool paused);
 
   // Moves the listener, lets `dt_s` seconds pass for what is not heard, gives voices to the
-  // loudest, decodes streams. A pose that is not finite is ignored. A device that is lost is told
-  // once, and looked for again every two seconds. O(sounds · log sounds).
+  // loudest, decodes streams. Where a pose is not finite, the last good one counts; a time above 60
+  // s counts as 60 s, and one that is no number or negative as 0. A device that is lost is told
+  // once, and looked for again after 2, 4, 8 … 64 seconds, which takes milliseconds each time.
+  // O(sounds · log sounds).
   void update(const core::CameraPose& listener, double dt_s);
 
   // Changes where the sound goes; sounds go on.

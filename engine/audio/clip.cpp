@@ -14,14 +14,15 @@ core::Result<Clip> read_clip(const std::filesystem::path& file) {
   constexpr std::size_t kPiece = std::size_t{1} << 16;
   for (std::size_t read = kPiece; read == kPiece;) {
     const std::size_t before = clip.samples.size();
-    if (before * sizeof(std::int16_t) > kMaxClipBytes)
-      return core::fail(core::ErrorCode::kOverBudget,
-                        fmt::format("{}: is longer than {} MiB of samples; play it as a stream",
-                                    file.string(), kMaxClipBytes >> 20));
     clip.samples.resize(before + kPiece * clip.channels);
     read = opened->read(std::span(clip.samples).subspan(before));
     clip.samples.resize(before + read * clip.channels);
+    if (clip.samples.size() * sizeof(std::int16_t) > kMaxClipBytes)
+      return core::fail(core::ErrorCode::kOverBudget,
+                        fmt::format("{}: is longer than {} MiB of samples; play it as a stream",
+                                    file.string(), kMaxClipBytes >> 20));
   }
+  clip.samples.shrink_to_fit();
   if (clip.samples.empty())
     return core::fail(core::ErrorCode::kParse, fmt::format("{}: has no samples", file.string()));
   return clip;

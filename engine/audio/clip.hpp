@@ -24,9 +24,9 @@ inline constexpr std::uint32_t kMinRate = 4000, kMaxRate = 192'000;
 // The longest clip that read_clip() accepts, decoded.
 inline constexpr std::size_t kMaxClipBytes = std::size_t{64} << 20;
 
-// Reads WAV, Ogg Vorbis or FLAC. Nothing is allocated for more than kMaxClipBytes. Fails with kIo
-// (missing, not a regular file), kParse (another format, damaged) or kOverBudget (length, rate,
-// channels); the message starts with the path. O(samples).
+// Reads WAV, Ogg Vorbis or FLAC. Memory grows with the samples that are there, whatever the file's
+// head claims. Fails with kIo (missing, not a regular file), kParse (another format, damaged) or
+// kOverBudget (above kMaxClipBytes, rate, channels); the message starts with the path. O(samples).
 core::Result<Clip> read_clip(const std::filesystem::path& file);
 
 // The same with one channel, the mean of both: only such clips can have a place.

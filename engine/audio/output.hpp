@@ -1,5 +1,5 @@
-// OpenAL as values: a device with a context, and sources that play clips or queues of pieces. The
-// only header of the project that includes OpenAL; it is private to engine/audio. Main thread only.
+// A device of OpenAL with its context and listener. Not the sources (voice.hpp). Private to
+// engine/audio. Main thread only.
 #pragma once
 
 #include <AL/al.h>

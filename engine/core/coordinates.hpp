@@ -7,6 +7,7 @@
 #include <compare>
 #include <cstdint>
 #include <functional>
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
 #include "engine/core/hash.hpp"
@@ -35,6 +36,19 @@ struct Bounds {
   friend bool operator==(const Bounds&, const Bounds&) = default;
 };
 
+// The smallest box around two boxes.
+inline Bounds united(const Bounds& a, const Bounds& b) {
+  return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
+}
+
+// Whether all three components are numbers, and none is infinite.
+inline bool is_finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+inline bool is_finite(const glm::vec3& v) {
+  return is_finite(glm::dvec3(v));
+}
+
 // A place in the world. Normalised when local x and z lie in [0, block size).
 struct WorldPosition {
   BlockCoord block;
@@ -42,17 +56,22 @@ struct WorldPosition {
   glm::dvec3 local{0.0};
 };
 
+// The block this many blocks east and south of another. Indices wrap at 2^32.
+constexpr BlockCoord moved(BlockCoord block, std::int64_t east, std::int64_t south) {
+  const auto wrap = [](std::int32_t index, std::int64_t steps) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(index) +
+                                     static_cast<std::uint32_t>(steps));
+  };
+  return {wrap(block.x, east), wrap(block.z, south)};
+}
+
 // The same place with local x and z in [0, block_size_m). Block indices wrap at 2^32.
 inline WorldPosition normalised(WorldPosition p, double block_size_m) {
-  const double steps_x = std::floor(p.local.x / block_size_m);
-  const double steps_z = std::floor(p.local.z / block_size_m);
-  const auto wrap = [](std::int32_t index, double steps) {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(index) +
-                                     static_cast<std::uint32_t>(static_cast<std::int64_t>(steps)));
-  };
-  p.block = {wrap(p.block.x, steps_x), wrap(p.block.z, steps_z)};
-  p.local.x -= steps_x * block_size_m;
-  p.local.z -= steps_z * block_size_m;
+  const double east = std::floor(p.local.x / block_size_m);
+  const double south = std::floor(p.local.z / block_size_m);
+  p.block = moved(p.block, static_cast<std::int64_t>(east), static_cast<std::int64_t>(south));
+  p.local.x -= east * block_size_m;
+  p.local.z -= south * block_size_m;
   return p;
 }
 

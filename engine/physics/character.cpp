@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <utility>
 
 #include "engine/physics/convert.hpp"
 
@@ -93,27 +94,30 @@ void Character::stop_at(const btVector3& normal) {
   velocity = btVector3(left.x(), velocity.y(), left.z());
 }
 
-// Over an obstacle: up, ahead and down again. Refused if it lands on a slope or gains nothing.
+// Over an obstacle: up, ahead and down again. Refused if it gains nothing, or if no walkable place
+// is where the capsule's round foot comes off the edge, which may be steps of time ahead.
 bool Character::step_up(const btVector3& way) {
   const btVector3 from = centre(feet_), up(0, settings_.step_height_m, 0);
   const Sweep raise = mover_.sweep(from, from + up);
   const double lifted =
       std::max(raise.fraction * settings_.step_height_m - CapsuleMover::kSkinM, 0.0);
   if (lifted < 2 * CapsuleMover::kSkinM) return false;
-  const btVector3 above = from + btVector3(0, lifted, 0);
-  // Far enough for the capsule's round foot to find the top of the step.
-  const btVector3 ahead = way + way.normalized() * (0.5 * settings_.radius_m);
+  const btVector3 above = from + btVector3(0, lifted, 0), down(0, -lifted, 0);
+  const double way_m = way.length();
+  const btVector3 ahead = way * (1 + 0.5 * settings_.radius_m / way_m);
   const Sweep forth = mover_.sweep(above, above + ahead);
-  const btVector3 gained =
-      ahead * std::max(forth.fraction - CapsuleMover::kSkinM / ahead.length(), 0.0);
-  if (gained.length2() < 0.25 * ahead.length2()) return false;
-  const btVector3 there = above + gained;
-  const Sweep down = mover_.sweep(there, there - btVector3(0, lifted, 0));
-  if (!down.hit || !is_walkable(down.normal)) return false;
-  const btVector3 landed =
-      there - btVector3(0, std::max(lifted * down.fraction - CapsuleMover::kSkinM, 0.0), 0);
-  // Only as far as the way reaches, if there is support there too.
-  feet_ = terrain_.inside(landed - btVector3(0, 0.5 * settings_.height_m, 0), settings_.radius_m);
+  const double gained_m = forth.fraction * ahead.length() - CapsuleMover::kSkinM;
+  if (gained_m < 0.5 * ahead.length()) return false;
+  const btVector3 probe = above + ahead * (gained_m / ahead.length());
+  const Sweep top = mover_.sweep(probe, probe + down);
+  if (!top.hit || !is_walkable(top.normal)) return false;
+  // Only as far as the way reaches, perhaps onto the edge.
+  const btVector3 there = above + way * std::min(gained_m / way_m, 1.0);
+  const Sweep landing = mover_.sweep(there, there + down);
+  const double dropped_m = std::max(lifted * landing.fraction - CapsuleMover::kSkinM, 0.0);
+  on_edge_ = landing.hit && !is_walkable(landing.normal);
+  feet_ = terrain_.inside(there - btVector3(0, dropped_m + 0.5 * settings_.height_m, 0),
+                          settings_.radius_m);
   return true;
 }
 
@@ -152,6 +156,10 @@ void Character::move_up(double rise) {
 
 // Falls by `drop`, or, where it stands, follows what it stands on.
 void Character::move_down(double drop) {
+  if (std::exchange(on_edge_, false)) {
+    velocity.setY(0);
+    return;
+  }
   const bool stood = on_ground && !rising_;
   const double depth = stood ? settings_.step_height_m : drop;
   const btVector3 from = centre(feet_);

@@ -59,7 +59,8 @@ class Character {
   CharacterSettings settings_;
   double least_up_;  // y of the normal of the steepest walkable ground
   btVector3 feet_;
-  bool rising_ = false;  // has jumped in this step
+  bool rising_ = false;   // has jumped in this step
+  bool on_edge_ = false;  // stands on the edge of a step that it climbs
   btCapsuleShape capsule_;
   btDefaultMotionState motion_;
   std::unique_ptr<btRigidBody> body_;

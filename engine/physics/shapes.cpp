@@ -55,9 +55,7 @@ bool is_legal(const Collider::Shape& shape) {
     if (!(size >= kLeastSizeM && far <= kMostSizeM)) return false;  // nor NaN
   }
   if (const auto* hull = std::get_if<Collider::Hull>(&shape))
-    return std::ranges::all_of(hull->points, [](const glm::vec3& p) {
-      return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-    });
+    return std::ranges::all_of(hull->points, [](const glm::vec3& p) { return core::is_finite(p); });
   return true;
 }
 

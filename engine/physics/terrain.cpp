@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "engine/physics/convert.hpp"
 #include "engine/physics/shapes.hpp"
@@ -14,21 +15,10 @@ namespace {
 
 constexpr double kFriction = 0.8;
 
-// The difference of two indices, which wrap.
-std::int64_t difference(std::int32_t a, std::int32_t b) {
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
-}
-
-std::int32_t sum(std::int32_t a, std::int64_t b) {
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
-}
-
 }  // namespace
 
 glm::dvec3 Terrain::corner_of(core::BlockCoord block) const {
-  const double size = query_.world().block_size_m();
-  return {static_cast<double>(difference(block.x, origin_.x)) * size, 0,
-          static_cast<double>(difference(block.z, origin_.z)) * size};
+  return core::offset_m(block, {origin_}, query_.world().block_size_m());
 }
 
 core::WorldPosition Terrain::position(const btVector3& at) const {
@@ -40,8 +30,16 @@ btVector3 Terrain::coordinates(const core::WorldPosition& at) const {
 }
 
 void Terrain::set_origin(core::BlockCoord origin) {
-  clear();
   origin_ = origin;
+  drop_idle(last_step_, 0, 0);
+  for (auto& [at, block] : blocks_) {
+    const btVector3 corner = to_bt(corner_of(at));
+    for (const Part& part : block.parts) {
+      part.object->getWorldTransform().setOrigin(corner + part.from_corner);
+      part.object->setInterpolationWorldTransform(part.object->getWorldTransform());
+      bullet_.updateSingleAabb(part.object.get());
+    }
+  }
 }
 
 btVector3 Terrain::inside(const btVector3& at, double margin_m) const {
@@ -60,27 +58,23 @@ btVector3 Terrain::inside(const btVector3& at, double margin_m) const {
 
 models::GroundPoint Terrain::ground(const btVector3& at) {
   const core::WorldPosition p = position(inside(at, 1e-6));
-  const glm::dvec2 local(p.local.x, p.local.z);
-  if (const auto block = blocks_.find(p.block); block != blocks_.end())
-    return block->second.grid->at(local);
-  return query_.ground_grid(p.block).at(local);
+  return query_.ground_grid(p.block).at({p.local.x, p.local.z});
 }
 
-void Terrain::add(Block& block, std::unique_ptr<btCollisionShape> shape, const btTransform& place,
-                  Group group) {
+void Terrain::add(core::BlockCoord at, Block& block, std::unique_ptr<btCollisionShape> shape,
+                  const btTransform& place, Group group) {
   auto object = std::make_unique<btCollisionObject>();
   object->setCollisionShape(shape.get());
-  object->setWorldTransform(place);
+  object->setWorldTransform(
+      btTransform(place.getBasis(), to_bt(corner_of(at)) + place.getOrigin()));
   object->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
   object->setFriction(kFriction);
   bullet_.addCollisionObject(object.get(), group, kBodies | kCharacters);
-  block.shapes.push_back(std::move(shape));
-  block.objects.push_back(std::move(object));
+  block.parts.push_back({std::move(shape), std::move(object), place.getOrigin()});
 }
 
 void Terrain::make(core::BlockCoord at, Block& block) {
-  const glm::dvec3 corner = corner_of(at);
-  const query::GroundGrid& grid = block.grid.emplace(query_.ground_grid(at));
+  const query::GroundGrid& grid = query_.ground_grid(at);
   for (const std::uint16_t height : grid.heights())
     block.heights.push_back(grid.metres(height));
   auto ground = std::make_unique<btHeightfieldTerrainShape>(
@@ -88,42 +82,57 @@ void Terrain::make(core::BlockCoord at, Block& block) {
   ground->setLocalScaling({grid.cell_m(), 1, grid.cell_m()});
   // Bullet's heightfields have their origin in the middle of their box.
   const double half = 0.5 * query_.world().block_size_m();
-  const glm::dvec3 middle(half, 0.5 * (grid.lowest_m() + grid.highest_m()), half);
-  add(block, std::move(ground), btTransform(btQuaternion::getIdentity(), to_bt(corner + middle)),
-      kGround);
+  const btVector3 middle(half, 0.5 * (grid.lowest_m() + grid.highest_m()), half);
+  add(at, block, std::move(ground), btTransform(btQuaternion::getIdentity(), middle), kGround);
   for (const query::StandingSolid& s : query_.solids(at).solids) {
     for (const models::Collider::Shape& shape : s.solid.collider().shapes) {
       PlacedShape part = make_part(shape);
-      part.place.setOrigin(part.place.getOrigin() + to_bt(corner + s.foot));
-      add(block, std::move(part.shape), part.place, kModels);
+      part.place.setOrigin(part.place.getOrigin() + to_bt(s.foot));
+      add(at, block, std::move(part.shape), part.place, kModels);
     }
   }
 }
 
-void Terrain::need(const glm::dvec2& low, const glm::dvec2& high, std::uint64_t step) {
-  const double size = query_.world().block_size_m(), reach = query_.models_reach_m();
-  glm::dvec2 first = glm::floor((low - reach) / size), last = glm::floor((high + reach) / size);
+template <class Visit>
+void Terrain::each_near(const glm::dvec2& low, const glm::dvec2& high, double reach_m,
+                        const Visit& visit) const {
+  const double size = query_.world().block_size_m();
+  glm::dvec2 first = glm::floor((low - reach_m) / size), last = glm::floor((high + reach_m) / size);
   const glm::dvec2 middle = glm::floor((low + high) / (2 * size));
   first = glm::max(first, middle - double{kMostAside / 2});
   last = glm::min(last, middle + double{kMostAside / 2});
-  for (double z = first.y; z <= last.y; ++z) {
-    for (double x = first.x; x <= last.x; ++x) {
-      const core::BlockCoord at{sum(origin_.x, static_cast<std::int64_t>(x)),
-                                sum(origin_.z, static_cast<std::int64_t>(z))};
-      if (!query_.world().contains(at)) continue;
-      const auto [block, is_new] = blocks_.try_emplace(at);
-      if (is_new) {
-        make(at, block->second);
-        block->second.edits = query::edits_of_block(query_.world(), at);
-      }
-      block->second.needed = step;
+  for (double z = first.y; z <= last.y; ++z)
+    for (double x = first.x; x <= last.x; ++x)
+      if (!visit(core::moved(origin_, static_cast<std::int64_t>(x), static_cast<std::int64_t>(z))))
+        return;
+}
+
+void Terrain::need(const glm::dvec2& low, const glm::dvec2& high, std::uint64_t step) {
+  last_step_ = step;
+  each_near(low, high, query_.models_reach_m(), [&](core::BlockCoord at) {
+    if (!query_.world().contains(at)) return true;
+    const auto [block, is_new] = blocks_.try_emplace(at);
+    if (is_new) {
+      make(at, block->second);
+      block->second.edits = query::edits_of_block(query_.world(), at);
     }
-  }
+    block->second.needed = step;
+    return true;
+  });
+}
+
+bool Terrain::is_near(const Changes& changes, const glm::dvec2& low, const glm::dvec2& high) const {
+  bool near = false;
+  each_near(low, high, changes.reach_m, [&](core::BlockCoord at) {
+    near = changes.blocks.contains(at);
+    return !near;
+  });
+  return near;
 }
 
 Terrain::Blocks::iterator Terrain::erase(Blocks::iterator block) {
-  for (const auto& object : block->second.objects)
-    bullet_.removeCollisionObject(object.get());
+  for (const Part& part : block->second.parts)
+    bullet_.removeCollisionObject(part.object.get());
   return blocks_.erase(block);
 }
 
@@ -131,15 +140,22 @@ void Terrain::remove(core::BlockCoord at) {
   if (const auto block = blocks_.find(at); block != blocks_.end()) erase(block);
 }
 
-bool Terrain::follow_edits() {
-  if (query_.world().edits == edits_) return false;
+Terrain::Changes Terrain::follow_edits() {
+  Changes changes;
+  if (query_.world().edits == edits_) return changes;
   edits_ = query_.world().edits;
-  const std::size_t before = blocks_.size();
+  const double before_m = std::exchange(reach_m_, query_.models_reach_m());
+  changes.reach_m = std::max(before_m, reach_m_);
   for (auto block = blocks_.begin(); block != blocks_.end();) {
-    const bool changed = block->second.edits != query::edits_of_block(query_.world(), block->first);
-    block = changed ? erase(block) : std::next(block);
+    const core::BlockCoord at = block->first;
+    if (block->second.edits == query::edits_of_block(query_.world(), at)) {
+      ++block;
+      continue;
+    }
+    changes.blocks.insert(at);
+    block = erase(block);
   }
-  return blocks_.size() != before;
+  return changes;
 }
 
 void Terrain::clear() {

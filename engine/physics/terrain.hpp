@@ -7,8 +7,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "engine/query/world.hpp"
@@ -29,7 +29,8 @@ class Terrain {
   Terrain(const Terrain&) = delete;
   Terrain& operator=(const Terrain&) = delete;
 
-  // The block from whose corner Bullet's coordinates count. Removes all blocks.
+  // The block from whose corner Bullet's coordinates count. Moves the blocks that were needed last,
+  // and removes the others. O(objects).
   void set_origin(core::BlockCoord origin);
   // Makes what is missing of the blocks that reach into the square from `low` to `high`, in
   // Bullet's x and z, and keeps them for this step.
@@ -38,14 +39,20 @@ class Terrain {
   // others.
   void drop_idle(std::uint64_t step, std::uint32_t keep_steps, std::size_t most);
   void remove(core::BlockCoord block);
-  // Removes the blocks that edits of the world have changed since the last call. Returns whether
-  // there are any.
-  bool follow_edits();
+  // Blocks that edits of the world have changed, and how far their models reached, before or after.
+  struct Changes {
+    std::unordered_set<core::BlockCoord, core::BlockCoordHash> blocks;
+    double reach_m = 0;
+  };
+  // Removes the blocks that have changed since the last call, and returns them.
+  Changes follow_edits();
+  // Whether what has changed reaches into the square from `low` to `high`.
+  bool is_near(const Changes& changes, const glm::dvec2& low, const glm::dvec2& high) const;
   void clear();
   std::size_t size() const { return blocks_.size(); }
 
-  // The ground under a point in Bullet's coordinates, moved into a bounded world. From queries
-  // where the block is not here.
+  // The ground under a point in Bullet's coordinates, moved into a bounded world. As queries have
+  // it now, also where Bullet gets it in the next step only.
   models::GroundPoint ground(const btVector3& at);
   // The point inside the walls of a bounded world, at least `margin_m` from them.
   btVector3 inside(const btVector3& at, double margin_m) const;
@@ -54,25 +61,35 @@ class Terrain {
   btVector3 coordinates(const core::WorldPosition& at) const;
 
  private:
+  struct Part {
+    std::unique_ptr<btCollisionShape> shape;
+    std::unique_ptr<btCollisionObject> object;
+    btVector3 from_corner{0, 0, 0};  // of the block
+  };
   struct Block {
-    std::uint64_t needed = 0;  // the last step in which it was
-    std::uint64_t edits = 0;   // query::edits_of_block() when it was made
-    std::optional<query::GroundGrid> grid;
-    std::vector<double> heights;  // for Bullet
-    std::vector<std::unique_ptr<btCollisionShape>> shapes;
-    std::vector<std::unique_ptr<btCollisionObject>> objects;
+    std::uint64_t needed = 0;     // the last step in which it was
+    std::uint64_t edits = 0;      // query::edits_of_block() when it was made
+    std::vector<double> heights;  // of the ground; Bullet refers to them
+    std::vector<Part> parts;
   };
   using Blocks = std::unordered_map<core::BlockCoord, Block, core::BlockCoordHash>;
 
   glm::dvec3 corner_of(core::BlockCoord block) const;
   void make(core::BlockCoord at, Block& block);
-  void add(Block& block, std::unique_ptr<btCollisionShape> shape, const btTransform& place,
-           Group group);
+  // `place` counts from the block's corner.
+  void add(core::BlockCoord at, Block& block, std::unique_ptr<btCollisionShape> shape,
+           const btTransform& place, Group group);
+  // Visits the blocks that reach into a square, until visit() returns false.
+  template <class Visit>
+  void each_near(const glm::dvec2& low, const glm::dvec2& high, double reach_m,
+                 const Visit& visit) const;
   Blocks::iterator erase(Blocks::iterator block);
 
   btDynamicsWorld& bullet_;
   query::World& query_;
   std::shared_ptr<const models::EditLayer> edits_;  // when they were last looked at
+  double reach_m_ = 0;                              // of models, then
+  std::uint64_t last_step_ = 0;                     // of need()
   core::BlockCoord origin_;
   Blocks blocks_;
 };

@@ -57,11 +57,7 @@ World::~World() = default;
 
 core::Result<CharacterId> World::add(const CharacterSettings& settings) {
   if (auto sound = check(settings); !sound) return tl::unexpected(sound.error());
-  if (impl_->count() >= impl_->settings.most_bodies)
-    return core::fail(core::ErrorCode::kOverBudget,
-                      fmt::format("there are {} bodies and characters already, the most that the "
-                                  "settings allow",
-                                  impl_->settings.most_bodies));
+  if (auto room = impl_->check_room(); !room) return tl::unexpected(room.error());
   const auto feet = impl_->place(settings.feet);
   if (!feet) return tl::unexpected(feet.error());
   const std::uint32_t number = ++impl_->last_number;
@@ -142,12 +138,6 @@ core::Result<std::optional<BodyHit>> World::cast(const core::WorldPosition& orig
   hit.position = impl_->terrain.position(nearest.m_hitPointWorld);
   hit.normal = to_glm(nearest.m_hitNormalWorld);
   return hit;
-}
-
-void World::refresh(core::BlockCoord block) {
-  impl_->query.forget(block);
-  impl_->terrain.remove(block);
-  impl_->rouse();
 }
 
 std::size_t World::block_count() const {

@@ -35,11 +35,11 @@ class World {
   // Adds a body. Its shape has at least one part, each of kLeastSizeM … kMostSizeM. Fails with
   // kOverBudget above Settings::most_bodies. A body below the ground is put on it in the next step.
   core::Result<BodyId> add(const BodySettings& settings);
-  // Removes a body, and wakes all others.
+  // Removes a body, and wakes those that touch it. O(contacts).
   core::Result<void> remove(BodyId body);
   core::Result<BodyState> state(BodyId body) const;
-  // Teleports a body, and wakes it. A kinematic body moves there during the next step and pushes
-  // what is in its way, if that is nearer than a block.
+  // Teleports a body, and wakes it and what lies on it. A kinematic body moves there during the
+  // next step and pushes what is in its way, if that is nearer than a block.
   core::Result<void> set_pose(BodyId body, const core::WorldPosition& position,
                               const glm::dquat& rotation);
   core::Result<void> set_velocity(BodyId body, const glm::dvec3& velocity, const glm::dvec3& spin);
@@ -63,9 +63,6 @@ class World {
   core::Result<std::optional<BodyHit>> cast(const core::WorldPosition& origin,
                                             const glm::dvec3& direction, double longest_m) const;
 
-  // Something other than edits has changed a block: its ground and models are made anew in the next
-  // step. Wakes all bodies. Edits of the world are followed by themselves.
-  void refresh(core::BlockCoord block);
   // Blocks with ground and models in Bullet now.
   std::size_t block_count() const;
 

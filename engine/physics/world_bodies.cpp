@@ -47,11 +47,7 @@ core::Result<BodyId> World::add(const BodySettings& s) {
   if (!rotation) return tl::unexpected(rotation.error());
   auto shape = make_shape(s.shape);
   if (!shape) return tl::unexpected(shape.error());
-  if (impl_->count() >= impl_->settings.most_bodies)
-    return core::fail(core::ErrorCode::kOverBudget,
-                      fmt::format("there are {} bodies and characters already, the most that the "
-                                  "settings allow",
-                                  impl_->settings.most_bodies));
+  if (auto room = impl_->check_room(); !room) return tl::unexpected(room.error());
   const auto at = impl_->place(s.position);
   if (!at) return tl::unexpected(at.error());
 
@@ -92,9 +88,9 @@ core::Result<BodyId> World::add(const BodySettings& s) {
 core::Result<void> World::remove(BodyId id) {
   const auto found = impl_->bodies.find(id.number);
   if (found == impl_->bodies.end()) return no_body(id);
+  impl_->wake_touching(*found->second.rigid);
   impl_->bullet.removeRigidBody(found->second.rigid.get());
   impl_->bodies.erase(found);
-  impl_->rouse();
   return {};
 }
 
@@ -116,6 +112,7 @@ core::Result<void> World::set_pose(BodyId id, const core::WorldPosition& positio
   const auto at = impl_->place(position);
   if (!at) return tl::unexpected(at.error());
   btRigidBody& rigid = *body->rigid;
+  if (!rigid.isActive()) impl_->wake_touching(rigid);
   const btTransform pose(to_bt(*turn), *at);
   body->motion.setWorldTransform(pose);
   body->is_moved = true;

@@ -75,6 +75,8 @@ void World::Impl::shift_origin() {
 
 void World::Impl::move_origin(core::BlockCoord to) {
   const btVector3 by = terrain.coordinates({to, glm::dvec3(0)});
+  // Everything moves alike, so no new pairs are to be found.
+  broadphase.m_deferedcollide = true;
   terrain.set_origin(to);
   for (auto& [number, character] : characters)
     character.shift(by);
@@ -89,6 +91,7 @@ void World::Impl::move_origin(core::BlockCoord to) {
     body.motion.setWorldTransform(target);
     bullet.updateSingleAabb(body.rigid.get());
   }
+  broadphase.m_deferedcollide = false;
 }
 
 void World::Impl::make_terrain(double dt) {
@@ -107,7 +110,7 @@ void World::Impl::make_terrain(double dt) {
 void World::Impl::step(double dt) {
   ++steps;
   shift_origin();
-  if (terrain.follow_edits()) rouse();
+  follow_edits();
   make_terrain(dt);
   for (auto& [number, character] : characters)
     character.step(dt, settings.gravity);
@@ -128,10 +131,37 @@ void World::Impl::step(double dt) {
   terrain.drop_idle(steps, settings.keep_steps, settings.most_idle_blocks);
 }
 
-// Wakes all bodies: something that they rest on may be gone.
-void World::Impl::rouse() {
-  for (auto& [number, body] : bodies)
-    if (body.kind == Motion::kDynamic) body.rigid->activate(true);
+core::Result<void> World::Impl::check_room() const {
+  if (count() < settings.most_bodies) return {};
+  return core::fail(core::ErrorCode::kOverBudget,
+                    fmt::format("there are {} bodies and characters already, the most that the "
+                                "settings allow",
+                                settings.most_bodies));
+}
+
+// Contacts are kept while both bodies sleep.
+void World::Impl::wake_touching(const btCollisionObject& object) {
+  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+    const btPersistentManifold& contact = *dispatcher.getManifoldByIndexInternal(i);
+    const bool first = contact.getBody0() == &object;
+    if (!first && contact.getBody1() != &object) continue;
+    const auto number = static_cast<std::uint32_t>(
+        (first ? contact.getBody1() : contact.getBody0())->getUserIndex());
+    Body* other = find(BodyId{number});
+    if (other != nullptr && other->kind == Motion::kDynamic) other->rigid->activate(true);
+  }
+}
+
+void World::Impl::follow_edits() {
+  const Terrain::Changes changes = terrain.follow_edits();
+  if (changes.blocks.empty()) return;
+  for (auto& [number, body] : bodies) {
+    const btVector3& at = body.rigid->getCenterOfMassPosition();
+    const glm::dvec2 middle(at.x(), at.z());
+    const double around = body.reach_m + kMarginM;
+    if (body.kind == Motion::kDynamic && terrain.is_near(changes, middle - around, middle + around))
+      body.rigid->activate(true);
+  }
 }
 
 // Bullet finds contacts at the end of a step only, so what is fast can be beyond the ground by

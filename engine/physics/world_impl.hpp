@@ -40,8 +40,13 @@ struct World::Impl {
   void shift_origin();
   void move_origin(core::BlockCoord to);
   void make_terrain(double dt);
+  // Fails with kOverBudget if there are as many bodies and characters as the settings allow.
+  core::Result<void> check_room() const;
   void put_back(Body& body);
-  void rouse();
+  // Wakes the dynamic bodies that touch an object, which is about to go.
+  void wake_touching(const btCollisionObject& object);
+  // Removes terrain that edits changed, and wakes the bodies that may lie on it or in it.
+  void follow_edits();
 
   query::World& query;
   Settings settings;

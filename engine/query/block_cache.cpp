@@ -11,9 +11,7 @@ constexpr std::size_t kBlockBytes = 256;
 void add(BlockSolids& all, StandingSolid solid) {
   const glm::vec3 foot(solid.foot);
   const core::Bounds box{solid.solid.box().min + foot, solid.solid.box().max + foot};
-  all.box = all.boxes.empty()
-                ? box
-                : core::Bounds{glm::min(all.box.min, box.min), glm::max(all.box.max, box.max)};
+  all.box = all.boxes.empty() ? box : core::united(all.box, box);
   all.boxes.push_back(box);
   all.solids.push_back(std::move(solid));
 }
@@ -101,12 +99,6 @@ void BlockCache::forget(core::BlockCoord block) {
   bytes_ -= found->second->bytes;
   blocks_.erase(found->second);
   index_.erase(found);
-}
-
-void BlockCache::clear() {
-  blocks_.clear();
-  index_.clear();
-  bytes_ = 0;
 }
 
 }  // namespace psygen::query

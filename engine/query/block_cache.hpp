@@ -30,11 +30,14 @@ struct BlockSolids {
   core::Bounds box;                 // around all of them; of no meaning without any
 };
 
-// World and registry must outlive it and must not change, except for the world's edits: what they
-// changed is made anew. Spans and references that it returns are valid until the next call.
+// World and registry must outlive it and must not change, except for the world's edits, between two
+// calls: what they changed is made anew. Spans and references that it returns are valid until the
+// next call.
 class BlockCache {
  public:
   BlockCache(const world::World& world, const models::Registry& registry, std::size_t most_bytes);
+  BlockCache(BlockCache&&) = default;
+  BlockCache(const BlockCache&) = delete;
 
   // The parts of a block, which exists whether or not the world contains it. Constant time for the
   // blocks that are kept.
@@ -42,9 +45,6 @@ class BlockCache {
   std::span<const world::Placement> models(core::BlockCoord block);
   BlockSolids& solids(core::BlockCoord block);
 
-  // Forgets one block, for example because it was edited, or all blocks.
-  void forget(core::BlockCoord block);
-  void clear();
   // Held now. Above the bound only if a single block is.
   std::size_t bytes() const { return bytes_; }
   std::size_t size() const { return blocks_.size(); }
@@ -61,6 +61,7 @@ class BlockCache {
   using Order = std::list<Block>;  // most recently used first
 
   Block& touch(core::BlockCoord block);
+  void forget(core::BlockCoord block);
   void follow_edits();
   void charge(Block& block, std::size_t bytes);
 

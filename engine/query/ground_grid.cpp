@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/terrain/ground.hpp"
 
 namespace psygen::query {
 namespace {
@@ -11,12 +12,6 @@ namespace {
 constexpr int kTileCells = 8;
 // A ray does not begin in a triangle that it crosses in a shorter interval, which is rounding.
 constexpr double kShortest = 1e-12;
-
-glm::vec3 unit_normal(double slope_x, double slope_z) {
-  const double scale = 1 / std::sqrt(slope_x * slope_x + 1 + slope_z * slope_z);
-  return {static_cast<float>(-slope_x * scale), static_cast<float>(scale),
-          static_cast<float>(-slope_z * scale)};
-}
 
 }  // namespace
 
@@ -65,9 +60,9 @@ models::GroundPoint GroundGrid::at(glm::dvec2 local_xz) const {
   // The same sums as in models::BlockGround::at(), for the same bits.
   if (u + v <= 1)
     return {h[0] + u * (h[1] - h[0]) + v * (h[2] - h[0]),
-            unit_normal((h[1] - h[0]) / cell_m_, (h[2] - h[0]) / cell_m_)};
+            models::unit_normal((h[1] - h[0]) / cell_m_, (h[2] - h[0]) / cell_m_)};
   return {h[3] + (1 - u) * (h[2] - h[3]) + (1 - v) * (h[1] - h[3]),
-          unit_normal((h[3] - h[2]) / cell_m_, (h[3] - h[1]) / cell_m_)};
+          models::unit_normal((h[3] - h[2]) / cell_m_, (h[3] - h[1]) / cell_m_)};
 }
 
 GroundGrid::Plane GroundGrid::plane_of(std::int64_t x, std::int64_t z, bool lower) const {
@@ -93,7 +88,7 @@ std::optional<GroundHit> GroundGrid::cast_triangle(const GroundRay& ray, std::in
   double above = ray.height_at(from) - (plane.height + at.x * plane.slope_x + at.y * plane.slope_z);
   const double rate =
       ray.rise - (ray.plane.step.x * plane.slope_x + ray.plane.step.y * plane.slope_z);
-  const glm::vec3 normal = unit_normal(plane.slope_x, plane.slope_z);
+  const glm::vec3 normal = models::unit_normal(plane.slope_x, plane.slope_z);
   if (side == Side::kUnknown) {
     if (to - from < kShortest) return std::nullopt;
     if (std::abs(above) <= kTouchM) {

@@ -102,15 +102,13 @@ Hit cast_hull(const Line& line, double longest, std::span<const HalfSpace> faces
   return clip.hit(line);
 }
 
-bool is_finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 bool is_sound(const Collider::Shape& shape) {
   if (const auto* hull = std::get_if<Collider::Hull>(&shape))
-    return hull->points.size() >= 4 && std::ranges::all_of(hull->points, is_finite);
+    return hull->points.size() >= 4 &&
+           std::ranges::all_of(hull->points, [](const glm::vec3& p) { return core::is_finite(p); });
   const core::Bounds box = bounds_of(shape);
-  return is_finite(box.min) && is_finite(box.max) && glm::all(glm::lessThan(box.min, box.max));
+  return core::is_finite(box.min) && core::is_finite(box.max) &&
+         glm::all(glm::lessThan(box.min, box.max));
 }
 
 }  // namespace
@@ -151,9 +149,7 @@ Solid::Solid(models::Collider collider) {
   collider_ = std::move(collider);
   for (const Collider::Shape& shape : collider_.shapes) {
     const core::Bounds box = bounds_of(shape);
-    box_ = &shape == collider_.shapes.data()
-               ? box
-               : core::Bounds{glm::min(box_.min, box.min), glm::max(box_.max, box.max)};
+    box_ = &shape == collider_.shapes.data() ? box : core::united(box_, box);
   }
 }
 

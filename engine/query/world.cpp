@@ -9,26 +9,12 @@
 #include <tuple>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/models_reach.hpp"
 
 namespace psygen::query {
 namespace {
 
 using core::BlockCoord;
 using core::ErrorCode;
-
-bool is_finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-// The block some steps away. Indices wrap.
-BlockCoord moved(BlockCoord block, std::int64_t x, std::int64_t z) {
-  const auto wrap = [](std::int32_t index, std::int64_t steps) {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(index) +
-                                     static_cast<std::uint32_t>(steps));
-  };
-  return {wrap(block.x, x), wrap(block.z, z)};
-}
 
 // Blocks from `first` to `last`, both included, relative to another block.
 struct BlockRange {
@@ -39,8 +25,8 @@ BlockRange blocks_around(glm::dvec2 low_m, glm::dvec2 high_m, double block_m) {
   return {glm::floor(low_m / block_m), glm::floor(high_m / block_m)};
 }
 
-bool is_wanted(models::ModelIndex model, std::span<const models::ModelIndex> only) {
-  return only.empty() || std::ranges::find(only, model) != only.end();
+auto rank(const NearModel& m) {
+  return std::tuple(m.distance_m, m.block, m.index);
 }
 
 }  // namespace
@@ -61,12 +47,9 @@ World::World(const world::World& world, const models::Registry& registry, std::s
       registry_(&registry),
       block_m_(world.block_size_m()),
       relief_m_(world.terrain.real(models::kTerrainReliefM)),
+      scattered_reach_m_(world::models_reach_m(world, registry)),
       palette_(world::drawn_palette(world)),
-      cache_(world, registry, cache_bytes) {
-  const glm::vec2 reach = world::models_reach_m(world, registry);
-  reach_m_ = static_cast<double>(reach.x);
-  top_m_ = relief_m_ + static_cast<double>(reach.y);
-}
+      cache_(world, registry, cache_bytes) {}
 
 core::Result<Ground> World::ground(const core::WorldPosition& position) {
   const auto at = checked(position, block_m_);
@@ -102,7 +85,7 @@ core::Result<Hit> World::cast(const Ray& ray) {
   if (!origin) return tl::unexpected(origin.error());
   const double largest =
       std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
-  if (!is_finite(ray.direction) || largest == 0)
+  if (!core::is_finite(ray.direction) || largest == 0)
     return core::fail(ErrorCode::kInvalidArgument,
                       fmt::format("the direction ({}, {}, {}) of the ray is zero or not finite",
                                   ray.direction.x, ray.direction.y, ray.direction.z));
@@ -190,13 +173,15 @@ void World::cast_models(const Course& course, Hit& hit) {
   std::int64_t left = kMostBlocks;
   const PlaneLine plane = course.plane();
   const double longest_m = hit.distance_m;
+  const glm::dvec2 most_m(most_reach_m());
+  const double reach_m = most_m.x, top_m = relief_m_ + most_m.y;
   march(plane, block_m_, 0, longest_m, [&](std::int64_t x, std::int64_t z, double from, double to) {
     if (from > hit.distance_m) return false;
-    if (course.lowest(from, to) > top_m_) return course.direction.y < 0;
+    if (course.lowest(from, to) > top_m) return course.direction.y < 0;
     const glm::dvec2 a = plane.at(from), b = plane.at(to);
     const BlockRange near =
-        blocks_around(glm::min(a, b) - reach_m_, glm::max(a, b) + reach_m_, block_m_);
-    const double farthest = 2 * std::ceil(reach_m_ / block_m_) + 1;
+        blocks_around(glm::min(a, b) - reach_m, glm::max(a, b) + reach_m, block_m_);
+    const double farthest = 2 * std::ceil(reach_m / block_m_) + 1;
     std::erase_if(seen, [&](const glm::dvec2& s) {
       return std::abs(s.x - static_cast<double>(x)) > farthest ||
              std::abs(s.y - static_cast<double>(z)) > farthest;
@@ -248,6 +233,16 @@ core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::W
   return blocks;
 }
 
+template <class Visit>
+void World::each_model(const BlockAround& b, const core::WorldPosition& at,
+                       std::span<const models::ModelIndex> only, const Visit& visit) {
+  for (const world::Placement& p : cache_.models(b.block)) {
+    if (!only.empty() && std::ranges::find(only, p.model) == only.end()) continue;
+    const glm::dvec3 foot(p.position), away = b.corner_m + foot - at.local;
+    visit(NearModel{b.block, p.index, p.model, {b.block, foot}, std::sqrt(glm::dot(away, away))});
+  }
+}
+
 core::Result<void> World::models_within(const core::WorldPosition& position, double radius_m,
                                         std::vector<NearModel>& out,
                                         std::span<const models::ModelIndex> only) {
@@ -256,17 +251,11 @@ core::Result<void> World::models_within(const core::WorldPosition& position, dou
   if (!at) return tl::unexpected(at.error());
   const auto blocks = blocks_within(*at, radius_m);
   if (!blocks) return tl::unexpected(blocks.error());
-  for (const BlockAround& b : *blocks) {
-    for (const world::Placement& p : cache_.models(b.block)) {
-      if (!is_wanted(p.model, only)) continue;
-      const glm::dvec3 foot(p.position), away = b.corner_m + foot - at->local;
-      const double distance2 = glm::dot(away, away);
-      if (distance2 <= radius_m * radius_m)
-        out.push_back({b.block, p.index, p.model, {b.block, foot}, std::sqrt(distance2)});
-    }
-  }
-  std::ranges::sort(out, {},
-                    [](const NearModel& m) { return std::tuple(m.distance_m, m.block, m.index); });
+  for (const BlockAround& b : *blocks)
+    each_model(b, *at, only, [&](const NearModel& found) {
+      if (found.distance_m <= radius_m) out.push_back(found);
+    });
+  std::ranges::sort(out, {}, rank);
   return {};
 }
 
@@ -282,16 +271,9 @@ core::Result<std::optional<NearModel>> World::nearest(const core::WorldPosition&
   std::optional<NearModel> best;
   for (const BlockAround& b : *blocks) {
     if (best && b.distance_m > best->distance_m) break;
-    for (const world::Placement& p : cache_.models(b.block)) {
-      if (!is_wanted(p.model, only)) continue;
-      const glm::dvec3 foot(p.position), away = b.corner_m + foot - at->local;
-      const NearModel found{
-          b.block, p.index, p.model, {b.block, foot}, std::sqrt(glm::dot(away, away))};
-      const auto rank = [](const NearModel& m) {
-        return std::tuple(m.distance_m, m.block, m.index);
-      };
+    each_model(b, *at, only, [&](const NearModel& found) {
       if (found.distance_m <= radius_m && (!best || rank(found) < rank(*best))) best = found;
-    }
+    });
   }
   return best;
 }

@@ -11,6 +11,7 @@
 
 #include "engine/query/block_cache.hpp"
 #include "engine/world/ground_blends.hpp"
+#include "engine/world/models_reach.hpp"
 
 namespace psygen::query {
 
@@ -60,7 +61,10 @@ struct NearModel {
 };
 
 // The queries of one world. World and registry must outlive it and must not change, except for the
-// world's edits, which it follows. Move it, do not share it: each thread has its own.
+// world's edits, which it follows: it reads them, unguarded, in every call. So it belongs to the
+// thread that edits the world; in a scene this is the main thread. Another thread copies the value
+// (world::World), which costs some kilobytes and shares no state that changes, and has queries of
+// its own on the copy. Movable; not copyable.
 class World {
  public:
   // A position's metres may have at most this size.
@@ -102,18 +106,14 @@ class World {
   // world. Valid until the next call of any function.
   const GroundGrid& ground_grid(core::BlockCoord block) { return cache_.ground(block); }
   const BlockSolids& solids(core::BlockCoord block) { return cache_.solids(block); }
-  std::span<const world::Placement> models(core::BlockCoord block) { return cache_.models(block); }
 
-  // How far models may reach sideways from their feet, in metres.
-  double models_reach_m() const { return reach_m_; }
+  // How far models reach sideways from their feet at most, in metres, with those that edits have
+  // placed. O(1).
+  double models_reach_m() const { return static_cast<double>(most_reach_m().x); }
 
-  // Something other than edits has changed the block's ground or models; they are made again when
-  // next asked for.
-  void forget(core::BlockCoord block) { cache_.forget(block); }
-  // What the world looks like to queries, and the memory of the cache.
+  // What the world looks like to queries.
   const world::World& world() const { return *world_; }
   const models::Registry& registry() const { return *registry_; }
-  std::size_t cached_bytes() const { return cache_.bytes(); }
 
  private:
   struct Course;  // a checked ray
@@ -122,16 +122,21 @@ class World {
     glm::dvec3 corner_m{0.0};  // from the corner of the position's block
     double distance_m = 0;     // in the plane
   };
+  glm::vec2 most_reach_m() const { return world::with_placed_models(scattered_reach_m_, *world_); }
   void cast_ground(const Course& course, Hit& hit);
   void cast_models(const Course& course, Hit& hit);
   void cast_block(const Course& course, glm::dvec3 corner_m, core::BlockCoord block, Hit& hit);
   core::Result<std::vector<BlockAround>> blocks_within(const core::WorldPosition& at,
                                                        double radius_m) const;
+  // Visits the models of these types that stand on a block.
+  template <class Visit>
+  void each_model(const BlockAround& b, const core::WorldPosition& at,
+                  std::span<const models::ModelIndex> only, const Visit& visit);
 
   const world::World* world_;
   const models::Registry* registry_;
   double block_m_, relief_m_;
-  double reach_m_, top_m_;  // how far models reach sideways, and the height that none exceeds
+  glm::vec2 scattered_reach_m_;  // of the models that the world's function places
   world::Palette palette_;
   BlockCache cache_;
 };

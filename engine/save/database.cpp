@@ -90,6 +90,25 @@ core::Result<Database> Database::open(const std::filesystem::path& file) {
   return database;
 }
 
+core::Result<Database> Database::open_unlocked(const std::filesystem::path& file) {
+  std::string name = "file:";
+  for (const char c : std::filesystem::absolute(file).string()) {
+    if (c == '%' || c == '?' || c == '#')
+      name += fmt::format("%{:02X}", static_cast<unsigned>(c));
+    else
+      name += c;
+  }
+  name += "?immutable=1";  // https://www.sqlite.org/uri.html
+  sqlite3* raw = nullptr;
+  const int code = sqlite3_open_v2(
+      name.c_str(), &raw,
+      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE,
+      nullptr);
+  Database database(file, raw);
+  if (code != SQLITE_OK) return database.error("cannot be opened");
+  return database;
+}
+
 core::Result<Database> Database::in_memory() {
   sqlite3* raw = nullptr;
   const int code = sqlite3_open_v2(

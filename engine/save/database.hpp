@@ -51,6 +51,9 @@ class Database {
  public:
   // Opens an existing file for reading and writing, without reading it. Fails with kIo.
   static core::Result<Database> open(const std::filesystem::path& file);
+  // Opens an existing file for reading, as if nobody ever changed it: takes no lock, and leaves the
+  // locks of this process alone. Fails with kIo.
+  static core::Result<Database> open_unlocked(const std::filesystem::path& file);
   // A database in memory.
   static core::Result<Database> in_memory();
 

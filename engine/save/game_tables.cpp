@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "engine/core/utf8.hpp"
 #include "engine/save/save_file.hpp"
@@ -13,10 +12,10 @@ namespace {
 
 using core::ErrorCode;
 
+// As SQLite compares names.
 bool starts_with(std::string_view name, std::string_view prefix) {
-  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
-  return name.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), name.begin(),
-                                                    [&](char p, char n) { return same(n, p); });
+  return name.size() >= prefix.size() &&
+         sqlite3_strnicmp(name.data(), prefix.data(), static_cast<int>(prefix.size())) == 0;
 }
 
 // What SQL of the game may do. SQLite asks it about each part of a statement while preparing it.

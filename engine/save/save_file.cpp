@@ -112,9 +112,8 @@ core::Result<void> lock(Database& database) {
   return {};
 }
 
-// After lock(): most of these read the file. A journal that persists is invalidated by zeros in its
-// head, which is faster than removing it at every save.
-core::Result<void> configure(Database& database) {
+// The content of the file is not trusted.
+void distrust(const Database& database) {
   sqlite3* raw = database.get();
   sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   for (const int unsafe :
@@ -122,6 +121,12 @@ core::Result<void> configure(Database& database) {
         SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, SQLITE_DBCONFIG_DQS_DDL, SQLITE_DBCONFIG_DQS_DML})
     sqlite3_db_config(raw, unsafe, 0, nullptr);
   sqlite3_limit(raw, SQLITE_LIMIT_ATTACHED, 0);
+}
+
+// After lock(): most of these read the file. A journal that persists is invalidated by zeros in its
+// head, which is faster than removing it at every save.
+core::Result<void> configure(Database& database) {
+  distrust(database);
   return database.run(
       "PRAGMA synchronous=FULL; PRAGMA temp_store=MEMORY; PRAGMA cache_spill=OFF;"
       "PRAGMA cache_size=-16384; PRAGMA secure_delete=OFF; PRAGMA cell_size_check=ON;"
@@ -139,23 +144,39 @@ core::Result<void> check_pages(const Database& database) {
   return {};
 }
 
-core::Result<void> check_place(const std::filesystem::path& file) {
+core::Result<void> check_regular(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (std::filesystem::is_regular_file(status)) return {};
+  return core::fail(core::ErrorCode::kIo,
+                    fmt::format("{}: {}", file.string(),
+                                std::filesystem::exists(status) ? "is not a regular file"
+                                                                : "there is no such file"));
+}
+
+core::Result<void> check_writable(const std::filesystem::path& file) {
   const auto say = [&](std::string_view what) {
     return core::fail(core::ErrorCode::kIo, fmt::format("{}: {}", file.string(), what));
   };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return say("there is no such file");
-  if (!std::filesystem::is_regular_file(status)) return say("is not a regular file");
   if (access(file.c_str(), W_OK) != 0) return say("the file is read-only");
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   if (access(folder.c_str(), W_OK) != 0) return say("its folder is read-only");
   return {};
 }
 
+// Renames a file unless the new name is taken. 0 or an error number.
+int rename_without_replacing(const char* from, const char* to) {
+  if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  // The file system or the kernel does not know how.
+  if (link(from, to) != 0) return errno;
+  unlink(from);
+  return 0;
+}
+
 }  // namespace
 
-core::Result<void> create_file(const std::filesystem::path& file, const WorldIdentity& world) {
+core::Result<bool> create_file(const std::filesystem::path& file, const WorldIdentity& world) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   if (!std::filesystem::is_directory(folder))
     return core::fail(core::ErrorCode::kIo,
@@ -168,24 +189,24 @@ core::Result<void> create_file(const std::filesystem::path& file, const WorldIde
   if (auto written = core::replace_file(fresh, *bytes); !written) {
     std::string& message = written.error().message;  // begins with the name of `fresh`
     message.replace(0, fresh.string().size(), file.string());
-    return written;
+    return tl::unexpected(written.error());
   }
   // The save appears under its name only if nobody else has made it meanwhile.
-  int code = renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE);
-  if (code != 0 && errno == EINVAL) code = std::rename(fresh.c_str(), file.c_str());
-  const int reason = errno;
-  if (code == 0) return {};
+  const int reason = rename_without_replacing(fresh.c_str(), file.c_str());
+  if (reason == 0) return true;
   unlink(fresh.c_str());
-  if (reason == EEXIST) return {};
+  if (reason == EEXIST) return false;
   return core::fail(core::ErrorCode::kIo,
                     fmt::format("{}: cannot be made: {}", file.string(), std::strerror(reason)));
 }
 
 core::Result<Database> open_file(const std::filesystem::path& file) {
-  if (auto ok = check_place(file); !ok) return tl::unexpected(ok.error());
+  auto ok = check_regular(file);
+  if (ok) ok = check_writable(file);
+  if (!ok) return tl::unexpected(ok.error());
   auto database = Database::open(file);
   if (!database) return database;
-  auto ok = check_header(*database);
+  ok = check_header(*database);
   if (ok) ok = lock(*database);
   if (!ok) return tl::unexpected(ok.error());  // the file may be another program's
   ok = configure(*database);
@@ -194,6 +215,19 @@ core::Result<Database> open_file(const std::filesystem::path& file) {
   if (ok) return database;
   close_file(*database);
   return tl::unexpected(ok.error());
+}
+
+core::Result<Database> open_to_look(const std::filesystem::path& file) {
+  if (auto ok = check_regular(file); !ok) return tl::unexpected(ok.error());
+  auto database = Database::open_unlocked(file);
+  if (!database) return database;
+  auto ok = check_header(*database);
+  if (!ok) return tl::unexpected(ok.error());
+  distrust(*database);
+  ok = database->run("PRAGMA cell_size_check=ON; PRAGMA mmap_size=0", "cannot be read");
+  if (ok) ok = check_tables(*database);
+  if (!ok) return tl::unexpected(ok.error());
+  return database;
 }
 
 void close_file(Database& database) {

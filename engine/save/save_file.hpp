@@ -13,14 +13,19 @@ namespace psygen::save {
 // In the header of every save: "psyg".
 inline constexpr std::int32_t kApplicationId = 0x70737967;
 
-// Writes a new, empty save beside `file` and renames it: `file` is whole or absent. Leaves a file
-// that exists meanwhile alone. Fails with kIo.
-core::Result<void> create_file(const std::filesystem::path& file, const WorldIdentity& world);
+// Writes a new, empty save beside `file` and renames it: `file` is whole or absent. False where
+// somebody else has made the file meanwhile, which stays as it is. Fails with kIo.
+core::Result<bool> create_file(const std::filesystem::path& file, const WorldIdentity& world);
 
 // Opens a save, takes its lock until the connection is closed, and checks all of it. Fails with
 // kParse (not a save, damaged, newer), kIo (missing, read-only, locked, unreadable) or
 // kOutOfMemory, with a sentence; the file is as it was then. O(bytes).
 core::Result<Database> open_file(const std::filesystem::path& file);
+
+// Opens a save to read facts from it, without a lock and without a look at its journal. What
+// another connection writes meanwhile may be read in part. Fails with kParse (not a save, damaged,
+// newer) and kIo. O(number of tables).
+core::Result<Database> open_to_look(const std::filesystem::path& file);
 
 // Gives the lock back and removes the journal, so that one file is left.
 void close_file(Database& database);

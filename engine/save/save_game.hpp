@@ -51,11 +51,11 @@ using EditVisitor =
 
 class SaveGame {
  public:
-  // Opens a save of this world, or makes an empty one. Rolls back what a crash left unfinished, and
-  // checks the whole file. Fails with a sentence and leaves the file as it was: kParse (not a save,
-  // damaged, or of a newer version), kInvalidArgument (of another world), kIo (missing folder or
-  // file, read-only, in use by another process, already there with kCreateNew), kOutOfMemory.
-  // O(bytes of the file).
+  // Opens a save of this world (of the same hash), or makes an empty one. Rolls back what a crash
+  // left unfinished, and checks the whole file. Fails with a sentence and leaves the file as it
+  // was: kParse (not a save, damaged, or of a newer version), kInvalidArgument (of another world),
+  // kIo (missing folder or file, read-only, in use by another process, already there with
+  // kCreateNew), kOutOfMemory. O(bytes of the file).
   static core::Result<SaveGame> open(const std::filesystem::path& file, const WorldIdentity& world,
                                      OpenMode mode = OpenMode::kOpenOrCreate);
   // Gives the lock back. What was not saved is lost.
@@ -129,7 +129,10 @@ class SaveGame {
   std::unique_ptr<State> state_;
 };
 
-// Which world a save belongs to, for lists of saves. Fails as SaveGame::open().
+// Which world a save belongs to, for lists of saves. Reads a few pages without a lock, so it also
+// works while the save is open, here or elsewhere, and for files that are read-only. It does not
+// check the rest of the file. Fails with kParse (not a save, of a newer version, damaged, or
+// just being written) and kIo. O(1).
 core::Result<WorldIdentity> world_of(const std::filesystem::path& file);
 
 }  // namespace psygen::save

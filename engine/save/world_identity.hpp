@@ -9,15 +9,18 @@
 
 namespace psygen::save {
 
-// Two worlds with equal identities have the same ground and the same models in the same places.
+// Two worlds with equal hashes have the same ground and the same models in the same places. The
+// name is for people: messages, and lists of saves.
 struct WorldIdentity {
   std::string name;
   std::uint64_t hash = 0;
   friend bool operator==(const WorldIdentity&, const WorldIdentity&) = default;
 };
 
-// The identity of a world. The hash covers all parameters but sky and palette, which only change
-// colours. Renaming a world changes its name and not its hash. O(size of the world file).
+// The identity of a world. The hash covers seed, size, ground, what is scattered, the branches of
+// species, and the height of the water. It does not cover names, sky, palette, other looks, and
+// parameters with their usual values: saves stay valid when the engine gets a new parameter whose
+// usual value changes nothing. O(size of the world file).
 WorldIdentity identity_of(const world::World& world, const models::Registry& registry);
 
 }  // namespace psygen::save

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/state.hpp"
@@ -104,7 +103,7 @@ struct Collector {
 
 core::Result<void> check(const core::WorldPosition& position, double radius_m) {
   const glm::dvec3& local = position.local;
-  if (!(std::isfinite(local.x) && std::isfinite(local.y) && std::isfinite(local.z)))
+  if (!core::is_finite(local))
     return core::fail(core::ErrorCode::kInvalidArgument, "the position of a place is not finite");
   if (radius_m > 0 && radius_m <= kMostReadyRadiusM) return {};
   return core::fail(

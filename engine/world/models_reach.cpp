@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <numbers>
 #include <vector>
 
+#include "engine/models/edits.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world {
@@ -36,6 +38,12 @@ glm::vec2 models_reach_m(const World& world, const models::Registry& registry) {
     }
   }
   return reach_m;
+}
+
+glm::vec2 with_placed_models(glm::vec2 scattered, const World& world) {
+  if (!world.edits || world.edits->blocks.empty()) return scattered;
+  const glm::vec3& placed = world.edits->blocks.root()->summary.reach_m;
+  return glm::max(scattered, glm::vec2(placed.x, placed.y));
 }
 
 }  // namespace psygen::world

@@ -13,4 +13,8 @@ namespace psygen::world {
 // a scatter.
 glm::vec2 models_reach_m(const World& world, const models::Registry& registry);
 
+// The larger of two reaches: `scattered` as above, and of the models that edits of the world have
+// placed. O(1).
+glm::vec2 with_placed_models(glm::vec2 scattered, const World& world);
+
 }  // namespace psygen::world

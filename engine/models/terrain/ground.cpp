@@ -13,12 +13,6 @@ namespace {
 // finding the lattices.
 constexpr std::size_t kVerticesPerPoint = 128;
 
-glm::vec3 unit_normal(double slope_x, double slope_z) {
-  const double scale = 1 / std::sqrt(slope_x * slope_x + 1 + slope_z * slope_z);
-  return {static_cast<float>(-slope_x * scale), static_cast<float>(scale),
-          static_cast<float>(-slope_z * scale)};
-}
-
 std::uint16_t height_in_mesh(std::span<const std::byte> mesh, std::size_t vertex) {
   core::TerrainVertex v;
   std::memcpy(&v, mesh.data() + vertex * sizeof v, sizeof v);
@@ -26,6 +20,12 @@ std::uint16_t height_in_mesh(std::span<const std::byte> mesh, std::size_t vertex
 }
 
 }  // namespace
+
+glm::vec3 unit_normal(double slope_x, double slope_z) {
+  const double scale = 1 / std::sqrt(slope_x * slope_x + 1 + slope_z * slope_z);
+  return {static_cast<float>(-slope_x * scale), static_cast<float>(scale),
+          static_cast<float>(-slope_z * scale)};
+}
 
 // noise_ stays uninitialised where it is not evaluated: clearing it would take as long as using it.
 BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions)

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <span>
 
 #include "engine/models/terrain/grid.hpp"
@@ -15,6 +16,9 @@
 #include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::models {
+
+// The upward unit normal of a plane that rises by these shares along x and z.
+glm::vec3 unit_normal(double slope_x, double slope_z);
 
 // The heights of one block. 66 KiB, nothing on the heap. Immutable after construction; any thread.
 class BlockGround {

@@ -39,7 +39,7 @@ std::vector<core::Bounds> usual_boxes(const models::Registry& registry,
     const core::Bounds part{glm::clamp((tight.min - whole.center()) / extent, -1.0F, 1.0F),
                             glm::clamp((tight.max - whole.center()) / extent, -1.0F, 1.0F)};
     std::optional<core::Bounds>& all = found[sample.model];
-    all = all ? core::Bounds{glm::min(all->min, part.min), glm::max(all->max, part.max)} : part;
+    all = all ? core::united(*all, part) : part;
   }
   std::vector<core::Bounds> boxes;
   for (const std::optional<core::Bounds>& box : found)

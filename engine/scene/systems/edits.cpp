@@ -4,11 +4,11 @@
 #include "engine/models/edits.hpp"
 
 #include <algorithm>
-#include <glm/common.hpp>
 #include <utility>
 
 #include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/world/models_reach.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -46,14 +46,6 @@ class LayerChange {
   const models::EditLayer &before_, &after_;
 };
 
-// How far models reach from their foot, with those that were placed by hand.
-glm::vec2 reach_of(const WorldFacts& facts) {
-  const models::EditLayer* layer = facts.world.edits.get();
-  if (layer == nullptr || layer->blocks.empty()) return facts.scattered_reach_m;
-  const glm::vec3& placed = layer->blocks.root()->summary.reach_m;
-  return glm::max(facts.scattered_reach_m, glm::vec2(placed.x, placed.y));
-}
-
 // Places whose nodes changed need other meshes.
 void note_stale(const LayerChange& change, Foresight& foresight) {
   const auto changed = [&change](const visibility::NodeCoord& node) {
@@ -75,7 +67,7 @@ void edits_system(const Daylight& daylight, Editing& editing, WorldFacts& facts,
   const std::shared_ptr<const models::EditLayer> before = facts.world.edits;
   world::set_edits(facts.world, editing.edits.layer());
   meshes.set_edits(editing.edits.layer());
-  facts.models_reach_m = reach_of(facts);
+  facts.models_reach_m = world::with_placed_models(facts.scattered_reach_m, facts.world);
   const LayerChange change(facts.world, before.get(), facts.world.edits.get());
   std::vector<ecs::Entity> nodes;
   entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node>) {

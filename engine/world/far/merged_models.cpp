@@ -100,7 +100,7 @@ class MergedType final : public models::ModelType {
     own = plan_level(*world_, scatters_, level, level);
     next = plan_level(*world_, scatters_, level, level + 1);
     if (next.vertices == 0) next = own;  // all too small: keep the finer forms
-    own.box = next.box = {glm::min(own.box.min, next.box.min), glm::max(own.box.max, next.box.max)};
+    own.box = next.box = core::united(own.box, next.box);
   }
   // The edits of the blocks of a node, counted; of nothing without edits.
   static models::BlockEdits::Summary edits_of(const Parameters& p) {

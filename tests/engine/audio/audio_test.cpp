@@ -1,6 +1,8 @@
 // What is heard, measured in the samples that OpenAL renders.
 #include "engine/audio/audio.hpp"
 
+#include <algorithm>
+#include <fstream>
 #include <limits>
 
 #include "tests/engine/audio/tones.hpp"
@@ -232,9 +234,71 @@ TEST(Audio, WrongValuesAreSentences) {
   const auto sound = audio.play(shared_tone(0.1), {});
   EXPECT_FALSE(audio.change(*sound, {.gain = -1}));
   EXPECT_TRUE(audio.change(*sound, {.gain = 0.5}));
-  audio.update({{{}, {kNan, 0, 0}}, 0, 0}, 1);
   audio.update(at({0, 0}), kNan);
-  EXPECT_TRUE(audio.plays(*sound)) << "such a listener and such a time are ignored";
+  audio.update(at({0, 0}), -1);
+  EXPECT_TRUE(audio.plays(*sound)) << "such a time is none";
+  audio.update({{{}, {kNan, 0, 0}}, 0, 0}, 1);
+  EXPECT_FALSE(audio.plays(*sound)) << "time passes also where the listener is ignored";
+}
+
+TEST(Audio, AListenerThatIsNotFiniteStaysWhereItWasAndStreamsGoOn) {
+  const TemporaryFolder folder;
+  testing::write_sound(folder / "tone.wav", testing::tone(4), SF_FORMAT_WAV | SF_FORMAT_PCM_16);
+  Audio audio(rendered());
+  const core::CameraPose listener = at({5, 5});
+  ASSERT_TRUE(audio.stream(folder / "tone.wav", placed(listener, 3, 0)));
+  const Heard before = listen(audio, listener);
+  EXPECT_GT(before.right, 2 * before.left);
+  core::CameraPose nowhere = listener;
+  nowhere.position.local.x = std::numeric_limits<double>::quiet_NaN();
+  const Heard after = listen(audio, nowhere, 3);
+  EXPECT_NEAR(after.left, before.left, 0.02 * before.left);
+  EXPECT_NEAR(after.right, before.right, 0.02 * before.right);
+}
+
+TEST(Audio, EndlessTimeCountsAsAMinute) {
+  Audio audio({Destination::kNowhere, kBlock_m, 32});
+  const auto once = audio.play(shared_tone(61), {});
+  ASSERT_TRUE(audio.play(shared_tone(1), {.loop = true}));
+  audio.update(at({0, 0}), std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(audio.plays(*once));
+  audio.update(at({0, 0}), 2);
+  EXPECT_FALSE(audio.plays(*once));
+  audio.set_destination(Destination::kRendered);
+  EXPECT_GT(listen(audio, at({0, 0})).both(), 0.1) << "the loop has kept a place";
+}
+
+TEST(Audio, AStreamIsDecodedPieceByPiece) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "tone.wav";
+  testing::write_sound(file, testing::tone(3), SF_FORMAT_WAV | SF_FORMAT_PCM_16);
+  Audio audio(rendered());
+  ASSERT_TRUE(audio.stream(file, {}));
+  audio.update(at({0, 0}), kFrame_s);
+  // From now on the file is silent, so what is heard later was decoded in the first update.
+  std::fstream out(file, std::ios::binary | std::ios::in | std::ios::out);
+  out.seekp(44);
+  out << std::string(std::size_t{3} * 48'000 * 2, '\0') << std::flush;
+  EXPECT_GT(listen(audio, at({0, 0}), 0.4).both(), 0.1);
+  listen(audio, at({0, 0}), 0.2);
+  EXPECT_NEAR(listen(audio, at({0, 0}), 0.3).both(), 0, 1e-4) << "0.6 to 0.9 s";
+}
+
+TEST(Audio, AStreamGoesOnWithFewFramesASecond) {
+  const TemporaryFolder folder;
+  testing::write_sound(folder / "tone.wav", testing::tone(5), SF_FORMAT_WAV | SF_FORMAT_PCM_16);
+  Audio audio(rendered());
+  ASSERT_TRUE(audio.stream(folder / "tone.wav", {}));
+  for (int frame = 0; frame < 12; ++frame) {  // of 0.35 s
+    audio.update(at({0, 0}), 0.35);
+    const std::vector<float> samples = audio.render(16'800);
+    for (std::size_t i = 2000; i < samples.size(); i += 1000) {
+      float loudest = 0;
+      for (std::size_t k = i - 1000; k < i; ++k)
+        loudest = std::max(loudest, std::abs(samples[k]));
+      ASSERT_GT(loudest, 0.1F) << "frame " << frame << ", sample " << i;
+    }
+  }
 }
 
 }  // namespace

@@ -77,10 +77,17 @@ TEST(Clip, OtherFilesAreRefusedWithASentence) {
 
 TEST(Clip, AClipThatIsTooLongIsRefused) {
   const TemporaryFolder folder;
-  const Clip silence{48'000, 1, std::vector<std::int16_t>(kMaxClipBytes / 2 + (1 << 17))};
-  write_sound(folder / "long.flac", silence, SF_FORMAT_FLAC | SF_FORMAT_PCM_16);
-  EXPECT_EQ(refusal(folder / "long.flac", core::ErrorCode::kOverBudget),
-            "is longer than 64 MiB of samples; play it as a stream");
+  for (const std::size_t more : {std::size_t{1}, std::size_t{1} << 17}) {
+    const Clip silence{48'000, 1, std::vector<std::int16_t>(kMaxClipBytes / 2 + more)};
+    write_sound(folder / "long.flac", silence, SF_FORMAT_FLAC | SF_FORMAT_PCM_16);
+    EXPECT_EQ(refusal(folder / "long.flac", core::ErrorCode::kOverBudget),
+              "is longer than 64 MiB of samples; play it as a stream");
+  }
+  const Clip longest{48'000, 1, std::vector<std::int16_t>(kMaxClipBytes / 2)};
+  write_sound(folder / "longest.flac", longest, SF_FORMAT_FLAC | SF_FORMAT_PCM_16);
+  const auto clip = read_clip(folder / "longest.flac");
+  ASSERT_TRUE(clip) << clip.error().message;
+  EXPECT_TRUE(check_clip(*clip));
 }
 
 TEST(Clip, ChangedBytesAreASentenceOrASound) {

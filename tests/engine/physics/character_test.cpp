@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "engine/world/edits/edits.hpp"
 #include "tests/engine/physics/scene.hpp"
 
 namespace psygen::physics {
@@ -109,6 +110,49 @@ TEST(Character, ClimbsLowStepsAndStopsAtHighOnes) {
   }
 }
 
+TEST(Character, ClimbsStepsNoFasterThanItWalks) {
+  for (const double height : {0.1, 0.2, 0.35}) {
+    for (const bool run : {false, true}) {
+      Floor f;
+      const auto half = static_cast<float>(0.5 * height);
+      f.add_box({4, half, 3}, {6, 0.5 * height, 0}, Motion::kKinematic);
+      f.scene.steps(2);
+      const double way_m = (run ? 5 : 1.6) * testing::kStep;
+      double fastest = 0;
+      glm::dvec3 before = f.at();
+      for (int i = 0; i < (run ? 60 : 150); ++i) {
+        f.walk({1, 0}, 1, run);
+        const glm::dvec3 now = f.at();
+        fastest = std::max(fastest, now.x - before.x);
+        ASSERT_GE(now.x, before.x - 1e-6) << height << " " << i;
+        before = now;
+      }
+      EXPECT_LE(fastest, way_m + 0.02) << height;
+      EXPECT_GT(before.x, 2.2) << height;
+      EXPECT_NEAR(before.y, height, 0.05) << "it is on the step";
+      EXPECT_TRUE(f.state().on_ground);
+    }
+  }
+}
+
+TEST(Character, IsNeverBelowGroundThatWasJustRaised) {
+  Scene scene(Loaded::shipped("five_species"));
+  const core::WorldPosition place = scene.above({3, 4}, 20, 20, 0);
+  const auto before = scene.physics.add(CharacterSettings{.feet = place});
+  ASSERT_TRUE(before);
+  scene.steps(1);
+  world::Edits edits;
+  ASSERT_TRUE(edits.raise(scene.loaded.world, place, 10, 4));
+  world::set_edits(scene.loaded.world, edits.layer());
+  const double height_m = scene.ground_m(place);
+  ASSERT_GT(height_m, place.local.y + 3);
+  ASSERT_TRUE(scene.physics.set_feet(*before, place));
+  EXPECT_GE(scene.physics.state(*before)->feet.local.y, height_m - 1e-6);
+  const auto fresh = scene.physics.add(CharacterSettings{.feet = place});
+  ASSERT_TRUE(fresh);
+  EXPECT_GE(scene.physics.state(*fresh)->feet.local.y, height_m - 1e-6);
+}
+
 TEST(Character, SlidesAlongWalls) {
   Floor f;
   f.add_box({0.5F, 2, 30}, {2, 2, 0}, Motion::kKinematic);
@@ -171,7 +215,10 @@ TEST(Character, FollowsTheGroundDownhillWithoutHopping) {
       for (int k = 0; k < 60; ++k) {
         scene.steps(1);
         const CharacterState s = *scene.physics.state(*id);
-        if (!s.on_ground) continue;  // steep places are allowed
+        const auto under = scene.query.ground(s.feet);
+        // Steep places and models are allowed.
+        if (under->normal.y < 0.65F || s.feet.local.y > under->height_m + 1e-3) continue;
+        ASSERT_TRUE(s.on_ground) << name << " " << i << " " << k;
         ++checked;
       }
       ASSERT_TRUE(scene.physics.remove(*id));

@@ -1,6 +1,9 @@
 #include "engine/physics/terrain.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
 
 #include "engine/physics/convert.hpp"
 #include "tests/engine/physics/scene.hpp"
@@ -79,18 +82,21 @@ TEST(PhysicsTerrain, IsKeptForAWhileAndThenRemoved) {
   query::World query(loaded.world, loaded.registry);
   Bare bare;
   Terrain terrain(bare.bullet, query);
+  const double size = loaded.world.block_size_m(), reach = query.models_reach_m();
+  const auto aside = static_cast<std::size_t>(std::floor((30 + reach) / size) -
+                                              std::floor((30 - reach) / size) + 1);
   for (std::uint64_t step = 1; step <= 100; ++step) {
-    const double x = static_cast<double>(step) * 63 + 30;
+    const double x = static_cast<double>(step) * size + 30;
     terrain.need({x, 30}, {x, 30}, step);
-    const int before = bare.bullet.getNumCollisionObjects();
     terrain.drop_idle(step, 10, 5);
-    EXPECT_LE(terrain.size(), 14U);  // 9 around it at most, and 5
-    EXPECT_LE(bare.bullet.getNumCollisionObjects(), before);
+    // Those around it, and five of those that it has left.
+    EXPECT_EQ(terrain.size(), aside * aside + std::min<std::size_t>(5, (step - 1) * aside));
+    EXPECT_GE(bare.bullet.getNumCollisionObjects(), static_cast<int>(terrain.size()));
   }
-  const std::size_t kept = terrain.size();
   terrain.drop_idle(105, 10, 100);
-  EXPECT_LE(terrain.size(), kept);
-  EXPECT_GT(terrain.size(), 0U);
+  EXPECT_EQ(terrain.size(), aside * aside + 5);
+  terrain.drop_idle(110, 10, 100);
+  EXPECT_EQ(terrain.size(), aside * aside);
   terrain.drop_idle(111, 10, 100);
   EXPECT_EQ(terrain.size(), 0U);
   EXPECT_EQ(bare.bullet.getNumCollisionObjects(), 0);
@@ -109,7 +115,37 @@ TEST(PhysicsTerrain, EndsAtTheWallsOfABoundedWorld) {
   EXPECT_NEAR(in.z(), 3 * 64 - 0.5, 1e-9);
   EXPECT_EQ(in.y(), 3);
   EXPECT_EQ(terrain.inside({10, 3, 10}, 0.5), btVector3(10, 3, 10));
-  EXPECT_GE(terrain.ground({-1000, 3, 1000}).height_m, 0);
+  const auto border = query.ground({{0, 3}, {0, 0, 64 - 1e-6}});
+  ASSERT_TRUE(border) << border.error().message;
+  EXPECT_NEAR(terrain.ground({-1000, 3, 1000}).height_m, border->height_m, 1e-5);
+}
+
+TEST(PhysicsTerrain, MovesWithTheOriginAndIsNotMadeAnew) {
+  const Loaded loaded = Loaded::shipped("endless");
+  query::World query(loaded.world, loaded.registry);
+  Bare bare;
+  Terrain terrain(bare.bullet, query);
+  terrain.need({0, 0}, {100, 100}, 1);
+  const auto objects = [&] {
+    const auto& all = bare.bullet.getCollisionObjectArray();
+    return std::set<const btCollisionObject*>(&all[0], &all[0] + all.size());
+  };
+  const std::set<const btCollisionObject*> before = objects();
+  core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
+  std::vector<std::pair<core::WorldPosition, double>> models;  // places over ground and models
+  for (int i = 0; i < 500; ++i) {
+    const btVector3 at(random.next_real(0, 100), 2000, random.next_real(0, 100));
+    models.emplace_back(terrain.position(at),
+                        bare.cast(at, at - btVector3(0, 2000, 0), kGround | kModels));
+  }
+  for (const core::BlockCoord to : {core::BlockCoord{70, -3}, {1 << 20, 5}, {0, 0}}) {
+    terrain.set_origin(to);
+    EXPECT_EQ(objects(), before);
+    for (const auto& [place, share] : models) {
+      const btVector3 at = terrain.coordinates(place);
+      ASSERT_NEAR(bare.cast(at, at - btVector3(0, 2000, 0), kGround | kModels), share, 1e-6);
+    }
+  }
 }
 
 TEST(PhysicsTerrain, CoordinatesAreExactFarFromTheOrigin) {

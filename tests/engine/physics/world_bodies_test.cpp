@@ -54,6 +54,42 @@ TEST(PhysicsBodies, StackOnOneAnother) {
   }
 }
 
+TEST(PhysicsBodies, WakeWhenWhatTheyLieOnGoesAndNotOtherwise) {
+  Scene scene(Loaded::shipped("five_species"));
+  std::vector<BodyId> tables, crates, lids;
+  for (int i = 0; i < 3; ++i) {
+    core::WorldPosition at = scene.above({5, 5}, 10.0 + 20 * i, 20, 40);
+    tables.push_back(*scene.physics.add(
+        {.shape = box({2, 0.5F, 2}), .motion = Motion::kKinematic, .position = at}));
+    at.local.y += 1.01;
+    crates.push_back(*scene.physics.add({.shape = box(glm::vec3(0.5F)), .position = at}));
+    at.local.y += 1.01;
+    lids.push_back(*scene.physics.add({.shape = box(glm::vec3(0.5F)), .position = at}));
+  }
+  scene.steps(600);
+  const auto sleeps = [&](BodyId id) { return scene.physics.state(id)->asleep; };
+  const auto height_m = [&](BodyId id) { return scene.physics.state(id)->position.local.y; };
+  for (std::size_t i = 0; i < 3; ++i)
+    ASSERT_TRUE(sleeps(crates[i]) && sleeps(lids[i])) << i;
+  const double before_m[] = {height_m(lids[0]), height_m(lids[1]), height_m(lids[2])};
+
+  ASSERT_TRUE(scene.physics.remove(tables[0]));
+  EXPECT_FALSE(sleeps(crates[0]));
+  core::WorldPosition away = scene.physics.state(tables[1])->position;
+  away.local.z += 30;
+  ASSERT_TRUE(scene.physics.set_pose(tables[1], away, {1, 0, 0, 0}));
+  for (int i = 0; i < 60; ++i) {
+    scene.steps(1);
+    ASSERT_TRUE(sleeps(crates[2]) && sleeps(lids[2]));
+  }
+  EXPECT_LT(height_m(lids[0]), before_m[0] - 3);
+  EXPECT_LT(height_m(lids[1]), before_m[1] - 3);
+  // One that sleeps goes from below another one.
+  ASSERT_TRUE(scene.physics.remove(crates[2]));
+  scene.steps(20);
+  EXPECT_LT(height_m(lids[2]), before_m[2] - 0.3);
+}
+
 TEST(PhysicsBodies, AreStoppedByTrunks) {
   Scene scene(Loaded::shipped("paper"));
   const models::ModelIndex tree[] = {

@@ -1,5 +1,6 @@
 #include "engine/physics/world.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -70,9 +71,10 @@ TEST(PhysicsWorld, TheSameInputsGiveTheSameBits) {
   }
 }
 
-TEST(PhysicsWorld, IsAsPreciseAtTheEndsOfTheWorld) {
-  // The same block of a world without relief has the same simulation anywhere.
-  const std::string flat = R"(format = 1
+// Where a ball that was thrown and a character that walks are after a second, in a block of a flat
+// world. Both start at the same places of any block.
+std::vector<double> second_in(core::BlockCoord block) {
+  Scene scene(Loaded::parsed(R"(format = 1
 [world]
 name = "flat"
 seed = 3
@@ -81,25 +83,23 @@ block_vertices = 64
 cell_m = 1
 [terrain]
 relief_m = 0.01
-)";
-  Scene near(Loaded::parsed(flat)), far(Loaded::parsed(flat));
-  const std::vector<double> a = simulated(near, {0, 0}), b = simulated(far, {1 << 30, -(1 << 30)});
-  ASSERT_EQ(a.size(), b.size());
-  // Bodies tumble, so tiny differences of the ground grow; but nothing is coarser out there.
-  double moved = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_TRUE(std::isfinite(b[i]));
-    moved = std::max(moved, std::abs(b[i]));
-  }
-  EXPECT_GT(moved, 1);
-  const auto id =
-      far.physics.add(CharacterSettings{.feet = far.above({1 << 30, -(1 << 30)}, 5, 5, 0)});
-  ASSERT_TRUE(id);
-  ASSERT_TRUE(far.physics.tell(*id, {{1, 0}}));
-  far.steps(60);
-  const double x = far.physics.state(*id)->feet.local.x;
-  far.steps(1);
-  EXPECT_NEAR(far.physics.state(*id)->feet.local.x - x, 1.6 / 60, 1e-9);
+)"));
+  const auto ball = scene.physics.add(
+      {.shape = testing::ball(0.5F), .position = {block, {3, 100, 4}}, .velocity = {10, 0, -7}});
+  const auto walker = scene.physics.add(CharacterSettings{.feet = scene.above(block, 5, 5, 0)});
+  EXPECT_TRUE(scene.physics.tell(*walker, {{1, 0.5}}));
+  scene.steps(60);
+  const BodyState b = *scene.physics.state(*ball);
+  const CharacterState c = *scene.physics.state(*walker);
+  const glm::dvec3 at = core::offset_m(b.position.block, {block}, 63) + b.position.local;
+  EXPECT_GT(c.feet.local.x, 5.5);
+  return {at.x, at.y, at.z, b.velocity.y, c.feet.local.x, c.feet.local.z};
+}
+
+TEST(PhysicsWorld, IsAsPreciseAtTheEndsOfTheWorld) {
+  const std::vector<double> near = second_in({0, 0}), far = second_in({1 << 30, -(1 << 30)});
+  for (std::size_t i = 0; i < near.size(); ++i)
+    EXPECT_NEAR(near[i], far[i], 1e-9) << i;
 }
 
 TEST(PhysicsWorld, CoordinatesFollowTheFirstActorOverManyKilometres) {
@@ -166,13 +166,62 @@ TEST(PhysicsWorld, TerrainIsThereBeforeTheFirstStepEndsAndGoesWhenNobodyIsThere)
   const auto id = scene.physics.add(CharacterSettings{.feet = scene.above({50, 50}, 30, 30, 0)});
   ASSERT_TRUE(id);
   scene.steps(1);
-  EXPECT_GE(scene.physics.block_count(), 1U);
-  scene.physics.refresh({50, 50});
-  scene.steps(1);
-  EXPECT_GE(scene.physics.block_count(), 1U);
+  // 2.2 m of its own, 2 m in advance, and what reaches in from other blocks.
+  const double size = scene.loaded.world.block_size_m();
+  const double reach = 2.2 + 2 + scene.query.models_reach_m();
+  const auto aside = static_cast<std::size_t>(std::floor((30 + reach) / size) -
+                                              std::floor((30 - reach) / size) + 1);
+  EXPECT_EQ(scene.physics.block_count(), aside * aside);
   ASSERT_TRUE(scene.physics.remove(*id));
   scene.steps(10);
   EXPECT_EQ(scene.physics.block_count(), 0U);
+}
+
+// Steps until all bodies are asleep.
+void let_sleep(Scene& scene, const std::vector<BodyId>& bodies) {
+  const auto sleeps = [&](BodyId id) { return scene.physics.state(id)->asleep; };
+  for (int i = 0; i < 6000 && !std::ranges::all_of(bodies, sleeps); ++i)
+    scene.steps(1);
+  ASSERT_TRUE(std::ranges::all_of(bodies, sleeps));
+}
+
+TEST(PhysicsWorld, EditsWakeTheBodiesThatTheyReachAndNoOthers) {
+  Scene scene(Loaded::shipped("five_species"));
+  std::vector<BodyId> bodies;
+  for (const core::BlockCoord block : {core::BlockCoord{3, 4}, {9, 4}, {3, 12}})
+    bodies.push_back(*scene.physics.add({.shape = box(glm::vec3(0.5F)),
+                                         .position = scene.above(block, 20, 20, 0.6),
+                                         .friction = 10}));
+  let_sleep(scene, bodies);
+  const core::WorldPosition place = scene.physics.state(bodies[0])->position;
+  world::Edits edits;
+  ASSERT_TRUE(edits.raise(scene.loaded.world, place, 12, 5));
+  world::set_edits(scene.loaded.world, edits.layer());
+  scene.steps(1);
+  EXPECT_FALSE(scene.physics.state(bodies[0])->asleep);
+  EXPECT_TRUE(scene.physics.state(bodies[1])->asleep);
+  EXPECT_TRUE(scene.physics.state(bodies[2])->asleep);
+  const core::WorldPosition now = scene.physics.state(bodies[0])->position;
+  EXPECT_GE(now.local.y, scene.ground_m(now)) << "it is not inside the new ground";
+}
+
+TEST(PhysicsWorld, SleepingBodiesKeepTheirGroundWhenTheOriginMoves) {
+  Scene scene(Loaded::shipped("endless"));
+  const auto walker = scene.physics.add(CharacterSettings{.feet = scene.above({0, 0}, 5, 5, 0)});
+  const auto body = scene.physics.add({.shape = box(glm::vec3(0.5F)),
+                                       .position = scene.above({1, 1}, 20, 20, 0.6),
+                                       .friction = 10});
+  ASSERT_TRUE(walker && body);
+  let_sleep(scene, {*body});
+  const core::WorldPosition before = scene.physics.state(*body)->position;
+  ASSERT_TRUE(scene.physics.set_feet(*walker, scene.above({90, -80}, 5, 5, 0)));
+  scene.steps(300);  // longer than idle blocks are kept
+  EXPECT_TRUE(scene.physics.state(*body)->asleep);
+  EXPECT_EQ(scene.physics.state(*body)->position.block, before.block);
+  EXPECT_NEAR(glm::length(scene.physics.state(*body)->position.local - before.local), 0, 1e-9);
+  ASSERT_TRUE(scene.physics.push(*body, {0, 0.01, 0}));
+  scene.steps(60);
+  EXPECT_NEAR(scene.physics.state(*body)->position.local.y, before.local.y, 0.05);
 }
 
 TEST(PhysicsWorld, BodiesAndCharactersFollowEditsOfTheGround) {

@@ -53,21 +53,6 @@ TEST(BlockCache, KeepsOneBlockHoweverSmallTheBound) {
   EXPECT_EQ(cache.size(), 1U);
 }
 
-TEST(BlockCache, ForgetsBlocks) {
-  const Loaded loaded = Loaded::parsed(kBounded);
-  BlockCache cache(loaded.world, loaded.registry, std::size_t{1} << 20);
-  cache.solids({0, 0});
-  const std::size_t bytes = cache.bytes();
-  cache.ground({1, 0});
-  cache.forget({1, 0});
-  cache.forget({7, 7});
-  EXPECT_EQ(cache.bytes(), bytes);
-  cache.clear();
-  EXPECT_EQ(cache.bytes(), 0U);
-  EXPECT_EQ(cache.size(), 0U);
-  EXPECT_EQ(cache.solids({0, 0}).solids.size(), 8U);
-}
-
 TEST(BlockCache, FollowsEditsAndKeepsTheBlocksThatTheyDoNotReach) {
   Loaded loaded = Loaded::parsed(kBounded);
   BlockCache cache(loaded.world, loaded.registry, std::size_t{1} << 22);

@@ -6,9 +6,12 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/hash.hpp"
+#include "tests/engine/query/triangles.hpp"
 
 namespace psygen::query {
 namespace {
+
+using testing::crosses;
 
 // Random heights, 0 … 20 m, over 22 x 22 vertices 1.5 m apart.
 constexpr int kSize = 22;
@@ -24,17 +27,6 @@ GroundGrid rough(std::uint64_t seed) {
 
 GroundRay ray_of(const glm::dvec3& from, const glm::dvec3& direction) {
   return {{{from.x, from.z}, {direction.x, direction.z}}, from.y, direction.y};
-}
-
-// Where a line crosses a triangle's plane inside it (Möller and Trumbore), or a negative value.
-double crosses(const glm::dvec3& from, const glm::dvec3& d, const glm::dvec3& a,
-               const glm::dvec3& b, const glm::dvec3& c) {
-  const glm::dvec3 e1 = b - a, e2 = c - a, p = glm::cross(d, e2), s = from - a;
-  const double det = glm::dot(e1, p);
-  if (std::abs(det) < 1e-12) return -1;
-  const glm::dvec3 q = glm::cross(s, e1);
-  const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det;
-  return u >= 0 && v >= 0 && u + v <= 1 ? glm::dot(e2, q) / det : -1;
 }
 
 double first_crossing(const GroundGrid& grid, const glm::dvec3& from, const glm::dvec3& d) {

@@ -1,16 +1,21 @@
 #include "engine/query/world.hpp"
 
 #include <cmath>
+#include <future>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <type_traits>
 
 #include "engine/models/terrain/grid.hpp"
+#include "engine/world/edits/edits.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/query/triangles.hpp"
 #include "tests/engine/query/worlds.hpp"
 
 namespace psygen::query {
 namespace {
 
+using testing::crosses;
 using testing::kBounded;
 using testing::kWorldNames;
 using testing::Loaded;
@@ -43,17 +48,6 @@ struct MeshGround {
       visit(vertices[indices[i]], vertices[indices[i + 1]], vertices[indices[i + 2]]);
   }
 };
-
-// Where a line crosses a triangle (Möller and Trumbore), or a negative value.
-double crosses(const glm::dvec3& from, const glm::dvec3& d, const glm::dvec3& a,
-               const glm::dvec3& b, const glm::dvec3& c) {
-  const glm::dvec3 e1 = b - a, e2 = c - a, p = glm::cross(d, e2), s = from - a;
-  const double det = glm::dot(e1, p);
-  if (std::abs(det) < 1e-12) return -1;
-  const glm::dvec3 q = glm::cross(s, e1);
-  const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det;
-  return u >= -1e-9 && v >= -1e-9 && u + v <= 1 + 1e-9 ? glm::dot(e2, q) / det : -1;
-}
 
 double random_in(core::RandomStream& random, double low, double high) {
   return random.next_real(low, high);
@@ -206,7 +200,7 @@ TEST(QueryWorld, RaysMeetTheFirstTriangleOfTheMeshes) {
       double first = kInfinity;
       for (const auto& [corner, mesh] : meshes)
         mesh.each([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-          if (const double t = crosses(from - corner, d, a, b, c); t >= 0)
+          if (const double t = crosses(from - corner, d, a, b, c, 1e-9); t >= 0)
             first = std::min(first, t);
         });
       const auto hit = query.cast(
@@ -483,8 +477,68 @@ TEST(QueryWorld, AnswersDoNotDependOnWhatIsCached) {
     EXPECT_EQ(a->distance_m, b->distance_m);
     EXPECT_EQ(a->index, b->index);
   }
-  EXPECT_GT(large.cached_bytes(), tiny.cached_bytes());
 }
+
+TEST(QueryWorld, RaysMeetModelsThatEditsHavePlacedHoweverFarTheyReach) {
+  Loaded loaded = Loaded::parsed(kBounded);
+  World query(loaded.world, loaded.registry);
+  const double size = loaded.world.block_size_m(), before_m = query.models_reach_m();
+  ASSERT_LT(before_m, 0.3 * size);
+  world::NewModel rock{.model = static_cast<models::ModelIndex>(loaded.registry.find("rock")),
+                       .parameters = {},
+                       .at = {{2, 1}, {0.5 * size, 0, 0.5 * size}}};
+  const models::ModelType& type = loaded.registry[rock.model];
+  rock.parameters = models::default_parameters(type);
+  rock.parameters.set_real(static_cast<std::size_t>(models::parameter_index(type, "radius_m")),
+                           1.3 * size);
+  world::Edits edits;
+  const auto placed = edits.place(loaded.world, loaded.registry, rock);
+  ASSERT_TRUE(placed) << placed.error().message;
+  world::set_edits(loaded.world, edits.layer());
+  EXPECT_GT(query.models_reach_m(), 1.2 * size);
+  // Straight down onto the next block, from above all heights of before.
+  core::WorldPosition eye{{3, 1}, {0.3 * size, 0, 0.5 * size}};
+  eye.local.y = query.ground(eye)->height_m + 200;
+  const auto hit = query.cast({.origin = eye, .longest_m = 1000});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->kind, HitKind::kModel);
+  EXPECT_EQ(hit->block, (core::BlockCoord{2, 1}));
+  EXPECT_EQ(hit->model, rock.model);
+  world::set_edits(loaded.world, nullptr);
+  EXPECT_EQ(query.models_reach_m(), before_m);
+  EXPECT_NE(query.cast({.origin = eye, .longest_m = 1000})->kind, HitKind::kNothing);
+}
+
+TEST(QueryWorld, QueriesOfACopyOfTheWorldRunInAnotherThreadWhileTheWorldIsEdited) {
+  Loaded loaded = Loaded::parsed(kBounded);
+  const double size = loaded.world.block_size_m();
+  const core::WorldPosition place{{2, 1}, {0.5 * size, 0, 0.5 * size}};
+  world::Edits edits;
+  ASSERT_TRUE(edits.raise(loaded.world, place, 10, 3));
+  world::set_edits(loaded.world, edits.layer());
+  const world::World copy = loaded.world;
+  World query(copy, loaded.registry, 1);  // makes every block anew
+  const double before_m = query.ground(place)->height_m;
+  auto answers = std::async(std::launch::async, [&] {
+    int others = 0;
+    for (int i = 0; i < 500; ++i) {
+      if (query.ground(place)->height_m != before_m) ++others;
+      (void)query.ground({{4, 2}, {1, 0, 1}});
+    }
+    return others;
+  });
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_TRUE(edits.raise(loaded.world, place, 10, i % 2 == 0 ? 1 : -1));
+    world::set_edits(loaded.world, edits.layer());
+  }
+  EXPECT_EQ(answers.get(), 0);
+  World edited(loaded.world, loaded.registry);
+  ASSERT_TRUE(edits.raise(loaded.world, place, 10, 2));
+  world::set_edits(loaded.world, edits.layer());
+  EXPECT_GT(edited.ground(place)->height_m, before_m);
+}
+
+static_assert(std::is_move_constructible_v<World> && !std::is_copy_constructible_v<World>);
 
 }  // namespace
 }  // namespace psygen::query

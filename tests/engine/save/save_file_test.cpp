@@ -1,12 +1,33 @@
 // Files that are not saves, or not as this program leaves them.
 #include "engine/save/save_file.hpp"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <functional>
 
 #include "tests/engine/save/support.hpp"
 #include "tests/faults.hpp"
 #include "tests/temporary_folder.hpp"
+
+namespace {
+
+// Called in place of the next rename that must not replace a file; returns 0 or an error number.
+std::function<int()> at_rename;
+
+}  // namespace
+
+extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+                         unsigned flags) noexcept {
+  using Function = int(int, const char*, int, const char*, unsigned);
+  static const auto real = reinterpret_cast<Function*>(dlsym(RTLD_NEXT, "renameat2"));
+  if (!at_rename) return real(from_folder, from, to_folder, to, flags);
+  errno = std::exchange(at_rename, nullptr)();
+  return errno == 0 ? 0 : -1;
+}
 
 namespace psygen::save {
 namespace {
@@ -218,17 +239,110 @@ TEST(SaveFile, AFullDiskLeavesNoNewSave) {
 TEST(SaveFile, AFileThatAppearsMeanwhileIsLeftAlone) {
   const TemporaryFolder folder;
   write_file(folder / "game.save", "made by somebody else");
-  EXPECT_TRUE(create_file(folder / "game.save", testing::kWorld));
-  EXPECT_EQ(file_content(folder / "game.save"), "made by somebody else");
+  for (const bool knows_how : {true, false}) {
+    if (!knows_how) at_rename = [] { return EINVAL; };
+    const auto made = create_file(folder / "game.save", testing::kWorld);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_FALSE(*made);
+    EXPECT_EQ(file_content(folder / "game.save"), "made by somebody else");
+    EXPECT_EQ(folder.file_count(), 1U);
+  }
+}
+
+TEST(SaveFile, ASaveIsMadeWhereTheFileSystemCannotRenameWithoutReplacing) {
+  const TemporaryFolder folder;
+  at_rename = [] { return EINVAL; };
+  const auto made = create_file(folder / "game.save", testing::kWorld);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(*made);
   EXPECT_EQ(folder.file_count(), 1U);
+  EXPECT_TRUE(SaveGame::open(folder / "game.save", testing::kWorld));
+}
+
+TEST(SaveFile, ASaveThatAppearsMeanwhileIsNotANewOne) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "game.save", other = folder / "other.save";
+  for (const OpenMode mode : {OpenMode::kCreateNew, OpenMode::kOpenOrCreate}) {
+    std::filesystem::remove(file);
+    make_save(other);
+    at_rename = [&] {
+      std::filesystem::rename(other, file);
+      return EEXIST;
+    };
+    const auto save = SaveGame::open(file, testing::kWorld, mode);
+    if (mode == OpenMode::kCreateNew) {
+      ASSERT_FALSE(save);
+      EXPECT_EQ(save.error().message, file.string() + ": is already there");
+      EXPECT_EQ(folder.file_count(), 1U);
+    } else {
+      ASSERT_TRUE(save) << save.error().message;
+      EXPECT_EQ(testing::generation_of(*save), 1);
+    }
+  }
 }
 
 TEST(SaveFile, NamesThatLookLikeAddressesAreNames) {
   const TemporaryFolder folder;
   std::filesystem::current_path(folder.path());
-  make_save("file:game.save?mode=memory");
-  EXPECT_TRUE(std::filesystem::is_regular_file(folder / "file:game.save?mode=memory"));
+  for (const char* name : {"file:game.save?mode=memory", "a%20b#c&d=e", "naïve %"}) {
+    make_save(name);
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder / name));
+    const auto world = world_of(name);
+    ASSERT_TRUE(world) << world.error().message;
+    EXPECT_EQ(*world, testing::kWorld);
+  }
   std::filesystem::current_path("/");
+}
+
+TEST(SaveFile, TheWorldOfASaveIsToldWithoutALockAndWithoutReadingTheRest) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "game.save";
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  {
+    SaveGame save = testing::opened(file);
+    ASSERT_TRUE(testing::put_generation(save, 1));
+    ASSERT_TRUE(save.save());
+    EXPECT_EQ(*world_of(file), testing::kWorld) << "open in this process";
+    EXPECT_FALSE(SaveGame::open(file, testing::kWorld)) << "it has kept its lock";
+    const int status = testing::in_child([&] {
+      const auto world = world_of(file);
+      return world && *world == testing::kWorld &&
+             !SaveGame::open(file, testing::kWorld).has_value();
+    });
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "open in another process";
+    ASSERT_TRUE(testing::put_generation(save, 2));
+    ASSERT_TRUE(save.save());
+  }
+  std::string text = file_content(file);
+  // The last page is one of the blobs.
+  for (std::size_t i = text.size() - 4096; i < text.size(); ++i)
+    text[i] = '\xFF';
+  write_file(file, text);
+  std::filesystem::permissions(file, std::filesystem::perms::owner_read);
+  EXPECT_EQ(*world_of(file), testing::kWorld) << "the end is damaged, and it is read-only";
+  EXPECT_EQ(folder.file_count(), 1U);
+  EXPECT_TRUE(file_content(file) == text);
+}
+
+TEST(SaveFile, TheWorldOfWhatIsNoSaveIsASentence) {
+  const TemporaryFolder folder;
+  const auto sentence = [&](const char* name) {
+    const auto world = world_of(folder / name);
+    return world ? "a world" : world.error().message.substr((folder / name).string().size() + 2);
+  };
+  EXPECT_EQ(sentence("none"), "there is no such file");
+  EXPECT_EQ(sentence("."), "is not a regular file");
+  write_file(folder / "text", "hello");
+  EXPECT_EQ(sentence("text"), kForeign);
+  make_save(folder / "view");
+  tamper(folder / "view",
+         "DROP TABLE psygen_facts; CREATE VIEW psygen_facts AS SELECT 'world name' AS name, 'x' AS "
+         "value");
+  EXPECT_EQ(sentence("view"), "has a view 'psygen_facts' that is not of this program");
+  make_save(folder / "newer");
+  tamper(folder / "newer", "PRAGMA user_version=2");
+  EXPECT_EQ(sentence("newer"),
+            "is of format 2, made by a newer version; this version reads up to format 1");
 }
 
 }  // namespace

@@ -61,6 +61,7 @@ TEST(SaveFuzz, ChangedBytesAreNoticedOrDoNotMatter) {
     }
     if (round % 10 == 0) text.resize(static_cast<std::size_t>(random.next_integer(0, last)));
     testing::write_file(file, text);
+    if (const auto world = world_of(file); !world) expect_printable(world.error());
     const auto save = SaveGame::open(file, testing::kWorld);
     if (!save) {
       expect_printable(save.error());
