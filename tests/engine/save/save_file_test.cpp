@@ -14,6 +14,24 @@ namespace {
 using testing::file_content;
 using testing::write_file;
 
+// The working directory of the process while the object lives.
+class WorkingFolder {
+ public:
+  explicit WorkingFolder(const std::filesystem::path& folder)
+      : before_(std::filesystem::current_path()) {
+    std::filesystem::current_path(folder);
+  }
+  ~WorkingFolder() {
+    std::error_code ignored;
+    std::filesystem::current_path(before_, ignored);
+  }
+  WorkingFolder(const WorkingFolder&) = delete;
+  WorkingFolder& operator=(const WorkingFolder&) = delete;
+
+ private:
+  std::filesystem::path before_;
+};
+
 // The sentence with which a file is refused, after checking that it is left as it is.
 std::string refusal(const TemporaryFolder& folder, core::ErrorCode code,
                     const std::string& name = "game.save") {
@@ -225,10 +243,9 @@ TEST(SaveFile, AFileThatAppearsMeanwhileIsLeftAlone) {
 
 TEST(SaveFile, NamesThatLookLikeAddressesAreNames) {
   const TemporaryFolder folder;
-  std::filesystem::current_path(folder.path());
+  const WorkingFolder inside(folder.path());
   make_save("file:game.save?mode=memory");
   EXPECT_TRUE(std::filesystem::is_regular_file(folder / "file:game.save?mode=memory"));
-  std::filesystem::current_path("/");
 }
 
 }  // namespace
