@@ -23,13 +23,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return 0;
 }
 
-// Half of the texts are libFuzzer's own, which knows what the program compares with.
+// Half of the texts are libFuzzer's own, which knows what the program compares with. A few start
+// from examples of what is in no shipped file.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {
+  static const std::vector<std::string> examples{psygen::fuzz::example_bindings(),
+                                                 psygen::fuzz::example_recording(),
+                                                 psygen::fuzz::example_edits()};
   static std::vector<std::string> others(1);
   std::mt19937_64 random(seed);
   if (random() % 2 == 0) return LLVMFuzzerMutate(data, size, most);
-  const std::string before = text_of(data, size);
+  const std::string before =
+      random() % 16 == 0 ? examples[random() % examples.size()] : text_of(data, size);
   const std::string after = psygen::fuzz::mutated(before, others, most, random);
   constexpr std::size_t kMostOthers = 64;  // of the texts that came by
   if (others.size() < kMostOthers) others.push_back(before);

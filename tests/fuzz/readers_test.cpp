@@ -33,6 +33,8 @@ std::vector<std::string> shipped_texts() {
 TEST(Readers, TakeEveryShippedFileAsWhatItIs) {
   FileInMemory file;
   EXPECT_EQ(read_as_everything(example_bindings(), file), 1);
+  EXPECT_EQ(read_as_everything(example_recording(), file), 1);
+  EXPECT_EQ(read_as_everything(example_edits(), file), 1);
   for (const std::string& text : shipped_texts())
     EXPECT_EQ(read_as_everything(text, file), 1) << text.substr(0, 200);
 }
@@ -40,7 +42,8 @@ TEST(Readers, TakeEveryShippedFileAsWhatItIs) {
 TEST(Readers, SurviveShippedFilesWithUnicodeAndOtherThingsInWrongPlaces) {
   constexpr int kTextsOfEachFile = 40;
   std::vector<std::string> texts = shipped_texts();
-  texts.push_back(example_bindings());
+  for (const auto& example : {example_bindings, example_recording, example_edits})
+    texts.push_back(example());
   ASSERT_GT(texts.size(), 10u);
   FileInMemory file;
   std::mt19937_64 random(1);
@@ -51,6 +54,25 @@ TEST(Readers, SurviveShippedFilesWithUnicodeAndOtherThingsInWrongPlaces) {
   }
   EXPECT_GT(taken, 10) << "only texts that are taken reach what comes after the parser";
   EXPECT_GT(refused, 100);
+}
+
+// Text in wrong places breaks bytes at once: what comes after the first check is reached by changes
+// of single bytes.
+TEST(Readers, SurviveRecordingsAndEditsWithChangedBytes) {
+  FileInMemory file;
+  std::mt19937_64 random(2);
+  for (const std::string& whole : {example_recording(), example_edits()}) {
+    int taken = 0, refused = 0;
+    for (int round = 0; round < 1500; ++round) {
+      std::string bytes = whole;
+      for (std::uint64_t changes = 1 + random() % 3; changes > 0; --changes)
+        bytes[random() % bytes.size()] = static_cast<char>(random());
+      if (round % 9 == 0) bytes.resize(random() % bytes.size());
+      ++(read_as_everything(bytes, file) > 0 ? taken : refused);
+    }
+    EXPECT_GT(taken, 100);
+    EXPECT_GT(refused, 100);
+  }
 }
 
 TEST(Mutator, TheSameNumbersMakeTheSameText) {

@@ -4,24 +4,41 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/core/assert.hpp"
+#include "engine/core/hash.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/input/bindings_file.hpp"
+#include "engine/input/recording.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/camera_path.hpp"
+#include "engine/world/edits/edit_bytes.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::fuzz {
 namespace {
 
-void check_refusal(const core::Error& error, const std::string& file) {
+// `name`: how the refusal names what is refused.
+void check_refusal(const core::Error& error, const std::string& name) {
   using enum core::ErrorCode;
   PSYGEN_CHECK(error.code == kParse || error.code == kInvalidArgument || error.code == kOverBudget,
                "a text is refused for what it says");
-  PSYGEN_CHECK(error.message.starts_with(file + ":"), "a refusal names the file");
+  PSYGEN_CHECK(error.message.starts_with(name), "a refusal names what is refused");
   PSYGEN_CHECK(core::shown(error.message) == error.message, "a refusal can be printed");
-  PSYGEN_CHECK(error.message.size() < file.size() + 2000, "a refusal can be read");
+  PSYGEN_CHECK(error.message.size() < name.size() + 2000, "a refusal can be read");
+}
+
+std::string_view characters(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
 }
 
 bool read_as_world(const std::filesystem::path& file) {
@@ -30,7 +47,7 @@ bool read_as_world(const std::filesystem::path& file) {
   registry.shrink(before);  // without the species of the text before
   const auto world = world::load_world(file, registry);
   if (!world) {
-    check_refusal(world.error(), file.string());
+    check_refusal(world.error(), file.string() + ":");
     PSYGEN_CHECK(registry.size() == before, "a refused world registers nothing");
     return false;
   }
@@ -50,7 +67,7 @@ bool read_as_path(const std::filesystem::path& file) {
   }();
   const auto path = world::load_camera_path(file);
   if (!path) {
-    check_refusal(path.error(), file.string());
+    check_refusal(path.error(), file.string() + ":");
     return false;
   }
   for (const double share : {0.0, 0.3, 1.0})
@@ -72,7 +89,7 @@ bool read_as_bindings(const std::filesystem::path& file) {
   const std::string before = input::bindings_text(actions);
   const auto read = input::load_bindings(file, actions);
   if (!read) {
-    check_refusal(read.error(), file.string());
+    check_refusal(read.error(), file.string() + ":");
     PSYGEN_CHECK(input::bindings_text(actions) == before, "refused bindings change nothing");
     return false;
   }
@@ -84,10 +101,115 @@ bool read_as_bindings(const std::filesystem::path& file) {
   return true;
 }
 
+bool is_recording(const core::Result<input::Recording>& read, const std::string& name) {
+  if (!read) {
+    check_refusal(read.error(), name + ":");
+    return false;
+  }
+  const std::string written = read->bytes();
+  const auto again = input::Recording::parse(written, "again");
+  PSYGEN_CHECK(again && again->bytes() == written, "a recording reads back as it was");
+  input::Actions actions = make_actions();
+  auto replay = input::Replay::create(*read, actions, read->step_s());
+  for (int step = 0; replay && step < 100 && replay->step(actions); ++step) {
+    for (const input::ActionState& state : actions.states())
+      PSYGEN_CHECK(std::isfinite(state.value), "a recording has finite values");
+  }
+  return true;
+}
+
+// The text with a right hash at its end: nobody guesses that.
+std::string with_right_hash(std::string_view text) {
+  constexpr std::size_t kHashBytes = sizeof(std::uint64_t);
+  std::string hashed(text.substr(0, text.size() - std::min(text.size(), kHashBytes)));
+  const std::uint64_t hash = core::hash_bytes(bytes_of(hashed));
+  hashed.append(reinterpret_cast<const char*>(&hash), kHashBytes);
+  return hashed;
+}
+
+bool read_as_recording(std::string_view text, const std::filesystem::path& file) {
+  const bool whole = is_recording(input::Recording::load(file), file.string());
+  return is_recording(input::Recording::parse(with_right_hash(text), "hashed"), "hashed") || whole;
+}
+
+constexpr core::BlockCoord kEdited{2, 3};
+
+struct EditedWorld {
+  models::Registry registry = models::make_standard_registry();
+  world::World world = *world::parse_world(
+      "format = 1\n[world]\nname = \"edited\"\nseed = 1\nblocks = [9, 9]\n"
+      "block_vertices = 8\n[terrain]\noctaves = 1\n[[scatter]]\nmodel = \"rock\"\ncount = 9\n",
+      "edited", registry);
+};
+
+const EditedWorld& edited_world() {
+  static const EditedWorld world;
+  return world;
+}
+
+bool read_as_edits(std::string_view text) {
+  const auto& [registry, unedited] = edited_world();
+  world::Edits edits;
+  const auto loaded = world::load_block(edits, unedited, registry, kEdited, bytes_of(text));
+  if (!loaded) {
+    check_refusal(loaded.error(), "the edits of block (2, 3)");
+    PSYGEN_CHECK(edits.empty(), "refused edits change nothing");
+    return false;
+  }
+  world::Edits again;
+  const auto written = world::encode_block(edits, registry, kEdited);
+  PSYGEN_CHECK((written.empty() && edits.empty()) ||
+                   (world::load_block(again, unedited, registry, kEdited, written) &&
+                    again.hash() == edits.hash()),
+               "edits read back as they were");
+  world::World edited = unedited;
+  world::set_edits(edited, edits.layer());
+  std::vector<world::Placement> models;
+  world::place_models(edited, registry, kEdited, models);
+  for (const world::Placement& model : models)
+    PSYGEN_CHECK(std::isfinite(model.position.y), "an edited block has models at valid places");
+  const double relief_m = edited.terrain.real(models::kTerrainReliefM);
+  for (const double at_m : {0.0, 1.5, 6.9}) {
+    const double height_m = models::ground_height_m(edited.terrain, kEdited, at_m, at_m);
+    PSYGEN_CHECK(height_m >= 0 && height_m < relief_m + 0.001,
+                 "edited ground has a height of the world");
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string example_bindings() {
   return input::bindings_text(make_actions());
+}
+
+std::string example_recording() {
+  const input::Actions actions = make_actions();
+  input::Recording recording(actions, 1.0 / 60);
+  for (int step = 0; step < 20; ++step) {
+    std::vector<input::ActionState> states(actions.size());
+    states[0] = {1, step % 5 < 2, step % 5 == 0, step % 5 == 2};
+    states[1].value = static_cast<float>(step / 3) / 7.0F;
+    PSYGEN_CHECK(recording.add(states).has_value(), "a short recording fits");
+  }
+  return recording.bytes();
+}
+
+std::string example_edits() {
+  const auto& [registry, world] = edited_world();
+  world::Edits edits;
+  models::GroundEdit stamp;
+  stamp.change = models::GroundChange::kStampAdd;
+  stamp.centre = {kEdited, {1, 0, 1}};
+  stamp.radius_m = 3;
+  stamp.map = std::make_shared<models::Heightmap>(models::Heightmap{3, 2, {1, 2, 3, 4, 5, 6}});
+  const bool made = edits.remove(world, {kEdited, 1}) &&
+                    edits.move(world, registry, {kEdited, 4}, {kEdited, {6.5, 0, 2}}) &&
+                    edits.raise(world, {kEdited, {2, 0, 3}}, 5, 2) &&
+                    edits.flatten(world, {kEdited, {4, 0, 3}}, 2, 30) &&
+                    edits.edit_ground(world, stamp);
+  PSYGEN_CHECK(made, "a block can be edited");
+  return std::string(characters(world::encode_block(edits, registry, kEdited)));
 }
 
 FileInMemory::FileInMemory() : descriptor_(memfd_create("text", MFD_CLOEXEC)) {
@@ -112,7 +234,8 @@ std::filesystem::path FileInMemory::path() const {
 int read_as_everything(std::string_view text, FileInMemory& file) {
   file.write(text);
   return int{read_as_world(file.path())} + int{read_as_path(file.path())} +
-         int{read_as_bindings(file.path())};
+         int{read_as_bindings(file.path())} + int{read_as_recording(text, file.path())} +
+         int{read_as_edits(text)};
 }
 
 }  // namespace psygen::fuzz

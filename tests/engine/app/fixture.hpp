@@ -1,4 +1,4 @@
-// Options of a short headless flight with validation, and a folder of its own for each test.
+// Options of a short headless flight with validation.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -11,16 +11,9 @@
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/telemetry/trace_log.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace psygen::app {
-
-inline std::filesystem::path fresh_folder() {
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(testing::TempDir()) /
-                      (std::string("psygen_") + test->test_suite_name() + "_" + test->name());
-  std::filesystem::remove_all(folder);
-  return folder;
-}
 
 inline const std::filesystem::path kWalk = PSYGEN_SOURCE_DIR "/game/paths/walk27.toml";
 

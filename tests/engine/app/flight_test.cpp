@@ -23,8 +23,9 @@ nlohmann::json read_json(const std::filesystem::path& file) {
 }
 
 TEST(Flight, WritesEveryOutputWithoutAValidationMessage) {
+  const TemporaryFolder folder;
   FlightOptions options = short_flight();
-  options.out_folder = fresh_folder();
+  options.out_folder = folder / "out";
   options.images_every = 20;
   const FlightReport report = fly(options);
   for (const char* name : {"frames.csv", "summary.json", "trace.json", "report.html",
@@ -61,8 +62,9 @@ std::vector<std::map<std::string, std::string>> read_frames(const std::filesyste
 }
 
 TEST(Flight, FramesThatAreWrittenAndTheTwoAfterThemAreInNoFigureOfTimes) {
+  const TemporaryFolder folder;
   FlightOptions options = short_flight();
-  options.out_folder = fresh_folder();
+  options.out_folder = folder / "out";
   options.images_every = 10;
   const FlightReport report = fly(options);
   for (const auto& row : read_frames(options.out_folder / "frames.csv")) {
@@ -80,8 +82,9 @@ TEST(Flight, FramesThatAreWrittenAndTheTwoAfterThemAreInNoFigureOfTimes) {
 }
 
 TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
+  const TemporaryFolder folder;
   FlightOptions options = short_flight();
-  options.out_folder = fresh_folder();
+  options.out_folder = folder / "out";
   options.frames = 10;
   options.session.target_hz = 30;
   std::vector<double> governed_ms;
@@ -105,8 +108,9 @@ TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
 }
 
 TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
+  const TemporaryFolder folder;
   FlightOptions options = short_flight();
-  options.out_folder = fresh_folder();
+  options.out_folder = folder / "out";
   const FlightReport report = fly(options);
   const auto rows = read_frames(options.out_folder / "frames.csv");
   ASSERT_EQ(rows.size(), 40u);
@@ -132,8 +136,9 @@ TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
 }
 
 TEST(Flight, TheSummaryCarriesEveryFieldOrSaysWhyNot) {
+  const TemporaryFolder folder;
   FlightOptions options = short_flight();
-  options.out_folder = fresh_folder();
+  options.out_folder = folder / "out";
   fly(options);
   const nlohmann::json summary = read_json(options.out_folder / "summary.json");
   const auto has = [&summary](const std::string& path) {
@@ -251,8 +256,9 @@ TEST(Flight, AMissingWorldOrPathFileIsNamed) {
 
 TEST(Flight, StoppingFromOutsideEndsTheFlightAndStillWritesItsOutputs) {
   std::atomic<bool> stop{true};
+  const TemporaryFolder folder;
   FlightOptions options = short_flight();
-  options.out_folder = fresh_folder();
+  options.out_folder = folder / "out";
   options.session.stop = &stop;
   const FlightReport report = fly(options);
   EXPECT_EQ(report.summary.run.frames, 0u);

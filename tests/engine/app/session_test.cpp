@@ -27,6 +27,28 @@ TEST(Session, IsDrivenByALoopOfItsOwnUntilItIsClosed) {
   EXPECT_TRUE((*session)->renderer().validation_messages().empty());
 }
 
+TEST(Session, DrawsTheNextTickAtTheTimeToWhichItsClockWasSet) {
+  std::vector<double> drawn_s;
+  SessionOptions options = short_session();
+  options.plugins.push_back(
+      {.name = "clock", .add_systems = [&](scene::Systems& systems) -> core::Result<void> {
+         systems.frame.add("watch",
+                           [&](const scene::Clock& clock) { drawn_s.push_back(clock.now_s); });
+         return {};
+       }});
+  auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  const core::CameraPose pose = (*session)->home();
+  ASSERT_TRUE((*session)->tick(pose, 0.25));
+  for (const double now_s : {2.0, 0.5}) {
+    (*session)->set_now(now_s);
+    EXPECT_EQ((*session)->now_s(), now_s);
+    ASSERT_TRUE((*session)->tick(pose, 0.25));
+    EXPECT_EQ((*session)->now_s(), now_s + 0.25);
+  }
+  EXPECT_EQ(drawn_s, (std::vector<double>{0, 2, 0.5}));
+}
+
 TEST(Session, EndsWhenItIsStoppedFromOutside) {
   std::atomic<bool> stop = false;
   SessionOptions options = short_session();
@@ -62,8 +84,8 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
   options.preset = render::Preset::kLow;
   auto session = Session::create(options);
   ASSERT_TRUE(session) << session.error().message;
-  const auto file = fresh_folder() / "picture.png";
-  std::filesystem::create_directories(file.parent_path());
+  const TemporaryFolder folder;
+  const auto file = folder / "picture.png";
   EXPECT_FALSE((*session)->save_picture(file)) << "there is none";
   EXPECT_TRUE((*session)->take_saved().empty());
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
@@ -112,6 +134,38 @@ TEST(Session, BeginsEveryFixedStepWithItsActionsAndReplaysThem) {
     ASSERT_TRUE(recording.add(std::vector<input::ActionState>{{wanted.back()}}));
   }
   EXPECT_EQ(fly(&recording), wanted);
+}
+
+TEST(Session, TakesItsActionsFromTheUserAgainOneStepAfterTheEndOfAReplay) {
+  std::vector<float> seen;
+  std::vector<bool> replayed;
+  SessionOptions options = short_session();
+  options.plugins.push_back({.name = "game", .on_step = [&](Session& session, double) {
+                               seen.push_back(session.actions().state(0).value);
+                               replayed.push_back(session.replays());
+                             }});
+  auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_FALSE((*session)->replays());
+  input::Actions& actions = (*session)->actions();
+  ASSERT_TRUE(actions.add("look", {{input::MouseWay::kRight}}));
+  input::Recording recording(actions, 1.0 / 60);
+  for (const float value : {0.25F, 0.5F})
+    ASSERT_TRUE(recording.add(std::vector<input::ActionState>{{value}}));
+  auto replay = input::Replay::create(recording, actions, 1.0 / 60);
+  ASSERT_TRUE(replay) << replay.error().message;
+  (*session)->replay(std::move(*replay));
+  EXPECT_TRUE((*session)->replays());
+  // A tick runs the steps of the time before it: none in the first one.
+  for (int i = 0; i < 6; ++i) {
+    platform::InputState input;
+    input.move_px.x = 7;
+    actions.feed(input);
+    ASSERT_TRUE((*session)->tick((*session)->home(), 1.0 / 60));
+  }
+  EXPECT_EQ(seen, (std::vector<float>{0.25F, 0.5F, 0, 7, 7}));
+  EXPECT_EQ(replayed, (std::vector<bool>{true, true, false, false, false}));
+  EXPECT_FALSE((*session)->replays());
 }
 
 TEST(Session, StandsStillAndGoesOnDrawingWhileItIsPaused) {

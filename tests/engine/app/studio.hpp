@@ -25,9 +25,8 @@ class Studio {
   // `world` is a file of game/worlds, or the text of one.
   Studio(const std::string& world, SessionOptions options) {
     options.world_file = std::filesystem::path(PSYGEN_SOURCE_DIR "/game/worlds") / world;
+    const TemporaryFolder folder;
     if (world.find('\n') != std::string::npos) {
-      const std::filesystem::path folder = fresh_folder();
-      std::filesystem::create_directories(folder);
       options.world_file = folder / "world.toml";
       std::ofstream(options.world_file) << world;
     }

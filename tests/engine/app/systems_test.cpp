@@ -109,9 +109,10 @@ TEST(Systems, RunBesideTheOnesThatTheyNameAndAreReported) {
     systems.step.add("wander", wander);
     return {};
   };
+  const TemporaryFolder folder;
   FlightOptions options = short_flight();
   options.frames = 10;
-  options.out_folder = fresh_folder();
+  options.out_folder = folder / "out";
   options.session.plugins = {plugin};
   auto flight = Flight::create(options);
   ASSERT_TRUE(flight) << flight.error().message;

@@ -88,7 +88,8 @@ class WindowFlight : public ::testing::Test {
     EXPECT_EQ(next, steps.size()) << (next < steps.size() ? steps[next].key : "");
   }
 
-  std::filesystem::path folder_ = fresh_folder();
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_ / "out";
   std::unique_ptr<platform::VirtualDisplay> display_;
   std::atomic<bool> stop_{false};
 };
@@ -215,7 +216,6 @@ TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
 
 TEST_F(WindowFlight, APictureThatCannotBeWrittenIsToldOnTheScreen) {
   const std::filesystem::path moved = folder_.string() + "_moved";
-  std::filesystem::remove_all(moved);
   FlightOptions made = options();
   made.session.plugins.push_back(
       {.name = "mover", .on_start = [&](Session&) { std::filesystem::rename(folder_, moved); }});

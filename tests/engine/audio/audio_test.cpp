@@ -70,6 +70,29 @@ TEST(Audio, ASoundToTheRightIsLouderOnTheRightAlsoFarFromTheOrigin) {
   }
 }
 
+TEST(Audio, ASoundThatIsChangedIsHeardAsItIsFromThenOn) {
+  const core::CameraPose listener = at({7, 7});
+  Audio audio(rendered());
+  Play how = placed(listener, 3, 0);
+  const auto sound = audio.play(shared_tone(1), how);
+  ASSERT_TRUE(sound) << sound.error().message;
+  const Heard full = listen(audio, listener);
+  EXPECT_GT(full.right, 2 * full.left);
+  how.gain = 0.5;
+  ASSERT_TRUE(audio.change(*sound, how));
+  EXPECT_NEAR(listen(audio, listener).both(), 0.5 * full.both(), 0.01 * full.both());
+  how = placed(listener, -3, 0);
+  ASSERT_TRUE(audio.change(*sound, how));
+  const Heard moved = listen(audio, listener);
+  EXPECT_NEAR(moved.left, full.right, 0.02 * full.right);
+  EXPECT_NEAR(moved.right, full.left, 0.02 * full.right);
+  how.loop = false;
+  ASSERT_TRUE(audio.change(*sound, how));
+  listen(audio, listener, 1.1);
+  EXPECT_FALSE(audio.plays(*sound));
+  EXPECT_TRUE(audio.change(*sound, how)) << "it has ended";
+}
+
 TEST(Audio, ASoundFallsOffWithDistanceAsItsRangeSays) {
   const core::CameraPose listener = at({7, 7});
   double near = 0;

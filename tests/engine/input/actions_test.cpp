@@ -223,6 +223,34 @@ TEST_F(ActionsOfAPerson, AreReleasedWhenTheirGamepadIsUnplugged) {
   EXPECT_TRUE(step(jump).pressed);
 }
 
+TEST_F(ActionsOfAPerson, ReadTheGamepadThatWasChosenAlsoWhereAnotherIsMovedMore) {
+  const ActionId move = add("move", {{PadWay::kLeftStickRight, 1, 0}});
+  const ActionId jump = add("jump", {{PadButton::kA}});
+  person_.set_axis(PadAxis::kLeftX, 1);
+  person_.set_button(PadButton::kA, true);
+  person_.set_axis(PadAxis::kLeftX, 0.25F, 3);
+  frame();
+  EXPECT_EQ(step(move).value, 1) << "the one that is moved most";
+  EXPECT_TRUE(actions_.state(jump).held);
+  actions_.use_gamepad(3);
+  frame();
+  EXPECT_EQ(step(move).value, 0.25F);
+  EXPECT_TRUE(actions_.state(jump).released) << "only the other one holds it";
+  person_.set_button(PadButton::kA, true, 3);
+  frame();
+  EXPECT_TRUE(step(jump).pressed);
+  for (const std::size_t absent : {std::size_t{5}, std::size_t{99}}) {
+    actions_.use_gamepad(absent);
+    frame();
+    EXPECT_EQ(step(move).value, 0) << absent;
+    EXPECT_FALSE(actions_.state(jump).held) << absent;
+  }
+  actions_.use_gamepad({});
+  frame();
+  EXPECT_EQ(step(move).value, 1);
+  EXPECT_TRUE(actions_.state(jump).pressed);
+}
+
 TEST_F(ActionsOfAPerson, CanBeBoundAnewAtAnyTime) {
   const ActionId jump = add("jump", {{Key::kSpace}});
   person_.press(Key::kSpace);

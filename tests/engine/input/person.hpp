@@ -18,16 +18,14 @@ class Person {
   }
   void roll(double steps) { state_.wheel += steps; }
   void move(double x, double y) { state_.move_px += glm::dvec2(x, y); }
-  // With a gamepad in slot 0.
-  void set_axis(platform::PadAxis axis, float value) {
-    pad_[0].emplace(pad_[0].value_or(platform::PadReading{}));
-    pad_[0]->axes[static_cast<std::size_t>(axis)] = value;
+  // With the gamepad of a slot, which is plugged in.
+  void set_axis(platform::PadAxis axis, float value, std::size_t slot = 0) {
+    plugged_in(slot).axes[static_cast<std::size_t>(axis)] = value;
   }
-  void set_button(platform::PadButton button, bool down) {
-    pad_[0].emplace(pad_[0].value_or(platform::PadReading{}));
-    pad_[0]->buttons.set(static_cast<std::size_t>(button), down);
+  void set_button(platform::PadButton button, bool down, std::size_t slot = 0) {
+    plugged_in(slot).buttons.set(static_cast<std::size_t>(button), down);
   }
-  void unplug() { pad_[0].reset(); }
+  void unplug(std::size_t slot = 0) { pad_[slot].reset(); }
 
   // What happened since the last frame.
   platform::InputState frame() {
@@ -42,6 +40,10 @@ class Person {
   static void set(Set& held, Set& changed, Code code, bool down) {
     held.set(static_cast<std::size_t>(code), down);
     changed.set(static_cast<std::size_t>(code));
+  }
+
+  platform::PadReading& plugged_in(std::size_t slot) {
+    return pad_[slot] ? *pad_[slot] : pad_[slot].emplace();
   }
 
   platform::InputState state_;

@@ -10,21 +10,15 @@
 #include "engine/save/world_identity.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
 #include "tests/engine/world/edits/edited_world.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace psygen::save {
 namespace {
 
 class SavedEdits : public ::testing::Test, protected world::testing::EditedWorld {
  protected:
-  std::filesystem::path folder_ = std::filesystem::path(PSYGEN_BINARY_DIR) / "saved_edits" /
-                                  ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  std::filesystem::path file_ = folder_ / "game.save";
-
-  void SetUp() override {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  const TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "game.save";
 
   SaveGame open() {
     auto save = SaveGame::open(file_, identity_of(world, registry));

@@ -92,7 +92,10 @@ TEST(SaveCrash, KilledAtAnyTimeLeavesTheLastSaveOrTheOneThatWasUnderWay) {
     int pipes[2];
     ASSERT_EQ(pipe(pipes), 0);
     const pid_t child = fork();
-    if (child == 0) save_forever(file, pipes[1]);
+    if (child == 0) {
+      close(pipes[0]);  // so that it ends with the test, by SIGPIPE
+      save_forever(file, pipes[1]);
+    }
     close(pipes[1]);
     std::int64_t told = 0;
     char byte = 0;

@@ -35,6 +35,24 @@ namespace {
 using testing::file_content;
 using testing::write_file;
 
+// The working directory of the process while the object lives.
+class WorkingFolder {
+ public:
+  explicit WorkingFolder(const std::filesystem::path& folder)
+      : before_(std::filesystem::current_path()) {
+    std::filesystem::current_path(folder);
+  }
+  ~WorkingFolder() {
+    std::error_code ignored;
+    std::filesystem::current_path(before_, ignored);
+  }
+  WorkingFolder(const WorkingFolder&) = delete;
+  WorkingFolder& operator=(const WorkingFolder&) = delete;
+
+ private:
+  std::filesystem::path before_;
+};
+
 // The sentence with which a file is refused, after checking that it is left as it is.
 std::string refusal(const TemporaryFolder& folder, core::ErrorCode code,
                     const std::string& name = "game.save") {
@@ -283,7 +301,7 @@ TEST(SaveFile, ASaveThatAppearsMeanwhileIsNotANewOne) {
 
 TEST(SaveFile, NamesThatLookLikeAddressesAreNames) {
   const TemporaryFolder folder;
-  std::filesystem::current_path(folder.path());
+  const WorkingFolder inside(folder.path());
   for (const char* name : {"file:game.save?mode=memory", "a%20b#c&d=e", "naïve %"}) {
     make_save(name);
     EXPECT_TRUE(std::filesystem::is_regular_file(folder / name));
@@ -291,7 +309,6 @@ TEST(SaveFile, NamesThatLookLikeAddressesAreNames) {
     ASSERT_TRUE(world) << world.error().message;
     EXPECT_EQ(*world, testing::kWorld);
   }
-  std::filesystem::current_path("/");
 }
 
 TEST(SaveFile, TheWorldOfASaveIsToldWithoutALockAndWithoutReadingTheRest) {

@@ -28,9 +28,11 @@ float outside(const Collider& collider, const glm::vec3& p) {
 TEST(Trunk, TheDrawnTrunkLiesAtTheCapsules) {
   const auto type = make_tree_type();
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
+  int checked = 0;
   for (int trial = 0; trial < 300; ++trial) {
     const Parameters p = test::random_parameters(*type, random);
     if (!validate(*type, p)) continue;
+    ++checked;
     const TreePlan plan = plan_of_tree(p);
     const Collider collider = type->collider(p);
     ASSERT_FALSE(collider.empty());
@@ -46,6 +48,7 @@ TEST(Trunk, TheDrawnTrunkLiesAtTheCapsules) {
       ASSERT_GT(gap, -allowed - plan.radius_m);
     }
   }
+  EXPECT_GT(checked, 100);
 }
 
 TEST(Trunk, StandsInTheGroundAndReachesItsEnd) {
