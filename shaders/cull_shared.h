@@ -55,7 +55,7 @@ struct CullLevel {
 
 #ifdef __cplusplus
 static_assert(sizeof(CullFrame) == 5 * 16 + 64 + 3 * 16);
-static_assert(sizeof(CullCandidate) == 96);
+static_assert(sizeof(CullCandidate) == 112);
 static_assert(sizeof(CullLevel) == 32);
 }  // namespace psygen::shaders
 #endif

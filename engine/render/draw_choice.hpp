@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <span>
 #include <vector>
@@ -35,6 +36,9 @@ std::size_t level_of(const ViewTest& test, const core::Bounds& box,
 // the camera.
 core::Bounds bounds_of(const TerrainDraw& draw);
 core::Bounds bounds_of(const MeshDraw& draw);
+core::Bounds bounds_of(const ObjectDraw& draw);
+// The axes of an object's mesh in the world, each as long as its scale.
+glm::mat3 object_axes(const ObjectDraw& draw);
 
 // Replaces `chosen` by the draws in view, in the same order, with the range and the index list of
 // the chosen level.

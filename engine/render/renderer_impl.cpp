@@ -120,6 +120,8 @@ Result<void> RendererImpl::create(const Progress& progress) {
   if (!timeline) return tl::unexpected(timeline.error());
   timeline_ = std::move(*timeline);
   if (Result<void> made = shared_.create(*device_); !made) return made;
+  if (Result<void> made = materials_.create(*device_, options_.texture_budget_bytes); !made)
+    return made;
   for (FrameSlot& slot : slots_) {
     if (Result<void> made = slot.create(*device_); !made) return made;
   }
@@ -263,6 +265,7 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   }
   const ScenePass pass{
       .list = list_,
+      .materials = &materials_,
       .buffers = {pool_blocks_, shared_.buffer()},
       .culled = {culling_.get(), index_of(slot)},
       .glyph_vertex_count = static_cast<std::uint32_t>(glyphs_.size()) - line_vertices_,
@@ -302,6 +305,9 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
     return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
   }
   remember_valid(input);
+  if (!input.objects.empty()) {
+    if (Result<void> made = prepare_objects(); !made) return tl::unexpected(made.error());
+  }
   return noted(draw_frame(input, slot_of(frame_value_ + 1)));
 }
 
@@ -312,7 +318,7 @@ void RendererImpl::list_draws(const FrameInput& input) {
   const bool coloured = colours_draws(input.view);
   std::uint32_t pushed_from = pushed_from_;
   if (culling_) {
-    culling_->set_frame(test, frame_, input, size(), shared_.lists());
+    culling_->set_frame(test, frame_, input, size(), shared_.lists(), materials_.kinds());
     // Cascades are drawn from a list of the CPU, with pushed data.
     if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
     pushed_from = 0;
@@ -320,9 +326,11 @@ void RendererImpl::list_draws(const FrameInput& input) {
   if (input.choose) {
     choose_draws(test, input.terrain, chosen_terrain_);
     choose_draws(test, input.models, chosen_models_);
-    list_.build(chosen_terrain_, chosen_models_, shared_.lists(), pushed_from, coloured);
+    list_.build(chosen_terrain_, chosen_models_, shared_.lists(), pushed_from, coloured,
+                input.objects, materials_.kinds());
   } else {
-    list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured);
+    list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured, input.objects,
+                materials_.kinds());
   }
 }
 

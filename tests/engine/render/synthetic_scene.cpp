@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "engine/core/heap_geometry_memory.hpp"
+
 namespace psygen::render::synthetic {
 
 using core::GeometryMemory;
@@ -80,6 +82,25 @@ Result<GeometryRange> make_box(GeometryMemory& memory, glm::vec3 albedo) {
   std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
   std::copy(indices.begin(), indices.end(), reserved->indices.begin());
   memory.commit(reserved->range);
+  return reserved->range;
+}
+
+Result<GeometryRange> make_object_box(GeometryMemory& memory, glm::vec3 albedo) {
+  core::HeapGeometryMemory heap(1 << 16);
+  const auto box = make_box(heap, albedo);
+  if (!box) return box;
+  const auto from = core::vertices_of<core::ModelVertex>(heap.vertex_bytes(*box));
+  std::vector<core::ObjectVertex> vertices;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const bool right = i % 4 == 1 || i % 4 == 2, down = i % 4 < 2;
+    vertices.push_back({from[i], {right ? 1.0F : 0.0F, down ? 1.0F : 0.0F}});
+  }
+  const auto reserved = memory.reserve(core::VertexLayout::kObject, 24, 36);
+  if (!reserved) return tl::unexpected(reserved.error());
+  std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
+  std::ranges::copy(heap.indices(*box), reserved->indices.begin());
+  memory.commit(reserved->range);
+  heap.release(*box);
   return reserved->range;
 }
 
