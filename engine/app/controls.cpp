@@ -8,7 +8,10 @@
 #include "engine/app/loading.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/platform/window.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen::app {
 namespace {
@@ -47,6 +50,7 @@ void Flight::handle_keys() {
       hud_.notify(Hud::Subject::kScreen, ok.error().message, now_s);
   }
   if (input.was_pressed(kF12)) photograph_ = true;
+  if (input.was_pressed(kP) || input.was_pressed(kPause)) session_->set_paused(!session_->paused());
   if (user_flies_ || !moves_camera(input)) return;
   user_flies_ = true;  // from here on the path is left
   if (path_) hud_.notify(Hud::Subject::kFlight, "You fly now; the path is left.", now_s);
@@ -59,6 +63,8 @@ void Flight::write_over_picture() {
                        fly_camera_.speed_m_s()};
   state.input.panels = photograph_ ? hud_.lasting_panels(state, facts)
                                    : hud_.panels(state, facts, core::monotonic_seconds());
+  if (session_->paused() && !photograph_)
+    state.input.panels.push_back({render::Anchor::kMiddle, {{"paused; P goes on"}}});
   state.input.text_scale =
       text_scale(session_->window()->content_scale(), session_->picture_size());
 }

@@ -22,6 +22,7 @@ inline constexpr std::array kKeyHelp{
     KeyHelp{"F1", "figures, this help, nothing"},
     KeyHelp{"F2", "next view, with its legend"},
     KeyHelp{"F3", "next preset"},
+    KeyHelp{"P", "pause and go on"},
     KeyHelp{"F11", "full screen and back"},
     KeyHelp{"F12", "write a picture"},
     KeyHelp{"Esc", "end"},

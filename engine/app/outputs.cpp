@@ -3,8 +3,11 @@
 
 #include "engine/amplify/block_synthesizer.hpp"
 #include "engine/app/flight.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/telemetry/process_memory.hpp"
 #include "engine/telemetry/report.hpp"
+#include "engine/telemetry/trace_log.hpp"
 
 namespace psygen::app {
 namespace {

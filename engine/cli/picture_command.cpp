@@ -16,7 +16,9 @@
 #include "engine/core/log.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/render/renderer.hpp"
 #include "engine/render/software_tuning.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/camera_path.hpp"
 

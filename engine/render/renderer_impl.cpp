@@ -268,8 +268,9 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
       .materials = &materials_,
       .buffers = {pool_blocks_, shared_.buffer()},
       .culled = {culling_.get(), index_of(slot)},
-      .glyph_vertex_count = static_cast<std::uint32_t>(glyphs_.size()) - line_vertices_,
+      .glyph_vertex_count = text_vertices_,
       .line_vertex_count = line_vertices_,
+      .gui = gui_runs_,
       .view = view_,
       .water = water_,
       .shadows = frame_.shadow.y > 0};
@@ -340,11 +341,21 @@ Apart RendererImpl::apart_now() {
   return frame_value_ - idle_value_ < kFramesInFlight ? Apart::kAfterIdle : Apart::kNo;
 }
 
+void RendererImpl::lay_out_overlay(const FrameInput& input) {
+  glyphs_.clear();
+  if (input.hud != nullptr) overlay_.lay_out(*input.hud, size(), glyphs_);
+  overlay_.lay_out(input.panels, size(), input.text_scale, glyphs_);
+  text_vertices_ = static_cast<std::uint32_t>(glyphs_.size());
+  add_lines(input.lines);
+  gui_runs_.clear();
+  if (input.gui != nullptr) overlay_.lay_out(*input.gui, size(), glyphs_, gui_runs_);
+}
+
 void RendererImpl::add_lines(std::span<const Line> lines) {
   line_vertices_ = static_cast<std::uint32_t>(2 * std::min(lines.size(), kMaxLines));
   for (const Line& line : lines.first(line_vertices_ / 2)) {
-    glyphs_.push_back({{line.from, 1.0F}, {line.colour, 1.0F}});
-    glyphs_.push_back({{line.to, 1.0F}, {line.colour, 1.0F}});
+    glyphs_.push_back({{line.from, 1.0F}, {line.colour, 1.0F}, {}});
+    glyphs_.push_back({{line.to, 1.0F}, {line.colour, 1.0F}, {}});
   }
 }
 
@@ -361,8 +372,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   FrameInput checked = input;
   checked.pose = last_pose_.value_or(core::CameraPose{});
   checked.projection = last_projection_.value_or(core::Projection{});
-  overlay_.lay_out(input.panels, size(), input.text_scale, glyphs_);
-  add_lines(input.lines);
+  lay_out_overlay(input);
   view_ = input.view;
   water_ = input.water.has_value();
   frame_ = frame_data(checked, size(), pipelines_.traits());

@@ -16,7 +16,10 @@
 #include "engine/core/camera.hpp"
 #include "engine/core/geometry_memory.hpp"
 #include "engine/core/surface_provider.hpp"
+#include "engine/render/hud_drawing.hpp"
 #include "engine/render/text_panel.hpp"
+
+struct ImDrawData;
 
 namespace psygen::render {
 
@@ -252,9 +255,12 @@ struct FrameInput {
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
   std::span<const ObjectDraw> objects;   // nearest first, committed ranges only
-  std::span<const Line> lines;           // at most kMaxLines are drawn, in every view
-  std::span<const TextPanel> panels;     // over the picture
-  float text_scale = 1;                  // of their text, 1 … 4, rounded
+  std::span<const Line> lines;  // at most kMaxLines are drawn, in every view
+  // Over the picture, in this order.
+  const HudDrawing* hud = nullptr;  // of the game; null: none
+  std::span<const TextPanel> panels;
+  float text_scale = 1;             // of the panels' text, 1 … 4, rounded
+  const ImDrawData* gui = nullptr;  // of an ImGui context on Renderer::font_atlas(); null: none
 };
 
 // The device's own time for a frame, from the start of its first pass to the end of its last one.

@@ -70,14 +70,14 @@ void land_everything(State& s) {
   synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
   s.found.meshes.clear();
   upload_system(unlimited, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
-                s.output, s.counters, s.totals);
+                s.output, s.events.landed, s.counters, s.totals);
 }
 
 // False if it was ended early.
 bool create_all_nodes(State& s, const std::function<bool()>& go_on) {
   do {
     streaming_system(s.settings, s.rules, s.camera, s.quality, s.facts, s.daylight, s.streaming,
-                     s.entities, s.meshes, s.counters);
+                     s.entities, s.meshes, s.events.created, s.events.removed, s.counters);
     if (!go_on()) return false;
   } while (!s.streaming.missing.empty());
   return true;
@@ -95,16 +95,19 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
   input_system(s.input, s.clock, s.facts, s.camera);
   quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
+  edits_system(s.daylight, s.editing, s.facts, s.entities, s.meshes, s.foresight, s.events.created,
+               s.events.removed);
   streaming_system(s.settings, s.rules, s.camera, s.quality, s.facts, s.daylight, s.streaming,
-                   s.entities, s.meshes, s.counters);
+                   s.entities, s.meshes, s.events.created, s.events.removed, s.counters);
   visibility_system(s.settings, s.rules, s.camera, s.facts, s.streaming,
                     VisibilityQuery(s.entities), s.view, s.counters);
   cache_system(s.settings, s.rules, s.clock, s.camera, s.quality, s.facts, s.streaming, s.view,
-               CacheQuery(s.entities), s.meshes, s.found, s.pressure, s.counters);
+               CacheQuery(s.entities), s.meshes, s.found, s.foresight, s.pressure, s.events.evicted,
+               s.events.places_ready, s.counters);
   s.meshes.wait(go_on);
   synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
   upload_system(s.settings, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
-                s.output, s.counters, s.totals);
+                s.output, s.events.landed, s.counters, s.totals);
   ++s.clock.tick;
 }
 
@@ -156,6 +159,8 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
   input_system(s.input, s.clock, s.facts, s.camera);
   quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
+  edits_system(s.daylight, s.editing, s.facts, s.entities, s.meshes, s.foresight, s.events.created,
+               s.events.removed);
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("amplifying", fraction); };
   if (!create_all_nodes(s, go_on)) return 0;

@@ -45,6 +45,7 @@ struct Settings {
   double streaming_budget_ms = 2.0;   // per tick, for creating nodes
   std::uint32_t streaming_ticks = 8;  // over which new nodes and their meshes are spread at most
   std::uint64_t upload_budget_bytes = 16ull << 20;  // per tick
+  double step_hz = 60;                              // fixed steps of the simulation a second
   // The flight's clock is the only one: synthesis and streaming take what is predicted of them, and
   // everything is the same to the bit on any machine. Nothing is calibrated.
   bool virtual_time = false;

@@ -17,12 +17,15 @@
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/draws/fading.hpp"
+#include "engine/scene/events.hpp"
 #include "engine/scene/nodes/grid.hpp"
 #include "engine/scene/nodes/ground_relief.hpp"
 #include "engine/scene/nodes/ground_sun.hpp"
 #include "engine/scene/nodes/levels.hpp"
 #include "engine/scene/quality/governor.hpp"
+#include "engine/scene/readiness.hpp"
 #include "engine/scene/settings.hpp"
+#include "engine/scene/simulation.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/trace_log.hpp"
@@ -30,6 +33,7 @@
 #include "engine/visibility/frustum.hpp"
 #include "engine/visibility/plp.hpp"
 #include "engine/visibility/solidity.hpp"
+#include "engine/world/edits/edits.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 
@@ -39,8 +43,11 @@ namespace psygen::scene {
 struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
-  std::vector<render::TextPanel> panels;  // over the picture
-  float text_scale = 1;                   // of their text
+  // Over the picture, in this order (docs/hud.md).
+  render::HudDrawing hud;
+  std::vector<render::TextPanel> panels;
+  float text_scale = 1;             // of the panels' text
+  const ImDrawData* gui = nullptr;  // valid during the tick; null: none
   render::View view = render::View::kNormal;
   // What the last frame took, without waiting for a display, and drew; 0: unknown.
   double frame_ms = 0, frame_triangles = 0;
@@ -90,7 +97,8 @@ struct Camera {
   std::vector<Prediction> predictions;
 };
 
-// The unchanging world and what is derived from it once.
+// The unchanging world and what is derived from it once. Only its edits change, and how far models
+// reach because of them (edits_system); everything else was derived without edits.
 struct WorldFacts {
   world::World world;
   models::Registry registry;
@@ -108,13 +116,20 @@ struct WorldFacts {
   std::vector<core::Bounds> usual_boxes;
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
-  glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
+  glm::vec2 models_reach_m{0.0F};     // from their foot: sideways, up
+  glm::vec2 scattered_reach_m{0.0F};  // the same without what was placed by hand
   bool shadows = false;  // what is drawn casts some into the picture, though it may be out of view
 };
 
 // Where the sun stands that the ground is lit by (world::set_sun).
 struct Daylight {
   double azimuth_deg = 0, elevation_deg = 90;
+};
+
+// Edits that the world shall have from the next tick on.
+struct Editing {
+  world::Edits edits;
+  bool pending = false;  // not in WorldFacts yet
 };
 
 struct Streaming {
@@ -188,6 +203,15 @@ struct DrawLists {
   double now_s = 0;        // the clock's then
 };
 
+// The nodes that the last frame showed, in order. Empty while nobody asks.
+struct ShownNode {
+  ecs::Entity entity;
+  visibility::NodeCoord at;
+};
+struct ShownNodes {
+  std::vector<ShownNode> nodes;
+};
+
 // Counts of one tick, reset by the tick.
 struct Counters {
   std::uint32_t nodes_created = 0, nodes_destroyed = 0;
@@ -237,6 +261,7 @@ struct Tracing {
   telemetry::TraceLog::Track main = 0, cache_bytes = 0, requests = 0, gpu_ms = 0;
   std::uint64_t gpu_frame = 0;                                          // the last one in gpu_ms
   std::vector<telemetry::TraceLog::Name> systems;                       // in the order of the tick
+  std::vector<telemetry::TraceLog::Name> steps;                         // of the simulation
   telemetry::TraceLog::Name device_wait = 0, acquire = 0, present = 0;  // within a system
   std::vector<telemetry::TraceLog::Track> modelers;                     // by number
   std::vector<telemetry::TraceLog::Name> models;                        // by index in the registry
@@ -247,6 +272,8 @@ struct State {
   Rules rules;
   WorldFacts facts;
   ecs::World entities;
+  Events events;
+  Simulation simulation{entities};
   ecs::Schedule tick{entities};  // filled by build_tick
   Input input;
   Clock clock;
@@ -254,6 +281,7 @@ struct State {
   Pressure pressure;
   Quality quality;
   Daylight daylight;
+  Editing editing;
   Streaming streaming;
   View view;
   std::unique_ptr<core::GeometryMemory> heap;  // the null device's memory; unused with a renderer
@@ -261,11 +289,14 @@ struct State {
   Output output;
   synthesis::MeshSupply meshes;
   Found found;
+  Foresight foresight;
   DrawLists draws;
+  ShownNodes shown;
   Counters counters;
   Totals totals;
   Tracing trace;
   telemetry::FrameRecord record;  // of the last tick; the main loop adds frame_ms
+  std::vector<float> system_ms;   // of the last tick, in the order of system_names()
 };
 
 }  // namespace psygen::scene

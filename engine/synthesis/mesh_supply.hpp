@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/synthesis/cost_model.hpp"
@@ -54,6 +55,11 @@ class MeshSupply {
   const MeshRecord* ready(MeshHandle handle) const;
 
   // What is wanted ------------------------------------------------------------------------------
+  // From now on the parameters of wants refer to this layer of edits, or to none. Requests that
+  // were made before keep theirs.
+  void set_edits(std::shared_ptr<const models::EditLayer> edits) {
+    planner_.set_edits(std::move(edits));
+  }
   // Forgets the wants of the last tick.
   void begin_wants() { wants_.clear(); }
   // Its parameters must live until the next begin_wants().

@@ -137,6 +137,14 @@ bool Planner::give_back_last(GeometryCache& cache, PlanReport& report) {
   return false;
 }
 
+// What a request of these parameters must keep alive.
+std::shared_ptr<const models::EditLayer> Planner::edits_for(
+    const models::Parameters& parameters) const {
+  if (parameters.edits() == nullptr) return nullptr;
+  PSYGEN_CHECK(parameters.edits() == edits_.get(), "wants refer to the edits that were set last");
+  return edits_;
+}
+
 void Planner::add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report) {
   if (item.reclaimed != kNone && kept_[item.reclaimed]) {
     kept_[item.reclaimed] = false;  // from now on it is the plan's
@@ -172,7 +180,7 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
   }
   const MeshRecord& record = *cache.get(*handle);
   append({*handle, item.key, *want.parameters, record.destination, record.size, item.work,
-          item.cost, want.owner},
+          item.cost, want.owner, edits_for(*want.parameters)},
          want, cache);
   ++report.reserved;
   report.predicted_seconds += item.order.predicted_seconds;

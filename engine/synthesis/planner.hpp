@@ -8,8 +8,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/synthesis/cost_model.hpp"
@@ -21,7 +23,7 @@ namespace psygen::synthesis {
 
 struct Want {
   MeshKey key;
-  const models::Parameters* parameters = nullptr;  // read during plan() only
+  const models::Parameters* parameters = nullptr;  // read during plan() only; see set_edits()
   std::uint64_t owner = 0;
   Rank rank;             // of the request; also decides what it may evict
   float deadline_s = 0;  // seconds from now until it is visible; for Policy::kDeadline
@@ -61,6 +63,8 @@ struct PlanReport {
 
 class Planner {
  public:
+  // From now on the parameters of wants refer to this layer, or to none. Requests keep their own.
+  void set_edits(std::shared_ptr<const models::EditLayer> edits) { edits_ = std::move(edits); }
   // Replaces the manager's plan. Wants may repeat a key (the first in the order counts). A ready or
   // failed mesh is left as it is; a requested one takes over rank and owner of its want.
   PlanReport plan(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
@@ -100,6 +104,9 @@ class Planner {
   }
   void execute_here(SynthesisManager& manager, double seconds, PlanReport& report);
 
+  std::shared_ptr<const models::EditLayer> edits_for(const models::Parameters& parameters) const;
+
+  std::shared_ptr<const models::EditLayer> edits_;
   std::vector<Request> reclaimed_;
   std::vector<std::uint32_t> by_slot_;  // positions in reclaimed_, sorted by slot
   std::vector<bool> kept_;              // of reclaimed_: wanted, and not given back

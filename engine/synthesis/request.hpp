@@ -5,6 +5,7 @@
 #include <any>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "engine/models/registry.hpp"
@@ -23,6 +24,8 @@ struct Request {
   Work work;  // for the cost model
   RequestCost cost;
   std::uint64_t owner = 0;
+  // Keeps what the parameters refer to alive until the mesh is made. Null where there are no edits.
+  std::shared_ptr<const models::EditLayer> edits;
 };
 
 // What shall be known of a mesh when it lands, so that nobody has to read it back: any value, a

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/kit/packing.hpp"
 #include "engine/models/rock/kernel.hpp"
 
 namespace psygen::models {
@@ -111,6 +112,7 @@ class RockType final : public ModelType {
   double complexity(const Parameters& p, int level) const override;
   double steps(const Parameters& p, int level) const override;
   double step_seconds() const override { return 8e-9; }
+  Collider collider(const Parameters& p) const override;
   double log2_cost(const Parameters& p) const override {
     return 2 + 2 * static_cast<double>(p.integer(kRockSubdivisions));
   }
@@ -189,6 +191,28 @@ core::Bounds RockType::synthesize(const Parameters& p, int level, const MeshView
                    rock_mesh_vertices(n, family_of(p).facet > 0) * sizeof(core::ModelVertex),
                "the destination has exactly the size of the mesh");
   return mesh_rock(shape_of(p, bounds(p)), topology_, n, out.vertices.data());
+}
+
+// Coarser levels have a subset of the corners of level 0, so their hull lies inside that of level
+// 0.
+Collider RockType::collider(const Parameters& p) const {
+  constexpr int kSubdivisions = 2;
+  constexpr std::uint32_t kMost = rock_mesh_vertices(kSubdivisions, true);
+  const int n = std::min(subdivisions_at(p, 0), kSubdivisions);
+  const core::Bounds box = bounds(p);
+  std::array<core::ModelVertex, kMost> vertices;
+  const std::span mesh = std::span(vertices).first(rock_mesh_vertices(n, family_of(p).facet > 0));
+  mesh_rock(shape_of(p, box), topology_, n, std::as_writable_bytes(mesh).data());
+  // Triangles of faceted rocks share no vertices.
+  const auto place = [](const core::ModelVertex& v) { return std::to_array(v.position); };
+  std::ranges::sort(mesh, {}, place);
+  Collider::Hull hull;
+  for (const core::ModelVertex& v :
+       mesh.first(mesh.size() - std::ranges::unique(mesh, {}, place).size()))
+    hull.points.push_back(unpack_position(v, box));
+  Collider collider;
+  collider.shapes.emplace_back(std::move(hull));
+  return collider;
 }
 
 }  // namespace

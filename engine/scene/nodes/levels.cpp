@@ -48,9 +48,7 @@ int count_of_levels(const world::World& world, const Settings& settings) {
 }  // namespace
 
 models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node) {
-  models::Parameters p = world::terrain_parameters(world, node.coord);
-  p.set_integer(models::kTerrainNodeLevel, node.level);
-  return p;
+  return world::terrain_parameters(world, node.coord, node.level);
 }
 
 core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block) {

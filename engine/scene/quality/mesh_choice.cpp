@@ -15,12 +15,11 @@ using synthesis::RankGroup;
 // How long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
 
-// The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
+// The wanted level; with `coarse_first` the coarsest one first; the nearest one to it where it
 // cannot be synthesised. kNoLevel if nothing is better than what is drawn.
 std::uint8_t level_to_request(const ChoiceRules& rules, const Detail& detail, const Demand& demand,
-                              bool hole) {
+                              bool coarse_first) {
   const auto levels = static_cast<int>(detail.level_count);
-  const bool coarse_first = hole && rules.coarse_first;
   // A modeler that holds the coarsest level may get no processor for a while. Then the next level
   // is asked for, unless the request waits for memory.
   const bool stuck = !rules.settle && !rules.short_of_memory && !rules.awaits_memory &&
@@ -62,13 +61,13 @@ std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const D
 }
 
 MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                       const Demand& demand, bool in_view, bool is_ground) {
+                       const Demand& demand, bool in_view, bool is_ground, bool cached) {
   const bool wanted = in_view || (node.wanted && !node.in_view);
   const bool nothing = demand.drawn_level == kNoLevel;
   const bool hole = nothing && in_view && !node.covered;
   MeshChoice choice;
   choice.there = demand.drawn_level == demand.wanted_level && !demand.stale;
-  if (!choice.there) choice.request = level_to_request(rules, detail, demand, hole);
+  if (!choice.there) choice.request = level_to_request(rules, detail, demand, hole && rules.coarse_first && !cached);
   const bool too_fine =
       !is_ground && !nothing && choice.request != kNoLevel && choice.request > demand.drawn_level;
   const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;

@@ -58,10 +58,11 @@ struct MeshChoice {
   synthesis::RankGroup requested = synthesis::RankGroup::kPrefetch;  // of the request
   bool at_once = false;  // the request fills so much of the picture that nothing goes before it
 };
-// `in_view`: of the mesh itself. Ground never gives way for being too fine: that would open the
-// picture.
+// `in_view`: of the mesh itself. `cached`: the wanted level is in the cache, so a hole needs no
+// coarser one first. Ground never gives way for being too fine: that would open the picture.
 MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                       const Demand& demand, bool in_view, bool is_ground);
+                       const Demand& demand, bool in_view, bool is_ground,
+                       bool cached = false);
 
 // The rank of a mesh on a node, at this distance from the camera.
 synthesis::Rank rank_on(const NodeView& node, synthesis::RankGroup group, float distance_m);

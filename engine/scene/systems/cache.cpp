@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/scene/draws/seen.hpp"
+#include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/quality/mesh_choice.hpp"
 #include "engine/scene/systems.hpp"
 
@@ -104,15 +105,18 @@ void keep(const CacheTick& tick, const NodeView& node, const MeshEntity& row, Ra
   meshes.rank(row.mesh.handle, rank_on(node, group, distance_m));
 }
 
+synthesis::MeshKey key_of(const MeshEntity& row, std::uint8_t level) {
+  const Source& source = row.source;
+  return {row.placed.block, source.index, source.model,
+          static_cast<std::uint16_t>(source.first_level + level), source.parameters_hash};
+}
+
 // Takes the chosen mesh from the cache, or asks for it.
 void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
              const MeshChoice& choice, float distance_m, synthesis::MeshSupply& meshes,
              Found& found) {
-  const Source& source = row.source;
   Demand& demand = row.demand;
-  const auto type_level = static_cast<std::uint16_t>(source.first_level + choice.request);
-  const synthesis::MeshKey key{row.placed.block, source.index, source.model, type_level,
-                               source.parameters_hash};
+  const synthesis::MeshKey key = key_of(row, choice.request);
   const bool first_time = demand.requested_level != choice.request;
   demand.requested_level = choice.request;
   const synthesis::MeshHandle handle = first_time ? meshes.look_up(key) : meshes.find(key);
@@ -130,7 +134,7 @@ void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
     return;
   }
   if (!tick.request) return;
-  meshes.want({key, &source.parameters, owner_of(row.entity),
+  meshes.want({key, &row.source.parameters, owner_of(row.entity),
                rank_on(node, choice.requested, distance_m), node.visibility.deadline_s,
                choice.at_once});
 }
@@ -144,7 +148,7 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
   const bool near = is_ground || node.level > 0;  // as near as the node itself
   const float distance_m =
       near ? node.visibility.distance_m
-           : std::max(glm::length(foot + placed.middle) - placed.radius_m, tick.choice.near_m);
+           : distance_to(placed, foot, tick.choice.near_m);
   const bool in_view =
       node.in_view && (near || mesh_can_be_seen(box_of(row, tick.shadows), foot, view));
   demand.wanted_level = is_ground ? ground_level(node, row.detail, demand.drawn_level)
@@ -161,12 +165,16 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
     if (drawn) keep(tick, node, row, RankGroup::kUnwanted, distance_m, meshes);
     return true;
   }
-  const MeshChoice choice = choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground);
+  const bool hole = !drawn && in_view && !node.covered;
+  const bool cached =
+      hole && meshes.ready(meshes.find(key_of(row, demand.wanted_level))) != nullptr;
+  const MeshChoice choice =
+      choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground, cached);
   if (drawn) keep(tick, node, row, choice.drawn, distance_m, meshes);
   if (choice.there) demand.requested_level = kNoLevel;
   if (choice.request != kNoLevel) request(tick, node, row, choice, distance_m, meshes, found);
   const unsigned all_levels = (1U << row.detail.level_count) - 1;
-  return drawn || demand.failed_levels == all_levels;
+  return drawn || demand.failed_levels == all_levels || demand.added;
 }
 
 // visit(row) for these mesh entities. Returns for how many it was false.
@@ -224,9 +232,11 @@ void forget_last_frame(const CacheQuery& entities, synthesis::MeshSupply& supply
 }
 
 // Entities whose mesh was taken to make room draw nothing until they get another one.
-void drop_evicted(const CacheQuery& entities, synthesis::MeshSupply& meshes) {
+void drop_evicted(const CacheQuery& entities, synthesis::MeshSupply& meshes,
+                  ecs::EventQueue<MeshEvicted>& evicted) {
   for (const synthesis::Eviction& eviction : meshes.take_evictions()) {
     const ecs::Entity owner = entity_of(eviction.owner);
+    evicted.emit({owner, eviction.key});
     const Mesh* mesh = entities.get<Mesh>(owner);
     if (mesh != nullptr && mesh->handle == eviction.handle) {
       entities.get<Demand>(owner)->drawn_level = kNoLevel;
@@ -263,11 +273,15 @@ synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, 
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Streaming& streaming, const View& view, CacheQuery entities,
-                  synthesis::MeshSupply& meshes, Found& found, Pressure& pressure,
-                  Counters& counters) {
+                  synthesis::MeshSupply& meshes, Found& found, Foresight& foresight,
+                  Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
+                  ecs::EventQueue<PlaceReady>& places_ready, Counters& counters) {
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
   found.meshes.clear();
+  // Before the picture's wants: where both want a mesh, it is the picture's.
+  if (rules.request && !rules.settle)
+    want_places(settings.modelers, foresight, meshes, places_ready);
 
   CacheTick tick{choice_rules(settings, rules, clock, camera, quality, pressure), clock.tick,
                  rules.request, is_roomy(meshes.stats()), facts.shadows};
@@ -295,7 +309,7 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
   }
   const synthesis::PlanReport report = meshes.plan(
       plan_limits(settings, rules, clock, quality, streaming, pressure), settings.policy);
-  drop_evicted(entities, meshes);
+  drop_evicted(entities, meshes, evicted);
   counters.requests = static_cast<std::uint32_t>(meshes.wants().size());
   counters.refused = report.refused;
   counters.refused_visible = report.refused_visible;
