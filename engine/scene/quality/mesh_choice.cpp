@@ -67,7 +67,8 @@ MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Det
   const bool hole = nothing && in_view && !node.covered;
   MeshChoice choice;
   choice.there = demand.drawn_level == demand.wanted_level && !demand.stale;
-  if (!choice.there) choice.request = level_to_request(rules, detail, demand, hole && rules.coarse_first && !cached);
+  if (!choice.there)
+    choice.request = level_to_request(rules, detail, demand, hole && rules.coarse_first && !cached);
   const bool too_fine =
       !is_ground && !nothing && choice.request != kNoLevel && choice.request > demand.drawn_level;
   const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;

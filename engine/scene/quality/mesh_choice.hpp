@@ -61,8 +61,7 @@ struct MeshChoice {
 // `in_view`: of the mesh itself. `cached`: the wanted level is in the cache, so a hole needs no
 // coarser one first. Ground never gives way for being too fine: that would open the picture.
 MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                       const Demand& demand, bool in_view, bool is_ground,
-                       bool cached = false);
+                       const Demand& demand, bool in_view, bool is_ground, bool cached = false);
 
 // The rank of a mesh on a node, at this distance from the camera.
 synthesis::Rank rank_on(const NodeView& node, synthesis::RankGroup group, float distance_m);

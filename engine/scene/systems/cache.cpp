@@ -147,8 +147,7 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
   const glm::vec3 foot = node.corner + placed.position;
   const bool near = is_ground || node.level > 0;  // as near as the node itself
   const float distance_m =
-      near ? node.visibility.distance_m
-           : distance_to(placed, foot, tick.choice.near_m);
+      near ? node.visibility.distance_m : distance_to(placed, foot, tick.choice.near_m);
   const bool in_view =
       node.in_view && (near || mesh_can_be_seen(box_of(row, tick.shadows), foot, view));
   demand.wanted_level = is_ground ? ground_level(node, row.detail, demand.drawn_level)
@@ -273,8 +272,8 @@ synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, 
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Streaming& streaming, const View& view, CacheQuery entities,
-                  synthesis::MeshSupply& meshes, Found& found, Foresight& foresight,
-                  Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
+                  const Assets& assets, synthesis::MeshSupply& meshes, Found& found,
+                  Foresight& foresight, Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
                   ecs::EventQueue<PlaceReady>& places_ready, Counters& counters) {
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
@@ -282,6 +281,7 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
   // Before the picture's wants: where both want a mesh, it is the picture's.
   if (rules.request && !rules.settle)
     want_places(settings.modelers, foresight, meshes, places_ready);
+  assets.want_all(meshes);
 
   CacheTick tick{choice_rules(settings, rules, clock, camera, quality, pressure), clock.tick,
                  rules.request, is_roomy(meshes.stats()), facts.shadows};
