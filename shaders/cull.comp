@@ -1,7 +1,6 @@
-// Selects the candidates of a frame to draw and their level of detail, and writes the commands of
-// indirect draws. One thread per candidate. View and level are decided as in
-// engine/render/draw_choice.cpp, with the same operations in the same order, so both choose the
-// same.
+// Selects the candidates of a frame to draw, and writes the commands of indirect draws. One thread
+// per candidate. What is in view is decided as in engine/render/view_volume.cpp, with the same
+// operations in the same order, so both find the same.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "cull_shared.h"
@@ -10,7 +9,6 @@ layout(local_size_x = PSYGEN_CULL_THREADS) in;
 layout(push_constant, std430) uniform Pushed { uint phase; };
 layout(set = 0, binding = PSYGEN_CULL_FRAME, std140) uniform Frame { CullFrame frame; };
 layout(set = 0, binding = PSYGEN_CULL_CANDIDATES, std430) readonly buffer Candidates { CullCandidate candidates[]; };
-layout(set = 0, binding = PSYGEN_CULL_LEVELS, std430) readonly buffer Levels { CullLevel levels[]; };
 layout(set = 0, binding = PSYGEN_CULL_GROUPS, std430) readonly buffer Groups { uint first_commands[]; };
 layout(set = 0, binding = PSYGEN_CULL_COMMANDS, std430) writeonly buffer Commands { uint commands[]; };
 layout(set = 0, binding = PSYGEN_CULL_DRAWS, std430) writeonly buffer Draws { DrawData draws[]; };
@@ -37,22 +35,6 @@ bool in_view(vec3 least, vec3 greatest) {
   return true;
 }
 
-uint level_of(vec3 least, vec3 greatest, uint first, uint count) {
-  float x = max(max(least.x, -greatest.x), 0.0);
-  float y = max(max(least.y, -greatest.y), 0.0);
-  float z = max(max(least.z, -greatest.z), 0.0);
-  precise float distance_squared = x * x + y * y + z * z;
-  precise float allowed = frame.choice.y * distance_squared;
-  uint level = 0;
-  while (level + 1 < count) {
-    float error = levels[first + level + 1].error.x;
-    precise float needed = error * error * frame.choice.x;
-    if (!(needed <= allowed)) break;
-    ++level;
-  }
-  return first + level;
-}
-
 // False only if the whole box lies behind the depth in the pyramid.
 bool unhidden(vec3 least, vec3 greatest) {
   vec2 low = vec2(1e30), high = vec2(-1e30);
@@ -61,7 +43,7 @@ bool unhidden(vec3 least, vec3 greatest) {
     vec3 corner = vec3((i & 1) != 0 ? greatest.x : least.x, (i & 2) != 0 ? greatest.y : least.y,
                        (i & 4) != 0 ? greatest.z : least.z);
     vec4 clip = frame.clip_from_camera * vec4(corner, 1.0);
-    if (!(clip.w > frame.choice.z)) return true;
+    if (!(clip.w > frame.near.x)) return true;
     vec2 at = clip.xy / clip.w;
     low = min(low, at);
     high = max(high, at);
@@ -88,8 +70,8 @@ bool unhidden(vec3 least, vec3 greatest) {
 bool passes(CullCandidate candidate) {
   if (!in_view(candidate.least.xyz, candidate.greatest.xyz)) return false;
   if (phase == PSYGEN_CULL_ALL) return true;
-  uint word = candidate.levels.z >> 5;
-  uint bit = 1u << (candidate.levels.z & 31u);
+  uint word = candidate.name.x >> 5;
+  uint bit = 1u << (candidate.name.x & 31u);
   bool seen = (before[word] & bit) != 0u;
   if (phase == PSYGEN_CULL_SEEN) return seen;
   if (!unhidden(candidate.least.xyz, candidate.greatest.xyz)) return false;
@@ -98,20 +80,18 @@ bool passes(CullCandidate candidate) {
 }
 
 void draw(CullCandidate candidate) {
-  CullLevel level = levels[level_of(candidate.least.xyz, candidate.greatest.xyz,
-                                    candidate.levels.x, candidate.levels.y)];
   uint half_index = phase == PSYGEN_CULL_NEWLY_SEEN ? 1u : 0u;
-  uint group = level.draw.w;
+  uint group = candidate.draw.w;
   uint start = half_index * frame.counts.z + first_commands[group];
   uint place = start + atomicAdd(counts[half_index * frame.counts.y + group], 1u);
   draws[place] = candidate.data;
   // The vertex shader reads its data at the first instance plus the number of the draw.
-  commands[5u * place] = level.draw.y;
+  commands[5u * place] = candidate.draw.y;
   commands[5u * place + 1u] = 1u;
-  commands[5u * place + 2u] = level.draw.x;
-  commands[5u * place + 3u] = level.draw.z;
+  commands[5u * place + 2u] = candidate.draw.x;
+  commands[5u * place + 3u] = candidate.draw.z;
   commands[5u * place + 4u] = start;
-  atomicAdd(triangles, level.draw.y / 3u);
+  atomicAdd(triangles, candidate.draw.y / 3u);
 }
 
 void main() {

@@ -14,14 +14,13 @@ using glm::uvec4;
 // Bindings of the descriptor set.
 #define PSYGEN_CULL_FRAME 0
 #define PSYGEN_CULL_CANDIDATES 1
-#define PSYGEN_CULL_LEVELS 2
-#define PSYGEN_CULL_GROUPS 3
-#define PSYGEN_CULL_COMMANDS 4
-#define PSYGEN_CULL_DRAWS 5
-#define PSYGEN_CULL_COUNTS 6
-#define PSYGEN_CULL_SEEN_BEFORE 7
-#define PSYGEN_CULL_SEEN_NOW 8
-#define PSYGEN_CULL_PYRAMID 9
+#define PSYGEN_CULL_GROUPS 2
+#define PSYGEN_CULL_COMMANDS 3
+#define PSYGEN_CULL_DRAWS 4
+#define PSYGEN_CULL_COUNTS 5
+#define PSYGEN_CULL_SEEN_BEFORE 6
+#define PSYGEN_CULL_SEEN_NOW 7
+#define PSYGEN_CULL_PYRAMID 8
 
 #define PSYGEN_CULL_THREADS 64  // per workgroup
 
@@ -34,7 +33,7 @@ using glm::uvec4;
 struct CullFrame {
   vec4 planes[5];  // of the view, inwards: normal, offset
   mat4 clip_from_camera;
-  vec4 choice;    // x: (pixels per radian)²; y: (allowed error in pixels)²; z: near plane, m
+  vec4 near;      // x: near plane of the projection, in metres
   uvec4 counts;   // candidates; groups; commands of a phase; levels of the pyramid
   uvec4 picture;  // width, height in pixels
 };
@@ -44,19 +43,13 @@ struct CullCandidate {
   vec4 least;  // corners of its box
   vec4 greatest;
   DrawData data;
-  uvec4 levels;  // x: first in the list of levels; y: their number, finest first; z: its bit
-};
-
-// A level of detail of a candidate.
-struct CullLevel {
   uvec4 draw;  // first index, index count, vertex offset (as bits), group
-  vec4 error;  // x: in metres
+  uvec4 name;  // x: its bit
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(CullFrame) == 5 * 16 + 64 + 3 * 16);
-static_assert(sizeof(CullCandidate) == 112);
-static_assert(sizeof(CullLevel) == 32);
+static_assert(sizeof(CullCandidate) == 128);
 }  // namespace psygen::shaders
 #endif
 #endif

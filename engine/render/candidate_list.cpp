@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/core/assert.hpp"
-#include "engine/render/draw_choice.hpp"
+#include "engine/render/view_volume.hpp"
 
 namespace psygen::render {
 namespace {
@@ -27,48 +26,35 @@ std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool sh
   return open_[key] - 1;
 }
 
-void CandidateList::add_level(const core::GeometryRange& range, const IndexList& indices,
-                              bool shared, bool fading, float error_m) {
-  const std::uint32_t group = group_for(range, shared, fading);
-  levels_.push_back({{indices.first_index, indices.index_count, range.first_vertex, group},
-                     {error_m, 0.0F, 0.0F, 0.0F}});
-}
-
 template <class Draw>
-void CandidateList::add(const Draw& draw, bool choose, bool coloured) {
+void CandidateList::add(const Draw& draw, bool coloured) {
   const core::Bounds box = bounds_of(draw);
-  const auto first = static_cast<std::uint32_t>(levels_.size());
-  add_level(draw.range, indices_of(draw.range, draw.shared_indices, draw.part, lists_),
-            draw.shared_indices != kNoSharedIndices, is_fading(draw), 0.0F);
-  if (choose) {
-    PSYGEN_ASSERT(draw.part.count == 0 || draw.coarser.empty(), "coarser levels have no parts");
-    for (const DrawLevel& level : draw.coarser)
-      add_level(level.range, indices_of(level.range, level.shared_indices, {}, lists_),
-                level.shared_indices != kNoSharedIndices, is_fading(draw), level.error_m);
-  }
+  const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
+  const std::uint32_t group =
+      group_for(draw.range, draw.shared_indices != kNoSharedIndices, is_fading(draw));
   // Meshes without an id share bit 0.
   const std::uint32_t name = draw.range.id == core::kNoGeometry ? 0 : draw.range.id + 1;
   name_count_ = std::max(name_count_, name + 1);
   candidates_.push_back({{box.min, 0.0F},
                          {box.max, 0.0F},
                          data_of(draw),
-                         {first, static_cast<std::uint32_t>(levels_.size()) - first, name, 0}});
+                         {indices.first_index, indices.index_count, draw.range.first_vertex, group},
+                         {name, 0, 0, 0}});
   if (coloured) set_colour(candidates_.back().data, draw);
 }
 
 void CandidateList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-                          std::span<const IndexList> lists, bool choose, bool coloured) {
+                          std::span<const IndexList> lists, bool coloured) {
   candidates_.clear();
-  levels_.clear();
   groups_.clear();
   first_commands_.clear();
   std::fill(open_.begin(), open_.end(), 0u);
   name_count_ = 1;
   lists_ = lists;
   for (const TerrainDraw& draw : terrain)
-    add(draw, choose, coloured);
+    add(draw, coloured);
   for (const MeshDraw& draw : models)
-    add(draw, choose, coloured);
+    add(draw, coloured);
   lists_ = {};
   place_groups();
 }
@@ -92,9 +78,9 @@ std::uint32_t CandidateList::group_for(const ObjectDraw& draw, MaterialKind kind
            group.capacity < kGroupCapacity;
   };
   // Neighbours in the list usually look alike.
-  if (!levels_.empty() && fits(groups_[levels_.back().draw.w])) {
-    ++groups_[levels_.back().draw.w].capacity;
-    return levels_.back().draw.w;
+  if (!candidates_.empty() && fits(groups_[candidates_.back().draw.w])) {
+    ++groups_[candidates_.back().draw.w].capacity;
+    return candidates_.back().draw.w;
   }
   const std::uint64_t key = std::uint64_t{textures} << 33 |
                             std::uint64_t{draw.range.pool_block} << 1 | (fading ? 1u : 0u);
@@ -117,14 +103,15 @@ void CandidateList::add_objects(std::span<const ObjectDraw> objects, MaterialKin
   const std::uint32_t first_name = std::bit_ceil(name_count_);
   for (const ObjectDraw& draw : objects) {
     const core::Bounds box = bounds_of(draw);
-    const auto first = static_cast<std::uint32_t>(levels_.size());
     const std::uint32_t group = group_for(draw, kind_of(materials, draw.material));
-    levels_.push_back(
-        {{draw.range.first_index, draw.range.index_count, draw.range.first_vertex, group},
-         {0.0F, 0.0F, 0.0F, 0.0F}});
     const std::uint32_t name = first_name + draw.name % kMostNames;
     name_count_ = std::max(name_count_, name + 1);
-    candidates_.push_back({{box.min, 0.0F}, {box.max, 0.0F}, data_of(draw), {first, 1u, name, 0}});
+    candidates_.push_back(
+        {{box.min, 0.0F},
+         {box.max, 0.0F},
+         data_of(draw),
+         {draw.range.first_index, draw.range.index_count, draw.range.first_vertex, group},
+         {name, 0, 0, 0}});
     if (coloured) set_colour(candidates_.back().data, draw);
   }
   place_groups();

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/core/assert.hpp"
-#include "engine/render/draw_choice.hpp"
+#include "engine/render/view_volume.hpp"
 
 namespace psygen::render {
 

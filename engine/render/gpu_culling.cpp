@@ -101,15 +101,14 @@ Result<void> GpuCulling::grow_seen(const Device& device) {
   return {};
 }
 
-void GpuCulling::set_frame(const ViewTest& test, const shaders::FrameData& frame,
+void GpuCulling::set_frame(const ViewVolume& volume, const shaders::FrameData& frame,
                            const FrameInput& input, core::Extent size,
                            std::span<const IndexList> lists, MaterialKinds materials) {
-  list_.build(input.terrain, input.models, lists, input.choose, colours_draws(input.view));
+  list_.build(input.terrain, input.models, lists, colours_draws(input.view));
   list_.add_objects(input.objects, materials, colours_draws(input.view));
-  std::copy(test.planes.begin(), test.planes.end(), frame_.planes);
+  std::copy(volume.planes.begin(), volume.planes.end(), frame_.planes);
   frame_.clip_from_camera = frame.clip_from_camera;
-  frame_.choice = {test.pixels_per_radian * test.pixels_per_radian,
-                   test.max_error_pixels * test.max_error_pixels, input.projection.near_m, 0.0F};
+  frame_.near = {input.projection.near_m, 0.0F, 0.0F, 0.0F};
   frame_.counts = {static_cast<std::uint32_t>(list_.candidates().size()),
                    static_cast<std::uint32_t>(list_.groups().size()), list_.command_count(),
                    pyramid_.level_count()};
@@ -120,7 +119,6 @@ Result<void> GpuCulling::grow(const Device& device, std::size_t slot) {
   Slot& s = slots_[slot];
   const std::uint64_t candidates =
       std::max<std::uint64_t>(list_.candidates().size(), kFirstCandidates);
-  const std::uint64_t levels = std::max<std::uint64_t>(list_.levels().size(), kFirstCandidates);
   const std::uint64_t groups = std::max<std::uint64_t>(list_.groups().size(), 64);
   const VkBufferUsageFlags indirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | kSource;
   const auto written = [&](Buffer& buffer, std::uint64_t bytes) {
@@ -132,11 +130,11 @@ Result<void> GpuCulling::grow(const Device& device, std::size_t slot) {
   return grow_to(device, s.frame, sizeof(frame_), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                  MemoryUse::kWrite)
       .and_then([&] { return written(s.candidates, candidates * sizeof(shaders::CullCandidate)); })
-      .and_then([&] { return written(s.levels, levels * sizeof(shaders::CullLevel)); })
       .and_then([&] { return written(s.groups, groups * kWordBytes); })
-      .and_then([&] { return made(s.commands, 2 * levels * kCommandBytes, indirect); })
-      .and_then(
-          [&] { return made(s.draws, 2 * levels * sizeof(shaders::DrawData), kStorage | kSource); })
+      .and_then([&] { return made(s.commands, 2 * candidates * kCommandBytes, indirect); })
+      .and_then([&] {
+        return made(s.draws, 2 * candidates * sizeof(shaders::DrawData), kStorage | kSource);
+      })
       .and_then([&] { return made(s.counts, count_bytes(groups), indirect | kTarget); })
       .and_then([&] {
         return grow_to(device, s.counts_back, count_bytes(groups), kTarget, MemoryUse::kRead);
@@ -149,7 +147,6 @@ Result<void> GpuCulling::write(const Device& device, std::size_t slot) {
   Slot& s = slots_[slot];
   std::memcpy(s.frame.mapped, &frame_, sizeof(frame_));
   copy_to(s.candidates, list_.candidates());
-  copy_to(s.levels, list_.levels());
   copy_to(s.groups, list_.first_commands());
   s.group_count = frame_.counts.y;
   s.command_count = list_.command_count();
@@ -159,10 +156,13 @@ Result<void> GpuCulling::write(const Device& device, std::size_t slot) {
 void GpuCulling::write_sets(const Device& device, std::size_t slot) const {
   const Slot& s = slots_[slot];
   const std::pair<std::uint32_t, const Buffer*> buffers[] = {
-      {PSYGEN_CULL_FRAME, &s.frame},       {PSYGEN_CULL_CANDIDATES, &s.candidates},
-      {PSYGEN_CULL_LEVELS, &s.levels},     {PSYGEN_CULL_GROUPS, &s.groups},
-      {PSYGEN_CULL_COMMANDS, &s.commands}, {PSYGEN_CULL_DRAWS, &s.draws},
-      {PSYGEN_CULL_COUNTS, &s.counts},     {PSYGEN_CULL_SEEN_BEFORE, &seen_[1 - now_]},
+      {PSYGEN_CULL_FRAME, &s.frame},
+      {PSYGEN_CULL_CANDIDATES, &s.candidates},
+      {PSYGEN_CULL_GROUPS, &s.groups},
+      {PSYGEN_CULL_COMMANDS, &s.commands},
+      {PSYGEN_CULL_DRAWS, &s.draws},
+      {PSYGEN_CULL_COUNTS, &s.counts},
+      {PSYGEN_CULL_SEEN_BEFORE, &seen_[1 - now_]},
       {PSYGEN_CULL_SEEN_NOW, &seen_[now_]}};
   for (const auto& [binding, buffer] : buffers)
     pipeline_.write_buffer(device, slot, binding, buffer->buffer.get());

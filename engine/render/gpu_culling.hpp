@@ -1,17 +1,17 @@
-// Compute culling: all candidates of a frame go to the device. A shader tests which are in view,
-// chooses levels of detail and writes the commands of indirect draws, one call per group with the
-// same pipeline and buffers. With occlusion there are two phases. The first draws the candidates
-// that were visible in the last frame, and a pyramid is made of their depth. The second tests
-// everything in view against the pyramid, stores what is visible now, and draws the newly visible
-// candidates. So no visible candidate is left out, and hidden ones are left out from the third
-// frame on. Main thread. Private to engine/render.
+// Compute culling: all candidates of a frame go to the device. A shader tests which are in view
+// and writes the commands of indirect draws, one call per group with the same pipeline and buffers.
+// With occlusion there are two phases. The first draws the candidates that were visible in the last
+// frame, and a pyramid is made of their depth. The second tests everything in view against the
+// pyramid, stores what is visible now, and draws the newly visible candidates. So no visible
+// candidate is left out, and hidden ones are left out from the third frame on. Main thread. Private
+// to engine/render.
 #pragma once
 
 #include <array>
 
 #include "engine/render/candidate_list.hpp"
 #include "engine/render/depth_pyramid.hpp"
-#include "engine/render/draw_choice.hpp"
+#include "engine/render/view_volume.hpp"
 
 namespace psygen::render {
 
@@ -26,7 +26,7 @@ class GpuCulling {
   core::Result<void> resize(const Device& device, core::Extent size, const Image& depth);
 
   // Sets the candidates of the following frames, until the next call. Linear in the draws.
-  void set_frame(const ViewTest& test, const shaders::FrameData& frame, const FrameInput& input,
+  void set_frame(const ViewVolume& volume, const shaders::FrameData& frame, const FrameInput& input,
                  core::Extent size, std::span<const IndexList> lists, MaterialKinds materials = {});
   // Copies them into the buffers of a slot whose last frame has finished. Fails with kOutOfMemory
   // if the buffers cannot grow.
@@ -60,7 +60,7 @@ class GpuCulling {
 
  private:
   struct Slot {
-    Buffer frame, candidates, levels, groups;          // from the CPU
+    Buffer frame, candidates, groups;                  // from the CPU
     Buffer commands, draws, counts;                    // of both phases, on the device
     Buffer counts_back;                                // copy for the CPU
     std::uint32_t group_count = 0, command_count = 0;  // of the last frame written

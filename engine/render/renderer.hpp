@@ -1,7 +1,7 @@
 // The renderer: draws lists of meshes from its geometry memory, into a window or headless, with
 // Vulkan 1.3. It knows nothing of entities, models or synthesis. It leaves out only meshes that are
-// not visible, and chooses levels of detail only if asked to (FrameInput::choose). Main thread; two
-// frames are in flight. The paper's Renderer (section 4). docs/gpu.md.
+// not visible, and chooses no levels of detail. Main thread; two frames are in flight. The paper's
+// Renderer (section 4). docs/gpu.md.
 #pragma once
 
 #include <cstdint>

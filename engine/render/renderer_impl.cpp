@@ -311,27 +311,19 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   return noted(draw_frame(input, slot_of(frame_value_ + 1)));
 }
 
-// Makes the list of draws: all draws, those that the CPU chooses, or candidates for the device.
+// Makes the list of draws: all draws, or candidates for the device.
 void RendererImpl::list_draws(const FrameInput& input) {
-  const ViewTest test =
-      view_test(frame_.clip_from_camera, input, static_cast<float>(size().height));
   const bool coloured = colours_draws(input.view);
   std::uint32_t pushed_from = pushed_from_;
   if (culling_) {
-    culling_->set_frame(test, frame_, input, size(), shared_.lists(), materials_.kinds());
+    culling_->set_frame(view_volume(frame_.clip_from_camera), frame_, input, size(),
+                        shared_.lists(), materials_.kinds());
     // Cascades are drawn from a list of the CPU, with pushed data.
     if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
     pushed_from = 0;
   }
-  if (input.choose) {
-    choose_draws(test, input.terrain, chosen_terrain_);
-    choose_draws(test, input.models, chosen_models_);
-    list_.build(chosen_terrain_, chosen_models_, shared_.lists(), pushed_from, coloured,
-                input.objects, materials_.kinds());
-  } else {
-    list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured, input.objects,
-                materials_.kinds());
-  }
+  list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured, input.objects,
+              materials_.kinds());
 }
 
 Result<void> RendererImpl::write_frame(FrameSlot& slot) {

@@ -138,9 +138,7 @@ class RendererImpl {
   bool lost_ = false;
   std::optional<core::CameraPose> last_pose_;
   std::optional<core::Projection> last_projection_;
-  DrawList list_;                            // on the CPU path
-  std::vector<TerrainDraw> chosen_terrain_;  // with FrameInput::choose
-  std::vector<MeshDraw> chosen_models_;
+  DrawList list_;  // on the CPU path
   shaders::FrameData frame_{};
   std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines
   std::uint32_t line_vertices_ = 0;

@@ -145,13 +145,6 @@ struct TerrainPalette {
 // The id for "no shared list": the mesh has its own indices.
 inline constexpr std::uint32_t kNoSharedIndices = 0;
 
-// A coarser mesh at the same place and in the same box.
-struct DrawLevel {
-  core::GeometryRange range;
-  std::uint32_t shared_indices = kNoSharedIndices;
-  float error_m = 0.0F;  // distance from the full surface; grows from level to level
-};
-
 // Largest displacement of a vertex by the wind in metres, in both directions (shaders/model.vert).
 inline constexpr glm::vec3 kSwayM{0.12F, 0.0F, 0.09F};
 
@@ -164,11 +157,10 @@ struct MeshDraw {
   glm::vec3 origin{0.0F};                           // the mesh's foot
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
-  core::IndexPart part;                     // of its indices; empty: all; not with `coarser`
-  float fade = 1.0F;                        // 1: all of its pixels
-  float sun = 1.0F;                         // share of the sun that no terrain hides, 0 … 1
-  std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
-  std::span<const DrawLevel> coarser = {};  // used with FrameInput::choose
+  core::IndexPart part;                   // of its indices; empty: all
+  float fade = 1.0F;                      // 1: all of its pixels
+  float sun = 1.0F;                       // share of the sun that no terrain hides, 0 … 1
+  std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };
 
 // A grid of core::VertexLayout::kTerrain.
@@ -182,9 +174,8 @@ struct TerrainDraw {
   float morph = 0.0F;    // 0 fine heights … 1 coarse heights; kMorphByDistance: FrameInput::morph
   core::IndexPart part;  // of the shared list; empty: all of it
   float side_m = 0.0F;   // of the square that the grid covers; 0: the largest possible grid
-  std::span<const DrawLevel> coarser = {};  // used with FrameInput::choose
-  float cover = 0.0F;                       // share of the ground that far forests hide (Canopy)
-  std::uint32_t debug_colour = 0x808080;    // 0xRRGGBB, in the views that colour draws
+  float cover = 0.0F;    // share of the ground that far forests hide (Canopy)
+  std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };
 
 // Names of a texture and of a material (Renderer::add_texture, add_material). kNoTexture is none;
@@ -261,13 +252,9 @@ struct FrameInput {
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
   std::span<const ObjectDraw> objects;   // nearest first, committed ranges only
-  // The lists also have draws outside the picture, and `coarser` levels. The renderer chooses, on
-  // both paths, the coarsest level with an error of at most `max_error_pixels`.
-  bool choose = false;
-  float max_error_pixels = 1.0F;
-  std::span<const Line> lines;        // at most kMaxLines are drawn, in every view
-  std::span<const TextPanel> panels;  // over the picture
-  float text_scale = 1;               // of their text, 1 … 4, rounded
+  std::span<const Line> lines;           // at most kMaxLines are drawn, in every view
+  std::span<const TextPanel> panels;     // over the picture
+  float text_scale = 1;                  // of their text, 1 … 4, rounded
 };
 
 // The device's own time for a frame, from the start of its first pass to the end of its last one.

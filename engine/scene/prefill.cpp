@@ -100,11 +100,13 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
   visibility_system(s.settings, s.rules, s.camera, s.facts, s.streaming,
                     VisibilityQuery(s.entities), s.view, s.counters);
   cache_system(s.settings, s.rules, s.clock, s.camera, s.quality, s.facts, s.streaming, s.view,
-               CacheQuery(s.entities), s.meshes, s.found, s.pressure, s.counters);
+               CacheQuery(s.entities), s.assets, s.meshes, s.found, s.pressure, s.counters);
   s.meshes.wait(go_on);
   synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
   upload_system(s.settings, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
                 s.output, s.counters, s.totals);
+  objects_system(s.settings, s.input, s.clock, s.camera, s.quality, s.facts, s.streaming, s.view,
+                 ObjectQuery(s.entities), s.meshes, s.assets, s.object_draws, s.counters);
   ++s.clock.tick;
 }
 

@@ -17,7 +17,7 @@ constexpr std::string_view kRenderSystem = "render";
 void build_tick(State& s) {
   s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight,
                  s.streaming, s.view, s.output, s.meshes, s.found, s.draws, s.counters, s.totals,
-                 s.trace, s.record, s.rules, s.pressure);
+                 s.trace, s.record, s.rules, s.pressure, s.assets, s.object_draws);
   s.tick.add("input", input_system);
   s.tick.add("quality", quality_system);
   s.tick.add("daylight", daylight_system);
@@ -26,6 +26,7 @@ void build_tick(State& s) {
   s.tick.add("cache", cache_system);
   s.tick.add("synthesis", synthesis_system);
   s.tick.add("upload", upload_system);
+  s.tick.add("objects", objects_system);
   s.tick.add(kRenderSystem, render_system, ecs::RunsOn::kCallingThread);
   s.tick.add("telemetry", telemetry_system);
 }

@@ -7,116 +7,137 @@
 #include "engine/scene/draws/seen.hpp"
 
 namespace psygen::scene {
+namespace {
 
-// What is the same of what comes and what goes; without parts, of a single model.
-bool ModelDraws::add_mesh(const Model& model, const MeshParts* parts, render::MeshDraw draw) {
-  const auto& [corner, side_m, sun] = model.ground;
-  draw.origin = model.foot;
-  draw.box_center = model.placed.box_center;
-  draw.box_half_extent = model.placed.box_half_extent;
-  if (parts == nullptr) {
-    draw.sun = sun_at(sun, glm::vec2(model.placed.position.x, model.placed.position.z) / side_m);
-    draws_.models.push_back(draw);
-    return true;
-  }
-  // What is not in the picture may cast a shadow into it.
-  return add_parts(*parts, facts_.shadows ? nullptr : &view_, sun, side_m, draw, draws_.models);
-}
+// A row of the columns of a model.
+struct ModelRow {
+  const Placed& placed;
+  const Demand& demand;
+  const Mesh& mesh;
+  Fading& fading;
+  const MeshParts* parts;      // of a merged mesh; null for a single model
+  const MeshParts* old_parts;  // … of what it takes the place of
+};
 
-// Returns whether anything of it can be seen.
-bool ModelDraws::add_model(const Model& model, float fade, std::uint32_t debug_colour) {
-  render::MeshDraw draw;
-  draw.range = model.mesh.range;
-  draw.shared_indices = model.mesh.shared_indices;
-  draw.fade = fade;
-  draw.debug_colour = debug_colour;
-  if (!add_mesh(model, model.merged ? entities_.get<MeshParts>(model.entity) : nullptr, draw))
-    return false;
-  draws_.meshes.push_back(model.mesh.handle);
-  return true;
-}
-
-// What the mesh replaces, in the pixels that it leaves out.
-void ModelDraws::add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour) {
-  render::MeshDraw draw;
-  draw.range = fading.old_range;
-  draw.shared_indices = fading.old_shared_indices;
-  draw.fade = -fading.share;
-  draw.debug_colour = debug_colour;
-  const MeshParts* parts = model.merged ? &entities_.get<OldParts>(model.entity)->parts : nullptr;
-  if (add_mesh(model, parts, draw)) draws_.meshes.push_back(fading.old_mesh);
-}
-
-// Single models have levels of their own.
-std::uint32_t ModelDraws::colour_at(DrawFacts node, const Demand& demand,
-                                    std::uint8_t level) const {
-  if (node.level == 0) {
-    node.level = level;
-    node.coarser = static_cast<std::uint32_t>(std::max(level - demand.wanted_level, 0));
-  }
-  return colour_of(shown_, node);
-}
-
-// Returns whether anything of it can be seen.
-bool ModelDraws::add_coming(const Model& model, const Demand& demand, Fading& fading, bool fades_in,
-                            const DrawFacts& node) {
-  const float share = come(fading, step_, fades_in);
-  if (!add_model(model, share, colour_at(node, demand, demand.drawn_level))) return false;
-  if (fading.old_mesh) add_old(model, fading, colour_at(node, demand, fading.old_level));
-  return true;
-}
-
-bool ModelDraws::add_going(const Model& model, const Demand& demand, Fading& fading,
-                           const DrawFacts& node) {
-  const bool there = demand.drawn_level != kNoLevel;
-  if (!there || !mesh_can_be_seen(model.mesh.tight, model.foot, view_)) return false;
-  const float share = go(fading, step_);
-  return share > 0 && add_model(model, share - 1.0F, colour_at(node, demand, demand.drawn_level));
-}
-
-// visit(model, demand, fading) for all models of a node.
+// visit(row) for all models of a node.
 template <class Visit>
-void ModelDraws::each_model(const ecs::Children& children, const DrawFacts& node,
-                            const Ground& ground, const Visit& visit) const {
-  entities_.each_of<const Placed, const Demand, const Mesh, Fading>(
-      entities_.children(children),
+void each_model(const RenderQuery& entities, const ecs::Children& children, bool merged,
+                const Visit& visit) {
+  entities.each_of<const Placed, const Demand, const Mesh, Fading>(
+      entities.children(children),
       [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
-          visit(Model{rows[i], node.level > 0, placed[i], meshes[i],
-                      ground.corner + placed[i].position, ground},
-                demands[i], fading[i]);
+          visit(ModelRow{placed[i], demands[i], meshes[i], fading[i],
+                         merged ? entities.get<MeshParts>(rows[i]) : nullptr,
+                         merged ? &entities.get<OldParts>(rows[i])->parts : nullptr});
         }
       });
 }
 
-void ModelDraws::add(const ecs::Children& children, Node how, const DrawFacts& node,
-                     const Ground& ground, bool twice) {
-  each_model(children, node, ground, [&](const Model& model, const Demand& demand, Fading& fading) {
-    if (demand.in_view_tick != step_.tick) return;
+// Adds `draw`, of which mesh, share and colour are set. Returns whether anything can be seen.
+bool add_mesh(const ModelGround& ground, const View& view, const Placed& placed,
+              const MeshParts* parts, render::MeshDraw draw, std::vector<render::MeshDraw>& draws) {
+  draw.origin = ground.corner + placed.position;
+  draw.box_center = placed.box_center;
+  draw.box_half_extent = placed.box_half_extent;
+  if (parts == nullptr) {
+    draw.sun = sun_at(*ground.sun, glm::vec2(placed.position.x, placed.position.z) / ground.side_m);
+    draws.push_back(draw);
+    return true;
+  }
+  // What is not in the picture may cast a shadow into it.
+  return add_parts(*parts, ground.shadows ? nullptr : &view, *ground.sun, ground.side_m, draw,
+                   draws);
+}
+
+// Single models have levels of their own.
+std::uint32_t colour_at(const ModelGround& ground, const Demand& demand, std::uint8_t level) {
+  DrawFacts facts = ground.node;
+  if (facts.level == 0) {
+    facts.level = level;
+    facts.coarser = static_cast<std::uint32_t>(std::max(level - demand.wanted_level, 0));
+  }
+  return colour_of(ground.shown, facts);
+}
+
+// The mesh that the model has. Returns whether anything of it can be seen.
+bool add_present(const ModelGround& ground, const View& view, const ModelRow& model, float fade,
+                 DrawLists& draws) {
+  render::MeshDraw draw;
+  draw.range = model.mesh.range;
+  draw.shared_indices = model.mesh.shared_indices;
+  draw.fade = fade;
+  draw.debug_colour = colour_at(ground, model.demand, model.demand.drawn_level);
+  if (!add_mesh(ground, view, model.placed, model.parts, draw, draws.models)) return false;
+  draws.meshes.push_back(model.mesh.handle);
+  return true;
+}
+
+// What the mesh replaces, in the pixels that it leaves out.
+void add_replaced(const ModelGround& ground, const View& view, const ModelRow& model,
+                  DrawLists& draws) {
+  const Fading& fading = model.fading;
+  render::MeshDraw draw;
+  draw.range = fading.old_range;
+  draw.shared_indices = fading.old_shared_indices;
+  draw.fade = -fading.share;
+  draw.debug_colour = colour_at(ground, model.demand, fading.old_level);
+  if (add_mesh(ground, view, model.placed, model.old_parts, draw, draws.models))
+    draws.meshes.push_back(fading.old_mesh);
+}
+
+// Returns whether anything of it can be seen.
+bool add_coming(const ModelGround& ground, const View& view, const ModelRow& model, bool fades_in,
+                DrawLists& draws) {
+  const float share = come(model.fading, ground.step, fades_in);
+  if (!add_present(ground, view, model, share, draws)) return false;
+  if (model.fading.old_mesh) add_replaced(ground, view, model, draws);
+  return true;
+}
+
+// Returns whether anything of it is left.
+bool add_going(const ModelGround& ground, const View& view, const ModelRow& model,
+               DrawLists& draws) {
+  const bool there = model.demand.drawn_level != kNoLevel;
+  const glm::vec3 foot = ground.corner + model.placed.position;
+  if (!there || !mesh_can_be_seen(model.mesh.tight, foot, view)) return false;
+  const float share = go(model.fading, ground.step);
+  return share > 0 && add_present(ground, view, model, share - 1.0F, draws);
+}
+
+}  // namespace
+
+void add_models(const ModelGround& ground, NodeEntry entry, bool twice, const Camera& camera,
+                const View& view, const RenderQuery& entities, const ecs::Children& children,
+                DrawLists& draws, Counters& counters) {
+  const bool merged = ground.node.level > 0;
+  each_model(entities, children, merged, [&](const ModelRow& model) {
+    const Demand& demand = model.demand;
+    if (demand.in_view_tick != ground.step.tick) return;
     if (demand.wanted_level == kNoLevel) {  // too small by now
-      add_going(model, demand, fading, node);
+      add_going(ground, view, model, draws);
       return;
     }
     const bool hole = demand.drawn_level == kNoLevel;
-    const bool appears = how == Node::kStays && demand.entered_tick != step_.tick;
-    const bool fades_in = appears || how == Node::kReplaces;
-    if (!hole && !add_coming(model, demand, fading, fades_in, node)) return;
-    count_seen(camera_,
-               {.center = model.foot + model.placed.middle,
+    const bool appears = entry == NodeEntry::kStays && demand.entered_tick != ground.step.tick;
+    const bool fades_in = appears || entry == NodeEntry::kReplaces;
+    if (!hole && !add_coming(ground, view, model, fades_in, draws)) return;
+    count_seen(camera,
+               {.center = ground.corner + model.placed.position + model.placed.middle,
                 .radius_m = model.placed.radius_m,
                 .hole = hole,
                 .coarse = !hole && demand.drawn_level > demand.wanted_level + 1,
-                .twice = twice && model.merged,
+                .twice = twice && merged,
                 .awaits = demand.failed_levels == 0},
-               counters_);
+               counters);
   });
 }
 
-bool ModelDraws::add_going(const ecs::Children& children, const DrawFacts& node,
-                           const Ground& ground) {
+bool add_going_models(const ModelGround& ground, const View& view, const RenderQuery& entities,
+                      const ecs::Children& children, DrawLists& draws) {
   bool any = false;
-  each_model(children, node, ground, [&](const Model& model, const Demand& demand, Fading& fading) {
-    if (add_going(model, demand, fading, node)) any = true;
+  each_model(entities, children, ground.node.level > 0, [&](const ModelRow& model) {
+    if (add_going(ground, view, model, draws)) any = true;
   });
   return any;
 }

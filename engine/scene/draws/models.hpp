@@ -1,5 +1,6 @@
 // What is drawn of the models of nodes: those in view, as much of them as is there while they come
-// and go (fading.hpp), and of merged meshes the parts that can be seen.
+// and go (fading.hpp), and of merged meshes the parts that can be seen. Main thread; linear in the
+// models.
 #pragma once
 
 #include "engine/scene/draws/fading.hpp"
@@ -9,66 +10,32 @@
 
 namespace psygen::scene {
 
-// One tick's; adds to its draw lists and counts.
-class ModelDraws {
- public:
-  ModelDraws(render::View shown, FadeStep step, const Camera& camera, const WorldFacts& facts,
-             const View& view, const RenderQuery& entities, DrawLists& draws, Counters& counters)
-      : shown_(shown),
-        step_(step),
-        camera_(camera),
-        facts_(facts),
-        view_(view),
-        entities_(entities),
-        draws_(draws),
-        counters_(counters) {}
-
-  // How a node came to be drawn in this tick.
-  enum class Node : std::uint8_t {
-    kStays,     // it was drawn in the last one
-    kReplaces,  // it takes the place of others
-    kEnters,    // nothing was seen there
-  };
-  // What they stand on: the node's corner, its size and light.
-  struct Ground {
-    glm::vec3 corner;
-    float side_m;
-    const GroundSun& sun;
-  };
-  // The models of a node that is drawn; `twice`: it has more than twice the error that it might.
-  void add(const ecs::Children& children, Node how, const DrawFacts& node, const Ground& ground,
-           bool twice);
-  // Those of a node that is drawn no more. Returns whether anything of them is left.
-  bool add_going(const ecs::Children& children, const DrawFacts& node, const Ground& ground);
-
- private:
-  struct Model {
-    ecs::Entity entity;
-    bool merged;  // everything that stands on a node, in parts
-    const Placed& placed;
-    const Mesh& mesh;
-    glm::vec3 foot;
-    const Ground& ground;
-  };
-  template <class Visit>
-  void each_model(const ecs::Children& children, const DrawFacts& node, const Ground& ground,
-                  const Visit& visit) const;
-  bool add_mesh(const Model& model, const MeshParts* parts, render::MeshDraw draw);
-  bool add_model(const Model& model, float fade, std::uint32_t debug_colour);
-  void add_old(const Model& model, const Fading& fading, std::uint32_t debug_colour);
-  std::uint32_t colour_at(DrawFacts node, const Demand& demand, std::uint8_t level) const;
-  bool add_coming(const Model& model, const Demand& demand, Fading& fading, bool fades_in,
-                  const DrawFacts& node);
-  bool add_going(const Model& model, const Demand& demand, Fading& fading, const DrawFacts& node);
-
-  render::View shown_;
-  FadeStep step_;
-  const Camera& camera_;
-  const WorldFacts& facts_;
-  const View& view_;
-  const RenderQuery& entities_;
-  DrawLists& draws_;
-  Counters& counters_;
+// The node that models stand on, as far as it matters to them, in one tick.
+struct ModelGround {
+  glm::vec3 corner{0.0F};          // of the node, metres from the camera
+  float side_m = 1;                // of the node
+  const GroundSun* sun = nullptr;  // of the node; must live during the call
+  DrawFacts node;                  // what the views for understanding say about it
+  render::View shown = render::View::kNormal;
+  FadeStep step;
+  bool shadows = false;  // WorldFacts::shadows
 };
+
+// How a node came to be drawn in this tick.
+enum class NodeEntry : std::uint8_t {
+  kStays,     // it was drawn in the last one
+  kReplaces,  // it takes the place of others
+  kEnters,    // nothing was seen there
+};
+
+// Adds to DrawLists::models and meshes what is drawn of the models of a node that is drawn, and
+// counts it. `twice`: the node has more than twice the error that it might have.
+void add_models(const ModelGround& ground, NodeEntry entry, bool twice, const Camera& camera,
+                const View& view, const RenderQuery& entities, const ecs::Children& children,
+                DrawLists& draws, Counters& counters);
+
+// The same for a node that is drawn no more. Returns whether anything of its models is left.
+bool add_going_models(const ModelGround& ground, const View& view, const RenderQuery& entities,
+                      const ecs::Children& children, DrawLists& draws);
 
 }  // namespace psygen::scene

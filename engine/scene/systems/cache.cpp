@@ -1,49 +1,38 @@
-// Decides what every mesh entity should show, takes from the cache what it has, ranks what it
-// keeps, and plans what is missing. Nodes that the picture depends on are looked at in every tick,
-// front to back; those around the camera in turns.
+// Decides what every mesh entity should show (quality/mesh_choice.hpp), takes from the cache what
+// it has, ranks what it keeps, and plans what is missing. Nodes that the picture depends on are
+// visited in every tick, front to back; those around the camera every 8th.
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
 #include "engine/scene/draws/seen.hpp"
+#include "engine/scene/quality/mesh_choice.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/visibility/level_choice.hpp"
 
 namespace psygen::scene {
 namespace {
 
-using synthesis::Rank;
 using synthesis::RankGroup;
 
-// Nodes out of view are looked at once in so many ticks, and their models kept this much coarser.
+// Nodes out of view are revisited every 8th tick, and their models may have twice the error.
 constexpr std::size_t kAroundTurns = 8;
 constexpr float kAroundErrorFactor = 2.0F;
-// The rank of what is drawn is told to the cache anew when its group changes, otherwise once in so
-// many ticks, or in every tick where little room is left: nothing else makes ranks matter.
+// The cache is told the rank of what is drawn when its group changes, otherwise every 32nd tick, or
+// in every tick where little room is left: nothing else makes ranks matter.
 constexpr std::uint32_t kRankTurns = 32;
-// New meshes out of view that are reserved in a tick at least, if so many are wanted, while new
-// nodes come.
+// While new nodes come, meshes out of view that may be reserved in a tick at least.
 constexpr std::uint32_t kFewestHidden = 48;
-// So long a hole waits for the request that would fill it.
-constexpr double kHolePatienceSeconds = 0.02;
-// So long pictures may be too coarse before the main thread helps: modelers get only what others
+// How long pictures may be too coarse before the main thread helps: modelers get only what others
 // leave of the processors, and that can be nothing.
 constexpr double kCoarsePatienceSeconds = 0.03;
 
-// Where a node stands in the order of importance, in this tick.
-struct NodeView {
-  glm::vec3 corner{0.0F};  // relative to the camera
-  const Visibility* visibility = nullptr;
-  std::uint8_t level = 0;
-  bool wanted = false;  // in view, or needed to draw what is
-  bool in_view = false;
-  bool covered = false;  // an ancestor can be drawn instead
-  bool leaf = false;
-  bool fine = false;
-  float error_factor = 1;  // on that of the picture
-  bool around = false;     // looked at in turns anyway
+// What all mesh entities are judged by in this tick.
+struct CacheTick {
+  ChoiceRules choice;
+  std::uint32_t tick = 0;
+  bool request = true;   // what is missing is synthesised
+  bool roomy = false;    // ranks do not matter: only what nobody wants need go
+  bool shadows = false;  // what is out of view may cast some into the picture
 };
 
 // A row of the columns of a mesh entity.
@@ -56,7 +45,6 @@ struct MeshEntity {
   Demand& demand;
 };
 
-// Whether ranks do not matter: only what nobody wants need go.
 bool is_roomy(const synthesis::CacheStats& stats) {
   constexpr double kRoomyShare = 0.8;
   return static_cast<double>(stats.bytes - std::min(stats.bytes, stats.unwanted_bytes)) <
@@ -69,270 +57,158 @@ double seen_share(const synthesis::CacheStats& stats) {
   return static_cast<double>(stats.visible_bytes) / static_cast<double>(stats.limit_bytes);
 }
 
-class Chooser {
- public:
-  Chooser(const Settings& settings, const Rules& rules, const Clock& clock, const Camera& camera,
-          const Quality& quality, const WorldFacts& facts, const View& view,
-          const Pressure& pressure, synthesis::MeshSupply& meshes, Found& found, Counters& counters)
-      : settings_(settings),
-        rules_(rules),
-        facts_(facts),
-        quality_(quality),
-        clock_(clock),
-        camera_(camera),
-        view_(view),
-        pressure_(pressure),
-        meshes_(meshes),
-        found_(found),
-        counters_(counters),
-        roomy_(is_roomy(meshes.stats())) {}
+ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clock& clock,
+                         const Camera& camera, const Quality& quality, const Pressure& pressure) {
+  ChoiceRules choice;
+  choice.pixels_per_radian = camera.pixels_per_radian;
+  choice.near_m = camera.projection.near_m;
+  choice.min_size_pixels = static_cast<float>(settings.min_size_pixels);
+  choice.error_pixels = static_cast<float>(quality.error_pixels);
+  choice.model_error_pixels = static_cast<float>(quality.model_error_pixels);
+  choice.real_s = clock.real_s;
+  choice.levels_of_detail = settings.levels_of_detail;
+  choice.settle = rules.settle;
+  choice.coarse_first = rules.coarse_first;
+  choice.short_of_memory = quality.coarsening > 1;
+  choice.awaits_memory = pressure.waiting > 0;
+  return choice;
+}
 
-  // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
-  bool consider(const MeshEntity& row, const NodeView& node, bool is_ground) {
-    const Placed& placed = row.placed;
-    Demand& demand = row.demand;
-    const glm::vec3 foot = node.corner + placed.position;
-    const bool near = is_ground || node.level > 0;  // as near as the node itself
-    const float distance_m = near ? node.visibility->distance_m
-                                  : std::max(glm::length(foot + placed.middle) - placed.radius_m,
-                                             camera_.projection.near_m);
-    const bool in_view = node.in_view && (near || mesh_can_be_seen(box_of(row), foot, view_));
-    demand.wanted_level = is_ground ? ground_level(row.detail, demand, node)
-                                    : wanted_level(placed, row.detail, demand, distance_m, node);
-    in_view ? note_in_view(demand, node.leaf) : note_out_of_view(demand);
-    if (demand.wanted_level == kNoLevel) {
-      // Too small to be drawn: the first to go when room is needed.
-      if (demand.drawn_level != kNoLevel) keep(row, RankGroup::kUnwanted, node, distance_m);
-      return true;
-    }
-    provide(row, node, in_view, is_ground, distance_m);
-    const unsigned all_levels = (1U << row.detail.level_count) - 1;
-    return demand.drawn_level != kNoLevel || demand.failed_levels == all_levels;
+// Around what is or was drawn, or all that could be; from the foot. What a mesh taught outlasts it:
+// otherwise one that is out of view would be a hole again as soon as it is evicted.
+core::Bounds box_of(const MeshEntity& row, bool shadows) {
+  if (row.mesh.tight != core::Bounds{} && !shadows) return row.mesh.tight;
+  return core::Bounds::around(row.placed.box_center, row.placed.box_half_extent);
+}
+
+void note_in_view(const CacheTick& tick, bool leaf, Demand& demand, Counters& counters) {
+  const bool entered = demand.in_view_tick + 1 != tick.tick;
+  if (entered) demand.entered_tick = tick.tick;
+  demand.in_view_tick = tick.tick;
+  if (demand.wanted_level == kNoLevel || !leaf) return;
+  if (demand.drawn_level == kNoLevel) {
+    if (demand.seen_s < 0) demand.seen_s = static_cast<float>(tick.choice.real_s);
+  } else if (entered) {
+    counters.time_to_visible_ms.push_back(0.0F);
   }
+}
 
- private:
-  // Around what is or was drawn, or all that could be; from the foot. What a mesh taught outlasts
-  // it: otherwise one that is out of view would be a hole again as soon as it is evicted.
-  core::Bounds box_of(const MeshEntity& row) const {
-    if (row.mesh.tight != core::Bounds{} && !facts_.shadows) return row.mesh.tight;
-    return core::Bounds::around(row.placed.box_center, row.placed.box_half_extent);
+// Tells the cache how important the drawn mesh is, where that is due.
+void keep(const CacheTick& tick, const NodeView& node, const MeshEntity& row, RankGroup group,
+          float distance_m, synthesis::MeshSupply& meshes) {
+  const bool turn =
+      node.around || (row.entity.index + tick.tick) % (tick.roomy ? kRankTurns : 1) == 0;
+  std::uint8_t& ranked = row.demand.ranked;
+  if (ranked == static_cast<std::uint8_t>(group) && !turn) return;
+  ranked = static_cast<std::uint8_t>(group);
+  meshes.rank(row.mesh.handle, rank_on(node, group, distance_m));
+}
+
+// Takes the chosen mesh from the cache, or asks for it.
+void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
+             const MeshChoice& choice, float distance_m, synthesis::MeshSupply& meshes,
+             Found& found) {
+  const Source& source = row.source;
+  Demand& demand = row.demand;
+  const auto type_level = static_cast<std::uint16_t>(source.first_level + choice.request);
+  const synthesis::MeshKey key{row.placed.block, source.index, source.model, type_level,
+                               source.parameters_hash};
+  const bool first_time = demand.requested_level != choice.request;
+  demand.requested_level = choice.request;
+  const synthesis::MeshHandle handle = first_time ? meshes.look_up(key) : meshes.find(key);
+  const synthesis::MeshRecord* record = meshes.get(handle);
+  if (record != nullptr && record->state == synthesis::MeshState::kReady) {
+    found.meshes.push_back({row.entity, handle});
+    // The entity that asked for it may have been destroyed; evictions are reported to the owner.
+    const RankGroup landed =
+        synthesis::is_visible(choice.requested) ? RankGroup::kDrawn : choice.requested;
+    meshes.adopt(handle, owner_of(row.entity), rank_on(node, landed, distance_m));
+    return;
   }
-
-  static std::uint8_t ground_level(const Detail& detail, const Demand& demand,
-                                   const NodeView& node) {
-    if (node.fine) return 0;
-    if (!node.wanted && demand.drawn_level != kNoLevel) return demand.drawn_level;
-    return static_cast<std::uint8_t>(detail.level_count - 1);
+  if (record != nullptr && record->state == synthesis::MeshState::kFailed) {
+    demand.failed_levels |= static_cast<std::uint8_t>(1u << choice.request);
+    return;
   }
+  if (!tick.request) return;
+  meshes.want({key, &source.parameters, owner_of(row.entity),
+               rank_on(node, choice.requested, distance_m), node.visibility.deadline_s,
+               choice.at_once});
+}
 
-  std::uint8_t wanted_level(const Placed& placed, const Detail& detail, const Demand& demand,
-                            float distance_m, const NodeView& node) const {
-    const float size_m = detail.seen_size_m > 0 ? detail.seen_size_m : 2 * placed.radius_m;
-    const float size_pixels = size_m * camera_.pixels_per_radian /
-                              std::max(distance_m + placed.radius_m, camera_.projection.near_m);
-    if (node.level == 0 && size_pixels < static_cast<float>(settings_.min_size_pixels))
-      return kNoLevel;
-    if (!settings_.levels_of_detail) return 0;
-    const std::span<const float> errors(detail.error_m.data(), detail.level_count);
-    const bool keep = demand.drawn_level != kNoLevel && !rules_.settle;
-    const int current = keep ? demand.drawn_level : -1;
-    const double error_pixels =
-        node.level == 0 ? quality_.model_error_pixels : quality_.error_pixels;
-    return static_cast<std::uint8_t>(
-        visibility::choose_level(errors, distance_m, camera_.pixels_per_radian,
-                                 node.error_factor * static_cast<float>(error_pixels), current));
+// The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
+bool consider(const CacheTick& tick, const View& view, const NodeView& node, const MeshEntity& row,
+              bool is_ground, synthesis::MeshSupply& meshes, Found& found, Counters& counters) {
+  const Placed& placed = row.placed;
+  Demand& demand = row.demand;
+  const glm::vec3 foot = node.corner + placed.position;
+  const bool near = is_ground || node.level > 0;  // as near as the node itself
+  const float distance_m =
+      near ? node.visibility.distance_m
+           : std::max(glm::length(foot + placed.middle) - placed.radius_m, tick.choice.near_m);
+  const bool in_view =
+      node.in_view && (near || mesh_can_be_seen(box_of(row, tick.shadows), foot, view));
+  demand.wanted_level = is_ground ? ground_level(node, row.detail, demand.drawn_level)
+                                  : model_level(tick.choice, node, row.detail, placed.radius_m,
+                                                distance_m, demand.drawn_level);
+  if (in_view) {
+    note_in_view(tick, node.leaf, demand, counters);
+  } else {
+    demand.seen_s = -1;
   }
-
-  void note_in_view(Demand& demand, bool leaf) {
-    const bool entered = demand.in_view_tick + 1 != clock_.tick;
-    if (entered) demand.entered_tick = clock_.tick;
-    demand.in_view_tick = clock_.tick;
-    if (demand.wanted_level == kNoLevel || !leaf) return;
-    if (demand.drawn_level == kNoLevel) {
-      if (demand.seen_s < 0) demand.seen_s = static_cast<float>(clock_.real_s);
-    } else if (entered) {
-      counters_.time_to_visible_ms.push_back(0.0F);
-    }
+  const bool drawn = demand.drawn_level != kNoLevel;
+  if (demand.wanted_level == kNoLevel) {
+    // Too small to be drawn: the first to go when room is needed.
+    if (drawn) keep(tick, node, row, RankGroup::kUnwanted, distance_m, meshes);
+    return true;
   }
+  const MeshChoice choice = choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground);
+  if (drawn) keep(tick, node, row, choice.drawn, distance_m, meshes);
+  if (choice.there) demand.requested_level = kNoLevel;
+  if (choice.request != kNoLevel) request(tick, node, row, choice, distance_m, meshes, found);
+  const unsigned all_levels = (1U << row.detail.level_count) - 1;
+  return drawn || demand.failed_levels == all_levels;
+}
 
-  static void note_out_of_view(Demand& demand) { demand.seen_s = -1; }
+// visit(row) for these mesh entities. Returns for how many it was false.
+template <class Visit>
+std::uint32_t count_false(const CacheQuery& entities, std::span<const ecs::Entity> which,
+                          const Visit& visit) {
+  std::uint32_t count = 0;
+  entities.each_of<const Placed, const Detail, const Source, const Mesh, Demand>(
+      which, [&](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
+                 std::span<const Detail> detail, std::span<const Source> source,
+                 std::span<const Mesh> mesh, std::span<Demand> demand) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          const MeshEntity row{rows[i], placed[i], detail[i], source[i], mesh[i], demand[i]};
+          count += visit(row) ? 0 : 1;
+        }
+      });
+  return count;
+}
 
-  Rank rank_of(RankGroup group, const NodeView& node, float distance_m) const {
-    const Visibility& visibility = *node.visibility;
-    // Where nothing can be drawn coarse nodes come first: they fill most with least.
-    if (group == RankGroup::kVisibleHole)
-      return Rank::hole(visibility::kMaxNodeLevel - node.level, visibility.layer, distance_m);
-    if (synthesis::is_visible(group)) return Rank::by_layer(group, visibility.layer, distance_m);
-    if (std::isfinite(visibility.deadline_s)) {
-      return Rank::by_deadline(visibility.deadline_s, distance_m);
-    }
-    return Rank::by_layer(RankGroup::kPrefetch, visibility.layer, distance_m);
-  }
-
-  // Tells the cache how important the drawn mesh is, where that is due.
-  void keep(const MeshEntity& row, RankGroup group, const NodeView& node, float distance_m) {
-    const bool turn =
-        node.around || (row.entity.index + clock_.tick) % (roomy_ ? kRankTurns : 1) == 0;
-    std::uint8_t& ranked = row.demand.ranked;
-    if (ranked == static_cast<std::uint8_t>(group) && !turn) return;
-    ranked = static_cast<std::uint8_t>(group);
-    meshes_.rank(row.mesh.handle, group == RankGroup::kUnwanted ? Rank::unwanted()
-                                                                : rank_of(group, node, distance_m));
-  }
-
-  // Keeps what is drawn, and sees to it that the wanted level comes. Ground never gives way for
-  // being too fine: it would open the picture.
-  void provide(const MeshEntity& row, const NodeView& node, bool in_view, bool is_ground,
-               float distance_m) {
-    Demand& demand = row.demand;
-    const bool wanted = in_view || (node.wanted && !node.in_view);
-    const bool nothing = demand.drawn_level == kNoLevel;
-    const bool hole = nothing && in_view && !node.covered;
-    const bool there = demand.drawn_level == demand.wanted_level && !demand.stale;
-    const std::uint8_t level = there ? kNoLevel : level_to_request(row, hole);
-    const bool too_fine = !is_ground && !nothing && level != kNoLevel && level > demand.drawn_level;
-    if (!nothing) {
-      const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;
-      keep(row, wanted ? drawn : RankGroup::kPrefetch, node, distance_m);
-    }
-    if (there) demand.requested_level = kNoLevel;
-    if (level == kNoLevel) return;
-    RankGroup group = RankGroup::kPrefetch;
-    if (hole) {
-      group = RankGroup::kVisibleHole;
-    } else if (wanted && level == demand.drawn_level) {
-      // Ground that is only lit anew waits for what lacks detail: with a fast sun it is all of it.
-      group = RankGroup::kDrawn;
-    } else if (wanted) {  // what frees room is urgent only where room is short
-      group =
-          too_fine && quality_.coarsening > 1 ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
-    }
-    // Few nodes are so coarse, and each fills much of the picture.
-    const bool root = is_ground && node.level + std::size_t{1} == facts_.levels.size();
-    request(row, level, group, hole && root, node, distance_m);
-  }
-
-  // The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
-  // cannot be synthesised. kNoLevel if nothing is better than what is drawn.
-  std::uint8_t level_to_request(const MeshEntity& row, bool hole) const {
-    const Demand& demand = row.demand;
-    const auto levels = static_cast<int>(row.detail.level_count);
-    const bool coarse_first = hole && rules_.coarse_first;
-    // A modeler that holds the coarsest one may not get a processor for a while: then the next one.
-    // Not where it waits for room.
-    const bool stuck = !rules_.settle && quality_.coarsening <= 1 && pressure_.waiting == 0 &&
-                       demand.seen_s >= 0 &&
-                       clock_.real_s - double{demand.seen_s} > kHolePatienceSeconds;
-    const int coarsest = stuck && levels > 1 ? levels - 2 : levels - 1;
-    const int first = coarse_first ? coarsest : demand.wanted_level;
-    for (int distance = 0; distance < levels; ++distance) {
-      for (const int level : {first + distance, first - distance}) {
-        if (level < 0 || level >= levels || (demand.failed_levels >> level & 1) != 0) continue;
-        const bool there = level == demand.drawn_level && !demand.stale;
-        return there ? kNoLevel : static_cast<std::uint8_t>(level);
-      }
-    }
-    return kNoLevel;
-  }
-
-  void request(const MeshEntity& row, std::uint8_t level, RankGroup group, bool at_once,
-               const NodeView& node, float distance_m) {
-    const Source& source = row.source;
-    Demand& demand = row.demand;
-    const auto type_level = static_cast<std::uint16_t>(source.first_level + level);
-    const synthesis::MeshKey key{row.placed.block, source.index, source.model, type_level,
-                                 source.parameters_hash};
-    const bool first_time = demand.requested_level != level;
-    demand.requested_level = level;
-    const synthesis::MeshHandle handle = first_time ? meshes_.look_up(key) : meshes_.find(key);
-    const synthesis::MeshRecord* record = meshes_.get(handle);
-    if (record != nullptr && record->state == synthesis::MeshState::kReady) {
-      found_.meshes.push_back({row.entity, handle});
-      // The entity that asked for it may have been destroyed; evictions are reported to the owner.
-      const RankGroup landed = synthesis::is_visible(group) ? RankGroup::kDrawn : group;
-      meshes_.adopt(handle, owner_of(row.entity), rank_of(landed, node, distance_m));
-      return;
-    }
-    if (record != nullptr && record->state == synthesis::MeshState::kFailed) {
-      demand.failed_levels |= static_cast<std::uint8_t>(1u << level);
-      return;
-    }
-    if (!rules_.request) return;
-    meshes_.want({key, &source.parameters, owner_of(row.entity), rank_of(group, node, distance_m),
-                  node.visibility->deadline_s, at_once});
-  }
-
-  const Settings& settings_;
-  const Rules& rules_;
-  const WorldFacts& facts_;
-  const Quality& quality_;
-  const Clock& clock_;
-  const Camera& camera_;
-  const View& view_;
-  const Pressure& pressure_;
-  synthesis::MeshSupply& meshes_;
-  Found& found_;
-  Counters& counters_;
-  const bool roomy_;
-};
-
-// Looks at nodes and their models.
-class NodeWalk {
- public:
-  NodeWalk(Chooser& chooser, const Camera& camera, double block_size_m, const CacheQuery& entities)
-      : chooser_(chooser), camera_(camera), block_size_m_(block_size_m), entities_(entities) {}
-
-  void consider(std::span<const ChosenNode> nodes, bool only_leaves) {
-    for (const ChosenNode& node : nodes) {
-      if (only_leaves && !(node.leaf && node.in_view)) continue;
-      consider(std::span(&node.entity, 1), {.wanted = true,
-                                            .in_view = node.in_view,
-                                            .covered = node.covered,
-                                            .leaf = node.leaf,
-                                            .fine = node.fine});
-    }
-  }
-
-  // Every node of `entities`, in this order; `view` says what they have in common.
-  void consider(std::span<const ecs::Entity> nodes, NodeView view) {
-    entities_.each_of<const Node, const ecs::Children, const Visibility, Lacking>(
-        nodes, [&](std::span<const ecs::Entity> rows, std::span<const Node> node,
-                   std::span<const ecs::Children> models, std::span<const Visibility> visibility,
-                   std::span<Lacking> lacking) {
-          for (std::size_t i = 0; i < rows.size(); ++i) {
-            const core::BlockCoord corner = visibility::corner_block(node[i].at);
-            view.corner = glm::vec3(core::offset_m(corner, camera_.pose.position, block_size_m_));
-            view.visibility = &visibility[i];
-            view.level = node[i].at.level;
-            lacking[i].meshes = consider_rows(rows.subspan(i, 1), view, true) +
-                                consider_rows(entities_.children(models[i]), view, false);
-          }
-        });
-  }
-
- private:
-  // Returns how many lack a mesh.
-  std::uint32_t consider_rows(std::span<const ecs::Entity> entities, const NodeView& view,
-                              bool is_ground) {
-    std::uint32_t lacking = 0;
-    entities_.each_of<const Placed, const Detail, const Source, const Mesh, Demand>(
-        entities, [&](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
-                      std::span<const Detail> detail, std::span<const Source> source,
-                      std::span<const Mesh> mesh, std::span<Demand> demand) {
-          for (std::size_t i = 0; i < rows.size(); ++i) {
-            const bool there = chooser_.consider(
-                {rows[i], placed[i], detail[i], source[i], mesh[i], demand[i]}, view, is_ground);
-            lacking += there ? 0 : 1;
-          }
-        });
-    return lacking;
-  }
-
-  Chooser& chooser_;
-  const Camera& camera_;
-  double block_size_m_;
-  CacheQuery entities_;
-};
+// visit(node, row, is_ground) for the meshes of every node of `nodes`, in this order; notes how
+// many lack a mesh. `common` says what the nodes have in common.
+template <class Visit>
+void visit_nodes(const CacheQuery& entities, std::span<const ecs::Entity> nodes,
+                 const core::WorldPosition& eye, double block_size_m, NodeView common,
+                 const Visit& visit) {
+  entities.each_of<const Node, const ecs::Children, const Visibility, Lacking>(
+      nodes, [&](std::span<const ecs::Entity> rows, std::span<const Node> node,
+                 std::span<const ecs::Children> models, std::span<const Visibility> visibility,
+                 std::span<Lacking> lacking) {
+        NodeView view = common;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          const core::BlockCoord corner = visibility::corner_block(node[i].at);
+          view.corner = glm::vec3(core::offset_m(corner, eye, block_size_m));
+          view.visibility = visibility[i];
+          view.level = node[i].at.level;
+          const auto ground = [&](const MeshEntity& row) { return visit(view, row, true); };
+          const auto model = [&](const MeshEntity& row) { return visit(view, row, false); };
+          lacking[i].meshes = count_false(entities, rows.subspan(i, 1), ground) +
+                              count_false(entities, entities.children(models[i]), model);
+        }
+      });
+}
 
 // Lazy evaluation keeps nothing: what the last frame drew is given back.
 void forget_last_frame(const CacheQuery& entities, synthesis::MeshSupply& supply) {
@@ -387,22 +263,36 @@ synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, 
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Streaming& streaming, const View& view, CacheQuery entities,
-                  synthesis::MeshSupply& meshes, Found& found, Pressure& pressure,
-                  Counters& counters) {
+                  const Assets& assets, synthesis::MeshSupply& meshes, Found& found,
+                  Pressure& pressure, Counters& counters) {
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
+  assets.want_all(meshes);
   found.meshes.clear();
 
-  Chooser chooser(settings, rules, clock, camera, quality, facts, view, pressure, meshes, found,
-                  counters);
-  NodeWalk walk(chooser, camera, facts.world.block_size_m(), entities);
-  walk.consider(view.chosen, rules.wait);
+  CacheTick tick{choice_rules(settings, rules, clock, camera, quality, pressure), clock.tick,
+                 rules.request, is_roomy(meshes.stats()), facts.shadows};
+  tick.choice.node_levels = facts.levels.size();
+  const auto visit = [&](std::span<const ecs::Entity> nodes, const NodeView& common) {
+    visit_nodes(entities, nodes, camera.pose.position, facts.world.block_size_m(), common,
+                [&](const NodeView& node, const MeshEntity& row, bool is_ground) {
+                  return consider(tick, view, node, row, is_ground, meshes, found, counters);
+                });
+  };
+  for (const ChosenNode& node : view.chosen) {
+    if (rules.wait && !(node.leaf && node.in_view)) continue;
+    visit(std::span(&node.entity, 1), {.wanted = true,
+                                       .in_view = node.in_view,
+                                       .covered = node.covered,
+                                       .leaf = node.leaf,
+                                       .fine = node.fine});
+  }
   if (rules.look_ahead) {
-    walk.consider(view.expected, NodeView{});
+    visit(view.expected, NodeView{});
     std::vector<ecs::Entity> around;  // those whose turn it is
     for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns)
       around.push_back(view.around[i]);
-    walk.consider(around, NodeView{.error_factor = kAroundErrorFactor, .around = true});
+    visit(around, NodeView{.error_factor = kAroundErrorFactor, .around = true});
   }
   const synthesis::PlanReport report = meshes.plan(
       plan_limits(settings, rules, clock, quality, streaming, pressure), settings.policy);

@@ -9,6 +9,7 @@
 
 #include "engine/render/render_path.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/render/view_volume.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
 
 namespace psygen::render {
@@ -22,7 +23,18 @@ auto key(const DrawnMesh& m) {
                     m.place.x, m.place.y, m.place.z);
 }
 
-// A renderer with a landscape of its own: hills, and boxes with a coarser level.
+// Those in view.
+template <class Draw>
+std::vector<Draw> in_view_of(const FrameInput& input, const std::vector<Draw>& draws) {
+  const ViewVolume volume =
+      view_volume(core::projection_matrix(input.projection) * core::view_rotation(input.pose));
+  std::vector<Draw> seen;
+  std::copy_if(draws.begin(), draws.end(), std::back_inserter(seen),
+               [&](const Draw& draw) { return in_view(volume, bounds_of(draw)); });
+  return seen;
+}
+
+// A renderer with a landscape of its own: hills, and sheets of many cells.
 class Side {
  public:
   void create(RenderPath path, bool occlusion, Preset preset = Preset::kLow) {
@@ -69,9 +81,6 @@ class Side {
     }
   }
   void add_boxes(int count) {
-    const auto coarse = synthetic::make_box(renderer->geometry(), {0.5F, 0.3F, 0.1F});
-    ASSERT_TRUE(coarse);
-    coarser_ = {{*coarse, kNoSharedIndices, 0.4F}};
     std::mt19937 random(11);
     std::uniform_real_distribution<float> place(-250, 250), size(1, 9);
     for (int i = 0; i < count; ++i) {
@@ -82,7 +91,6 @@ class Side {
       draw.origin = {place(random), -25, place(random)};
       draw.box_half_extent = glm::vec3(size(random));
       draw.box_center = {0, draw.box_half_extent.y, 0};
-      draw.coarser = coarser_;
       models.push_back(draw);
     }
   }
@@ -98,9 +106,12 @@ class Side {
   }
 
   FrameResult draw(FrameInput input) {
-    input.terrain = terrain;
-    input.models = models;
-    input.choose = true;
+    // The CPU path draws what it is given.
+    const bool all = renderer->path() == RenderPath::kGpu;
+    const auto seen_terrain = in_view_of(input, terrain);
+    const auto seen_models = in_view_of(input, models);
+    input.terrain = all ? terrain : seen_terrain;
+    input.models = all ? models : seen_models;
     const auto result = renderer->render(input);
     EXPECT_TRUE(result) << result.error().message;
     return result ? *result : FrameResult{};
@@ -131,14 +142,12 @@ class Side {
 
  private:
   std::uint32_t grid_ = 0;
-  std::vector<DrawLevel> coarser_;
 };
 
 FrameInput look(double yaw, double pitch) {
   FrameInput input = synthetic::look(12.0, pitch, kSize);
   input.pose.yaw = yaw;
   input.light.haze_density = 0.0004F;
-  input.max_error_pixels = 1.5F;
   return input;
 }
 

@@ -1,6 +1,5 @@
-#include "engine/render/draw_choice.hpp"
+#include "engine/render/view_volume.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -14,45 +13,27 @@ constexpr float kSlackShare = 1e-6F;    // slack for rounding, relative to a box
 
 }  // namespace
 
-ViewTest view_test(const glm::mat4& clip_from_camera, const FrameInput& input, float height) {
+ViewVolume view_volume(const glm::mat4& clip_from_camera) {
   const glm::mat4 rows = glm::transpose(clip_from_camera);
-  ViewTest test;
-  test.planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1],
-                 rows[3] - rows[2]};
-  for (glm::vec4& plane : test.planes)
+  ViewVolume volume;
+  volume.planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1],
+                   rows[3] - rows[2]};
+  for (glm::vec4& plane : volume.planes)
     plane /= glm::length(glm::vec3(plane));
-  test.pixels_per_radian = input.projection.pixels_per_radian(height);
-  test.max_error_pixels = input.choose ? std::max(input.max_error_pixels, 0.0F) : 0.0F;
-  return test;
+  return volume;
 }
 
-bool in_view(const ViewTest& test, const core::Bounds& box) {
+bool in_view(const ViewVolume& volume, const core::Bounds& box) {
   const float slack =
       kSlackShare * (std::abs(box.min.x) + std::abs(box.min.y) + std::abs(box.min.z) +
                      std::abs(box.max.x) + std::abs(box.max.y) + std::abs(box.max.z));
-  for (const glm::vec4& plane : test.planes) {
+  for (const glm::vec4& plane : volume.planes) {
     const float x = plane.x > 0 ? box.max.x : box.min.x;
     const float y = plane.y > 0 ? box.max.y : box.min.y;
     const float z = plane.z > 0 ? box.max.z : box.min.z;
     if (plane.x * x + plane.y * y + plane.z * z + plane.w < -slack) return false;
   }
   return true;
-}
-
-std::size_t level_of(const ViewTest& test, const core::Bounds& box,
-                     std::span<const DrawLevel> coarser) {
-  const float x = std::max(std::max(box.min.x, -box.max.x), 0.0F);
-  const float y = std::max(std::max(box.min.y, -box.max.y), 0.0F);
-  const float z = std::max(std::max(box.min.z, -box.max.z), 0.0F);
-  // Compares the squares of error · pixels per radian and allowed error · distance, which needs
-  // neither a root nor a division.
-  const float allowed = test.max_error_pixels * test.max_error_pixels * (x * x + y * y + z * z);
-  const float scale = test.pixels_per_radian * test.pixels_per_radian;
-  std::size_t level = 0;
-  while (level < coarser.size() &&
-         coarser[level].error_m * coarser[level].error_m * scale <= allowed)
-    ++level;
-  return level;
 }
 
 core::Bounds bounds_of(const TerrainDraw& draw) {

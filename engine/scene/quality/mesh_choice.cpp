@@ -1,0 +1,102 @@
+#include "engine/scene/quality/mesh_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "engine/visibility/level_choice.hpp"
+
+namespace psygen::scene {
+namespace {
+
+using synthesis::Rank;
+using synthesis::RankGroup;
+
+// How long a hole waits for the request that would fill it.
+constexpr double kHolePatienceSeconds = 0.02;
+
+// The wanted level; for a hole in view the coarsest one first; the nearest one to it where it
+// cannot be synthesised. kNoLevel if nothing is better than what is drawn.
+std::uint8_t level_to_request(const ChoiceRules& rules, const Detail& detail, const Demand& demand,
+                              bool hole) {
+  const auto levels = static_cast<int>(detail.level_count);
+  const bool coarse_first = hole && rules.coarse_first;
+  // A modeler that holds the coarsest level may get no processor for a while. Then the next level
+  // is asked for, unless the request waits for memory.
+  const bool stuck = !rules.settle && !rules.short_of_memory && !rules.awaits_memory &&
+                     demand.seen_s >= 0 &&
+                     rules.real_s - double{demand.seen_s} > kHolePatienceSeconds;
+  const int coarsest = stuck && levels > 1 ? levels - 2 : levels - 1;
+  const int first = coarse_first ? coarsest : demand.wanted_level;
+  for (int distance = 0; distance < levels; ++distance) {
+    for (const int level : {first + distance, first - distance}) {
+      if (level < 0 || level >= levels || (demand.failed_levels >> level & 1) != 0) continue;
+      const bool there = level == demand.drawn_level && !demand.stale;
+      return there ? kNoLevel : static_cast<std::uint8_t>(level);
+    }
+  }
+  return kNoLevel;
+}
+
+}  // namespace
+
+std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8_t drawn_level) {
+  if (node.fine) return 0;
+  if (!node.wanted && drawn_level != kNoLevel) return drawn_level;
+  return static_cast<std::uint8_t>(detail.level_count - 1);
+}
+
+std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
+                         float radius_m, float distance_m, std::uint8_t drawn_level) {
+  const float size_m = detail.seen_size_m > 0 ? detail.seen_size_m : 2 * radius_m;
+  const float size_pixels =
+      size_m * rules.pixels_per_radian / std::max(distance_m + radius_m, rules.near_m);
+  if (node.level == 0 && size_pixels < rules.min_size_pixels) return kNoLevel;
+  if (!rules.levels_of_detail) return 0;
+  const std::span<const float> errors(detail.error_m.data(), detail.level_count);
+  const bool keep = drawn_level != kNoLevel && !rules.settle;
+  const float error_pixels = node.level == 0 ? rules.model_error_pixels : rules.error_pixels;
+  return static_cast<std::uint8_t>(
+      visibility::choose_level(errors, distance_m, rules.pixels_per_radian,
+                               node.error_factor * error_pixels, keep ? drawn_level : -1));
+}
+
+MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
+                       const Demand& demand, bool in_view, bool is_ground) {
+  const bool wanted = in_view || (node.wanted && !node.in_view);
+  const bool nothing = demand.drawn_level == kNoLevel;
+  const bool hole = nothing && in_view && !node.covered;
+  MeshChoice choice;
+  choice.there = demand.drawn_level == demand.wanted_level && !demand.stale;
+  if (!choice.there) choice.request = level_to_request(rules, detail, demand, hole);
+  const bool too_fine =
+      !is_ground && !nothing && choice.request != kNoLevel && choice.request > demand.drawn_level;
+  const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;
+  choice.drawn = wanted ? drawn : RankGroup::kPrefetch;
+  if (hole) {
+    choice.requested = RankGroup::kVisibleHole;
+  } else if (wanted && choice.request == demand.drawn_level) {
+    // Ground that is only lit anew waits for what lacks detail: with a fast sun it is all of it.
+    choice.requested = RankGroup::kDrawn;
+  } else if (wanted) {  // what frees room is urgent only where room is short
+    choice.requested =
+        too_fine && rules.short_of_memory ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
+  }
+  // The coarsest nodes are few, and each fills much of the picture.
+  choice.at_once = hole && is_ground && node.level + std::size_t{1} == rules.node_levels;
+  return choice;
+}
+
+Rank rank_on(const NodeView& node, RankGroup group, float distance_m) {
+  const Visibility& visibility = node.visibility;
+  if (group == RankGroup::kUnwanted) return Rank::unwanted();
+  // Where nothing can be drawn, coarse nodes come first: they fill most with least.
+  if (group == RankGroup::kVisibleHole)
+    return Rank::hole(visibility::kMaxNodeLevel - node.level, visibility.layer, distance_m);
+  if (synthesis::is_visible(group)) return Rank::by_layer(group, visibility.layer, distance_m);
+  if (std::isfinite(visibility.deadline_s))
+    return Rank::by_deadline(visibility.deadline_s, distance_m);
+  return Rank::by_layer(RankGroup::kPrefetch, visibility.layer, distance_m);
+}
+
+}  // namespace psygen::scene

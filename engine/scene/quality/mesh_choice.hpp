@@ -1,0 +1,69 @@
+// Which level of detail a mesh entity should show, which one to ask for, and how important both
+// are. Decides and changes nothing: the cache system carries it out. Pure functions of values; any
+// thread; linear in the levels.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/scene/components.hpp"
+#include "engine/synthesis/rank.hpp"
+
+namespace psygen::scene {
+
+// What all choices of one tick have in common.
+struct ChoiceRules {
+  float pixels_per_radian = 1;
+  float near_m = 0.1F;           // of the projection
+  float min_size_pixels = 0;     // models smaller than this are not drawn
+  float error_pixels = 1;        // that nodes may have
+  float model_error_pixels = 1;  // that single models may have
+  double real_s = 0;             // the real clock, as in Demand::seen_s
+  std::size_t node_levels = 1;   // of the quadtree
+  bool levels_of_detail = true;  // false: always the finest
+  bool settle = false;           // Rules::settle
+  bool coarse_first = true;      // Rules::coarse_first
+  bool short_of_memory = false;  // the picture is coarser for want of memory
+  bool awaits_memory = false;    // requests wait for memory that is about to be free
+};
+
+// A node in this tick, as far as it matters to the meshes on it.
+struct NodeView {
+  glm::vec3 corner{0.0F};  // relative to the camera
+  Visibility visibility{};
+  std::uint8_t level = 0;
+  bool wanted = false;  // in view, or needed to draw what is
+  bool in_view = false;
+  bool covered = false;  // an ancestor can be drawn instead
+  bool leaf = false;
+  bool fine = false;
+  float error_factor = 1;  // on the allowed error of the picture
+  bool around = false;     // revisited every few ticks only
+};
+
+// The level that the ground of a node should show.
+std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8_t drawn_level);
+
+// The level that a model of this radius should show at this distance from the camera; kNoLevel if
+// it is too small on screen to be drawn. Its drawn level is kept within the hysteresis of
+// visibility::choose_level().
+std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
+                         float radius_m, float distance_m, std::uint8_t drawn_level);
+
+// What to do about the mesh of an entity whose wanted level is known.
+struct MeshChoice {
+  // Of the mesh that is drawn; meaningless if there is none.
+  synthesis::RankGroup drawn = synthesis::RankGroup::kUnwanted;
+  bool there = false;               // what is drawn is what is wanted
+  std::uint8_t request = kNoLevel;  // the level to ask for; kNoLevel: none is better
+  synthesis::RankGroup requested = synthesis::RankGroup::kPrefetch;  // of the request
+  bool at_once = false;  // the request fills so much of the picture that nothing goes before it
+};
+// `in_view`: of the mesh itself. Ground never gives way for being too fine: that would open the
+// picture.
+MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
+                       const Demand& demand, bool in_view, bool is_ground);
+
+// The rank of a mesh on a node, at this distance from the camera.
+synthesis::Rank rank_on(const NodeView& node, synthesis::RankGroup group, float distance_m);
+
+}  // namespace psygen::scene

@@ -1,0 +1,185 @@
+#include "engine/scene/quality/mesh_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace psygen::scene {
+namespace {
+
+using synthesis::Rank;
+using synthesis::RankGroup;
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+Detail four_levels() {
+  Detail detail;
+  detail.error_m = {0, 0.1F, 0.4F, 1.6F};
+  detail.level_count = 4;
+  return detail;
+}
+
+NodeView in_view() {
+  NodeView node;
+  node.wanted = node.in_view = node.leaf = true;
+  return node;
+}
+
+Demand demand(std::uint8_t drawn, std::uint8_t wanted) {
+  Demand made;
+  made.drawn_level = drawn;
+  made.wanted_level = wanted;
+  return made;
+}
+
+TEST(MeshChoice, GroundIsFineNearAndKeepsWhatItHasWhereNobodyLooks) {
+  NodeView node;
+  EXPECT_EQ(ground_level(node, four_levels(), kNoLevel), 3);
+  EXPECT_EQ(ground_level(node, four_levels(), 1), 1);
+  node.wanted = true;
+  EXPECT_EQ(ground_level(node, four_levels(), 1), 3);
+  node.fine = true;
+  EXPECT_EQ(ground_level(node, four_levels(), 1), 0);
+}
+
+TEST(MeshChoice, ModelsGetCoarserWithDistanceUntilTheyAreTooSmall) {
+  ChoiceRules rules;
+  rules.pixels_per_radian = 1000;
+  rules.min_size_pixels = 2;
+  const NodeView node;
+  int last = 0;
+  for (const float distance_m : {1.0F, 150.0F, 600.0F, 1700.0F}) {
+    const int level = model_level(rules, node, four_levels(), 2, distance_m, kNoLevel);
+    EXPECT_EQ(level, last++);
+  }
+  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 2100, kNoLevel), kNoLevel);
+  rules.levels_of_detail = false;
+  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 1700, kNoLevel), 0);
+}
+
+TEST(MeshChoice, MergedModelsAreNeverTooSmall) {
+  ChoiceRules rules;
+  rules.pixels_per_radian = 1000;
+  rules.min_size_pixels = 2;
+  NodeView node;
+  node.level = 1;
+  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 1e6F, kNoLevel), 3);
+}
+
+TEST(MeshChoice, HysteresisHoldsUnlessTheSceneSettles) {
+  ChoiceRules rules;
+  rules.pixels_per_radian = 1000;
+  const NodeView node;
+  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 110, kNoLevel), 1);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 110, 0), 0);
+  rules.settle = true;
+  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 110, 0), 1);
+}
+
+TEST(MeshChoice, WhatIsDrawnAsWantedAsksForNothing) {
+  const MeshChoice choice = choose_mesh({}, in_view(), four_levels(), demand(2, 2), true, false);
+  EXPECT_TRUE(choice.there);
+  EXPECT_EQ(choice.request, kNoLevel);
+  EXPECT_EQ(choice.drawn, RankGroup::kDrawn);
+}
+
+TEST(MeshChoice, AHoleAsksForItsCoarsestLevelFirst) {
+  ChoiceRules rules;
+  const Demand hole = demand(kNoLevel, 0);
+  MeshChoice choice = choose_mesh(rules, in_view(), four_levels(), hole, true, false);
+  EXPECT_EQ(choice.request, 3);
+  EXPECT_EQ(choice.requested, RankGroup::kVisibleHole);
+  rules.coarse_first = false;
+  choice = choose_mesh(rules, in_view(), four_levels(), hole, true, false);
+  EXPECT_EQ(choice.request, 0);
+}
+
+TEST(MeshChoice, AHoleThatWaitsTooLongAsksForTheNextLevelUnlessItWaitsForMemory) {
+  ChoiceRules rules;
+  rules.real_s = 10;
+  Demand hole = demand(kNoLevel, 0);
+  hole.seen_s = 9.99F;
+  const auto request = [&] {
+    return choose_mesh(rules, in_view(), four_levels(), hole, true, false).request;
+  };
+  EXPECT_EQ(request(), 3);
+  hole.seen_s = 9.9F;
+  EXPECT_EQ(request(), 2);
+  rules.awaits_memory = true;
+  EXPECT_EQ(request(), 3);
+  rules.awaits_memory = false;
+  rules.short_of_memory = true;
+  EXPECT_EQ(request(), 3);
+}
+
+TEST(MeshChoice, WhatAnAncestorCoversIsNoHole) {
+  NodeView node = in_view();
+  node.covered = true;
+  const MeshChoice choice = choose_mesh({}, node, four_levels(), demand(kNoLevel, 1), true, false);
+  EXPECT_EQ(choice.request, 1);
+  EXPECT_EQ(choice.requested, RankGroup::kVisibleCoarse);
+}
+
+TEST(MeshChoice, ALevelThatFailedIsReplacedByTheNearestOne) {
+  Demand failed = demand(kNoLevel, 1);
+  failed.failed_levels = 0b0010;
+  NodeView node = in_view();
+  node.covered = true;
+  EXPECT_EQ(choose_mesh({}, node, four_levels(), failed, true, false).request, 2);
+  failed.failed_levels = 0b1110;
+  EXPECT_EQ(choose_mesh({}, node, four_levels(), failed, true, false).request, 0);
+  failed.failed_levels = 0b1111;
+  EXPECT_EQ(choose_mesh({}, node, four_levels(), failed, true, false).request, kNoLevel);
+}
+
+TEST(MeshChoice, TooFineModelsGiveWayAndGroundDoesNot) {
+  ChoiceRules rules;
+  const Demand fine = demand(0, 2);
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), fine, true, false).drawn,
+            RankGroup::kVisibleFine);
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), fine, true, false).requested,
+            RankGroup::kVisibleCoarse);
+  rules.short_of_memory = true;
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), fine, true, false).requested,
+            RankGroup::kVisibleFine);
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), fine, true, true).drawn,
+            RankGroup::kDrawn);
+}
+
+TEST(MeshChoice, GroundThatIsOnlyLitAnewWaitsForWhatLacksDetail) {
+  Demand stale = demand(3, 3);
+  stale.stale = true;
+  const MeshChoice choice = choose_mesh({}, in_view(), four_levels(), stale, true, true);
+  EXPECT_FALSE(choice.there);
+  EXPECT_EQ(choice.request, 3);
+  EXPECT_EQ(choice.requested, RankGroup::kDrawn);
+}
+
+TEST(MeshChoice, OnlyHolesInTheGroundOfTheCoarsestNodesAreAskedForAtOnce) {
+  ChoiceRules rules;
+  rules.node_levels = 4;
+  NodeView node = in_view();
+  node.level = 3;
+  const Demand hole = demand(kNoLevel, 3);
+  EXPECT_TRUE(choose_mesh(rules, node, four_levels(), hole, true, true).at_once);
+  EXPECT_FALSE(choose_mesh(rules, node, four_levels(), hole, true, false).at_once);
+  node.level = 2;
+  EXPECT_FALSE(choose_mesh(rules, node, four_levels(), hole, true, true).at_once);
+}
+
+TEST(MeshChoice, RanksOrderHolesByLevelAndWhatIsOutOfViewByDeadline) {
+  NodeView coarse = in_view(), fine = in_view();
+  coarse.level = 3;
+  coarse.visibility.layer = 9;
+  EXPECT_LT(rank_on(coarse, RankGroup::kVisibleHole, 50),
+            rank_on(fine, RankGroup::kVisibleHole, 5));
+  NodeView expected, around;
+  expected.visibility.deadline_s = 2;
+  around.visibility.deadline_s = kNever;
+  EXPECT_EQ(rank_on(expected, RankGroup::kPrefetch, 5), Rank::by_deadline(2, 5));
+  EXPECT_EQ(rank_on(around, RankGroup::kPrefetch, 5), Rank::by_layer(RankGroup::kPrefetch, 0, 5));
+  EXPECT_EQ(rank_on(around, RankGroup::kUnwanted, 5), Rank::unwanted());
+}
+
+}  // namespace
+}  // namespace psygen::scene
