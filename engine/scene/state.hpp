@@ -208,7 +208,7 @@ struct Counters {
   std::uint32_t awaited = 0;
   double missing_pixels_percent = 0;
   double seen_area = 0,
-         too_coarse_area = 0;         // of pieces (draws/missing.hpp), in percent of the picture
+         too_coarse_area = 0;  // of pieces (draws/missing.hpp), in percent of the picture
   // Objects of the game: in view and drawn; in view without a mesh that can be drawn; with a place
   // that is none.
   std::uint32_t objects_drawn = 0, objects_missing = 0, objects_invalid = 0;

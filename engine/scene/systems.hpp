@@ -74,7 +74,8 @@ using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
                    const View& view, const ObjectDraws& objects, RenderQuery entities,
-                   synthesis::MeshSupply& meshes, DrawLists& draws, Output& output, Pressure& pressure, Counters& counters);
+                   synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
+                   Pressure& pressure, Counters& counters);
 
 // Writes down what the tick did.
 void telemetry_system(const Clock& clock, const Quality& quality, const Counters& counters,

@@ -35,8 +35,9 @@ core::Result<MeshId> Assets::add(ObjectSource source, models::ModelIndex type) {
   const std::string name = source.name;
   const std::uint32_t index = sources_->add(std::move(source));
   if (index == ObjectSources::kMost) {
-    return core::fail(ErrorCode::kOverBudget, fmt::format("{}: a scene has at most {} meshes of objects",
-                                                          name, ObjectSources::kMost));
+    return core::fail(
+        ErrorCode::kOverBudget,
+        fmt::format("{}: a scene has at most {} meshes of objects", name, ObjectSources::kMost));
   }
   mesh.parameters = object_parameters(index);
   const models::ModelType& of = (*registry_)[type];
@@ -77,10 +78,10 @@ core::Result<MeshId> Assets::add_model(std::string_view type, const models::Para
   }
   const int there_are = model.level_count_of(parameters);
   if (first_level < 0 || level_count < 0 || first_level + std::max(level_count, 1) > there_are) {
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("{}: levels {} to {} are not among its {} levels", type,
-                                  first_level, first_level + std::max(level_count, 1) - 1,
-                                  there_are));
+    return core::fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("{}: levels {} to {} are not among its {} levels", type, first_level,
+                    first_level + std::max(level_count, 1) - 1, there_are));
   }
   if (model.mesh_size(parameters, first_level).layout != core::VertexLayout::kModel) {
     return core::fail(ErrorCode::kInvalidArgument,

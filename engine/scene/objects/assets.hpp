@@ -1,6 +1,6 @@
 // The meshes, textures and materials of a scene's objects, by number. They live as long as the
-// scene. The vertices of copied meshes stay with the host; what is drawn lies in the geometry memory,
-// is charged to the byte budget and may be evicted and copied again. Main thread only.
+// scene. The vertices of copied meshes stay with the host; what is drawn lies in the geometry
+// memory, is charged to the byte budget and may be evicted and copied again. Main thread only.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ namespace psygen::scene {
 struct ObjectMeshLevel {
   synthesis::MeshKey key;
   synthesis::MeshHandle handle;
-  core::GeometryRange range;           // if `ready`
+  core::GeometryRange range;  // if `ready`
   float error_m = 0;
   float nearest_m = 0;                 // distance of the nearest object that uses it, in `tick`
   float hole_m = 0;                    // of the nearest that can draw nothing instead
@@ -47,8 +47,8 @@ class Assets {
   // null. Both outlive it. Once. Fails like Registry::add().
   core::Result<void> open(models::Registry& registry, render::Renderer* renderer);
 
-  // A mesh of the program's own, or of a file. `name` is for messages. Fails like scene::pack(), and
-  // with kOverBudget beyond 65,536 meshes.
+  // A mesh of the program's own, or of a file. `name` is for messages. Fails like scene::pack(),
+  // and with kOverBudget beyond 65,536 meshes.
   core::Result<MeshId> add_mesh(const core::MeshData& mesh, std::string name = "mesh");
   // The mesh of a model type ("tree", "rock", or one of a plugin), made by modelers when it is
   // needed. `level_count` levels of detail from `first_level` on, of which each object takes one by

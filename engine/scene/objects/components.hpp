@@ -24,9 +24,9 @@ struct MeshId {
 // Where an entity is. An object with numbers that are not finite, without a rotation, or with a
 // scale outside of 10⁻⁴ … 10⁴ is not drawn (Counters::objects_invalid).
 struct Transform {
-  core::WorldPosition position;  // need not be normalised
+  core::WorldPosition position;                // need not be normalised
   glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  // w, x, y, z; need not be unit
-  glm::vec3 scale{1.0F};  // before the rotation; negative ones mirror
+  glm::vec3 scale{1.0F};                       // before the rotation; negative ones mirror
 };
 
 // How an object is drawn now. Only the engine writes it (objects_system).

@@ -79,9 +79,10 @@ class ObjectType final : public models::ModelType {
     const models::MeshSize size = source.type->mesh_size(source.parameters, level);
     std::vector<core::ModelVertex> narrow(size.vertex_count);
     const bool shared = size.shared_indices != 0;
-    const core::Bounds tight = source.type->synthesize(
-        source.parameters, level,
-        {std::as_writable_bytes(std::span(narrow)), shared ? std::span<std::uint16_t>() : out.indices});
+    const core::Bounds tight =
+        source.type->synthesize(source.parameters, level,
+                                {std::as_writable_bytes(std::span(narrow)),
+                                 shared ? std::span<std::uint16_t>() : out.indices});
     if (shared) source.type->write_shared_indices(size.shared_indices, out.indices);
     std::byte* to = out.vertices.data();
     for (const core::ModelVertex& vertex : narrow) {

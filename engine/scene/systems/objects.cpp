@@ -39,8 +39,8 @@ struct Place {
   float radius_m = 0, distance_m = 0, scale = 1;
 };
 
-bool place_of(const Transform& transform, const core::Bounds& box, const core::WorldPosition& camera,
-              double block_size_m, Place& place) {
+bool place_of(const Transform& transform, const core::Bounds& box,
+              const core::WorldPosition& camera, double block_size_m, Place& place) {
   constexpr float kLeastScale = 1e-4F, kMostScale = 1e4F;
   constexpr double kFarM = 1e9;
   const glm::dvec3 local = transform.position.local;
@@ -54,8 +54,7 @@ bool place_of(const Transform& transform, const core::Bounds& box, const core::W
   const float length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(length > 1e-6F && length < 1e6F)) return false;
   place.rotation = q * (1.0F / length);
-  place.foot =
-      glm::vec3(core::offset_m(transform.position.block, camera, block_size_m) + local);
+  place.foot = glm::vec3(core::offset_m(transform.position.block, camera, block_size_m) + local);
   place.scale = std::max({size.x, size.y, size.z});
   place.center = place.foot + place.rotation * (transform.scale * box.center());
   place.radius_m = glm::length(box.half_extent() * size);
@@ -109,7 +108,8 @@ std::uint32_t wanted_level(const ObjectMesh& mesh, const Place& place, std::uint
   std::uint32_t level = 0;
   while (level + 1 < mesh.level_count) {
     const float slack = drawn != kNone && level + 1 > drawn ? kLevelSlack : 1.0F;
-    const float pixels = mesh.levels[level + 1].error_m * place.scale * tick.pixels_per_radian / away;
+    const float pixels =
+        mesh.levels[level + 1].error_m * place.scale * tick.pixels_per_radian / away;
     if (pixels * slack > tick.error_pixels) break;
     ++level;
   }
@@ -167,8 +167,15 @@ class ObjectWalk {
              const Streaming& streaming, const View& view, const ObjectQuery& entities,
              const synthesis::MeshSupply& supply, Assets& assets, ObjectDraws& draws,
              Counters& counters)
-      : tick_(tick), camera_(camera), facts_(facts), streaming_(streaming), view_(view),
-        entities_(entities), supply_(supply), assets_(assets), draws_(draws),
+      : tick_(tick),
+        camera_(camera),
+        facts_(facts),
+        streaming_(streaming),
+        view_(view),
+        entities_(entities),
+        supply_(supply),
+        assets_(assets),
+        draws_(draws),
         counters_(counters) {}
 
   void visit(ecs::Entity entity, const Transform& transform, Object& object) {
@@ -239,8 +246,8 @@ class ObjectWalk {
       add(entity, transform, object, place, state.old_level, -state.share);
   }
 
-  void add(ecs::Entity entity, const Transform& transform, const Object& object,
-           const Place& place, std::uint8_t level, float fade) {
+  void add(ecs::Entity entity, const Transform& transform, const Object& object, const Place& place,
+           std::uint8_t level, float fade) {
     const ObjectMesh& mesh = assets_.mesh(object.mesh);
     render::ObjectDraw& draw = draws_.objects.emplace_back();
     draw.range = mesh.levels[level].range;
@@ -254,7 +261,8 @@ class ObjectWalk {
     draw.sun = object.state.sun;
     draw.phase = static_cast<float>(entity.index % 64) * (1.0F / 64.0F);
     draw.name = entity.index;
-    if (tick_.shown != render::View::kNormal) draw.debug_colour = colour_of(tick_.shown, {.level = level});
+    if (tick_.shown != render::View::kNormal)
+      draw.debug_colour = colour_of(tick_.shown, {.level = level});
   }
 
   const ObjectTick& tick_;

@@ -172,7 +172,8 @@ FadeStep fade_step(const Settings& settings, const Clock& clock, const DrawLists
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
                    const View& view, const ObjectDraws& objects, RenderQuery entities,
-                   synthesis::MeshSupply& meshes, DrawLists& draws, Output& output, Pressure& pressure, Counters& counters) {
+                   synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
+                   Pressure& pressure, Counters& counters) {
   draws.terrain.clear();
   draws.models.clear();
   draws.meshes.clear();

@@ -187,10 +187,10 @@ TEST_P(Objects, survive_every_view_and_a_change_of_preset) {
 
 TEST_P(Objects, of_all_kinds_look_as_they_did) {
   const TextureId pattern = checks(), relief = studs();
-  std::vector<ObjectDraw> objects{
-      object({-5, 1, -14}, about(1, 0.6F)), object({-1.6F, 1, -14}, about(1, 0.6F)),
-      object({1.6F, 1, -14}, about(1, 0.6F)), object({5, 1, -14}, about(1, 0.6F)),
-      object({0, -2, -12})};
+  std::vector<ObjectDraw> objects{object({-5, 1, -14}, about(1, 0.6F)),
+                                  object({-1.6F, 1, -14}, about(1, 0.6F)),
+                                  object({1.6F, 1, -14}, about(1, 0.6F)),
+                                  object({5, 1, -14}, about(1, 0.6F)), object({0, -2, -12})};
   for (ObjectDraw& draw : objects)
     draw.box_half_extent = {1.3F, 1.3F, 1.3F};
   objects[0].material = material({.base_colour = {1, 2, 1}});
@@ -206,8 +206,8 @@ TEST_P(Objects, of_all_kinds_look_as_they_did) {
   const Picture picture = draw_objects(objects);
   const image::Image image{picture.width, picture.height, picture.rgba};
   const std::string name = "objects_" + std::string(to_string(renderer_->preset()));
-  const auto stored = std::filesystem::path(PSYGEN_SOURCE_DIR "/tests/engine/render/golden") /
-                      (name + ".png");
+  const auto stored =
+      std::filesystem::path(PSYGEN_SOURCE_DIR "/tests/engine/render/golden") / (name + ".png");
   if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
     ASSERT_TRUE(image::write_png(stored, image));
   }

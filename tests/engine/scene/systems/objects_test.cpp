@@ -21,8 +21,8 @@ core::MeshData box_mesh(std::uint32_t cells = 1) {
                                 2.0F * static_cast<float>(z) / static_cast<float>(cells) - 1});
       if (x == 0 || z == 0) continue;
       const std::uint32_t here = z * side + x;
-      mesh.indices.insert(mesh.indices.end(), {here, here - side, here - side - 1, here,
-                                               here - side - 1, here - 1});
+      mesh.indices.insert(mesh.indices.end(),
+                          {here, here - side, here - side - 1, here, here - side - 1, here - 1});
     }
   }
   return mesh;
