@@ -1,16 +1,24 @@
-# Installs libraries, headers and the package files, for `find_package(psygen)` in other projects.
+# Installs the package files, for `find_package(psygen COMPONENTS ...)` in other projects. Libraries
+# and headers are installed by psygen_library(), a file of targets for each.
 include(CMakePackageConfigHelpers)
 
-get_property(psygen_libraries GLOBAL PROPERTY PSYGEN_LIBRARIES)
-install(TARGETS ${psygen_libraries} psygen_settings EXPORT psygen_targets)
-set_target_properties(psygen_settings PROPERTIES EXPORT_NAME settings)
-install(EXPORT psygen_targets NAMESPACE psygen:: FILE psygen-targets.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
-install(DIRECTORY ecs engine shaders DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/psygen
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN cli EXCLUDE)
+get_target_property(psygen_components psygen_settings PSYGEN_COMPONENTS)
+set(psygen_tables "")
+foreach(component IN LISTS psygen_components)
+  get_target_property(needs psygen_${component} PSYGEN_NEEDS)
+  get_target_property(packages psygen_${component} PSYGEN_PACKAGES)
+  string(APPEND psygen_tables "set(psygen_${component}_needs \"${needs}\")\n"
+                              "set(psygen_${component}_packages \"${packages}\")\n")
+endforeach()
+
+set(psygen_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
+set(psygen_data_dir ${CMAKE_INSTALL_DATADIR}/psygen)
 configure_package_config_file(cmake/psygen-config.cmake.in psygen-config.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
+  INSTALL_DESTINATION ${psygen_package_dir} PATH_VARS psygen_data_dir)
 write_basic_package_version_file(psygen-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/psygen-config-version.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
+        DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
+install(DIRECTORY cmake/modules DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)

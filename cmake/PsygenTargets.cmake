@@ -1,15 +1,20 @@
-# Compiler settings, and the two functions that every folder uses:
-#   psygen_library(NAME SOURCES ... PUBLIC ... PRIVATE ...)   a static library, one per layer
-#   psygen_executable(NAME SOURCES ... PRIVATE ...)           a program in bin/ of the build folder
+# Compiler settings, and the functions that every folder uses:
+#   psygen_library(NAME ...)                        the library of a folder: target, headers, component
+#   psygen_executable(NAME SOURCES ... PRIVATE ...) a program in bin/ of the build folder
+# All settings are of this project's own targets. Projects that use them, or that contain this one,
+# keep theirs.
 include(GNUInstallDirs)
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
-  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a folder's packages are for whoever links the folder
+if(PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+  endif()
 endif()
 
 find_program(PSYGEN_CCACHE ccache)
@@ -18,37 +23,98 @@ if(PSYGEN_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_C_COMPILER_LAUNCHER ${PSYGEN_CCACHE})
 endif()
 
+# What dlopen() needs: nothing where it is a part of the C library (glibc 2.34).
+include(CheckFunctionExists)
+check_function_exists(dlopen PSYGEN_DLOPEN_IN_LIBC)
+set(PSYGEN_DL "")
+if(NOT PSYGEN_DLOPEN_IN_LIBC)
+  set(PSYGEN_DL ${CMAKE_DL_LIBS})
+endif()
+
+# How this project compiles itself. None of it reaches projects that use its libraries.
 add_library(psygen_settings INTERFACE)
 add_library(psygen::settings ALIAS psygen_settings)
-target_compile_features(psygen_settings INTERFACE cxx_std_20)
 # Same bits everywhere: no fused multiply-add unless the source asks for it (docs/models.md).
 target_compile_options(psygen_settings INTERFACE -ffp-contract=off)
-target_compile_definitions(psygen_settings INTERFACE GLM_FORCE_DEPTH_ZERO_TO_ONE GLM_FORCE_XYZW_ONLY)
+target_compile_definitions(psygen_settings INTERFACE GLM_FORCE_XYZW_ONLY)
 
 add_library(psygen_warnings INTERFACE)
 target_compile_options(psygen_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow
                        $<$<BOOL:${PSYGEN_WERROR}>:-Werror>)
 
+# Sanitizers must be in every file of a program.
+add_library(psygen_sanitizers INTERFACE)
 if(PSYGEN_SANITIZE)
-  target_compile_options(psygen_settings INTERFACE -fsanitize=${PSYGEN_SANITIZE}
+  target_compile_options(psygen_sanitizers INTERFACE -fsanitize=${PSYGEN_SANITIZE}
                          -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  target_link_options(psygen_settings INTERFACE -fsanitize=${PSYGEN_SANITIZE})
+  target_link_options(psygen_sanitizers INTERFACE -fsanitize=${PSYGEN_SANITIZE})
 endif()
+target_link_libraries(psygen_settings INTERFACE psygen_sanitizers)
 
-set_property(GLOBAL PROPERTY PSYGEN_LIBRARIES "")
-
-# Target psygen_NAME with alias psygen::NAME. PUBLIC and PRIVATE list the libraries that it may use.
+# psygen_library(NAME SOURCES ... HEADERS ... PUBLIC ... PRIVATE ... [PUBLIC_PACKAGES ...] [PACKAGES ...])
+# Target psygen_NAME with alias psygen::NAME. It is static, or shared with BUILD_SHARED_LIBS.
+#   HEADERS           the public headers: installed, in the reference, each compiled alone by a test.
+#                     All other headers are private.
+#   PUBLIC, PRIVATE   the libraries that it may use. Folders are added in the order of their layers.
+#   PUBLIC_PACKAGES, PACKAGES   arguments of find_package(), one package an item ("fmt 9"): what
+#                     public headers need, and what only the sources need. They are looked for here
+#                     and by find_package(psygen COMPONENTS NAME). The latter are not looked for by
+#                     projects that use shared libraries.
+# With PSYGEN_INSTALL it is installed as component psygen_NAME and exported as component NAME of the
+# package; nothing else has to list it.
 function(psygen_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE;PUBLIC_PACKAGES;PACKAGES" ${ARGN})
+  psygen_find_packages(${ARG_PUBLIC_PACKAGES} ${ARG_PACKAGES})
   set(target psygen_${name})
-  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(${target} ${ARG_SOURCES})
   add_library(psygen::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-  target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/psygen>)
-  target_link_libraries(${target} PUBLIC psygen::settings ${ARG_PUBLIC}
-                        PRIVATE $<BUILD_INTERFACE:psygen_warnings> ${ARG_PRIVATE})
-  set_property(GLOBAL APPEND PROPERTY PSYGEN_LIBRARIES ${target})
+  set_target_properties(${target} PROPERTIES
+    PSYGEN_OWN ON  # a target of this project, not of one that contains it
+    EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    INSTALL_RPATH "$ORIGIN;$ORIGIN/psygen")
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_link_libraries(${target}
+    PUBLIC $<BUILD_INTERFACE:psygen_sanitizers> ${ARG_PUBLIC}
+    PRIVATE $<BUILD_INTERFACE:psygen_settings> $<BUILD_INTERFACE:psygen_warnings> ${ARG_PRIVATE})
+  psygen_note_component(${name} "${ARG_PUBLIC};${ARG_PRIVATE}" "${ARG_PUBLIC_PACKAGES}" "${ARG_PACKAGES}")
+  if(PSYGEN_INSTALL)
+    install(TARGETS ${target} EXPORT psygen_${name} COMPONENT psygen_${name}
+            FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/psygen COMPONENT psygen_${name})
+    install(EXPORT psygen_${name} NAMESPACE psygen:: FILE psygen-${name}-targets.cmake
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/psygen COMPONENT psygen_${name})
+  endif()
+endfunction()
+
+# Looks for packages, each a string of arguments to find_package().
+function(psygen_find_packages)
+  foreach(package IN LISTS ARGN)
+    separate_arguments(package)
+    find_package(${package} REQUIRED)
+  endforeach()
+endfunction()
+
+# Notes what cmake/PsygenInstall.cmake writes into the package: the components in the order of their
+# declaration, and for each the components that it needs, itself last, and its packages.
+function(psygen_note_component name libraries public_packages packages)
+  set(needs "")
+  foreach(library IN LISTS libraries)
+    if(library MATCHES "^psygen::(.+)$")
+      get_target_property(more psygen_${CMAKE_MATCH_1} PSYGEN_NEEDS)
+      if(NOT more)
+        message(FATAL_ERROR "psygen_library(${name}): add the folder of ${library} before this one")
+      endif()
+      list(APPEND needs ${more})
+    endif()
+  endforeach()
+  list(APPEND needs ${name})
+  list(REMOVE_DUPLICATES needs)
+  if(NOT BUILD_SHARED_LIBS)
+    list(APPEND public_packages ${packages})
+  endif()
+  set_target_properties(psygen_${name} PROPERTIES PSYGEN_NEEDS "${needs}" PSYGEN_PACKAGES "${public_packages}")
+  set_property(TARGET psygen_settings APPEND PROPERTY PSYGEN_COMPONENTS ${name})
 endfunction()
 
 # Target NAME. PRIVATE lists the libraries that it uses.
@@ -60,7 +126,8 @@ function(psygen_executable name)
   # dlopen() of sanitizers too.
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
+    PSYGEN_OWN ON
     BUILD_RPATH ${PROJECT_BINARY_DIR}/engine/image
-    INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR}/psygen)
+    INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR};$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/psygen")
   target_link_options(${name} PRIVATE LINKER:--disable-new-dtags)
 endfunction()

@@ -62,9 +62,11 @@ struct Schedule::Parts {
 
   World& world;
   std::vector<Resource> resources;
+  std::vector<std::shared_ptr<void>> owned;  // resources of emplace(); they outlive the systems
   std::vector<System> systems;
   std::vector<SystemInfo> infos;
   std::vector<Step> steps;
+  bool arranged = true;
 
   std::mutex mutex;
   std::condition_variable changed;
@@ -72,6 +74,8 @@ struct Schedule::Parts {
   std::size_t unfinished = 0;
   bool stopping = false;
   bool running = false;
+  std::exception_ptr exception;  // of this run: nothing more is started
+  std::string threw;
   std::vector<std::thread> workers;
 
   explicit Parts(World& w) : world(w) {}
@@ -87,6 +91,24 @@ struct Schedule::Parts {
 
   void expect_idle(std::string_view verb) const {
     if (running) detail::give_up("schedule: " + std::string(verb) + " from inside a system");
+  }
+
+  // Brings the systems into this order and makes their steps.
+  void reorder(std::span<const std::size_t> order) {
+    std::vector<System> sorted;
+    std::vector<SystemInfo> sorted_infos;
+    for (const std::size_t i : order) {
+      sorted.push_back(std::move(systems[i]));
+      sorted_infos.push_back(std::move(infos[i]));
+    }
+    systems = std::move(sorted);
+    infos = std::move(sorted_infos);
+    steps.clear();
+    for (std::size_t i = 0; i < systems.size(); ++i) {
+      add_step(i, false);
+      if (systems[i].info.records_commands) add_step(i, true);
+    }
+    arranged = true;
   }
 
   void add_step(std::size_t system, bool applies_commands) {
@@ -109,7 +131,19 @@ struct Schedule::Parts {
     return all;
   }
 
+  // Also what a step throws is its end.
   void run_step(std::size_t index) {
+    try {
+      try_step(index);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (exception == nullptr) {
+        exception = std::current_exception();
+        threw = infos[steps[index].system].name;
+      }
+    }
+  }
+  void try_step(std::size_t index) {
     System& system = systems[steps[index].system];
     SystemInfo& info = infos[steps[index].system];
     const double start_s = now_s();
@@ -144,9 +178,11 @@ struct Schedule::Parts {
         changed.wait(lock);
         continue;
       }
-      lock.unlock();
-      run_step(step);
-      lock.lock();
+      if (exception == nullptr) {
+        lock.unlock();
+        run_step(step);
+        lock.lock();
+      }
       --unfinished;
       for (const std::size_t follower : steps[step].followers) {
         if (--steps[follower].leaders_left == 0) ready.push_back(follower);
@@ -183,6 +219,7 @@ std::size_t Schedule::threads() const {
 }
 
 void Schedule::provide_one(const void* type, std::string label, void* resource) {
+  parts_->expect_idle("provide");
   for (const Parts::Resource& known : parts_->resources) {
     if (known.type == type) detail::give_up("schedule: a second " + label + " is provided");
   }
@@ -197,27 +234,50 @@ void* Schedule::resource(const System& asker, const void* type, const std::strin
                   ", which was not provided before it");
 }
 
+void Schedule::own(std::shared_ptr<void> resource) {
+  parts_->owned.push_back(std::move(resource));
+}
+
 void Schedule::append(System system) {
   parts_->expect_idle("add");
-  const std::lock_guard lock(parts_->mutex);
-  const std::size_t index = parts_->systems.size();
-  const bool records = system.info.records_commands;
   parts_->infos.push_back(system.info);
   parts_->systems.push_back(std::move(system));
-  parts_->add_step(index, false);
-  if (records) parts_->add_step(index, true);
+  parts_->arranged = false;
+}
+
+std::string Schedule::arrange() {
+  parts_->expect_idle("arrange");
+  if (parts_->arranged) return {};
+  std::vector<detail::PlacedSystem> placed;
+  for (const System& system : parts_->systems)
+    placed.push_back({system.info.name, system.place});
+  detail::SystemOrder sorted = detail::order_systems(placed);
+  if (!sorted.error.empty()) return std::move(sorted.error);
+  const std::lock_guard lock(parts_->mutex);
+  parts_->reorder(sorted.order);
+  return {};
 }
 
 void Schedule::run() {
   parts_->expect_idle("run");
+  if (const std::string error = arrange(); !error.empty()) detail::give_up("schedule: " + error);
   parts_->running = true;
+  parts_->threw.clear();
   if (parts_->workers.empty()) {
-    for (std::size_t step = 0; step < parts_->steps.size(); ++step)
-      parts_->run_step(step);
+    for (std::size_t i = 0; i < parts_->steps.size() && parts_->exception == nullptr; ++i)
+      parts_->run_step(i);
   } else {
     run_on_threads();
   }
   parts_->running = false;
+  if (parts_->exception == nullptr) return;
+  for (System& system : parts_->systems)
+    if (system.commands != nullptr) *system.commands = Commands();
+  std::rethrow_exception(std::exchange(parts_->exception, nullptr));
+}
+
+const std::string& Schedule::threw() const {
+  return parts_->threw;
 }
 
 void Schedule::run_on_threads() {

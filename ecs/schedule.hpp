@@ -2,13 +2,15 @@
 // writes:
 //   Query<A, const B>     writes the component A, reads B
 //   const R& / R&         reads / writes a resource: any object given to provide()
+//   EventQueue<T>&        emits events; the queue is a resource
+//   EventReader<T>&       the system's own reader of a queue: sees every event once
 //   ChangeReader<C, Tag>& drains a reader that was provided; reads C. A reader hidden in another
 //                         resource is not seen: nothing would separate its drain from writers of C
 //   Commands&             structural changes, applied right after the system
 //   World& / const World& everything: alone / beside others that only read
-// Systems run in the order of add(). On several threads, systems that do not conflict run at the
-// same time, and the result equals that of one thread. Not a job system: a system that wants to
-// split its own work does so itself. Systems must not throw. One thread owns the schedule.
+// Systems run in the order of add(), or where their Place says. On several threads, systems that do
+// not conflict run at the same time, and the result equals that of one thread. Not a job system: a
+// system that wants to split its own work does so itself. One thread owns the schedule.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +26,8 @@
 
 #include "ecs/change_reader.hpp"
 #include "ecs/commands.hpp"
+#include "ecs/event_queue.hpp"
+#include "ecs/system_order.hpp"
 #include "ecs/system_query.hpp"
 
 namespace psygen::ecs {
@@ -79,16 +83,41 @@ class Schedule {
     (provide_one(&kIdentity<Rs>, type_label<Rs>(), &resources), ...);
   }
 
-  // Appends a system. Its resources must have been provided before: otherwise the program ends with
-  // a message that names what is missing. Not from inside a system. O(systems).
+  // As provide(), with an object that the schedule makes and owns.
+  template <class R, class... Args>
+  R& emplace(Args&&... args) {
+    std::shared_ptr<R> owned(new R{std::forward<Args>(args)...});
+    R& resource = *owned;
+    provide(resource);
+    own(std::move(owned));
+    return resource;
+  }
+
+  // Adds a system. Its resources must have been provided before: otherwise the program ends with a
+  // message that names what is missing. Not from inside a system. O(systems).
   template <class F>
-  void add(std::string_view name, F system, RunsOn runs_on = RunsOn::kAnyThread);
+  void add(std::string_view name, F system, RunsOn runs_on = RunsOn::kAnyThread) {
+    add(name, std::move(system), Place{}, runs_on);
+  }
+  // The same at a place among the others, which may be added later. Names must be unique.
+  template <class F>
+  void add(std::string_view name, F system, Place place, RunsOn runs_on = RunsOn::kAnyThread);
 
-  // Runs every system once, commands included, and returns when all are done. Not from inside a
-  // system.
+  // Puts all systems into the order of their places. Returns an empty string, or a sentence that
+  // says why there is no such order: a name twice, an unknown name, a cycle. The order is then
+  // unchanged. O(systems²), and O(1) if nothing was added since.
+  std::string arrange();
+
+  // Runs every system once, commands included, and returns when all are done. Arranges them before,
+  // and ends the program if that is impossible. Not from inside a system. An exception of a system
+  // ends the run: no other system starts, commands that were not applied are dropped, and run()
+  // throws the exception on. threw() names the system then.
   void run();
+  // The system whose exception ended the last run; empty if none did.
+  const std::string& threw() const;
 
-  // The systems in the order of add(). Valid until the next add(); times change during run().
+  // The systems in the order in which they run, once arranged. Valid until the next add() or
+  // arrange(); times change during run().
   std::span<const SystemInfo> systems() const;
   // How many threads run systems, the calling one included: 1 to 64.
   std::size_t threads() const;
@@ -110,6 +139,7 @@ class Schedule {
   // A system with its parameters bound; `commands` is null when it records none.
   struct System {
     SystemInfo info;
+    Place place;
     std::unique_ptr<Runner> runner;
     std::unique_ptr<Commands> commands;
   };
@@ -124,6 +154,7 @@ class Schedule {
   // The untyped parts of provide and add. resource() ends the program when `asker` wants a type
   // that was not provided.
   void provide_one(const void* type, std::string label, void* resource);
+  void own(std::shared_ptr<void> resource);
   void* resource(const System& asker, const void* type, const std::string& label) const;
   void append(System system);
   void run_on_threads();
@@ -156,13 +187,22 @@ inline constexpr bool kIsQuery = false;
 template <class... Cs>
 inline constexpr bool kIsQuery<Query<Cs...>> = true;
 
+// The type of the events of an EventQueue; others have none.
+template <class T>
+struct EventOf : std::type_identity<void> {};
+template <class T>
+struct EventOf<EventQueue<T>> : std::type_identity<T> {};
+
 // The name without its namespaces; template arguments keep theirs.
 std::string without_namespace(std::string_view name);
 
 }  // namespace detail
 
+// A queue is called like its events.
 template <class T>
 std::string Schedule::type_label() {
+  using Event = typename detail::EventOf<T>::type;
+  if constexpr (!std::is_void_v<Event>) return type_label<Event>();
   return detail::without_namespace(detail::type_name<T>());
 }
 
@@ -196,6 +236,20 @@ struct Schedule::Parameter<Query<Cs...>> {
      ...);
   }
   Query<Cs...> get() const { return Query<Cs...>(world); }
+};
+
+// The system's own reader of a queue. Draining it also changes the queue.
+template <class T>
+struct Schedule::Parameter<EventReader<T>&> {
+  std::unique_ptr<EventReader<T>> reader;
+  Parameter(Schedule& schedule, System& system) {
+    using Queue = EventQueue<T>;
+    auto* queue =
+        static_cast<Queue*>(schedule.resource(system, &kIdentity<Queue>, type_label<Queue>()));
+    reader = std::make_unique<EventReader<T>>(queue->reader());
+    system.info.accesses.push_back({type_label<Queue>(), &kIdentity<Queue>, true, false});
+  }
+  EventReader<T>& get() const { return *reader; }
 };
 
 // A provided change reader: writes the reader, reads C.
@@ -246,9 +300,10 @@ struct Schedule::Parameter<const World&> {
 };
 
 template <class F>
-void Schedule::add(std::string_view name, F system, RunsOn runs_on) {
+void Schedule::add(std::string_view name, F system, Place place, RunsOn runs_on) {
   System entry;
   entry.info.name = name;
+  entry.place = std::move(place);
   entry.info.runs_on = runs_on;
   add_with(std::move(entry), std::move(system),
            std::type_identity<typename detail::ParametersOf<F>::type>{});

@@ -7,9 +7,17 @@ namespace psygen::ecs {
 namespace detail {
 namespace {
 
+// Of all entities, or of those that have one component. These are numbered anew.
 class Saver {
  public:
   explicit Saver(const Storage& storage) : storage_(storage) {}
+  Saver(const Storage& storage, ComponentId only) : storage_(storage), all_(false) {
+    new_index_.assign(storage.slots().used(), kUnused);
+    if (only == kNoComponent) return;
+    if (const auto& set = storage.record(only).sparse; set != nullptr) keep(set->rows());
+    for (const auto& table : storage.tables())
+      if (table != nullptr && table->signature().contains(only)) keep(*table);
+  }
 
   std::vector<std::byte> save() {
     bytes(kSnapshotMagic.data(), kSnapshotMagic.size());
@@ -68,7 +76,7 @@ class Saver {
   void components() {
     number_of_.assign(storage_.records().size(), kUnused);
     for (const auto& table : storage_.tables()) {
-      if (table == nullptr || table->rows() == 0) continue;
+      if (table == nullptr || !any_of(*table)) continue;
       for (const Column& column : table->columns())
         number_of_[column.id] = 0;
     }
@@ -92,10 +100,42 @@ class Saver {
   }
   std::size_t members(std::size_t id) const {
     const auto& set = storage_.records()[id]->sparse;
-    return set == nullptr ? 0 : set->rows().rows();
+    return set == nullptr ? 0 : rows_of(set->rows()).size();
+  }
+
+  // ---- which entities -------------------------------------------------------------------------
+
+  void keep(const Table& table) {
+    for (std::uint32_t row = 0; row < table.rows(); ++row)
+      new_index_[table.entities()[row].index] = new_count_++;
+  }
+  bool has(Entity entity) const {
+    return all_ ||
+           (storage_.slots().find(entity) != nullptr && new_index_[entity.index] != kUnused);
+  }
+  Entity saved(Entity entity) const {
+    if (all_) return entity;
+    return has(entity) ? Entity{new_index_[entity.index], 1} : kNullEntity;
+  }
+  std::vector<std::uint32_t> rows_of(const Table& table) const {
+    std::vector<std::uint32_t> rows;
+    rows.reserve(all_ ? table.rows() : 0);
+    for (std::uint32_t row = 0; row < table.rows(); ++row)
+      if (has(table.entities()[row])) rows.push_back(row);
+    return rows;
+  }
+  bool any_of(const Table& table) const {
+    const auto has_one = [this](Entity entity) { return has(entity); };
+    return std::any_of(table.entities(), table.entities() + table.rows(), has_one);
   }
 
   void slots() {
+    if (!all_) {
+      count(new_count_);
+      for (std::uint32_t i = 0; i < new_count_; ++i)
+        number(std::uint32_t{1});  // generation
+      return count(0);             // free
+    }
     const EntitySlots& slots = storage_.slots();
     count(slots.used());
     for (std::uint32_t i = 0; i < slots.used(); ++i)
@@ -123,38 +163,50 @@ class Saver {
           value(*t.element, elements + i * t.element->size_bytes);
         break;
       }
+      case FieldKind::kEntity: {
+        Entity entity;
+        std::memcpy(&entity, at, sizeof(entity));
+        number(saved(entity));
+        break;
+      }
       default:
         bytes(at, t.size_bytes);
     }
   }
 
-  void column(const Column& column, std::uint32_t rows) {
+  void column(const Column& column, std::span<const std::uint32_t> rows) {
     const TypeDescription* description = described(*column.info);
     if (description == nullptr) return;
     const std::byte* first = column.memory.data();
-    for (std::size_t row = 0; row < rows; ++row) {
+    for (const std::size_t row : rows) {
       if (is_children(*column.info)) {
-        const auto list = storage_.child_lists().of(reinterpret_cast<const Children*>(first)[row]);
-        count(list.size());
-        bytes(list.data(), list.size_bytes());
+        children(storage_.child_lists().of(reinterpret_cast<const Children*>(first)[row]));
       } else {
         value(*description, first + row * column.info->size_bytes);
       }
     }
   }
 
-  void handles(const Table& table) {
-    count(table.rows());
-    bytes(table.entities(), table.rows() * sizeof(Entity));
+  void children(std::span<const Entity> list) {
+    const auto has_it = [this](Entity entity) { return has(entity); };
+    count(static_cast<std::size_t>(std::ranges::count_if(list, has_it)));
+    for (const Entity entity : list)
+      if (has(entity)) number(saved(entity));
+  }
+
+  void handles(const Table& table, std::span<const std::uint32_t> rows) {
+    count(rows.size());
+    for (const std::uint32_t row : rows)
+      number(saved(table.entities()[row]));
   }
 
   void tables() {
     std::size_t filled = 0;
     for (const auto& table : storage_.tables())
-      filled += table != nullptr && table->rows() > 0 ? 1 : 0;
+      filled += table != nullptr && any_of(*table) ? 1 : 0;
     count(filled);
     for (const auto& table : storage_.tables()) {
-      if (table == nullptr || table->rows() == 0) continue;
+      if (table == nullptr || !any_of(*table)) continue;
       std::vector<const Column*> columns;
       for (const Column& c : table->columns())
         columns.push_back(&c);
@@ -162,9 +214,10 @@ class Saver {
       count(columns.size());
       for (const Column* c : columns)
         count(number_of_[c->id]);
-      handles(*table);
+      const std::vector<std::uint32_t> rows = rows_of(*table);
+      handles(*table, rows);
       for (const Column* c : columns)
-        column(*c, table->rows());
+        column(*c, rows);
     }
   }
 
@@ -176,19 +229,29 @@ class Saver {
     count(sets.size());
     for (const Table* set : sets) {
       count(number_of_[set->columns()[0].id]);
-      handles(*set);
-      column(set->columns()[0], set->rows());
+      const std::vector<std::uint32_t> rows = rows_of(*set);
+      handles(*set, rows);
+      column(set->columns()[0], rows);
     }
   }
 
   static constexpr std::uint32_t kUnused = UINT32_MAX;
   const Storage& storage_;
+  const bool all_ = true;
+  std::vector<std::uint32_t> new_index_;  // by index; kUnused: left out
+  std::uint32_t new_count_ = 0;
   std::vector<std::byte> out_;
   std::vector<ComponentId> ids_;          // of the components written, in their order
   std::vector<std::uint32_t> number_of_;  // place in ids_, by component id
 };
 
 }  // namespace
+
+std::vector<std::byte> save_snapshot_of(const World& world, const ComponentInfo& component) {
+  const Storage& storage = SnapshotAccess::storage(world);
+  return Saver(storage, storage.find_id(component)).save();
+}
+
 }  // namespace detail
 
 std::vector<std::byte> save_snapshot(const World& world) {

@@ -1,5 +1,5 @@
 // The colour of the ground: kinds of ground by height, slope and a slow pattern, and far forests.
-// engine/exchange/ground_colour.cpp has the same without forests.
+// engine/world/ground_blends.cpp has the same rule without forests; a test runs this text against it.
 
 float lattice(uvec2 i) {
   uint h = (i.x & 63u) * 0x9E3779B9u ^ (i.y & 63u) * 0x85EBCA6Bu;

@@ -119,13 +119,16 @@ struct MaterialData {
 struct OverlayVertex {
   vec4 place;   // pixels x, y; texture u, v; for lines: metres, relative to the camera
   vec4 colour;  // display values, not linear; a: opacity
+  // For letters that are signed distances: texels from the least to the greatest distance (0: plain
+  // coverage), pixels by which they are thicker, pixels of their edge.
+  vec4 look;
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameData) == 64 + 28 * 16 + 3 * 64);
 static_assert(sizeof(DrawData) == 64);
 static_assert(sizeof(MaterialData) == 48);
-static_assert(sizeof(OverlayVertex) == 32);
+static_assert(sizeof(OverlayVertex) == 48);
 static_assert(offsetof(FrameData, ray_right) == 64);
 }  // namespace psygen::shaders
 #endif

@@ -10,9 +10,10 @@ packages=(
   libglfw3-dev libglm-dev libvulkan-dev libvulkan-volk-dev vulkan-validationlayers
   mesa-vulkan-drivers glslc spirv-tools libopenimageio-dev libexpected-dev libcli11-dev
   libtomlplusplus-dev nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev
-  libimgui-dev libstb-dev libhwy-dev libtinygltf-dev
+  libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libsqlite3-dev
+  libopenal-dev libsndfile1-dev libbullet-dev
   libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev
-  xvfb openbox xdotool x11-utils
+  xvfb openbox xdotool x11-utils x11-xkb-utils
 )
 [ "${1:-}" = "--ci" ] && packages+=(clang-format)
 [ "${1:-}" = "--fuzz" ] && packages+=(clang libclang-rt-dev)

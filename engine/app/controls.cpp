@@ -1,5 +1,4 @@
-// What a person does in the window of a flight: its keys (keys.hpp), and the words over the
-// picture.
+// Handles the keys of a flight's window (keys.hpp) and lays out the text over the picture.
 #include <fmt/format.h>
 
 #include <utility>
@@ -8,12 +7,15 @@
 #include "engine/app/loading.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/platform/window.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen::app {
 namespace {
 
-// Whether the person wants to fly rather than watch.
+// Whether the user presses a key or moves the mouse to fly.
 bool moves_camera(const platform::InputState& input) {
   using enum platform::Key;
   for (const platform::Key key : {kW, kA, kS, kD, kQ, kE, kUp, kDown, kLeft, kRight}) {
@@ -24,7 +26,7 @@ bool moves_camera(const platform::InputState& input) {
 
 }  // namespace
 
-// Keys that the flight itself knows; everything else belongs to the camera.
+// Handles the keys of the flight. All others belong to the camera.
 void Flight::handle_keys() {
   using enum platform::Key;
   const platform::InputState& input = session_->input();
@@ -47,23 +49,26 @@ void Flight::handle_keys() {
       hud_.notify(Hud::Subject::kScreen, ok.error().message, now_s);
   }
   if (input.was_pressed(kF12)) photograph_ = true;
+  if (input.was_pressed(kP) || input.was_pressed(kPause)) session_->set_paused(!session_->paused());
   if (user_flies_ || !moves_camera(input)) return;
   user_flies_ = true;  // from here on the path is left
   if (path_) hud_.notify(Hud::Subject::kFlight, "You fly now; the path is left.", now_s);
 }
 
-// Pictures that the user takes have no notices, which are about other pictures.
+// Screenshots show no notices: those are about other pictures.
 void Flight::write_over_picture() {
   scene::State& state = session_->scene().state();
   const HudFacts facts{session_->renderer().device(), session_->renderer().preset(),
                        fly_camera_.speed_m_s()};
   state.input.panels = photograph_ ? hud_.lasting_panels(state, facts)
                                    : hud_.panels(state, facts, core::monotonic_seconds());
+  if (session_->paused() && !photograph_)
+    state.input.panels.push_back({render::Anchor::kMiddle, {{"paused; P goes on"}}});
   state.input.text_scale =
       text_scale(session_->window()->content_scale(), session_->picture_size());
 }
 
-// A picture for the user: the first free name, and no part of the run's hash.
+// Saves a screenshot under the first free name. It does not enter the run's hash.
 void Flight::save_screenshot() {
   photograph_ = false;
   std::filesystem::path file;

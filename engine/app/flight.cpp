@@ -1,4 +1,5 @@
-// The main loop: from the first pose to the end of the flight, and on in a window.
+// The main loop, from the first pose to the end of the flight. In a window it goes on after the
+// path has ended.
 #include "engine/app/flight.hpp"
 
 #include <fmt/format.h>
@@ -8,11 +9,15 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/app/plugin_call.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/platform/window.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/world/files/path_file.hpp"
@@ -46,10 +51,7 @@ core::Result<void> Flight::open() {
   auto session = Session::create(options_.session);
   if (!session) return tl::unexpected(session.error());
   session_ = std::move(*session);
-  std::vector<std::string> systems;
-  for (const ecs::SystemInfo& system : session_->scene().state().tick.systems())
-    systems.push_back(system.name);
-  log_ = std::make_unique<telemetry::FrameLog>(std::move(systems));
+  log_ = std::make_unique<telemetry::FrameLog>(scene::system_names(session_->scene().state()));
   return {};
 }
 
@@ -64,7 +66,7 @@ bool Flight::wants_more() const {
   return session_->window() != nullptr || now_s < kDefaultSeconds;
 }
 
-// Where only the path has ended the user goes on.
+// A window stays open when only the path has ended.
 bool Flight::stays_open() const {
   const bool limited = options_.frames > 0 || options_.seconds > 0;
   return session_->window() != nullptr && !limited && !session_->over();
@@ -92,7 +94,7 @@ core::CameraPose Flight::next_pose(double dt_s) {
 }
 
 bool Flight::saves_picture() const {
-  return recorded_ && !pictures_failed_ && options_.images_every > 0 &&
+  return recorded_ && !session_->paused() && !pictures_failed_ && options_.images_every > 0 &&
          frames_ % options_.images_every == 0;
 }
 
@@ -102,7 +104,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   const double now_s = session_->now_s();
   const double start_s = core::monotonic_seconds();
   const double cpu_start_s = core::thread_cpu_seconds();
-  if (auto ok = session_->tick(next_pose(dt_s), dt_s); !ok) return ok;
+  if (auto ok = session_->tick(next_pose(session_->paused() ? 0 : dt_s), dt_s); !ok) return ok;
   // The flight's clock goes on while a picture waits for the device, as if the next frames had.
   if (saves_picture()) session_->renderer().wait_idle();
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
@@ -114,7 +116,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   record.time_s = now_s;
   record.frame_ms = frame_ms;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
-  if (recorded_) log_frame();
+  if (recorded_ && !session_->paused()) log_frame();
   const bool like_others = record.apart == telemetry::Apart::kNo;
   if (like_others) hud_.add_frame(frame_ms);
   state.input.frame_ms = like_others ? governed_ms(frame_ms) : 0.0;
@@ -154,14 +156,18 @@ core::Result<void> Flight::loop() {
     }
     if (photograph_) save_screenshot();
     if (wanted_preset_) change_preset();
+    if (session_->paused()) {
+      session_->set_now(now_s);
+      continue;
+    }
     ++frames_;
     session_->set_now(hz > 0 ? static_cast<double>(frames_) / hz : now_s + dt_s);
   }
   return {};
 }
 
-// A window that is being resized may have no picture in this frame; that is no failure. A file that
-// cannot be written is one, but not the end of the flight.
+// A window that is being resized may have no picture in this frame, which is not a failure. A file
+// that cannot be written is a failure, but it does not end the flight.
 core::Result<void> Flight::save_numbered_picture() {
   const auto file = options_.out_folder / fmt::format("frame_{:05}.png", frames_);
   const auto image = session_->picture();
@@ -185,7 +191,7 @@ core::Result<void> Flight::save_numbered_picture() {
 // The last frame, and what is known now of earlier ones.
 void Flight::log_frame() {
   const scene::State& state = session_->scene().state();
-  log_->add(state.record);
+  log_->add(state.record, state.system_ms);
   if (const auto& gpu = state.counters.frame.gpu)
     log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
   for (const float ms : state.counters.time_to_visible_ms)
@@ -195,7 +201,7 @@ void Flight::log_frame() {
   }
 }
 
-// The end of the flight: what was measured is written down, also when it ended early.
+// Ends the flight and writes what was measured, also when it ended early.
 FlightReport Flight::land(bool whole) {
   recorded_ = false;
   FlightReport report;
@@ -206,7 +212,7 @@ FlightReport Flight::land(bool whole) {
         return {};
       });
   if (!written) failures_.push_back(written.error());
-  session_->scene().state().trace.log = nullptr;  // what comes now is none of the flight
+  session_->scene().state().trace.log = nullptr;  // the flight is over
   report.files = files_;
   report.failures = failures_;
   report.validation_messages = session_->renderer().validation_messages();
@@ -229,7 +235,9 @@ core::Result<FlightReport> Flight::run() {
     return tl::unexpected(flown.error());
   }
   for (const Plugin& plugin : options_.session.plugins) {
-    if (plugin.on_end) plugin.on_end(*session_, report);
+    if (!plugin.on_end) continue;
+    const auto ok = call_plugin(plugin, "on_end", [&] { plugin.on_end(*session_, report); });
+    if (!ok) return tl::unexpected(ok.error());
   }
   if (!stays_open()) return report;
   tell_end(report);

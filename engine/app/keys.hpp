@@ -1,5 +1,5 @@
-// The keys of a window and what they do: one list for the help on the screen and for whoever
-// documents them (docs/cli.md). What they do is in controls.cpp and platform/fly_camera.cpp.
+// The keys of a window and what they do: one list for the help on the screen and for the
+// documentation (docs/cli.md). What they do is in controls.cpp and platform/fly_camera.cpp.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 
 namespace psygen::app {
 
+// A key and what it does.
 struct KeyHelp {
   std::string_view keys, meaning;
 };
@@ -22,6 +23,7 @@ inline constexpr std::array kKeyHelp{
     KeyHelp{"F1", "figures, this help, nothing"},
     KeyHelp{"F2", "next view, with its legend"},
     KeyHelp{"F3", "next preset"},
+    KeyHelp{"P", "pause and go on"},
     KeyHelp{"F11", "full screen and back"},
     KeyHelp{"F12", "write a picture"},
     KeyHelp{"Esc", "end"},

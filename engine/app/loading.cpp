@@ -1,9 +1,8 @@
 #include "engine/app/loading.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
+#include "engine/app/loading_picture.hpp"
 #include "engine/core/clock.hpp"
 
 namespace psygen::app {
@@ -40,13 +39,9 @@ void Loading::watch_window(render::Renderer* renderer) {
   const double now_s = core::monotonic_seconds();
   if (closed_ || renderer == nullptr || (shown_s_ >= 0 && now_s - shown_s_ < kPauseSeconds)) return;
   shown_s_ = now_s;
-  const render::TextPanel panel{
-      render::Anchor::kMiddle,
-      {{title_},
-       {fmt::format("{} {:.0f} %", label_, fraction_ * 100), {}, static_cast<float>(fraction_)}}};
   // A picture that cannot be drawn is told by the first frame.
-  (void)renderer->show({&panel, 1},
-                       text_scale(window_->content_scale(), window_->framebuffer_size()));
+  (void)renderer->show({}, 1,
+                       loading_picture(title_, label_, fraction_, window_->framebuffer_size()));
 }
 
 }  // namespace psygen::app

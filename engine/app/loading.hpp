@@ -1,6 +1,6 @@
 // What a person sees while something long goes on before the first frame: a bar on the terminal,
-// nothing where stderr is none, and in a window a picture of its own. Keeps the window alive and
-// notices when it is closed. Main thread.
+// nothing where stderr is none, and in a window a picture of its own (loading_picture.hpp). Keeps
+// the window alive and notices when it is closed. Main thread.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace psygen::app {
 
 class Loading {
  public:
-  // `window` and `stop` may be null, and outlive this.
+  // `title` is the name of the world. `window` and `stop` may be null, and outlive this.
   Loading(std::string title, platform::Window* window, const std::atomic<bool>* stop);
 
   // How far something has come, a fraction in [0, 1]; what goes back is shown as it was. `renderer`

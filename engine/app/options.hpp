@@ -15,28 +15,43 @@
 #include "engine/render/types.hpp"
 #include "engine/scene/settings.hpp"
 
+namespace psygen::scene {
+struct Systems;
+}
+
 namespace psygen::app {
 
 class Session;
 struct FlightReport;
 
-// Code that a game adds. Every member may be empty.
+// Code that a game adds. Every member but the name may be empty. An exception of any of them ends
+// the session with an error that names the plugin.
 struct Plugin {
-  std::string name;
+  std::string name = {};
   // Registers model types before the world file is read.
-  std::function<core::Result<void>(models::Registry&)> register_models;
-  // Called once before the first tick, and after every tick with its time step in seconds.
-  std::function<void(Session&)> on_start;
-  std::function<void(Session&, double)> on_frame;
+  std::function<core::Result<void>(models::Registry&)> register_models = {};
+  // Adds components, resources, events and systems. Once, before the cache is filled.
+  std::function<core::Result<void>(scene::Systems&)> add_systems = {};
+  // Called once before the first tick.
+  std::function<void(Session&)> on_start = {};
+  // Called at the end of every fixed step of the simulation, with its length in seconds.
+  std::function<void(Session&, double)> on_step = {};
+  // Called after every tick with its time step in seconds.
+  std::function<void(Session&, double)> on_frame = {};
   // Called once when a flight has ended and its outputs are written. A window may stay open.
   std::function<void(Session&, const FlightReport&)> on_end = {};
+  // Draws windows of Dear ImGui over the picture, once a tick, before the systems run
+  // (docs/hud.md). Input that ImGui takes does not reach Session::input().
+  std::function<void(Session&)> on_gui = {};
 };
 
+// Options of a session.
 struct SessionOptions {
   std::filesystem::path world_file;
   core::Extent size{1280, 720};
   bool headless = false;
   bool validation = false;
+  bool fullscreen = false;               // windows only: cover the monitor from the start on
   bool vsync = true;                     // windows only
   std::string device_name;               // part of a name; empty: the best device
   std::optional<render::Preset> preset;  // none: what suits the device
@@ -54,6 +69,7 @@ struct SessionOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
+// Options of a flight.
 struct FlightOptions {
   SessionOptions session;
   std::filesystem::path path_file;   // empty: the camera stands and turns, or the user flies

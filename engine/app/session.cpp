@@ -2,19 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "engine/app/gui.hpp"
 #include "engine/app/loading.hpp"
+#include "engine/app/plugin_call.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/platform/window.hpp"
 #include "engine/render/render_path.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/telemetry/trace_log.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::app {
 namespace {
 
-constexpr double kHomeHeightM = 25.0;          // of the camera that nobody has moved
+constexpr double kHomeHeightM = 25.0;          // of the camera before it is moved
 constexpr double kWindowHz = 60;               // held in windows unless the options say otherwise
 constexpr double kMinimisedWaitSeconds = 0.1;  // between looks at a minimised window
 
@@ -40,15 +48,16 @@ core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins)
   models::Registry registry = models::make_standard_registry();
   for (const Plugin& plugin : plugins) {
     if (!plugin.register_models) continue;
-    if (auto ok = plugin.register_models(registry); !ok) {
-      return core::fail(ok.error().code,
-                        fmt::format("plugin {}: {}", plugin.name, ok.error().message));
-    }
+    const auto ok =
+        call_plugin(plugin, "register_models", [&] { return plugin.register_models(registry); });
+    if (!ok) return tl::unexpected(ok.error());
   }
   return registry;
 }
 
 }  // namespace
+
+Session::Session(SessionOptions options) : options_(std::move(options)) {}
 
 Session::~Session() = default;
 
@@ -69,7 +78,7 @@ core::Result<void> Session::open() {
   if (auto ok = set_hour(options_, *world); !ok) return ok;
   const std::string title = "psygen: " + world->name;
   if (auto ok = open_window(title); !ok) return ok;
-  Loading loading(title, window_.get(), options_.stop);
+  Loading loading(world->name, window_.get(), options_.stop);
   if (auto ok = open_renderer(loading); !ok) return loading.closed() ? closed_early() : ok;
   return open_scene(std::move(*world), std::move(*registry), loading);
 }
@@ -82,6 +91,9 @@ core::Result<void> Session::open_window(const std::string& title) {
                       window.error().message + " (a headless flight needs no display)");
   }
   window_ = std::move(*window);
+  if (options_.fullscreen) {
+    if (auto ok = window_->set_fullscreen(true); !ok) core::log_warning(ok.error().message);
+  }
   return {};
 }
 
@@ -123,6 +135,7 @@ core::Result<void> Session::open_scene(world::World world, models::Registry regi
   if (!scene) return tl::unexpected(scene.error());
   if (loading.closed()) return closed_early();
   scene_ = std::move(*scene);
+  if (auto ok = add_systems(); !ok) return ok;
   scene_->state().input.size = picture_size();  // levels of detail depend on it
   if (const synthesis::CalibrationReport& costs = scene_->calibration(); costs.measurements > 0) {
     core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
@@ -147,7 +160,7 @@ core::CameraPose Session::home() const {
 }
 
 core::Result<void> Session::prepare(const core::CameraPose& first) {
-  Loading loading("psygen: " + scene_->state().facts.world.name, window_.get(), options_.stop);
+  Loading loading(scene_->state().facts.world.name, window_.get(), options_.stop);
   const auto progress = [&](std::string_view label, double fraction) {
     return loading.update(label, fraction, renderer_.get());
   };
@@ -176,6 +189,14 @@ core::Extent Session::picture_size() const {
   return window_ ? window_->framebuffer_size() : renderer_->size();
 }
 
+double Session::now_s() const {
+  return scene_->state().clock.now_s;
+}
+
+void Session::set_now(double now_s) {
+  scene_->state().clock.now_s = now_s;
+}
+
 bool Session::has_hung_modelers() const {
   return !scene_->state().meshes.hung().empty();
 }
@@ -191,7 +212,9 @@ bool Session::poll() {
 }
 
 void Session::take_events() {
-  input_ = window_->poll();
+  all_input_ = window_->poll();
+  input_ = filter_.apply(all_input_, gui_ && gui_->takes_keyboard(), gui_ && gui_->takes_mouse());
+  actions_.feed(input_);
   if (input_.resized) {
     if (auto ok = renderer_->resize(window_->framebuffer_size()); !ok) {
       core::log_error(ok.error().message);
@@ -201,23 +224,86 @@ void Session::take_events() {
   if (window_->should_close()) closed_ = true;
 }
 
-void Session::start() {
-  if (std::exchange(started_, true)) return;
-  for (const Plugin& plugin : options_.plugins) {
-    if (plugin.on_start) plugin.on_start(*this);
+// Hooks of a step are systems: they run however the session is driven, and what they cost is told.
+core::Result<void> Session::add_systems() {
+  scene::Systems systems = scene_->systems();
+  const auto simulates = [](const Plugin& plugin) {
+    return plugin.add_systems != nullptr || plugin.on_step != nullptr;
+  };
+  if (std::ranges::any_of(options_.plugins, simulates)) {
+    systems.frame.provide(actions_);
+    systems.step.provide(actions_);
+    systems.step.add("actions", [this](input::Actions& actions) { step_actions(actions); });
   }
+  for (const Plugin& plugin : options_.plugins) {
+    if (plugin.add_systems) {
+      const auto ok =
+          call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
+      if (!ok) return ok;
+    }
+    if (!plugin.on_step) continue;
+    systems.step.add(plugin.name + " on_step",
+                     [this, &plugin](const scene::FixedStep& step, ecs::World&) {
+                       plugin.on_step(*this, step.step_s);
+                     });
+  }
+  return scene_->arrange();
+}
+
+void Session::step_actions(input::Actions& actions) {
+  if (!replay_) return actions.step();
+  if (replay_->step(actions)) return;
+  replay_.reset();
+  actions.clear();
+}
+
+core::Result<void> Session::start() {
+  if (std::exchange(started_, true)) return {};
+  for (const Plugin& plugin : options_.plugins) {
+    if (!plugin.on_start) continue;
+    if (auto ok = call_plugin(plugin, "on_start", [&] { plugin.on_start(*this); }); !ok) return ok;
+  }
+  return {};
+}
+
+render::HudDrawing& Session::hud() {
+  return scene_->state().input.hud;
+}
+
+Gui& Session::gui() {
+  if (!gui_) gui_ = std::make_unique<Gui>(renderer_->font_atlas(), window_.get());
+  return *gui_;
+}
+
+core::Result<void> Session::draw_gui(double dt_s) {
+  const auto draws = [](const Plugin& plugin) { return plugin.on_gui != nullptr; };
+  if (std::ranges::none_of(options_.plugins, draws)) return {};
+  const core::Extent size = picture_size();
+  gui().begin(all_input_, size, text_scale(window_ ? window_->content_scale() : 1.0F, size), dt_s);
+  core::Result<void> drawn;
+  for (const Plugin& plugin : options_.plugins) {
+    if (drawn && plugin.on_gui)
+      drawn = call_plugin(plugin, "on_gui", [&] { plugin.on_gui(*this); });
+  }
+  scene_->state().input.gui = gui_->end();
+  return drawn;
 }
 
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
-  start();
+  if (auto ok = start(); !ok) return ok;
   scene::State& state = scene_->state();
   state.input.pose = pose;
   state.input.size = picture_size();
+  if (auto ok = draw_gui(dt_s); !ok) return ok;
+  if (paused_) dt_s = 0;
   scene::tick(state);
+  state.input.gui = nullptr;
   state.clock.now_s += dt_s;
   if (state.output.error) return tl::unexpected(*state.output.error);
   for (const Plugin& plugin : options_.plugins) {
-    if (plugin.on_frame) plugin.on_frame(*this, dt_s);
+    if (!plugin.on_frame) continue;
+    if (auto ok = call_plugin(plugin, "on_frame", [&] { plugin.on_frame(*this, dt_s); }); !ok)
+      return ok;
   }
   return {};
 }

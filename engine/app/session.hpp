@@ -7,18 +7,36 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/app/options.hpp"
 #include "engine/image/image.hpp"
-#include "engine/platform/window.hpp"
-#include "engine/render/renderer.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/telemetry/trace_log.hpp"
+#include "engine/input/recording.hpp"
+#include "engine/platform/input.hpp"
+
+// Include the header of what you use of these: most programs need none (docs/package.md).
+namespace psygen::platform {
+class Window;
+}
+namespace psygen::render {
+class Renderer;
+struct HudDrawing;
+}  // namespace psygen::render
+namespace psygen::scene {
+class Scene;
+}
+namespace psygen::telemetry {
+class TraceLog;
+}
+namespace psygen::world {
+struct World;
+}
 
 namespace psygen::app {
 
+class Gui;
 class Loading;
 
 class Session {
@@ -46,11 +64,27 @@ class Session {
   // Whether SessionOptions::stop is set.
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  // What the user did since the last poll but one. Nothing when headless.
+  // What the user did since the last poll but one, without what ImGui takes. Nothing when headless.
   const platform::InputState& input() const { return input_; }
+  // The actions of a game (docs/input.md). poll() feeds them, and every fixed step of the
+  // simulation begins with theirs. A resource of all systems: input::Actions.
+  input::Actions& actions() { return actions_; }
+  // From the next fixed step on the states come from a recording, until its end.
+  void replay(input::Replay replay) { replay_ = std::move(replay); }
+  bool replays() const { return replay_.has_value(); }
+
+  // While a session is paused, ticks draw, but the clock stands still and plugins are told that no
+  // time has passed. The same for what the user does: input() goes on.
+  void set_paused(bool paused) { paused_ = paused; }
+  bool paused() const { return paused_; }
+
+  // What the game writes over the next pictures, until it writes something else (docs/hud.md).
+  render::HudDrawing& hud();
+  // The ImGui of the plugins' on_gui; it is made when it is first asked for.
+  Gui& gui();
   // The clock: seconds, at which the next tick is drawn.
-  double now_s() const { return scene_->state().clock.now_s; }
-  void set_now(double now_s) { scene_->state().clock.now_s = now_s; }
+  double now_s() const;
+  void set_now(double now_s);
   // Pixels of the next picture; {0, 0} while the window is minimised.
   core::Extent picture_size() const;
 
@@ -82,21 +116,29 @@ class Session {
   bool has_hung_modelers() const;
 
  private:
-  explicit Session(SessionOptions options) : options_(std::move(options)) {}
+  explicit Session(SessionOptions options);
   core::Result<void> open();
   core::Result<void> open_window(const std::string& title);
   core::Result<void> open_renderer(Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
-  void start();
+  core::Result<void> draw_gui(double dt_s);
+  core::Result<void> add_systems();
+  void step_actions(input::Actions& actions);
+  core::Result<void> start();
 
   SessionOptions options_;
   // Destroyed in the opposite order: the scene gives its memory back to the renderer.
   std::unique_ptr<platform::Window> window_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<telemetry::TraceLog> trace_;
+  input::Actions actions_;
+  std::optional<input::Replay> replay_;
   std::unique_ptr<scene::Scene> scene_;
-  platform::InputState input_;
+  std::unique_ptr<Gui> gui_;                // null until it is needed
+  platform::InputState all_input_, input_;  // the latter without what ImGui takes
+  platform::InputFilter filter_;
+  bool paused_ = false;
   bool closed_ = false;
   bool started_ = false;
   std::vector<std::filesystem::path> saved_;

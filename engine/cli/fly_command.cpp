@@ -11,7 +11,9 @@
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/image/image_io.hpp"
+#include "engine/render/renderer.hpp"
 #include "engine/render/software_tuning.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen::cli {
 FlyCommand::FlyCommand(CLI::App& cli)
@@ -74,6 +76,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->capture_default_str()
       ->check(number_between(0, 60));
   c.add_flag("!--no-vsync", options_.session.vsync, "Do not wait for the display");
+  c.add_flag("--fullscreen", options_.session.fullscreen, "Cover the monitor from the start on");
   c.add_flag("!--no-prefill", options_.session.prefill, "Start with an empty cache");
   c.add_option("--record-requests", requests_,
                "File that gets every request of the flight; starts with an empty cache");
@@ -117,7 +120,7 @@ core::Result<void> FlyCommand::load_what_pictures_take() const {
   return options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
 }
 
-// A window that is closed before the flight begins is no failure.
+// Closing the window before the flight begins is not a failure.
 int FlyCommand::code_of(const core::Error& error) {
   if (error.code == core::ErrorCode::kInterrupted) {
     core::log_info(error.message);

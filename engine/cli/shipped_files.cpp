@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/core/data_file.hpp"
 #include "engine/core/nearest_word.hpp"
 #include "engine/world/files/world_file.hpp"
 
@@ -20,15 +21,12 @@ std::string_view word_of(Shipped kind) {
   return kind == Shipped::kWorld ? "world" : "path";
 }
 
-// Where the shipped files of a kind may be: where they are installed, as seen from the executable,
-// so that an installation can be moved; beside it, where a build has a link to the sources'.
+// The folders in which the shipped files of a kind may be.
 std::vector<fs::path> folders_of(Shipped kind) {
-  std::error_code error;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const fs::path here = executable.parent_path();
-  const std::string folder = fmt::format("{}s", word_of(kind));
-  return {(here / PSYGEN_DATA_FROM_EXECUTABLE / folder).lexically_normal(), here / folder};
+  std::vector<fs::path> folders = core::data_folders();
+  for (fs::path& folder : folders)
+    folder /= fmt::format("{}s", word_of(kind));
+  return folders;
 }
 
 bool is_file(const fs::path& path) {
@@ -52,7 +50,7 @@ bool has_folder(const std::string& name) {
   return name.find('/') != std::string::npos;
 }
 
-// What is said where there is no such file.
+// The error for a name without a file.
 std::string missing(Shipped kind, const std::string& name, std::vector<fs::path> folders) {
   const std::vector<std::string> names = names_in(folders);
   const std::string_view nearest = core::nearest_word(fs::path(name).stem().string(), names);
@@ -83,7 +81,7 @@ core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
         if (is_file(folder / file)) return folder / file;
     }
   }
-  // What is there and is no file is told by whoever reads it.
+  // Anything there that is not a file is reported when it is read.
   if (status.type() != fs::file_type::not_found) return fs::path(name);
   return core::fail(core::ErrorCode::kIo, missing(kind, name, folders));
 }

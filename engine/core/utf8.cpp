@@ -45,6 +45,25 @@ CodePoint first_code_point(std::string_view text) {
   return {value, bytes, true};
 }
 
+void append_utf8(std::string& text, char32_t value) {
+  const bool surrogate = value >= 0xD800 && value <= 0xDFFF;
+  if (surrogate || value > 0x10FFFF) value = 0xFFFD;
+  const auto put = [&text](char32_t byte) { text += static_cast<char>(byte); };
+  const auto rest = [&](unsigned shift) { put(0x80 | (value >> shift & 0x3F)); };
+  if (value < 0x80) return put(value);
+  if (value < 0x800) {
+    put(0xC0 | value >> 6);
+  } else if (value < 0x10000) {
+    put(0xE0 | value >> 12);
+    rest(6);
+  } else {
+    put(0xF0 | value >> 18);
+    rest(12);
+    rest(6);
+  }
+  rest(0);
+}
+
 std::string shown(std::string_view text, std::size_t most_bytes) {
   std::string line;
   std::size_t taken = 0;

@@ -18,6 +18,9 @@ struct CodePoint {
 // The first code point of `text`, which must not be empty. O(1).
 CodePoint first_code_point(std::string_view text);
 
+// Appends a code point as UTF-8. What is none (a surrogate, above U+10FFFF) becomes U+FFFD.
+void append_utf8(std::string& text, char32_t value);
+
 // The text as one line of valid UTF-8. Control characters, invisible characters, characters that
 // change the direction of the text, and bytes that are not UTF-8 become escapes such as \n, \x1b
 // and \u202e. A text of more than `most_bytes` bytes is cut and ends in "...". O(bytes).

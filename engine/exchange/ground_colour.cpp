@@ -1,72 +1,20 @@
 #include "engine/exchange/ground_colour.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 
+#include "engine/world/ground_blends.hpp"
+
 namespace psygen::exchange {
-namespace {
-
-// Smallest width of a blend; narrower ones are practically steps.
-constexpr float kLeast = 1e-3F;
-
-float lattice(std::uint32_t x, std::uint32_t z) {
-  std::uint32_t h = ((x & 63u) * 0x9E3779B9u) ^ ((z & 63u) * 0x85EBCA6Bu);
-  h ^= h >> 15;
-  h *= 0x2C1B3C6Du;
-  return static_cast<float>(h >> 8) * (1.0F / 16777216.0F);
-}
-
-// Smooth noise in [0, 1] with one lattice point per unit and a period of 64. Requires p >= 0.
-float slow_noise(glm::vec2 p) {
-  const glm::vec2 cell = glm::floor(p);
-  glm::vec2 f = p - cell;
-  f = f * f * (3.0F - 2.0F * f);
-  const auto x = static_cast<std::uint32_t>(cell.x), z = static_cast<std::uint32_t>(cell.y);
-  const float a = glm::mix(lattice(x, z), lattice(x + 1, z), f.x);
-  const float b = glm::mix(lattice(x, z + 1), lattice(x + 1, z + 1), f.x);
-  return glm::mix(a, b, f.y);
-}
-
-float blend(double start, double width, float value) {
-  const float w = std::max(static_cast<float>(width), kLeast);
-  return (value - static_cast<float>(start)) / w;
-}
-
-}  // namespace
-
-glm::vec2 pattern_place(core::BlockCoord block, double block_size_m, glm::vec2 local_m) {
-  const auto place = [block_size_m](std::int32_t index, float local) {
-    const double metres =
-        std::fmod(static_cast<double>(index) * block_size_m, kGroundPatternPeriodM);
-    const double inside = std::fmod(metres + static_cast<double>(local), kGroundPatternPeriodM);
-    return static_cast<float>(inside < 0 ? inside + kGroundPatternPeriodM : inside);
-  };
-  return {place(block.x, local_m.x), place(block.z, local_m.y)};
-}
 
 glm::vec3 ground_albedo(const world::Palette& palette, float height_m, const glm::vec3& normal,
                         glm::vec2 pattern_place_m, std::uint16_t packed_height) {
-  const float pattern = 0.65F * slow_noise(pattern_place_m * (1.0F / 32.0F)) +
-                        0.35F * slow_noise(pattern_place_m * (1.0F / 8.0F));
-  const float slope = 1.0F - normal.y;
-  const float uneven = (pattern - 0.5F) * 2.0F;
-  const auto smooth = [](float t) { return glm::smoothstep(0.0F, 1.0F, t); };
-
-  glm::vec3 c = glm::mix(palette.grass, palette.forest,
-                         glm::smoothstep(0.35F, 0.62F, pattern + slope * 0.5F));
-  c = glm::mix(c, palette.dry,
-               smooth(blend(palette.dry_start_m, palette.dry_blend_m, height_m) + uneven));
-  c = glm::mix(c, palette.sand,
-               smooth(0.5F * uneven - blend(palette.sand_end_m, palette.sand_blend_m, height_m)));
-  const auto rock_start = static_cast<float>(palette.rock_slope_start);
-  const float rock_full =
-      std::max(static_cast<float>(palette.rock_slope_full), rock_start + kLeast);
-  c = glm::mix(c, palette.rock, glm::smoothstep(rock_start, rock_full, slope + 0.06F * uneven));
-  const float snow = smooth(blend(palette.snow_start_m, palette.snow_blend_m, height_m) + uneven);
-  const float steep = std::max(static_cast<float>(palette.snow_slope_max), kLeast);
-  c = glm::mix(c, palette.snow, snow * (1.0F - glm::smoothstep(0.7F * steep, steep, slope)));
-
+  const world::GroundBlends blends =
+      world::ground_blends(palette, height_m, normal, pattern_place_m);
+  const glm::vec3* const kinds[world::kGroundKinds] = {
+      &palette.grass, &palette.forest, &palette.dry, &palette.sand, &palette.rock, &palette.snow};
+  glm::vec3 c = *kinds[0];
+  for (std::size_t i = 1; i < world::kGroundKinds; ++i)
+    c = glm::mix(c, *kinds[i], blends[i]);
   const std::uint32_t grain = (packed_height * 0x9E3779B1u) >> 24;
   return c * (0.9F + 0.2F * static_cast<float>(grain) * (1.0F / 255.0F));
 }

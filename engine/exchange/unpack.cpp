@@ -13,6 +13,7 @@
 #include "engine/exchange/ground_colour.hpp"
 #include "engine/models/kit/packing.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/ground_blends.hpp"
 
 namespace psygen::exchange {
 namespace {
@@ -56,7 +57,7 @@ Vertex terrain_vertex(const models::MeshView& mesh, std::uint32_t i, const Groun
                                                 (ground.box.max.y - ground.box.min.y);
   const glm::vec3 normal =
       models::decode_octahedral(glm::vec2(v.normal_x, v.normal_z) * (1.0F / 127.0F));
-  const glm::vec2 place = pattern_place(ground.block, ground.block_size_m, plane);
+  const glm::vec2 place = world::pattern_place(ground.block, ground.block_size_m, plane);
   return {{plane.x, height_m, plane.y},
           normal,
           ground_albedo(ground.palette, height_m, normal, place, v.height),

@@ -16,6 +16,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/vertex_layout.hpp"
+#include "engine/models/collider.hpp"
 
 namespace psygen::models {
 
@@ -38,7 +39,11 @@ struct ParameterSpec {
   ParameterSource source = ParameterSource::kUser;
 };
 
+struct EditLayer;  // edits.hpp
+
 // The values of one model, in the order of its type's schema. Integers keep all 64 bits (seeds).
+// Meshes that show the world itself (ground, and all models of a node as one) also name the edits
+// of the world that they show.
 class Parameters {
  public:
   static constexpr std::size_t kMaxCount = 16;
@@ -47,19 +52,33 @@ class Parameters {
   double real(std::size_t i) const { return std::bit_cast<double>(bits_[i]); }
   void set_integer(std::size_t i, std::int64_t v) { bits_[i] = std::bit_cast<std::uint64_t>(v); }
   void set_real(std::size_t i, double v) { bits_[i] = std::bit_cast<std::uint64_t>(v); }
-  // Hash of the bits of all values. Equal parameters have equal hashes.
+  // The edits that the mesh shows; null: none. Whoever keeps or uses parameters keeps the layer
+  // alive. `hash` identifies what of the layer can change this mesh; 0: nothing.
+  void set_edits(const EditLayer* layer, std::uint64_t hash) {
+    edits_ = layer;
+    edits_hash_ = hash;
+  }
+  const EditLayer* edits() const { return edits_; }
+  std::uint64_t edits_hash() const { return edits_hash_; }
+  // Hash of the bits of all values, and of the edits if there are any. Equal parameters have equal
+  // hashes.
   std::uint64_t hash() const {
     std::uint64_t h = 0;
     for (const std::uint64_t b : bits_)
       h = core::combine(h, b);
-    return h;
+    return edits_hash_ == 0 ? h : core::combine(h, edits_hash_);
   }
-  friend bool operator==(const Parameters&, const Parameters&) = default;
+  // Layers may differ where they change nothing of the mesh.
+  friend bool operator==(const Parameters& a, const Parameters& b) {
+    return a.bits_ == b.bits_ && a.edits_hash_ == b.edits_hash_;
+  }
 
  private:
   std::array<std::uint64_t, kMaxCount> bits_{};
+  std::uint64_t edits_hash_ = 0;
+  const EditLayer* edits_ = nullptr;
 };
-static_assert(sizeof(Parameters) == 128);
+static_assert(sizeof(Parameters) == 144);
 
 // The exact size of one mesh.
 struct MeshSize {
@@ -133,6 +152,10 @@ class ModelType {
   // The size in metres that decides whether a single model is large enough on screen to be drawn.
   // A model of many small things returns the size of one of them. 0: the sphere around its mesh.
   virtual double seen_size_m(const Parameters&) const { return 0; }
+  // The solid parts, in metres from the foot, within bounds(p) along x and z. None by default. They
+  // approximate the mesh of level 0; the type says how well. Works without the user's mesh and in
+  // microseconds: queries ask for the colliders of a whole block at once (engine/query/).
+  virtual Collider collider(const Parameters&) const { return {}; }
   // True only if synthesis always ends, in about the predicted time, for all parameters. Then the
   // main thread may synthesise a mesh itself when its absence would be visible. A type that could
   // hang must leave this to the modelers, which are watched.

@@ -1,40 +1,64 @@
-// Keyboard and mouse input since the last frame. A plain value that the window fills in and tests
-// make up. Knows no window system.
+// Keyboard, mouse, text and gamepads since the last frame. A plain value that the window fills in
+// and tests make up. Knows no window system. What a game calls its actions is engine/input's.
 #pragma once
 
-#include <bitset>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <string>
+
+#include "engine/platform/gamepads.hpp"
+#include "engine/platform/keys.hpp"
 
 namespace psygen::platform {
-
-// Keys by their place on a US keyboard: WASD is the same block of keys on every layout. Left and
-// right shift, control and alt are one key each.
-// clang-format off
-enum class Key : std::uint8_t {
-  kA, kB, kC, kD, kE, kF, kG, kH, kI, kJ, kK, kL, kM, kN, kO, kP, kQ, kR, kS, kT, kU, kV, kW, kX,
-  kY, kZ,
-  k0, k1, k2, k3, k4, k5, k6, k7, k8, k9,
-  kF1, kF2, kF3, kF4, kF5, kF6, kF7, kF8, kF9, kF10, kF11, kF12,
-  kUp, kDown, kLeft, kRight, kPageUp, kPageDown, kHome, kEnd,
-  kShift, kControl, kAlt, kSpace, kTab, kEnter, kEscape, kBackspace,
-  kCount
-};
-// clang-format on
-using KeySet = std::bitset<static_cast<std::size_t>(Key::kCount)>;  // one bit per key
 
 // The input of one frame.
 struct InputState {
   KeySet held;       // down at the end of the frame
   KeySet went_down;  // pressed during the frame, even if released again; not repeated while held
-  glm::dvec2 look_px{0.0};  // mouse movement while looking: right, down; pixels
-  double wheel = 0;         // steps; positive is away from the user
-  bool looking = false;     // the right button is down
-  bool resized = false;     // the framebuffer changed its size; ask the window for it
+  KeySet went_up;    // released during the frame, even if pressed again
+  KeySet repeated;   // repeated by the keyboard while held, for text fields
+  MouseButtonSet buttons_held, buttons_went_down, buttons_went_up;
+  std::string text;               // what was typed, UTF-8; at most kMostTextBytes
+  glm::dvec2 pointer_px{0.0};     // in the picture, from its upper left corner; while the cursor is
+                                  // captured it means nothing
+  glm::dvec2 move_px{0.0};        // mouse movement: right, down; screen coordinates
+  glm::dvec2 look_px{0.0};        // the same while looking
+  double wheel = 0, wheel_x = 0;  // steps; positive is away from the user, and to the left
+  bool looking = false;           // the right button is down, or the cursor is captured
+  bool captured = false;          // Window::capture_cursor()
+  bool focused = true;            // the window has the keyboard
+  bool resized = false;           // the framebuffer changed its size; ask the window for it
+  Gamepads pads;
 
-  // Whether the key is down at the end of the frame, or was pressed during it.
+  static constexpr std::size_t kMostTextBytes = 4096;
+
+  // Whether the key is down at the end of the frame, or was pressed or released during it.
   bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
   bool was_pressed(Key key) const { return went_down[static_cast<std::size_t>(key)]; }
+  bool was_released(Key key) const { return went_up[static_cast<std::size_t>(key)]; }
+  // The same for a mouse button.
+  bool is_held(MouseButton button) const { return buttons_held[static_cast<std::size_t>(button)]; }
+  bool was_pressed(MouseButton button) const {
+    return buttons_went_down[static_cast<std::size_t>(button)];
+  }
+  bool was_released(MouseButton button) const {
+    return buttons_went_up[static_cast<std::size_t>(button)];
+  }
+};
+
+// Forgets what happened during a frame; what is held stays.
+void clear_changes(InputState& input);
+
+// Leaves out of frames what someone else takes, a text field or a menu. One for each reader.
+class InputFilter {
+ public:
+  // `now` without keyboard and text, or without the mouse. What the last result held is released
+  // once. What went down while it was taken stays away until it goes up. Gamepads stay.
+  InputState apply(const InputState& now, bool keyboard, bool mouse);
+
+ private:
+  KeySet held_, taken_;
+  MouseButtonSet buttons_held_, buttons_taken_;
 };
 
 }  // namespace psygen::platform

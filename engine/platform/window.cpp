@@ -3,14 +3,18 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <langinfo.h>
 
 #include <algorithm>
-#include <array>
+#include <clocale>
 #include <cmath>
+#include <cstring>
+#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/utf8.hpp"
 
 // As GLFW declares it when vulkan.h is known; the handles are pointers on every 64-bit platform.
 extern "C" int glfwCreateWindowSurface(void* instance, GLFWwindow* window, const void* allocator,
@@ -27,43 +31,98 @@ int& window_count() {
   return count;
 }
 
+// GLFW gets text through the locale's encoding, and would lose letters that it lacks. As GLFW does
+// itself, only the kind of characters is set, never the format of numbers.
+void use_unicode() {
+  if (std::strcmp(std::setlocale(LC_CTYPE, nullptr), "C") == 0) std::setlocale(LC_CTYPE, "");
+  if (std::strcmp(nl_langinfo(CODESET), "UTF-8") != 0) std::setlocale(LC_CTYPE, "C.UTF-8");
+}
+
 std::string glfw_error() {
   const char* description = nullptr;
   glfwGetError(&description);
   return description != nullptr ? description : "the window system gave no reason";
 }
 
+// Keys of GLFW and ours, apart from ranges (key_of).
+// clang-format off
+constexpr std::pair<int, Key> kOtherKeys[] = {
+    {GLFW_KEY_UP, Key::kUp}, {GLFW_KEY_DOWN, Key::kDown}, {GLFW_KEY_LEFT, Key::kLeft},
+    {GLFW_KEY_RIGHT, Key::kRight}, {GLFW_KEY_PAGE_UP, Key::kPageUp},
+    {GLFW_KEY_PAGE_DOWN, Key::kPageDown}, {GLFW_KEY_HOME, Key::kHome}, {GLFW_KEY_END, Key::kEnd},
+    {GLFW_KEY_INSERT, Key::kInsert}, {GLFW_KEY_DELETE, Key::kDelete},
+    {GLFW_KEY_LEFT_SHIFT, Key::kLeftShift}, {GLFW_KEY_RIGHT_SHIFT, Key::kRightShift},
+    {GLFW_KEY_LEFT_CONTROL, Key::kLeftControl}, {GLFW_KEY_RIGHT_CONTROL, Key::kRightControl},
+    {GLFW_KEY_LEFT_ALT, Key::kLeftAlt}, {GLFW_KEY_RIGHT_ALT, Key::kRightAlt},
+    {GLFW_KEY_LEFT_SUPER, Key::kLeftSuper}, {GLFW_KEY_RIGHT_SUPER, Key::kRightSuper},
+    {GLFW_KEY_MENU, Key::kMenu}, {GLFW_KEY_SPACE, Key::kSpace}, {GLFW_KEY_TAB, Key::kTab},
+    {GLFW_KEY_ENTER, Key::kEnter}, {GLFW_KEY_ESCAPE, Key::kEscape},
+    {GLFW_KEY_BACKSPACE, Key::kBackspace}, {GLFW_KEY_APOSTROPHE, Key::kApostrophe},
+    {GLFW_KEY_COMMA, Key::kComma}, {GLFW_KEY_MINUS, Key::kMinus}, {GLFW_KEY_PERIOD, Key::kPeriod},
+    {GLFW_KEY_SLASH, Key::kSlash}, {GLFW_KEY_SEMICOLON, Key::kSemicolon},
+    {GLFW_KEY_EQUAL, Key::kEqual}, {GLFW_KEY_LEFT_BRACKET, Key::kLeftBracket},
+    {GLFW_KEY_BACKSLASH, Key::kBackslash}, {GLFW_KEY_RIGHT_BRACKET, Key::kRightBracket},
+    {GLFW_KEY_GRAVE_ACCENT, Key::kGrave}, {GLFW_KEY_WORLD_1, Key::kWorld1},
+    {GLFW_KEY_WORLD_2, Key::kWorld2}, {GLFW_KEY_CAPS_LOCK, Key::kCapsLock},
+    {GLFW_KEY_SCROLL_LOCK, Key::kScrollLock}, {GLFW_KEY_NUM_LOCK, Key::kNumLock},
+    {GLFW_KEY_PRINT_SCREEN, Key::kPrintScreen}, {GLFW_KEY_PAUSE, Key::kPause},
+};
+// Ranges whose keys have the same order in both.
+struct KeyRange { int first, last; Key key; };
+constexpr KeyRange kKeyRanges[] = {
+    {GLFW_KEY_A, GLFW_KEY_Z, Key::kA}, {GLFW_KEY_0, GLFW_KEY_9, Key::k0},
+    {GLFW_KEY_F1, GLFW_KEY_F25, Key::kF1}, {GLFW_KEY_KP_0, GLFW_KEY_KP_EQUAL, Key::kKeypad0},
+};
+// clang-format on
+
 std::optional<Key> key_of(int glfw_key) {
-  const auto offset = [&](Key first, int glfw_first) {
-    return static_cast<Key>(static_cast<int>(first) + glfw_key - glfw_first);
-  };
-  if (glfw_key >= GLFW_KEY_A && glfw_key <= GLFW_KEY_Z) return offset(Key::kA, GLFW_KEY_A);
-  if (glfw_key >= GLFW_KEY_0 && glfw_key <= GLFW_KEY_9) return offset(Key::k0, GLFW_KEY_0);
-  if (glfw_key >= GLFW_KEY_F1 && glfw_key <= GLFW_KEY_F12) return offset(Key::kF1, GLFW_KEY_F1);
-  constexpr std::array<std::pair<int, Key>, 19> kOthers{{
-      {GLFW_KEY_UP, Key::kUp},
-      {GLFW_KEY_DOWN, Key::kDown},
-      {GLFW_KEY_LEFT, Key::kLeft},
-      {GLFW_KEY_RIGHT, Key::kRight},
-      {GLFW_KEY_PAGE_UP, Key::kPageUp},
-      {GLFW_KEY_PAGE_DOWN, Key::kPageDown},
-      {GLFW_KEY_HOME, Key::kHome},
-      {GLFW_KEY_END, Key::kEnd},
-      {GLFW_KEY_LEFT_SHIFT, Key::kShift},
-      {GLFW_KEY_RIGHT_SHIFT, Key::kShift},
-      {GLFW_KEY_LEFT_CONTROL, Key::kControl},
-      {GLFW_KEY_RIGHT_CONTROL, Key::kControl},
-      {GLFW_KEY_LEFT_ALT, Key::kAlt},
-      {GLFW_KEY_RIGHT_ALT, Key::kAlt},
-      {GLFW_KEY_SPACE, Key::kSpace},
-      {GLFW_KEY_TAB, Key::kTab},
-      {GLFW_KEY_ENTER, Key::kEnter},
-      {GLFW_KEY_ESCAPE, Key::kEscape},
-      {GLFW_KEY_BACKSPACE, Key::kBackspace},
-  }};
-  const auto found = std::find_if(kOthers.begin(), kOthers.end(),
-                                  [&](const auto& entry) { return entry.first == glfw_key; });
-  return found == kOthers.end() ? std::nullopt : std::optional(found->second);
+  for (const KeyRange& range : kKeyRanges) {
+    if (glfw_key >= range.first && glfw_key <= range.last)
+      return static_cast<Key>(static_cast<int>(range.key) + glfw_key - range.first);
+  }
+  const auto found = std::ranges::find(kOtherKeys, glfw_key, &std::pair<int, Key>::first);
+  return found == std::end(kOtherKeys) ? std::nullopt : std::optional(found->second);
+}
+
+// GLFW's number of a key; GLFW_KEY_UNKNOWN for those that stand for two.
+int glfw_key_of(Key key) {
+  for (int number = GLFW_KEY_SPACE; number <= GLFW_KEY_LAST; ++number) {
+    if (key_of(number) == key) return number;
+  }
+  return GLFW_KEY_UNKNOWN;
+}
+
+// A key that is down while either of two is, and what happened to one of them.
+void set_key(InputState& input, Key key, bool down) {
+  const auto bit = static_cast<std::size_t>(key);
+  if (input.held[bit] == down) return;
+  input.held.set(bit, down);
+  (down ? input.went_down : input.went_up).set(bit);
+}
+
+void set_pair(InputState& input, Key both, Key left, Key right) {
+  set_key(input, both, input.is_held(left) || input.is_held(right));
+}
+
+std::optional<PadReading> read_pad(std::size_t slot) {
+  static_assert(kGamepads == GLFW_JOYSTICK_LAST + 1 &&
+                kPadButtons == GLFW_GAMEPAD_BUTTON_LAST + 1 &&
+                kPadAxes == GLFW_GAMEPAD_AXIS_LAST + 1);
+  GLFWgamepadstate state{};
+  if (glfwGetGamepadState(static_cast<int>(slot), &state) != GLFW_TRUE) return std::nullopt;
+  PadReading reading;
+  for (std::size_t i = 0; i < kPadButtons; ++i)
+    reading.buttons.set(i, state.buttons[i] == GLFW_PRESS);
+  for (std::size_t i = 0; i < kPadAxes; ++i)
+    reading.axes[i] = state.axes[i];
+  // GLFW's sticks are positive downwards, and its triggers rest at −1.
+  for (const PadAxis y : {PadAxis::kLeftY, PadAxis::kRightY})
+    reading.axes[static_cast<std::size_t>(y)] *= -1;
+  for (const PadAxis trigger : {PadAxis::kLeftTrigger, PadAxis::kRightTrigger}) {
+    float& value = reading.axes[static_cast<std::size_t>(trigger)];
+    value = (value + 1) / 2;
+  }
+  return reading;
 }
 
 struct Rectangle {
@@ -102,11 +161,13 @@ struct Window::Implementation {
   Rectangle windowed;       // its place before it covered a monitor
   InputState input;         // collected since the last poll
   glm::dvec2 pointer{0.0};  // last reported place; leaves the window while looking
+  bool right_looks = true;
 
   explicit Implementation(GLFWwindow* created) : window(created) {
     ++window_count();
     glfwSetWindowUserPointer(window, this);
     glfwSetKeyCallback(window, &Implementation::on_key);
+    glfwSetCharCallback(window, &Implementation::on_text);
     glfwSetMouseButtonCallback(window, &Implementation::on_button);
     glfwSetCursorPosCallback(window, &Implementation::on_pointer);
     glfwSetScrollCallback(window, &Implementation::on_wheel);
@@ -126,40 +187,70 @@ struct Window::Implementation {
 
   static void on_key(GLFWwindow* window, int key, int, int action, int) {
     const std::optional<Key> known = key_of(key);
-    if (!known || action == GLFW_REPEAT) return;
+    if (!known) return;
     InputState& input = of(window).input;
-    input.held.set(static_cast<std::size_t>(*known), action == GLFW_PRESS);
-    if (action == GLFW_PRESS) input.went_down.set(static_cast<std::size_t>(*known));
+    if (action == GLFW_REPEAT) {
+      input.repeated.set(static_cast<std::size_t>(*known));
+      return;
+    }
+    set_key(input, *known, action == GLFW_PRESS);
+    set_pair(input, Key::kShift, Key::kLeftShift, Key::kRightShift);
+    set_pair(input, Key::kControl, Key::kLeftControl, Key::kRightControl);
+    set_pair(input, Key::kAlt, Key::kLeftAlt, Key::kRightAlt);
+  }
+
+  static void on_text(GLFWwindow* window, unsigned int character) {
+    std::string& text = of(window).input.text;
+    constexpr std::size_t kLongest = 4;  // bytes of a character
+    if (text.size() + kLongest <= InputState::kMostTextBytes)
+      core::append_utf8(text, static_cast<char32_t>(character));
   }
 
   static void on_button(GLFWwindow* window, int button, int action, int) {
-    if (button != GLFW_MOUSE_BUTTON_RIGHT) return;
-    of(window).look(action == GLFW_PRESS);
+    if (button < 0 || static_cast<std::size_t>(button) >= kMouseButtons) return;
+    Implementation& self = of(window);
+    const auto bit = static_cast<std::size_t>(button);
+    self.input.buttons_held.set(bit, action == GLFW_PRESS);
+    (action == GLFW_PRESS ? self.input.buttons_went_down : self.input.buttons_went_up).set(bit);
+    self.update_cursor();
   }
 
   static void on_pointer(GLFWwindow* window, double x, double y) {
     Implementation& self = of(window);
     const glm::dvec2 now{x, y};
+    self.input.move_px += now - self.pointer;
     if (self.input.looking) self.input.look_px += now - self.pointer;
     self.pointer = now;
   }
 
-  static void on_wheel(GLFWwindow* window, double, double steps) {
+  static void on_wheel(GLFWwindow* window, double steps_x, double steps) {
     of(window).input.wheel += steps;
+    of(window).input.wheel_x += steps_x;
   }
   static void on_resize(GLFWwindow* window, int, int) { of(window).input.resized = true; }
 
   // While looking, the pointer is hidden and the screen's edge does not stop it.
-  void look(bool looking) {
+  void update_cursor() {
+    const bool looking = input.captured || (right_looks && input.is_held(MouseButton::kRight));
     if (looking == input.looking) return;
     input.looking = looking;
     glfwSetInputMode(window, GLFW_CURSOR, looking ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
     glfwGetCursorPos(window, &pointer.x, &pointer.y);  // changing the mode is not a movement
   }
+
+  // Screen coordinates → pixels of the picture.
+  glm::dvec2 pointer_px() const {
+    int width = 0, height = 0, wide = 0, high = 0;
+    glfwGetWindowSize(window, &width, &height);
+    glfwGetFramebufferSize(window, &wide, &high);
+    if (width <= 0 || height <= 0) return {};
+    return pointer * (glm::dvec2(wide, high) / glm::dvec2(width, height));
+  }
 };
 
 core::Result<std::unique_ptr<Window>> Window::create(const WindowSettings& settings) {
   PSYGEN_ASSERT(settings.size.width > 0 && settings.size.height > 0, "a window without a size");
+  if (window_count() == 0) use_unicode();
   if (glfwInit() != GLFW_TRUE) {
     return core::fail(core::ErrorCode::kNoDevice,
                       fmt::format("no window can be opened here: {}", glfw_error()));
@@ -213,12 +304,51 @@ core::Extent Window::framebuffer_size() const {
 InputState Window::poll() {
   glfwPollEvents();
   InputState& input = implementation_->input;
-  const InputState result = input;
-  input.went_down.reset();
-  input.look_px = {};
-  input.wheel = 0;
-  input.resized = false;
+  update_gamepads(read_pad, input.pads);
+  input.pointer_px = implementation_->pointer_px();
+  input.focused = glfwGetWindowAttrib(implementation_->window, GLFW_FOCUSED) == GLFW_TRUE;
+  InputState result = input;
+  clear_changes(input);
   return result;
+}
+
+void Window::capture_cursor(bool captured) {
+  implementation_->input.captured = captured;
+  implementation_->update_cursor();
+}
+
+bool Window::cursor_captured() const {
+  return implementation_->input.captured;
+}
+
+void Window::set_right_button_looks(bool looks) {
+  implementation_->right_looks = looks;
+  implementation_->update_cursor();
+}
+
+std::string Window::label_of(Key key) const {
+  const int number = glfw_key_of(key);
+  const char* const label = number == GLFW_KEY_UNKNOWN ? nullptr : glfwGetKeyName(number, 0);
+  if (label == nullptr || *label == 0) return std::string(name_of(key));
+  std::string shown(label);
+  if (shown.size() == 1 && shown[0] >= 'a' && shown[0] <= 'z')
+    shown[0] = static_cast<char>(shown[0] - 'a' + 'A');
+  return shown;
+}
+
+std::string Window::gamepad_name(std::size_t slot) const {
+  const char* const name = slot < kGamepads ? glfwGetGamepadName(static_cast<int>(slot)) : nullptr;
+  return name == nullptr ? "" : name;
+}
+
+std::string Window::clipboard() const {
+  const char* const text = glfwGetClipboardString(implementation_->window);
+  (void)glfwGetError(nullptr);  // no text there is none
+  return text == nullptr ? "" : text;
+}
+
+void Window::set_clipboard(const std::string& text) {
+  glfwSetClipboardString(implementation_->window, text.c_str());
 }
 
 void Window::keep_alive() {

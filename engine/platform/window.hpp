@@ -1,6 +1,6 @@
-// A window with keyboard and mouse, over GLFW. GLFW stays hidden here and is initialised only when
-// a window is created: headless runs never touch a window system. Vulkan appears only as opaque
-// handles. Not a renderer. Main thread.
+// A window with keyboard, mouse and gamepads, over GLFW. GLFW stays hidden here and is initialised
+// only when a window is created: headless runs never touch a window system. Vulkan appears only as
+// opaque handles. Not a renderer. Main thread.
 #pragma once
 
 #include <memory>
@@ -42,6 +42,23 @@ class Window final : public core::SurfaceProvider {
   // For minimised windows, which must not busy-wait. Returns at once unless timeout_s is finite and
   // above 0.
   void wait_events(double timeout_s);
+
+  // Hides the pointer and keeps it in the window: movement is not stopped by an edge, and
+  // InputState::captured and looking are set. Released by capture_cursor(false), not by any key.
+  void capture_cursor(bool captured);
+  bool cursor_captured() const;
+  // Whether the right button looks around while it is held (InputState::looking), as the fly camera
+  // wants it; on at first. Games that use the button for something else switch it off.
+  void set_right_button_looks(bool looks);
+
+  // What a key's cap shows in the user's layout: "Z" for Key::kY on a German keyboard. The key's
+  // name where the layout has none for it.
+  std::string label_of(Key key) const;
+  // The name of a gamepad in a slot of InputState::pads; empty without one.
+  std::string gamepad_name(std::size_t slot) const;
+  // The text of the clipboard, UTF-8; empty where there is none.
+  std::string clipboard() const;
+  void set_clipboard(const std::string& text);
 
   // True when the user asked to close the window, or request_close() did.
   bool should_close() const;

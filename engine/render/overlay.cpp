@@ -5,7 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
+
+#include "engine/core/assert.hpp"
+#include "engine/render/hud_font.hpp"
 
 namespace psygen::render {
 
@@ -14,6 +19,7 @@ struct Overlay::Fonts {
   std::array<ImFont*, kMaxScale> by_scale{};
   unsigned char* pixels = nullptr;  // owned by the atlas
   int width = 0, height = 0;
+  glm::vec2 hud_corner{0.0F};  // texels
 };
 
 namespace {
@@ -40,11 +46,11 @@ struct Box {
 
 void add_quad(std::vector<shaders::OverlayVertex>& out, const Box& at, const Box& uv,
               const glm::vec4& colour) {
-  if (out.size() >= Overlay::kMaxQuads * 6) return;
   const auto corner = [&](bool right, bool bottom) {
     return shaders::OverlayVertex{{right ? at.x1 : at.x0, bottom ? at.y1 : at.y0,
                                    right ? uv.x1 : uv.x0, bottom ? uv.y1 : uv.y0},
-                                  colour};
+                                  colour,
+                                  glm::vec4(0.0F)};
   };
   for (const auto& [right, bottom] : {std::pair{false, false},
                                       {false, true},
@@ -125,6 +131,7 @@ class Layout {
         advance_(font.FindGlyph(' ')->AdvanceX),
         width_(static_cast<float>(picture.width)),
         height_(static_cast<float>(picture.height)),
+        most_(out.size() + Overlay::kMaxQuads * 6),
         out_(out) {}
 
   void add(const TextPanel& panel) {
@@ -146,9 +153,15 @@ class Layout {
     add_area(out_, box, atlas_, kPanelColour);
     float y = box.y0 + margin();
     for (const Row& row : rows) {
+      if (out_.size() >= most_) break;
       draw(row, box.x0 + margin(), box.x1 - margin(), y);
       y += row_height(row);
     }
+  }
+
+  // Leaves out what is too much.
+  void cut_off() {
+    if (out_.size() > most_) out_.resize(most_);
   }
 
  private:
@@ -201,20 +214,126 @@ class Layout {
   const float scale_, advance_;  // all characters of the font have the same advance
   const float width_, height_;   // of the picture
   Box left_{0, 0, -1e9F, 0};     // the last panel on the left
+  const std::size_t most_;       // vertices
   std::vector<shaders::OverlayVertex>& out_;
 };
 
 }  // namespace
 
 Overlay::Overlay() : fonts_(std::make_unique<Fonts>()) {
+  ImFontAtlas& atlas = fonts_->atlas;
+  const HudFont& hud = hud_font();
+  atlas.Flags |= ImFontAtlasFlags_NoPowerOfTwoHeight;
+  atlas.TexDesiredWidth = static_cast<int>(std::bit_ceil(hud.size.width + 2));
+  // ImGui's default font is the first one. Its letters are replaced by those of the HUD below.
+  constexpr ImWchar kOneLetter[] = {' ', ' ', 0};
+  ImFontConfig placeholder;
+  placeholder.GlyphRanges = kOneLetter;
+  atlas.AddFontDefault(&placeholder);
   for (std::size_t i = 0; i < fonts_->by_scale.size(); ++i) {
     ImFontConfig config;
     config.OversampleH = config.OversampleV = 1;
     config.PixelSnapH = true;
     config.SizePixels = kFontSize * static_cast<float>(i + 1);
-    fonts_->by_scale[i] = fonts_->atlas.AddFontDefault(&config);
+    fonts_->by_scale[i] = atlas.AddFontDefault(&config);
   }
-  fonts_->atlas.GetTexDataAsAlpha8(&fonts_->pixels, &fonts_->width, &fonts_->height);
+  const int place = atlas.AddCustomRectRegular(static_cast<int>(hud.size.width),
+                                               static_cast<int>(hud.size.height));
+  atlas.GetTexDataAsAlpha8(&fonts_->pixels, &fonts_->width, &fonts_->height);
+  const ImFontAtlasCustomRect& rect = *atlas.GetCustomRectByIndex(place);
+  PSYGEN_ASSERT(rect.IsPacked(), "the atlas has room for the font of the HUD");
+  fonts_->hud_corner = {rect.X, rect.Y};
+  put_hud_font();
+}
+
+// Copies the letters into the atlas, and makes a font of ImGui from them.
+void Overlay::put_hud_font() {
+  const HudFont& hud = hud_font();
+  const auto width = static_cast<std::size_t>(fonts_->width);
+  const auto left = static_cast<std::size_t>(fonts_->hud_corner.x);
+  const auto top = static_cast<std::size_t>(fonts_->hud_corner.y);
+  for (std::size_t row = 0; row < hud.size.height; ++row) {
+    std::memcpy(fonts_->pixels + (top + row) * width + left,
+                hud.texels.data() + row * hud.size.width, hud.size.width);
+  }
+  ImFont& font = *fonts_->atlas.Fonts[0];
+  font.ClearOutputData();
+  font.ContainerAtlas = &fonts_->atlas;
+  font.FontSize = hud.em;
+  font.Ascent = hud.ascent;
+  font.Descent = hud.ascent - hud.em;
+  const glm::vec2 texels(fonts_->width, fonts_->height);
+  for (const BakedLetter& letter : hud.letters) {
+    const glm::vec2 from = (fonts_->hud_corner + glm::vec2(letter.u, letter.v)) / texels;
+    const glm::vec2 to = from + glm::vec2(letter.width, letter.height) / texels;
+    const float y = hud.ascent + letter.y;
+    font.AddGlyph(nullptr, static_cast<ImWchar>(letter.code), letter.x, y, letter.x + letter.width,
+                  y + letter.height, from.x, from.y, to.x, to.y, letter.advance);
+  }
+  font.EllipsisChar = 0x2026;
+  font.DotChar = '.';
+  font.BuildLookupTable();
+}
+
+ImFontAtlas& Overlay::font_atlas() const {
+  return fonts_->atlas;
+}
+
+void Overlay::lay_out(const HudDrawing& drawing, core::Extent picture,
+                      std::vector<shaders::OverlayVertex>& out) const {
+  const ImVec2 white = fonts_->atlas.TexUvWhitePixel;
+  lay_out_hud(drawing, picture, {atlas_size(), fonts_->hud_corner, {white.x, white.y}}, out);
+}
+
+namespace {
+
+// A clip rectangle in whole pixels inside the picture; empty where nothing of it is.
+GuiRun clip_of(const ImDrawCmd& command, const ImDrawData& drawn, core::Extent picture) {
+  const auto in = [](float at, std::uint32_t most) {
+    return static_cast<std::uint32_t>(std::clamp(at, 0.0F, static_cast<float>(most)));
+  };
+  const ImVec4& clip = command.ClipRect;
+  const std::uint32_t x = in(std::floor(clip.x - drawn.DisplayPos.x), picture.width);
+  const std::uint32_t y = in(std::floor(clip.y - drawn.DisplayPos.y), picture.height);
+  const std::uint32_t right = in(std::ceil(clip.z - drawn.DisplayPos.x), picture.width);
+  const std::uint32_t bottom = in(std::ceil(clip.w - drawn.DisplayPos.y), picture.height);
+  return {0, 0, x, y, right > x ? right - x : 0, bottom > y ? bottom - y : 0};
+}
+
+}  // namespace
+
+void Overlay::lay_out(const ImDrawData& drawn, core::Extent picture,
+                      std::vector<shaders::OverlayVertex>& out, std::vector<GuiRun>& runs) const {
+  runs.clear();
+  const HudFont& hud = hud_font();
+  // Where letters of the HUD's font lie in the atlas.
+  const glm::vec2 texels(fonts_->width, fonts_->height);
+  const glm::vec2 from = fonts_->hud_corner / texels;
+  const glm::vec2 to = from + glm::vec2(hud.size.width, hud.size.height) / texels;
+  const std::size_t most = out.size() + kMaxGuiVertices;
+  for (int i = 0; i < drawn.CmdListsCount; ++i) {
+    const ImDrawList& list = *drawn.CmdLists[i];
+    for (const ImDrawCmd& command : list.CmdBuffer) {
+      GuiRun run = clip_of(command, drawn, picture);
+      const bool shown = command.UserCallback == nullptr &&
+                         command.GetTexID() == fonts_->atlas.TexID && run.width > 0 &&
+                         run.height > 0;
+      if (!shown || out.size() + command.ElemCount > most) continue;
+      run.first_vertex = static_cast<std::uint32_t>(out.size());
+      run.vertex_count = command.ElemCount;
+      for (unsigned int k = 0; k < command.ElemCount; ++k) {
+        const int index = list.IdxBuffer[static_cast<int>(command.IdxOffset + k)];
+        const ImDrawVert& v = list.VtxBuffer[static_cast<int>(command.VtxOffset) + index];
+        const ImVec4 colour = ImGui::ColorConvertU32ToFloat4(v.col);
+        const bool letter =
+            v.uv.x >= from.x && v.uv.x <= to.x && v.uv.y >= from.y && v.uv.y <= to.y;
+        out.push_back({{v.pos.x - drawn.DisplayPos.x, v.pos.y - drawn.DisplayPos.y, v.uv.x, v.uv.y},
+                       {colour.x, colour.y, colour.z, colour.w},
+                       {letter ? 2 * hud.spread : 0.0F, 0, 1, 0}});
+      }
+      runs.push_back(run);
+    }
+  }
 }
 
 Overlay::~Overlay() = default;
@@ -230,13 +349,13 @@ std::span<const std::byte> Overlay::atlas() const {
 
 void Overlay::lay_out(std::span<const TextPanel> panels, core::Extent picture, float scale,
                       std::vector<shaders::OverlayVertex>& out) const {
-  out.clear();
   const float whole =
       std::isfinite(scale) ? std::clamp(std::round(scale), 1.0F, float{kMaxScale}) : 1.0F;
   const ImFont& font = *fonts_->by_scale[static_cast<std::size_t>(whole) - 1];
   Layout layout(fonts_->atlas, font, whole, picture, out);
   for (const TextPanel& panel : panels)
     layout.add(panel);
+  layout.cut_off();
 }
 
 void Overlay::put_ground_under(core::Extent picture,

@@ -51,8 +51,12 @@ std::uint64_t Renderer::texture_bytes() const {
 Result<FrameResult> Renderer::render(const FrameInput& input) {
   return impl_->render(input);
 }
-Result<void> Renderer::show(std::span<const TextPanel> panels, float text_scale) {
-  return impl_->show(panels, text_scale);
+Result<void> Renderer::show(std::span<const TextPanel> panels, float text_scale,
+                            const HudDrawing& hud) {
+  return impl_->show(panels, text_scale, hud);
+}
+ImFontAtlas& Renderer::font_atlas() {
+  return impl_->font_atlas();
 }
 Result<void> Renderer::set_preset(Preset preset, const Progress& progress) {
   return impl_->set_preset(preset, progress);

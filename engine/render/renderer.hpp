@@ -14,6 +14,8 @@
 #include "engine/core/geometry_memory.hpp"
 #include "engine/render/types.hpp"
 
+struct ImFontAtlas;
+
 namespace psygen::render {
 
 class RendererImpl;
@@ -52,13 +54,18 @@ class Renderer {
   std::uint64_t texture_bytes() const;
 
   // Draws and submits one frame. Waits at most for the frame before the last. While the window is
-  // minimised it does nothing and presents nothing. Instead of an invalid camera it uses the last
-  // valid one. Fails with kDeviceLost, and with kOutOfMemory if there is no memory for the draws.
+  // minimised it does nothing and presents nothing. Fails with kInvalidArgument for a camera that
+  // FrameInput does not allow, with kDeviceLost, and with kOutOfMemory if there is no memory for
+  // the draws.
   core::Result<FrameResult> render(const FrameInput& input);
 
-  // Draws a picture with only text, for example while there is no scene yet, and waits for it.
-  // Shows nothing while the window is minimised. Fails like render().
-  core::Result<void> show(std::span<const TextPanel> panels, float text_scale = 1);
+  // Draws a picture without a scene, for example while there is none yet, and waits for it: the
+  // HUD, then the panels. Shows nothing while the window is minimised. Fails like render().
+  core::Result<void> show(std::span<const TextPanel> panels, float text_scale = 1,
+                          const HudDrawing& hud = {});
+
+  // The font atlas for an ImGui context whose draw data is drawn (FrameInput::gui).
+  ImFontAtlas& font_atlas();
 
   // Recreates everything that depends on the preset and waits for it. This takes seconds if the
   // driver has not cached the pipelines. Meshes stay. There is no picture to capture until the next

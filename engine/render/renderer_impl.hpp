@@ -52,7 +52,9 @@ class RendererImpl {
   core::Result<void> prepare_objects();
   std::uint64_t texture_bytes() const { return materials_.texture_bytes(); }
   core::Result<FrameResult> render(const FrameInput& input);
-  core::Result<void> show(std::span<const TextPanel> panels, float text_scale);
+  core::Result<void> show(std::span<const TextPanel> panels, float text_scale,
+                          const HudDrawing& hud);
+  ImFontAtlas& font_atlas() { return overlay_.font_atlas(); }
   core::Result<void> set_preset(Preset preset, const Progress& progress);
   Preset preset() const { return preset_; }
   core::Result<Picture> capture();
@@ -98,8 +100,8 @@ class RendererImpl {
   core::Result<bool> present();
   core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
   Apart apart_now();
+  void lay_out_overlay(const FrameInput& input);
   void add_lines(std::span<const Line> lines);
-  void remember_valid(const FrameInput& input);
   // Stores in lost_ that the device was lost. After that nothing more is submitted.
   template <class T>
   core::Result<T> noted(core::Result<T> result) {
@@ -136,12 +138,11 @@ class RendererImpl {
   bool has_picture_ = false;
   bool has_list_ = false;
   bool lost_ = false;
-  std::optional<core::CameraPose> last_pose_;
-  std::optional<core::Projection> last_projection_;
   DrawList list_;  // on the CPU path
   shaders::FrameData frame_{};
-  std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines
-  std::uint32_t line_vertices_ = 0;
+  std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines, then ImGui's
+  std::uint32_t text_vertices_ = 0, line_vertices_ = 0;
+  std::vector<GuiRun> gui_runs_;
   View view_ = View::kNormal;
   bool water_ = false;
   std::optional<GpuTime> gpu_;

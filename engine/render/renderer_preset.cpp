@@ -152,7 +152,8 @@ Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
       });
 }
 
-Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_scale) {
+Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_scale,
+                                const HudDrawing& hud) {
   if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
   const bool windowed = options_.surface != nullptr;
   if (windowed) {
@@ -166,9 +167,12 @@ Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_sc
   }
   FrameSlot& slot = slot_of(frame_value_ + 1);
   if (Result<void> waited = noted(wait_for(slot)); !waited) return waited;
-  overlay_.lay_out(panels, size(), text_scale, glyphs_);
+  FrameInput only_text;
+  only_text.hud = &hud;
+  only_text.panels = panels;
+  only_text.text_scale = text_scale;
+  lay_out_overlay(only_text);
   overlay_.put_ground_under(size(), glyphs_);
-  line_vertices_ = 0;
   has_list_ = false;
   if (windowed) {
     const Result<WindowState> acquired = noted(acquire_window(slot));

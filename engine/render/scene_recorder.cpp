@@ -284,6 +284,18 @@ void draw_lines_and_text(const Device& device, const Pipelines& pipelines, VkCom
   device.vk.vkCmdDraw(commands, glyph_vertex_count, 1, 0, 0);
 }
 
+void draw_gui(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+              std::span<const GuiRun> runs) {
+  if (runs.empty()) return;
+  bind_pipeline(device, commands, pipelines.overlay());
+  for (const GuiRun& run : runs) {
+    const VkRect2D clip{{static_cast<std::int32_t>(run.x), static_cast<std::int32_t>(run.y)},
+                        {run.width, run.height}};
+    device.vk.vkCmdSetScissor(commands, 0, 1, &clip);
+    device.vk.vkCmdDraw(commands, run.vertex_count, 1, run.first_vertex, 0);
+  }
+}
+
 void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& targets) {
   if (targets.colour_layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL) return;
   VkImageMemoryBarrier2 barrier = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
@@ -357,6 +369,7 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
   }
   draw_water_and_sky(device, pipelines, commands, pass.water);
   draw_lines_and_text(device, pipelines, commands, pass.glyph_vertex_count, pass.line_vertex_count);
+  draw_gui(device, pipelines, commands, pass.gui);
   device.vk.vkCmdEndRendering(commands);
   slot.timer().mark(device, commands, GpuTimer::Mark::kEnd);
   if (pass.culled.culling != nullptr) {

@@ -49,6 +49,7 @@ struct ScenePass {
   CulledDraws culled = {};
   std::uint32_t glyph_vertex_count = 0;  // in the overlay's buffer; the ends of lines follow
   std::uint32_t line_vertex_count = 0;
+  std::span<const GuiRun> gui = {};  // after them
   View view = View::kNormal;
   bool water = false;
   bool shadows = false;  // draw the cascades of the preset

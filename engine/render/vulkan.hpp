@@ -3,6 +3,8 @@
 #pragma once
 
 #define VK_NO_PROTOTYPES
+#include "volk_names.h"  // before volk.h: prefixes of its names (CMakeLists.txt)
+//
 #include <volk.h>
 
 #include <cstdint>

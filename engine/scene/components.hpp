@@ -70,7 +70,7 @@ struct Detail {
 struct Source {
   models::Parameters parameters;
   std::uint64_t parameters_hash = 0;
-  std::uint32_t index = 0;  // within the node; models count from 0, others are below
+  std::uint32_t index = 0;  // within the node; world::Placement::index, or one of those below
   models::ModelIndex model = 0;
   std::uint16_t first_level = 0;  // of the model type: what level 0 of Detail and Demand is
 };
@@ -125,9 +125,11 @@ struct Demand {
       0;               // bit l: level l cannot be synthesised and is not asked for again
   bool stale = false;  // Mesh is of other parameters than Source: drawn until the new one is there
   std::uint8_t ranked = kNotRanked;  // group of the rank that the cache has for Mesh
+  bool added = false;  // by an edit, to a node that may be drawn already: it does not wait for it
 };
 static_assert(sizeof(Demand) == 20);
 
+// An entity as the cache's name for an owner, and back.
 inline std::uint64_t owner_of(ecs::Entity entity) {
   return (std::uint64_t{entity.generation} << 32) | entity.index;
 }

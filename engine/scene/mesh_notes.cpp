@@ -1,7 +1,9 @@
 #include "engine/scene/mesh_notes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/scene/draws/mesh_parts.hpp"
 
@@ -11,17 +13,33 @@ namespace {
 // The largest error of a node over the usual one.
 constexpr double kPossibleError = 2.5;
 
+// Edits are not in the usual errors: between two vertices there may be a tower.
+float edits_error_m(const WorldFacts& facts, const synthesis::Request& request) {
+  const models::Parameters& p = request.parameters;
+  const auto level = static_cast<int>(p.integer(models::kTerrainNodeLevel));
+  if (p.edits() == nullptr || (level == 0 && request.key.level == 0)) return 0.0F;
+  const core::BlockCoord node{static_cast<std::int32_t>(p.integer(models::kTerrainBlockX)),
+                              static_cast<std::int32_t>(p.integer(models::kTerrainBlockZ))};
+  const double spacing_m =
+      std::ldexp(static_cast<double>(facts.cell_m) * facts.grids[request.key.level].stride, level);
+  const double error_m =
+      p.edits()->ground.error_m(models::QuadPlace::of(node, static_cast<std::uint32_t>(level)),
+                                spacing_m, facts.levels[0].size_m);
+  return static_cast<float>(std::min(error_m, p.real(models::kTerrainReliefM)));
+}
+
 GroundNote ground_of(const WorldFacts& facts, const synthesis::Request& request,
                      const models::MeshView& mesh) {
   const auto node_level = static_cast<int>(request.parameters.integer(models::kTerrainNodeLevel));
   const core::Bounds& bounds = facts.levels[static_cast<std::size_t>(node_level)].bounds;
+  const float edits_m = edits_error_m(facts, request);
   // The coarse ground of a block may give way to its finest, in the tick for which the lines hold.
   const float lower_by_m =
-      node_level == 0 ? possible_error_m(facts, node_level, request.key.level) : 0.0F;
+      node_level == 0 ? possible_error_m(facts, node_level, request.key.level) + edits_m : 0.0F;
   const auto vertices = core::vertices_of<core::TerrainVertex>(mesh.vertices);
   const models::TerrainGrid& grid = facts.grids[request.key.level];
   return {ground_relief(vertices, grid, bounds.min.y, bounds.max.y - bounds.min.y, lower_by_m),
-          ground_sun(vertices, static_cast<std::size_t>(grid.n))};
+          ground_sun(vertices, static_cast<std::size_t>(grid.n)), edits_m};
 }
 
 MeshParts parts_of(const WorldFacts& facts, const synthesis::Request& request,

@@ -10,9 +10,11 @@
 
 namespace psygen::scene {
 
+// What is noted of the ground of a node.
 struct GroundNote {
   GroundRelief relief;
   GroundSun sun;
+  float edits_error_m = 0;  // how much further the ground may lie off the mesh because of edits
 };
 
 // How far the ground of a node may lie off its mesh of this level of the terrain type, in metres.

@@ -16,12 +16,10 @@
 #include "engine/scene/nodes/usual_boxes.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/world/far/merged_models.hpp"
+#include "engine/world/models_reach.hpp"
 
 namespace psygen::scene {
 namespace {
-
-// Of the parameters with a range, so many are tried at both ends together.
-constexpr std::size_t kMaxVaried = 12;
 
 // Of the window of a level: a square that holds all nodes of the world within reach.
 std::uint32_t largest_radius(const world::World& world, std::span<const NodeLevel> levels,
@@ -74,35 +72,6 @@ core::Result<void> check_size(const world::World& world, const models::Registry&
           Scene::kMaxEntities));
 }
 
-// How far models may reach from their foot, sideways and up: the largest boxes over the corners of
-// their ranges.
-glm::vec2 models_reach(const world::World& world, const models::Registry& registry) {
-  glm::vec2 reach_m(0.0F);
-  for (const world::Scatter& scatter : world.scatter) {
-    const models::ModelType& type = registry[scatter.model];
-    const auto specs = type.parameters();
-    std::vector<std::size_t> ranged;
-    for (std::size_t i = 0; i < specs.size(); ++i) {
-      if (scatter.ranges[i].low != scatter.ranges[i].high) ranged.push_back(i);
-    }
-    const std::size_t varied = std::min(ranged.size(), kMaxVaried);
-    for (std::uint32_t corner = 0; corner < (1u << varied); ++corner) {
-      models::Parameters p = world::scatter_parameters(registry, scatter);
-      for (std::size_t k = 0; k < varied; ++k) {
-        const world::ParameterRange& range = scatter.ranges[ranged[k]];
-        world::set_parameter(type, p, ranged[k], (corner >> k & 1) != 0 ? range.high : range.low);
-      }
-      const auto steepest =
-          static_cast<float>(std::tan(scatter.max_slope_deg * std::numbers::pi / 180));
-      world::set_slope(type, world::slope_parameters(type), glm::vec2(steepest), p);
-      const core::Bounds box = type.bounds(p);
-      reach_m.x = std::max({reach_m.x, -box.min.x, -box.min.z, box.max.x, box.max.z});
-      reach_m.y = std::max(reach_m.y, box.max.y);
-    }
-  }
-  return reach_m;
-}
-
 // The levels of the quadtree, and the type of the meshes that stand for everything on a node.
 core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
   const models::ModelType* merged = nullptr;
@@ -124,7 +93,7 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
   return {};
 }
 
-// As many as there are from now on. Without any no mesh would ever be made.
+// Takes over how many modelers started. Fails if there are none: no mesh would ever be made.
 core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
                                   synthesis::MeshSupply& meshes, Settings& settings) {
   const unsigned wanted = synthesis::modeler_count_for(settings.modelers);
@@ -141,7 +110,7 @@ core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
 }
 
 Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
-                   const models::Registry& registry, const ecs::Schedule& tick) {
+                   const models::Registry& registry) {
   Tracing tracing;
   if (log == nullptr) return tracing;
   tracing.log = log;
@@ -152,8 +121,6 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
   tracing.device_wait = log->intern("wait for the device");
   tracing.acquire = log->intern("wait for the window");
   tracing.present = log->intern("present");
-  for (const ecs::SystemInfo& system : tick.systems())
-    tracing.systems.push_back(log->intern(system.name));
   for (std::uint32_t i = 0; i < modelers; ++i) {
     tracing.modelers.push_back(log->add_track(fmt::format("modeler {}", i)));
   }
@@ -164,6 +131,14 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
 }
 
 }  // namespace
+
+core::Result<void> Scene::arrange() {
+  for (ecs::Schedule* schedule : {&state_.tick, &state_.simulation.systems}) {
+    if (std::string error = schedule->arrange(); !error.empty())
+      return core::fail(core::ErrorCode::kInvalidArgument, std::move(error));
+  }
+  return {};
+}
 
 core::Result<void> Scene::check(const Settings& settings) {
   const auto refuse = [](std::string sentence) {
@@ -184,6 +159,9 @@ core::Result<void> Scene::check(const Settings& settings) {
   if (!(settings.fade_seconds >= 0 && settings.fade_seconds <= 60)) {
     return refuse("models come and go within 0 to 60 seconds");
   }
+  if (!(settings.step_hz >= 1 && settings.step_hz <= 10'000)) {
+    return refuse("the simulation must have between 1 and 10000 steps a second");
+  }
   if (settings.streaming_ticks < 1) return refuse("nodes are created over at least one tick");
   if (settings.modelers > 256) return refuse("there may be at most 256 modelers");
   if (settings.budget_bytes < kMinBudgetBytes || settings.budget_bytes > kMaxBudgetBytes) {
@@ -192,6 +170,10 @@ core::Result<void> Scene::check(const Settings& settings) {
                                   settings.budget_bytes, kMinBudgetBytes, kMaxBudgetBytes));
   }
   return {};
+}
+
+void Scene::edit(world::Edits edits) {
+  state_.editing = {std::move(edits), true};
 }
 
 void Scene::take_over_preset() {
@@ -214,13 +196,16 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   };
   if (settings.virtual_time) s.clock.read_real_s = [&s] { return s.clock.now_s; };
   WorldFacts& facts = s.facts;
+  scene->edit(world::Edits(world.edits));
+  world::set_edits(world, nullptr);
   facts.world = std::move(world);
   facts.registry = std::move(registry);
   facts.light = light_of(facts.world, settings.view_distance_m);
   facts.palette = palette_of(facts.world);
   facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(facts.world));
   facts.cell_m = static_cast<float>(facts.world.cell_m());
-  facts.models_reach_m = models_reach(facts.world, facts.registry);
+  facts.scattered_reach_m = world::models_reach_m(facts.world, facts.registry);
+  facts.models_reach_m = facts.scattered_reach_m;
   facts.standing = standing_on_block(facts.world, facts.registry);
 
   if (auto ok = find_levels(settings, facts); !ok) return tl::unexpected(ok.error());
@@ -253,8 +238,9 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
     return tl::unexpected(ok.error());
   s.quality.governor =
       Governor({.target_ms = settings.target_frame_ms, .max_factor = settings.max_error_factor});
+  s.simulation.step.step_s = 1 / settings.step_hz;
   build_tick(s);
-  s.trace = tracing_of(trace, s.settings.modelers, facts.registry, s.tick);
+  s.trace = tracing_of(trace, s.settings.modelers, facts.registry);
   return scene;
 }
 

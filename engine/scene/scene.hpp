@@ -15,20 +15,47 @@ namespace psygen::scene {
 // to stay alive. False ends filling the cache early; creating a scene is not ended.
 using Progress = std::function<bool(std::string_view, double)>;
 
+// What code of a game adds to: components and entities of its own, systems that run once a frame
+// among the engine's (docs/architecture.md lists their names), and systems that run once a fixed
+// step. Systems of a frame may take any part of State, systems of a step WorldFacts and FixedStep;
+// both take queues of events and what resource() made.
+struct Systems {
+  ecs::World& entities;
+  ecs::Schedule& frame;
+  ecs::Schedule& step;
+
+  // A resource for both kinds of systems. It lives as long as the scene.
+  template <class R, class... Args>
+  R& resource(Args&&... args) {
+    R& made = frame.emplace<R>(std::forward<Args>(args)...);
+    step.provide(made);
+    return made;
+  }
+};
+
+// One world with its entities, its meshes and its tick.
 class Scene {
  public:
-  // `renderer` (may be null) and `trace` (may be null) outlive the scene. Starts the modelers and
-  // calibrates the cost model (below 0.5 s). Fails as check(), and with kOverBudget for a view with
-  // more than kMaxEntities nodes and models or kMaxPlaces places for nodes.
+  // `world` may have edits. `renderer` (may be null) and `trace` (may be null) outlive the scene.
+  // Starts the modelers and calibrates the cost model (below 0.5 s). Fails as check(), and with
+  // kOverBudget for a view with more than kMaxEntities nodes and models or kMaxPlaces places for
+  // nodes.
   static core::Result<std::unique_ptr<Scene>> create(world::World world, models::Registry registry,
                                                      const Settings& settings,
                                                      render::Renderer* renderer,
                                                      telemetry::TraceLog* trace = nullptr,
                                                      const Progress& progress = {});
 
+  // All that the tick reads and writes.
   State& state() { return state_; }
   const State& state() const { return state_; }
   const synthesis::CalibrationReport& calibration() const { return calibration_; }
+
+  // What code of a game adds to, before the first tick.
+  Systems systems() { return {state_.entities, state_.tick, state_.simulation.systems}; }
+  // Puts all systems into the order of their places. Fails with kInvalidArgument for two systems of
+  // one name, and for systems that name others that there are not, or wait for each other.
+  core::Result<void> arrange();
 
   // Fills the cache for a pose before the first frame (paper, section 4: the initial cache): ticks
   // without drawing and waits for the modelers, until nothing is missing, or nothing more can be
@@ -40,6 +67,13 @@ class Scene {
   // Data amplification (section 3.3.1): synthesises all models around the pose at every level that
   // a flight can want, once and for all. Fails with kOverBudget, saying how much it would need.
   core::Result<std::uint64_t> amplify(const core::CameraPose& pose, const Progress& progress = {});
+
+  // The edits of the world: all that were asked for, though some may be drawn only in a few ticks.
+  // A copy is O(1), and editing a copy changes nothing here.
+  const world::Edits& edits() const { return state_.editing.edits; }
+  // Replaces them, from the next tick on. `edits` must be made for this world and registry. What is
+  // drawn stays until the new meshes are there. An edit taken back restores the very same meshes.
+  void edit(world::Edits edits);
 
   // Fails with kInvalidArgument for settings that make no sense, and with kOverBudget for a budget
   // below kMinBudgetBytes or above kMaxBudgetBytes.

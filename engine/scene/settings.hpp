@@ -14,7 +14,7 @@ namespace psygen::scene {
 enum class Paradigm : std::uint8_t {
   kParallelLazyAmplification,  // on demand, in parallel, cached, prefetched
   kDataAmplification,          // a region is synthesised before the first frame, nothing after it
-  kLazyEvaluation,             // whatever is visible, in every frame anew; nothing is kept
+  kLazyEvaluation,             // what is visible is made again in every frame; nothing is kept
 };
 std::string_view to_string(Paradigm paradigm);  // "pla", "amplify", "lazy"
 core::Result<Paradigm> paradigm_from(std::string_view name);
@@ -23,6 +23,7 @@ core::Result<Paradigm> paradigm_from(std::string_view name);
 std::string_view to_string(visibility::PlpMode mode);
 core::Result<visibility::PlpMode> plp_mode_from(std::string_view name);
 
+// The defaults suit a machine with a few cores.
 struct Settings {
   Paradigm paradigm = Paradigm::kParallelLazyAmplification;
   synthesis::Policy policy = synthesis::Policy::kDeadline;
@@ -45,6 +46,7 @@ struct Settings {
   double streaming_budget_ms = 2.0;   // per tick, for creating nodes
   std::uint32_t streaming_ticks = 8;  // over which new nodes and their meshes are spread at most
   std::uint64_t upload_budget_bytes = 16ull << 20;  // per tick
+  double step_hz = 60;                              // fixed steps of the simulation a second
   // The flight's clock is the only one: synthesis and streaming take what is predicted of them, and
   // everything is the same to the bit on any machine. Nothing is calibrated.
   bool virtual_time = false;

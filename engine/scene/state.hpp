@@ -17,13 +17,16 @@
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/draws/fading.hpp"
+#include "engine/scene/events.hpp"
 #include "engine/scene/nodes/grid.hpp"
 #include "engine/scene/nodes/ground_relief.hpp"
 #include "engine/scene/nodes/ground_sun.hpp"
 #include "engine/scene/nodes/levels.hpp"
 #include "engine/scene/objects/assets.hpp"
 #include "engine/scene/quality/governor.hpp"
+#include "engine/scene/readiness.hpp"
 #include "engine/scene/settings.hpp"
+#include "engine/scene/simulation.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/trace_log.hpp"
@@ -31,6 +34,7 @@
 #include "engine/visibility/frustum.hpp"
 #include "engine/visibility/plp.hpp"
 #include "engine/visibility/solidity.hpp"
+#include "engine/world/edits/edits.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 
@@ -40,8 +44,11 @@ namespace psygen::scene {
 struct Input {
   core::CameraPose pose;
   core::Extent size{1280, 720};
-  std::vector<render::TextPanel> panels;  // over the picture
-  float text_scale = 1;                   // of their text
+  // Over the picture, in this order (docs/hud.md).
+  render::HudDrawing hud;
+  std::vector<render::TextPanel> panels;
+  float text_scale = 1;             // of the panels' text
+  const ImDrawData* gui = nullptr;  // valid during the tick; null: none
   render::View view = render::View::kNormal;
   // What the last frame took, without waiting for a display, and drew; 0: unknown.
   double frame_ms = 0, frame_triangles = 0;
@@ -70,6 +77,7 @@ struct Quality {
   bool warned_budget = false;
 };
 
+// The times of this tick.
 struct Clock {
   double now_s = 0;   // of the flight: real, or frame / rate with a fixed step
   double real_s = 0;  // real seconds since the scene was made, for latencies; set by the tick
@@ -77,6 +85,7 @@ struct Clock {
   std::uint32_t tick = 1;
 };
 
+// The camera of this tick and its predicted poses.
 struct Camera {
   core::CameraPose pose;  // the last valid one
   core::Projection projection;
@@ -84,6 +93,7 @@ struct Camera {
   float pixels_per_radian = 0;
   std::uint64_t rejected_poses = 0;
   visibility::CameraPredictor predictor;
+  // The pose in tau_s seconds.
   struct Prediction {
     float tau_s = 0;
     core::CameraPose pose;
@@ -91,7 +101,8 @@ struct Camera {
   std::vector<Prediction> predictions;
 };
 
-// The unchanging world and what is derived from it once.
+// The unchanging world and what is derived from it once. Only its edits change, and how far models
+// reach because of them (edits_system); everything else was derived without edits.
 struct WorldFacts {
   world::World world;
   models::Registry registry;
@@ -109,7 +120,8 @@ struct WorldFacts {
   std::vector<core::Bounds> usual_boxes;
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
-  glm::vec2 models_reach_m{0.0F};  // from their foot: sideways, up
+  glm::vec2 models_reach_m{0.0F};     // from their foot: sideways, up
+  glm::vec2 scattered_reach_m{0.0F};  // the same without what was placed by hand
   bool shadows = false;  // what is drawn casts some into the picture, though it may be out of view
 };
 
@@ -118,6 +130,13 @@ struct Daylight {
   double azimuth_deg = 0, elevation_deg = 90;
 };
 
+// Edits that the world shall have from the next tick on.
+struct Editing {
+  world::Edits edits;
+  bool pending = false;  // not in WorldFacts yet
+};
+
+// Which nodes exist as entities.
 struct Streaming {
   std::vector<NodeGrid> grids;                        // one for each level
   std::vector<visibility::LevelDistances> distances;  // where nodes are split in this tick
@@ -174,6 +193,7 @@ struct Found {
   std::vector<Mesh> meshes;
 };
 
+// What this tick draws, and its working memory.
 struct DrawLists {
   std::vector<ecs::Entity> entities;  // per node of the cut; null where there is none
   std::vector<std::uint32_t> nodes;   // of the cut: what stands for it while meshes are missing
@@ -195,6 +215,15 @@ struct ObjectDraws {
   std::vector<synthesis::MeshHandle> meshes;  // of objects in view
   std::uint32_t tick = 0;                     // of these lists
   double now_s = 0;                           // the clock's then
+};
+
+// The nodes that the last frame showed, in order. Empty while nobody asks.
+struct ShownNode {
+  ecs::Entity entity;
+  visibility::NodeCoord at;
+};
+struct ShownNodes {
+  std::vector<ShownNode> nodes;
 };
 
 // Counts of one tick, reset by the tick.
@@ -249,16 +278,20 @@ struct Tracing {
   telemetry::TraceLog::Track main = 0, cache_bytes = 0, requests = 0, gpu_ms = 0;
   std::uint64_t gpu_frame = 0;                                          // the last one in gpu_ms
   std::vector<telemetry::TraceLog::Name> systems;                       // in the order of the tick
+  std::vector<telemetry::TraceLog::Name> steps;                         // of the simulation
   telemetry::TraceLog::Name device_wait = 0, acquire = 0, present = 0;  // within a system
   std::vector<telemetry::TraceLog::Track> modelers;                     // by number
   std::vector<telemetry::TraceLog::Name> models;                        // by index in the registry
 };
 
+// All of a scene.
 struct State {
   Settings settings;
   Rules rules;
   WorldFacts facts;
   ecs::World entities;
+  Events events;
+  Simulation simulation{entities};
   ecs::Schedule tick{entities};  // filled by build_tick
   Input input;
   Clock clock;
@@ -266,6 +299,7 @@ struct State {
   Pressure pressure;
   Quality quality;
   Daylight daylight;
+  Editing editing;
   Streaming streaming;
   View view;
   std::unique_ptr<core::GeometryMemory> heap;  // the null device's memory; unused with a renderer
@@ -273,13 +307,16 @@ struct State {
   Output output;
   synthesis::MeshSupply meshes;
   Found found;
+  Foresight foresight;
   DrawLists draws;
   Assets assets;
   ObjectDraws object_draws;
+  ShownNodes shown;
   Counters counters;
   Totals totals;
   Tracing trace;
   telemetry::FrameRecord record;  // of the last tick; the main loop adds frame_ms
+  std::vector<float> system_ms;   // of the last tick, in the order of system_names()
 };
 
 }  // namespace psygen::scene

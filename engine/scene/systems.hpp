@@ -1,12 +1,16 @@
 // The systems of the tick, one .cpp each. Free functions; const parameters and components are read,
 // the others written: the schedule takes what a system touches from here. Main thread only; none of
 // them waits for a modeler, a file or the GPU beyond the frames in flight (lazy evaluation waits
-// for its modelers: that is what it is). Order and data: tick.cpp.
+// for its modelers). Order and data: tick.cpp.
 #pragma once
 
 #include "engine/scene/state.hpp"
 
 namespace psygen::scene {
+
+// Runs the fixed steps of the simulation that are due. Their systems may change all entities.
+void simulation_system(const Clock& clock, ecs::World& entities, Simulation& simulation,
+                       Tracing& trace);
 
 // Takes over the wanted pose (an invalid one is refused, the last valid one stays) and predicts
 // poses.
@@ -23,11 +27,18 @@ using DaylightQuery = ecs::Query<const Node, Source, Demand>;
 void daylight_system(const Clock& clock, const WorldFacts& facts, DaylightQuery nodes,
                      Daylight& daylight);
 
+// Takes over the edits of the world that were wanted since the last tick.
+void edits_system(const Daylight& daylight, Editing& editing, WorldFacts& facts,
+                  ecs::World& entities, synthesis::MeshSupply& meshes, Foresight& foresight,
+                  ecs::EventQueue<ModelCreated>& created_models,
+                  ecs::EventQueue<ModelRemoved>& removed_models);
+
 // Creates and destroys nodes with their models around the camera, in batches.
 void streaming_system(const Settings& settings, const Rules& rules, const Camera& camera,
                       const Quality& quality, const WorldFacts& facts, const Daylight& daylight,
                       Streaming& streaming, ecs::World& entities, synthesis::MeshSupply& meshes,
-                      Counters& counters);
+                      ecs::EventQueue<ModelCreated>& created,
+                      ecs::EventQueue<ModelRemoved>& removed, Counters& counters);
 
 // Chooses the cut through the quadtree and runs Prioritized-Layered Projection over the nodes of
 // each level; what predicted cameras see gets a deadline.
@@ -44,7 +55,8 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Streaming& streaming, const View& view, CacheQuery entities,
                   const Assets& assets, synthesis::MeshSupply& meshes, Found& found,
-                  Pressure& pressure, Counters& counters);
+                  Foresight& foresight, Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
+                  ecs::EventQueue<PlaceReady>& places_ready, Counters& counters);
 
 // Collects what the modelers have finished since the last tick.
 void synthesis_system(const Settings& settings, const Rules& rules, synthesis::MeshSupply& meshes,
@@ -55,8 +67,8 @@ using UploadQuery = ecs::Query<const Source, Mesh, MeshParts, OldParts, Fading, 
                                Lacking, GroundRelief, GroundSun>;
 void upload_system(const Settings& settings, const Rules& rules, const Clock& clock,
                    const WorldFacts& facts, const Found& found, UploadQuery entities,
-                   synthesis::MeshSupply& meshes, Output& output, Counters& counters,
-                   Totals& totals);
+                   synthesis::MeshSupply& meshes, Output& output,
+                   ecs::EventQueue<MeshLanded>& landed, Counters& counters, Totals& totals);
 
 // Draws the game's objects: culls them, chooses their levels of detail, fades them, and notes what
 // their meshes lack.
@@ -76,6 +88,11 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
                    const View& view, const ObjectDraws& objects, RenderQuery entities,
                    synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
                    Pressure& pressure, Counters& counters);
+
+// Tells which nodes came into the picture and which left it.
+void events_system(const View& view, const DrawLists& draws, ShownNodes& shown,
+                   ecs::EventQueue<NodeShown>& nodes_shown,
+                   ecs::EventQueue<NodeHidden>& nodes_hidden);
 
 // Writes down what the tick did.
 void telemetry_system(const Clock& clock, const Quality& quality, const Counters& counters,

@@ -3,7 +3,11 @@
 // two together.
 #include "engine/scene/tick.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <new>
+#include <numeric>
 #include <string_view>
 
 #include "engine/core/clock.hpp"
@@ -11,16 +15,21 @@
 
 namespace psygen::scene {
 namespace {
-constexpr std::string_view kRenderSystem = "render";
+constexpr std::string_view kRenderSystem = "render", kSimulationSystem = "simulation";
 }  // namespace
 
 void build_tick(State& s) {
-  s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight,
+  s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight, s.editing,
                  s.streaming, s.view, s.output, s.meshes, s.found, s.draws, s.counters, s.totals,
-                 s.trace, s.record, s.rules, s.pressure, s.assets, s.object_draws);
+                 s.trace, s.record, s.rules, s.pressure, s.assets, s.object_draws, s.shown,
+                 s.simulation, s.simulation.step, s.events.shown, s.events.hidden, s.events.created,
+                 s.events.removed, s.events.landed, s.events.evicted, s.events.places_ready,
+                 s.foresight);
+  s.tick.add(kSimulationSystem, simulation_system);
   s.tick.add("input", input_system);
   s.tick.add("quality", quality_system);
   s.tick.add("daylight", daylight_system);
+  s.tick.add("edits", edits_system);
   s.tick.add("streaming", streaming_system);
   s.tick.add("visibility", visibility_system);
   s.tick.add("cache", cache_system);
@@ -28,7 +37,20 @@ void build_tick(State& s) {
   s.tick.add("upload", upload_system);
   s.tick.add("objects", objects_system);
   s.tick.add(kRenderSystem, render_system, ecs::RunsOn::kCallingThread);
+  s.tick.add("events", events_system);
   s.tick.add("telemetry", telemetry_system);
+  s.simulation.systems.provide(s.facts, s.simulation.step, s.events.shown, s.events.hidden,
+                               s.events.created, s.events.removed, s.events.landed,
+                               s.events.evicted, s.events.places_ready);
+}
+
+std::vector<std::string> system_names(const State& state) {
+  std::vector<std::string> names;
+  for (const ecs::SystemInfo& system : state.tick.systems())
+    names.push_back(system.name);
+  for (const ecs::SystemInfo& system : state.simulation.systems.systems())
+    names.push_back("step " + system.name);
+  return names;
 }
 
 namespace {
@@ -51,6 +73,11 @@ void trace_frame(const render::FrameResult& frame, Tracing& trace) {
 void trace_tick(State& state) {
   telemetry::TraceLog& log = *state.trace.log;
   const auto systems = state.tick.systems();
+  if (state.trace.systems.size() != systems.size()) {
+    state.trace.systems.clear();
+    for (const ecs::SystemInfo& system : systems)
+      state.trace.systems.push_back(log.intern(system.name));
+  }
   for (std::size_t i = 0; i < systems.size(); ++i) {
     const double start_s = systems[i].last_start_s;
     log.add_span(state.trace.main, state.trace.systems[i], start_s,
@@ -62,13 +89,37 @@ void trace_tick(State& state) {
   log.add_value(state.trace.requests, now_s, state.record.requests_queued);
 }
 
-// Without waiting for the device and the display, which only drawing does.
+// Without waiting for the device and the display, which only drawing does. Systems of the
+// simulation have times of their own, which are not those of "simulation".
 void note_system_times(State& state) {
-  const auto systems = state.tick.systems();
-  for (std::size_t i = 0; i < systems.size(); ++i) {
-    const double waited_ms = systems[i].name == kRenderSystem ? state.record.wait_ms() : 0.0;
-    const double ms = systems[i].last_seconds * 1000.0 - waited_ms;
-    state.record.system_ms[i] = static_cast<float>(std::max(ms, 0.0));
+  const std::vector<float>& step_ms = state.simulation.step_ms;
+  state.system_ms.clear();
+  for (const ecs::SystemInfo& system : state.tick.systems()) {
+    double elsewhere_ms = system.name == kRenderSystem ? state.record.wait_ms() : 0.0;
+    if (system.name == kSimulationSystem)
+      elsewhere_ms = std::accumulate(step_ms.begin(), step_ms.end(), 0.0);
+    const double ms = system.last_seconds * 1000.0 - elsewhere_ms;
+    state.system_ms.push_back(static_cast<float>(std::max(ms, 0.0)));
+  }
+  state.system_ms.insert(state.system_ms.end(), step_ms.begin(), step_ms.end());
+}
+
+// Runs all systems. What one throws ends the flight with a sentence, except that memory ran out.
+void run_systems(State& state) {
+  const auto fail = [&state](const char* what) {
+    const std::string& step = state.simulation.systems.threw();
+    const std::string& system = step.empty() ? state.tick.threw() : step;
+    state.output.error = core::Error{core::ErrorCode::kInternal,
+                                     fmt::format("the system '{}' threw: {}", system, what)};
+  };
+  try {
+    state.tick.run();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail(error.what());
+  } catch (...) {
+    fail("an exception of an unknown type");
   }
 }
 
@@ -81,7 +132,7 @@ void tick(State& state) {
   state.record = {};
   state.rules = rules_of(state.settings, false);
   state.meshes.lower_priority();
-  state.tick.run();
+  run_systems(state);
   note_system_times(state);
   if (state.trace.log != nullptr) trace_tick(state);
   ++state.clock.tick;

@@ -123,7 +123,7 @@ void Planner::give_back_unwanted(GeometryCache& cache, PlanReport& report) {
   }
 }
 
-// Gives back the reservation that would be served last, so that its room can serve a better one.
+// Gives back the reservation that would be served last, to make room for a better one.
 bool Planner::give_back_last(GeometryCache& cache, PlanReport& report) {
   while (!last_first_.empty()) {
     const std::uint32_t position = last_first_.back();
@@ -135,6 +135,14 @@ bool Planner::give_back_last(GeometryCache& cache, PlanReport& report) {
     return true;
   }
   return false;
+}
+
+// What a request of these parameters must keep alive.
+std::shared_ptr<const models::EditLayer> Planner::edits_for(
+    const models::Parameters& parameters) const {
+  if (parameters.edits() == nullptr) return nullptr;
+  PSYGEN_CHECK(parameters.edits() == edits_.get(), "wants refer to the edits that were set last");
+  return edits_;
 }
 
 void Planner::add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report) {
@@ -172,7 +180,7 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
   }
   const MeshRecord& record = *cache.get(*handle);
   append({*handle, item.key, *want.parameters, record.destination, record.size, item.work,
-          item.cost, want.owner},
+          item.cost, want.owner, edits_for(*want.parameters)},
          want, cache);
   ++report.reserved;
   report.predicted_seconds += item.order.predicted_seconds;

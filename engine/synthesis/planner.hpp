@@ -8,8 +8,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/synthesis/cost_model.hpp"
@@ -19,15 +21,17 @@
 
 namespace psygen::synthesis {
 
+// A mesh that is wanted, and how urgently.
 struct Want {
   MeshKey key;
-  const models::Parameters* parameters = nullptr;  // read during plan() only
+  const models::Parameters* parameters = nullptr;  // read during plan() only; see set_edits()
   std::uint64_t owner = 0;
   Rank rank;             // of the request; also decides what it may evict
   float deadline_s = 0;  // seconds from now until it is visible; for Policy::kDeadline
   bool at_once = false;  // made by this thread if it may be, even beyond PlanLimits::seconds_here
 };
 
+// Limits of one plan.
 struct PlanLimits {
   double seconds_ahead = 0.25;  // predicted work per modeler in one plan
   std::uint32_t max_requests = 4096;
@@ -45,6 +49,7 @@ struct PlanLimits {
   std::uint32_t max_new_hidden = UINT32_MAX;
 };
 
+// What planning did.
 struct PlanReport {
   std::uint32_t published = 0;  // requests in the new plan: carried + reserved − executed
   std::uint32_t carried = 0;    // unclaimed ones of the last plan that are wanted still
@@ -59,8 +64,11 @@ struct PlanReport {
   double predicted_seconds = 0;       // of the whole plan, one core
 };
 
+// Makes the plans of one cache. Keeps what is requested from plan to plan.
 class Planner {
  public:
+  // From now on the parameters of wants refer to this layer, or to none. Requests keep their own.
+  void set_edits(std::shared_ptr<const models::EditLayer> edits) { edits_ = std::move(edits); }
   // Replaces the manager's plan. Wants may repeat a key (the first in the order counts). A ready or
   // failed mesh is left as it is; a requested one takes over rank and owner of its want.
   PlanReport plan(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
@@ -100,6 +108,9 @@ class Planner {
   }
   void execute_here(SynthesisManager& manager, double seconds, PlanReport& report);
 
+  std::shared_ptr<const models::EditLayer> edits_for(const models::Parameters& parameters) const;
+
+  std::shared_ptr<const models::EditLayer> edits_;
   std::vector<Request> reclaimed_;
   std::vector<std::uint32_t> by_slot_;  // positions in reclaimed_, sorted by slot
   std::vector<bool> kept_;              // of reclaimed_: wanted, and not given back

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <new>
 
-#include "engine/core/assert.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/core/replace_file.hpp"
@@ -30,15 +30,15 @@ std::string cell(const std::optional<double>& ms) {
   return ms ? fmt::format("{:.4f}", *ms) : std::string();
 }
 
-std::string row(const FrameRecord& r, std::size_t system_count) {
+std::string row(const FrameRecord& r, std::span<const float> system_ms) {
   std::string text;
   const auto to = std::back_inserter(text);
   fmt::format_to(to, "{},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{}", r.index,
                  r.time_s, r.frame_ms, r.main_cpu_ms, r.wait_ms(), r.device_wait_ms, r.acquire_ms,
                  r.present_ms, r.record_ms, cell(r.gpu_ms), cell(r.gpu_shadows_ms),
                  name_of(r.apart));
-  for (std::size_t i = 0; i < system_count; ++i)
-    fmt::format_to(to, ",{:.4f}", r.system_ms[i]);
+  for (const float ms : system_ms)
+    std::isnan(ms) ? fmt::format_to(to, ",") : fmt::format_to(to, ",{:.4f}", ms);
   fmt::format_to(
       to,
       ",{:.3f},{:.3f},{},{},{},{},{},{:.4f},{:.4f},{},{},{},{},{},{},{},{},{},{},{},{},{:.6f}\n",
@@ -60,19 +60,25 @@ std::string_view name_of(Apart apart) {
 
 FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
     : systems_(std::move(systems)), max_frames_(max_frames) {
-  PSYGEN_CHECK(systems_.size() <= kMaxSystems, "more systems than a frame record has room for");
   constexpr std::size_t kSmallPart = 4;  // of the memory that is left
-  if (core::memory_left(kSmallPart * max_frames_ * sizeof(FrameRecord))) {
+  const std::size_t row_bytes = sizeof(FrameRecord) + systems_.size() * sizeof(float);
+  if (core::memory_left(kSmallPart * max_frames_ * row_bytes)) {
     frames_.reserve(max_frames_);
+    system_ms_.reserve(max_frames_ * systems_.size());
   } else {
     core::note_refused_bytes(0);  // the log does without it
   }
 }
 
-void FrameLog::add(const FrameRecord& record) {
+void FrameLog::add(const FrameRecord& record, std::span<const float> system_ms) {
   if (frames_.size() < max_frames_) {
     try {
-      return frames_.push_back(record);
+      system_ms_.resize((frames_.size() + 1) * systems_.size(),
+                        std::numeric_limits<float>::quiet_NaN());
+      frames_.push_back(record);
+      if (system_ms.size() == systems_.size())
+        std::ranges::copy(system_ms, system_ms_.end() - std::ssize(system_ms));
+      return;
     } catch (const std::bad_alloc&) {
       max_frames_ = frames_.size();
     }
@@ -107,8 +113,8 @@ core::Result<void> write_frames_csv(const std::filesystem::path& path, const Fra
   for (const std::string& system : log.systems())
     file.write("," + system + "_ms");
   file.write(fmt::format(",{}\n", kColumnsAfterSystems));
-  for (const FrameRecord& record : log.frames())
-    file.write(row(record, log.systems().size()));
+  for (std::size_t i = 0; i < log.frames().size(); ++i)
+    file.write(row(log.frames()[i], log.system_ms(i)));
   return file.commit();
 }
 

@@ -18,9 +18,6 @@
 
 namespace psygen::telemetry {
 
-// How many systems of the tick a row has times for.
-inline constexpr std::size_t kMaxSystems = 16;
-
 // What sets a frame apart from the others: its time is excluded from all figures of times.
 enum class Apart : std::uint8_t {
   kNo,
@@ -49,8 +46,6 @@ struct FrameRecord {
   std::optional<double> gpu_shadows_ms;  // part of gpu_ms: shadow maps
   std::uint64_t device_frame = 0;        // the renderer's number of this frame; 0: none
   Apart apart = Apart::kNo;
-  // In the order of FrameLog::systems(), without waiting for the device or the display.
-  std::array<float, kMaxSystems> system_ms{};
 
   double error_pixels = 0;      // that levels of detail may have
   double memory_factor = 1;     // factor by which the geometry budget raised it
@@ -81,17 +76,18 @@ struct FrameRecord {
   double wait_ms() const { return device_wait_ms + acquire_ms + present_ms; }
 };
 
-// The rows of one run, and samples of quantities that have no row.
+// The rows of one run with the times of its systems, and samples of quantities that have no row.
 class FrameLog {
  public:
-  // `systems` are the names of the systems in the order of the tick, at most kMaxSystems. Address
-  // space for `max_frames` rows is reserved (not touched) when it is a small part of the memory
-  // that the system has left. Frames beyond it, or beyond the memory, are counted but not kept.
+  // `systems` are the names of the systems in the order of the tick. Address space for `max_frames`
+  // rows is reserved (not touched) when it is a small part of the memory that the system has left.
+  // Frames beyond it, or beyond the memory, are counted but not kept.
   explicit FrameLog(std::vector<std::string> systems,
                     std::size_t max_frames = std::size_t{1} << 18);
 
-  // Appends a row.
-  void add(const FrameRecord& record);
+  // Appends a row. `system_ms` are the times of systems() in ms, without waiting for the device or
+  // the display. Of another number of systems none is kept: they are not those of the log.
+  void add(const FrameRecord& record, std::span<const float> system_ms = {});
   // Adds what the device took for one of the last frames, which is known only later. Ignores frames
   // that are not among the last 16.
   void set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_ms);
@@ -104,6 +100,10 @@ class FrameLog {
   // The systems' names, and the rows kept. Valid until the next add().
   std::span<const std::string> systems() const { return systems_; }
   std::span<const FrameRecord> frames() const { return frames_; }
+  // The times of systems() in row `frame` of frames(), in ms; NaN where they are unknown.
+  std::span<const float> system_ms(std::size_t frame) const {
+    return std::span(system_ms_).subspan(frame * systems_.size(), systems_.size());
+  }
   // The rows of frames that start at `warmup_s` or later. Rows are in the order of time.
   std::span<const FrameRecord> frames_since(double warmup_s) const;
   // How many frames were counted but not kept.
@@ -116,6 +116,7 @@ class FrameLog {
   std::vector<std::string> systems_;
   std::size_t max_frames_;
   std::vector<FrameRecord> frames_;
+  std::vector<float> system_ms_;  // of each row, in the order of systems_
   std::uint64_t dropped_ = 0;
   SampleSet time_to_visible_ms_;
   SampleSet cost_error_percent_;

@@ -95,8 +95,12 @@ std::vector<PlotSeries> system_series(const FrameLog& log) {
   constexpr int kOthersColour = 8;
   std::vector<PlotSeries> all;
   for (std::size_t i = 0; i < log.systems().size(); ++i) {
-    all.push_back(
-        {log.systems()[i], 0, timed_column(log, [i](const auto& r) { return r.system_ms[i]; })});
+    std::vector<double> ms;
+    for (std::size_t frame = 0; frame < log.frames().size(); ++frame) {
+      const bool timed = log.frames()[frame].apart == Apart::kNo;
+      ms.push_back(timed ? double{log.system_ms(frame)[i]} : kNothing);
+    }
+    all.push_back({log.systems()[i], 0, std::move(ms)});
   }
   std::ranges::stable_sort(all, std::greater{},
                            [](const PlotSeries& series) { return sum_of(series.values); });

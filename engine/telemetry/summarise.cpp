@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "engine/telemetry/statistics.hpp"
@@ -97,8 +98,23 @@ void summarise_device(Summary& s, Frames frames) {
               percentile(known(frames, &FrameRecord::gpu_shadows_ms), 0.5)};
 }
 
+// Of the last `measured` frames of the log, those that are timed.
+void summarise_systems(Summary& s, const FrameLog& log, std::size_t measured) {
+  const Frames frames = log.frames();
+  for (std::size_t system = 0; system < log.systems().size(); ++system) {
+    std::vector<double> ms;
+    for (std::size_t i = frames.size() - measured; i < frames.size(); ++i) {
+      const float value = log.system_ms(i)[system];
+      if (frames[i].apart == Apart::kNo && !std::isnan(value)) ms.push_back(double{value});
+    }
+    constexpr std::array kTwo{0.5, 0.99};
+    const std::vector<Figure> p = percentiles(ms, kTwo);
+    s.system_ms.push_back({log.systems()[system], p[0], p[1]});
+  }
+}
+
 // `frames` are the timed ones.
-void summarise_times(Summary& s, Frames frames, const FrameLog& log) {
+void summarise_times(Summary& s, Frames frames) {
   const std::vector<double> ms = column(frames, [](const auto& r) { return r.frame_ms; });
   constexpr std::array kPercentiles{0.5, 0.95, 0.99, 0.999};
   const std::vector<Figure> p = percentiles(ms, kPercentiles);
@@ -106,10 +122,6 @@ void summarise_times(Summary& s, Frames frames, const FrameLog& log) {
   s.low1_fps = low1_fps(ms);
   s.hitches = hitches(ms);
   s.stutter_percent = stutter_percent(ms);
-  for (std::size_t i = 0; i < log.systems().size(); ++i) {
-    const Spread system = spread(frames, [i](const auto& r) { return r.system_ms[i]; });
-    s.system_ms.push_back({log.systems()[i], system.p50, system.p99});
-  }
   s.wait_ms = {spread(frames, [](const auto& r) { return r.wait_ms(); }),
                spread(frames, [](const auto& r) { return r.device_wait_ms; }),
                spread(frames, [](const auto& r) { return r.acquire_ms; }),
@@ -225,7 +237,8 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   static_cast<RunSettings&>(s.run) = facts.run;
   s.run.warmup_seconds = warmup_s;
   summarise_run(s, frames, log);
-  summarise_times(s, timed(frames), log);
+  summarise_times(s, timed(frames));
+  summarise_systems(s, log, frames.size());
   summarise_drawing(s, frames);
   summarise_missing(s, frames, log, warmup_s);
   summarise_cache(s, frames, log, facts);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
+#include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::world {
@@ -83,12 +84,39 @@ void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_d
 }
 
 models::Parameters terrain_parameters(const World& world, core::BlockCoord block) {
-  models::Parameters p = world.terrain;
+  return terrain_parameters(world, block, 0);
+}
+
+models::Parameters terrain_parameters(const World& world, core::BlockCoord node, int node_level) {
+  models::Parameters p = unedited_terrain(world);
   p.set_integer(models::kTerrainSeed, std::bit_cast<std::int64_t>(world.seed));
-  p.set_integer(models::kTerrainBlockX, block.x);
-  p.set_integer(models::kTerrainBlockZ, block.z);
+  p.set_integer(models::kTerrainBlockX, node.x);
+  p.set_integer(models::kTerrainBlockZ, node.z);
+  p.set_integer(models::kTerrainNodeLevel, node_level);
   set_sun(p, world.sky.sun_azimuth_deg, world.sky.sun_elevation_deg);
+  if (!world.edits) return p;
+  const auto at = models::QuadPlace::of(node, static_cast<std::uint32_t>(node_level));
+  const std::uint64_t hash =
+      world.edits->ground.hash_of(at, ground_margin(world, node_level), world.block_size_m());
+  if (hash != 0) p.set_edits(world.edits.get(), hash);
   return p;
+}
+
+double ground_margin(const World& world, int node_level) {
+  const auto size = static_cast<int>(world.terrain.integer(models::kTerrainSize));
+  const double cells = models::terrain_strides(size)[1] + 1;
+  return std::ldexp(cells / static_cast<double>(size - 1), node_level);
+}
+
+models::Parameters unedited_terrain(const World& world) {
+  models::Parameters p = world.terrain;
+  p.set_edits(nullptr, 0);
+  return p;
+}
+
+models::BlockGround edited_ground(const World& world, core::BlockCoord block,
+                                  std::size_t questions) {
+  return {world.terrain, block, questions};
 }
 
 std::size_t models_per_block(const World& world) {
@@ -98,24 +126,71 @@ std::size_t models_per_block(const World& world) {
   return count;
 }
 
+namespace {
+
+// Whether edits may change heights in a block.
+bool has_edited_ground(const World& world, core::BlockCoord block) {
+  return world.edits &&
+         world.edits->ground.reaches(models::QuadPlace::of(block), world.block_size_m());
+}
+
+// The placements of the world's function that nobody removed. They find their places on `base` and
+// stand on `ground`.
+void place_instances(const World& world, const models::Registry& registry, core::BlockCoord block,
+                     const models::BlockGround& base, const models::BlockGround& ground,
+                     const models::BlockEdits* edits, std::vector<Placement>& out) {
+  std::uint32_t index = 0;
+  for (const Scatter& scatter : world.scatter) {
+    const Scattering scattering(world, registry[scatter.model], scatter, block);
+    for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
+      if (edits != nullptr && edits->is_removed(index)) continue;
+      auto place = scattering.place(base, index);
+      if (!place) continue;
+      if (&base != &ground) {
+        const models::GroundPoint point = ground.at({place->position.x, place->position.z});
+        place->position.y = static_cast<float>(point.height_m);
+        place->normal = point.normal;
+      }
+      out.push_back(
+          {scatter.model, index, place->position, scattering.parameters(index, place->normal)});
+    }
+  }
+}
+
+void place_by_hand(const models::BlockEdits& edits, const models::Registry& registry,
+                   const models::BlockGround& ground, std::vector<Placement>& out) {
+  for (const models::PlacedModel& placed : edits.placed) {
+    const models::GroundPoint point = ground.at(placed.local_m);
+    const models::ModelType& type = registry[placed.model];
+    Placement placement{
+        placed.model,
+        kPlacedIndex + placed.id,
+        {placed.local_m.x, static_cast<float>(point.height_m) + placed.above_m, placed.local_m.y},
+        placed.parameters};
+    set_slope(type, slope_parameters(type),
+              glm::vec2(point.normal.x, point.normal.z) / -point.normal.y, placement.parameters);
+    out.push_back(placement);
+  }
+}
+
+}  // namespace
+
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out) {
-  place_models(world, registry, block,
-               models::BlockGround(world.terrain, block, models_per_block(world)), out);
+  place_models(world, registry, block, edited_ground(world, block, models_per_block(world)), out);
 }
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out) {
   out.clear();
-  std::uint32_t index = 0;
-  for (const Scatter& scatter : world.scatter) {
-    const Scattering scattering(world, registry[scatter.model], scatter, block);
-    for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
-      if (const auto place = scattering.place(ground, index))
-        out.push_back(
-            {scatter.model, index, place->position, scattering.parameters(index, place->normal)});
-    }
+  const models::BlockEdits* const edits = world.edits ? world.edits->block(block) : nullptr;
+  if (has_edited_ground(world, block)) {
+    const models::BlockGround base(unedited_terrain(world), block, models_per_block(world));
+    place_instances(world, registry, block, base, ground, edits, out);
+  } else {
+    place_instances(world, registry, block, ground, ground, edits, out);
   }
+  if (edits != nullptr) place_by_hand(*edits, registry, ground, out);
 }
 
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,

@@ -1,6 +1,6 @@
-// Places models: the models of a block with their parameters, as a pure function of world and
-// block. The same on every machine and in any order of blocks. Any thread. Knows no meshes.
-// docs/models.md.
+// Places models: the models of a block with their parameters, as a pure function of world, its
+// edits and block. The same on every machine and in any order of blocks. Any thread. Knows no
+// meshes. docs/models.md.
 #pragma once
 
 #include <array>
@@ -19,6 +19,9 @@ namespace psygen::world {
 
 // The index of a block's terrain among its meshes. Models count from 0.
 inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
+// Models that were placed by hand have this index plus their id. Ids end at kMaxEditId.
+inline constexpr std::uint32_t kPlacedIndex = 1U << 30;
+inline constexpr std::uint32_t kMaxEditId = (1U << 30) - 1;
 
 // One model on a block.
 struct Placement {
@@ -75,20 +78,33 @@ inline constexpr double kSunAzimuthStep = 2, kSunElevationStep = 1;
 // and so do all suns in the zenith.
 void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_deg);
 
-// The terrain of one block in the light of the world's sky.
+// The terrain of one block in the light of the world's sky, with the edits that reach it.
 models::Parameters terrain_parameters(const World& world, core::BlockCoord block);
+// The same for a node of 2^level × 2^level blocks, counted in nodes of its level.
+models::Parameters terrain_parameters(const World& world, core::BlockCoord node, int node_level);
+// How far beyond a node's border its ground mesh depends on heights, in blocks.
+double ground_margin(const World& world, int node_level);
 
-// An upper bound of the placements of one block: the sum of all counts. Exact where no scatter has
-// a filter.
+// The world's terrain as the function has it, without edits.
+models::Parameters unedited_terrain(const World& world);
+// The ground of one block with its edits, for about `questions` queries. `world` and its edits must
+// outlive it.
+models::BlockGround edited_ground(const World& world, core::BlockCoord block,
+                                  std::size_t questions);
+
+// An upper bound of the placements of one block without edits: the sum of all counts. Exact where
+// no scatter has a filter.
 std::size_t models_per_block(const World& world);
 
 // Replaces `out` by the placements of `block`, by growing index. An instance that finds no allowed
 // place in kPlacementTries tries is left out; the indices of the others do not change. About 10 µs
 // for the block's heights and 0.1 µs for each model. Does not check whether the world contains the
 // block. Needs 350 KiB of stack.
+// With edits: instances find their places on the ground without edits, and stand on the ground with
+// them. Removed ones are left out; placed ones follow, by growing id.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out);
-// The same with the block's ground already made.
+// The same with the block's ground already made, which has the block's edits.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out);
 

@@ -1,6 +1,7 @@
 #include "engine/world/world.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/models/terrain/terrain.hpp"
 
@@ -12,6 +13,12 @@ double World::block_size_m() const {
 
 double World::cell_m() const {
   return terrain.real(models::kTerrainCellM);
+}
+
+void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits) {
+  world.edits = std::move(edits);
+  // Without a hash: which of the edits matter is known only for a node (placement.hpp).
+  world.terrain.set_edits(world.edits.get(), 0);
 }
 
 Palette drawn_palette(const World& world) {

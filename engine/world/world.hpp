@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -112,7 +113,7 @@ struct Palette {
   friend bool operator==(const Palette&, const Palette&) = default;
 };
 
-// A whole world.
+// A whole world: a function, and the edits that lie over it.
 struct World {
   int format = kWorldFormat;
   std::string name;
@@ -125,6 +126,9 @@ struct World {
   Sky sky;
   Water water;
   Palette palette;
+  // What was changed by hand (edits/edits.hpp); null: nothing. Not part of world files. `terrain`
+  // names the same layer: use set_edits().
+  std::shared_ptr<const models::EditLayer> edits;
 
   double block_size_m() const;  // metres along one side of a block
   double cell_m() const;        // between neighbouring vertices of the terrain
@@ -133,6 +137,9 @@ struct World {
   bool is_endless() const { return blocks_x == 0 || blocks_z == 0; }
   friend bool operator==(const World&, const World&) = default;
 };
+
+// Replaces the edits of a world; null: none. O(1).
+void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits);
 
 // The palette with which ground is drawn and exported: World::palette with sand on the shore of the
 // water.

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <thread>
 
 #include "ecs/snapshot.hpp"
@@ -146,9 +147,10 @@ TEST(Schedule, what_must_run_on_the_calling_thread_does) {
   Schedule schedule(world, 3);
   schedule.provide(ids);
   for (int i = 0; i < 20; ++i) {
-    schedule.add("elsewhere", [](Query<Velocity>) {});
+    schedule.add("elsewhere " + std::to_string(i), [](Query<Velocity>) {});
     schedule.add(
-        "window", [](std::set<std::thread::id>& s) { s.insert(std::this_thread::get_id()); },
+        "window " + std::to_string(i),
+        [](std::set<std::thread::id>& s) { s.insert(std::this_thread::get_id()); },
         RunsOn::kCallingThread);
   }
   for (int i = 0; i < 20; ++i)
@@ -325,6 +327,112 @@ TEST(ScheduleDeathTest, adding_and_running_from_inside_a_system_is_said) {
   again.provide(again);
   again.add("again", [](Schedule& s) { s.run(); });
   EXPECT_DEATH(again.run(), "run from inside a system");
+}
+
+TEST(Schedule, a_system_runs_at_the_place_that_it_names) {
+  for (const std::size_t threads : {1U, 4U}) {
+    World world;
+    std::vector<int> order;
+    Schedule schedule(world, threads);
+    schedule.provide(order);
+    schedule.add(
+        "last", [](std::vector<int>& o) { o.push_back(4); }, after("second"));
+    schedule.add("first", [](std::vector<int>& o) { o.push_back(1); });
+    schedule.add("second", [](std::vector<int>& o) { o.push_back(3); });
+    schedule.add(
+        "between", [](std::vector<int>& o) { o.push_back(2); }, before("second"));
+    EXPECT_EQ(schedule.arrange(), "");
+    EXPECT_EQ(schedule.systems()[1].name, "between");
+    schedule.run();
+    EXPECT_EQ(order, (std::vector<int>{1, 2, 3, 4}));
+    schedule.add(
+        "zeroth", [](std::vector<int>& o) { o.push_back(0); }, before("first"));
+    order.clear();
+    schedule.run();
+    EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3, 4}));
+  }
+}
+
+TEST(Schedule, an_order_that_is_impossible_is_told_and_changes_nothing) {
+  World world;
+  Schedule schedule(world);
+  schedule.add("a", [](World&) {});
+  schedule.add(
+      "b", [](World&) {}, Place{.before = {"a"}, .after = {"a"}});
+  EXPECT_EQ(schedule.arrange(), "systems wait for each other: 'a' after 'b' after 'a'");
+  EXPECT_EQ(schedule.systems()[0].name, "a");
+  EXPECT_DEATH(schedule.run(), "schedule: systems wait for each other");
+}
+
+TEST(Schedule, events_of_one_run_reach_systems_of_this_run_or_the_next) {
+  struct Fall {
+    int height_m;
+  };
+  for (const std::size_t threads : {1U, 4U}) {
+    World world;
+    Schedule schedule(world, threads);
+    std::vector<int>& seen = schedule.emplace<std::vector<int>>();
+    schedule.emplace<EventQueue<Fall>>();
+    const auto note = [](std::vector<int>& heights, EventReader<Fall>& falls) {
+      falls.drain([&](std::span<const Fall> events) {
+        for (const Fall& fall : events)
+          heights.push_back(fall.height_m);
+      });
+    };
+    schedule.add("before", note);
+    schedule.add("fall", [](EventQueue<Fall>& falls) {
+      falls.emit(Fall{1});
+      falls.emit(Fall{2});
+    });
+    schedule.add("after", note);
+    EXPECT_TRUE(declares(info(schedule, "fall"), "Fall", true));
+    schedule.run();
+    EXPECT_EQ(seen, (std::vector<int>{1, 2}));
+    schedule.run();
+    EXPECT_EQ(seen, (std::vector<int>{1, 2, 1, 2, 1, 2}));
+  }
+}
+
+TEST(Schedule, owns_what_it_emplaces_until_its_systems_are_gone) {
+  const auto alive = std::make_shared<int>(1);
+  struct Holder {
+    std::shared_ptr<int> value;
+  };
+  World world;
+  {
+    Schedule schedule(world);
+    EXPECT_EQ(schedule.emplace<Holder>(alive).value.use_count(), 2);
+  }
+  EXPECT_EQ(alive.use_count(), 1);
+}
+
+TEST(Schedule, an_exception_of_a_system_ends_the_run_and_names_it) {
+  for (const std::size_t threads : {1U, 4U}) {
+    World world;
+    Tally tally;
+    bool fail = true;
+    Schedule schedule(world, threads);
+    schedule.provide(tally, fail);
+    schedule.add("broken", [](const bool& f, Tally&, Commands& commands) {
+      commands.create(Position{});
+      if (f) throw std::runtime_error("no more wolves");
+    });
+    schedule.add("count", [](Tally& t) { ++t.seen; });
+    try {
+      schedule.run();
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "no more wolves");
+    }
+    EXPECT_EQ(schedule.threw(), "broken");
+    EXPECT_EQ(tally.seen, 0U);
+    EXPECT_EQ(world.size(), 0U);
+    fail = false;
+    schedule.run();  // as if nothing had happened
+    EXPECT_EQ(schedule.threw(), "");
+    EXPECT_EQ(tally.seen, 1U);
+    EXPECT_EQ(world.size(), 1U);
+  }
 }
 
 }  // namespace

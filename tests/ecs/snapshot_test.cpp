@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "ecs/snapshot_format.hpp"
@@ -457,6 +459,138 @@ TEST(SnapshotOfAnOlderProgram, a_newer_version_is_refused) {
   bytes[8] = std::byte{2};
   repair(bytes);
   EXPECT_EQ(status_of(bytes), SnapshotStatus::kNewerVersion);
+}
+
+// ---- parts of worlds ----------------------------------------------------------------------------
+
+// A world with these creatures among others.
+void fill_with_others(World& world) {
+  declare_all(world);
+  world.create<Position, Mesh>(50);
+  fill(world);
+  world.create<Position, Mesh>(7);
+}
+
+std::set<std::string> names_in(const World& world) {
+  std::set<std::string> names;
+  world.each<const Creature>([&](auto, std::span<const Creature> all) {
+    for (const Creature& creature : all)
+      names.insert(creature.name + std::to_string(creature.titles.size()));
+  });
+  return names;
+}
+
+TEST(PartOfAWorld, has_the_entities_with_the_component_alone) {
+  World world;
+  fill_with_others(world);
+  const std::vector<std::byte> bytes = save_snapshot_of<Creature>(world);
+  World loaded;
+  declare_all(loaded);
+  ASSERT_TRUE(load_snapshot(bytes, loaded));
+  EXPECT_EQ(loaded.size(), world.count<Creature>());
+  EXPECT_EQ(loaded.count<Mesh>(), 0U);
+  EXPECT_EQ(names_in(loaded), names_in(world));
+  EXPECT_EQ(loaded.count<Selected>(), world.count<Selected>());
+}
+
+TEST(PartOfAWorld, of_nothing_is_empty) {
+  World world;
+  world.create<Position>(3);
+  const std::vector<std::byte> bytes = save_snapshot_of<Creature>(world);
+  World loaded;
+  ASSERT_TRUE(load_snapshot(bytes, loaded));
+  EXPECT_EQ(loaded.size(), 0U);
+}
+
+TEST(PartOfAWorld, is_appended_beside_what_is_there_and_its_handles_follow) {
+  World world;
+  fill_with_others(world);
+  const std::vector<std::byte> bytes = save_snapshot_of<Creature>(world);
+  World other;
+  declare_all(other);
+  other.create<Creature, Position>(4);
+  other.create<Position>(9);
+  const Entity edited = other.create<Creature, Hidden>(1).entities[0];
+  other.add<Edited>(std::span(&edited, 1));
+  std::vector<Entity> appended;
+  ASSERT_TRUE(append_snapshot(bytes, other, &appended));
+  EXPECT_EQ(appended.size(), world.count<Creature>());
+  EXPECT_EQ(other.size(), 14 + appended.size());
+  EXPECT_EQ(other.get<Edited>(edited)->version, Edited{}.version);
+  std::size_t friends = 0, versions = 0;
+  for (const Entity entity : appended) {
+    const Creature* creature = other.get<Creature>(entity);
+    ASSERT_NE(creature, nullptr);
+    if (const Edited* e = other.get<Edited>(entity)) versions += e->version == 42 ? 1 : 0;
+    if (creature->friend_of == kNullEntity) continue;
+    ++friends;
+    EXPECT_TRUE(std::ranges::find(appended, creature->friend_of) != appended.end());
+    EXPECT_NE(other.get<Hidden>(creature->friend_of), nullptr);
+  }
+  EXPECT_EQ(friends, world.count<Creature>() - 3);
+  EXPECT_EQ(versions, 1U);
+}
+
+TEST(PartOfAWorld, children_follow_their_parents_and_those_left_out_are_no_children) {
+  World world;
+  declare_all(world);
+  const Entity parent = world.create<Children, Position>(1).entities[0];
+  const Entity child = world.create<Position>(1).entities[0];
+  const Entity stranger = world.create<Mesh>(1).entities[0];
+  world.set_children(parent, std::array{stranger, child});
+  const std::vector<std::byte> bytes = save_snapshot_of<Position>(world);
+  World other;
+  declare_all(other);
+  other.create<Mesh>(5);
+  std::vector<Entity> appended;
+  ASSERT_TRUE(append_snapshot(bytes, other, &appended));
+  std::size_t parents = 0;
+  for (const Entity entity : appended) {
+    if (other.get<Children>(entity) == nullptr) continue;
+    ++parents;
+    ASSERT_EQ(other.children(entity).size(), 1U);
+    EXPECT_NE(other.get<Position>(other.children(entity)[0]), nullptr);
+  }
+  EXPECT_EQ(parents, 1U);
+}
+
+TEST(PartOfAWorld, a_whole_snapshot_can_be_appended_again_and_again) {
+  World world;
+  declare_all(world);
+  fill(world);
+  const std::vector<std::byte> bytes = save_snapshot(world);
+  const std::size_t once = world.size();
+  for (std::size_t times = 2; times < 5; ++times) {
+    ASSERT_TRUE(append_snapshot(bytes, world));
+    EXPECT_EQ(world.size(), times * once);
+  }
+}
+
+TEST(PartOfAWorld, beyond_the_limits_it_is_refused_and_the_world_stays) {
+  World small;
+  declare_all(small);
+  small.create<Creature, Position>(12);
+  const std::vector<std::byte> bytes = save_snapshot(small);
+  for (const WorldLimits& limits :
+       {WorldLimits{.max_entities = 20}, WorldLimits{.max_rows_per_table = 20}}) {
+    World world(limits);
+    declare_all(world);
+    world.create<Creature, Position>(12);
+    const std::vector<std::byte> before = save_snapshot(world);
+    EXPECT_EQ(append_snapshot(bytes, world).status, SnapshotStatus::kTooLarge);
+    EXPECT_EQ(save_snapshot(world), before);
+  }
+}
+
+TEST(PartOfAWorld, damaged_bytes_leave_the_world_as_it_was) {
+  World world;
+  fill_with_others(world);
+  const std::vector<std::byte> bytes = save_snapshot_of<Creature>(world);
+  const std::vector<std::byte> before = save_snapshot(world);
+  for (std::size_t length = 0; length < bytes.size(); length += 37) {
+    EXPECT_FALSE(append_snapshot(std::span(bytes).first(length), world));
+    EXPECT_EQ(save_snapshot(world), before);
+  }
 }
 
 }  // namespace

@@ -32,13 +32,15 @@ std::vector<std::string> shipped_texts() {
 
 TEST(Readers, TakeEveryShippedFileAsWhatItIs) {
   FileInMemory file;
+  EXPECT_EQ(read_as_everything(example_bindings(), file), 1);
   for (const std::string& text : shipped_texts())
     EXPECT_EQ(read_as_everything(text, file), 1) << text.substr(0, 200);
 }
 
 TEST(Readers, SurviveShippedFilesWithUnicodeAndOtherThingsInWrongPlaces) {
   constexpr int kTextsOfEachFile = 40;
-  const std::vector<std::string> texts = shipped_texts();
+  std::vector<std::string> texts = shipped_texts();
+  texts.push_back(example_bindings());
   ASSERT_GT(texts.size(), 10u);
   FileInMemory file;
   std::mt19937_64 random(1);

@@ -6,6 +6,7 @@
 
 #include "engine/core/assert.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/input/bindings_file.hpp"
 #include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -58,7 +59,36 @@ bool read_as_path(const std::filesystem::path& file) {
   return true;
 }
 
+input::Actions make_actions() {
+  using platform::Key;
+  input::Actions actions;
+  (void)actions.add("jump", {{Key::kSpace}, {platform::PadButton::kA}});
+  (void)actions.add("move_x", {{Key::kD}, {input::PadWay::kLeftStickLeft, -1, 0.3F}});
+  return actions;
+}
+
+bool read_as_bindings(const std::filesystem::path& file) {
+  input::Actions actions = make_actions();
+  const std::string before = input::bindings_text(actions);
+  const auto read = input::load_bindings(file, actions);
+  if (!read) {
+    check_refusal(read.error(), file.string());
+    PSYGEN_CHECK(input::bindings_text(actions) == before, "refused bindings change nothing");
+    return false;
+  }
+  const std::string written = input::bindings_text(actions);
+  input::Actions again = make_actions();
+  PSYGEN_CHECK(input::apply_bindings(written, "again", again).has_value() &&
+                   input::bindings_text(again) == written,
+               "bindings read back as they were");
+  return true;
+}
+
 }  // namespace
+
+std::string example_bindings() {
+  return input::bindings_text(make_actions());
+}
 
 FileInMemory::FileInMemory() : descriptor_(memfd_create("text", MFD_CLOEXEC)) {
   PSYGEN_CHECK(descriptor_ >= 0, "there is memory for a file");
@@ -81,7 +111,8 @@ std::filesystem::path FileInMemory::path() const {
 
 int read_as_everything(std::string_view text, FileInMemory& file) {
   file.write(text);
-  return int{read_as_world(file.path())} + int{read_as_path(file.path())};
+  return int{read_as_world(file.path())} + int{read_as_path(file.path())} +
+         int{read_as_bindings(file.path())};
 }
 
 }  // namespace psygen::fuzz

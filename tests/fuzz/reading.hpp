@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace psygen::fuzz {
@@ -21,10 +22,13 @@ class FileInMemory {
   int descriptor_;
 };
 
-// Puts `text` into the file and reads it as a world and as a camera path. A refusal is one
-// printable line that names the file and leaves the registry as it was; a world reads back equal
-// from what write_world() makes of it; a path has valid poses. Returns how many readers took the
-// text.
+// Puts `text` into the file and reads it as a world, as a camera path and as bindings of actions. A
+// refusal is one printable line that names the file and changes nothing; worlds and bindings read
+// back equal from what is written of them; a path has valid poses. Returns how many readers took
+// the text.
 int read_as_everything(std::string_view text, FileInMemory& file);
+
+// A text that read_as_everything() takes as bindings.
+std::string example_bindings();
 
 }  // namespace psygen::fuzz

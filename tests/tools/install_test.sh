@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs the build into an empty folder, builds and runs another project against it, and runs what
-# was installed: from other folders, after the installation has been moved.
+# Installs the build into an empty folder, builds and runs other projects against it (tests/tools/consumer),
+# and runs what was installed: from other folders, after the installation has been moved. Nothing of
+# the engine is compiled again.
 #   install_test.sh BUILD_DIR SOURCE_DIR
 set -euo pipefail
 build="$1" source="$2"
@@ -8,15 +9,42 @@ folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
 
 cmake --install "$build" --prefix "$folder/psygen" >/dev/null
-cmake -S "$source/tests/tools/consumer" -B "$folder/build" -G Ninja \
-  -DCMAKE_PREFIX_PATH="$folder/psygen" -DCMAKE_BUILD_TYPE=Debug >/dev/null
+consumers="$source/tests/tools/consumer"
+configure() { # PROJECT arguments...
+  cmake -S "$consumers/$1" -B "$folder/build/$1" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_PREFIX_PATH="$folder/psygen" "${@:2}" >"$folder/log.txt" 2>&1 ||
+    { cat "$folder/log.txt"; exit 1; }
+}
+
+# No library is named by a bare -l, and nothing of this build is left in the package.
+cmake_files="$(dirname "$(find "$folder/psygen" -name psygen-config.cmake)")"
+if grep -hE 'INTERFACE_LINK_LIBRARIES ' "$cmake_files"/*.cmake | grep -oE '"[^"]*"' | tr -d '"' | tr ';' '\n' |
+  sed -E 's/^\\?\$<LINK_ONLY:(.*)>$/\1/' | grep -vE '^$|^glfw$|::'; then
+  echo "the package links the libraries above by their bare names"; exit 1
+fi
+if grep -hE 'GLM_FORCE|ffp-contract|disable-new-dtags|'"$source" "$cmake_files"/*.cmake; then
+  echo "the package has the settings above for its users"; exit 1
+fi
+# Headers that are not public stay private; documents, worlds and paths are installed.
+for private in engine/render/vulkan.hpp engine/core/headroom.hpp engine/cli/places.hpp; do
+  [ ! -e "$folder/psygen/include/psygen/$private" ] || { echo "$private is installed"; exit 1; }
+done
+[ -s "$folder/psygen/share/doc/psygen/architecture.md" ] && [ -s "$folder/psygen/share/psygen/paths/walk27.toml" ]
+
+configure only_ecs
+cmake --build "$folder/build/only_ecs" >/dev/null
+"$folder/build/only_ecs/only_ecs"
+configure parent -DPSYGEN_SOURCE="$source"
+
+configure .
 cmake --build "$folder/build" >/dev/null
-height="$("$folder/build/consumer" "$folder/psygen/share/psygen/worlds/paper.toml" "$folder/picture.png")"
+height="$(cd / && "$folder/build/consumer" "$folder/picture.png")"
+[ -s "$folder/picture.png" ]
 echo "ground height $height"
 [[ "$height" =~ ^[0-9]+\.[0-9]{6}$ ]]
 # What both load later lies in the installed folder.
 for program in "$folder/build/consumer" "$folder/psygen/bin/psygen"; do
-  readelf -d "$program" | grep -E 'RPATH.*(ORIGIN/\.\.|psygen)/lib[^]]*/psygen' >/dev/null
+  readelf -d "$program" | grep -E '(RPATH|RUNPATH).*(ORIGIN/\.\.|psygen)/lib[^]]*/psygen' >/dev/null
 done
 
 mkdir "$folder/elsewhere" "$folder/bin"

@@ -14,6 +14,8 @@ MAY_KNOW = {
     "engine/core": set(),
     "engine/models": {"engine/core"},
     "engine/world": {"engine/core", "engine/models"},
+    "engine/query": {"engine/core", "engine/models", "engine/world"},
+    "engine/physics": {"engine/core", "engine/models", "engine/world", "engine/query"},
     "engine/synthesis": {"engine/core", "engine/models"},
     "engine/exchange": {"engine/core", "engine/models", "engine/world"},
     "engine/amplify": {"engine/core", "engine/models", "engine/world", "engine/synthesis",
@@ -22,13 +24,17 @@ MAY_KNOW = {
     "engine/image": {"engine/core"},
     "engine/render": {"engine/core", "engine/image", "shaders"},
     "engine/platform": {"engine/core"},
+    "engine/input": {"engine/core", "engine/platform", "engine/world"},
     "engine/telemetry": {"engine/core"},
-    "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/synthesis",
+    "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/query", "engine/physics",
+                     "engine/synthesis",
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
                      "engine/telemetry"},
+    "engine/audio": {"engine/core"},
+    "engine/save": {"ecs", "engine/core", "engine/models", "engine/world"},
     "shaders": set(),
 }
-MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange"}
+MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/input"}
 MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["game"] = MAY_KNOW["engine/cli"] | {"engine/cli"}
 MAY_KNOW["editor"] = MAY_KNOW["game"]
@@ -49,23 +55,29 @@ INSIDE = {
     "engine/world": set(),
     "engine/world/files": set(),
     "engine/world/far": set(),
+    "engine/world/edits": set(),
 }
 NOT_UP = {"engine/models/kit"}
 
 # library header -> the only folders that may include it
 ONLY_IN = {
     r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform"},
+    r"^(bt[A-Z]|Bullet|LinearMath/)": {"engine/physics"},
     r"^GLFW/": {"engine/platform"},
+    r"^imgui/": {"engine/render", "engine/app", "game"},
     r"^OpenImageIO/": {"engine/image"},
     r"^toml\+\+/": {"engine/world"},
     r"^nlohmann/": {"engine/telemetry", "engine/cli"},
     r"^CLI/": {"engine/cli", "game"},
     r"^tiny_gltf": {"engine/exchange"},
     r"^spdlog/": {"engine/core"},
+    r"^(AL/|sndfile)": {"engine/audio"},
+    r"^sqlite3": {"engine/save"},
     r"^Q[A-Z]|^Qt": {"editor"},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
-NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/visibility", "engine/exchange"}
+NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/query", "engine/physics", "engine/visibility",
+              "engine/exchange", "engine/save"}
 BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

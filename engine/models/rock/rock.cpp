@@ -5,8 +5,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <span>
+#include <vector>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/kit/packing.hpp"
 #include "engine/models/rock/kernel.hpp"
 
 namespace psygen::models {
@@ -111,6 +114,7 @@ class RockType final : public ModelType {
   double complexity(const Parameters& p, int level) const override;
   double steps(const Parameters& p, int level) const override;
   double step_seconds() const override { return 8e-9; }
+  Collider collider(const Parameters& p) const override;
   double log2_cost(const Parameters& p) const override {
     return 2 + 2 * static_cast<double>(p.integer(kRockSubdivisions));
   }
@@ -189,6 +193,49 @@ core::Bounds RockType::synthesize(const Parameters& p, int level, const MeshView
                    rock_mesh_vertices(n, family_of(p).facet > 0) * sizeof(core::ModelVertex),
                "the destination has exactly the size of the mesh");
   return mesh_rock(shape_of(p, bounds(p)), topology_, n, out.vertices.data());
+}
+
+// The points that are farthest in 56 directions, each once: those of the surface of a lattice of
+// 4 x 4 x 4 points.
+std::vector<glm::vec3> farthest(const std::vector<glm::vec3>& points) {
+  std::vector<std::size_t> chosen;
+  for (int i = 0; i < 64; ++i) {
+    const glm::ivec3 at = 2 * glm::ivec3(i % 4, i / 4 % 4, i / 16) - 3;
+    if (std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) < 3) continue;
+    const glm::vec3 direction(at);
+    chosen.push_back(static_cast<std::size_t>(
+        std::ranges::max_element(points, {},
+                                 [&](const glm::vec3& p) { return glm::dot(p, direction); }) -
+        points.begin()));
+  }
+  std::ranges::sort(chosen);
+  std::vector<glm::vec3> result;
+  for (const std::size_t i : std::span(chosen.begin(), std::ranges::unique(chosen).begin()))
+    result.push_back(points[i]);
+  return result;
+}
+
+// All corners of rocks with up to two subdivisions. The corners of others, up to four subdivisions,
+// are too many: some of them span nearly the same hull.
+Collider RockType::collider(const Parameters& p) const {
+  constexpr int kAll = 2, kFinest = 4;
+  constexpr std::uint32_t kMost = rock_mesh_vertices(kFinest, true);
+  const int n = std::min(subdivisions_at(p, 0), kFinest);
+  const core::Bounds box = bounds(p);
+  std::array<core::ModelVertex, kMost> vertices;
+  const std::span mesh = std::span(vertices).first(rock_mesh_vertices(n, family_of(p).facet > 0));
+  mesh_rock(shape_of(p, box), topology_, n, std::as_writable_bytes(mesh).data());
+  // Triangles of faceted rocks share no vertices.
+  const auto place = [](const core::ModelVertex& v) { return std::to_array(v.position); };
+  std::ranges::sort(mesh, {}, place);
+  Collider::Hull hull;
+  for (const core::ModelVertex& v :
+       std::span(mesh.begin(), std::ranges::unique(mesh, {}, place).begin()))
+    hull.points.push_back(unpack_position(v, box));
+  if (n > kAll) hull.points = farthest(hull.points);
+  Collider collider;
+  collider.shapes.emplace_back(std::move(hull));
+  return collider;
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ void BlockGround::evaluate_vertices() {
   const std::span x = std::span(columns).first(vertices_), z = std::span(rows).first(vertices_);
   world_of(block_.x, 0, x);
   world_of(block_.z, 0, z);
-  shape_.noise.evaluate(x, z, noise_, vertices_);
+  shape_.evaluate(x, z, noise_, vertices_);
 }
 
 bool BlockGround::is_inside(double x, double z, int step) const {
@@ -81,10 +81,17 @@ BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const
   const std::array rows{shape_.world_of(block_.z, first_z),
                         shape_.world_of(block_.z, first_z + step)};
   std::array<float, 4> noise;
-  shape_.noise.evaluate(columns, rows, noise, 2);
+  shape_.evaluate(columns, rows, noise, 2);
   for (std::size_t i = 0; i < 4; ++i)
     heights[i] = shape_.quantise(noise[i]);
   return heights;
+}
+
+void BlockGround::heights(std::span<std::uint16_t> out) const {
+  PSYGEN_CHECK(vertices_ > 0 && out.size() == vertices_ * vertices_,
+               "all heights are known, and there is room for each");
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = mesh_.empty() ? shape_.quantise(noise_[i]) : height_in_mesh(mesh_, i);
 }
 
 GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {

@@ -33,6 +33,12 @@ class BlockGround {
   // it.
   GroundPoint at(glm::dvec2 local_xz, int stride = 1) const;
 
+  // Writes the quantised heights of all vertices, row by row (z outer, x inner), as the mesh of
+  // level 0 has them (core::TerrainVertex::height). `out` has size² elements. The heights must have
+  // been evaluated (`questions` >= size² / 128) or read; otherwise an assertion fails, also in
+  // release.
+  void heights(std::span<std::uint16_t> out) const;
+
  private:
   // Quantised heights at (x, z), (x + step, z), (x, z + step), (x + step, z + step).
   using Corners = std::array<std::uint16_t, 4>;

@@ -132,8 +132,10 @@ class LightHeights {
     fill(planned.z, rows, planned.spacing, world_z);
     const std::span values = std::span(memory_).subspan(used_, rows * grid.stride);
     used_ += values.size();
-    shape_.noise.evaluate({world_x.data(), columns}, {world_z.data(), rows}, values, grid.stride,
-                          planned.octaves(shape_));
+    // Narrower edits would be missed or hit by chance, like narrower octaves.
+    const double spacing_m = static_cast<double>(planned.spacing) * shape_.cell_m;
+    shape_.evaluate({world_x.data(), columns}, {world_z.data(), rows}, values, grid.stride,
+                    planned.octaves(shape_), spacing_m);
     for (std::size_t r = 0; r < rows; ++r)
       std::fill_n(&values[r * grid.stride + columns], grid.stride - columns, 0.0F);
     return values.data();

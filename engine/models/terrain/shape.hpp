@@ -3,15 +3,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "engine/models/kit/packing.hpp"
 #include "engine/models/model_type.hpp"
+#include "engine/models/terrain/ground_edits.hpp"
 #include "engine/models/terrain/ridged_noise.hpp"
 
 namespace psygen::models {
 
-// The noise and the scales of one node of terrain.
+// The noise, the edits and the scales of one node of terrain.
 struct TerrainShape {
   RidgedNoise noise;
   int size;        // vertices per side at level 0
@@ -20,6 +23,7 @@ struct TerrainShape {
   float relief_m;  // height of the quantised value 65535; the value 0 has height 0
   float quantum;   // quantised height of noise 1
   float metres;    // height of noise 1, in metres
+  const GroundEdits* edits = nullptr;  // of the parameters; null: none. Not kept alive
 
   // Requires legal parameters.
   explicit TerrainShape(const Parameters& p);
@@ -30,10 +34,21 @@ struct TerrainShape {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(block * (size - 1) + i)
                                      << node_level);
   }
+  // RidgedNoise::evaluate(), and then the edits of at least this radius.
+  void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
+                std::span<float> values, std::size_t stride, int octaves = kMaxOctaves,
+                double narrowest_m = 0) const {
+    noise.evaluate(columns, rows, values, stride, octaves);
+    if (edits != nullptr) edit(columns, rows, values, stride, narrowest_m);
+  }
   // The quantised height of a value of the noise, 0 … 65535. The same bits as in the kernel.
   std::uint16_t quantise(float noise_value) const {
     return static_cast<std::uint16_t>(round_to_int(std::min(noise_value * quantum, 65535.0F)));
   }
+
+ private:
+  void edit(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
+            std::span<float> values, std::size_t stride, double narrowest_m) const;
 };
 
 }  // namespace psygen::models

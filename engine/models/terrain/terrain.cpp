@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/edits.hpp"
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/terrain/grid.hpp"
 #include "engine/models/terrain/kernel.hpp"
@@ -115,8 +116,8 @@ struct ParentSamples {
   ParentSamples(const TerrainShape& shape, const TerrainGrid& grid, std::int64_t block_x,
                 std::int64_t block_z) {
     const Axis columns(shape, grid, block_x), rows(shape, grid, block_z);
-    shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
-                         noise, kStride);
+    shape.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count}, noise,
+                   kStride);
     view = {noise.data(), kStride, 1, 2, columns.phase, rows.phase};
   }
 
@@ -210,8 +211,8 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
   constexpr std::size_t kMaxStride = RidgedNoise::kMaxAxis;
   alignas(64) std::array<float, kMaxStride*(kMaxTerrainSize + 2) + 16> noise;
   const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at cache lines
-  shape.noise.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count},
-                       noise, stride);
+  shape.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count}, noise,
+                 stride);
   const TerrainLight light(shape, {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)},
                            p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ),
                            light_grid_of(level));
@@ -258,7 +259,17 @@ TerrainShape::TerrainShape(const Parameters& p)
       cell_m(cell_of(p)),
       relief_m(static_cast<float>(p.real(kTerrainReliefM))),
       quantum(static_cast<float>(65535.0 / noise.max_value())),
-      metres(static_cast<float>(p.real(kTerrainReliefM) / noise.max_value())) {}
+      metres(static_cast<float>(p.real(kTerrainReliefM) / noise.max_value())),
+      edits(p.edits() != nullptr ? &p.edits()->ground : nullptr) {}
+
+void TerrainShape::edit(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
+                        std::span<float> values, std::size_t stride, double narrowest_m) const {
+  edits->apply({.cells_per_block = size - 1,
+                .cell_m = std::ldexp(cell_m, -node_level),
+                .unit_m = metres,
+                .highest = 65535.0F / quantum},
+               columns, rows, values, stride, narrowest_m);
+}
 
 std::unique_ptr<ModelType> make_terrain_type() {
   return std::make_unique<TerrainType>();

@@ -7,6 +7,7 @@
 #include "engine/models/model_type.hpp"
 #include "engine/models/tree/mesh.hpp"
 #include "engine/models/tree/plan.hpp"
+#include "engine/models/tree/trunk.hpp"
 
 namespace psygen::models {
 
@@ -30,6 +31,7 @@ class PlannedTree : public ModelType {
   }
   double steps(const Parameters& p, int level) const final { return tree_steps(plan(p), level); }
   double step_seconds() const final { return 18e-9; }
+  Collider collider(const Parameters& p) const final { return trunk_collider(plan(p)); }
   core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const final {
     return synthesize_tree(plan(p), level, out);
   }

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kMinSplitRatio = 0.6, kMaxSplitRatio = 3.0;
 constexpr double kMergeFactor = 1.1;
-// Children exist before their parent is split by so much of its distance, and nodes of the coarsest
-// level before they can be seen.
+// Children exist from this multiple of the distance at which their parent is split, and nodes of
+// the coarsest level from this multiple of the view distance.
 constexpr double kAheadFactor = 1.1;
 // The error of a level of the terrain type is the sum of what its octaves could lose. The largest
 // error in a block of the paper's world is 0.9 of it and in nodes of level 1 to 7 1.1 to 2.5
@@ -48,9 +48,7 @@ int count_of_levels(const world::World& world, const Settings& settings) {
 }  // namespace
 
 models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node) {
-  models::Parameters p = world::terrain_parameters(world, node.coord);
-  p.set_integer(models::kTerrainNodeLevel, node.level);
-  return p;
+  return world::terrain_parameters(world, node.coord, node.level);
 }
 
 core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block) {

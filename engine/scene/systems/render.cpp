@@ -216,7 +216,9 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   frame.canopy = facts.canopy;
   frame.morph = morph;
   frame.edge = edge_of(facts.world, camera.pose.position);
+  frame.hud = &input.hud;
   frame.panels = input.panels;
+  frame.gui = input.gui;
   frame.text_scale = input.text_scale;
   const auto result = output.renderer->render(frame);
   if (result) {

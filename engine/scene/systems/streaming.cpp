@@ -2,13 +2,11 @@
 // created and destroyed in batches, coarse nodes before fine ones and nearest first, within a time
 // budget per tick.
 #include <algorithm>
-#include <climits>
 #include <cmath>
 
 #include "engine/core/clock.hpp"
-#include "engine/scene/nodes/solidity.hpp"
+#include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -21,91 +19,6 @@ constexpr std::size_t kFewestCreated = 3;
 constexpr double kEntitySeconds = 0.5e-6;
 // If more than this are missing the camera has leapt: as many as time allows.
 constexpr std::size_t kLeapt = 256;
-
-// `usual`: in what part of the box its mesh lies (WorldFacts).
-Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box,
-                 const core::Bounds& usual) {
-  Placed placed;
-  placed.block = block;
-  placed.position = position;
-  placed.box_center = box.center();
-  placed.box_half_extent = box.half_extent();
-  placed.middle = placed.box_center + placed.box_half_extent * usual.center();
-  placed.radius_m = glm::length(placed.box_half_extent * usual.half_extent());
-  return placed;
-}
-
-// Levels `first` … `last` of a model type, at most as many as differ.
-Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first,
-                 int last) {
-  Detail detail;
-  detail.seen_size_m = static_cast<float>(type.seen_size_m(parameters));
-  for (int level = first; level <= std::min(last, type.level_count_of(parameters) - 1); ++level) {
-    if (detail.level_count == kMaxLevels) break;
-    detail.error_m[detail.level_count++] =
-        static_cast<float>(type.level_error_m(parameters, level));
-  }
-  return detail;
-}
-
-// Fills row `i` of the shared columns of nodes and models; of the type only these levels are used.
-template <class Created>
-void fill(const Created& created, std::size_t i, const WorldFacts& facts, core::BlockCoord block,
-          const world::Placement& placement, int first_level = 0, int last_level = INT_MAX) {
-  const models::ModelType& type = facts.registry[placement.model];
-  created.template column<Placed>()[i] =
-      placed_at(block, placement.position, type.bounds(placement.parameters),
-                facts.usual_boxes[placement.model]);
-  created.template column<Detail>()[i] =
-      detail_of(type, placement.parameters, first_level, last_level);
-  created.template column<Source>()[i] = {
-      placement.parameters, models::parameters_hash(type, placement.parameters), placement.index,
-      placement.model, static_cast<std::uint16_t>(first_level)};
-}
-
-// Creates the mesh entities of a node, with the components of all such and `Also`.
-template <class... Also>
-void create_children(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
-                     std::span<const world::Placement> placements, ecs::World& entities) {
-  const auto models =
-      entities.create<Placed, Detail, Source, Demand, Mesh, Fading, Also...>(placements.size());
-  for (std::size_t i = 0; i < placements.size(); ++i)
-    fill(models, i, facts, block, placements[i]);
-  entities.set_children(node, models.entities);
-}
-
-// The models of a block, or the one mesh of all models on a coarser node.
-void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
-                   std::vector<world::Placement>& scratch, ecs::World& entities) {
-  const core::BlockCoord block = visibility::corner_block(at);
-  if (at.level == 0) {
-    world::place_models(facts.world, facts.registry, block, scratch);
-    create_children(facts, block, node, scratch, entities);
-  } else if (facts.levels[at.level].merged) {
-    scratch.assign(1, {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
-                       world::merged_parameters(at.coord, at.level)});
-    create_children<MeshParts, OldParts>(facts, block, node, scratch, entities);
-  }
-}
-
-void create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
-                 const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
-                 Streaming& streaming, ecs::World& entities) {
-  const NodeLevel& level = facts.levels[at.level];
-  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundRelief,
-                                       GroundSun, Placed, Detail, Source, Demand, Mesh>(1);
-  models::Parameters ground = node_terrain(facts.world, at);
-  world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
-  const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
-  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y,
-                               solid ? node_solidity(facts.world, facts.standing, at) : 0.0F};
-  fill(created, 0, facts, visibility::corner_block(at),
-       {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground},
-       at.level == 0 ? 0 : level.mesh_level, level.mesh_level);
-  const ecs::Entity node = created.entities[0];
-  streaming.grids[at.level].entity_of(at.coord) = node;
-  create_models(facts, at, node, scratch, entities);
-}
 
 // How far the middle of the camera's block is from a node's square.
 double distance_m(const Camera& camera, const WorldFacts& facts, const visibility::NodeCoord& at) {
@@ -153,9 +66,28 @@ class Window {
   std::vector<double> reach_m_;
 };
 
+// `nodes` are about to be destroyed, and the models on them.
+void tell_removed(std::span<const ecs::Entity> nodes, const ecs::World& entities,
+                  ecs::EventQueue<ModelRemoved>& removed) {
+  if (!removed.has_readers()) return;
+  std::vector<ModelRemoved> events;
+  for (const ecs::Entity node : nodes) {
+    if (entities.get<Node>(node)->at.level != 0) continue;
+    entities.each_of<const Placed, const Source>(
+        entities.children(node),
+        [&events](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
+                  std::span<const Source> sources) {
+          for (std::size_t i = 0; i < rows.size(); ++i)
+            events.push_back({rows[i], placed[i].block, sources[i].index, sources[i].model});
+        });
+  }
+  removed.emit(events);
+}
+
 // Their meshes stay in the cache while there is room: the camera may come back.
 void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs::World& entities,
-                           synthesis::MeshSupply& supply, Counters& counters) {
+                           synthesis::MeshSupply& supply, ecs::EventQueue<ModelRemoved>& removed,
+                           Counters& counters) {
   std::vector<ecs::Entity> leaving;
   entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node> nodes) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -175,6 +107,7 @@ void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs
   entities.each_of<const Demand, const Mesh>(leaving, give_back);
   for (const ecs::Entity node : leaving)
     entities.each_of<const Demand, const Mesh>(entities.children(node), give_back);
+  tell_removed(leaving, entities, removed);
   entities.destroy_with_children(leaving);
 }
 
@@ -202,7 +135,8 @@ void list_missing_nodes(const Window& window, const Camera& camera, const WorldF
   }
 }
 
-// What is new is there by the middle of the time until more of it is, if that goes on as before.
+// Spreads the creation of new nodes over half of the ticks since the window was last listed: at
+// this speed they exist halfway to the next listing.
 void spread_missing(const Settings& settings, Streaming& streaming) {
   const bool leapt = streaming.missing.size() > kLeapt;
   const std::uint32_t ticks =
@@ -217,7 +151,8 @@ void spread_missing(const Settings& settings, Streaming& streaming) {
 void streaming_system(const Settings& settings, const Rules& rules, const Camera& camera,
                       const Quality& quality, const WorldFacts& facts, const Daylight& daylight,
                       Streaming& streaming, ecs::World& entities, synthesis::MeshSupply& meshes,
-                      Counters& counters) {
+                      ecs::EventQueue<ModelCreated>& created_models,
+                      ecs::EventQueue<ModelRemoved>& removed_models, Counters& counters) {
   split_distances(facts.levels, settings, camera.pixels_per_radian, quality.error_pixels,
                   streaming.distances);
   const core::BlockCoord place = camera.pose.position.block;
@@ -232,7 +167,7 @@ void streaming_system(const Settings& settings, const Rules& rules, const Camera
     streaming.listed_split_m = reach;
     streaming.listed_at = place;
     const Window window(settings, camera, facts, streaming);
-    destroy_leaving_nodes(window, streaming, entities, meshes, counters);
+    destroy_leaving_nodes(window, streaming, entities, meshes, removed_models, counters);
     list_missing_nodes(window, camera, facts, entities, streaming);
     spread_missing(settings, streaming);
   }
@@ -250,7 +185,9 @@ void streaming_system(const Settings& settings, const Rules& rules, const Camera
   };
   while (!streaming.missing.empty() && !may_wait(streaming.missing.back())) {
     const std::size_t before = entities.size();
-    create_node(settings, facts, daylight, streaming.missing.back(), scratch, streaming, entities);
+    const visibility::NodeCoord& at = streaming.missing.back();
+    streaming.grids[at.level].entity_of(at.coord) =
+        create_node(settings, facts, daylight, at, scratch, entities, created_models);
     spent.charge(kEntitySeconds * static_cast<double>(entities.size() - before));
     streaming.missing.pop_back();
     ++counters.nodes_created;

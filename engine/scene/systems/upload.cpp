@@ -100,10 +100,11 @@ const T& note_of(const synthesis::MeshRecord& record) {
 void note_ground(ecs::Entity owner, Node& node, const synthesis::MeshRecord& record,
                  const WorldFacts& facts, const UploadQuery& entities) {
   const core::Bounds& bounds = facts.levels[node.at.level].bounds;
-  const float possible_m = possible_error_m(facts, node.at.level, record.key.level);
+  const GroundNote& note = note_of<GroundNote>(record);
+  const float possible_m =
+      possible_error_m(facts, node.at.level, record.key.level) + note.edits_error_m;
   node.low_m = std::max(bounds.min.y, record.tight.min.y - possible_m);
   node.high_m = std::min(bounds.max.y, record.tight.max.y + possible_m);
-  const GroundNote& note = note_of<GroundNote>(record);
   *entities.get<GroundRelief>(owner) = note.relief;
   *entities.get<GroundSun>(owner) = note.sun;
 }
@@ -162,8 +163,8 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
 
 void upload_system(const Settings& settings, const Rules& rules, const Clock& clock,
                    const WorldFacts& facts, const Found& found, UploadQuery entities,
-                   synthesis::MeshSupply& meshes, Output& output, Counters& counters,
-                   Totals& totals) {
+                   synthesis::MeshSupply& meshes, Output& output,
+                   ecs::EventQueue<MeshLanded>& landed_meshes, Counters& counters, Totals& totals) {
   std::vector<ecs::Landing<Mesh>> landings;
   const auto offer_to = [&](ecs::Entity entity, synthesis::MeshHandle handle,
                             const synthesis::MeshRecord& record) {
@@ -187,6 +188,8 @@ void upload_system(const Settings& settings, const Rules& rules, const Clock& cl
     offer_to(entity_of(job.owner), job.handle, *record);
   }
   entities.land<Mesh>(std::span<const ecs::Landing<Mesh>>(landings));
+  for (const ecs::Landing<Mesh>& landing : landings)
+    landed_meshes.emit({landing.entity, meshes.get(landing.value.handle)->key});
 }
 
 }  // namespace psygen::scene

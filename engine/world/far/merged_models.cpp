@@ -7,10 +7,12 @@
 #include <optional>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/far/form_writer.hpp"
 #include "engine/world/far/merged_plan.hpp"
 #include "engine/world/far/node_walk.hpp"
+#include "engine/world/far/placed_forms.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world {
@@ -67,10 +69,19 @@ std::uint64_t identity_of(const World& world, const models::Registry& registry) 
   return h;
 }
 
+std::shared_ptr<const World> without_edits(std::shared_ptr<const World> world) {
+  if (!world->edits) return world;
+  auto copy = std::make_shared<World>(*world);
+  set_edits(*copy, nullptr);
+  return copy;
+}
+
 class MergedType final : public models::ModelType {
  public:
   MergedType(std::shared_ptr<const World> world, const models::Registry& registry)
-      : world_(std::move(world)), identity_(identity_of(*world_, registry)) {
+      : world_(without_edits(std::move(world))), identity_(identity_of(*world_, registry)) {
+    for (models::ModelIndex i = 0; i < registry.size(); ++i)
+      types_.push_back(&registry[i]);
     std::uint32_t first = 0;
     for (const Scatter& scatter : world_->scatter) {
       scatters_.emplace_back(*world_, registry[scatter.model], scatter, first);
@@ -97,15 +108,20 @@ class MergedType final : public models::ModelType {
     const double height_m = plan(p, 0).box.max.y - relief_m;
     return level == 0 ? 0 : kNextFormsError * std::ldexp(height_m, level_of(p) - 1);
   }
-  core::Bounds bounds(const Parameters& p) const override { return plan(p, 0).box; }
+  core::Bounds bounds(const Parameters& p) const override {
+    return with_reach(plan(p, 0).box, edits_of(p).reach_m);
+  }
   MeshSize mesh_size(const Parameters& p, int level) const override {
     const LevelPlan& made = plan(p, level);
-    return {static_cast<std::uint32_t>(made.vertices),
-            static_cast<std::uint32_t>(3 * made.triangles), 0, core::VertexLayout::kModel};
+    const PlacedPlan placed = placed_plan(p, made);
+    return {static_cast<std::uint32_t>(made.vertices + placed.vertices()),
+            static_cast<std::uint32_t>(3 * (made.triangles + placed.triangles())), 0,
+            core::VertexLayout::kModel};
   }
   double step_seconds() const override { return 350e-9; }
   double complexity(const Parameters& p, int level) const override {
-    return work_of(*world_, scatters_, plan(p, level));
+    const LevelPlan& made = plan(p, level);
+    return work_of(*world_, scatters_, made) + placed_plan(p, made).work();
   }
   double log2_cost(const Parameters& p) const override {
     return std::log2(static_cast<double>(std::max<std::uint64_t>(plan(p, 0).triangles, 1)));
@@ -128,6 +144,19 @@ class MergedType final : public models::ModelType {
     if (next.vertices == 0) next = own;  // all too small: keep the finer forms
     own.box = next.box = {glm::min(own.box.min, next.box.min), glm::max(own.box.max, next.box.max)};
   }
+  // The edits of the blocks of a node, counted; of nothing without edits.
+  static models::BlockEdits::Summary edits_of(const Parameters& p) {
+    if (p.edits() == nullptr) return {};
+    const core::BlockCoord node{static_cast<std::int32_t>(p.integer(kMergedBlockX)),
+                                static_cast<std::int32_t>(p.integer(kMergedBlockZ))};
+    const auto* cell = p.edits()->blocks.at_or_below(
+        models::QuadPlace::of(node, static_cast<std::uint32_t>(level_of(p))));
+    return cell != nullptr ? cell->summary : models::BlockEdits::Summary{};
+  }
+  static PlacedPlan placed_plan(const Parameters& p, const LevelPlan& made) {
+    return {made.form_level, edits_of(p).placed, made.vertices};
+  }
+  void add_placed(const models::BlockEdits& edits, const NodeBlock& block, Making& making) const;
   const LevelPlan& plan(const Parameters& p, int level) const {
     return plans_[static_cast<std::size_t>(level_of(p))][static_cast<std::size_t>(level)];
   }
@@ -137,6 +166,7 @@ class MergedType final : public models::ModelType {
 
   std::shared_ptr<const World> world_;
   std::uint64_t identity_;
+  std::vector<const models::ModelType*> types_;  // of the registry, for what is placed by hand
   std::vector<FarScatter> scatters_;
   bool may_run_on_main_thread_ = true;  // true if it is for all scattered types
   // Indexed by node level (0 is unused) and level of detail. Plans of one node level have equal
@@ -153,6 +183,9 @@ struct MergedType::Making {
   std::optional<models::BlockGround> ground;  // of the current tile, for slopes and heights
   CoarsestMesh mesh;
   FormMesh form;
+  PlacedPlan placed;
+  std::uint64_t placed_count = 0;             // so far
+  const models::BlockEdits* edits = nullptr;  // of the current block; may be null
 };
 
 struct MergedType::Instance {
@@ -238,6 +271,7 @@ void MergedType::add_scatter(std::size_t s, const NodeBlock& block, Making& maki
     const std::uint64_t member = begin + (size == 1 ? 0 : drawn % size);
     if (member < first || member >= first + count) continue;
     const std::uint32_t index = far.first_index() + static_cast<std::uint32_t>(member - first);
+    if (making.edits != nullptr && making.edits->is_removed(index)) continue;
     core::RandomStream random(world_->seed, block.coord.x, block.coord.z, index,
                               core::Purpose::kStructure);
     Instance instance{s, block, index, static_cast<std::uint32_t>(size), random.next_u64()};
@@ -245,30 +279,54 @@ void MergedType::add_scatter(std::size_t s, const NodeBlock& block, Making& maki
   }
 }
 
+void MergedType::add_placed(const models::BlockEdits& edits, const NodeBlock& block,
+                            Making& making) const {
+  for (const models::PlacedModel& model : edits.placed) {
+    if (making.placed_count++ % making.placed.together != 0) continue;
+    const models::ModelType* type = model.model < types_.size() ? types_[model.model] : nullptr;
+    if (type == nullptr || !type->may_run_on_main_thread() || !type->is_seen_from_far()) continue;
+    const auto form = make_placed_form(*type, model.parameters, making.placed, making.mesh,
+                                       direction_of(core::mix64(model.id)), making.form);
+    if (!form) continue;
+    const glm::dvec2 in_node = block.in_node_m + glm::dvec2(model.local_m);
+    const double ground_m = making.node_ground.at(in_node, making.drawn_stride).height_m;
+    making.writer.add(*form, making.form,
+                      {static_cast<float>(in_node.x), static_cast<float>(ground_m) + model.above_m,
+                       static_cast<float>(in_node.y)},
+                      making.plan.form_level == 1);
+  }
+}
+
 core::Bounds MergedType::synthesize(const Parameters& p, int level, const MeshView& out) const {
   const LevelPlan& made = plan(p, level);
-  PSYGEN_CHECK(out.vertices.size() == made.vertices * sizeof(core::ModelVertex) &&
-                   out.indices.size() == 3 * made.triangles,
+  const MeshSize size = mesh_size(p, level);
+  PSYGEN_CHECK(out.vertices.size() == size.vertex_count * sizeof(core::ModelVertex) &&
+                   out.indices.size() == size.index_count,
                "the destination has exactly the size of the mesh");
   const NodeWalk walk(*world_,
                       {static_cast<std::int32_t>(p.integer(kMergedBlockX)),
                        static_cast<std::int32_t>(p.integer(kMergedBlockZ))},
                       level_of(p));
+  Parameters node = p;  // which models stand for others does not depend on edits
+  node.set_edits(nullptr, 0);
   Making making{made,
-                core::combine(world_->seed, p.hash()),
-                FormWriter(made.box, out),
-                walk.whole_ground(),
+                core::combine(world_->seed, node.hash()),
+                FormWriter(bounds(p), out),
+                walk.whole_ground(p.edits()),
                 walk.drawn_stride(),
                 std::nullopt,
                 {},
-                {}};
-  for (std::uint32_t i = 0; made.vertices > 0 && i < walk.block_count(); ++i) {
+                {},
+                placed_plan(p, made)};
+  for (std::uint32_t i = 0; size.vertex_count > 0 && i < walk.block_count(); ++i) {
     if (walk.starts_tile(i)) making.ground.reset();
     const NodeBlock block = walk.block(i);
     if (!world_->contains(block.coord)) continue;
     if (!making.ground) walk.make_ground(i, making.ground);
+    making.edits = p.edits() != nullptr ? p.edits()->block(block.coord) : nullptr;
     for (std::size_t s = 0; s < scatters_.size(); ++s)
       add_scatter(s, block, making);
+    if (making.edits != nullptr) add_placed(*making.edits, block, making);
   }
   return making.writer.finish();
 }
@@ -285,6 +343,18 @@ models::Parameters merged_parameters(core::BlockCoord node, int node_level) {
   p.set_integer(kMergedBlockX, node.x);
   p.set_integer(kMergedBlockZ, node.z);
   p.set_integer(kMergedNodeLevel, node_level);
+  return p;
+}
+
+models::Parameters merged_parameters(const World& world, core::BlockCoord node, int node_level) {
+  models::Parameters p = merged_parameters(node, node_level);
+  if (!world.edits) return p;
+  const auto at = models::QuadPlace::of(node, static_cast<std::uint32_t>(node_level));
+  std::uint64_t hash =
+      world.edits->ground.hash_of(at, ground_margin(world, node_level), world.block_size_m());
+  if (const auto* cell = world.edits->blocks.at_or_below(at); cell != nullptr)
+    hash = core::combine(hash, cell->hash);
+  if (hash != 0) p.set_edits(world.edits.get(), hash);
   return p;
 }
 

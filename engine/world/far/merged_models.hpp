@@ -2,8 +2,9 @@
 // node of level k. Each tree or rock has a few triangles; from level 4 on, several share one form.
 // Places are those of place_models(); from level 3 on, slopes come from a coarser lattice of the
 // same ground. Heights are those of the ground that the node draws. So a change from single models
-// to their merged mesh moves them only up or down, with the ground. Knows no single type of model.
-// docs/models.md, "Vegetation".
+// to their merged mesh moves them only up or down, with the ground. Models that were removed by
+// hand are left out, and those that were placed have forms of their own. Knows no single type of
+// model. docs/models.md, "Vegetation".
 #pragma once
 
 #include <memory>
@@ -29,12 +30,17 @@ inline constexpr int kMaxMergedLevel = 5;
 // Positions are in metres from the node's corner. Models that find no place leave degenerate
 // triangles at the end of the mesh. Synthesis needs 1.1 MiB of stack. This function synthesises a
 // few instances of every scatter (about 0.1 ms a scatter). The model types of `registry` must
-// outlive the result, which may be added to it; `world` must belong to this registry.
+// outlive the result, which may be added to it; `world` must belong to this registry. Edits of
+// `world` are ignored: a mesh shows those that its parameters name. Placed models of types that may
+// not run on the main thread are left out.
 std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
                                                     const models::Registry& registry);
 
-// The parameters of one node, which is counted in nodes of its level, 1 … kMaxMergedLevel.
+// The parameters of one node without edits, which is counted in nodes of its level,
+// 1 … kMaxMergedLevel.
 models::Parameters merged_parameters(core::BlockCoord node, int node_level);
+// The same with the edits of the world.
+models::Parameters merged_parameters(const World& world, core::BlockCoord node, int node_level);
 
 // A world's models seen from above, for the colour of distant ground.
 struct FarCover {

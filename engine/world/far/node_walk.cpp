@@ -55,8 +55,9 @@ void NodeWalk::make_ground(std::uint32_t ordinal, std::optional<models::BlockGro
   out.emplace(terrain, tile, kMany);
 }
 
-models::BlockGround NodeWalk::whole_ground() const {
+models::BlockGround NodeWalk::whole_ground(const models::EditLayer* edits) const {
   models::Parameters terrain = world_.terrain;
+  terrain.set_edits(edits, 0);
   terrain.set_integer(models::kTerrainNodeLevel, level_);
   return {terrain, node_, kMany};
 }

@@ -1,6 +1,6 @@
 // The blocks of a node in Morton order, and the ground under them: evaluated in square tiles of
-// blocks, which follow each other in the same order, and as the node draws it. Pure functions, any
-// thread. Places no models.
+// blocks, which follow each other in the same order, and as the node draws it. Tiles are without
+// edits, because models find their places there. Pure functions, any thread. Places no models.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ int node_mesh_level(const World& world);
 class NodeWalk {
  public:
   // `node` is counted in nodes of its level, 1 … 15. Block coordinates beyond 2^31 wrap around.
-  // `world` must outlive it.
+  // `world`, which has no edits, must outlive it.
   NodeWalk(const World& world, core::BlockCoord node, int node_level);
 
   // Number of blocks, and the block with a number below it.
@@ -49,8 +49,9 @@ class NodeWalk {
   }
   // Makes the ground of the tile that a block lies on. Needs 256 KiB of stack.
   void make_ground(std::uint32_t ordinal, std::optional<models::BlockGround>& out) const;
-  // The ground of the whole node, and the stride for BlockGround::at() that gives the drawn ground.
-  models::BlockGround whole_ground() const;
+  // The ground of the whole node with these edits (null: none), which must outlive it, and the
+  // stride for BlockGround::at() that gives the drawn ground.
+  models::BlockGround whole_ground(const models::EditLayer* edits) const;
   int drawn_stride() const;
 
  private:

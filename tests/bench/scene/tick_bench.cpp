@@ -1,9 +1,10 @@
 // What the systems of a tick cost without drawing, along a flight on the null device: the same
 // flight several times, of each tick the median of the times, so that what other programs do to one
 // tick does not count. After each tick the modelers finish what they were given, as they do during
-// a frame that is drawn. Prints a table.
+// a frame that is drawn. Prints a table. With EDITS, every flight is also flown with so many edits
+// all over the world (removed, moved and raised), in turns, and a second table follows.
 //
-//   psygen_bench_scene [PATH [WORLD [HZ [FLIGHTS]]]]
+//   psygen_bench_scene [PATH [WORLD [HZ [FLIGHTS [EDITS]]]]]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/clock.hpp"
+#include "engine/core/hash.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
@@ -28,19 +31,44 @@ double percentile(std::vector<double> values, double share) {
   return values[at];
 }
 
-// By system, by tick.
-std::vector<std::vector<double>> fly(const world::World& world, const world::CameraPath& path,
-                                     double hz, std::vector<std::string>& names) {
+// So many edits, evenly over the world; in an endless one over 512 × 512 blocks.
+world::Edits edits_of(const world::World& world, const models::Registry& registry, long count) {
+  world::Edits edits;
+  core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
+  const double size_m = world.block_size_m();
+  const auto block = [&](std::int64_t blocks) {
+    return static_cast<std::int32_t>(random.next_integer(0, (blocks > 0 ? blocks : 512) - 1));
+  };
+  const auto models = static_cast<std::int64_t>(world::models_per_block(world));
+  for (long i = 0; i < count; ++i) {
+    const core::WorldPosition at{{block(world.blocks_x), block(world.blocks_z)},
+                                 {random.next_real(0, size_m), 0, random.next_real(0, size_m)}};
+    const world::InstanceName model{at.block, static_cast<std::uint32_t>(random.next_integer(
+                                                  0, std::max<std::int64_t>(models - 1, 0)))};
+    if (i % 16 == 0) {
+      (void)edits.move(world, registry, model, at);
+    } else if (i % 4 == 0) {
+      (void)edits.raise(world, at, random.next_real(1, 12), random.next_real(-1, 1));
+    } else {
+      (void)edits.remove(world, model);
+    }
+  }
+  return edits;
+}
+
+// By system, by tick. The path leads over the ground without edits.
+std::vector<std::vector<double>> fly(const world::World& world, const world::Edits& edits,
+                                     const world::CameraPath& path, double hz,
+                                     std::vector<std::string>& names) {
   Settings settings;
   settings.modelers = 1;
   auto made = Scene::create(world, models::make_standard_registry(), settings, nullptr);
   if (!made) return {};
   Scene& scene = **made;
+  scene.edit(edits);
   State& state = scene.state();
   scene.settle(path.pose_at(0, world));
-  names.clear();
-  for (const ecs::SystemInfo& system : state.tick.systems())
-    names.push_back(system.name);
+  names = system_names(state);
   std::vector<std::vector<double>> times(names.size());
   const auto ticks = static_cast<int>(path.duration_seconds() * hz);
   for (int i = 0; i < ticks; ++i) {
@@ -48,7 +76,7 @@ std::vector<std::vector<double>> fly(const world::World& world, const world::Cam
     state.input.pose = path.pose_at(state.clock.now_s, world);
     tick(state);
     for (std::size_t k = 0; k < names.size(); ++k)
-      times[k].push_back(static_cast<double>(state.record.system_ms[k]));
+      times[k].push_back(static_cast<double>(state.system_ms[k]));
     state.meshes.wait();
   }
   return times;
@@ -71,7 +99,36 @@ void print(const std::string& name, const std::vector<double>& ms) {
              percentile(ms, 0.95), percentile(ms, 0.99), percentile(ms, 1.0));
 }
 
-int run(const std::string& path_file, const std::string& world_file, double hz, int flights) {
+// What the flights with some edits took.
+struct Flights {
+  std::vector<std::vector<std::vector<double>>> systems;  // by system, by flight, by tick
+  std::vector<std::vector<double>> sums;                  // of all systems but render
+
+  bool fly(const world::World& world, const world::Edits& edits, const world::CameraPath& path,
+           double hz, std::vector<std::string>& names) {
+    auto times = scene::fly(world, edits, path, hz, names);
+    if (times.empty()) return false;
+    systems.resize(names.size());
+    std::vector<double> sum(times.front().size(), 0.0);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += names[k] == "render" ? 0.0 : times[k][i];
+      systems[k].push_back(std::move(times[k]));
+    }
+    sums.push_back(std::move(sum));
+    return true;
+  }
+
+  void print(const std::vector<std::string>& names, const std::string& title) const {
+    fmt::print("{:<16} {:>9} {:>9} {:>9} {:>9}\n", title, "p50", "p95", "p99", "max");
+    for (std::size_t k = 0; k < names.size(); ++k)
+      scene::print(names[k], typical(systems[k]));
+    scene::print("all but render", typical(sums));
+  }
+};
+
+int run(const std::string& path_file, const std::string& world_file, double hz, int flights,
+        long edit_count) {
   const models::Registry registry = models::make_standard_registry();
   const auto world = world::load_world(world_file, registry);
   const auto path = world::load_camera_path(path_file);
@@ -83,24 +140,16 @@ int run(const std::string& path_file, const std::string& world_file, double hz, 
     return 2;
   }
   std::vector<std::string> names;
-  std::vector<std::vector<std::vector<double>>> systems;  // by system, by flight, by tick
-  std::vector<std::vector<double>> sums;
+  Flights plain, edited;
+  const core::Stopwatch making(false);
+  const world::Edits edits = edits_of(*world, registry, edit_count);
+  if (edit_count > 0) fmt::print("{} edits in {:.1f} s\n", edit_count, making.seconds());
   for (int flight = 0; flight < flights; ++flight) {
-    auto times = fly(*world, *path, hz, names);
-    if (times.empty()) return 1;
-    systems.resize(names.size());
-    std::vector<double> sum(times.front().size(), 0.0);
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      for (std::size_t i = 0; i < sum.size(); ++i)
-        sum[i] += names[k] == "render" ? 0.0 : times[k][i];
-      systems[k].push_back(std::move(times[k]));
-    }
-    sums.push_back(std::move(sum));
+    if (!plain.fly(*world, {}, *path, hz, names)) return 1;
+    if (edit_count > 0 && !edited.fly(*world, edits, *path, hz, names)) return 1;
   }
-  fmt::print("{:<16} {:>9} {:>9} {:>9} {:>9}\n", "system, ms", "p50", "p95", "p99", "max");
-  for (std::size_t k = 0; k < names.size(); ++k)
-    print(names[k], typical(systems[k]));
-  print("all but render", typical(sums));
+  plain.print(names, "system, ms");
+  if (edit_count > 0) edited.print(names, "edited, ms");
   return 0;
 }
 
@@ -114,5 +163,6 @@ int main(int argc, char** argv) {
   };
   return psygen::scene::run(
       argument(1, kGame + "paths/walk27.toml"), argument(2, kGame + "worlds/paper.toml"),
-      std::atof(argument(3, "30").c_str()), std::atoi(argument(4, "5").c_str()));
+      std::atof(argument(3, "30").c_str()), std::atoi(argument(4, "5").c_str()),
+      std::atol(argument(5, "0").c_str()));
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/edits/edits.hpp"
 #include "tests/engine/amplify/throwing_type.hpp"
 #include "tests/engine/world/shipped.hpp"
 
@@ -48,6 +49,26 @@ TEST(BlockSynthesizer, TheHashDependsOnWorldBlockAndLevelsOnly) {
   EXPECT_NE(totals_of(world, {2, 1}, kAllLevels).hash.value(), hash);
   world.seed += 1;
   EXPECT_NE(totals_of(world, {2, 1}).hash.value(), hash);
+}
+
+TEST(BlockSynthesizer, EditsChangeTheHashOfTheirBlocksUntilTheyAreTakenBack) {
+  const world::World function = parsed(kSmallWorld);
+  const std::uint64_t felled_block = totals_of(function, {2, 1}).hash.value();
+  const std::uint64_t other_block = totals_of(function, {6, 3}).hash.value();
+  world::World world = function;
+  world::Edits edits;
+  ASSERT_TRUE(edits.remove(world, {{2, 1}, 0}));
+  world::set_edits(world, edits.layer());
+  const Totals felled = totals_of(world, {2, 1});
+  EXPECT_EQ(felled.models, 7u);
+  EXPECT_NE(felled.hash.value(), felled_block);
+  ASSERT_TRUE(edits.raise(world, {{2, 1}, {30, 0, 30}}, 10, 5));
+  world::set_edits(world, edits.layer());
+  EXPECT_NE(totals_of(world, {2, 1}).hash.value(), felled.hash.value());
+  EXPECT_EQ(totals_of(world, {2, 1}).hash.value(), totals_of(world, {2, 1}).hash.value());
+  EXPECT_EQ(totals_of(world, {6, 3}).hash.value(), other_block);
+  world::set_edits(world, nullptr);
+  EXPECT_EQ(totals_of(world, {2, 1}).hash.value(), felled_block);
 }
 
 TEST(BlockSynthesizer, ALevelIsTheCoarsestOfTypesThatHaveFewer) {

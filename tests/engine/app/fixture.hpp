@@ -7,6 +7,10 @@
 #include <filesystem>
 
 #include "engine/app/flight.hpp"
+#include "engine/platform/window.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/telemetry/trace_log.hpp"
 
 namespace psygen::app {
 

@@ -86,7 +86,7 @@ TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
   options.session.target_hz = 30;
   std::vector<double> governed_ms;
   options.session.plugins.push_back(
-      {"photographer", {}, {}, [&](Session& session, double) {
+      {.name = "photographer", .on_frame = [&](Session& session, double) {
          governed_ms.push_back(session.scene().state().input.frame_ms);
          if (governed_ms.size() != 6) return;
          EXPECT_TRUE(session.save_picture(options.out_folder / "picture.png"));

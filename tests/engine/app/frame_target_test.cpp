@@ -36,10 +36,10 @@ std::vector<double> errors_of_flight(double target_hz) {
   options.session.target_hz = target_hz;
   options.session.scene.max_error_pixels = 4;
   options.session.scene.max_error_factor = 3;
-  options.session.plugins.push_back({"watch", {}, {}, [&errors](Session& session, double) {
-                                       errors.push_back(
-                                           session.scene().state().quality.error_pixels);
-                                     }});
+  options.session.plugins.push_back(
+      {.name = "watch", .on_frame = [&errors](Session& session, double) {
+         errors.push_back(session.scene().state().quality.error_pixels);
+       }});
   auto flight = Flight::create(options);
   EXPECT_TRUE(flight) << flight.error().message;
   if (!flight) return {0};

@@ -66,8 +66,7 @@ void put(Session& session, const core::CameraPose& pose, glm::dvec2 at, const sc
   scene::Transform transform;
   transform.position = pose.position;
   transform.position.local += glm::dvec3(at.x, 0, at.y);
-  transform.position =
-      core::normalised(transform.position, state.facts.world.block_size_m());
+  transform.position = core::normalised(transform.position, state.facts.world.block_size_m());
   const core::WorldPosition& p = transform.position;
   transform.position.local.y =
       models::ground_height_m(state.facts.world.terrain, p.block, p.local.x, p.local.z);

@@ -102,9 +102,10 @@ TEST(Outputs, ALargeFileThatDoesNotFitTakesNoSmallerOneWithIt) {
 TEST(Outputs, WhereMemoryEndsTheFlightFailsAndWhatWasMeasuredIsWritten) {
   const TemporaryFolder folder;
   FlightOptions options = flight_into(folder.path());
-  options.session.plugins.push_back({"hungry", {}, {}, [frame = 0](Session&, double) mutable {
-                                       if (++frame == 4) throw std::bad_alloc();
-                                     }});
+  options.session.plugins.push_back(
+      {.name = "hungry", .on_frame = [frame = 0](Session&, double) mutable {
+         if (++frame == 4) throw std::bad_alloc();
+       }});
   auto flight = Flight::create(options);
   ASSERT_TRUE(flight) << flight.error().message;
   const auto report = (*flight)->run();

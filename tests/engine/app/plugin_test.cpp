@@ -8,13 +8,13 @@ TEST(Plugin, IsCalledAtTheStartAndAfterEveryFrame) {
   double time_s = 0;
   FlightOptions options = short_flight();
   options.frames = 5;
-  options.session.plugins.push_back({"counter",
-                                     {},
-                                     [&](Session&) { ++starts; },
-                                     [&](Session&, double dt_s) {
-                                       ++frames;
-                                       time_s += dt_s;
-                                     }});
+  options.session.plugins.push_back({.name = "counter",
+                                     .on_start = [&](Session&) { ++starts; },
+                                     .on_frame =
+                                         [&](Session&, double dt_s) {
+                                           ++frames;
+                                           time_s += dt_s;
+                                         }});
   auto flight = Flight::create(options);
   ASSERT_TRUE(flight) << flight.error().message;
   ASSERT_TRUE((*flight)->run());
@@ -25,13 +25,10 @@ TEST(Plugin, IsCalledAtTheStartAndAfterEveryFrame) {
 
 TEST(Plugin, ThatCannotRegisterItsModelsIsNamed) {
   FlightOptions options = short_flight();
-  options.session.plugins.push_back({"broken",
-                                     [](models::Registry&) {
-                                       return core::Result<void>(core::fail(
-                                           core::ErrorCode::kInvalidArgument, "no models today"));
-                                     },
-                                     {},
-                                     {}});
+  options.session.plugins.push_back(
+      {.name = "broken", .register_models = [](models::Registry&) -> core::Result<void> {
+         return core::fail(core::ErrorCode::kInvalidArgument, "no models today");
+       }});
   const auto flight = Flight::create(options);
   ASSERT_FALSE(flight);
   EXPECT_EQ(flight.error().message, "plugin broken: no models today");

@@ -1,6 +1,8 @@
 // A session without a flight: what a program with a loop of its own relies on.
 #include "engine/app/session.hpp"
 
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
 #include "tests/engine/app/fixture.hpp"
 
 namespace psygen::app {
@@ -40,13 +42,13 @@ TEST(Session, EndsWhenItIsStoppedFromOutside) {
 TEST(Session, CallsPluginsHoweverItIsDriven) {
   std::vector<std::string> calls;
   SessionOptions options = short_session();
-  options.plugins.push_back({"counter",
-                             {},
-                             [&](Session&) { calls.push_back("start"); },
-                             [&](Session&, double dt_s) {
-                               EXPECT_EQ(dt_s, 0.5);
-                               calls.push_back("frame");
-                             }});
+  options.plugins.push_back({.name = "counter",
+                             .on_start = [&](Session&) { calls.push_back("start"); },
+                             .on_frame =
+                                 [&](Session&, double dt_s) {
+                                   EXPECT_EQ(dt_s, 0.5);
+                                   calls.push_back("frame");
+                                 }});
   auto session = Session::create(options);
   ASSERT_TRUE(session) << session.error().message;
   EXPECT_TRUE(calls.empty()) << "before the first tick";
@@ -72,6 +74,103 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
   EXPECT_EQ((*session)->scene().state().facts.shadows, (*session)->renderer().casts_shadows());
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
   EXPECT_EQ((*session)->renderer().preset(), render::Preset::kMedium);
+}
+
+TEST(Session, BeginsEveryFixedStepWithItsActionsAndReplaysThem) {
+  const auto fly = [](const input::Recording* recorded) {
+    std::vector<float> seen;
+    SessionOptions options = short_session();
+    options.plugins.push_back({.name = "game", .on_step = [&](Session& session, double) {
+                                 seen.push_back(session.actions().state(0).value);
+                               }});
+    auto session = Session::create(options);
+    EXPECT_TRUE(session) << session.error().message;
+    input::Actions& actions = (*session)->actions();
+    EXPECT_TRUE(actions.add("look", {{input::MouseWay::kRight, 0.5F}}));
+    if (recorded != nullptr) {
+      auto replay = input::Replay::create(*recorded, actions, 1.0 / 60);
+      EXPECT_TRUE(replay) << replay.error().message;
+      (*session)->replay(std::move(*replay));
+    }
+    for (int i = 0; i < 4; ++i) {
+      platform::InputState input;
+      input.move_px.x = i + 1;
+      actions.feed(input);
+      EXPECT_TRUE((*session)->tick((*session)->home(), i == 1 ? 0.04 : 0.02));
+    }
+    return seen;
+  };
+  const std::vector<float> live = fly(nullptr);
+  ASSERT_GE(live.size(), 3u);
+  EXPECT_NE(live, std::vector<float>(live.size(), 0.0F));
+  input::Actions actions;
+  ASSERT_TRUE(actions.add("look"));
+  input::Recording recording(actions, 1.0 / 60);
+  std::vector<float> wanted;
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    wanted.push_back(0.1F * static_cast<float>(i));
+    ASSERT_TRUE(recording.add(std::vector<input::ActionState>{{wanted.back()}}));
+  }
+  EXPECT_EQ(fly(&recording), wanted);
+}
+
+TEST(Session, StandsStillAndGoesOnDrawingWhileItIsPaused) {
+  std::vector<double> told;
+  SessionOptions options = short_session();
+  int steps = 0;
+  options.plugins.push_back({.name = "clock",
+                             .on_step = [&](Session&, double) { ++steps; },
+                             .on_frame = [&](Session&, double dt_s) { told.push_back(dt_s); }});
+  auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  const core::CameraPose pose = (*session)->home();
+  ASSERT_TRUE((*session)->tick(pose, 0.5));
+  (*session)->set_paused(true);
+  const std::uint64_t frame = (*session)->scene().state().counters.frame.frame;
+  ASSERT_TRUE((*session)->tick(pose, 0.5));  // the steps of the time before
+  const int steps_before = steps;
+  for (int i = 0; i < 2; ++i)
+    ASSERT_TRUE((*session)->tick(pose, 0.5));
+  EXPECT_EQ(steps, steps_before);
+  EXPECT_TRUE((*session)->paused());
+  EXPECT_EQ((*session)->now_s(), 0.5);
+  EXPECT_EQ((*session)->scene().state().counters.frame.frame, frame + 3) << "drawing goes on";
+  (*session)->set_paused(false);
+  ASSERT_TRUE((*session)->tick(pose, 0.5));
+  EXPECT_EQ((*session)->now_s(), 1.0);
+  EXPECT_EQ(told, (std::vector<double>{0.5, 0, 0, 0, 0.5}));
+}
+
+TEST(Session, WritesWhatTheGameWritesOverThePicture) {
+  SessionOptions options = short_session();
+  options.preset = render::Preset::kLow;
+  auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  const auto red = [&] {
+    EXPECT_TRUE((*session)->tick((*session)->home(), 0));
+    const auto picture = (*session)->picture();
+    int count = 0;
+    for (std::size_t i = 0; picture && i < picture->rgba.size(); i += 4)
+      count += picture->rgba[i] > 200 && picture->rgba[i + 1] < 60 ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(red(), 0);
+  render::HudText text;
+  text.text =
+      "Gr\xC3\xBC\xC3\x9F"
+      "e";
+  text.at = {{0.5F, 0.5F}, {}};
+  text.align = render::HudAlign::kCentre;
+  text.size_px = 48.5F;
+  text.colour = {1, 0, 0, 1};
+  text.outline_px = 2;
+  (*session)->hud().texts.push_back(text);
+  const int letters = red();
+  EXPECT_GT(letters, 500);
+  EXPECT_LT(letters, 4000);
+  (*session)->hud() = {};
+  EXPECT_EQ(red(), 0);
+  EXPECT_TRUE((*session)->renderer().validation_messages().empty());
 }
 
 }  // namespace

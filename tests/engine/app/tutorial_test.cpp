@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/app/session.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen {
 namespace {
@@ -16,7 +17,7 @@ TEST(Tutorial, AProgramThatTurnsAroundOnceAndTakesAPicture) {
   ASSERT_TRUE(session) << session.error().message;
 
   core::CameraPose pose = (*session)->home();
-  (*session)->scene().settle(pose);
+  ASSERT_TRUE((*session)->prepare(pose));
   for (int i = 0; i < 12; ++i) {
     pose.yaw += 0.52;
     const auto drawn = (*session)->tick(pose, 1.0 / 60.0);

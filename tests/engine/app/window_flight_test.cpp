@@ -66,10 +66,7 @@ class WindowFlight : public ::testing::Test {
     constexpr std::uint64_t kFramesForAKey = 400;
     std::size_t next = 0;
     std::uint64_t frames = 0, pressed = kFramesForAKey;
-    made.session.plugins.push_back({"person",
-                                    {},
-                                    {},
-                                    [&](Session& session, double) {
+    made.session.plugins.push_back({.name = "person", .on_frame = [&](Session& session, double) {
                                       ++frames;
                                       if (next < steps.size() && pressed < kFramesForAKey &&
                                           steps[next].done(session)) {
@@ -82,8 +79,7 @@ class WindowFlight : public ::testing::Test {
                                         EXPECT_TRUE(press(steps[next].key));
                                         pressed = 0;
                                       }
-                                    },
-                                    {}});
+                                    }});
     auto flight = Flight::create(made);
     ASSERT_TRUE(flight) << flight.error().message;
     const auto report = (*flight)->run();
@@ -105,24 +101,24 @@ TEST_F(WindowFlight, TheWindowStaysWhenThePathHasEndedAndTheReportIsThatOfTheFli
   const Flight* flown = nullptr;
   std::string told;
   made.session.plugins.push_back(
-      {"watch",
-       {},
-       {},
-       [&](Session& session, double) {
-         ++frames;
-         EXPECT_EQ(flown->is_recorded(), ends == 0);
-         if (ends > 0) told = notices(session);
-         if (frames == frames_at_end + 25) stop_ = true;
-       },
-       [&](Session&, const FlightReport& report) {
-         ++ends;
-         frames_at_end = frames;
-         EXPECT_EQ(report.summary.run.frames, 15u);
-         for (const char* name :
-              {"frames.csv", "summary.json", "trace.json", "report.html", "frame_00010.png"}) {
-           EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
-         }
-       }});
+      {.name = "watch",
+       .on_frame =
+           [&](Session& session, double) {
+             ++frames;
+             EXPECT_EQ(flown->is_recorded(), ends == 0);
+             if (ends > 0) told = notices(session);
+             if (frames == frames_at_end + 25) stop_ = true;
+           },
+       .on_end =
+           [&](Session&, const FlightReport& report) {
+             ++ends;
+             frames_at_end = frames;
+             EXPECT_EQ(report.summary.run.frames, 15u);
+             for (const char* name :
+                  {"frames.csv", "summary.json", "trace.json", "report.html", "frame_00010.png"}) {
+               EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+             }
+           }});
   const auto flight = Flight::create(made);
   ASSERT_TRUE(flight) << flight.error().message;
   flown = flight->get();
@@ -155,10 +151,7 @@ TEST_F(WindowFlight, OutputsThatCannotBeWrittenAreToldInTheWindowAndInTheReport)
   FlightOptions made = options();
   std::string told;
   std::uint64_t frames = 0;
-  made.session.plugins.push_back({"watch",
-                                  {},
-                                  {},
-                                  [&](Session& session, double) {
+  made.session.plugins.push_back({.name = "watch", .on_frame = [&](Session& session, double) {
                                     if (++frames == 5) {  // in the way of a file
                                       std::filesystem::create_directories(folder_ / "frames.csv");
                                     }
@@ -166,8 +159,7 @@ TEST_F(WindowFlight, OutputsThatCannotBeWrittenAreToldInTheWindowAndInTheReport)
                                       told = notices(session);
                                       stop_ = true;
                                     }
-                                  },
-                                  {}});
+                                  }});
   const auto flight = Flight::create(made);
   ASSERT_TRUE(flight) << flight.error().message;
   const auto report = (*flight)->run();
@@ -213,6 +205,8 @@ TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
        {"F2", text_has(Anchor::kTopRight, "view: bounds")},
        {"F11", size_is({1280, 1024})},
        {"F11", size_is({320, 180})},
+       {"p", [](Session& session) { return session.paused(); }},
+       {"p", [](Session& session) { return !session.paused(); }},
        {"F12", text_has(Anchor::kBottom, "screenshot_0000.png")},
        {"F3", preset_is(render::Preset::kHigh)},
        {"F1", text_has(Anchor::kBottom, "preset high")}});
@@ -224,7 +218,7 @@ TEST_F(WindowFlight, APictureThatCannotBeWrittenIsToldOnTheScreen) {
   std::filesystem::remove_all(moved);
   FlightOptions made = options();
   made.session.plugins.push_back(
-      {"mover", {}, [&](Session&) { std::filesystem::rename(folder_, moved); }, {}});
+      {.name = "mover", .on_start = [&](Session&) { std::filesystem::rename(folder_, moved); }});
   do_steps(made, {{"F12", [&](Session& session) {
                      const bool told = notices(session).starts_with("no picture was written: ");
                      if (told) std::filesystem::rename(moved, folder_);
@@ -245,16 +239,14 @@ TEST_F(WindowFlight, ClosingWhileTheCacheIsFilledEndsAtOnceAndIsNoFlight) {
   models::Registry standard = models::make_standard_registry();
   const auto rock = static_cast<models::ModelIndex>(standard.find("rock"));
   made.session.plugins.push_back(
-      {"slow",
-       [&](models::Registry& registry) -> core::Result<void> {
+      {.name = "slow",
+       .register_models = [&](models::Registry& registry) -> core::Result<void> {
          const auto added =
              registry.add(std::make_unique<scene::SlowType>("slow_rock", standard[rock], gate));
          if (!added) return tl::unexpected(added.error());
          return {};
        },
-       [](Session&) { ADD_FAILURE() << "the flight began"; },
-       {},
-       {}});
+       .on_start = [](Session&) { ADD_FAILURE() << "the flight began"; }});
   auto flight = Flight::create(made);
   ASSERT_TRUE(flight) << flight.error().message;
   gate.set_open(false);  // from here on nothing is ever finished

@@ -35,6 +35,23 @@ TEST(Utf8, WhatIsNotUtf8IsOneInvalidByte) {
   }
 }
 
+TEST(Utf8, WhatIsAppendedIsReadBackAndWhatIsNoCharacterIsReplaced) {
+  for (const char32_t value : {U'\0', U'a', U'\x7F', U'\x80', U'\u07FF', U'\u0800', U'\uFFFD',
+                               U'\uFFFF', U'\U00010000', U'\U0010FFFF'}) {
+    std::string text = "x";
+    append_utf8(text, value);
+    const CodePoint point = first_code_point(std::string_view(text).substr(1));
+    EXPECT_TRUE(point.valid);
+    EXPECT_EQ(point.value, value);
+    EXPECT_EQ(point.bytes + 1, text.size());
+  }
+  for (const std::uint32_t none : {0xD800u, 0xDFFFu, 0x110000u, 0xFFFFFFFFu}) {
+    std::string text;
+    append_utf8(text, static_cast<char32_t>(none));
+    EXPECT_EQ(text, "\xEF\xBF\xBD");
+  }
+}
+
 TEST(Utf8, WhatCanBeSeenIsShownAsItIs) {
   for (const char* text : {"", "plain \"quoted\" \\ 'text'", "größe × 3", "木", "שלום", "😀"})
     EXPECT_EQ(shown(text), text);

@@ -4,6 +4,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/world/ground_blends.hpp"
+
 namespace psygen::exchange {
 namespace {
 
@@ -31,8 +33,8 @@ TEST(GroundColour, IsContinuousAcrossBlocksAndWhereThePatternRepeats) {
   for (const core::BlockCoord block :
        {core::BlockCoord{0, 0}, core::BlockCoord{-1, 500}, core::BlockCoord{32, 32},
         core::BlockCoord{INT32_MAX - 1, 3}}) {
-    const glm::vec2 here = pattern_place(block, size_m, {63, 10});
-    const glm::vec2 there = pattern_place({block.x + 1, block.z}, size_m, {0, 10});
+    const glm::vec2 here = world::pattern_place(block, size_m, {63, 10});
+    const glm::vec2 there = world::pattern_place({block.x + 1, block.z}, size_m, {0, 10});
     EXPECT_LT(distance(ground_albedo(palette, 20, kFlat, here, 9),
                        ground_albedo(palette, 20, kFlat, there, 9)),
               1e-3F);

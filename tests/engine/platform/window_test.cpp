@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -208,6 +209,99 @@ TEST_F(WindowOnADisplay, TheWheelCountsItsSteps) {
     return steps >= 3;
   }));
   EXPECT_EQ(steps, 3.0);
+}
+
+TEST_F(WindowOnADisplay, TellsAllButtonsOfTheMouseAndWhereThePointerIs) {
+  take_focus();
+  EXPECT_TRUE(eventually(*window_, [](const InputState& input) {
+    return std::abs(input.pointer_px.x - 320) < 2 && std::abs(input.pointer_px.y - 180) < 2;
+  }));
+  // X numbers the buttons left, middle, right; 4 to 7 are wheels, 8 and 9 the next ones.
+  for (const auto& [number, button] : {std::pair{"1", MouseButton::kLeft},
+                                       {"2", MouseButton::kMiddle},
+                                       {"3", MouseButton::kRight},
+                                       {"8", MouseButton::k4},
+                                       {"9", MouseButton::k5}}) {
+    ASSERT_TRUE(display_->xdotool({"mousedown", number}));
+    EXPECT_TRUE(eventually(*window_, [&, which = button](const InputState& input) {
+      return input.was_pressed(which) && input.is_held(which);
+    })) << number;
+    ASSERT_TRUE(display_->xdotool({"mouseup", number}));
+    EXPECT_TRUE(eventually(*window_, [&, which = button](const InputState& input) {
+      return input.was_released(which) && !input.is_held(which);
+    })) << number;
+  }
+}
+
+TEST_F(WindowOnADisplay, CapturesTheCursorBeyondTheEdgeAndReleasesIt) {
+  take_focus();
+  EXPECT_FALSE(window_->cursor_captured());
+  window_->capture_cursor(true);
+  EXPECT_TRUE(window_->cursor_captured());
+  glm::dvec2 moved{0.0};
+  for (int i = 0; i < 40; ++i) {  // farther than the screen is wide
+    ASSERT_TRUE(display_->xdotool({"mousemove_relative", "--", "50", "0"}));
+    EXPECT_TRUE(eventually(*window_, [&](const InputState& input) {
+      EXPECT_TRUE(input.captured && input.looking);
+      moved += input.look_px;
+      return moved.x > 45 * (i + 1);
+    })) << moved.x;
+  }
+  window_->capture_cursor(false);
+  EXPECT_FALSE(window_->poll().looking);
+  EXPECT_FALSE(window_->cursor_captured());
+}
+
+TEST_F(WindowOnADisplay, LeavesTheRightButtonToGamesThatWantIt) {
+  take_focus();
+  window_->set_right_button_looks(false);
+  ASSERT_TRUE(display_->xdotool({"mousedown", "3"}));
+  EXPECT_TRUE(eventually(*window_, [](const InputState& input) {
+    EXPECT_FALSE(input.looking);
+    return input.is_held(MouseButton::kRight);
+  }));
+  ASSERT_TRUE(display_->xdotool({"mouseup", "3"}));
+}
+
+TEST_F(WindowOnADisplay, TakesTextInUnicode) {
+  take_focus();
+  std::string text;
+  display_->output({"setxkbmap", "de"});
+  ASSERT_TRUE(display_->xdotool({"key", "a", "adiaeresis", "EuroSign", "exclam"}));
+  EXPECT_TRUE(eventually(*window_, [&](const InputState& input) {
+    text += input.text;
+    return text.find('!') != std::string::npos;
+  })) << text;
+  EXPECT_EQ(text, "a\xC3\xA4\xE2\x82\xAC!");
+}
+
+TEST_F(WindowOnADisplay, KnowsBothShiftsApartAndAsOne) {
+  take_focus();
+  ASSERT_TRUE(display_->xdotool({"keydown", "Shift_L"}));
+  ASSERT_TRUE(
+      eventually(*window_, [](const InputState& input) { return input.is_held(Key::kLeftShift); }));
+  ASSERT_TRUE(display_->xdotool({"keydown", "Shift_R"}));
+  ASSERT_TRUE(eventually(*window_,
+                         [](const InputState& input) { return input.is_held(Key::kRightShift); }));
+  ASSERT_TRUE(display_->xdotool({"keyup", "Shift_L"}));
+  EXPECT_TRUE(eventually(*window_, [](const InputState& input) {
+    EXPECT_TRUE(input.is_held(Key::kShift)) << "the right one is still down";
+    return !input.is_held(Key::kLeftShift);
+  }));
+  ASSERT_TRUE(display_->xdotool({"keyup", "Shift_R"}));
+  EXPECT_TRUE(eventually(*window_, [](const InputState& input) {
+    return input.was_released(Key::kShift) && !input.is_held(Key::kShift);
+  }));
+}
+
+TEST_F(WindowOnADisplay, SaysWhatIsOnAKeyAndKeepsTheClipboard) {
+  EXPECT_EQ(window_->label_of(Key::kY), "Y");
+  EXPECT_EQ(window_->label_of(Key::kSpace), "Space");
+  EXPECT_EQ(window_->label_of(Key::kShift), "Shift");
+  window_->set_clipboard("h\xC3\xB6he");
+  EXPECT_EQ(window_->clipboard(), "h\xC3\xB6he");
+  EXPECT_EQ(window_->gamepad_name(0), "");
+  EXPECT_EQ(window_->gamepad_name(99), "");
 }
 
 TEST_F(WindowOnADisplay, ClosesByRequestAndOutlivesAnotherWindow) {

@@ -16,7 +16,7 @@ using Vertices = std::vector<shaders::OverlayVertex>;
 Vertices lay_out(const std::vector<TextPanel>& panels, core::Extent picture = kPicture,
                  float scale = 1) {
   const Overlay overlay;
-  Vertices out(3);
+  Vertices out;
   overlay.lay_out(panels, picture, scale, out);
   return out;
 }

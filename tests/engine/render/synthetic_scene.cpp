@@ -145,6 +145,21 @@ FrameInput look(double altitude_m, double pitch, core::Extent size) {
   input.pose.position.local = {0.0, altitude_m, 0.0};
   input.pose.pitch = pitch;
   input.projection.aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  input.palette = {.grass = {0.085F, 0.125F, 0.030F},
+                   .forest = {0.045F, 0.070F, 0.022F},
+                   .dry = {0.200F, 0.165F, 0.075F},
+                   .rock = {0.150F, 0.138F, 0.125F},
+                   .snow = {0.74F, 0.78F, 0.84F},
+                   .sand = {0.36F, 0.30F, 0.19F},
+                   .sand_end_m = -1e6F,
+                   .sand_blend_m = 2.0F,
+                   .dry_start_m = 60.0F,
+                   .dry_blend_m = 40.0F,
+                   .snow_start_m = 1e6F,
+                   .snow_blend_m = 15.0F,
+                   .rock_slope_start = 0.16F,
+                   .rock_slope_full = 0.34F,
+                   .snow_slope_max = 0.40F};
   return input;
 }
 

@@ -37,11 +37,5 @@ TEST(Tick, TheListIsTheOneOfTheArchitecturePage) {
       << expected;
 }
 
-TEST(Tick, TheFrameLogHasRoomForEverySystem) {
-  State state;
-  build_tick(state);
-  EXPECT_LE(state.tick.systems().size(), telemetry::kMaxSystems);
-}
-
 }  // namespace
 }  // namespace psygen::scene

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <sstream>
 
 #include "tests/engine/telemetry/synthetic_flight.hpp"
@@ -80,11 +82,11 @@ TEST(FramesCsv, HoldsTheValuesUnderTheirNames) {
   r.index = 7;
   r.time_s = 1.5;
   r.frame_ms = 16.25;
-  r.system_ms[0] = 12.5F;
+  constexpr std::array kSystemMs{12.5F};
   r.error_pixels = 5.25;
   r.triangles = 123'456;
   r.cache_bytes = 1ULL << 33;
-  log.add(r);
+  log.add(r, kSystemMs);
   ASSERT_TRUE(write_frames_csv(folder / "frames.csv", log));
   r.device_wait_ms = 2;
   r.acquire_ms = 0.5;
@@ -93,7 +95,7 @@ TEST(FramesCsv, HoldsTheValuesUnderTheirNames) {
   r.gpu_ms = 14;
   r.gpu_shadows_ms = 3;
   r.apart = Apart::kPicture;
-  log.add(r);
+  log.add(r, kSystemMs);
   ASSERT_TRUE(write_frames_csv(folder / "frames.csv", log));
   const std::vector<std::string> lines = lines_of(text_of(folder / "frames.csv"));
   const std::string after =
@@ -104,6 +106,21 @@ TEST(FramesCsv, HoldsTheValuesUnderTheirNames) {
             "7,1.500000,16.2500,0.0000,2.7500,2.0000,0.5000,0.2500,0.7500,14.0000,"
             "3.0000,picture" +
                 after);
+}
+
+TEST(FrameLog, TimesOfOtherSystemsThanItsOwnAreUnknown) {
+  const TemporaryFolder folder;
+  FrameLog log({"input", "render"});
+  log.add({}, std::array{1.0F, 2.0F});
+  log.add({}, std::array{1.0F, 9.0F, 2.0F});
+  log.add({});
+  EXPECT_EQ(log.system_ms(0)[1], 2.0F);
+  EXPECT_TRUE(std::isnan(log.system_ms(1)[1]));
+  EXPECT_TRUE(std::isnan(log.system_ms(2)[0]));
+  ASSERT_TRUE(write_frames_csv(folder / "frames.csv", log));
+  const std::vector<std::string> lines = lines_of(text_of(folder / "frames.csv"));
+  EXPECT_NE(lines[1].find(",1.0000,2.0000,"), std::string::npos) << lines[1];
+  EXPECT_EQ(lines[2].find("nan"), std::string::npos) << lines[2];
 }
 
 TEST(FrameLog, ADevicesTimeIsThatOfItsOwnFrameThoughItComesLater) {

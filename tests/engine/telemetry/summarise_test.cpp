@@ -37,6 +37,7 @@ TEST(Summarise, FrameFiguresAreTheStatisticsOfTheMeasuredFrames) {
 // find an idle device, for 1 ms each.
 FrameLog flight_with_pictures(std::uint64_t frames) {
   FrameLog log({"render"});
+  constexpr std::array kOneMs{1.0F};
   for (std::uint64_t i = 0; i < frames; ++i) {
     FrameRecord r;
     r.index = i;
@@ -44,13 +45,12 @@ FrameLog flight_with_pictures(std::uint64_t frames) {
     r.frame_ms = 10;
     r.device_wait_ms = 8;
     r.gpu_ms = 9;
-    r.system_ms[0] = 1;
     r.triangles = 100 + i % 10;
     if (i % 10 == 5) r.apart = Apart::kPicture;
     if (i % 10 == 6 || i % 10 == 7) r.apart = Apart::kAfterIdle;
     if (r.apart == Apart::kPicture) r.frame_ms = 200;
     if (r.apart == Apart::kAfterIdle) r.frame_ms = r.device_wait_ms = 1;
-    log.add(r);
+    log.add(r, kOneMs);
   }
   return log;
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -31,6 +32,9 @@ inline std::vector<std::string> tick_systems() {
           "synthesis", "upload",    "render",     "telemetry"};
 }
 
+// Their times in every frame, in ms.
+inline constexpr std::array kTickSystemMs{0.02F, 0.35F, 0.9F, 0.4F, 0.25F, 0.2F, 0.6F, 0.01F};
+
 // Frame `i` of a flight of about 1500 frames. `noise` is in [0, 1).
 inline FrameRecord synthetic_frame(std::uint64_t i, double time_s, double noise) {
   FrameRecord r;
@@ -45,7 +49,6 @@ inline FrameRecord synthetic_frame(std::uint64_t i, double time_s, double noise)
   r.gpu_ms = r.frame_ms * 0.9;
   r.gpu_shadows_ms = 0.5;
   r.device_frame = i + 1;
-  r.system_ms = {0.02F, 0.35F, 0.9F, 0.4F, 0.25F, 0.2F, 0.6F, 0.01F};
   r.error_pixels = 4;
   r.triangles = 95'000 + static_cast<std::uint64_t>(20'000.0 * std::sin(progress * 9.0));
   r.draws = 900;
@@ -78,7 +81,7 @@ inline FrameLog synthetic_flight(std::uint64_t frame_count = 1500) {
   double time_s = 0;
   for (std::uint64_t i = 0; i < frame_count; ++i) {
     const FrameRecord record = synthetic_frame(i, time_s, random.next_unit());
-    log.add(record);
+    log.add(record, kTickSystemMs);
     log.add_time_to_visible(time_s, 20.0 + 100.0 * random.next_unit());
     log.add_cost_error(time_s, 1e-3 * random.next_real(0.8, 1.2), 1e-3);
     time_s += record.frame_ms * 1e-3;

@@ -114,7 +114,7 @@ std::vector<CoarsestModel> single_models(const Scenery& scenery, core::BlockCoor
   std::vector<CoarsestModel> all;
   CoarsestMesh mesh;
   const NodeWalk walk(*scenery.world, node, level);
-  const models::BlockGround ground = walk.whole_ground();
+  const models::BlockGround ground = walk.whole_ground(nullptr);
   for (const core::BlockCoord block : blocks_of(*scenery.world, node, level)) {
     for (const Placement& p : placements_of(scenery, block)) {
       const models::ModelType& type = scenery.registry[p.model];
@@ -365,7 +365,7 @@ TEST(MergedModels, BeginAboveTheGroundThatIsDrawn) {
     const core::BlockCoord node{1, 2};
     for (int level = 3; level <= kMaxMergedLevel; ++level) {
       const NodeWalk walk(*scenery.world, node, level);
-      const models::BlockGround ground = walk.whole_ground();
+      const models::BlockGround ground = walk.whole_ground(nullptr);
       const auto corners = shown_triangles(scenery, scenery.mesh(node, level), level, node);
       double lowest = 1e9;
       for (const glm::vec3& c : corners)

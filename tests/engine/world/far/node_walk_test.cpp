@@ -85,7 +85,7 @@ TEST(NodeWalk, FindsTheGroundThatIsDrawn) {
       const models::TerrainGrid grid(static_cast<int>(p.integer(models::kTerrainSize)), mesh_level);
       const NodeWalk walk(*world, node, level);
       EXPECT_EQ(walk.drawn_stride(), grid.stride);
-      const models::BlockGround ground = walk.whole_ground();
+      const models::BlockGround ground = walk.whole_ground(nullptr);
       const double side_m = std::ldexp(world->block_size_m(), level);
       for (int i = 0; i < 200; ++i) {
         const glm::dvec2 place{std::fmod(0.618034 * i, 1), std::fmod(0.414214 * i, 1)};

@@ -1,0 +1,190 @@
+#include "engine/app/gui.hpp"
+
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
+#include "engine/platform/window.hpp"
+
+namespace psygen::app {
+namespace {
+
+using platform::Key;
+
+constexpr double kLongestFrameS = 0.25;
+
+// Keys that ImGui asks for by their meaning. Letters are for Ctrl+A and the like.
+constexpr std::pair<ImGuiKey, Key> kKeys[] = {{ImGuiKey_Tab, Key::kTab},
+                                              {ImGuiKey_LeftArrow, Key::kLeft},
+                                              {ImGuiKey_RightArrow, Key::kRight},
+                                              {ImGuiKey_UpArrow, Key::kUp},
+                                              {ImGuiKey_DownArrow, Key::kDown},
+                                              {ImGuiKey_PageUp, Key::kPageUp},
+                                              {ImGuiKey_PageDown, Key::kPageDown},
+                                              {ImGuiKey_Home, Key::kHome},
+                                              {ImGuiKey_End, Key::kEnd},
+                                              {ImGuiKey_Insert, Key::kInsert},
+                                              {ImGuiKey_Delete, Key::kDelete},
+                                              {ImGuiKey_Backspace, Key::kBackspace},
+                                              {ImGuiKey_Space, Key::kSpace},
+                                              {ImGuiKey_Enter, Key::kEnter},
+                                              {ImGuiKey_Escape, Key::kEscape},
+                                              {ImGuiKey_KeyPadEnter, Key::kKeypadEnter},
+                                              {ImGuiKey_A, Key::kA},
+                                              {ImGuiKey_C, Key::kC},
+                                              {ImGuiKey_V, Key::kV},
+                                              {ImGuiKey_X, Key::kX},
+                                              {ImGuiKey_Y, Key::kY},
+                                              {ImGuiKey_Z, Key::kZ}};
+
+// A press that was over within the frame counts, too.
+template <class Set>
+bool down(const Set& held, const Set& went_down, std::size_t bit) {
+  return held[bit] || went_down[bit];
+}
+
+void feed_mouse(const platform::InputState& input, ImGuiIO& io) {
+  // ImGui's buttons are left, right, middle as ours. While looking the pointer is nowhere.
+  const auto at = [](double px) {
+    return static_cast<float>(std::isfinite(px) ? std::clamp(px, -1e6, 1e6) : -1.0);
+  };
+  io.MousePos = input.looking ? ImVec2(-1e30F, -1e30F)
+                              : ImVec2(at(input.pointer_px.x), at(input.pointer_px.y));
+  for (std::size_t i = 0; i < std::size(io.MouseDown); ++i)
+    io.MouseDown[i] = down(input.buttons_held, input.buttons_went_down, i);
+  io.MouseWheel += static_cast<float>(input.wheel);
+  io.MouseWheelH += static_cast<float>(input.wheel_x);
+}
+
+void feed_keys(const platform::InputState& input, ImGuiIO& io) {
+  for (std::size_t i = 0; i < platform::kKeys; ++i)
+    io.KeysDown[i] = down(input.held, input.went_down, i);
+  io.KeyCtrl = input.is_held(Key::kControl);
+  io.KeyShift = input.is_held(Key::kShift);
+  io.KeyAlt = input.is_held(Key::kAlt);
+  io.KeySuper = input.is_held(Key::kLeftSuper) || input.is_held(Key::kRightSuper);
+  io.AddInputCharactersUTF8(input.text.c_str());
+}
+
+// For menus without a mouse, where the game sets ImGuiConfigFlags_NavEnableGamepad.
+void feed_gamepads(const platform::InputState& input, ImGuiIO& io) {
+  using enum platform::PadButton;
+  constexpr std::pair<ImGuiNavInput_, platform::PadButton> kButtons[] = {
+      {ImGuiNavInput_Activate, kA},
+      {ImGuiNavInput_Cancel, kB},
+      {ImGuiNavInput_Menu, kX},
+      {ImGuiNavInput_Input, kY},
+      {ImGuiNavInput_DpadLeft, kLeft},
+      {ImGuiNavInput_DpadRight, kRight},
+      {ImGuiNavInput_DpadUp, kUp},
+      {ImGuiNavInput_DpadDown, kDown},
+      {ImGuiNavInput_FocusPrev, kLeftBumper},
+      {ImGuiNavInput_FocusNext, kRightBumper}};
+  std::fill(std::begin(io.NavInputs), std::end(io.NavInputs), 0.0F);
+  io.BackendFlags &= ~ImGuiBackendFlags_HasGamepad;
+  for (const platform::Gamepad& pad : input.pads) {
+    if (!pad.connected) continue;
+    io.BackendFlags |= ImGuiBackendFlags_HasGamepad;
+    for (const auto& [nav, button] : kButtons)
+      if (pad.is_held(button)) io.NavInputs[nav] = 1;
+    const float x = pad.axis(platform::PadAxis::kLeftX), y = pad.axis(platform::PadAxis::kLeftY);
+    const auto tilt = [&](ImGuiNavInput_ nav, float value) {
+      io.NavInputs[nav] = std::max(io.NavInputs[nav], value > 0.15F ? value : 0.0F);
+    };
+    tilt(ImGuiNavInput_LStickLeft, -x);
+    tilt(ImGuiNavInput_LStickRight, x);
+    tilt(ImGuiNavInput_LStickUp, y);
+    tilt(ImGuiNavInput_LStickDown, -y);
+  }
+}
+
+ImGuiStyle style_at(float scale) {
+  ImGuiStyle style;
+  ImGui::StyleColorsDark(&style);
+  style.WindowRounding = 6;
+  style.FrameRounding = 4;
+  style.GrabRounding = 4;
+  style.PopupRounding = 4;
+  style.WindowPadding = {12, 12};
+  style.FramePadding = {8, 5};
+  style.ItemSpacing = {8, 7};
+  style.WindowBorderSize = 0;
+  style.WindowTitleAlign = {0.5F, 0.5F};
+  style.Colors[ImGuiCol_WindowBg] = {0.04F, 0.05F, 0.07F, 0.88F};
+  style.Colors[ImGuiCol_TitleBgActive] = {0.11F, 0.19F, 0.27F, 1.0F};
+  style.ScaleAllSizes(scale);
+  return style;
+}
+
+}  // namespace
+
+const char* Gui::read_clipboard(void* self) {
+  Gui& gui = *static_cast<Gui*>(self);
+  gui.clipboard_ = gui.window_->clipboard();
+  return gui.clipboard_.c_str();
+}
+
+void Gui::write_clipboard(void* self, const char* text) {
+  static_cast<Gui*>(self)->window_->set_clipboard(text);
+}
+
+Gui::Gui(ImFontAtlas& atlas, platform::Window* window) : window_(window) {
+  ImGuiContext* const before = ImGui::GetCurrentContext();
+  context_ = ImGui::CreateContext(&atlas);
+  ImGui::SetCurrentContext(context_);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;  // nothing is written into the current folder
+  io.LogFilename = nullptr;
+  io.BackendPlatformName = io.BackendRendererName = "psygen";
+  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+  static_assert(platform::kKeys <= std::extent_v<decltype(ImGuiIO::KeysDown)>);
+  for (const auto& [meaning, key] : kKeys)
+    io.KeyMap[meaning] = static_cast<int>(key);
+  if (window != nullptr) {
+    io.ClipboardUserData = this;
+    io.GetClipboardTextFn = read_clipboard;
+    io.SetClipboardTextFn = write_clipboard;
+  }
+  ImGui::SetCurrentContext(before);
+}
+
+Gui::~Gui() {
+  ImGui::DestroyContext(context_);
+}
+
+void Gui::begin(const platform::InputState& input, core::Extent picture, float scale, double dt_s) {
+  ImGui::SetCurrentContext(context_);
+  const float whole = std::isfinite(scale) ? std::clamp(scale, 0.5F, 8.0F) : 1.0F;
+  if (whole != styled_scale_) ImGui::GetStyle() = style_at(styled_scale_ = whole);
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(picture.width), static_cast<float>(picture.height)};
+  io.DeltaTime = static_cast<float>(std::isfinite(dt_s) ? std::clamp(dt_s, 1e-4, kLongestFrameS)
+                                                        : kLongestFrameS);
+  io.FontGlobalScale = kTextPx * whole / io.Fonts->Fonts[0]->FontSize;
+  feed_mouse(input, io);
+  feed_keys(input, io);
+  feed_gamepads(input, io);
+  ImGui::NewFrame();
+}
+
+const ImDrawData* Gui::end() {
+  ImGui::SetCurrentContext(context_);
+  ImGui::Render();
+  return ImGui::GetDrawData();
+}
+
+bool Gui::takes_keyboard() const {
+  ImGui::SetCurrentContext(context_);
+  return ImGui::GetIO().WantCaptureKeyboard || ImGui::GetIO().WantTextInput;
+}
+
+bool Gui::takes_mouse() const {
+  ImGui::SetCurrentContext(context_);
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+}  // namespace psygen::app

@@ -1,0 +1,40 @@
+// How the engine calls code of a plugin: what goes wrong in it names the plugin and the hook. Not
+// part of the interface of games. Main thread only.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <new>
+#include <string_view>
+#include <type_traits>
+
+#include "engine/app/options.hpp"
+
+namespace psygen::app {
+
+// Calls code of a plugin. Its errors and exceptions name it; only std::bad_alloc passes.
+template <class F>
+core::Result<void> call_plugin(const Plugin& plugin, std::string_view hook, const F& f) {
+  const auto threw = [&](const char* what) {
+    return core::fail(core::ErrorCode::kInternal,
+                      fmt::format("plugin {}: {} threw: {}", plugin.name, hook, what));
+  };
+  try {
+    if constexpr (std::is_void_v<std::invoke_result_t<F>>) {
+      f();
+    } else if (const core::Result<void> ok = f(); !ok) {
+      return core::fail(ok.error().code,
+                        fmt::format("plugin {}: {}", plugin.name, ok.error().message));
+    }
+    return {};
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return threw(error.what());
+  } catch (...) {
+    return threw("an exception of an unknown type");
+  }
+}
+
+}  // namespace psygen::app

@@ -1,0 +1,69 @@
+#include "engine/core/data_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+namespace psygen::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kVariable = "PSYGEN_DATA";
+
+// Each folder once.
+void add(std::vector<fs::path>& folders, const fs::path& folder) {
+  if (folder.empty()) return;
+  const fs::path plain = folder.lexically_normal();
+  if (std::ranges::find(folders, plain) == folders.end()) folders.push_back(plain);
+}
+
+void add_variable(std::vector<fs::path>& folders) {
+  const char* value = std::getenv(kVariable);
+  std::string_view rest = value != nullptr ? value : "";
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(':'), rest.size());
+    add(folders, rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> data_folders(const fs::path& given, const fs::path& built_with) {
+  std::vector<fs::path> folders;
+  add(folders, given);
+  add_variable(folders);
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    add(folders, executable.parent_path());
+    add(folders, executable.parent_path() / PSYGEN_DATA_FROM_EXECUTABLE);
+  }
+  add(folders, built_with);
+  return folders;
+}
+
+Result<fs::path> data_file(const fs::path& name, const fs::path& given,
+                           const fs::path& built_with) {
+  if (name.empty() || name.is_absolute() || std::ranges::find(name, "..") != name.end()) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("\"{}\": the name of a data file is a path without \"..\" that is "
+                            "relative to a data folder",
+                            name.string()));
+  }
+  const std::vector<fs::path> folders = data_folders(given, built_with);
+  std::string looked;
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    if (fs::is_regular_file(folder / name, error)) return folder / name;
+    looked += fmt::format("{}{}", looked.empty() ? "" : ", ", folder.string());
+  }
+  return fail(ErrorCode::kIo,
+              fmt::format("{}: there is no such data file; looked in {} (set {} to look elsewhere)",
+                          name.string(), looked, kVariable));
+}
+
+}  // namespace psygen::core

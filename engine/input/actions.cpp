@@ -1,0 +1,189 @@
+#include "engine/input/actions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/assert.hpp"
+#include "engine/core/utf8.hpp"
+
+namespace psygen::input {
+namespace {
+
+using core::ErrorCode;
+
+constexpr float kMostScale = 1000;
+constexpr float kMostDeadZone = 0.95F;
+// An axis counts as pressed from the first value on, and as released below the second.
+constexpr double kPressAt = 0.5, kReleaseAt = 0.4;
+// Presses and releases that wait for a step; more are left out in pairs.
+constexpr std::uint32_t kMostChanges = 16;
+
+bool is_name(std::string_view name) {
+  return !name.empty() && name.size() <= Actions::kMostNameBytes &&
+         std::ranges::all_of(name, [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                  c == '_';
+         });
+}
+
+core::Result<void> check(std::string_view action, const std::vector<Binding>& bindings) {
+  if (bindings.size() > Actions::kMostBindings) {
+    return core::fail(ErrorCode::kOverBudget,
+                      fmt::format("action {} has {} bindings; allowed: {}", action, bindings.size(),
+                                  Actions::kMostBindings));
+  }
+  for (const Binding& binding : bindings) {
+    const std::string_view control = name_of(binding.control);
+    if (!(std::abs(binding.scale) <= kMostScale) || binding.scale == 0) {
+      return core::fail(ErrorCode::kInvalidArgument,
+                        fmt::format("action {}, {}: scale is {}; allowed: -{} to {}, not 0", action,
+                                    control, binding.scale, kMostScale, kMostScale));
+    }
+    if (!(binding.dead_zone >= 0 && binding.dead_zone <= kMostDeadZone)) {
+      return core::fail(ErrorCode::kInvalidArgument,
+                        fmt::format("action {}, {}: dead_zone is {}; allowed: 0 to {}", action,
+                                    control, binding.dead_zone, kMostDeadZone));
+    }
+  }
+  return {};
+}
+
+double beyond_dead_zone(double value, double dead_zone) {
+  return std::max(0.0, value - dead_zone) / (1 - dead_zone);
+}
+
+void add_changes(std::uint32_t& changes, std::uint32_t more) {
+  changes += more;
+  if (changes > kMostChanges) changes = kMostChanges - (changes - kMostChanges) % 2;
+}
+
+}  // namespace
+
+core::Result<ActionId> Actions::add(std::string_view name, std::vector<Binding> defaults) {
+  if (!is_name(name) || find(name)) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("\"{}\" cannot be an action: {}", core::shown(name, 80),
+                                  is_name(name) ? "there is one of that name"
+                                                : "a name has 1 to 64 letters, digits and _"));
+  }
+  if (actions_.size() >= kMostActions) {
+    return core::fail(ErrorCode::kOverBudget,
+                      fmt::format("there are {} actions, which is the most", kMostActions));
+  }
+  if (auto ok = check(name, defaults); !ok) return tl::unexpected(ok.error());
+  Action action{
+      .name = std::string(name), .bindings = defaults, .defaults = defaults, .inputs = {}};
+  action.inputs.resize(defaults.size());
+  actions_.push_back(std::move(action));
+  states_.emplace_back();
+  return actions_.size() - 1;
+}
+
+std::optional<ActionId> Actions::find(std::string_view name) const {
+  const auto found = std::ranges::find(actions_, name, &Action::name);
+  if (found == actions_.end()) return std::nullopt;
+  return static_cast<ActionId>(found - actions_.begin());
+}
+
+core::Result<void> Actions::set_bindings(ActionId id, std::vector<Binding> bindings) {
+  Action& action = actions_[id];
+  if (auto ok = check(action.name, bindings); !ok) return ok;
+  if (action.bindings == bindings) return {};
+  action.inputs.assign(bindings.size(), {});
+  action.bindings = std::move(bindings);
+  return {};
+}
+
+void Actions::reset_bindings() {
+  for (ActionId id = 0; id < actions_.size(); ++id)
+    (void)set_bindings(id, actions_[id].defaults);  // they were checked when they were added
+}
+
+void Actions::feed(const platform::InputState& input) {
+  for (Action& action : actions_)
+    feed(action, input);
+}
+
+// Whether the action as a whole went down or up is seen from all of its bindings: pressing a second
+// control while a first is held is no new press.
+void Actions::feed(Action& action, const platform::InputState& input) {
+  bool down = false, pressed = false, any_was_down = false, all_went_up = true;
+  std::uint32_t notches = 0;
+  for (std::size_t i = 0; i < action.bindings.size(); ++i) {
+    const Binding& binding = action.bindings[i];
+    Input& at = action.inputs[i];
+    const Reading reading = read(binding.control, input, pad_slot_);
+    if (is_relative(binding.control)) {
+      at.moved += reading.value;
+      if (binding.control.device != Device::kWheel) continue;
+      at.notches = std::min(at.notches + reading.value, double{kMostChanges});
+      notches += static_cast<std::uint32_t>(at.notches);
+      at.notches -= std::floor(at.notches);
+      continue;
+    }
+    const bool was_down = at.down;
+    bool went_down = reading.went_down, went_up = reading.went_up;
+    if (is_digital(binding.control)) {
+      at.level = reading.value;
+      at.down = reading.value > 0;
+    } else {
+      at.level = beyond_dead_zone(reading.value, static_cast<double>(binding.dead_zone));
+      at.down = at.level >= (was_down ? kReleaseAt : kPressAt);
+    }
+    went_down |= at.down && !was_down;
+    went_up |= !at.down && was_down;
+    at.latched |= went_down;
+    down |= at.down;
+    pressed |= went_down;
+    any_was_down |= was_down;
+    if (was_down) all_went_up &= went_up;
+  }
+  const bool was_down = action.down;
+  action.down = down;
+  std::uint32_t changes = was_down != down ? 1 : 0;
+  // Down and up, or up and down again, within the frame.
+  if (pressed && (was_down ? any_was_down && all_went_up : !down)) changes += 2;
+  add_changes(action.changes, changes + 2 * notches);
+}
+
+void Actions::step() {
+  for (ActionId id = 0; id < actions_.size(); ++id) {
+    Action& action = actions_[id];
+    ActionState& state = states_[id];
+    double held = 0, moved = 0;
+    for (std::size_t i = 0; i < action.bindings.size(); ++i) {
+      Input& at = action.inputs[i];
+      const double scale = static_cast<double>(action.bindings[i].scale);
+      const bool digital = is_digital(action.bindings[i].control);
+      held += scale * (digital && at.latched ? 1.0 : at.level);
+      moved += scale * at.moved;
+      at.latched = false;
+      at.moved = 0;
+    }
+    const bool changed = action.changes > 0;
+    if (changed) --action.changes;
+    const bool was_held = state.held;
+    state.held = was_held != changed;
+    state.pressed = changed && !was_held;
+    state.released = changed && was_held;
+    state.value = static_cast<float>(std::clamp(held, -1.0, 1.0) + moved);
+  }
+}
+
+void Actions::step_to(std::span<const ActionState> states) {
+  PSYGEN_ASSERT(states.size() == states_.size(), "states of other actions");
+  std::ranges::copy(states, states_.begin());
+}
+
+void Actions::clear() {
+  for (Action& action : actions_) {
+    action.inputs.assign(action.bindings.size(), {});
+    action.down = false;
+    action.changes = 0;
+  }
+  std::ranges::fill(states_, ActionState{});
+}
+
+}  // namespace psygen::input

@@ -1,0 +1,179 @@
+#include "engine/input/control.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "engine/core/nearest_word.hpp"
+#include "engine/core/utf8.hpp"
+
+namespace psygen::input {
+namespace {
+
+using namespace std::string_view_literals;
+using platform::InputState;
+using platform::PadAxis;
+
+constexpr std::array kWheelNames{"Wheel Up"sv, "Wheel Down"sv, "Wheel Left"sv, "Wheel Right"sv};
+constexpr std::array kMouseNames{"Mouse Move Up"sv, "Mouse Move Down"sv, "Mouse Move Left"sv,
+                                 "Mouse Move Right"sv};
+constexpr std::array kPadNames{"Gamepad Left Stick Up"sv,    "Gamepad Left Stick Down"sv,
+                               "Gamepad Left Stick Left"sv,  "Gamepad Left Stick Right"sv,
+                               "Gamepad Right Stick Up"sv,   "Gamepad Right Stick Down"sv,
+                               "Gamepad Right Stick Left"sv, "Gamepad Right Stick Right"sv,
+                               "Gamepad Left Trigger"sv,     "Gamepad Right Trigger"sv};
+static_assert(kWheelNames.size() == static_cast<std::size_t>(WheelWay::kCount));
+static_assert(kMouseNames.size() == static_cast<std::size_t>(MouseWay::kCount));
+static_assert(kPadNames.size() == static_cast<std::size_t>(PadWay::kCount));
+
+// Half an axis.
+struct Half {
+  PadAxis axis;
+  float sign;
+};
+constexpr std::array kHalves{Half{PadAxis::kLeftY, 1},       Half{PadAxis::kLeftY, -1},
+                             Half{PadAxis::kLeftX, -1},      Half{PadAxis::kLeftX, 1},
+                             Half{PadAxis::kRightY, 1},      Half{PadAxis::kRightY, -1},
+                             Half{PadAxis::kRightX, -1},     Half{PadAxis::kRightX, 1},
+                             Half{PadAxis::kLeftTrigger, 1}, Half{PadAxis::kRightTrigger, 1}};
+static_assert(kHalves.size() == kPadNames.size());
+
+constexpr double kMostMoved = 1e6;
+
+double forward(double value) {
+  return std::isfinite(value) ? std::clamp(value, 0.0, kMostMoved) : 0.0;
+}
+
+Reading read_pads(Control control, const InputState& input, std::optional<std::size_t> slot) {
+  Reading strongest;
+  for (std::size_t i = 0; i < input.pads.size(); ++i) {
+    if (slot && *slot != i) continue;
+    const platform::Gamepad& pad = input.pads[i];
+    if (control.device == Device::kPadButton) {
+      strongest.value = std::max(strongest.value, pad.held[control.code] ? 1.0 : 0.0);
+      strongest.went_down |= pad.went_down[control.code];
+      strongest.went_up |= pad.went_up[control.code];
+    } else {
+      const Half half = kHalves[control.code];
+      const double value = forward(static_cast<double>(pad.axis(half.axis) * half.sign));
+      strongest.value = std::max(strongest.value, std::min(value, 1.0));
+    }
+  }
+  return strongest;
+}
+
+double wheel_of(WheelWay way, const InputState& input) {
+  switch (way) {
+    case WheelWay::kUp:
+      return input.wheel;
+    case WheelWay::kDown:
+      return -input.wheel;
+    case WheelWay::kLeft:
+      return input.wheel_x;
+    default:
+      return -input.wheel_x;
+  }
+}
+
+double moved(MouseWay way, const InputState& input) {
+  switch (way) {
+    case MouseWay::kUp:
+      return -input.move_px.y;
+    case MouseWay::kDown:
+      return input.move_px.y;
+    case MouseWay::kLeft:
+      return -input.move_px.x;
+    default:
+      return input.move_px.x;
+  }
+}
+
+template <class Code>
+void add_all(std::vector<Control>& all) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(Code::kCount); ++i)
+    all.emplace_back(static_cast<Code>(i));
+}
+
+std::vector<Control> list_controls() {
+  std::vector<Control> all;
+  add_all<platform::Key>(all);
+  add_all<platform::MouseButton>(all);
+  add_all<WheelWay>(all);
+  add_all<MouseWay>(all);
+  add_all<platform::PadButton>(all);
+  add_all<PadWay>(all);
+  return all;
+}
+
+}  // namespace
+
+std::span<const Control> all_controls() {
+  static const std::vector<Control> all = list_controls();
+  return all;
+}
+
+std::string_view name_of(Control control) {
+  switch (control.device) {
+    case Device::kKey:
+      return platform::name_of(static_cast<platform::Key>(control.code));
+    case Device::kMouseButton:
+      return platform::name_of(static_cast<platform::MouseButton>(control.code));
+    case Device::kWheel:
+      return kWheelNames[control.code];
+    case Device::kMouse:
+      return kMouseNames[control.code];
+    case Device::kPadButton:
+      return platform::name_of(static_cast<platform::PadButton>(control.code));
+    case Device::kPadAxis:
+      return kPadNames[control.code];
+  }
+  return "";
+}
+
+core::Result<Control> control_named(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Control control : all_controls()) {
+    if (name_of(control) == name) return control;
+    names.emplace_back(name_of(control));
+  }
+  const std::string_view nearest = core::nearest_word(name, names);
+  return core::fail(
+      core::ErrorCode::kInvalidArgument,
+      fmt::format("there is no control \"{}\"{}", core::shown(name, 64),
+                  nearest.empty() ? "; controls are such as \"Space\", \"Mouse Left\", "
+                                    "\"Wheel Up\", \"Gamepad A\""
+                                  : fmt::format("; did you mean \"{}\"?", nearest)));
+}
+
+bool is_relative(Control control) {
+  return control.device == Device::kWheel || control.device == Device::kMouse;
+}
+
+bool is_digital(Control control) {
+  return control.device == Device::kKey || control.device == Device::kMouseButton ||
+         control.device == Device::kPadButton;
+}
+
+Reading read(Control control, const InputState& input, std::optional<std::size_t> pad_slot) {
+  switch (control.device) {
+    case Device::kKey:
+      return {input.held[control.code] ? 1.0 : 0.0, input.went_down[control.code],
+              input.went_up[control.code]};
+    case Device::kMouseButton:
+      return {input.buttons_held[control.code] ? 1.0 : 0.0, input.buttons_went_down[control.code],
+              input.buttons_went_up[control.code]};
+    case Device::kWheel:
+      return {forward(wheel_of(static_cast<WheelWay>(control.code), input))};
+    case Device::kMouse:
+      return {forward(moved(static_cast<MouseWay>(control.code), input))};
+    case Device::kPadButton:
+    case Device::kPadAxis:
+      return read_pads(control, input, pad_slot);
+  }
+  return {};
+}
+
+}  // namespace psygen::input

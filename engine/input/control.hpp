@@ -1,0 +1,76 @@
+// Anything that a person can move: a key, a mouse button, the wheel, the mouse itself, a button or
+// half an axis of a gamepad. Each has a name and a value of 0 or more, so an axis is two controls
+// and a game gives them signs. Plain values, any thread. Knows no actions (actions.hpp).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/core/error.hpp"
+#include "engine/platform/input.hpp"
+
+namespace psygen::input {
+
+// What kind of control `code` counts in: Key, MouseButton, WheelWay, MouseWay, PadButton, PadWay.
+enum class Device : std::uint8_t { kKey, kMouseButton, kWheel, kMouse, kPadButton, kPadAxis };
+
+enum class WheelWay : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
+enum class MouseWay : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
+enum class PadWay : std::uint8_t {
+  kLeftStickUp,
+  kLeftStickDown,
+  kLeftStickLeft,
+  kLeftStickRight,
+  kRightStickUp,
+  kRightStickDown,
+  kRightStickLeft,
+  kRightStickRight,
+  kLeftTrigger,
+  kRightTrigger,
+  kCount
+};
+
+struct Control {
+  Device device = Device::kKey;
+  std::uint8_t code = 0;
+
+  Control() = default;
+  Control(platform::Key key) : code(static_cast<std::uint8_t>(key)) {}
+  Control(platform::MouseButton button)
+      : device(Device::kMouseButton), code(static_cast<std::uint8_t>(button)) {}
+  Control(WheelWay way) : device(Device::kWheel), code(static_cast<std::uint8_t>(way)) {}
+  Control(MouseWay way) : device(Device::kMouse), code(static_cast<std::uint8_t>(way)) {}
+  Control(platform::PadButton button)
+      : device(Device::kPadButton), code(static_cast<std::uint8_t>(button)) {}
+  Control(PadWay way) : device(Device::kPadAxis), code(static_cast<std::uint8_t>(way)) {}
+
+  friend bool operator==(const Control&, const Control&) = default;
+};
+
+// Every control, keys first.
+std::span<const Control> all_controls();
+
+// "W", "Mouse Left", "Wheel Up", "Mouse Move Left", "Gamepad A", "Gamepad Left Stick Up".
+std::string_view name_of(Control control);
+// The control of a name; kInvalidArgument with the nearest name otherwise. Linear in the controls.
+core::Result<Control> control_named(std::string_view name);
+
+// Moved by an amount since the last frame (wheel, mouse), rather than held at a value.
+bool is_relative(Control control);
+// Held or not, without anything between.
+bool is_digital(Control control);
+
+// What a control does in a frame.
+struct Reading {
+  double value = 0;  // digital: 0 or 1; axes: 0 … 1; wheel: steps; mouse: screen coordinates
+  bool went_down = false;  // digital only; pressed during the frame
+  bool went_up = false;
+};
+// With a gamepad control: the strongest of all gamepads, or that of one slot. Never NaN, at most
+// 1e6.
+Reading read(Control control, const platform::InputState& input,
+             std::optional<std::size_t> pad_slot = {});
+
+}  // namespace psygen::input

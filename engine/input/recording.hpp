@@ -1,0 +1,83 @@
+// A recording of actions: their states in every fixed step, as a compact file. Replaying gives the
+// very same states, bit by bit. Records no clock and nothing about the world: whether a game does
+// the same with the same actions is the game's. Plain values, one thread. Adding a step is linear
+// in the actions; a step without changes takes no bytes.
+//
+// The file, little-endian: "psygenIN", u32 format, f64 seconds of a step, u32 actions, u64 steps,
+// u64 bytes of changes; of each action u8 length and name; the changes; u64 hash of all before. The
+// changes of a step that has any: varint steps since the last such step, varint count, and for each
+// u8 action, u8 flags (1 held, 2 pressed, 4 released, 8 a new value follows), f32 value.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/input/actions.hpp"
+
+namespace psygen::input {
+
+inline constexpr std::uint32_t kRecordingFormat = 1;
+
+class Recording {
+ public:
+  static constexpr std::uint64_t kMostBytes = 256ull << 20;
+  static constexpr std::uint64_t kMostSteps = 1ull << 40;
+
+  // An empty recording of these actions, with the length of a fixed step in seconds, above 0.
+  Recording(const Actions& actions, double step_s);
+
+  // Appends the states of a step. Call it after Actions::step(), with the actions it was made for.
+  // Fails with kOverBudget once changes would take more than kMostBytes; nothing is added then.
+  core::Result<void> add(std::span<const ActionState> states);
+
+  const std::vector<std::string>& actions() const { return names_; }
+  double step_s() const { return step_s_; }
+  std::uint64_t steps() const { return steps_; }
+
+  // Replaces the file as a whole. Fails with kIo.
+  core::Result<void> save(const std::filesystem::path& file) const;
+  // Fails with kIo, with kOverBudget for files that are too large, and with kParse for files that
+  // are not recordings, of another format, cut short, or damaged in any byte.
+  static core::Result<Recording> load(const std::filesystem::path& file);
+  // The same from bytes; `name` is for messages.
+  static core::Result<Recording> parse(std::string_view bytes, std::string_view name);
+  std::string bytes() const;
+
+ private:
+  friend class Replay;
+  Recording() = default;
+
+  std::vector<std::string> names_;
+  double step_s_ = 0;
+  std::uint64_t steps_ = 0;
+  std::string changes_;
+  std::vector<ActionState> last_;   // of the step that was added last
+  std::uint64_t last_changed_ = 0;  // number of the last step with changes, from 1
+};
+
+// Puts the states of a recording into the actions, step by step.
+class Replay {
+ public:
+  // For these actions, to which names must lead: actions that the recording does not know stay at
+  // rest. Fails with kInvalidArgument for a recorded action that does not exist, and for a fixed
+  // step of another length.
+  static core::Result<Replay> create(Recording recording, const Actions& actions, double step_s);
+
+  // The next step, in place of Actions::step(); false, with everything at rest, after the last one.
+  bool step(Actions& actions);
+  std::uint64_t steps_left() const { return recording_.steps_ - step_; }
+
+ private:
+  explicit Replay(Recording recording) : recording_(std::move(recording)) {}
+
+  Recording recording_;
+  std::vector<ActionId> ids_;        // of the recorded actions
+  std::vector<ActionState> states_;  // of all actions
+  std::uint64_t step_ = 0, next_change_ = 0;
+  std::size_t at_ = 0;  // in the changes
+};
+
+}  // namespace psygen::input

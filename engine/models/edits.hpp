@@ -1,0 +1,76 @@
+// What was changed of a world by hand, in the form that model types read: edits of the ground, and
+// of the models of single blocks. A sparse layer over the world's function; where it has nothing,
+// the function holds. Parameters name the layer that their mesh shows (model_type.hpp). Immutable
+// in use: any thread may read. Made, checked and stored by world/edits.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "engine/models/kit/quad_map.hpp"
+#include "engine/models/model_type.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/models/terrain/ground_edits.hpp"
+
+namespace psygen::models {
+
+// A model that was placed by hand, or moved to this block.
+struct PlacedModel {
+  std::uint32_t id = 0;  // unique in the layer, from 1
+  ModelIndex model = 0;
+  glm::vec2 local_m{0.0F};  // from the block's corner along x and z
+  float above_m = 0;        // of its foot, over the ground
+  glm::vec3 reach_m{0.0F};  // of its bounds from the foot: sideways, up, down; all >= 0
+  Parameters parameters;    // without the slope of the ground
+};
+
+// A model of the world's function that is not there any more.
+struct RemovedModel {
+  std::uint32_t index = 0;     // among the instances of its block
+  std::uint32_t moved_id = 0;  // the PlacedModel that it became; 0: none
+  core::BlockCoord moved_to;   // its block, if it was moved
+  friend bool operator==(const RemovedModel&, const RemovedModel&) = default;
+};
+
+// All edits that belong to one block.
+struct BlockEdits {
+  std::vector<RemovedModel> removed;                      // by growing index
+  std::vector<PlacedModel> placed;                        // by growing id
+  std::vector<std::shared_ptr<const GroundEdit>> ground;  // centred in the block, by growing id
+
+  struct Summary {
+    std::uint64_t removed = 0, placed = 0, ground = 0;
+    glm::vec3 reach_m{0.0F};  // the largest of PlacedModel::reach_m
+    void add(const Summary& part) {
+      removed += part.removed;
+      placed += part.placed;
+      ground += part.ground;
+      for (int i = 0; i < 3; ++i)
+        reach_m[i] = std::max(reach_m[i], part.reach_m[i]);
+    }
+  };
+  bool empty() const { return removed.empty() && placed.empty() && ground.empty(); }
+  std::uint64_t hash() const;
+  Summary summary() const;
+  // Whether an instance of the world's function was removed or moved. O(log n).
+  bool is_removed(std::uint32_t index) const {
+    const auto at = std::ranges::lower_bound(removed, index, {}, &RemovedModel::index);
+    return at != removed.end() && at->index == index;
+  }
+};
+
+// The whole layer. A value: copies are O(1) and independent.
+struct EditLayer {
+  GroundEdits ground;          // by place
+  QuadMap<BlockEdits> blocks;  // everything, by the block that it belongs to; keys are blocks
+  std::uint32_t next_id = 1;   // of placed models and edits of the ground
+
+  // The edits of one block, or null. O(log n).
+  const BlockEdits* block(core::BlockCoord at) const { return blocks.find(QuadPlace::of(at)); }
+};
+
+}  // namespace psygen::models

@@ -1,0 +1,216 @@
+// A sparse map from squares of the quadtree to values, as an immutable tree: copies are O(1), and
+// changing a copy leaves all others as they were. Every square knows the hash and the summary of
+// everything in it, so large areas are compared and counted without a visit to their values. The
+// shape of the tree and its hashes depend on the content alone, not on the order of changes.
+// Squares without values are left out: the tree has less than two nodes a value, and a path at most
+// 33. Any thread may read a map that nobody changes; different copies may be used at the same time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "engine/core/coordinates.hpp"
+#include "engine/core/hash.hpp"
+
+namespace psygen::models {
+
+// A square of 2^level × 2^level blocks, in squares of its level counted from block −2^31.
+struct QuadPlace {
+  static constexpr std::uint32_t kMaxLevel = 32;
+  std::uint32_t level = 0;
+  std::uint64_t x = 0, z = 0;
+
+  // The square of `level`, counted in squares of that level from block 0. Wraps like blocks do.
+  static constexpr QuadPlace of(core::BlockCoord at, std::uint32_t level = 0) {
+    const auto from_origin = [level](std::int32_t index) {
+      const std::uint32_t block = static_cast<std::uint32_t>(index) << level;
+      return std::uint64_t{block ^ 0x80000000U} >> level;
+    };
+    return {level, from_origin(at.x), from_origin(at.z)};
+  }
+  // The block at its corner.
+  constexpr core::BlockCoord corner() const {
+    const auto block = [this](std::uint64_t index) {
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(index << level) ^ 0x80000000U);
+    };
+    return {block(x), block(z)};
+  }
+  // Whether `other` is this square or lies in it.
+  constexpr bool covers(const QuadPlace& other) const {
+    return other.level <= level && other.x >> (level - other.level) == x &&
+           other.z >> (level - other.level) == z;
+  }
+  // Which quarter of this square `other` lies in, which is smaller: x in bit 0, z in bit 1.
+  constexpr std::size_t quarter_of(const QuadPlace& other) const {
+    const std::uint32_t down = level - 1 - other.level;
+    return static_cast<std::size_t>(((other.x >> down) & 1) | (((other.z >> down) & 1) << 1));
+  }
+  constexpr QuadPlace quarter(std::size_t q) const {
+    return {level - 1, 2 * x + (q & 1), 2 * z + (q >> 1)};
+  }
+  constexpr QuadPlace parent() const { return {level + 1, x >> 1, z >> 1}; }
+  friend bool operator==(const QuadPlace&, const QuadPlace&) = default;
+};
+
+// V has bool empty() const, std::uint64_t hash() const (never 0 where not empty), and a type
+// Summary, which is of nothing by default, with add(const Summary&); V::summary() returns its own.
+template <class V>
+class QuadMap {
+ public:
+  using Summary = typename V::Summary;
+
+  // A square that has a value or at least two quarters that are not empty.
+  struct Cell {
+    QuadPlace place;
+    std::shared_ptr<const V> value;  // null: none
+    std::array<std::shared_ptr<const Cell>, 4> quarters;
+    std::uint64_t hash = 0;  // of all values in the square; never 0
+    Summary summary;         // of all of them
+  };
+
+  bool empty() const { return root_ == nullptr; }
+  // The smallest square around everything, or null.
+  const Cell* root() const { return root_.get(); }
+
+  // The value of a square; null if it has none. O(path).
+  const V* find(const QuadPlace& place) const {
+    const Cell* cell = at_or_below(place);
+    return cell != nullptr && cell->place == place ? cell->value.get() : nullptr;
+  }
+  // The largest cell in the square, which knows hash and summary of all in it; null: nothing is
+  // there.
+  const Cell* at_or_below(const QuadPlace& place) const {
+    const Cell* cell = root_.get();
+    while (cell != nullptr && !place.covers(cell->place)) {
+      if (!cell->place.covers(place)) return nullptr;
+      cell = cell->quarters[cell->place.quarter_of(place)].get();
+    }
+    return cell;
+  }
+
+  // Sets the value of a square; an empty value takes it away. O(path).
+  void set(const QuadPlace& place, V value) {
+    root_ =
+        with(root_, place, value.empty() ? nullptr : std::make_shared<const V>(std::move(value)));
+  }
+
+  // visit(place, value) for all values. O(values).
+  template <class Visit>
+  void each(const Visit& visit) const {
+    each_in(root_.get(), visit);
+  }
+  // visit(place, before, after) for each square whose value is not the same object in both maps;
+  // null where there is none. O(differences · path).
+  template <class Visit>
+  static void each_difference(const QuadMap& before, const QuadMap& after, const Visit& visit) {
+    difference(before.root_.get(), after.root_.get(), visit);
+  }
+
+ private:
+  using CellPtr = std::shared_ptr<const Cell>;
+  using ValuePtr = std::shared_ptr<const V>;
+
+  static CellPtr make(const QuadPlace& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
+    auto cell = std::make_shared<Cell>();
+    std::uint64_t hash = core::mix64(place.level);
+    if (value) {
+      hash = core::combine(hash, value->hash());
+      cell->summary = value->summary();
+    }
+    for (std::size_t q = 0; q < 4; ++q) {
+      if (!quarters[q]) continue;
+      hash = core::combine(core::combine(hash, q), quarters[q]->hash);
+      cell->summary.add(quarters[q]->summary);
+    }
+    cell->place = place;
+    cell->value = std::move(value);
+    cell->quarters = std::move(quarters);
+    cell->hash = hash == 0 ? 1 : hash;
+    return cell;
+  }
+
+  // A cell, or what is left of it where it is not needed.
+  static CellPtr tidy(const QuadPlace& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
+    if (value) return make(place, std::move(value), std::move(quarters));
+    const CellPtr* only = nullptr;
+    std::size_t count = 0;
+    for (const CellPtr& quarter : quarters) {
+      if (!quarter) continue;
+      only = &quarter;
+      ++count;
+    }
+    if (count == 0) return nullptr;
+    return count == 1 ? *only : make(place, nullptr, std::move(quarters));
+  }
+
+  static CellPtr with(const CellPtr& cell, const QuadPlace& target, ValuePtr value) {
+    if (!cell) return value ? make(target, std::move(value), {}) : nullptr;
+    if (cell->place == target) return tidy(target, std::move(value), cell->quarters);
+    if (cell->place.covers(target)) {
+      const std::size_t q = cell->place.quarter_of(target);
+      CellPtr quarter = with(cell->quarters[q], target, std::move(value));
+      if (quarter == cell->quarters[q]) return cell;
+      std::array<CellPtr, 4> quarters = cell->quarters;
+      quarters[q] = std::move(quarter);
+      return tidy(cell->place, cell->value, std::move(quarters));
+    }
+    if (!value) return cell;
+    if (target.covers(cell->place)) {
+      std::array<CellPtr, 4> quarters;
+      quarters[target.quarter_of(cell->place)] = cell;
+      return make(target, std::move(value), std::move(quarters));
+    }
+    QuadPlace both = cell->place.parent();
+    while (!both.covers(target))
+      both = both.parent();
+    std::array<CellPtr, 4> quarters;
+    quarters[both.quarter_of(cell->place)] = cell;
+    quarters[both.quarter_of(target)] = make(target, std::move(value), {});
+    return make(both, nullptr, std::move(quarters));
+  }
+
+  template <class Visit>
+  static void each_in(const Cell* cell, const Visit& visit) {
+    if (cell == nullptr) return;
+    if (cell->value) visit(cell->place, *cell->value);
+    for (const CellPtr& quarter : cell->quarters)
+      each_in(quarter.get(), visit);
+  }
+
+  template <class Visit>
+  static void difference(const Cell* before, const Cell* after, const Visit& visit) {
+    if (before == after) return;
+    if (before == nullptr || after == nullptr ||
+        (!before->place.covers(after->place) && !after->place.covers(before->place))) {
+      each_in(before, [&](const QuadPlace& at, const V& v) { visit(at, &v, nullptr); });
+      each_in(after, [&](const QuadPlace& at, const V& v) { visit(at, nullptr, &v); });
+      return;
+    }
+    if (before->place == after->place) {
+      if (before->value != after->value)
+        visit(before->place, before->value.get(), after->value.get());
+      for (std::size_t q = 0; q < 4; ++q)
+        difference(before->quarters[q].get(), after->quarters[q].get(), visit);
+      return;
+    }
+    // The larger one has the other in one of its quarters.
+    const bool grown = after->place.covers(before->place);
+    const Cell* large = grown ? after : before;
+    const Cell* small = grown ? before : after;
+    if (large->value)
+      visit(large->place, grown ? nullptr : large->value.get(),
+            grown ? large->value.get() : nullptr);
+    for (std::size_t q = 0; q < 4; ++q) {
+      const Cell* part = large->place.quarter_of(small->place) == q ? small : nullptr;
+      const Cell* quarter = large->quarters[q].get();
+      grown ? difference(part, quarter, visit) : difference(quarter, part, visit);
+    }
+  }
+
+  CellPtr root_;
+};
+
+}  // namespace psygen::models

@@ -1,0 +1,112 @@
+// Edits of the ground: raised, flattened, or shaped by a heightmap, at places anywhere in the
+// world. They act on the heights of the base terrain, one after the other, as a pure function of
+// the place, so that neighbouring nodes and all levels agree bit for bit at shared vertices.
+// A value: copies are O(1) and independent. Any thread may read one that nobody changes. Checks
+// nothing (world/edits) and stores nothing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/core/coordinates.hpp"
+#include "engine/models/kit/quad_map.hpp"
+
+namespace psygen::models {
+
+// What an edit does with the height under it.
+enum class GroundChange : std::uint8_t {
+  kRaise,     // adds height_m; below 0 it digs
+  kFlatten,   // moves it to height_m
+  kStampAdd,  // adds the heightmap
+  kStampSet,  // replaces it by the heightmap
+};
+
+// Heights in metres over a square, row by row from its corner at the least x and z. Linear between
+// its points; the outer ones lie on the square's border.
+struct Heightmap {
+  std::uint32_t columns = 0, rows = 0;  // at least 2 each
+  std::vector<float> heights_m;         // columns · rows
+};
+
+// One edit. Immutable once it is part of a GroundEdits.
+struct GroundEdit {
+  GroundChange change = GroundChange::kRaise;
+  bool square = false;         // else a disc; heightmaps are always square
+  core::WorldPosition centre;  // normalised; y is not used
+  double radius_m = 1;         // of the disc, or half the side of the square
+  double falloff = 0.5;        // share of the radius over which the edit fades out; 0: a cliff
+  double height_m = 0;         // kRaise: difference; kFlatten: height above 0
+  std::shared_ptr<const Heightmap> map;  // of the two stamps
+  std::uint32_t id = 0;                  // edits act in the order of their ids
+  std::uint64_t content = 0;             // content_hash()
+};
+// Identifies everything but the id.
+std::uint64_t content_hash(const GroundEdit& edit);
+
+// The lattice of a terrain and its heights: vertices are counted in cells of node level 0.
+struct GroundScale {
+  std::int64_t cells_per_block = 63;
+  double cell_m = 1;
+  double unit_m = 1;  // a height of 1 in metres
+  float highest = 1;  // heights lie in [0, highest]
+  double block_m() const { return static_cast<double>(cells_per_block) * cell_m; }
+};
+
+// The edits whose influence begins in one square of the quadtree, by growing id.
+struct GroundCell {
+  std::vector<std::shared_ptr<const GroundEdit>> edits;
+
+  // How much heights may change where most edits lie on top of each other, and how steeply.
+  struct Summary {
+    float change_m = 0, steepness = 0;              // of this square's own edits, added up
+    float below_change_m = 0, below_steepness = 0;  // the most in one of its quarters
+    void add(const Summary& quarter);
+  };
+  bool empty() const { return edits.empty(); }
+  std::uint64_t hash() const;
+  Summary summary() const;
+};
+
+// All edits of the ground of a world.
+class GroundEdits {
+ public:
+  // Light baked into vertices reaches this many radii from an edit's centre (light.hpp); beyond, no
+  // mesh depends on it.
+  static constexpr double kInfluence = 5.5;
+  // Largest number of edits that begin in one square of the quadtree.
+  static constexpr std::size_t kMostTogether = 1024;
+
+  bool empty() const { return cells_.empty(); }
+  std::uint64_t hash() const { return cells_.empty() ? 0 : cells_.root()->hash; }
+
+  // Adds an edit, or takes the one with this id away, in O(log n). add() returns false, and changes
+  // nothing, where kMostTogether are there already.
+  bool add(const std::shared_ptr<const GroundEdit>& edit, double block_m);
+  void remove(const GroundEdit& edit, double block_m);
+
+  // Hash of all edits that can change the ground mesh of a node that needs heights `margin` blocks
+  // beyond its border; 0: none. O(log n), and O(margin) for large nodes.
+  std::uint64_t hash_of(const QuadPlace& node, double margin, double block_m) const;
+  // Whether both have the same there. May say no although they have; O(log n) after small changes.
+  static bool same_in(const GroundEdits& a, const GroundEdits& b, const QuadPlace& node,
+                      double margin);
+  // Whether any edit may change heights within a node. May say yes although none does.
+  bool reaches(const QuadPlace& node, double block_m) const;
+  // How far the ground may lie off a mesh of the node whose vertices are `spacing_m` apart, because
+  // of edits between them. An upper bound in metres; 0: there are none.
+  double error_m(const QuadPlace& node, double spacing_m, double block_m) const;
+
+  // Applies the edits to heights at the lattice points (x[i], z[k]), values[k · stride + i]. x and
+  // z ascend. Edits of a radius below `narrowest_m` are left out. Linear in the heights that
+  // change.
+  void apply(const GroundScale& scale, std::span<const std::int64_t> x,
+             std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
+             double narrowest_m = 0) const;
+
+ private:
+  QuadMap<GroundCell> cells_;
+};
+
+}  // namespace psygen::models

@@ -1,0 +1,229 @@
+#include "engine/physics/character.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "engine/physics/convert.hpp"
+
+namespace psygen::physics {
+namespace {
+
+constexpr double kGroundAcceleration = 40, kAirAcceleration = 6;  // m/s²
+constexpr double kMostSlide = 12;  // m/s down ground that is too steep
+constexpr double kPieceM = 0.2;    // a longer way is gone in pieces
+constexpr int kSlides = 4;
+
+btVector3 along_plane(const btVector3& way, const btVector3& normal) {
+  return way - normal * std::min(way.dot(normal), btScalar(0));
+}
+
+// The normal of a wall: without its part along y. Zero for a ceiling.
+btVector3 wall(const btVector3& normal) {
+  const btVector3 flat(normal.x(), 0, normal.z());
+  return flat.length2() > 1e-12 ? flat.normalized() : btVector3(0, 0, 0);
+}
+
+}  // namespace
+
+Character::Character(btDynamicsWorld& bullet, Terrain& terrain, const CharacterSettings& settings,
+                     const btVector3& feet, std::uint32_t number)
+    : bullet_(bullet),
+      terrain_(terrain),
+      settings_(settings),
+      least_up_(std::cos(glm::radians(settings.steepest_deg))),
+      feet_(feet),
+      capsule_(settings.radius_m, settings.height_m - 2 * settings.radius_m),
+      body_(std::make_unique<btRigidBody>(0, &motion_, &capsule_)),
+      mover_(bullet, *body_, capsule_, settings.mass_kg) {
+  body_->setCollisionFlags(body_->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  body_->setActivationState(DISABLE_DEACTIVATION);
+  body_->setUserIndex(static_cast<int>(number));
+  body_->setUserIndex2(kCharacters);
+  teleport(feet);
+  bullet_.addRigidBody(body_.get(), kCharacters, kBodies | kCharacters | kModels);
+}
+
+Character::~Character() {
+  bullet_.removeRigidBody(body_.get());
+}
+
+// `jumped_there`: without pushing what is in between.
+void Character::publish(bool jumped_there) {
+  const btTransform place(btQuaternion::getIdentity(), centre(feet_));
+  motion_.setWorldTransform(place);
+  if (!jumped_there) return;
+  body_->setWorldTransform(place);
+  body_->setInterpolationWorldTransform(place);
+  if (body_->getBroadphaseHandle() != nullptr) bullet_.updateSingleAabb(body_.get());
+}
+
+void Character::teleport(const btVector3& feet) {
+  feet_ = terrain_.inside(feet, settings_.radius_m);
+  const double height = terrain_.ground(feet_).height_m;
+  on_ground = feet_.y() <= height;
+  feet_.setY(std::max(feet_.y(), height));
+  publish(true);
+}
+
+void Character::shift(const btVector3& by) {
+  feet_ -= by;
+  publish(true);
+}
+
+// The way without its part up ground that is too steep.
+btVector3 Character::climb_limited(const btVector3& way) {
+  btVector3 left = way;
+  for (int i = 0; i < 2; ++i) {
+    const models::GroundPoint ahead = terrain_.ground(feet_ + left);
+    const btVector3 normal = to_bt(ahead.normal);
+    if (is_walkable(normal) || ahead.height_m <= feet_.y() + 1e-3) return left;
+    left = along_plane(left, wall(normal));
+    stop_at(wall(normal));
+  }
+  const models::GroundPoint ahead = terrain_.ground(feet_ + left);
+  if (is_walkable(to_bt(ahead.normal)) || ahead.height_m <= feet_.y() + 1e-3) return left;
+  return {0, 0, 0};
+}
+
+void Character::stop_at(const btVector3& normal) {
+  const btVector3 flat(velocity.x(), 0, velocity.z());
+  const btVector3 left = along_plane(flat, normal);
+  velocity = btVector3(left.x(), velocity.y(), left.z());
+}
+
+// Over an obstacle: up, ahead and down again. Refused if it lands on a slope or gains nothing.
+bool Character::step_up(const btVector3& way) {
+  const btVector3 from = centre(feet_), up(0, settings_.step_height_m, 0);
+  const Sweep raise = mover_.sweep(from, from + up);
+  const double lifted =
+      std::max(raise.fraction * settings_.step_height_m - CapsuleMover::kSkinM, 0.0);
+  if (lifted < 2 * CapsuleMover::kSkinM) return false;
+  const btVector3 above = from + btVector3(0, lifted, 0);
+  // Far enough for the capsule's round foot to find the top of the step.
+  const btVector3 ahead = way + way.normalized() * (0.5 * settings_.radius_m);
+  const Sweep forth = mover_.sweep(above, above + ahead);
+  const btVector3 gained =
+      ahead * std::max(forth.fraction - CapsuleMover::kSkinM / ahead.length(), 0.0);
+  if (gained.length2() < 0.25 * ahead.length2()) return false;
+  const btVector3 there = above + gained;
+  const Sweep down = mover_.sweep(there, there - btVector3(0, lifted, 0));
+  if (!down.hit || !is_walkable(down.normal)) return false;
+  const btVector3 landed =
+      there - btVector3(0, std::max(lifted * down.fraction - CapsuleMover::kSkinM, 0.0), 0);
+  // Only as far as the way reaches, if there is support there too.
+  feet_ = terrain_.inside(landed - btVector3(0, 0.5 * settings_.height_m, 0), settings_.radius_m);
+  return true;
+}
+
+void Character::move_aside(btVector3 way) {
+  for (int i = 0; i < kSlides && way.length2() > 1e-12; ++i) {
+    way = climb_limited(way);
+    if (way.length2() <= 1e-12) return;
+    const btVector3 from = centre(feet_);
+    const double length = way.length();
+    const Sweep sweep = mover_.sweep(from, from + way * (1 + CapsuleMover::kSkinM / length));
+    const double gone =
+        sweep.hit
+            ? std::max(sweep.fraction * (length + CapsuleMover::kSkinM) - CapsuleMover::kSkinM, 0.0)
+            : length;
+    feet_ = terrain_.inside(feet_ + way * (gone / length), settings_.radius_m);
+    if (!sweep.hit) return;
+    way *= 1 - gone / length;
+    if (is_walkable(sweep.normal)) {
+      way = along_plane(way, sweep.normal);
+    } else if (on_ground && !rising_ && step_up(way)) {
+      return;
+    } else {
+      way = along_plane(way, wall(sweep.normal));
+      stop_at(wall(sweep.normal));
+    }
+  }
+}
+
+void Character::move_up(double rise) {
+  const btVector3 from = centre(feet_);
+  const Sweep sweep = mover_.sweep(from, from + btVector3(0, rise, 0));
+  feet_.setY(feet_.y() +
+             std::max(rise * sweep.fraction - (sweep.hit ? CapsuleMover::kSkinM : 0), 0.0));
+  if (sweep.hit) velocity.setY(0);
+}
+
+// Falls by `drop`, or, where it stands, follows what it stands on.
+void Character::move_down(double drop) {
+  const bool stood = on_ground && !rising_;
+  const double depth = stood ? settings_.step_height_m : drop;
+  const btVector3 from = centre(feet_);
+  const Sweep sweep = mover_.sweep(from, from - btVector3(0, depth + CapsuleMover::kSkinM, 0));
+  const models::GroundPoint ground = terrain_.ground(feet_);
+  Support support{ground.height_m, to_bt(ground.normal)};
+  if (sweep.hit) {
+    const double height =
+        feet_.y() - sweep.fraction * (depth + CapsuleMover::kSkinM) + CapsuleMover::kSkinM;
+    if (height > support.height) support = {height, sweep.normal};
+  }
+  const double lowest = feet_.y() - depth;
+  if (support.height < lowest) {
+    on_ground = false;
+    if (!stood) feet_.setY(lowest);
+    return;
+  }
+  const double fall_speed = -velocity.y();
+  feet_.setY(support.height);
+  on_ground = is_walkable(support.normal);
+  velocity.setY(0);
+  if (on_ground) return;
+  // Too steep: it slides down.
+  const btVector3 downhill = wall(support.normal);
+  const double faster = kMostSlide - velocity.dot(downhill);
+  velocity += downhill * std::clamp(fall_speed * support.normal.y(), 0.0, std::max(faster, 0.0));
+  if (support.height > ground.height_m) move_aside(downhill * std::max(drop, 0.02));
+}
+
+void Character::follow_ground() {
+  const double height = terrain_.ground(feet_).height_m;
+  if (feet_.y() < height) feet_.setY(height);
+}
+
+void Character::step(double dt, double gravity) {
+  feet_ += mover_.pushed_out(centre(feet_)) - centre(feet_);
+  feet_ = terrain_.inside(feet_, settings_.radius_m);
+  follow_ground();
+
+  const double length = std::max(glm::length(input.direction), 1.0);
+  const glm::dvec2 wanted =
+      input.direction * ((input.run ? settings_.run_speed : settings_.walk_speed) / length);
+  btVector3 change = btVector3(wanted.x, 0, wanted.y) - btVector3(velocity.x(), 0, velocity.z());
+  const double most = dt * (on_ground ? kGroundAcceleration : kAirAcceleration);
+  if (change.length() > most) change *= most / change.length();
+  velocity += change;
+
+  rising_ = false;
+  if (on_ground && input.jump) {
+    velocity.setY(settings_.jump_speed);
+    rising_ = true;
+    input.jump = false;
+  } else {
+    velocity.setY(on_ground && velocity.y() <= 0 ? 0 : velocity.y() - gravity * dt);
+    rising_ = velocity.y() > 0;
+  }
+  if (velocity.length() > kMostSpeed) velocity *= kMostSpeed / velocity.length();
+
+  const double way_m = btVector3(velocity.x(), 0, velocity.z()).length() * dt;
+  const int pieces = std::max(static_cast<int>(std::ceil(way_m / kPieceM)), 1);
+  const double part = dt / pieces;
+  for (int i = 0; i < pieces; ++i) {
+    move_aside(btVector3(velocity.x(), 0, velocity.z()) * part);
+    if (velocity.y() > 0) {
+      on_ground = false;
+      move_up(velocity.y() * part);
+    } else {
+      move_down(-velocity.y() * part);
+    }
+    follow_ground();
+  }
+  publish(false);
+}
+
+}  // namespace psygen::physics

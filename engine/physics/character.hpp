@@ -1,0 +1,69 @@
+// A walking character: speeds, slopes, steps, jumps. It follows the ground by queries, exactly, and
+// everything else by sweeps of its capsule. Internal to physics. One thread.
+#pragma once
+
+#include <btBulletDynamicsCommon.h>
+
+#include <memory>
+
+#include "engine/physics/capsule_mover.hpp"
+#include "engine/physics/terrain.hpp"
+#include "engine/physics/types.hpp"
+
+namespace psygen::physics {
+
+// One character with its kinematic body, which pushes lighter bodies.
+class Character {
+ public:
+  // Adds the body to `bullet`, which must outlive it. `feet` are in Bullet's coordinates.
+  Character(btDynamicsWorld& bullet, Terrain& terrain, const CharacterSettings& settings,
+            const btVector3& feet, std::uint32_t number);
+  ~Character();
+  Character(const Character&) = delete;
+  Character& operator=(const Character&) = delete;
+
+  // Moves it for `dt` seconds.
+  void step(double dt, double gravity);
+  // Puts it somewhere, but not below the ground and not beyond the walls of a bounded world.
+  void teleport(const btVector3& feet);
+  // Bullet's coordinates have moved by −`by`.
+  void shift(const btVector3& by);
+
+  const btVector3& feet() const { return feet_; }
+  double reach_m() const { return settings_.height_m + settings_.step_height_m; }
+
+  CharacterInput input;
+  btVector3 velocity{0, 0, 0};
+  bool on_ground = false;
+
+ private:
+  struct Support {
+    double height;
+    btVector3 normal;
+  };
+  btVector3 centre(const btVector3& feet) const {
+    return feet + btVector3(0, 0.5 * settings_.height_m, 0);
+  }
+  btVector3 climb_limited(const btVector3& way);
+  bool step_up(const btVector3& way);
+  void stop_at(const btVector3& normal);
+  void move_aside(btVector3 way);
+  void move_up(double rise);
+  void move_down(double drop);
+  void follow_ground();
+  bool is_walkable(const btVector3& normal) const { return normal.y() >= least_up_; }
+  void publish(bool jumped_there);
+
+  btDynamicsWorld& bullet_;
+  Terrain& terrain_;
+  CharacterSettings settings_;
+  double least_up_;  // y of the normal of the steepest walkable ground
+  btVector3 feet_;
+  bool rising_ = false;  // has jumped in this step
+  btCapsuleShape capsule_;
+  btDefaultMotionState motion_;
+  std::unique_ptr<btRigidBody> body_;
+  CapsuleMover mover_;
+};
+
+}  // namespace psygen::physics

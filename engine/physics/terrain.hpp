@@ -1,0 +1,80 @@
+// The blocks that physics has in Bullet: ground as a heightfield with the triangles of the finest
+// mesh, trunks and rocks as static objects. Made from queries when something comes near, removed
+// when nothing has needed them for a while. Internal to physics. One thread.
+#pragma once
+
+#include <btBulletDynamicsCommon.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/query/world.hpp"
+
+namespace psygen::physics {
+
+// Groups of Bullet's collision filter.
+enum Group : int { kGround = 1, kModels = 2, kBodies = 4, kCharacters = 8 };
+
+class Terrain {
+ public:
+  // At most this many blocks along each axis are made around one thing.
+  static constexpr std::int64_t kMostAside = 32;
+
+  // Both must outlive it.
+  Terrain(btDynamicsWorld& bullet, query::World& query) : bullet_(bullet), query_(query) {}
+  ~Terrain() { clear(); }
+  Terrain(const Terrain&) = delete;
+  Terrain& operator=(const Terrain&) = delete;
+
+  // The block from whose corner Bullet's coordinates count. Removes all blocks.
+  void set_origin(core::BlockCoord origin);
+  // Makes what is missing of the blocks that reach into the square from `low` to `high`, in
+  // Bullet's x and z, and keeps them for this step.
+  void need(const glm::dvec2& low, const glm::dvec2& high, std::uint64_t step);
+  // Removes blocks that were not needed for `keep_steps`, and the oldest of more than `most`
+  // others.
+  void drop_idle(std::uint64_t step, std::uint32_t keep_steps, std::size_t most);
+  void remove(core::BlockCoord block);
+  // Removes the blocks that edits of the world have changed since the last call. Returns whether
+  // there are any.
+  bool follow_edits();
+  void clear();
+  std::size_t size() const { return blocks_.size(); }
+
+  // The ground under a point in Bullet's coordinates, moved into a bounded world. From queries
+  // where the block is not here.
+  models::GroundPoint ground(const btVector3& at);
+  // The point inside the walls of a bounded world, at least `margin_m` from them.
+  btVector3 inside(const btVector3& at, double margin_m) const;
+  // Between Bullet's coordinates and the world's.
+  core::WorldPosition position(const btVector3& at) const;
+  btVector3 coordinates(const core::WorldPosition& at) const;
+
+ private:
+  struct Block {
+    std::uint64_t needed = 0;  // the last step in which it was
+    std::uint64_t edits = 0;   // query::edits_of_block() when it was made
+    std::optional<query::GroundGrid> grid;
+    std::vector<double> heights;  // for Bullet
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<std::unique_ptr<btCollisionObject>> objects;
+  };
+  using Blocks = std::unordered_map<core::BlockCoord, Block, core::BlockCoordHash>;
+
+  glm::dvec3 corner_of(core::BlockCoord block) const;
+  void make(core::BlockCoord at, Block& block);
+  void add(Block& block, std::unique_ptr<btCollisionShape> shape, const btTransform& place,
+           Group group);
+  Blocks::iterator erase(Blocks::iterator block);
+
+  btDynamicsWorld& bullet_;
+  query::World& query_;
+  std::shared_ptr<const models::EditLayer> edits_;  // when they were last looked at
+  core::BlockCoord origin_;
+  Blocks blocks_;
+};
+
+}  // namespace psygen::physics

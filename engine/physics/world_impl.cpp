@@ -1,0 +1,192 @@
+#include "engine/physics/world_impl.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/physics/convert.hpp"
+
+namespace psygen::physics {
+namespace {
+
+// Coordinates stay below this near the first thing that moves.
+constexpr double kMostFromOriginM = 4096;
+// Terrain is made this much further than a thing can get in a step.
+constexpr double kMarginM = 2;
+
+bool is_finite(const btVector3& v) {
+  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+btVector3 limited(const btVector3& v, double most) {
+  const double length = v.length();
+  return length > most ? btVector3(v * (most / length)) : v;
+}
+
+}  // namespace
+
+bool is_within(const glm::dvec3& v, double most) {
+  return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;  // not NaN
+}
+
+World::Impl::Impl(query::World& queries, const Settings& wanted)
+    : query(queries), settings(wanted) {
+  bullet.setGravity({0, -settings.gravity, 0});
+  bullet.getDispatchInfo().m_deterministicOverlappingPairs = true;
+  bullet.setForceUpdateAllAabbs(false);
+}
+
+World::Impl::~Impl() {
+  for (auto& [number, body] : bodies)
+    bullet.removeRigidBody(body.rigid.get());
+}
+
+World::Impl::Body* World::Impl::find(BodyId id) {
+  const auto found = bodies.find(id.number);
+  return found == bodies.end() ? nullptr : &found->second;
+}
+
+Character* World::Impl::find(CharacterId id) {
+  const auto found = characters.find(id.number);
+  return found == characters.end() ? nullptr : &found->second;
+}
+
+core::Result<btVector3> World::Impl::place(const core::WorldPosition& at) {
+  const auto sound = query::checked(at, query.world().block_size_m());
+  if (!sound) return tl::unexpected(sound.error());
+  if (!query.world().contains(sound->block))
+    return refuse(
+        fmt::format("block ({}, {}) is outside the world", sound->block.x, sound->block.z));
+  const btVector3 to = terrain.coordinates(*sound);
+  if (btVector3(to.x(), 0, to.z()).length() <= kMostFromOriginM || count() > 1) return to;
+  move_origin(sound->block);
+  return terrain.coordinates(*sound);
+}
+
+// The origin stays near the character with the lowest number, or else the body.
+void World::Impl::shift_origin() {
+  if (count() == 0) return;
+  const btVector3 first = !characters.empty()
+                              ? characters.begin()->second.feet()
+                              : bodies.begin()->second.rigid->getCenterOfMassPosition();
+  if (btVector3(first.x(), 0, first.z()).length() > kMostFromOriginM)
+    move_origin(terrain.position(first).block);
+}
+
+void World::Impl::move_origin(core::BlockCoord to) {
+  const btVector3 by = terrain.coordinates({to, glm::dvec3(0)});
+  terrain.set_origin(to);
+  for (auto& [number, character] : characters)
+    character.shift(by);
+  for (auto& [number, body] : bodies) {
+    btTransform transform = body.rigid->getWorldTransform();
+    transform.setOrigin(transform.getOrigin() - by);
+    body.rigid->setWorldTransform(transform);
+    body.rigid->setInterpolationWorldTransform(transform);
+    btTransform target;
+    body.motion.getWorldTransform(target);
+    target.setOrigin(target.getOrigin() - by);
+    body.motion.setWorldTransform(target);
+    bullet.updateSingleAabb(body.rigid.get());
+  }
+}
+
+void World::Impl::make_terrain(double dt) {
+  const auto need = [&](const btVector3& at, const btVector3& velocity, double reach_m) {
+    const btVector3 to = at + velocity * dt;
+    const double around = reach_m + kMarginM;
+    terrain.need({std::min(at.x(), to.x()) - around, std::min(at.z(), to.z()) - around},
+                 {std::max(at.x(), to.x()) + around, std::max(at.z(), to.z()) + around}, steps);
+  };
+  for (const auto& [number, character] : characters)
+    need(character.feet(), character.velocity, character.reach_m());
+  for (const auto& [number, body] : bodies)
+    need(body.rigid->getCenterOfMassPosition(), body.rigid->getLinearVelocity(), body.reach_m);
+}
+
+void World::Impl::step(double dt) {
+  ++steps;
+  shift_origin();
+  if (terrain.follow_edits()) rouse();
+  make_terrain(dt);
+  for (auto& [number, character] : characters)
+    character.step(dt, settings.gravity);
+  for (auto& [number, body] : bodies) {
+    body.before = body.rigid->getCenterOfMassPosition();
+    if (body.kind != Motion::kKinematic) continue;
+    // Bodies that rest on a kinematic one sleep only if it does.
+    if (body.is_moved || body.rigid->getLinearVelocity().length2() > 0 ||
+        body.rigid->getAngularVelocity().length2() > 0)
+      body.rigid->forceActivationState(ACTIVE_TAG);
+    else
+      body.rigid->forceActivationState(ISLAND_SLEEPING);
+    body.is_moved = false;
+  }
+  bullet.stepSimulation(dt, 0);
+  for (auto& [number, body] : bodies)
+    if (body.kind == Motion::kDynamic) put_back(body);
+  terrain.drop_idle(steps, settings.keep_steps, settings.most_idle_blocks);
+}
+
+// Wakes all bodies: something that they rest on may be gone.
+void World::Impl::rouse() {
+  for (auto& [number, body] : bodies)
+    if (body.kind == Motion::kDynamic) body.rigid->activate(true);
+}
+
+// Bullet finds contacts at the end of a step only, so what is fast can be beyond the ground by
+// then. The way of the centre is checked against the exact ground.
+void World::Impl::put_back(Body& body) {
+  btRigidBody& rigid = *body.rigid;
+  if (!rigid.isActive()) return;
+  btTransform transform = rigid.getWorldTransform();
+  btVector3 at = transform.getOrigin(), velocity = rigid.getLinearVelocity();
+  const double inner = body.shape.inner_m;
+  bool changed = false;
+  if (!is_finite(at) || !is_finite(velocity) || !is_finite(rigid.getAngularVelocity())) {
+    transform = btTransform(btQuaternion::getIdentity(), body.before);
+    at = body.before;
+    velocity = {0, 0, 0};
+    rigid.setAngularVelocity({0, 0, 0});
+    changed = true;
+  }
+  const auto stop_at = [&](const btVector3& normal) {
+    velocity -= normal * std::min(velocity.dot(normal), btScalar(0));
+    changed = true;
+  };
+  const btVector3 way = at - body.before;
+  if (way.length() > 0.5 * inner) {
+    const auto hit = query.cast({.origin = terrain.position(body.before),
+                                 .direction = to_glm(way),
+                                 .longest_m = way.length(),
+                                 .models = false});
+    if (hit && hit->kind == query::HitKind::kGround && !hit->from_inside) {
+      const btVector3 normal = to_bt(hit->normal);
+      at = body.before + way.normalized() * hit->distance_m + normal * inner;
+      stop_at(normal);
+    }
+  }
+  if (const btVector3 in = terrain.inside(at, inner); in != at) {
+    stop_at((in - at).normalized());
+    at = in;
+  }
+  const models::GroundPoint ground = terrain.ground(at);
+  if (at.y() < ground.height_m) {
+    at.setY(ground.height_m + inner);
+    stop_at(to_bt(ground.normal));
+  }
+  if (velocity.length() > kMostSpeed) {
+    velocity = limited(velocity, kMostSpeed);
+    changed = true;
+  }
+  if (!changed) return;
+  transform.setOrigin(at);
+  rigid.setWorldTransform(transform);
+  rigid.setInterpolationWorldTransform(transform);
+  rigid.setLinearVelocity(velocity);
+  rigid.setInterpolationLinearVelocity(velocity);
+  rigid.setAngularVelocity(limited(rigid.getAngularVelocity(), kMostSpeed));
+  bullet.updateSingleAabb(&rigid);
+}
+
+}  // namespace psygen::physics

@@ -1,0 +1,67 @@
+// The insides of physics::World: Bullet's world, the terrain, bodies and characters by number, and
+// the step. Internal to physics. One thread.
+#pragma once
+
+#include <btBulletDynamicsCommon.h>
+
+#include <map>
+#include <memory>
+
+#include "engine/physics/character.hpp"
+#include "engine/physics/shapes.hpp"
+#include "engine/physics/terrain.hpp"
+#include "engine/physics/world.hpp"
+
+namespace psygen::physics {
+
+struct World::Impl {
+  // A body; `motion` must outlive `rigid`.
+  struct Body {
+    OwnedShape shape;
+    Motion kind = Motion::kDynamic;
+    double reach_m = 0;  // radius of a ball around the centre that holds the shape
+    btDefaultMotionState motion;
+    std::unique_ptr<btRigidBody> rigid;
+    btVector3 before{0, 0, 0};  // centre before the step
+    bool is_moved = false;      // a kinematic body has a new pose for the next step
+  };
+
+  Impl(query::World& queries, const Settings& wanted);
+  ~Impl();
+
+  // Bullet's coordinates of a place. Moves the origin there if nothing is near the present one.
+  // Fails outside a bounded world and for values that are not finite.
+  core::Result<btVector3> place(const core::WorldPosition& at);
+  Body* find(BodyId id);
+  Character* find(CharacterId id);
+  std::size_t count() const { return bodies.size() + characters.size(); }
+
+  void step(double dt);
+  void shift_origin();
+  void move_origin(core::BlockCoord to);
+  void make_terrain(double dt);
+  void put_back(Body& body);
+  void rouse();
+
+  query::World& query;
+  Settings settings;
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld bullet{&dispatcher, &broadphase, &solver, &configuration};
+  Terrain terrain{bullet, query};
+  std::map<std::uint32_t, Body> bodies;  // in order of number, for determinism
+  std::map<std::uint32_t, Character> characters;
+  std::uint32_t last_number = 0;
+  std::uint64_t steps = 0;
+};
+
+// An error with code kInvalidArgument.
+inline tl::unexpected<core::Error> refuse(std::string message) {
+  return core::fail(core::ErrorCode::kInvalidArgument, std::move(message));
+}
+// Whether every component is finite and no larger than `most`.
+bool is_within(const glm::dvec3& v, double most);
+
+}  // namespace psygen::physics

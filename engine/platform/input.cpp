@@ -1,0 +1,54 @@
+#include "engine/platform/input.hpp"
+
+namespace psygen::platform {
+
+void clear_changes(InputState& input) {
+  input.went_down.reset();
+  input.went_up.reset();
+  input.repeated.reset();
+  input.buttons_went_down.reset();
+  input.buttons_went_up.reset();
+  input.text.clear();
+  input.move_px = input.look_px = {};
+  input.wheel = input.wheel_x = 0;
+  input.resized = false;
+  clear_changes(input.pads);
+}
+
+namespace {
+
+// `taken` is what goes to someone else, `before` what the last result held.
+template <std::size_t kCount>
+void leave_out(std::bitset<kCount>& held, std::bitset<kCount>& went_down,
+               std::bitset<kCount>& went_up, std::bitset<kCount>& before,
+               std::bitset<kCount>& taken, bool take) {
+  if (take) taken |= held | went_down;
+  const std::bitset<kCount> let_through = before | ~taken;
+  const std::bitset<kCount> still_held = held;
+  went_down &= ~taken;
+  held &= ~taken;
+  went_up = (went_up & let_through) | (before & taken);
+  before = held;
+  taken &= still_held;
+}
+
+}  // namespace
+
+InputState InputFilter::apply(const InputState& now, bool keyboard, bool mouse) {
+  InputState rest = now;
+  leave_out(rest.held, rest.went_down, rest.went_up, held_, taken_, keyboard);
+  leave_out(rest.buttons_held, rest.buttons_went_down, rest.buttons_went_up, buttons_held_,
+            buttons_taken_, mouse);
+  if (keyboard) {
+    rest.repeated.reset();
+    rest.text.clear();
+  }
+  if (mouse) {
+    rest.move_px = rest.look_px = {};
+    rest.wheel = rest.wheel_x = 0;
+    rest.looking = false;
+  }
+  return rest;
+}
+
+}  // namespace psygen::platform

@@ -1,0 +1,112 @@
+#include "engine/query/block_cache.hpp"
+
+#include <algorithm>
+
+namespace psygen::query {
+namespace {
+
+// A block's list node and its entry of the index.
+constexpr std::size_t kBlockBytes = 256;
+
+void add(BlockSolids& all, StandingSolid solid) {
+  const glm::vec3 foot(solid.foot);
+  const core::Bounds box{solid.solid.box().min + foot, solid.solid.box().max + foot};
+  all.box = all.boxes.empty()
+                ? box
+                : core::Bounds{glm::min(all.box.min, box.min), glm::max(all.box.max, box.max)};
+  all.boxes.push_back(box);
+  all.solids.push_back(std::move(solid));
+}
+
+}  // namespace
+
+BlockCache::BlockCache(const world::World& world, const models::Registry& registry,
+                       std::size_t most_bytes)
+    : world_(world), registry_(registry), most_bytes_(most_bytes), edits_(world.edits) {}
+
+// Forgets the blocks that edits have changed since the last look.
+void BlockCache::follow_edits() {
+  if (world_.edits == edits_) return;
+  edits_ = world_.edits;
+  for (auto block = blocks_.begin(); block != blocks_.end();) {
+    const core::BlockCoord at = block->at;
+    const bool changed = block->edits != edits_of_block(world_, at);
+    ++block;
+    if (changed) forget(at);
+  }
+}
+
+BlockCache::Block& BlockCache::touch(core::BlockCoord block) {
+  follow_edits();
+  if (!blocks_.empty() && blocks_.front().at == block) return blocks_.front();
+  if (const auto found = index_.find(block); found != index_.end()) {
+    blocks_.splice(blocks_.begin(), blocks_, found->second);
+    return blocks_.front();
+  }
+  blocks_.push_front({.at = block, .edits = edits_of_block(world_, block)});
+  index_.emplace(block, blocks_.begin());
+  charge(blocks_.front(), kBlockBytes);
+  return blocks_.front();
+}
+
+// Charges the first block of the order, and evicts from its end.
+void BlockCache::charge(Block& block, std::size_t bytes) {
+  block.bytes += bytes;
+  bytes_ += bytes;
+  while (bytes_ > most_bytes_ && blocks_.size() > 1)
+    forget(blocks_.back().at);
+}
+
+const GroundGrid& BlockCache::ground(core::BlockCoord at) {
+  Block& block = touch(at);
+  if (!block.ground) {
+    block.ground.emplace(ground_of_block(world_, at), world_.cell_m(),
+                         world_.terrain.real(models::kTerrainReliefM));
+    charge(block, block.ground->bytes());
+  }
+  return *block.ground;
+}
+
+std::span<const world::Placement> BlockCache::models(core::BlockCoord at) {
+  Block& block = touch(at);
+  if (!block.models) {
+    block.models = models_of_block(world_, registry_, at);
+    charge(block, block.models->capacity() * sizeof(world::Placement));
+  }
+  return *block.models;
+}
+
+BlockSolids& BlockCache::solids(core::BlockCoord at) {
+  const std::span<const world::Placement> models = this->models(at);
+  Block& block = touch(at);
+  if (!block.solids) {
+    block.solids.emplace();
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      Solid solid(registry_[models[i].model].collider(models[i].parameters));
+      if (solid.collider().empty()) continue;
+      bytes += solid.heap_bytes();
+      add(*block.solids, {i, glm::dvec3(models[i].position), std::move(solid)});
+    }
+    bytes += block.solids->solids.capacity() * sizeof(StandingSolid) +
+             block.solids->boxes.capacity() * sizeof(core::Bounds);
+    charge(block, bytes);
+  }
+  return *block.solids;
+}
+
+void BlockCache::forget(core::BlockCoord block) {
+  const auto found = index_.find(block);
+  if (found == index_.end()) return;
+  bytes_ -= found->second->bytes;
+  blocks_.erase(found->second);
+  index_.erase(found);
+}
+
+void BlockCache::clear() {
+  blocks_.clear();
+  index_.clear();
+  bytes_ = 0;
+}
+
+}  // namespace psygen::query

@@ -1,0 +1,187 @@
+#include "engine/query/solid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <span>
+#include <utility>
+
+namespace psygen::query {
+namespace {
+
+using Hit = std::optional<SolidHit>;
+using models::Collider;
+
+Hit begins_inside(const Line& line) {
+  return SolidHit{0, glm::vec3(-line.direction), true};
+}
+
+// The nearer of two hits.
+Hit first_of(const Hit& a, const Hit& b) {
+  return !b || (a && a->t <= b->t) ? a : b;
+}
+
+Hit cast_sphere(const Line& line, double longest, const glm::dvec3& centre, double radius) {
+  const glm::dvec3 from = line.origin - centre;
+  const double b = glm::dot(from, line.direction), c = glm::dot(from, from) - radius * radius;
+  if (c <= 0) return begins_inside(line);
+  const double root = b * b - c;
+  if (b > 0 || root < 0) return std::nullopt;
+  const double t = -b - std::sqrt(root);
+  if (t > longest) return std::nullopt;
+  return SolidHit{t, glm::vec3((from + t * line.direction) / radius), false};
+}
+
+Hit cast_capsule(const Line& line, double longest, const Collider::Capsule& capsule) {
+  const glm::dvec3 foot(capsule.from), axis = glm::dvec3(capsule.to) - foot;
+  const double radius = static_cast<double>(capsule.radius), length2 = glm::dot(axis, axis);
+  Hit ends = cast_sphere(line, longest, foot, radius);
+  if (length2 == 0) return ends;
+  ends = first_of(ends, cast_sphere(line, longest, glm::dvec3(capsule.to), radius));
+  if (ends && ends->from_inside) return ends;
+  // The cylinder between the ends: the distance from its axis, without the part along it.
+  const glm::dvec3 from = line.origin - foot;
+  const double along = glm::dot(from, axis) / length2;
+  const double speed = glm::dot(line.direction, axis) / length2;
+  const glm::dvec3 aside = from - along * axis, turn = line.direction - speed * axis;
+  const double a = glm::dot(turn, turn), b = glm::dot(aside, turn);
+  const double c = glm::dot(aside, aside) - radius * radius;
+  if (c <= 0 && along >= 0 && along <= 1) return begins_inside(line);
+  const double root = b * b - a * c;
+  if (a <= 0 || root < 0) return ends;
+  const double t = (-b - std::sqrt(root)) / a, at = along + t * speed;
+  if (t < 0 || t > longest || at < 0 || at > 1) return ends;
+  return first_of(SolidHit{t, glm::vec3((aside + t * turn) / radius), false}, ends);
+}
+
+// The interval of a line inside some half-spaces.
+struct Clip {
+  double enters = 0, leaves;
+  glm::vec3 normal{0.0F};
+  bool moved = false;
+  // Cuts by the half-space with this normal, whose border is `gap` before the line's origin.
+  bool cut(const glm::vec3& outwards, double gap, double speed) {
+    if (speed == 0) return gap <= 0;
+    const double t = -gap / speed;
+    if (speed < 0 && gap > 0 && t >= enters) {
+      enters = t;
+      normal = outwards;
+      moved = true;
+    } else if (speed > 0) {
+      leaves = std::min(leaves, t);
+    }
+    return enters <= leaves;
+  }
+  Hit hit(const Line& line) const {
+    return moved ? Hit(SolidHit{enters, normal, false}) : begins_inside(line);
+  }
+};
+
+Hit cast_box(const Line& line, double longest, const core::Bounds& box) {
+  Clip clip{.leaves = longest};
+  for (int i = 0; i < 3; ++i) {
+    glm::vec3 axis(0.0F);
+    axis[i] = 1;
+    const double from = line.origin[i], speed = line.direction[i];
+    if (!clip.cut(axis, from - static_cast<double>(box.max[i]), speed) ||
+        !clip.cut(-axis, static_cast<double>(box.min[i]) - from, -speed))
+      return std::nullopt;
+  }
+  return clip.hit(line);
+}
+
+Hit cast_hull(const Line& line, double longest, std::span<const HalfSpace> faces) {
+  Clip clip{.leaves = longest};
+  for (const HalfSpace& face : faces) {
+    const glm::dvec3 normal(face.normal);
+    if (!clip.cut(face.normal, glm::dot(normal, line.origin) - static_cast<double>(face.distance),
+                  glm::dot(normal, line.direction)))
+      return std::nullopt;
+  }
+  return clip.hit(line);
+}
+
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool is_sound(const Collider::Shape& shape) {
+  if (const auto* hull = std::get_if<Collider::Hull>(&shape))
+    return hull->points.size() >= 4 && std::ranges::all_of(hull->points, is_finite);
+  const core::Bounds box = bounds_of(shape);
+  return is_finite(box.min) && is_finite(box.max) && glm::all(glm::lessThan(box.min, box.max));
+}
+
+}  // namespace
+
+BoxLine::BoxLine(const Line& line) : origin(line.origin) {
+  constexpr double kLeast = 1e-100;
+  for (int i = 0; i < 3; ++i) {
+    const double d = line.direction[i];
+    inverse[i] = 1 / (std::abs(d) < kLeast ? std::copysign(kLeast, d) : d);
+  }
+}
+
+bool meets(const BoxLine& line, double longest, const core::Bounds& box) {
+  constexpr double kMargin = 1e-3;
+  double enters = 0, leaves = longest;
+  for (int i = 0; i < 3; ++i) {
+    const double a = (static_cast<double>(box.min[i]) - kMargin - line.origin[i]) * line.inverse[i];
+    const double b = (static_cast<double>(box.max[i]) + kMargin - line.origin[i]) * line.inverse[i];
+    enters = std::max(enters, std::min(a, b));
+    leaves = std::min(leaves, std::max(a, b));
+  }
+  return enters <= leaves;
+}
+
+Hit cast(const Line& line, double longest, const Collider::Shape& shape,
+         std::span<const HalfSpace> faces) {
+  if (const auto* sphere = std::get_if<Collider::Sphere>(&shape))
+    return cast_sphere(line, longest, glm::dvec3(sphere->centre),
+                       static_cast<double>(sphere->radius));
+  if (const auto* capsule = std::get_if<Collider::Capsule>(&shape))
+    return cast_capsule(line, longest, *capsule);
+  if (const auto* box = std::get_if<Collider::Box>(&shape)) return cast_box(line, longest, *box);
+  return cast_hull(line, longest, faces);
+}
+
+Solid::Solid(models::Collider collider) {
+  std::erase_if(collider.shapes, [](const auto& shape) { return !is_sound(shape); });
+  collider_ = std::move(collider);
+  for (const Collider::Shape& shape : collider_.shapes) {
+    const core::Bounds box = bounds_of(shape);
+    box_ = &shape == collider_.shapes.data()
+               ? box
+               : core::Bounds{glm::min(box_.min, box.min), glm::max(box_.max, box.max)};
+  }
+}
+
+std::size_t Solid::heap_bytes() const {
+  std::size_t bytes = collider_.shapes.capacity() * sizeof(Collider::Shape);
+  for (const Collider::Shape& shape : collider_.shapes) {
+    const auto* hull = std::get_if<Collider::Hull>(&shape);
+    if (hull == nullptr) continue;
+    const std::size_t faces = 2 * hull->points.size();  // Euler's formula, rounded up
+    bytes +=
+        hull->points.capacity() * sizeof(glm::vec3) + sizeof faces_[0] + faces * sizeof(HalfSpace);
+  }
+  return bytes;
+}
+
+Hit Solid::cast(const Line& line, double longest) {
+  Hit nearest;
+  std::size_t hulls = 0;
+  for (const Collider::Shape& shape : collider_.shapes) {
+    std::span<const HalfSpace> faces;
+    if (const auto* hull = std::get_if<Collider::Hull>(&shape)) {
+      if (++hulls > faces_.size()) faces_.push_back(hull_faces(hull->points));
+      faces = faces_[hulls - 1];
+      if (faces.empty()) continue;
+    }
+    nearest = first_of(nearest, query::cast(line, nearest ? nearest->t : longest, shape, faces));
+  }
+  return nearest;
+}
+
+}  // namespace psygen::query

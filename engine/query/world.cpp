@@ -1,0 +1,307 @@
+#include "engine/query/world.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <tuple>
+
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/models_reach.hpp"
+
+namespace psygen::query {
+namespace {
+
+using core::BlockCoord;
+using core::ErrorCode;
+
+bool is_finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// The block some steps away. Indices wrap.
+BlockCoord moved(BlockCoord block, std::int64_t x, std::int64_t z) {
+  const auto wrap = [](std::int32_t index, std::int64_t steps) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(index) +
+                                     static_cast<std::uint32_t>(steps));
+  };
+  return {wrap(block.x, x), wrap(block.z, z)};
+}
+
+// Blocks from `first` to `last`, both included, relative to another block.
+struct BlockRange {
+  glm::dvec2 first, last;
+  double count() const { return (last.x - first.x + 1) * (last.y - first.y + 1); }
+};
+BlockRange blocks_around(glm::dvec2 low_m, glm::dvec2 high_m, double block_m) {
+  return {glm::floor(low_m / block_m), glm::floor(high_m / block_m)};
+}
+
+bool is_wanted(models::ModelIndex model, std::span<const models::ModelIndex> only) {
+  return only.empty() || std::ranges::find(only, model) != only.end();
+}
+
+}  // namespace
+
+core::Result<core::WorldPosition> checked(const core::WorldPosition& at, double block_size_m) {
+  const auto is_sound = [](double v) { return std::abs(v) <= World::kMostLocalM; };  // not of NaN
+  if (!is_sound(at.local.x) || !is_sound(at.local.y) || !is_sound(at.local.z))
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("the position ({}, {}, {}) m in block ({}, {}) is not finite or "
+                                  "farther than {} m from its block",
+                                  at.local.x, at.local.y, at.local.z, at.block.x, at.block.z,
+                                  World::kMostLocalM));
+  return core::normalised(at, block_size_m);
+}
+
+World::World(const world::World& world, const models::Registry& registry, std::size_t cache_bytes)
+    : world_(&world),
+      registry_(&registry),
+      block_m_(world.block_size_m()),
+      relief_m_(world.terrain.real(models::kTerrainReliefM)),
+      palette_(world::drawn_palette(world)),
+      cache_(world, registry, cache_bytes) {
+  const glm::vec2 reach = world::models_reach_m(world, registry);
+  reach_m_ = static_cast<double>(reach.x);
+  top_m_ = relief_m_ + static_cast<double>(reach.y);
+}
+
+core::Result<Ground> World::ground(const core::WorldPosition& position) {
+  const auto at = checked(position, block_m_);
+  if (!at) return tl::unexpected(at.error());
+  if (!world_->contains(at->block))
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("there is no ground: block ({}, {}) is outside the world",
+                                  at->block.x, at->block.z));
+  const glm::dvec2 local(at->local.x, at->local.z);
+  const models::GroundPoint point = cache_.ground(at->block).at(local);
+  const world::GroundBlends blends =
+      world::ground_blends(palette_, static_cast<float>(point.height_m), point.normal,
+                           world::pattern_place(at->block, block_m_, glm::vec2(local)));
+  const world::Water& water = world_->water;
+  return Ground{point.height_m, point.normal, world::main_kind(blends),
+                water.exists() ? std::max(water.level_m - point.height_m, 0.0) : 0.0};
+}
+
+// A ray from a normalised origin, with a direction of unit length.
+struct World::Course {
+  core::WorldPosition origin;
+  glm::dvec3 direction{0.0};
+  double longest_m = 0;
+
+  PlaneLine plane() const { return {{origin.local.x, origin.local.z}, {direction.x, direction.z}}; }
+  double height_at(double t) const { return origin.local.y + t * direction.y; }
+  double lowest(double from, double to) const { return std::min(height_at(from), height_at(to)); }
+  double highest(double from, double to) const { return std::max(height_at(from), height_at(to)); }
+};
+
+core::Result<Hit> World::cast(const Ray& ray) {
+  const auto origin = checked(ray.origin, block_m_);
+  if (!origin) return tl::unexpected(origin.error());
+  const double largest =
+      std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
+  if (!is_finite(ray.direction) || largest == 0)
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("the direction ({}, {}, {}) of the ray is zero or not finite",
+                                  ray.direction.x, ray.direction.y, ray.direction.z));
+  if (!(ray.longest_m > 0))
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("the length {} m of the ray is not above 0", ray.longest_m));
+  const glm::dvec3 scaled = ray.direction / largest;
+  const Course course{*origin, scaled / std::sqrt(glm::dot(scaled, scaled)),
+                      std::min(ray.longest_m, kMostLocalM)};
+  Hit hit;
+  hit.distance_m = course.longest_m;
+  if (ray.ground) cast_ground(course, hit);
+  if (ray.models) cast_models(course, hit);
+  hit.position = core::normalised(
+      {origin->block, origin->local + hit.distance_m * course.direction}, block_m_);
+  return hit;
+}
+
+void World::cast_ground(const Course& course, Hit& hit) {
+  Side side = Side::kUnknown;
+  std::int64_t left = kMostBlocks;
+  const PlaneLine plane = course.plane();
+  march(plane, block_m_, 0, course.longest_m,
+        [&](std::int64_t x, std::int64_t z, double from, double to) {
+          if (left-- == 0) {
+            hit.distance_m = from;
+            return false;
+          }
+          const BlockCoord block = moved(course.origin.block, x, z);
+          if (!world_->contains(block)) {
+            side = Side::kUnknown;
+            return true;
+          }
+          if (course.lowest(from, to) > relief_m_) {
+            side = Side::kAbove;
+            return course.direction.y < 0;  // else it never comes down
+          }
+          if (course.highest(from, to) < 0) {
+            side = Side::kBelow;
+            return course.direction.y > 0;
+          }
+          const glm::dvec2 corner = glm::dvec2(x, z) * block_m_;
+          const GroundRay local{
+              {plane.from - corner, plane.step}, course.origin.local.y, course.direction.y};
+          const auto found = cache_.ground(block).cast(local, from, to, side);
+          if (!found) return true;
+          hit.kind = HitKind::kGround;
+          hit.distance_m = found->t;
+          hit.normal = found->normal;
+          hit.from_inside = found->from_below;
+          hit.block = block;
+          hit.model = world_->terrain_model;
+          return false;
+        });
+}
+
+// The nearest hit of the models that stand on a block.
+void World::cast_block(const Course& course, glm::dvec3 corner_m, BlockCoord block, Hit& hit) {
+  const Line line{course.origin.local - corner_m, course.direction};
+  const BoxLine at_boxes(line);
+  BlockSolids& all = cache_.solids(block);
+  if (all.boxes.empty() || !meets(at_boxes, hit.distance_m, all.box)) return;
+  const StandingSolid* nearest = nullptr;
+  for (std::size_t i = 0; i < all.boxes.size(); ++i) {
+    if (!meets(at_boxes, hit.distance_m, all.boxes[i])) continue;
+    StandingSolid& s = all.solids[i];
+    const auto found = s.solid.cast({line.origin - s.foot, line.direction}, hit.distance_m);
+    if (!found || (found->t >= hit.distance_m && hit.kind != HitKind::kNothing)) continue;
+    nearest = &s;
+    hit.kind = HitKind::kModel;
+    hit.distance_m = found->t;
+    hit.normal = found->normal;
+    hit.from_inside = found->from_inside;
+  }
+  if (nearest == nullptr) return;
+  const world::Placement& placement = cache_.models(block)[nearest->model];
+  hit.block = block;
+  hit.index = placement.index;
+  hit.model = placement.model;
+}
+
+// Models reach beyond their block, so each step of the ray looks at all blocks within reach.
+void World::cast_models(const Course& course, Hit& hit) {
+  std::vector<glm::dvec2> seen;
+  std::int64_t left = kMostBlocks;
+  const PlaneLine plane = course.plane();
+  const double longest_m = hit.distance_m;
+  march(plane, block_m_, 0, longest_m, [&](std::int64_t x, std::int64_t z, double from, double to) {
+    if (from > hit.distance_m) return false;
+    if (course.lowest(from, to) > top_m_) return course.direction.y < 0;
+    const glm::dvec2 a = plane.at(from), b = plane.at(to);
+    const BlockRange near =
+        blocks_around(glm::min(a, b) - reach_m_, glm::max(a, b) + reach_m_, block_m_);
+    const double farthest = 2 * std::ceil(reach_m_ / block_m_) + 1;
+    std::erase_if(seen, [&](const glm::dvec2& s) {
+      return std::abs(s.x - static_cast<double>(x)) > farthest ||
+             std::abs(s.y - static_cast<double>(z)) > farthest;
+    });
+    for (double bz = near.first.y; bz <= near.last.y; ++bz) {
+      for (double bx = near.first.x; bx <= near.last.x; ++bx) {
+        const BlockCoord block = moved(course.origin.block, static_cast<std::int64_t>(bx),
+                                       static_cast<std::int64_t>(bz));
+        if (!world_->contains(block) || std::ranges::find(seen, glm::dvec2(bx, bz)) != seen.end())
+          continue;
+        if (left-- == 0) {
+          if (from < hit.distance_m) {
+            hit = Hit();
+            hit.distance_m = from;
+          }
+          return false;
+        }
+        seen.emplace_back(bx, bz);
+        cast_block(course, {bx * block_m_, 0, bz * block_m_}, block, hit);
+      }
+    }
+    return true;
+  });
+}
+
+core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::WorldPosition& at,
+                                                                   double radius_m) const {
+  if (!(radius_m >= 0) || !std::isfinite(radius_m))
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("the radius {} m is not a finite number from 0 on", radius_m));
+  const glm::dvec2 centre(at.local.x, at.local.z);
+  const BlockRange range = blocks_around(centre - radius_m, centre + radius_m, block_m_);
+  if (!(range.count() <= static_cast<double>(kMostBlocks)))
+    return core::fail(ErrorCode::kOverBudget,
+                      fmt::format("a radius of {} m covers {:.0f} blocks; at most {} are searched",
+                                  radius_m, range.count(), kMostBlocks));
+  std::vector<BlockAround> blocks;
+  for (double z = range.first.y; z <= range.last.y; ++z) {
+    for (double x = range.first.x; x <= range.last.x; ++x) {
+      const BlockCoord block =
+          moved(at.block, static_cast<std::int64_t>(x), static_cast<std::int64_t>(z));
+      const glm::dvec2 corner = glm::dvec2(x, z) * block_m_;
+      const glm::dvec2 gap = centre - glm::clamp(centre, corner, corner + block_m_);
+      const double distance_m = std::sqrt(glm::dot(gap, gap));
+      if (distance_m <= radius_m && world_->contains(block))
+        blocks.push_back({block, {corner.x, 0, corner.y}, distance_m});
+    }
+  }
+  return blocks;
+}
+
+core::Result<void> World::models_within(const core::WorldPosition& position, double radius_m,
+                                        std::vector<NearModel>& out,
+                                        std::span<const models::ModelIndex> only) {
+  out.clear();
+  const auto at = checked(position, block_m_);
+  if (!at) return tl::unexpected(at.error());
+  const auto blocks = blocks_within(*at, radius_m);
+  if (!blocks) return tl::unexpected(blocks.error());
+  for (const BlockAround& b : *blocks) {
+    for (const world::Placement& p : cache_.models(b.block)) {
+      if (!is_wanted(p.model, only)) continue;
+      const glm::dvec3 foot(p.position), away = b.corner_m + foot - at->local;
+      const double distance2 = glm::dot(away, away);
+      if (distance2 <= radius_m * radius_m)
+        out.push_back({b.block, p.index, p.model, {b.block, foot}, std::sqrt(distance2)});
+    }
+  }
+  std::ranges::sort(out, {},
+                    [](const NearModel& m) { return std::tuple(m.distance_m, m.block, m.index); });
+  return {};
+}
+
+core::Result<std::optional<NearModel>> World::nearest(const core::WorldPosition& position,
+                                                      double radius_m,
+                                                      std::span<const models::ModelIndex> only) {
+  const auto at = checked(position, block_m_);
+  if (!at) return tl::unexpected(at.error());
+  auto blocks = blocks_within(*at, radius_m);
+  if (!blocks) return tl::unexpected(blocks.error());
+  std::ranges::sort(*blocks, {},
+                    [](const BlockAround& b) { return std::tuple(b.distance_m, b.block); });
+  std::optional<NearModel> best;
+  for (const BlockAround& b : *blocks) {
+    if (best && b.distance_m > best->distance_m) break;
+    for (const world::Placement& p : cache_.models(b.block)) {
+      if (!is_wanted(p.model, only)) continue;
+      const glm::dvec3 foot(p.position), away = b.corner_m + foot - at->local;
+      const NearModel found{
+          b.block, p.index, p.model, {b.block, foot}, std::sqrt(glm::dot(away, away))};
+      const auto rank = [](const NearModel& m) {
+        return std::tuple(m.distance_m, m.block, m.index);
+      };
+      if (found.distance_m <= radius_m && (!best || rank(found) < rank(*best))) best = found;
+    }
+  }
+  return best;
+}
+
+std::optional<world::Placement> World::placement(BlockCoord block, std::uint32_t index) {
+  if (!world_->contains(block)) return std::nullopt;
+  const auto models = cache_.models(block);
+  const auto found = std::ranges::lower_bound(models, index, {}, &world::Placement::index);
+  if (found == models.end() || found->index != index) return std::nullopt;
+  return *found;
+}
+
+}  // namespace psygen::query

@@ -1,0 +1,143 @@
+// Questions about a world that need no mesh: the ground under a point, rays against ground and
+// models, models near a place, colliders. Answers are exact: the ground is the two triangles a cell
+// of the finest mesh, whatever is drawn. Positions are blocks and metres, so precision is the same
+// at any distance from the origin. Blocks are made when first asked about and cached under a byte
+// bound; answers do not depend on what is cached. One thread. docs/queries.md.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/query/block_cache.hpp"
+#include "engine/world/ground_blends.hpp"
+
+namespace psygen::query {
+
+// The ground under a point.
+struct Ground {
+  double height_m = 0;
+  glm::vec3 normal{0, 1, 0};  // of the triangle; unit length
+  // The kind that covers most, by the rule of the shader with the triangle's normal. Water is no
+  // kind of ground: its bottom has one.
+  world::GroundKind kind = world::GroundKind::kGrass;
+  double water_depth_m = 0;  // from the water's surface down to the ground; 0: dry
+};
+
+// A straight ray.
+struct Ray {
+  core::WorldPosition origin;
+  glm::dvec3 direction{0, -1, 0};  // any length above 0
+  double longest_m = 1000;         // above 0; may be infinite
+  bool ground = true;              // what it can hit: the ground, and models with a collider
+  bool models = true;
+};
+
+// What a ray met.
+enum class HitKind : std::uint8_t { kNothing, kGround, kModel };
+
+// The end of a ray.
+struct Hit {
+  HitKind kind = HitKind::kNothing;
+  double distance_m = 0;         // from the origin; for kNothing, how far the ray was followed
+  core::WorldPosition position;  // normalised
+  glm::vec3 normal{0, 1, 0};     // of the surface, unit length; the ground's points upwards
+  // The ray came out of the ground, or began inside the model's collider (then distance_m is 0 and
+  // the normal points against the ray).
+  bool from_inside = false;
+  core::BlockCoord block;                      // of the ground or the model
+  std::uint32_t index = world::kTerrainIndex;  // of the model within the block
+  models::ModelIndex model = 0;                // its type, or that of the terrain
+};
+
+// A model at its place.
+struct NearModel {
+  core::BlockCoord block;
+  std::uint32_t index = 0;       // within the block
+  models::ModelIndex model = 0;  // its type
+  core::WorldPosition position;  // of its foot
+  double distance_m = 0;         // from its foot to the place asked about
+};
+
+// The queries of one world. World and registry must outlive it and must not change, except for the
+// world's edits, which it follows. Move it, do not share it: each thread has its own.
+class World {
+ public:
+  // A position's metres may have at most this size.
+  static constexpr double kMostLocalM = 1e9;
+  // One query looks at no more blocks than this: a ray ends there, a larger radius is refused.
+  static constexpr std::int64_t kMostBlocks = 4096;
+  static constexpr std::size_t kUsualBytes = std::size_t{32} << 20;
+
+  World(const world::World& world, const models::Registry& registry,
+        std::size_t cache_bytes = kUsualBytes);
+
+  // The ground under (or above) a position; its height is ignored. Fails with kInvalidArgument for
+  // positions that are not finite or too far from their block, and outside a bounded world, where
+  // there is no ground. About 50 ns in a block that is cached.
+  core::Result<Ground> ground(const core::WorldPosition& at);
+
+  // The first thing that a ray meets. It meets the ground from either side, and a collider from
+  // outside. A ray that begins on the ground (within GroundGrid::kTouchM) and does not rise above
+  // it meets it at distance 0. The ground has no sides where a bounded world ends. Fails with
+  // kInvalidArgument for an origin as above, a direction that is zero or not finite, and a length
+  // that is not above 0. Time grows with the cells under the ray where it is near the ground.
+  core::Result<Hit> cast(const Ray& ray);
+
+  // Replaces `out` by the models whose feet lie within `radius_m` of `at` (in space), nearest
+  // first, then by block and index. With `only`, those of these types. A radius of 0 finds what
+  // stands exactly there. Fails with kInvalidArgument for a position as above and for a radius that
+  // is negative or not finite, with kOverBudget for one that reaches more than kMostBlocks.
+  core::Result<void> models_within(const core::WorldPosition& at, double radius_m,
+                                   std::vector<NearModel>& out,
+                                   std::span<const models::ModelIndex> only = {});
+  // The nearest of these types within a radius, or nothing. Errors as above.
+  core::Result<std::optional<NearModel>> nearest(const core::WorldPosition& at, double radius_m,
+                                                 std::span<const models::ModelIndex> only = {});
+  // The placement of a model: its parameters, for example for ModelType::collider(). Nothing if the
+  // block has no model of this index. Logarithmic in the block's models.
+  std::optional<world::Placement> placement(core::BlockCoord block, std::uint32_t index);
+
+  // Ground, and models with colliders, of a whole block, for physics. The block must be in the
+  // world. Valid until the next call of any function.
+  const GroundGrid& ground_grid(core::BlockCoord block) { return cache_.ground(block); }
+  const BlockSolids& solids(core::BlockCoord block) { return cache_.solids(block); }
+  std::span<const world::Placement> models(core::BlockCoord block) { return cache_.models(block); }
+
+  // How far models may reach sideways from their feet, in metres.
+  double models_reach_m() const { return reach_m_; }
+
+  // Something other than edits has changed the block's ground or models; they are made again when
+  // next asked for.
+  void forget(core::BlockCoord block) { cache_.forget(block); }
+  // What the world looks like to queries, and the memory of the cache.
+  const world::World& world() const { return *world_; }
+  const models::Registry& registry() const { return *registry_; }
+  std::size_t cached_bytes() const { return cache_.bytes(); }
+
+ private:
+  struct Course;  // a checked ray
+  struct BlockAround {
+    core::BlockCoord block;
+    glm::dvec3 corner_m{0.0};  // from the corner of the position's block
+    double distance_m = 0;     // in the plane
+  };
+  void cast_ground(const Course& course, Hit& hit);
+  void cast_models(const Course& course, Hit& hit);
+  void cast_block(const Course& course, glm::dvec3 corner_m, core::BlockCoord block, Hit& hit);
+  core::Result<std::vector<BlockAround>> blocks_within(const core::WorldPosition& at,
+                                                       double radius_m) const;
+
+  const world::World* world_;
+  const models::Registry* registry_;
+  double block_m_, relief_m_;
+  double reach_m_, top_m_;  // how far models reach sideways, and the height that none exceeds
+  world::Palette palette_;
+  BlockCache cache_;
+};
+
+// The position with local x and z in [0, block size). Fails with kInvalidArgument for values that
+// are not finite or larger than World::kMostLocalM.
+core::Result<core::WorldPosition> checked(const core::WorldPosition& at, double block_size_m);
+
+}  // namespace psygen::query

@@ -1,0 +1,60 @@
+// What a game writes and draws over the picture: text of any size anywhere, and areas of one
+// colour. Plain values, any thread. Positions are shares of the picture plus pixels, so that they
+// hold for every size of window. Panels for debugging are TextPanels (text_panel.hpp). docs/hud.md.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <string>
+#include <vector>
+
+namespace psygen::render {
+
+// Where something is: share of the picture (0, 0 the upper left corner, 1, 1 the lower right one)
+// plus pixels, right and down.
+struct HudPlace {
+  glm::vec2 share{0.0F};
+  glm::vec2 px{0.0F};
+};
+
+// How something lies at its place. kTop: the place is at its top.
+enum class HudAlign : std::uint8_t { kLeft, kCentre, kRight };
+enum class HudVertical : std::uint8_t { kTop, kMiddle, kBottom };
+
+// Colours are display values, not linear: red, green, blue, opacity, each 0 … 1.
+struct HudText {
+  std::string text;  // UTF-8; "\n" begins a line; unknown letters are shown as a sign
+  HudPlace at;
+  HudAlign align = HudAlign::kLeft;
+  HudVertical vertical = HudVertical::kTop;
+  float size_px = 24;  // height of a line, 4 … 2000, also fractions
+  glm::vec4 colour{1.0F};
+  float bolder_px = 0;  // thickens strokes on each side; negative: thins
+  // Around the letters, 0: none. At most an eighth of the size, with bolder_px.
+  float outline_px = 0;
+  glm::vec4 outline_colour{0.0F, 0.0F, 0.0F, 0.85F};
+  // A soft shadow at this distance, 0, 0: none.
+  glm::vec2 shadow_px{0.0F};
+  glm::vec4 shadow_colour{0.0F, 0.0F, 0.0F, 0.6F};
+};
+
+// A rectangle: a bar, a panel, a crosshair.
+struct HudArea {
+  HudPlace at;  // of its upper left corner
+  HudPlace size;
+  glm::vec4 colour{0.0F, 0.0F, 0.0F, 0.6F};
+};
+
+// Everything over a picture: first the areas, then the texts, each in order.
+struct HudDrawing {
+  std::vector<HudArea> areas;
+  std::vector<HudText> texts;
+
+  bool empty() const { return areas.empty() && texts.empty(); }
+};
+
+// Width and height of a text in pixels, of all its lines, without outline and shadow. Any thread.
+glm::vec2 measure(const HudText& text);
+
+}  // namespace psygen::render

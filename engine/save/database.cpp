@@ -1,0 +1,153 @@
+#include "engine/save/database.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <type_traits>
+
+#include "engine/core/utf8.hpp"
+
+namespace psygen::save {
+
+void Statement::bind(int index, std::string_view text) {
+  sqlite3_bind_text64(get(), index, text.data() == nullptr ? "" : text.data(), text.size(),
+                      SQLITE_STATIC, SQLITE_UTF8);
+}
+
+void Statement::bind(int index, std::span<const std::byte> bytes) {
+  if (bytes.empty()) {
+    sqlite3_bind_zeroblob(get(), index, 0);  // a null pointer would bind NULL
+  } else {
+    sqlite3_bind_blob64(get(), index, bytes.data(), bytes.size(), SQLITE_STATIC);
+  }
+}
+
+void Statement::bind(int index, const Value& value) {
+  const auto bind_one = [&](const auto& content) {
+    using Content = std::decay_t<decltype(content)>;
+    if constexpr (std::is_same_v<Content, std::monostate>) {
+      sqlite3_bind_null(get(), index);
+    } else if constexpr (std::is_same_v<Content, double>) {
+      sqlite3_bind_double(get(), index, content);
+    } else if constexpr (std::is_same_v<Content, std::string>) {
+      bind(index, std::string_view(content));
+    } else if constexpr (std::is_same_v<Content, Bytes>) {
+      bind(index, std::span<const std::byte>(content));
+    } else {
+      bind(index, content);
+    }
+  };
+  std::visit(bind_one, value);
+}
+
+void Statement::reset() {
+  sqlite3_reset(get());
+  sqlite3_clear_bindings(get());
+}
+
+std::string_view Statement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(get(), column));
+  if (text == nullptr) return {};
+  return {text, static_cast<std::size_t>(sqlite3_column_bytes(get(), column))};
+}
+
+std::span<const std::byte> Statement::bytes(int column) const {
+  const auto* bytes = static_cast<const std::byte*>(sqlite3_column_blob(get(), column));
+  if (bytes == nullptr) return {};
+  return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(get(), column))};
+}
+
+Value Statement::value(int column) const {
+  switch (sqlite3_column_type(get(), column)) {
+    case SQLITE_INTEGER:
+      return integer(column);
+    case SQLITE_FLOAT:
+      return sqlite3_column_double(get(), column);
+    case SQLITE_TEXT:
+      return std::string(text(column));
+    case SQLITE_BLOB: {
+      const auto content = bytes(column);
+      return Bytes(content.begin(), content.end());
+    }
+    default:
+      return std::monostate{};
+  }
+}
+
+core::Result<Database> Database::open(const std::filesystem::path& file) {
+  sqlite3* raw = nullptr;
+  // An absolute path: SQLite takes names that begin with "file:" for URIs.
+  const std::string name = std::filesystem::absolute(file).string();
+  const int code =
+      sqlite3_open_v2(name.c_str(), &raw,
+                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
+  Database database(file, raw);
+  if (code != SQLITE_OK) return database.error("cannot be opened");
+  if (sqlite3_db_readonly(raw, "main") != 0)
+    return core::fail(core::ErrorCode::kIo,
+                      fmt::format("{}: the file is read-only", file.string()));
+  return database;
+}
+
+core::Result<Database> Database::in_memory() {
+  sqlite3* raw = nullptr;
+  const int code = sqlite3_open_v2(
+      ":memory:", &raw,
+      SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE,
+      nullptr);
+  Database database("memory", raw);
+  if (code != SQLITE_OK) return database.error("cannot be opened");
+  return database;
+}
+
+core::Result<void> Database::run(const char* sql, std::string_view action) {
+  if (sqlite3_exec(get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) return error(action);
+  return {};
+}
+
+core::Result<Statement> Database::prepare(std::string_view sql, std::string_view action) const {
+  sqlite3_stmt* raw = nullptr;
+  const int code =
+      sqlite3_prepare_v2(get(), sql.data(), static_cast<int>(sql.size()), &raw, nullptr);
+  Statement statement(raw);
+  if (code != SQLITE_OK) return error(action);
+  return statement;
+}
+
+// What the system said when a call on the file or on its journal failed; 0 if nothing.
+int Database::system_error() const {
+  int code = 0;
+  sqlite3_file_control(get(), "main", SQLITE_FCNTL_LAST_ERRNO, &code);
+  sqlite3_file* journal = nullptr;
+  sqlite3_file_control(get(), "main", SQLITE_FCNTL_JOURNAL_POINTER, &journal);
+  if (code == 0 && journal != nullptr && journal->pMethods != nullptr)
+    journal->pMethods->xFileControl(journal, SQLITE_FCNTL_LAST_ERRNO, &code);
+  return code != 0 ? code : sqlite3_system_errno(get());
+}
+
+tl::unexpected<core::Error> Database::error(std::string_view action) const {
+  using enum core::ErrorCode;
+  const int code = get() == nullptr ? SQLITE_NOMEM : sqlite3_extended_errcode(get());
+  const int system = get() == nullptr ? 0 : system_error();
+  const auto sentence = [&](core::ErrorCode kind, std::string_view reason) {
+    return core::fail(kind, fmt::format("{}: {}: {}", file_.string(), action, reason));
+  };
+  switch (code & 0xFF) {
+    case SQLITE_NOMEM:
+      return sentence(kOutOfMemory, "there is not enough memory");
+    case SQLITE_FULL:
+      return sentence(kIo, "the disk is full");
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return sentence(kParse, "the file is damaged");
+    case SQLITE_IOERR:
+    case SQLITE_CANTOPEN:
+      if (system != 0) return sentence(kIo, std::strerror(system));
+      [[fallthrough]];
+    default:
+      return sentence(kIo, core::shown(sqlite3_errmsg(get()), 200));
+  }
+}
+
+}  // namespace psygen::save

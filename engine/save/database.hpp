@@ -1,0 +1,79 @@
+// SQLite as values: a connection to one file, and prepared statements. The only header of the
+// project that includes SQLite; it is private to engine/save. Not a query builder. One thread at a
+// time.
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/core/error.hpp"
+#include "engine/save/value.hpp"
+
+namespace psygen::save {
+
+// A prepared statement. Indices of parameters start at 1, those of columns at 0.
+class Statement {
+ public:
+  Statement() = default;
+  explicit Statement(sqlite3_stmt* statement) : statement_(statement, &sqlite3_finalize) {}
+  explicit operator bool() const { return statement_ != nullptr; }
+  sqlite3_stmt* get() const { return statement_.get(); }
+
+  // Texts and bytes are not copied and must live until the next reset().
+  void bind(int index, std::int64_t value) { sqlite3_bind_int64(get(), index, value); }
+  void bind(int index, std::string_view text);
+  void bind(int index, std::span<const std::byte> bytes);
+  void bind(int index, const Value& value);
+  // Runs up to the next row: SQLITE_ROW, SQLITE_DONE or an error code.
+  int step() { return sqlite3_step(get()); }
+  // Ends the run and forgets the parameters, so that the statement can be run again.
+  void reset();
+
+  // Whether a column has exactly this type (SQLITE_INTEGER, ...), and its content.
+  bool is(int column, int type) const { return sqlite3_column_type(get(), column) == type; }
+  std::int64_t integer(int column) const { return sqlite3_column_int64(get(), column); }
+  std::string_view text(int column) const;
+  std::span<const std::byte> bytes(int column) const;
+  Value value(int column) const;
+
+ private:
+  std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> statement_{nullptr, &sqlite3_finalize};
+};
+
+// An open file. Holds no lock until it is used.
+class Database {
+ public:
+  // Opens an existing file for reading and writing, without reading it. Fails with kIo.
+  static core::Result<Database> open(const std::filesystem::path& file);
+  // A database in memory.
+  static core::Result<Database> in_memory();
+
+  // Runs statements without parameters and rows. Fails as error() says.
+  core::Result<void> run(const char* sql, std::string_view action);
+  // Fails as error() says.
+  core::Result<Statement> prepare(std::string_view sql, std::string_view action) const;
+  // The latest failure as a sentence: file, action, reason. kIo, kParse for damaged files, or
+  // kOutOfMemory.
+  tl::unexpected<core::Error> error(std::string_view action) const;
+  // Whether a transaction is open.
+  bool in_transaction() const { return sqlite3_get_autocommit(get()) == 0; }
+
+  sqlite3* get() const { return database_.get(); }
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  Database(std::filesystem::path file, sqlite3* database)
+      : file_(std::move(file)), database_(database, &sqlite3_close_v2) {}
+  int system_error() const;
+
+  std::filesystem::path file_;
+  std::unique_ptr<sqlite3, int (*)(sqlite3*)> database_;
+};
+
+}  // namespace psygen::save

@@ -1,0 +1,44 @@
+// SQL of the game on tables of its own, in the file of the save. Names of these tables and indices
+// begin with "game_"; everything else is out of their reach. Changes belong to the open transaction
+// and are logged, so that they can be made again after a failed save. Private to engine/save. One
+// thread at a time.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "engine/save/database.hpp"
+#include "engine/save/value.hpp"
+
+namespace psygen::save {
+
+// Whether a table or index of this name belongs to the game.
+bool is_game_table(std::string_view name);
+
+class GameTables {
+ public:
+  // Runs one statement that changes tables or their rows. All of it happens or nothing. Fails with
+  // kInvalidArgument for wrong SQL, forbidden names and wrong numbers of values.
+  core::Result<void> execute(Database& database, std::string_view sql,
+                             const std::vector<Value>& values);
+  // Runs one statement that only reads. Fails as execute().
+  core::Result<Rows> query(Database& database, std::string_view sql,
+                           const std::vector<Value>& values) const;
+  // Opens a transaction, unless one is open, and repeats in it what was executed since forget().
+  core::Result<void> begin(Database& database) const;
+  // Whether anything was executed since forget().
+  bool has_changes() const { return !log_.empty(); }
+  // The changes are saved, or no longer wanted.
+  void forget() { log_.clear(); }
+
+ private:
+  struct Change {
+    std::string sql;
+    std::vector<Value> values;
+  };
+  std::vector<Change> log_;
+};
+
+}  // namespace psygen::save

@@ -1,0 +1,247 @@
+#include "engine/save/save_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+
+#include "engine/core/replace_file.hpp"
+#include "engine/core/utf8.hpp"
+#include "engine/save/game_tables.hpp"
+#include "engine/save/lock_holder.hpp"
+#include "engine/save/save_game.hpp"
+
+namespace psygen::save {
+namespace {
+
+struct Table {
+  std::string_view name;
+  std::string_view sql;  // as sqlite_schema keeps it
+};
+constexpr std::array kTables{
+    Table{"psygen_facts", "CREATE TABLE psygen_facts(name TEXT PRIMARY KEY, value ANY) STRICT"},
+    Table{"psygen_edits",
+          "CREATE TABLE psygen_edits(x INTEGER NOT NULL, z INTEGER NOT NULL, version INTEGER NOT "
+          "NULL, checksum INTEGER NOT NULL, bytes BLOB NOT NULL, PRIMARY KEY(x, z)) STRICT, "
+          "WITHOUT ROWID"},
+    Table{"psygen_values",
+          "CREATE TABLE psygen_values(name TEXT PRIMARY KEY, checksum INTEGER NOT NULL, value ANY "
+          "NOT NULL) STRICT, WITHOUT ROWID"},
+};
+
+tl::unexpected<core::Error> refuse(const std::filesystem::path& file, std::string_view reason) {
+  return core::fail(core::ErrorCode::kParse, fmt::format("{}: {}", file.string(), reason));
+}
+
+core::Result<void> put_fact(Database& database, std::string_view name, const Value& value) {
+  auto insert = database.prepare("INSERT INTO psygen_facts VALUES(?, ?)", "cannot be made");
+  if (!insert) return tl::unexpected(insert.error());
+  insert->bind(1, name);
+  insert->bind(2, value);
+  if (insert->step() != SQLITE_DONE) return database.error("cannot be made");
+  return {};
+}
+
+// The bytes of an empty save.
+core::Result<std::string> empty_save(const WorldIdentity& world) {
+  auto database = Database::in_memory();
+  if (!database) return tl::unexpected(database.error());
+  std::string sql = fmt::format("PRAGMA application_id={}; PRAGMA user_version={}; BEGIN;",
+                                kApplicationId, kSaveFormat);
+  for (const Table& table : kTables)
+    sql += fmt::format("{};", table.sql);
+  sql += "COMMIT;";
+  auto made = database->run(sql.c_str(), "cannot be made");
+  if (made) made = put_fact(*database, "world name", Value(world.name));
+  const auto hash = static_cast<std::int64_t>(world.hash);
+  if (made) made = put_fact(*database, "world hash", Value(hash));
+  if (!made) return tl::unexpected(made.error());
+  sqlite3_int64 size = 0;
+  const std::unique_ptr<unsigned char, void (*)(void*)> bytes(
+      sqlite3_serialize(database->get(), "main", &size, 0), &sqlite3_free);
+  if (bytes == nullptr) return database->error("cannot be made");
+  return std::string(reinterpret_cast<const char*>(bytes.get()), static_cast<std::size_t>(size));
+}
+
+std::uint32_t big_endian(const unsigned char* bytes) {
+  return (std::uint32_t{bytes[0]} << 24) | (std::uint32_t{bytes[1]} << 16) |
+         (std::uint32_t{bytes[2]} << 8) | bytes[3];
+}
+
+// Looks at the first bytes through SQLite's own file, before SQLite acts on them. A descriptor of
+// our own would be wrong: closing it drops all locks that this process has on the file.
+// https://www.sqlite.org/fileformat2.html#the_database_header
+core::Result<void> check_header(const Database& database) {
+  sqlite3_file* raw = nullptr;
+  sqlite3_file_control(database.get(), "main", SQLITE_FCNTL_FILE_POINTER, &raw);
+  std::array<unsigned char, 100> header{};
+  const int read = raw == nullptr || raw->pMethods == nullptr
+                       ? SQLITE_IOERR
+                       : raw->pMethods->xRead(raw, header.data(), int{header.size()}, 0);
+  const std::filesystem::path& file = database.file();
+  if (read != SQLITE_OK && read != SQLITE_IOERR_SHORT_READ)
+    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be read", file.string()));
+  if (read != SQLITE_OK || std::memcmp(header.data(), "SQLite format 3", 16) != 0 ||
+      big_endian(&header[68]) != kApplicationId)
+    return refuse(file, "is not a saved game of psygen; it is left as it is");
+  if (const std::uint32_t format = big_endian(&header[60]); format > kSaveFormat)
+    return refuse(file, fmt::format("is of format {}, made by a newer version; this version reads "
+                                    "up to format {}",
+                                    format, kSaveFormat));
+  else if (format == 0)
+    return refuse(file, "has no format number; the file is damaged");
+  // 1: rollback journal. 2 would be a write-ahead log, which this program never makes.
+  if (header[18] != 1 || header[19] != 1)
+    return refuse(file, "was changed by another program (its journal mode is not \"delete\")");
+  return {};
+}
+
+// Takes the lock, which also rolls back what a killed process left unfinished.
+core::Result<void> lock(Database& database) {
+  const int code =
+      sqlite3_exec(database.get(), "PRAGMA locking_mode=EXCLUSIVE; BEGIN EXCLUSIVE; COMMIT",
+                   nullptr, nullptr, nullptr);
+  if ((code & 0xFF) == SQLITE_BUSY)
+    return core::fail(
+        core::ErrorCode::kIo,
+        fmt::format("{}: is in use by {}", database.file().string(), lock_holder(database.file())));
+  if (code != SQLITE_OK) return database.error("cannot be opened");
+  return {};
+}
+
+// After lock(): most of these read the file. A journal that persists is invalidated by zeros in its
+// head, which is faster than removing it at every save.
+core::Result<void> configure(Database& database) {
+  sqlite3* raw = database.get();
+  sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  for (const int unsafe :
+       {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW,
+        SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, SQLITE_DBCONFIG_DQS_DDL, SQLITE_DBCONFIG_DQS_DML})
+    sqlite3_db_config(raw, unsafe, 0, nullptr);
+  sqlite3_limit(raw, SQLITE_LIMIT_ATTACHED, 0);
+  return database.run(
+      "PRAGMA synchronous=FULL; PRAGMA temp_store=MEMORY; PRAGMA cache_spill=OFF;"
+      "PRAGMA cache_size=-16384; PRAGMA secure_delete=OFF; PRAGMA cell_size_check=ON;"
+      "PRAGMA mmap_size=0; PRAGMA journal_mode=PERSIST; PRAGMA journal_size_limit=16777216;",
+      "cannot be opened");
+}
+
+core::Result<void> check_pages(const Database& database) {
+  auto check = database.prepare("PRAGMA quick_check(1)", "cannot be read");
+  if (!check) return tl::unexpected(check.error());
+  if (check->step() != SQLITE_ROW) return database.error("cannot be read");
+  if (const std::string_view found = check->text(0); found != "ok")
+    return refuse(database.file(),
+                  fmt::format("the file is damaged ({})", core::shown(found, 200)));
+  return {};
+}
+
+core::Result<void> check_place(const std::filesystem::path& file) {
+  const auto say = [&](std::string_view what) {
+    return core::fail(core::ErrorCode::kIo, fmt::format("{}: {}", file.string(), what));
+  };
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) return say("there is no such file");
+  if (!std::filesystem::is_regular_file(status)) return say("is not a regular file");
+  if (access(file.c_str(), W_OK) != 0) return say("the file is read-only");
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (access(folder.c_str(), W_OK) != 0) return say("its folder is read-only");
+  return {};
+}
+
+}  // namespace
+
+core::Result<void> create_file(const std::filesystem::path& file, const WorldIdentity& world) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    return core::fail(core::ErrorCode::kIo,
+                      fmt::format("{}: there is no folder {}", file.string(), folder.string()));
+  core::remove_stale_partials(folder);
+  const auto bytes = empty_save(world);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const std::filesystem::path fresh =
+      folder / fmt::format(".{}.{}-new.partial", file.filename().string(), getpid());
+  if (auto written = core::replace_file(fresh, *bytes); !written) {
+    std::string& message = written.error().message;  // begins with the name of `fresh`
+    message.replace(0, fresh.string().size(), file.string());
+    return written;
+  }
+  // The save appears under its name only if nobody else has made it meanwhile.
+  int code = renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE);
+  if (code != 0 && errno == EINVAL) code = std::rename(fresh.c_str(), file.c_str());
+  const int reason = errno;
+  if (code == 0) return {};
+  unlink(fresh.c_str());
+  if (reason == EEXIST) return {};
+  return core::fail(core::ErrorCode::kIo,
+                    fmt::format("{}: cannot be made: {}", file.string(), std::strerror(reason)));
+}
+
+core::Result<Database> open_file(const std::filesystem::path& file) {
+  if (auto ok = check_place(file); !ok) return tl::unexpected(ok.error());
+  auto database = Database::open(file);
+  if (!database) return database;
+  auto ok = check_header(*database);
+  if (ok) ok = lock(*database);
+  if (!ok) return tl::unexpected(ok.error());  // the file may be another program's
+  ok = configure(*database);
+  if (ok) ok = check_pages(*database);
+  if (ok) ok = check_tables(*database);
+  if (ok) return database;
+  close_file(*database);
+  return tl::unexpected(ok.error());
+}
+
+void close_file(Database& database) {
+  if (database.get() == nullptr) return;
+  if (database.in_transaction()) (void)database.run("ROLLBACK", "cannot be closed");
+  (void)database.run(
+      "PRAGMA locking_mode=NORMAL; SELECT 1 FROM sqlite_schema; PRAGMA journal_mode=DELETE",
+      "cannot be closed");
+}
+
+core::Result<void> check_tables(const Database& database) {
+  auto list =
+      database.prepare("SELECT type, tbl_name, name, sql FROM sqlite_schema", "cannot be read");
+  if (!list) return tl::unexpected(list.error());
+  std::size_t found = 0;
+  int code = list->step();
+  for (; code == SQLITE_ROW; code = list->step()) {
+    const std::string_view type = list->text(0), table = list->text(1), name = list->text(2);
+    bool known = (type == "table" || type == "index") && is_game_table(table) &&
+                 (is_game_table(name) || name.starts_with("sqlite_")) &&
+                 !list->text(3).starts_with("CREATE VIRTUAL");
+    if (type == "table" && name == "sqlite_sequence") known = true;
+    if (type == "index" && name.starts_with("sqlite_autoindex_psygen_facts")) known = true;
+    for (const Table& own : kTables) {
+      if (type != "table" || name != own.name) continue;
+      known = list->text(3) == own.sql;
+      found += known ? 1 : 0;
+    }
+    if (!known)
+      return refuse(database.file(), fmt::format("has a {} '{}' that is not of this program",
+                                                 core::shown(type, 20), core::shown(name, 60)));
+  }
+  if (code != SQLITE_DONE) return database.error("cannot be read");
+  if (found != kTables.size()) return refuse(database.file(), "lacks a table; the file is damaged");
+  return {};
+}
+
+core::Result<WorldIdentity> read_world(const Database& database) {
+  auto select = database.prepare(
+      "SELECT (SELECT value FROM psygen_facts WHERE name = 'world name'),"
+      "(SELECT value FROM psygen_facts WHERE name = 'world hash')",
+      "cannot be read");
+  if (!select) return tl::unexpected(select.error());
+  if (select->step() != SQLITE_ROW) return database.error("cannot be read");
+  if (!select->is(0, SQLITE_TEXT) || !select->is(1, SQLITE_INTEGER))
+    return refuse(database.file(), "does not say which world it belongs to; the file is damaged");
+  return WorldIdentity{std::string(select->text(0)),
+                       static_cast<std::uint64_t>(select->integer(1))};
+}
+
+}  // namespace psygen::save

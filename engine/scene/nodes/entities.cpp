@@ -1,0 +1,209 @@
+#include "engine/scene/nodes/entities.hpp"
+
+#include <algorithm>
+#include <climits>
+
+#include "engine/scene/nodes/levels.hpp"
+#include "engine/scene/nodes/mesh_entity.hpp"
+#include "engine/scene/nodes/solidity.hpp"
+#include "engine/world/far/merged_models.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// The values of the columns that nodes and models share; of the type only these levels are used.
+struct MeshColumns {
+  Placed placed;
+  Detail detail;
+  Source source;
+};
+MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
+                       const world::Placement& placement, int first_level = 0,
+                       int last_level = INT_MAX) {
+  const models::ModelType& type = facts.registry[placement.model];
+  return {placed_at(block, placement.position, type.bounds(placement.parameters),
+                    facts.usual_boxes[placement.model]),
+          detail_of(type, placement.parameters, first_level, last_level),
+          {placement.parameters, models::parameters_hash(type, placement.parameters),
+           placement.index, placement.model, static_cast<std::uint16_t>(first_level)}};
+}
+
+template <class Created>
+void fill(const Created& created, std::size_t i, const MeshColumns& columns) {
+  created.template column<Placed>()[i] = columns.placed;
+  created.template column<Detail>()[i] = columns.detail;
+  created.template column<Source>()[i] = columns.source;
+}
+
+// Creates mesh entities with the components of all such and `Also`.
+template <class... Also>
+std::span<const ecs::Entity> create_meshes(const WorldFacts& facts, core::BlockCoord block,
+                                           std::span<const world::Placement> placements,
+                                           ecs::World& entities, bool added = false) {
+  const auto models =
+      entities.create<Placed, Detail, Source, Demand, Mesh, Fading, Also...>(placements.size());
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    fill(models, i, columns_of(facts, block, placements[i]));
+    models.template column<Demand>()[i].added = added;
+  }
+  return models.entities;
+}
+
+void tell_created(std::span<const ecs::Entity> models, core::BlockCoord block,
+                  std::span<const world::Placement> placements,
+                  ecs::EventQueue<ModelCreated>& created) {
+  if (!created.has_readers()) return;
+  std::vector<ModelCreated> events;
+  for (std::size_t i = 0; i < models.size(); ++i)
+    events.push_back({models[i], block, placements[i].index, placements[i].model});
+  created.emit(events);
+}
+
+world::Placement merged_placement(const WorldFacts& facts, const visibility::NodeCoord& at) {
+  return {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
+          world::merged_parameters(facts.world, at.coord, at.level)};
+}
+
+// The models of a block, or the one mesh of all models on a coarser node.
+void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
+                   std::vector<world::Placement>& scratch, ecs::World& entities,
+                   ecs::EventQueue<ModelCreated>& created) {
+  const core::BlockCoord block = visibility::corner_block(at);
+  if (at.level == 0) {
+    world::place_models(facts.world, facts.registry, block, scratch);
+    const std::span<const ecs::Entity> models = create_meshes(facts, block, scratch, entities);
+    entities.set_children(node, models);
+    tell_created(models, block, scratch, created);
+  } else if (facts.levels[at.level].merged) {
+    scratch.assign(1, merged_placement(facts, at));
+    entities.set_children(node,
+                          create_meshes<MeshParts, OldParts>(facts, block, scratch, entities));
+  }
+}
+
+models::Parameters lit_ground(const WorldFacts& facts, const Daylight& daylight,
+                              const visibility::NodeCoord& at) {
+  models::Parameters ground = node_terrain(facts.world, at);
+  world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
+  return ground;
+}
+
+// Sets what an entity shows from now on. True if that is another mesh.
+bool renew(const models::Parameters& parameters, const WorldFacts& facts, ecs::Entity entity,
+           const synthesis::MeshSupply& meshes, ecs::World& entities) {
+  Source& source = *entities.get<Source>(entity);
+  const models::ModelType& type = facts.registry[source.model];
+  const bool other = source.parameters != parameters;
+  source.parameters = parameters;  // the layer of edits is another one in any case
+  if (!other) return false;
+  source.parameters_hash = models::parameters_hash(type, parameters);
+  Demand& demand = *entities.get<Demand>(entity);
+  // When an edit is taken back, the old mesh may still be drawn.
+  const synthesis::MeshRecord* drawn = meshes.ready(entities.get<Mesh>(entity)->handle);
+  const bool right = drawn != nullptr && drawn->key.parameters_hash == source.parameters_hash;
+  demand.stale = demand.drawn_level != kNoLevel && !right;
+  demand.requested_level = kNoLevel;
+  demand.failed_levels = 0;
+  return true;
+}
+
+void place_anew(const WorldFacts& facts, core::BlockCoord block, const world::Placement& placement,
+                ecs::Entity entity, const synthesis::MeshSupply& meshes, ecs::World& entities) {
+  if (!renew(placement.parameters, facts, entity, meshes, entities)) {
+    entities.get<Placed>(entity)->position = placement.position;
+    return;
+  }
+  const MeshColumns columns = columns_of(facts, block, placement);
+  *entities.get<Placed>(entity) = columns.placed;
+  *entities.get<Detail>(entity) = columns.detail;
+}
+
+void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& meshes,
+                    ecs::World& entities, ecs::EventQueue<ModelRemoved>& removed) {
+  std::vector<ModelRemoved> events;
+  for (const ecs::Entity model : models) {
+    if (entities.get<Demand>(model)->drawn_level != kNoLevel)
+      meshes.rank(entities.get<Mesh>(model)->handle, synthesis::Rank::unwanted());
+    const Source& source = *entities.get<Source>(model);
+    events.push_back({model, entities.get<Placed>(model)->block, source.index, source.model});
+  }
+  if (removed.has_readers()) removed.emit(events);
+  entities.destroy(models);
+}
+
+// Entities of models that stay are kept, with what is drawn of them.
+void update_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
+                   std::vector<world::Placement>& scratch, synthesis::MeshSupply& meshes,
+                   ecs::World& entities, const ModelEvents& events) {
+  world::place_models(facts.world, facts.registry, block, scratch);
+  const std::span<const ecs::Entity> now = entities.children(node);
+  std::vector<ecs::Entity> before(now.begin(), now.end()), kept, gone;
+  std::vector<world::Placement> created;
+  // Both are sorted by index.
+  std::size_t next = 0;
+  for (const ecs::Entity model : before) {
+    const Source* source = entities.get<Source>(model);
+    if (source == nullptr) continue;
+    while (next < scratch.size() && scratch[next].index < source->index)
+      created.push_back(scratch[next++]);
+    const bool stays = next < scratch.size() && scratch[next].index == source->index &&
+                       scratch[next].model == source->model;
+    if (stays) place_anew(facts, block, scratch[next++], model, meshes, entities);
+    (stays ? kept : gone).push_back(model);
+  }
+  created.insert(created.end(), scratch.begin() + static_cast<std::ptrdiff_t>(next), scratch.end());
+  destroy_models(gone, meshes, entities, events.removed);
+  const std::span<const ecs::Entity> added = create_meshes(facts, block, created, entities, true);
+  tell_created(added, block, created, events.created);
+  kept.insert(kept.end(), added.begin(), added.end());
+  std::ranges::sort(kept, {},
+                    [&](ecs::Entity model) { return entities.get<Source>(model)->index; });
+  entities.set_children(node, kept);
+}
+
+}  // namespace
+
+ecs::Entity create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
+                        const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
+                        ecs::World& entities, ecs::EventQueue<ModelCreated>& created_models) {
+  const NodeLevel& level = facts.levels[at.level];
+  const auto created = entities.create<Node, ecs::Children, Visibility, Lacking, GroundRelief,
+                                       GroundSun, Placed, Detail, Source, Demand, Mesh>(1);
+  const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
+  created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y,
+                               solid ? node_solidity(facts.world, facts.standing, at) : 0.0F};
+  fill(created, 0,
+       columns_of(facts, visibility::corner_block(at),
+                  {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F),
+                   lit_ground(facts, daylight, at)},
+                  at.level == 0 ? 0 : level.mesh_level, level.mesh_level));
+  const ecs::Entity node = created.entities[0];
+  create_models(facts, at, node, scratch, entities, created_models);
+  return node;
+}
+
+void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity node,
+                 const NodeChange& change, std::vector<world::Placement>& scratch,
+                 synthesis::MeshSupply& meshes, ecs::World& entities, const ModelEvents& events) {
+  const visibility::NodeCoord at = entities.get<Node>(node)->at;
+  if (change.ground) {
+    renew(lit_ground(facts, daylight, at), facts, node, meshes, entities);
+  } else if (models::Parameters& p = entities.get<Source>(node)->parameters; p.edits() != nullptr) {
+    p.set_edits(facts.world.edits.get(), p.edits_hash());
+  }
+  const core::BlockCoord block = visibility::corner_block(at);
+  if (at.level == 0) {
+    if (change.models) update_models(facts, block, node, scratch, meshes, entities, events);
+    return;
+  }
+  for (const ecs::Entity model : entities.children(node)) {
+    models::Parameters& p = entities.get<Source>(model)->parameters;
+    if (change.ground || change.models) {
+      place_anew(facts, block, merged_placement(facts, at), model, meshes, entities);
+    } else if (p.edits() != nullptr) {
+      p.set_edits(facts.world.edits.get(), p.edits_hash());
+    }
+  }
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,40 @@
+// The entities of a node: its ground, and the models on it or the one mesh of all of them. Creates
+// them, and changes them when the edits of the world change. Decides nothing about which nodes
+// exist (systems/streaming.cpp). Main thread only.
+#pragma once
+
+#include <vector>
+
+#include "ecs/ecs.hpp"
+#include "engine/scene/events.hpp"
+#include "engine/scene/state.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::scene {
+
+// Creates a node and its models, and returns the node. `scratch` is memory for placements. About
+// 20 µs for a block.
+ecs::Entity create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
+                        const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
+                        ecs::World& entities, ecs::EventQueue<ModelCreated>& created);
+
+// Where models that come and go are told.
+struct ModelEvents {
+  ecs::EventQueue<ModelCreated>& created;
+  ecs::EventQueue<ModelRemoved>& removed;
+};
+
+// What changed of the edits of a node.
+struct NodeChange {
+  bool ground = true;  // heights or light may differ
+  bool models = true;  // the edits of its blocks differ, or heights under its models
+};
+
+// Gives a node and its models what they are in the world's present edits. What is drawn of them
+// stays until the new mesh is there; models that are not there any more are destroyed, and new ones
+// created. About 2 µs, and 20 µs for a block whose ground or models changed.
+void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity node,
+                 const NodeChange& change, std::vector<world::Placement>& scratch,
+                 synthesis::MeshSupply& meshes, ecs::World& entities, const ModelEvents& events);
+
+}  // namespace psygen::scene

@@ -1,0 +1,42 @@
+#include "engine/scene/nodes/mesh_entity.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace psygen::scene {
+
+Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box,
+                 const core::Bounds& usual) {
+  Placed placed;
+  placed.block = block;
+  placed.position = position;
+  placed.box_center = box.center();
+  placed.box_half_extent = box.half_extent();
+  placed.middle = placed.box_center + placed.box_half_extent * usual.center();
+  placed.radius_m = glm::length(placed.box_half_extent * usual.half_extent());
+  return placed;
+}
+
+Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first,
+                 int last) {
+  Detail detail;
+  detail.seen_size_m = static_cast<float>(type.seen_size_m(parameters));
+  for (int level = first; level <= std::min(last, type.level_count_of(parameters) - 1); ++level) {
+    if (detail.level_count == kMaxLevels) break;
+    detail.error_m[detail.level_count++] =
+        static_cast<float>(type.level_error_m(parameters, level));
+  }
+  return detail;
+}
+
+float distance_to(const Placed& placed, const glm::vec3& foot, float least_m) {
+  return std::max(glm::length(foot + placed.middle) - placed.radius_m, least_m);
+}
+
+float size_pixels(const Placed& placed, const Detail& detail, float distance_m,
+                  float pixels_per_radian, float least_m) {
+  const float size_m = detail.seen_size_m > 0 ? detail.seen_size_m : 2 * placed.radius_m;
+  return size_m * pixels_per_radian / std::max(distance_m + placed.radius_m, least_m);
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,236 @@
+#include "engine/scene/readiness.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/nodes/mesh_entity.hpp"
+#include "engine/scene/state.hpp"
+#include "engine/visibility/level_choice.hpp"
+#include "engine/world/far/merged_models.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// Meshes of places come before nodes that a camera is expected to see later than this.
+constexpr float kDeadlineSeconds = 1;
+constexpr double kMostShare = 0.5;  // of the memory for meshes
+
+// The nodes that a camera at the position would draw up to the radius.
+visibility::Cut cut_at(const State& s, const core::WorldPosition& position, double radius_m) {
+  const WorldFacts& facts = s.facts;
+  const auto top = static_cast<std::uint8_t>(facts.levels.size() - 1);
+  std::vector<visibility::LevelDistances> distances;
+  split_distances(facts.levels, s.settings, s.camera.pixels_per_radian, s.quality.error_pixels,
+                  distances);
+  visibility::CutInput input;
+  input.camera = position;
+  input.block_size_m = facts.world.block_size_m();
+  input.levels = distances;
+  input.view_distance_m = radius_m;
+  input.world = {{},
+                 static_cast<std::uint32_t>(facts.world.blocks_x),
+                 static_cast<std::uint32_t>(facts.world.blocks_z)};
+  std::vector<visibility::NodeCoord> roots;
+  visibility::roots_around(position, input.block_size_m, radius_m, top, roots, input.world);
+  input.roots = roots;
+  visibility::Cut cut;
+  visibility::select_cut(input, cut);
+  return cut;
+}
+
+// Collects the meshes of one place.
+struct Collector {
+  const State& s;
+  const core::WorldPosition& position;
+  std::vector<Foresight::Mesh>& meshes;
+  std::vector<world::Placement> scratch = {};
+
+  void add(core::BlockCoord block, const world::Placement& model, int level, float distance_m) {
+    const models::ModelType& type = s.facts.registry[model.model];
+    meshes.push_back({{block, model.index, model.model, static_cast<std::uint16_t>(level),
+                       models::parameters_hash(type, model.parameters)},
+                      model.parameters,
+                      distance_m});
+  }
+
+  void add_ground(const visibility::CutNode& node) {
+    models::Parameters ground = node_terrain(s.facts.world, node.node);
+    world::set_sun(ground, s.daylight.azimuth_deg, s.daylight.elevation_deg);
+    const int level = node.fine ? 0 : s.facts.levels[node.node.level].mesh_level;
+    add(visibility::corner_block(node.node),
+        {s.facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground}, level,
+        node.distance_m);
+  }
+
+  void add_models(const visibility::CutNode& node) {
+    const core::BlockCoord block = visibility::corner_block(node.node);
+    if (node.node.level > 0) {
+      if (!s.facts.levels[node.node.level].merged) return;
+      const models::Parameters merged =
+          world::merged_parameters(s.facts.world, node.node.coord, node.node.level);
+      add_model(block, {s.facts.merged_model, kMergedIndex, glm::vec3(0.0F), merged},
+                detail_of(s.facts.registry[s.facts.merged_model], merged), node.distance_m,
+                s.quality.error_pixels);
+      return;
+    }
+    world::place_models(s.facts.world, s.facts.registry, block, scratch);
+    const glm::dvec3 corner = core::offset_m(block, position, s.facts.world.block_size_m());
+    const float near_m = s.camera.projection.near_m, pixels = s.camera.pixels_per_radian;
+    for (const world::Placement& model : scratch) {
+      const models::ModelType& type = s.facts.registry[model.model];
+      const Placed placed = placed_at(block, model.position, type.bounds(model.parameters),
+                                      s.facts.usual_boxes[model.model]);
+      const Detail detail = detail_of(type, model.parameters);
+      const float distance_m = distance_to(placed, glm::vec3(corner) + model.position, near_m);
+      if (size_pixels(placed, detail, distance_m, pixels, near_m) <
+          static_cast<float>(s.settings.min_size_pixels))
+        continue;  // too small to be drawn
+      add_model(block, model, detail, distance_m, s.quality.model_error_pixels);
+    }
+  }
+
+  void add_model(core::BlockCoord block, const world::Placement& model, const Detail& detail,
+                 float distance_m, double error_pixels) {
+    const std::span<const float> errors(detail.error_m.data(), detail.level_count);
+    const int level = s.settings.levels_of_detail
+                          ? visibility::choose_level(errors, distance_m, s.camera.pixels_per_radian,
+                                                     static_cast<float>(error_pixels), -1)
+                          : 0;
+    add(block, model, level, distance_m);
+  }
+};
+
+core::Result<std::vector<Foresight::Mesh>> meshes_of(const State& s,
+                                                     const core::WorldPosition& position,
+                                                     double radius_m) {
+  const glm::dvec3& local = position.local;
+  if (!(std::isfinite(local.x) && std::isfinite(local.y) && std::isfinite(local.z)))
+    return core::fail(core::ErrorCode::kInvalidArgument, "the position of a place is not finite");
+  if (!(radius_m > 0 && radius_m <= kMostReadyRadiusM)) {
+    return core::fail(
+        core::ErrorCode::kInvalidArgument,
+        fmt::format("the radius of a place must be above 0 and at most {} m", kMostReadyRadiusM));
+  }
+  std::vector<Foresight::Mesh> meshes;
+  const core::WorldPosition normal = core::normalised(position, s.facts.world.block_size_m());
+  Collector collector{s, normal, meshes};
+  for (const visibility::CutNode& node : cut_at(s, normal, radius_m).nodes) {
+    if (!node.leaf) continue;
+    collector.add_ground(node);
+    collector.add_models(node);
+  }
+  return meshes;
+}
+
+bool is_there(const synthesis::MeshSupply& meshes, const synthesis::MeshKey& key) {
+  const synthesis::MeshRecord* record = meshes.get(meshes.find(key));
+  // What cannot be made is not waited for.
+  return record != nullptr && (record->state == synthesis::MeshState::kReady ||
+                               record->state == synthesis::MeshState::kFailed);
+}
+
+synthesis::Want want_of(const Foresight::Mesh& mesh) {
+  const auto rank = synthesis::Rank::by_deadline(kDeadlineSeconds, mesh.distance_m);
+  return {mesh.key, &mesh.parameters, owner_of(ecs::kNullEntity), rank, kDeadlineSeconds, false};
+}
+
+std::uint64_t bytes_of(const State& s, std::span<const Foresight::Mesh> meshes) {
+  std::uint64_t bytes = 0;
+  for (const Foresight::Mesh& mesh : meshes) {
+    const models::MeshSize size =
+        s.facts.registry[mesh.key.model].mesh_size(mesh.parameters, mesh.key.level);
+    bytes += s.memory->charged_bytes(size.layout, size.vertex_count,
+                                     size.shared_indices != 0 ? 0 : size.index_count);
+  }
+  return bytes;
+}
+
+const Foresight::Place* find(const Foresight& foresight, PlaceId id) {
+  const auto found = std::ranges::find(foresight.places, id, &Foresight::Place::id);
+  return found == foresight.places.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+core::Result<Readiness> readiness(const State& state, const core::WorldPosition& position,
+                                  double radius_m) {
+  const auto meshes = meshes_of(state, position, radius_m);
+  if (!meshes) return tl::unexpected(meshes.error());
+  Readiness result;
+  result.meshes = static_cast<std::uint32_t>(meshes->size());
+  for (const Foresight::Mesh& mesh : *meshes) {
+    if (is_there(state.meshes, mesh.key)) continue;
+    ++result.missing;
+    result.expected_s += state.meshes.predict(want_of(mesh)) / state.settings.modelers;
+  }
+  return result;
+}
+
+core::Result<PlaceId> ask_ready(State& state, const core::WorldPosition& position,
+                                double radius_m) {
+  auto meshes = meshes_of(state, position, radius_m);
+  if (!meshes) return tl::unexpected(meshes.error());
+  const std::uint64_t bytes = bytes_of(state, *meshes);
+  std::uint64_t all = bytes;
+  for (const Foresight::Place& place : state.foresight.places)
+    all += place.bytes;
+  constexpr double kMiB = 1 << 20;
+  const double most = kMostShare * static_cast<double>(state.meshes.stats().budget_bytes);
+  if (static_cast<double>(all) > most) {
+    return core::fail(
+        core::ErrorCode::kOverBudget,
+        fmt::format("{:.0f} MiB are needed for a place of {:g} m, with all places {:.0f} MiB; half "
+                    "of the budget, {:.0f} MiB, is allowed",
+                    static_cast<double>(bytes) / kMiB, radius_m, static_cast<double>(all) / kMiB,
+                    most / kMiB));
+  }
+  const PlaceId id = ++state.foresight.last_id;
+  Readiness unknown{static_cast<std::uint32_t>(meshes->size()),
+                    static_cast<std::uint32_t>(meshes->size()), 0};
+  state.foresight.places.push_back({id, std::move(*meshes), bytes, unknown, false});
+  return id;
+}
+
+Readiness readiness(const State& state, PlaceId id) {
+  const Foresight::Place* place = find(state.foresight, id);
+  return place != nullptr ? place->readiness : Readiness{};
+}
+
+void stop_asking(State& state, PlaceId id) {
+  const Foresight::Place* place = find(state.foresight, id);
+  if (place == nullptr) return;
+  for (const Foresight::Mesh& mesh : place->meshes) {
+    const synthesis::MeshHandle handle = state.meshes.find(mesh.key);
+    const synthesis::MeshRecord* record = state.meshes.get(handle);
+    if (record != nullptr && record->rank == want_of(mesh).rank)
+      state.meshes.rank(handle, synthesis::Rank::unwanted());
+  }
+  std::erase_if(state.foresight.places, [id](const auto& asked) { return asked.id == id; });
+}
+
+void want_places(std::uint32_t modelers, Foresight& foresight, synthesis::MeshSupply& meshes,
+                 ecs::EventQueue<PlaceReady>& ready) {
+  for (Foresight::Place& place : foresight.places) {
+    place.readiness.missing = 0;
+    place.readiness.expected_s = 0;
+    for (const Foresight::Mesh& mesh : place.meshes) {
+      const synthesis::Want want = want_of(mesh);
+      const synthesis::MeshHandle handle = meshes.find(mesh.key);
+      const synthesis::MeshRecord* record = meshes.get(handle);
+      if (record != nullptr && record->state == synthesis::MeshState::kReady) {
+        // Whoever draws it ranks it; what nobody wants any more is kept for the place.
+        const bool free = record->rank == synthesis::Rank::unwanted();
+        if (free || record->owner == want.owner) meshes.rank(handle, want.rank);
+      } else if (record == nullptr || record->state != synthesis::MeshState::kFailed) {
+        ++place.readiness.missing;
+        place.readiness.expected_s += meshes.predict(want) / modelers;
+        meshes.want(want);
+      }
+    }
+    if (place.readiness.ready() && !std::exchange(place.told, true)) ready.emit({place.id});
+  }
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,113 @@
+// Takes over edits of the world: the ground and the models that they change get new parameters or
+// other places, models come and go. What is drawn stays until the new mesh is there; that is
+// synthesis like any other.
+#include "engine/models/edits.hpp"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <utility>
+
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/scene/nodes/entities.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/world/far/merged_models.hpp"
+
+namespace psygen::scene {
+namespace {
+
+using Blocks = models::QuadMap<models::BlockEdits>;
+
+// What differs between two layers, node by node.
+class LayerChange {
+ public:
+  LayerChange(const world::World& world, const models::EditLayer* before,
+              const models::EditLayer* after)
+      : world_(world),
+        before_(before != nullptr ? *before : none_),
+        after_(after != nullptr ? *after : none_) {}
+
+  NodeChange of(const visibility::NodeCoord& node) const {
+    const auto at = models::QuadPlace::of(node.coord, node.level);
+    const double margin = world::ground_margin(world_, node.level);
+    const bool ground = !models::GroundEdits::same_in(before_.ground, after_.ground, at, margin);
+    // Light reaches further than heights.
+    const double block_m = world_.block_size_m();
+    const bool heights =
+        ground && (before_.ground.reaches(at, block_m) || after_.ground.reaches(at, block_m));
+    return {ground, heights || hash_in(before_.blocks, at) != hash_in(after_.blocks, at)};
+  }
+
+ private:
+  static std::uint64_t hash_in(const Blocks& blocks, const models::QuadPlace& at) {
+    const Blocks::Cell* cell = blocks.at_or_below(at);
+    return cell != nullptr ? cell->hash : 0;
+  }
+
+  const world::World& world_;
+  const models::EditLayer none_;
+  const models::EditLayer &before_, &after_;
+};
+
+// How far models reach from their foot, with those that were placed by hand.
+glm::vec2 reach_of(const WorldFacts& facts) {
+  const models::EditLayer* layer = facts.world.edits.get();
+  if (layer == nullptr || layer->blocks.empty()) return facts.scattered_reach_m;
+  const glm::vec3& placed = layer->blocks.root()->summary.reach_m;
+  return glm::max(facts.scattered_reach_m, glm::vec2(placed.x, placed.y));
+}
+
+// What is made ready ahead of time shows the edits too. Models that came since are not waited for.
+void renew_places(const WorldFacts& facts, Foresight& foresight) {
+  const auto renew = [&](Foresight::Mesh& mesh) {
+    const models::Parameters& old = mesh.parameters;
+    const auto node = [&old](std::size_t x, std::size_t z) {
+      return core::BlockCoord{static_cast<std::int32_t>(old.integer(x)),
+                              static_cast<std::int32_t>(old.integer(z))};
+    };
+    models::Parameters now;
+    if (mesh.key.model == facts.world.terrain_model) {
+      now = world::terrain_parameters(facts.world,
+                                      node(models::kTerrainBlockX, models::kTerrainBlockZ),
+                                      static_cast<int>(old.integer(models::kTerrainNodeLevel)));
+      for (const std::size_t sun : {models::kTerrainSunAzimuth, models::kTerrainSunElevation})
+        now.set_real(sun, old.real(sun));
+    } else if (facts.merged_model != 0 && mesh.key.model == facts.merged_model) {
+      now = world::merged_parameters(facts.world, node(world::kMergedBlockX, world::kMergedBlockZ),
+                                     static_cast<int>(old.integer(world::kMergedNodeLevel)));
+    } else {
+      return;
+    }
+    mesh.parameters = now;
+    mesh.key.parameters_hash = models::parameters_hash(facts.registry[mesh.key.model], now);
+  };
+  for (Foresight::Place& place : foresight.places)
+    std::ranges::for_each(place.meshes, renew);
+}
+
+}  // namespace
+
+void edits_system(const Daylight& daylight, Editing& editing, WorldFacts& facts,
+                  ecs::World& entities, synthesis::MeshSupply& meshes, Foresight& foresight,
+                  ecs::EventQueue<ModelCreated>& created_models,
+                  ecs::EventQueue<ModelRemoved>& removed_models) {
+  if (!std::exchange(editing.pending, false)) return;
+  // Kept until nothing in the scene refers to it.
+  const std::shared_ptr<const models::EditLayer> before = facts.world.edits;
+  world::set_edits(facts.world, editing.edits.layer());
+  meshes.set_edits(editing.edits.layer());
+  facts.models_reach_m = reach_of(facts);
+  const LayerChange change(facts.world, before.get(), facts.world.edits.get());
+  std::vector<ecs::Entity> nodes;
+  entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node>) {
+    nodes.insert(nodes.end(), rows.begin(), rows.end());
+  });
+  renew_places(facts, foresight);
+  std::vector<world::Placement> scratch;
+  for (const ecs::Entity node : nodes) {
+    const visibility::NodeCoord at = entities.get<Node>(node)->at;
+    update_node(facts, daylight, node, change.of(at), scratch, meshes, entities,
+                {created_models, removed_models});
+  }
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,54 @@
+// Runs the fixed steps that are due at the time of this frame.
+#include <algorithm>
+
+#include "engine/core/clock.hpp"
+#include "engine/scene/systems.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// A step is due this part of a step early: sums of frame times are not exact.
+constexpr double kEarly = 1e-6;
+
+void trace_step(const Simulation& simulation, Tracing& trace) {
+  if (trace.log == nullptr) return;
+  const auto systems = simulation.systems.systems();
+  if (trace.steps.size() != systems.size()) {
+    trace.steps.clear();
+    for (const ecs::SystemInfo& system : systems)
+      trace.steps.push_back(trace.log->intern(system.name));
+  }
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    const double start_s = systems[i].last_start_s;
+    trace.log->add_span(trace.main, trace.steps[i], start_s, start_s + systems[i].last_seconds,
+                        simulation.step.index);
+  }
+}
+
+}  // namespace
+
+void simulation_system(const Clock& clock, ecs::World&, Simulation& simulation, Tracing& trace) {
+  FixedStep& step = simulation.step;
+  // A clock that is set back does not undo steps.
+  simulation.behind_s += std::max(clock.now_s - simulation.clock_s, 0.0);
+  simulation.clock_s = clock.now_s;
+  const double most_s = step.step_s * simulation.most_steps;
+  if (simulation.behind_s > most_s) {
+    simulation.lost_s += simulation.behind_s - most_s;
+    simulation.behind_s = most_s;
+  }
+  simulation.step_ms.assign(simulation.systems.systems().size(), 0.0F);
+  while (simulation.behind_s >= step.step_s * (1 - kEarly)) {
+    simulation.behind_s = std::max(simulation.behind_s - step.step_s, 0.0);
+    ++step.index;
+    step.share = 0;
+    simulation.systems.run();
+    const auto systems = simulation.systems.systems();
+    for (std::size_t i = 0; i < systems.size(); ++i)
+      simulation.step_ms[i] += static_cast<float>(systems[i].last_seconds * 1000.0);
+    trace_step(simulation, trace);
+  }
+  step.share = std::min(simulation.behind_s / step.step_s, 1.0);
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,96 @@
+// Components and systems: a camera that glides on springs in fixed steps, and a count of the trees
+// that come into reach. Flies for some seconds and prints what it has seen.
+//   example_systems [seconds]
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "engine/app/session.hpp"
+#include "engine/core/data_file.hpp"
+#include "engine/scene/scene.hpp"
+
+using namespace psygen;
+
+namespace {
+
+// A component. Its state of the step before is kept: pictures lie between the two.
+struct Glider {
+  double x_m = 0, x_before_m = 0;  // east of where it began
+  double speed_m_s = 0;
+};
+
+// A resource: one of it, which all systems may use.
+struct Trip {
+  core::CameraPose start;
+  std::size_t models_seen = 0;
+};
+
+// Once a fixed step: the same on every machine, whatever the frame rate is.
+void glide(const scene::FixedStep& step, ecs::Query<Glider> gliders) {
+  gliders.each([&](auto, std::span<Glider> all) {
+    for (Glider& glider : all) {
+      const double wanted_m_s = 20 + 10 * std::sin(step.now_s());
+      glider.speed_m_s += 2 * (wanted_m_s - glider.speed_m_s) * step.step_s;
+      glider.x_before_m = std::exchange(glider.x_m, glider.x_m + glider.speed_m_s * step.step_s);
+    }
+  });
+}
+
+// Once a frame, before the engine reads the pose: the camera is where the glider is now.
+void follow(const scene::FixedStep& step, const Trip& trip, ecs::Query<const Glider> gliders,
+            scene::Input& input) {
+  gliders.each([&](auto, std::span<const Glider> all) {
+    const Glider& glider = all[0];
+    input.pose = trip.start;
+    input.pose.yaw = 1.57;  // east
+    input.pose.position.local.x += std::lerp(glider.x_before_m, glider.x_m, step.share);
+  });
+}
+
+// Once a frame: events come in batches, each once.
+void count(Trip& trip, ecs::EventReader<scene::ModelCreated>& created) {
+  trip.models_seen += created.drain([](std::span<const scene::ModelCreated>) {});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const double seconds = argc > 1 ? std::atof(argv[1]) : 5;
+  const auto failed = [](const core::Error& error) {
+    std::fprintf(stderr, "%s\n", error.message.c_str());
+    return 1;
+  };
+  const auto world = core::data_file("worlds/five_species.toml");
+  if (!world) return failed(world.error());
+
+  Trip* trip = nullptr;
+  app::Plugin plugin;
+  plugin.name = "glider";
+  plugin.add_systems = [&trip](scene::Systems& systems) -> core::Result<void> {
+    trip = &systems.resource<Trip>();
+    systems.entities.create<Glider>(1);
+    systems.step.add("glide", glide);
+    systems.frame.add("follow", follow, ecs::before("input"));
+    systems.frame.add("count", count, ecs::after("streaming"));
+    return {};
+  };
+  app::SessionOptions options;
+  options.world_file = *world;
+  options.headless = true;
+  options.size = {320, 180};
+  options.plugins.push_back(plugin);
+  auto session = app::Session::create(options);
+  if (!session) return failed(session.error());
+  trip->start = (*session)->home();
+
+  if (auto ok = (*session)->prepare(trip->start); !ok) return failed(ok.error());
+  for (double now_s = 0; now_s < seconds; now_s += 1.0 / 30) {
+    if (auto ok = (*session)->tick(trip->start, 1.0 / 30); !ok) return failed(ok.error());
+  }
+  const scene::State& state = (*session)->scene().state();
+  const core::WorldPosition& at = state.camera.pose.position;
+  std::printf("%llu steps, block %d, %zu models seen\n",
+              static_cast<unsigned long long>(state.simulation.step.index), at.block.x,
+              trip->models_seen);
+  return 0;
+}

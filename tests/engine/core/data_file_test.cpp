@@ -1,0 +1,107 @@
+#include "engine/core/data_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "tests/temporary_folder.hpp"
+
+namespace psygen::core {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// The environment variable with a value, until the end of the test.
+class Variable {
+ public:
+  explicit Variable(const std::string& value) {
+    if (const char* old = std::getenv("PSYGEN_DATA")) old_ = old;
+    setenv("PSYGEN_DATA", value.c_str(), 1);
+  }
+  ~Variable() {
+    if (old_) {
+      setenv("PSYGEN_DATA", old_->c_str(), 1);
+    } else {
+      unsetenv("PSYGEN_DATA");
+    }
+  }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  std::optional<std::string> old_;
+};
+
+void put(const fs::path& file) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << "x\n";
+}
+
+fs::path own_folder() {
+  return fs::read_symlink("/proc/self/exe").parent_path();
+}
+
+TEST(DataFile, FoldersAreTheGivenTheVariablesTheExecutablesAndThatOfThePackage) {
+  const Variable variable("/first:/second/./folder:");
+  EXPECT_THAT(
+      data_folders("/given", "/package"),
+      ElementsAre("/given", "/first", "/second/folder", own_folder(),
+                  (own_folder() / PSYGEN_DATA_FROM_EXECUTABLE).lexically_normal(), "/package"));
+}
+
+TEST(DataFile, EmptyFoldersAreLeftOutAndEachIsThereOnce) {
+  const Variable variable("::/given::/given");
+  EXPECT_THAT(data_folders("/given", ""),
+              ElementsAre("/given", own_folder(),
+                          (own_folder() / PSYGEN_DATA_FROM_EXECUTABLE).lexically_normal()));
+}
+
+TEST(DataFile, TheFirstFolderThatHasTheFileCounts) {
+  const TemporaryFolder folder;
+  const fs::path name = "worlds/psygen_test_data_file.toml";
+  const Variable variable((folder / "variable").string());
+  put(folder / "package" / name);
+  EXPECT_EQ(data_file(name, folder / "given", folder / "package"), folder / "package" / name);
+  put(folder / "variable" / name);
+  EXPECT_EQ(data_file(name, folder / "given", folder / "package"), folder / "variable" / name);
+  put(folder / "given" / name);
+  EXPECT_EQ(data_file(name, folder / "given", folder / "package"), folder / "given" / name);
+}
+
+TEST(DataFile, WorldsThatComeWithPsygenAreFoundBesideTheExecutable) {
+  const Variable variable("");
+  const auto file = data_file("worlds/paper.toml", "", "");
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_EQ(*file, own_folder() / "worlds/paper.toml");
+}
+
+TEST(DataFile, WhereThereIsNoSuchFileTheErrorListsWhereItLooked) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "given/worlds/none.toml");  // a folder is not a file
+  const Variable variable("/from/the/variable");
+  const auto file = data_file("worlds/none.toml", folder / "given", "/of/the/package");
+  ASSERT_FALSE(file);
+  EXPECT_EQ(file.error().code, ErrorCode::kIo);
+  for (const std::string& words :
+       {std::string("worlds/none.toml: there is no such data file; looked in "),
+        (folder / "given").string(), std::string("/from/the/variable"), own_folder().string(),
+        std::string("/of/the/package"), std::string("set PSYGEN_DATA")})
+    EXPECT_THAT(file.error().message, HasSubstr(words));
+}
+
+TEST(DataFile, NamesThatLeadOutOfTheFoldersAreRefused) {
+  for (const char* name : {"", "/etc/passwd", "../secret", "worlds/../../secret"}) {
+    const auto file = data_file(name);
+    ASSERT_FALSE(file) << name;
+    EXPECT_EQ(file.error().code, ErrorCode::kInvalidArgument) << name;
+  }
+}
+
+}  // namespace
+}  // namespace psygen::core

@@ -1,0 +1,130 @@
+#include "engine/physics/terrain.hpp"
+
+#include <algorithm>
+
+#include "engine/physics/convert.hpp"
+#include "tests/engine/physics/scene.hpp"
+
+namespace psygen::physics {
+namespace {
+
+using testing::kBounded;
+using testing::Loaded;
+
+// Bullet without bodies.
+struct Bare {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld bullet{&dispatcher, &broadphase, &solver, &configuration};
+
+  // Where a ray of Bullet's first meets one of these groups, as a share of its length; 1: nothing.
+  double cast(const btVector3& from, const btVector3& to, int groups) {
+    btCollisionWorld::ClosestRayResultCallback hit(from, to);
+    hit.m_collisionFilterGroup = kBodies;
+    hit.m_collisionFilterMask = groups;
+    bullet.rayTest(from, to, hit);
+    return hit.m_closestHitFraction;
+  }
+};
+
+TEST(PhysicsTerrain, HeightfieldsAreTheTrianglesOfTheFinestMesh) {
+  for (const char* name : testing::kWorldNames) {
+    const Loaded loaded = Loaded::shipped(name);
+    query::World query(loaded.world, loaded.registry);
+    Bare bare;
+    Terrain terrain(bare.bullet, query);
+    terrain.set_origin(query::testing::some_block(loaded.world));
+    terrain.need({0, 0}, {100, 100}, 1);
+    core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
+    for (int i = 0; i < 2000; ++i) {
+      const btVector3 at(random.next_real(0, 100), 0, random.next_real(0, 100));
+      const double height = terrain.ground(at).height_m;
+      const double hit = bare.cast(at + btVector3(0, 5000, 0), at - btVector3(0, 5000, 0), kGround);
+      ASSERT_NEAR(5000 - hit * 10'000, height, 1e-6) << name;
+    }
+  }
+}
+
+TEST(PhysicsTerrain, ModelsAreThoseThatRaysMeet) {
+  const Loaded loaded = Loaded::shipped("paper");
+  query::World query(loaded.world, loaded.registry);
+  Bare bare;
+  Terrain terrain(bare.bullet, query);
+  terrain.set_origin({7, 9});
+  terrain.need({0, 0}, {63, 63}, 1);
+  std::vector<query::NearModel> near;
+  ASSERT_TRUE(query.models_within({{7, 9}, {31, 100, 31}}, 130, near));
+  int hits = 0;
+  for (const query::NearModel& m : near) {
+    if (!(m.block == core::BlockCoord{7, 9})) continue;
+    const btVector3 foot = terrain.coordinates(m.position), up(0, 20, 0);
+    const double hit = bare.cast(foot + up, foot, kModels);
+    const auto expected =
+        query.cast({.origin = terrain.position(foot + up), .longest_m = 20, .ground = false});
+    ASSERT_TRUE(expected);
+    ASSERT_EQ(hit < 1, expected->kind == query::HitKind::kModel);
+    if (hit == 1) continue;
+    ++hits;
+    // Bullet's hulls have margins of 4 cm, which are longer along a ray that grazes.
+    ASSERT_NEAR(hit * 20, expected->distance_m,
+                0.05 / std::max(static_cast<double>(expected->normal.y), 0.05));
+  }
+  EXPECT_GT(hits, 40);
+}
+
+TEST(PhysicsTerrain, IsKeptForAWhileAndThenRemoved) {
+  const Loaded loaded = Loaded::shipped("endless");
+  query::World query(loaded.world, loaded.registry);
+  Bare bare;
+  Terrain terrain(bare.bullet, query);
+  for (std::uint64_t step = 1; step <= 100; ++step) {
+    const double x = static_cast<double>(step) * 63 + 30;
+    terrain.need({x, 30}, {x, 30}, step);
+    const int before = bare.bullet.getNumCollisionObjects();
+    terrain.drop_idle(step, 10, 5);
+    EXPECT_LE(terrain.size(), 14U);  // 9 around it at most, and 5
+    EXPECT_LE(bare.bullet.getNumCollisionObjects(), before);
+  }
+  const std::size_t kept = terrain.size();
+  terrain.drop_idle(105, 10, 100);
+  EXPECT_LE(terrain.size(), kept);
+  EXPECT_GT(terrain.size(), 0U);
+  terrain.drop_idle(111, 10, 100);
+  EXPECT_EQ(terrain.size(), 0U);
+  EXPECT_EQ(bare.bullet.getNumCollisionObjects(), 0);
+}
+
+TEST(PhysicsTerrain, EndsAtTheWallsOfABoundedWorld) {
+  const Loaded loaded = Loaded::parsed(kBounded);
+  query::World query(loaded.world, loaded.registry);
+  Bare bare;
+  Terrain terrain(bare.bullet, query);
+  terrain.set_origin({2, 1});
+  terrain.need({-1e5, -1e5}, {1e5, 1e5}, 1);
+  EXPECT_EQ(terrain.size(), 32U);
+  const btVector3 in = terrain.inside({-1000, 3, 1000}, 0.5);
+  EXPECT_NEAR(in.x(), -2 * 64 + 0.5, 1e-9);
+  EXPECT_NEAR(in.z(), 3 * 64 - 0.5, 1e-9);
+  EXPECT_EQ(in.y(), 3);
+  EXPECT_EQ(terrain.inside({10, 3, 10}, 0.5), btVector3(10, 3, 10));
+  EXPECT_GE(terrain.ground({-1000, 3, 1000}).height_m, 0);
+}
+
+TEST(PhysicsTerrain, CoordinatesAreExactFarFromTheOrigin) {
+  const Loaded loaded = Loaded::shipped("endless");
+  query::World query(loaded.world, loaded.registry);
+  Bare bare;
+  Terrain terrain(bare.bullet, query);
+  const core::BlockCoord far{1 << 30, INT32_MIN + 1};
+  terrain.set_origin(far);
+  const btVector3 at = terrain.coordinates({{far.x + 2, far.z - 3}, {1.25, 7, 2.5}});
+  EXPECT_EQ(at, btVector3(127.25, 7, -186.5));
+  const core::WorldPosition back = terrain.position(at);
+  EXPECT_EQ(back.block, (core::BlockCoord{far.x + 2, far.z - 3}));
+  EXPECT_EQ(back.local, glm::dvec3(1.25, 7, 2.5));
+}
+
+}  // namespace
+}  // namespace psygen::physics

@@ -1,0 +1,490 @@
+#include "engine/query/world.hpp"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "engine/models/terrain/grid.hpp"
+#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/query/worlds.hpp"
+
+namespace psygen::query {
+namespace {
+
+using testing::kBounded;
+using testing::kWorldNames;
+using testing::Loaded;
+using testing::some_block;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The triangles of the finest mesh of a block's ground, in metres from its corner.
+struct MeshGround {
+  std::vector<glm::dvec3> vertices;
+  std::vector<std::uint16_t> indices;  // of the surface
+
+  MeshGround(const Loaded& loaded, core::BlockCoord block) {
+    const models::Parameters p = world::terrain_parameters(loaded.world, block);
+    const models::ModelType& type = loaded.registry[loaded.world.terrain_model];
+    const auto mesh = models::test::synthesize(type, p, 0);
+    for (const core::TerrainVertex& v : mesh.vertices<core::TerrainVertex>())
+      vertices.emplace_back(v.grid_x * loaded.world.cell_m(),
+                            v.height / 65535.0 * p.real(models::kTerrainReliefM),
+                            v.grid_z * loaded.world.cell_m());
+    indices = mesh.indices;
+    indices.resize(std::size_t{3} * models::terrain_surface_triangles(p, 0));
+  }
+
+  // Calls visit(a, b, c) for every triangle.
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (std::size_t i = 0; i < indices.size(); i += 3)
+      visit(vertices[indices[i]], vertices[indices[i + 1]], vertices[indices[i + 2]]);
+  }
+};
+
+// Where a line crosses a triangle (Möller and Trumbore), or a negative value.
+double crosses(const glm::dvec3& from, const glm::dvec3& d, const glm::dvec3& a,
+               const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 e1 = b - a, e2 = c - a, p = glm::cross(d, e2), s = from - a;
+  const double det = glm::dot(e1, p);
+  if (std::abs(det) < 1e-12) return -1;
+  const glm::dvec3 q = glm::cross(s, e1);
+  const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det;
+  return u >= -1e-9 && v >= -1e-9 && u + v <= 1 + 1e-9 ? glm::dot(e2, q) / det : -1;
+}
+
+double random_in(core::RandomStream& random, double low, double high) {
+  return random.next_real(low, high);
+}
+
+TEST(QueryWorld, GroundIsTheTrianglesOfTheFinestMesh) {
+  for (const char* name : kWorldNames) {
+    const Loaded loaded = Loaded::shipped(name);
+    World query(loaded.world, loaded.registry);
+    for (const core::BlockCoord block : {some_block(loaded.world), core::BlockCoord{0, 0}}) {
+      const MeshGround mesh(loaded, block);
+      core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
+      mesh.each([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        double u = random.next_unit(), v = random.next_unit();
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        const glm::dvec3 at = a + u * (b - a) + v * (c - a);
+        const auto ground = query.ground({block, {at.x, 12345, at.z}});
+        ASSERT_TRUE(ground) << ground.error().message;
+        ASSERT_NEAR(ground->height_m, at.y, 1e-5) << name;
+        const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+        ASSERT_GT(glm::dot(normal, glm::dvec3(ground->normal)), 0.999999);
+      });
+    }
+  }
+}
+
+TEST(QueryWorld, NeighbouringBlocksAgreeAtTheirBorder) {
+  const Loaded loaded = Loaded::shipped("silver_combe");
+  World query(loaded.world, loaded.registry);
+  const double size = loaded.world.block_size_m();
+  const core::BlockCoord block = some_block(loaded.world);
+  for (int i = 0; i < 200; ++i) {
+    const double along = i * size / 200;
+    const auto before = query.ground({block, {size - 1e-9, 0, along}});
+    const auto after = query.ground({block, {size, 0, along}});
+    const auto next = query.ground({{block.x + 1, block.z}, {0, 0, along}});
+    ASSERT_TRUE(before && after && next);
+    EXPECT_NEAR(before->height_m, after->height_m, 1e-7);
+    EXPECT_EQ(after->height_m, next->height_m);
+  }
+}
+
+TEST(QueryWorld, GroundHasTheKindThatIsSeen) {
+  const Loaded loaded = Loaded::shipped("lakes");
+  World query(loaded.world, loaded.registry);
+  std::array<int, world::kGroundKinds> count{};
+  int wet = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto ground = query.ground({{0, 0}, {(i % 200) * 17.0, 0, (i / 200) * 29.0}});
+    ASSERT_TRUE(ground);
+    ++count[static_cast<std::size_t>(ground->kind)];
+    if (ground->water_depth_m > 0) {
+      ++wet;
+      ASSERT_NEAR(ground->water_depth_m, loaded.world.water.level_m - ground->height_m, 1e-12);
+    }
+    if (ground->height_m < loaded.world.water.level_m - 3 && ground->normal.y > 0.97F) {
+      ASSERT_EQ(ground->kind, world::GroundKind::kSand);
+    }
+    if (ground->normal.y < 0.4F) {
+      ASSERT_EQ(ground->kind, world::GroundKind::kRock);
+    }
+  }
+  EXPECT_GT(wet, 0);
+  EXPECT_GT(count[static_cast<std::size_t>(world::GroundKind::kGrass)], 0);
+  EXPECT_GT(count[static_cast<std::size_t>(world::GroundKind::kForest)], 0);
+  EXPECT_GT(count[static_cast<std::size_t>(world::GroundKind::kSand)], 0);
+}
+
+TEST(QueryWorld, ThereIsNoGroundOutsideABoundedWorld) {
+  const Loaded loaded = Loaded::parsed(kBounded);
+  World query(loaded.world, loaded.registry);
+  EXPECT_TRUE(query.ground({{7, 3}, {63.9, 0, 63.9}}));
+  EXPECT_TRUE(query.ground({{9, 3}, {-128.5, 0, 0}}));
+  for (const core::WorldPosition& at :
+       {core::WorldPosition{{8, 0}, {0, 0, 0}}, {{0, 0}, {-0.01, 0, 5}}, {{0, 3}, {0, 0, 64}}}) {
+    const auto ground = query.ground(at);
+    ASSERT_FALSE(ground);
+    EXPECT_EQ(ground.error().code, core::ErrorCode::kInvalidArgument);
+    EXPECT_NE(ground.error().message.find("outside the world"), std::string::npos);
+  }
+}
+
+TEST(QueryWorld, RefusesPositionsDirectionsAndSizesThatAreNotNumbers) {
+  const Loaded loaded = Loaded::parsed(kBounded);
+  World query(loaded.world, loaded.registry);
+  const core::WorldPosition sound{{1, 1}, {5, 80, 5}};
+  std::vector<NearModel> out;
+  for (const double bad : {kNan, kInfinity, -kInfinity, 1e300}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      core::WorldPosition at = sound;
+      at.local[axis] = bad;
+      EXPECT_FALSE(query.ground(at));
+      EXPECT_FALSE(query.cast({.origin = at}));
+      EXPECT_FALSE(query.models_within(at, 5, out));
+      EXPECT_FALSE(query.nearest(at, 5));
+    }
+  }
+  for (const glm::dvec3& direction :
+       {glm::dvec3(0), glm::dvec3(0, kNan, 0), glm::dvec3(kInfinity, 0, 0)})
+    EXPECT_FALSE(query.cast({.origin = sound, .direction = direction}));
+  for (const double length : {0.0, -1.0, kNan})
+    EXPECT_FALSE(query.cast({.origin = sound, .longest_m = length}));
+  for (const double radius : {-1.0, kNan, kInfinity}) {
+    const auto result = query.models_within(sound, radius, out);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, core::ErrorCode::kInvalidArgument);
+  }
+  const auto huge = query.models_within(sound, 1e8, out);
+  ASSERT_FALSE(huge);
+  EXPECT_EQ(huge.error().code, core::ErrorCode::kOverBudget);
+}
+
+TEST(QueryWorld, RaysOfAnyLengthOfDirectionAreTheSame) {
+  const Loaded loaded = Loaded::parsed(kBounded);
+  World query(loaded.world, loaded.registry);
+  const auto hit = query.cast({.origin = {{1, 1}, {5, 90, 5}}, .direction = {1, -1, 0.5}});
+  ASSERT_TRUE(hit);
+  ASSERT_EQ(hit->kind, HitKind::kGround);
+  for (const double scale : {1e-300, 1e-5, 1e5, 1e307}) {
+    const auto same =
+        query.cast({.origin = {{1, 1}, {5, 90, 5}}, .direction = glm::dvec3(1, -1, 0.5) * scale});
+    ASSERT_TRUE(same);
+    EXPECT_NEAR(same->distance_m, hit->distance_m, 1e-9);
+  }
+}
+
+TEST(QueryWorld, RaysMeetTheFirstTriangleOfTheMeshes) {
+  for (const char* name : {"paper", "lakes", "silver_combe"}) {
+    const Loaded loaded = Loaded::shipped(name);
+    World query(loaded.world, loaded.registry);
+    const core::BlockCoord middle = some_block(loaded.world);
+    const double size = loaded.world.block_size_m();
+    std::vector<std::pair<glm::dvec3, MeshGround>> meshes;
+    for (int z = -1; z <= 1; ++z)
+      for (int x = -1; x <= 1; ++x)
+        meshes.emplace_back(glm::dvec3(x * size, 0, z * size),
+                            MeshGround(loaded, {middle.x + x, middle.z + z}));
+    const auto base = query.ground({middle, {size / 2, 0, size / 2}});
+    ASSERT_TRUE(base);
+    core::RandomStream random(2, 0, 0, 0, core::Purpose::kPosition);
+    const auto place = [&] {
+      const double x = random_in(random, -size, 2 * size), z = random_in(random, -size, 2 * size);
+      return glm::dvec3(x, base->height_m + random_in(random, -30, 30), z);
+    };
+    int hits = 0;
+    for (int i = 0; i < 300; ++i) {
+      const glm::dvec3 from = place(), to = place();
+      const double length = glm::length(to - from);
+      const glm::dvec3 d = (to - from) / length;
+      double first = kInfinity;
+      for (const auto& [corner, mesh] : meshes)
+        mesh.each([&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+          if (const double t = crosses(from - corner, d, a, b, c); t >= 0)
+            first = std::min(first, t);
+        });
+      const auto hit = query.cast(
+          {.origin = {middle, from}, .direction = d, .longest_m = length, .models = false});
+      ASSERT_TRUE(hit);
+      ASSERT_EQ(hit->kind == HitKind::kGround, first <= length) << name << " " << i;
+      if (hit->kind == HitKind::kNothing) continue;
+      ++hits;
+      ASSERT_NEAR(hit->distance_m, first, 1e-4);
+      const auto under = query.ground(hit->position);
+      ASSERT_TRUE(under);
+      ASSERT_NEAR(under->height_m, hit->position.local.y, 1e-6);
+      ASSERT_EQ(hit->block, hit->position.block);
+      ASSERT_EQ(hit->index, world::kTerrainIndex);
+    }
+    EXPECT_GT(hits, 100);
+  }
+}
+
+TEST(QueryWorld, RaysAreTheSameFromAnyBlockOfTheirOrigin) {
+  const Loaded loaded = Loaded::shipped("endless");
+  World query(loaded.world, loaded.registry);
+  const double size = loaded.world.block_size_m();
+  const core::BlockCoord block{1 << 30, -(1 << 30)};
+  for (int i = 0; i < 50; ++i) {
+    const glm::dvec3 direction(std::cos(i), -0.1, std::sin(i));
+    const auto here =
+        query.cast({.origin = {block, {10, 300, 20}}, .direction = direction, .longest_m = 5000});
+    const auto there =
+        query.cast({.origin = {{block.x + 3, block.z - 2}, {10 - 3 * size, 300, 20 + 2 * size}},
+                    .direction = direction,
+                    .longest_m = 5000});
+    ASSERT_TRUE(here && there);
+    EXPECT_EQ(here->kind, there->kind);
+    EXPECT_EQ(here->block, there->block);
+    EXPECT_EQ(here->index, there->index);
+    EXPECT_NEAR(here->distance_m, there->distance_m, 1e-9);
+  }
+}
+
+TEST(QueryWorld, VerticalRaysMeetTheGroundFromAboveAndFromBelow) {
+  const Loaded loaded = Loaded::shipped("paper");
+  World query(loaded.world, loaded.registry);
+  for (int i = 0; i < 300; ++i) {
+    const core::WorldPosition at{{40 + i, 9}, {i * 0.21, 0, i * 0.17}};
+    const auto ground = query.ground(at);
+    ASSERT_TRUE(ground);
+    Ray ray{.origin = at, .longest_m = kInfinity, .models = false};
+    ray.origin.local.y = 5000;
+    const auto down = query.cast(ray);
+    ASSERT_TRUE(down);
+    ASSERT_EQ(down->kind, HitKind::kGround);
+    EXPECT_FALSE(down->from_inside);
+    EXPECT_NEAR(down->distance_m, 5000 - ground->height_m, 1e-9);
+    ray.origin.local.y = -100;
+    EXPECT_EQ(query.cast(ray)->kind, HitKind::kNothing);
+    ray.direction = {0, 1, 0};
+    const auto up = query.cast(ray);
+    ASSERT_EQ(up->kind, HitKind::kGround);
+    EXPECT_TRUE(up->from_inside);
+    EXPECT_NEAR(up->distance_m, 100 + ground->height_m, 1e-9);
+    ray.origin.local.y = ground->height_m;
+    EXPECT_EQ(query.cast(ray)->kind, HitKind::kNothing);
+  }
+}
+
+TEST(QueryWorld, EndlessRaysTakeBoundedWorkAndSayHowFarTheyWent) {
+  const Loaded loaded = Loaded::shipped("endless");
+  World query(loaded.world, loaded.registry);
+  const double relief = loaded.world.terrain.real(models::kTerrainReliefM);
+  const auto rising = query.cast({.origin = {{5, 5}, {1, relief + 500, 1}},
+                                  .direction = {1, 1e-3, 0},
+                                  .longest_m = kInfinity});
+  ASSERT_TRUE(rising);
+  EXPECT_EQ(rising->kind, HitKind::kNothing);
+  EXPECT_GE(rising->distance_m, 1e9);
+  // Below all ground, level: nothing is there.
+  const auto level = query.cast({.origin = {{5, 5}, {1, -500, 1}},
+                                 .direction = {1, 0, 0.2},
+                                 .longest_m = kInfinity,
+                                 .models = false});
+  ASSERT_TRUE(level);
+  EXPECT_EQ(level->kind, HitKind::kNothing);
+  // A world of a few blocks, missed.
+  const Loaded bounded = Loaded::parsed(kBounded);
+  World small(bounded.world, bounded.registry);
+  const auto past = small.cast(
+      {.origin = {{0, 0}, {1, 1000, 1}}, .direction = {-1, -1e-9, 0}, .longest_m = kInfinity});
+  ASSERT_TRUE(past);
+  EXPECT_EQ(past->kind, HitKind::kNothing);
+  EXPECT_GT(past->distance_m, 1000 * 64);
+}
+
+TEST(QueryWorld, RaysEnterABoundedWorldFromOutside) {
+  const Loaded loaded = Loaded::parsed(kBounded);
+  World query(loaded.world, loaded.registry);
+  const auto above = query.cast({.origin = {{-3, 1}, {0, 120, 10}}, .direction = {3, -1, 0}});
+  ASSERT_TRUE(above);
+  EXPECT_EQ(above->kind, HitKind::kGround);
+  EXPECT_FALSE(above->from_inside);
+  // Below the surface at the border, which has no side: comes out further in.
+  const auto edge = query.ground({{0, 1}, {0, 0, 10}});
+  ASSERT_TRUE(edge);
+  const auto below = query.cast({.origin = {{-1, 1}, {0, edge->height_m - 70, 10}},
+                                 .direction = {1, 0.9, 0},
+                                 .models = false});
+  ASSERT_TRUE(below);
+  ASSERT_EQ(below->kind, HitKind::kGround);
+  EXPECT_TRUE(below->from_inside);
+}
+
+// Every solid of the blocks around one.
+struct AllSolids {
+  struct One {
+    core::BlockCoord block;
+    std::uint32_t index;
+    glm::dvec3 foot{0.0};
+    Solid solid;
+  };
+  std::vector<One> all;
+
+  AllSolids(const Loaded& loaded, core::BlockCoord middle, int reach) {
+    const double size = loaded.world.block_size_m();
+    std::vector<world::Placement> placed;
+    for (int z = -reach; z <= reach; ++z) {
+      for (int x = -reach; x <= reach; ++x) {
+        const core::BlockCoord block{middle.x + x, middle.z + z};
+        if (!loaded.world.contains(block)) continue;
+        world::place_models(loaded.world, loaded.registry, block, placed);
+        for (const world::Placement& p : placed)
+          all.push_back({block, p.index, glm::dvec3(p.position) + glm::dvec3(x * size, 0, z * size),
+                         Solid(loaded.registry[p.model].collider(p.parameters))});
+      }
+    }
+  }
+  // The first one that a ray meets, one after the other.
+  const One* first(const glm::dvec3& from, const glm::dvec3& d, double& distance_m) {
+    const One* best = nullptr;
+    for (One& one : all) {
+      const auto hit = one.solid.cast({from - one.foot, d}, distance_m);
+      if (!hit || (best != nullptr && hit->t >= distance_m)) continue;
+      distance_m = hit->t;
+      best = &one;
+    }
+    return best;
+  }
+};
+
+TEST(QueryWorld, RaysMeetTheFirstModelOfAll) {
+  for (const char* name : kWorldNames) {
+    const Loaded loaded = Loaded::shipped(name);
+    World query(loaded.world, loaded.registry);
+    const core::BlockCoord block = some_block(loaded.world);
+    AllSolids solids(loaded, block, 3);
+    core::RandomStream random(4, 0, 0, 0, core::Purpose::kPosition);
+    int hits = 0;
+    for (int i = 0; i < 200; ++i) {
+      core::WorldPosition origin{block, {random.next_real(0, 63), 0, random.next_real(0, 63)}};
+      origin.local.y = query.ground(origin)->height_m + random.next_real(0.2, 1);
+      // Towards some model, so that most rays meet one.
+      const auto aim = static_cast<std::size_t>(
+          random.next_integer(0, static_cast<std::int64_t>(solids.all.size()) - 1));
+      const glm::dvec3 to = solids.all[aim].foot + glm::dvec3(random.next_real(-0.3, 0.3), 0.2, 0);
+      const glm::dvec3 d = glm::normalize(to - origin.local);
+      const auto hit =
+          query.cast({.origin = origin, .direction = d, .longest_m = 120, .ground = false});
+      ASSERT_TRUE(hit);
+      double distance_m = 120;
+      const auto* expected = solids.first(origin.local, d, distance_m);
+      ASSERT_EQ(hit->kind, expected == nullptr ? HitKind::kNothing : HitKind::kModel)
+          << name << " " << i;
+      ASSERT_NEAR(hit->distance_m, distance_m, 1e-9);
+      if (expected == nullptr) continue;
+      ++hits;
+      ASSERT_EQ(hit->block, expected->block);
+      ASSERT_EQ(hit->index, expected->index);
+    }
+    EXPECT_GT(hits, 20) << name;
+  }
+}
+
+TEST(QueryWorld, ARayBeforeAModelMeetsTheGroundAndOneBehindTheGroundMeetsNoModel) {
+  const Loaded loaded = Loaded::shipped("paper");
+  World query(loaded.world, loaded.registry);
+  std::vector<NearModel> rocks;
+  const models::ModelIndex rock[] = {static_cast<models::ModelIndex>(loaded.registry.find("rock"))};
+  ASSERT_TRUE(query.models_within({{100, 100}, {30, 100, 30}}, 300, rocks, rock));
+  ASSERT_GT(rocks.size(), 20U);
+  int stones = 0;
+  for (const NearModel& m : rocks) {
+    Ray ray{.origin = m.position, .longest_m = 100};
+    ray.origin.local.y += 50;
+    const auto hit = query.cast(ray);
+    ASSERT_TRUE(hit);
+    ASSERT_NE(hit->kind, HitKind::kNothing);
+    ASSERT_LE(hit->distance_m, 50 + 1e-6);
+    if (hit->kind == HitKind::kModel) ++stones;
+    ray.origin.local.y -= 100;  // from below, the ground is never first met above a model's foot
+    ray.direction = {0, 1, 0};
+    ASSERT_LE(query.cast(ray)->distance_m, 50 + 1e-6);
+  }
+  EXPECT_GT(stones, static_cast<int>(rocks.size() * 9 / 10));
+}
+
+TEST(QueryWorld, ModelsWithinARadiusAreAllOfThemNearestFirst) {
+  for (const char* name : kWorldNames) {
+    const Loaded loaded = Loaded::shipped(name);
+    World query(loaded.world, loaded.registry);
+    const core::BlockCoord block = some_block(loaded.world);
+    const core::WorldPosition at{block, {2, 100, 60}};
+    std::vector<NearModel> found;
+    ASSERT_TRUE(query.models_within(at, 90, found));
+    std::size_t expected = 0;
+    const double size = loaded.world.block_size_m();
+    for (int z = -3; z <= 3; ++z)
+      for (int x = -3; x <= 3; ++x) {
+        const core::BlockCoord b{block.x + x, block.z + z};
+        if (!loaded.world.contains(b)) continue;
+        std::vector<world::Placement> placed;
+        world::place_models(loaded.world, loaded.registry, b, placed);
+        for (const world::Placement& p : placed)
+          expected += glm::length(glm::dvec3(p.position) + glm::dvec3(x * size, 0, z * size) -
+                                  at.local) <= 90;
+      }
+    EXPECT_EQ(found.size(), expected) << name;
+    for (std::size_t i = 1; i < found.size(); ++i)
+      ASSERT_LE(found[i - 1].distance_m, found[i].distance_m);
+    for (const NearModel& m : found) {
+      const auto placement = query.placement(m.block, m.index);
+      ASSERT_TRUE(placement);
+      ASSERT_EQ(glm::dvec3(placement->position), m.position.local);
+      ASSERT_EQ(placement->model, m.model);
+    }
+    for (models::ModelIndex model = 0; model < loaded.registry.size(); ++model) {
+      const models::ModelIndex only[] = {model};
+      const auto nearest = query.nearest(at, 90, only);
+      ASSERT_TRUE(nearest);
+      const auto first = std::ranges::find(found, model, &NearModel::model);
+      ASSERT_EQ(nearest->has_value(), first != found.end());
+      if (*nearest) {
+        EXPECT_EQ((*nearest)->block, first->block);
+        EXPECT_EQ((*nearest)->index, first->index);
+      }
+    }
+  }
+}
+
+TEST(QueryWorld, ARadiusOfZeroFindsWhatStandsExactlyThere) {
+  const Loaded loaded = Loaded::parsed(kBounded);
+  World query(loaded.world, loaded.registry);
+  const auto any = query.nearest({{3, 2}, {30, 30, 30}}, 500);
+  ASSERT_TRUE(any && *any);
+  std::vector<NearModel> found;
+  ASSERT_TRUE(query.models_within((*any)->position, 0, found));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].index, (*any)->index);
+  ASSERT_TRUE(query.models_within({{3, 2}, {30, 5000, 30}}, 0, found));
+  EXPECT_TRUE(found.empty());
+  EXPECT_FALSE(query.placement({3, 2}, 999));
+  EXPECT_FALSE(query.placement({-1, 2}, 0));
+}
+
+TEST(QueryWorld, AnswersDoNotDependOnWhatIsCached) {
+  const Loaded loaded = Loaded::shipped("silver_combe");
+  World large(loaded.world, loaded.registry), tiny(loaded.world, loaded.registry, 1);
+  core::RandomStream random(6, 0, 0, 0, core::Purpose::kPosition);
+  for (int i = 0; i < 60; ++i) {
+    const Ray ray{.origin = {{static_cast<std::int32_t>(random.next_integer(-5, 5)), 7},
+                             {random.next_real(0, 63), random.next_real(50, 300), 5}},
+                  .direction = {random.next_real(-1, 1), -0.2, random.next_real(-1, 1)}};
+    const auto a = large.cast(ray), b = tiny.cast(ray);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->kind, b->kind);
+    EXPECT_EQ(a->distance_m, b->distance_m);
+    EXPECT_EQ(a->index, b->index);
+  }
+  EXPECT_GT(large.cached_bytes(), tiny.cached_bytes());
+}
+
+}  // namespace
+}  // namespace psygen::query

@@ -1,0 +1,235 @@
+// Files that are not saves, or not as this program leaves them.
+#include "engine/save/save_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "tests/engine/save/support.hpp"
+#include "tests/faults.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace psygen::save {
+namespace {
+
+using testing::file_content;
+using testing::write_file;
+
+// The sentence with which a file is refused, after checking that it is left as it is.
+std::string refusal(const TemporaryFolder& folder, core::ErrorCode code,
+                    const std::string& name = "game.save") {
+  const std::string before = file_content(folder / name);
+  const std::size_t files = folder.file_count();
+  const auto save = SaveGame::open(folder / name, testing::kWorld);
+  if (save) return "it was opened";
+  EXPECT_EQ(save.error().code, code) << save.error().message;
+  EXPECT_TRUE(file_content(folder / name) == before) << "the file has changed";
+  EXPECT_EQ(folder.file_count(), files);
+  EXPECT_EQ(save.error().message.find((folder / name).string() + ": "), 0U) << save.error().message;
+  return save.error().message.substr((folder / name).string().size() + 2);
+}
+
+void make_save(const std::filesystem::path& file) {
+  SaveGame save = testing::opened(file);
+  ASSERT_TRUE(testing::put_generation(save, 1));
+  ASSERT_TRUE(save.save());
+}
+
+// Changes a save as a stranger with SQLite would.
+void tamper(const std::filesystem::path& file, const std::string& sql) {
+  auto database = Database::open(file);
+  ASSERT_TRUE(database);
+  sqlite3_db_config(database->get(), SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);
+  const auto done = database->run(sql.c_str(), "tamper");
+  ASSERT_TRUE(done) << done.error().message;
+}
+
+constexpr const char* kForeign = "is not a saved game of psygen; it is left as it is";
+
+TEST(SaveFile, OtherFilesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string magic("SQLite format 3\0", 16);
+  for (const std::string& content :
+       {std::string(), std::string("hello"), std::string(5000, '\0'), magic, magic + "x",
+        magic + std::string(4080, 'x'), magic + std::string(4080, '\0')}) {
+    write_file(folder / "game.save", content);
+    EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), kForeign);
+  }
+}
+
+TEST(SaveFile, DatabasesOfOtherProgramsAreRefused) {
+  const TemporaryFolder folder;
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open((folder / "game.save").c_str(), &other), SQLITE_OK);
+  EXPECT_EQ(
+      sqlite3_exec(other, "PRAGMA application_id=7; CREATE TABLE t(x)", nullptr, nullptr, nullptr),
+      SQLITE_OK);
+  sqlite3_close(other);
+  EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), kForeign);
+}
+
+TEST(SaveFile, NewerFormatsAreRefused) {
+  const TemporaryFolder folder;
+  make_save(folder / "game.save");
+  tamper(folder / "game.save", "PRAGMA user_version=2");
+  EXPECT_EQ(refusal(folder, core::ErrorCode::kParse),
+            "is of format 2, made by a newer version; this version reads up to format 1");
+}
+
+TEST(SaveFile, AJournalOfAForeignFileIsLeftAlone) {
+  const TemporaryFolder folder;
+  write_file(folder / "game.save", "not a save");
+  write_file(folder / "game.save-journal", "not a journal");
+  EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), kForeign);
+  EXPECT_EQ(file_content(folder / "game.save-journal"), "not a journal");
+}
+
+TEST(SaveFile, ForeignTablesAndChangedOnesAreRefused) {
+  const TemporaryFolder folder;
+  const std::pair<const char*, const char*> cases[] = {
+      {"CREATE TABLE other(x)", "has a table 'other' that is not of this program"},
+      {"CREATE VIEW game_view AS SELECT 1", "has a view 'game_view' that is not of this program"},
+      {"CREATE TRIGGER game_trigger AFTER INSERT ON psygen_edits BEGIN DELETE FROM psygen_edits; "
+       "END",
+       "has a trigger 'game_trigger' that is not of this program"},
+      {"CREATE VIRTUAL TABLE game_text USING fts5(x)",
+       "has a table 'game_text' that is not of this program"},
+      {"CREATE INDEX game_index ON psygen_edits(version)",
+       "has a index 'game_index' that is not of this program"},
+      {"DROP TABLE psygen_values", "lacks a table; the file is damaged"},
+      {"ALTER TABLE psygen_values ADD COLUMN more ANY",
+       "has a table 'psygen_values' that is not of this program"},
+      {"PRAGMA journal_mode=WAL",
+       "was changed by another program (its journal mode is not \"delete\")"},
+      {"DELETE FROM psygen_facts WHERE name = 'world hash'",
+       "does not say which world it belongs to; the file is damaged"},
+      {"UPDATE psygen_facts SET value = 5 WHERE name = 'world name'",
+       "does not say which world it belongs to; the file is damaged"},
+  };
+  for (const auto& [sql, sentence] : cases) {
+    std::filesystem::remove(folder / "game.save");
+    make_save(folder / "game.save");
+    tamper(folder / "game.save", sql);
+    EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), sentence) << sql;
+  }
+}
+
+TEST(SaveFile, RowsThatWereChangedAreASentenceWhenTheyAreRead) {
+  const TemporaryFolder folder;
+  make_save(folder / "game.save");
+  tamper(folder / "game.save",
+         "UPDATE psygen_edits SET bytes = x'00' WHERE x = 0;"
+         "UPDATE psygen_edits SET version = -1 WHERE x = 2;"
+         "UPDATE psygen_edits SET bytes = zeroblob(20000000) WHERE x = 4;"
+         "INSERT INTO psygen_edits VALUES(5000000000, 0, 1, 1, x'');"
+         "UPDATE psygen_facts SET value = 'text' WHERE name = 'entities';"
+         "UPDATE psygen_values SET value = 'seven';");
+  const SaveGame save = testing::opened(folder / "game.save");
+  for (const std::int32_t x : {0, 2, 4}) {
+    const auto edits = save.edits({x, -x});
+    ASSERT_FALSE(edits) << x;
+    EXPECT_EQ(edits.error().message,
+              fmt::format("{}: the edits of block ({}, {}) do not match their checksum; the file "
+                          "is damaged",
+                          (folder / "game.save").string(), x, -x));
+  }
+  EXPECT_FALSE(save.for_each_edits([](auto, auto, auto) {}));
+  EXPECT_FALSE(save.value("generation"));
+  ecs::World world;
+  EXPECT_FALSE(save.load_entities(world));
+}
+
+TEST(SaveFile, MissingFoldersAndThingsThatAreNoFilesAreRefused) {
+  const TemporaryFolder folder;
+  const auto missing = SaveGame::open(folder / "none/game.save", testing::kWorld);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().message,
+            fmt::format("{}: there is no folder {}", (folder / "none/game.save").string(),
+                        (folder / "none").string()));
+  std::filesystem::create_directory(folder / "folder");
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink(folder / "nowhere", folder / "link");
+  const auto sentence = [&](const char* name) {
+    return SaveGame::open(folder / name, testing::kWorld).error().message;
+  };
+  EXPECT_EQ(sentence("folder"), (folder / "folder").string() + ": is not a regular file");
+  EXPECT_EQ(sentence("pipe"), (folder / "pipe").string() + ": is not a regular file");
+  EXPECT_EQ(sentence("link"), (folder / "link").string() + ": there is no such file");
+}
+
+// As a user without rights: root may write to files that are read-only.
+std::string refusal_without_rights(const std::filesystem::path& file) {
+  const std::filesystem::path answer = file.parent_path().parent_path() / "answer";
+  write_file(answer, "");
+  std::filesystem::permissions(answer, std::filesystem::perms::all);
+  testing::in_child([&] {
+    if (geteuid() == 0 && setuid(65534) != 0) return false;
+    const auto save = SaveGame::open(file, testing::kWorld);
+    write_file(answer, save ? "it was opened" : save.error().message);
+    return true;
+  });
+  return file_content(answer);
+}
+
+TEST(SaveFile, ReadOnlyFilesAndFoldersAreRefused) {
+  const TemporaryFolder folder;
+  using std::filesystem::perms;
+  std::filesystem::create_directory(folder / "saves");
+  const std::filesystem::path file = folder / "saves/game.save";
+  make_save(file);
+  const std::string before = file_content(file);
+  const perms readable = perms::owner_read | perms::group_read | perms::others_read;
+  const perms enterable = perms::owner_exec | perms::group_exec | perms::others_exec;
+  std::filesystem::permissions(file, readable);
+  std::filesystem::permissions(folder / "saves", perms::all);
+  EXPECT_EQ(refusal_without_rights(file), file.string() + ": the file is read-only");
+  std::filesystem::permissions(file, perms::all);
+  std::filesystem::permissions(folder / "saves", readable | enterable);
+  EXPECT_EQ(refusal_without_rights(file), file.string() + ": its folder is read-only");
+  const std::filesystem::path fresh = folder / "saves/new.save";
+  EXPECT_EQ(refusal_without_rights(fresh),
+            fresh.string() + ": cannot create a file in its folder: Permission denied");
+  std::filesystem::permissions(folder / "saves", perms::all);
+  EXPECT_TRUE(file_content(file) == before);
+}
+
+TEST(SaveFile, AFullDiskLeavesNoNewSave) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "saves");
+  bool fits = false;
+  int refused = 0;
+  for (std::size_t calls = 0; !fits; ++calls) {
+    const FullDisk full(folder / "saves", calls);
+    const auto made = create_file(folder / "saves/game.save", testing::kWorld);
+    fits = !full.was_met();
+    refused += made ? 0 : 1;
+    if (made) {
+      EXPECT_TRUE(SaveGame::open(folder / "saves/game.save", testing::kWorld));
+      std::filesystem::remove(folder / "saves/game.save");
+      continue;
+    }
+    EXPECT_EQ(made.error().message.find((folder / "saves/game.save").string() + ": cannot"), 0U)
+        << made.error().message;
+    EXPECT_NE(made.error().message.find("No space left"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "saves"));
+  }
+  EXPECT_GT(refused, 2);
+}
+
+TEST(SaveFile, AFileThatAppearsMeanwhileIsLeftAlone) {
+  const TemporaryFolder folder;
+  write_file(folder / "game.save", "made by somebody else");
+  EXPECT_TRUE(create_file(folder / "game.save", testing::kWorld));
+  EXPECT_EQ(file_content(folder / "game.save"), "made by somebody else");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(SaveFile, NamesThatLookLikeAddressesAreNames) {
+  const TemporaryFolder folder;
+  std::filesystem::current_path(folder.path());
+  make_save("file:game.save?mode=memory");
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder / "file:game.save?mode=memory"));
+  std::filesystem::current_path("/");
+}
+
+}  // namespace
+}  // namespace psygen::save

@@ -1,0 +1,134 @@
+// A place that is asked for becomes ready while the camera is elsewhere.
+#include "engine/scene/readiness.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+const core::CameraPose kHere = pose_at(256, 256), kThere = pose_at(290, 240);
+
+std::size_t ready_events(State& state) {
+  static std::size_t count;
+  count = 0;
+  state.tick.add("count", [](ecs::EventReader<PlaceReady>& ready) {
+    count += ready.drain([](std::span<const PlaceReady>) {});
+  });
+  return count;
+}
+
+// Ticks until the place is ready, at most so many.
+int ticks_until_ready(Scene& scene, PlaceId id, int most) {
+  int ticks = 0;
+  while (!readiness(scene.state(), id).ready() && ticks++ < most) {
+    tick_at(scene, kHere);
+    scene.state().meshes.wait();
+  }
+  return ticks;
+}
+
+TEST(Readiness, APlaceNobodyAskedForIsNotReadyAndSaysHowLongItTakes) {
+  auto scene = make_scene(small_settings());
+  scene->settle(kHere);
+  tick_at(*scene, kHere);
+  const auto here = readiness(scene->state(), kHere.position, 60);
+  const auto there = readiness(scene->state(), kThere.position, 60);
+  ASSERT_TRUE(here);
+  ASSERT_TRUE(there);
+  EXPECT_GT(there->meshes, 63U);
+  EXPECT_EQ(there->missing, there->meshes);
+  EXPECT_GT(there->expected_s, 0.0);
+  EXPECT_LT(here->missing, here->meshes);
+}
+
+TEST(Readiness, AnAskedForPlaceBecomesReadyAndAJumpThereFindsItAll) {
+  auto scene = make_scene(small_settings());
+  State& state = scene->state();
+  ready_events(state);
+  scene->settle(kHere);
+  tick_at(*scene, kHere);
+  const auto id = ask_ready(state, kThere.position, 60);
+  ASSERT_TRUE(id) << id.error().message;
+  EXPECT_FALSE(readiness(state, *id).ready());
+  EXPECT_LT(ticks_until_ready(*scene, *id, 500), 500);
+  EXPECT_EQ(readiness(state, *id).expected_s, 0.0);
+  const auto again = readiness(state, kThere.position, 60);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->missing, 0U);
+  tick_at(*scene, kHere);
+  EXPECT_EQ(state.counters.requests, 0U) << "nothing is asked for any more";
+  // What is near is drawn as it should be at once, from the cache.
+  tick_at(*scene, kThere);
+  tick_at(*scene, kThere);
+  EXPECT_EQ(state.counters.holes, 0U);
+  std::size_t near = 0;
+  state.entities.each<const Placed, const Demand, const Source>(
+      [&](auto, std::span<const Placed> placed, std::span<const Demand> demands,
+          std::span<const Source> sources) {
+        for (std::size_t i = 0; i < placed.size(); ++i) {
+          const bool model = sources[i].index < kMergedIndex;
+          if (!model || placed[i].block != kThere.position.block) continue;
+          ++near;
+          EXPECT_EQ(demands[i].drawn_level, demands[i].wanted_level);
+        }
+      });
+  EXPECT_EQ(near, 63U);
+  expect_within_budget(*scene);
+}
+
+TEST(Readiness, WhatIsAskedForIsKeptAndOtherwiseItMayGo) {
+  Settings settings = small_settings();
+  settings.budget_bytes = 16ull << 20;
+  auto scene = make_scene(settings);
+  State& state = scene->state();
+  scene->settle(kHere);
+  tick_at(*scene, kHere);
+  const auto id = ask_ready(state, kThere.position, 40);
+  ASSERT_TRUE(id) << id.error().message;
+  EXPECT_LT(ticks_until_ready(*scene, *id, 500), 500);
+  // The camera turns and walks: what it wants next would take the room of what nobody wants.
+  for (int i = 0; i < 60; ++i) {
+    tick_at(*scene, pose_at(256 - i / 10, 256, 0.1 * i));
+    state.meshes.wait();
+  }
+  EXPECT_TRUE(readiness(state, *id).ready());
+  expect_within_budget(*scene);
+  stop_asking(state, *id);
+  stop_asking(state, *id);  // is ignored
+  EXPECT_TRUE(state.foresight.places.empty());
+}
+
+TEST(Readiness, APlaceThatIsNoneOrTooLargeIsRefused) {
+  Settings settings = small_settings();
+  settings.budget_bytes = 8ull << 20;
+  auto scene = make_scene(settings);
+  State& state = scene->state();
+  tick_at(*scene, kHere);
+  core::WorldPosition nowhere = kThere.position;
+  nowhere.local.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(ask_ready(state, nowhere, 10).error().message, "the position of a place is not finite");
+  for (const double radius_m : {0.0, -1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(readiness(state, kThere.position, radius_m).error().message,
+              "the radius of a place must be above 0 and at most 1000 m");
+  }
+  const auto large = ask_ready(state, kThere.position, 1000);
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error().code, core::ErrorCode::kOverBudget);
+  EXPECT_TRUE(state.foresight.places.empty());
+}
+
+TEST(Readiness, OutsideOfTheWorldThereIsNothingToWaitFor) {
+  auto scene = make_scene(small_settings());
+  tick_at(*scene, kHere);
+  const auto outside = readiness(scene->state(), pose_at(-100, -100).position, 60);
+  ASSERT_TRUE(outside);
+  EXPECT_EQ(outside->meshes, 0U);
+  EXPECT_TRUE(outside->ready());
+}
+
+}  // namespace
+}  // namespace psygen::scene

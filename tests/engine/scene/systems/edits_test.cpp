@@ -1,0 +1,328 @@
+// Edits while a scene runs: what they change is made anew without a hole, everything else stays as
+// it is, and taking them back restores the very same meshes.
+#include "engine/models/edits.hpp"
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/far/merged_models.hpp"
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+const core::BlockCoord kHere{256, 256};
+
+// Of every mesh entity by its place: key, entity and what it draws.
+struct Shown {
+  ecs::Entity entity;
+  std::uint64_t hash = 0;
+  synthesis::MeshHandle mesh;
+  bool stale = false, there = false;
+  glm::vec3 position{0.0F};
+};
+using Name = std::tuple<std::int32_t, std::int32_t, int, std::uint32_t>;  // block, level, index
+
+std::map<Name, Shown> shown_in(const Scene& scene) {
+  std::map<Name, Shown> all;
+  const ecs::World& entities = scene.state().entities;
+  const auto add = [&](ecs::Entity entity, int level) {
+    const Placed& placed = *entities.get<Placed>(entity);
+    const Source& source = *entities.get<Source>(entity);
+    const Demand& demand = *entities.get<Demand>(entity);
+    all[{placed.block.x, placed.block.z, level, source.index}] = {
+        entity,       source.parameters_hash,         entities.get<Mesh>(entity)->handle,
+        demand.stale, demand.drawn_level != kNoLevel, placed.position};
+  };
+  entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node> nodes) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      add(rows[i], nodes[i].at.level);
+      for (const ecs::Entity model : entities.children(rows[i]))
+        add(model, nodes[i].at.level);
+    }
+  });
+  return all;
+}
+
+std::size_t count_stale(const Scene& scene) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(shown_in(scene), [](const auto& named) { return named.second.stale; }));
+}
+
+// Ticks until nothing is stale any more; no tick has a hole.
+void tick_until_fresh(Scene& scene, const core::CameraPose& pose, int most = 60) {
+  for (int i = 0; i < most; ++i) {
+    scene.state().meshes.wait();
+    tick_at(scene, pose);
+    EXPECT_EQ(scene.state().counters.holes, 0u) << "tick " << i;
+  }
+  EXPECT_EQ(count_stale(scene), 0u);
+  expect_consistent(scene);
+}
+
+std::unique_ptr<Scene> settled_scene(const core::CameraPose& pose = pose_at(256, 256)) {
+  auto scene = make_scene(small_settings());
+  scene->settle(pose);
+  tick_at(*scene, pose);
+  EXPECT_EQ(count_stale(*scene), 0u);
+  return scene;
+}
+
+template <class T>
+T expect_ok(core::Result<T> result) {
+  EXPECT_TRUE(result) << result.error().message;
+  return *result;
+}
+void expect_ok(const core::Result<void>& result) {
+  EXPECT_TRUE(result) << result.error().message;
+}
+
+TEST(Edits, AFelledTreeIsGoneInTheNextTickAndNothingElseOfTheBlockChanges) {
+  const auto scene = settled_scene();
+  const auto before = shown_in(*scene);
+  world::Edits edits = scene->edits();
+  expect_ok(edits.remove(scene->state().facts.world, {kHere, 3}));
+  scene->edit(edits);
+  tick_at(*scene, pose_at(256, 256));
+  EXPECT_EQ(scene->state().counters.holes, 0u);
+  const auto after = shown_in(*scene);
+  EXPECT_EQ(after.size() + 1, before.size());
+  EXPECT_FALSE(after.contains({kHere.x, kHere.z, 0, 3}));
+  std::size_t changed = 0;
+  for (const auto& [name, shown] : after) {
+    const Shown& old = before.at(name);
+    EXPECT_EQ(old.entity, shown.entity);
+    EXPECT_EQ(old.mesh, shown.mesh);
+    changed += old.hash != shown.hash;
+    if (old.hash != shown.hash) {
+      EXPECT_EQ(std::get<3>(name), kMergedIndex);
+    }
+  }
+  // The meshes for all models of the nodes above the block, up to the last level that has them.
+  const auto merged_above = std::ranges::count_if(before, [](const auto& named) {
+    const auto& [x, z, level, index] = named.first;
+    return index == kMergedIndex && x == (kHere.x >> level) << level &&
+           z == (kHere.z >> level) << level;
+  });
+  EXPECT_EQ(changed, static_cast<std::size_t>(merged_above));
+  EXPECT_GT(changed, 0u);
+  tick_until_fresh(*scene, pose_at(256, 256));
+}
+
+TEST(Edits, TakenBackTheVerySameMeshesAreDrawn) {
+  const auto scene = settled_scene();
+  const auto before = shown_in(*scene);
+  const world::World& world = scene->state().facts.world;
+  world::Edits edits = scene->edits();
+  expect_ok(edits.remove(world, {kHere, 3}));
+  expect_ok(edits.raise(world, {kHere, {31, 0, 31}}, 40, 10));
+  expect_ok(edits.flatten(world, {{257, 255}, {3, 0, 60}}, 25, 30));
+  scene->edit(edits);
+  tick_until_fresh(*scene, pose_at(256, 256));
+  const auto edited = shown_in(*scene);
+  scene->edit(world::Edits());
+  tick_until_fresh(*scene, pose_at(256, 256));
+  const auto after = shown_in(*scene);
+  ASSERT_EQ(after.size(), before.size());
+  std::size_t edited_meshes = 0;
+  for (const auto& [name, shown] : after) {
+    EXPECT_EQ(shown.hash, before.at(name).hash);
+    EXPECT_EQ(shown.position, before.at(name).position);
+    if (before.at(name).there && edited.contains(name))
+      edited_meshes += edited.at(name).hash != shown.hash;
+  }
+  EXPECT_GT(edited_meshes, 5u);
+}
+
+TEST(Edits, TakenBackBeforeTheyAreDrawnNothingHasHappened) {
+  const auto scene = settled_scene();
+  const auto before = shown_in(*scene);
+  world::Edits edits;
+  expect_ok(edits.raise(scene->state().facts.world, {kHere, {31, 0, 31}}, 40, 10));
+  scene->edit(edits);
+  tick_at(*scene, pose_at(256, 256));
+  EXPECT_GT(count_stale(*scene), 0u);
+  scene->edit({});
+  tick_at(*scene, pose_at(256, 256));
+  EXPECT_EQ(count_stale(*scene), 0u);
+  for (const auto& [name, shown] : shown_in(*scene)) {
+    EXPECT_EQ(shown.hash, before.at(name).hash);
+    EXPECT_EQ(shown.mesh, before.at(name).mesh);
+  }
+  tick_until_fresh(*scene, pose_at(256, 256));
+}
+
+// Every byte of the meshes that are drawn.
+std::map<Name, std::uint64_t> drawn_bytes(const Scene& scene) {
+  std::map<Name, std::uint64_t> bytes;
+  const State& s = scene.state();
+  for (const auto& [name, shown] : shown_in(scene)) {
+    if (!shown.there) continue;
+    const synthesis::MeshRecord& record = *s.meshes.get(shown.mesh);
+    bytes[name] = core::combine(core::hash_bytes(s.memory->vertex_bytes(record.range)),
+                                record.key.parameters_hash);
+  }
+  return bytes;
+}
+
+TEST(Edits, ASceneThatStartsWithEditsShowsWhatOneThatGotThemShows) {
+  models::Registry registry = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  world::Edits edits;
+  expect_ok(edits.remove(world, {kHere, 3}));
+  expect_ok(edits.raise(world, {kHere, {31, 0, 31}}, 40, 10));
+  expect_ok(edits.move(world, registry, {kHere, 5}, {{257, 256}, {1, 0, 1}}));
+  const auto later = settled_scene();
+  later->edit(edits);
+  tick_until_fresh(*later, pose_at(256, 256));
+  later->settle(pose_at(256, 256));
+  world::set_edits(world, edits.layer());
+  const auto first = make_scene(world, small_settings(), std::move(registry));
+  first->settle(pose_at(256, 256));
+  const auto restarted = shown_in(*first), ran = shown_in(*later);
+  ASSERT_EQ(restarted.size(), ran.size());
+  for (const auto& [name, shown] : restarted) {
+    EXPECT_EQ(shown.hash, ran.at(name).hash);
+    EXPECT_EQ(shown.position, ran.at(name).position);
+  }
+  const auto a = drawn_bytes(*first), b = drawn_bytes(*later);
+  std::size_t compared = 0;
+  for (const auto& [name, hash] : a) {
+    const auto same = b.find(name);
+    if (same == b.end()) continue;
+    ++compared;
+  }
+  EXPECT_GT(compared, 100u);
+  // Ground has one level of detail at its place in both, so its bytes can be compared.
+  for (const auto& [name, hash] : a) {
+    if (std::get<3>(name) != kTerrainIndex || !b.contains(name)) continue;
+    const auto level = [&](const Scene& scene, const Shown& shown) {
+      return scene.state().meshes.get(shown.mesh)->key.level;
+    };
+    if (level(*first, restarted.at(name)) == level(*later, ran.at(name))) {
+      EXPECT_EQ(hash, b.at(name));
+    }
+  }
+}
+
+TEST(Edits, AFelledTreeStaysFelledAfterReturn) {
+  const auto scene = settled_scene();
+  world::Edits edits;
+  expect_ok(edits.remove(scene->state().facts.world, {kHere, 3}));
+  scene->edit(edits);
+  for (const std::int32_t x : {256, 200, 256}) {
+    scene->settle(pose_at(x, 256));
+    tick_at(*scene, pose_at(x, 256));
+  }
+  const auto shown = shown_in(*scene);
+  EXPECT_TRUE(shown.contains({kHere.x, kHere.z, 0, 4}));
+  EXPECT_FALSE(shown.contains({kHere.x, kHere.z, 0, 3}));
+}
+
+TEST(Edits, APlacedModelAppearsAndNoCoarserNodeTakesThePlaceOfItsBlock) {
+  const auto scene = settled_scene();
+  const WorldFacts& facts = scene->state().facts;
+  const world::Scatter& rocks = facts.world.scatter[1];
+  world::Edits edits;
+  models::Parameters rock = world::scatter_parameters(facts.registry, rocks);
+  rock.set_integer(0, 99);
+  const auto placed = expect_ok(
+      edits.place(facts.world, facts.registry, {rocks.model, rock, {kHere, {30, 0, 20}}, 0}));
+  scene->edit(edits);
+  const std::vector<visibility::NodeCoord> before = scene->state().draws.shown_nodes;
+  for (int i = 0; i < 5; ++i) {
+    scene->state().meshes.wait();
+    tick_at(*scene, pose_at(256, 256));
+    EXPECT_TRUE(scene->state().draws.shown_nodes == before) << "tick " << i;
+  }
+  const Shown rock_shown =
+      shown_in(*scene).at({kHere.x, kHere.z, 0, world::kPlacedIndex + placed.id});
+  EXPECT_TRUE(rock_shown.there);
+  EXPECT_EQ(rock_shown.position.x, 30);
+}
+
+// A wall between the camera and what lies behind it hides that.
+TEST(Edits, ARaisedRidgeHidesWhatLiesBehindIt) {
+  core::CameraPose pose = pose_at(256, 256);  // looks along −z
+  Settings settings = small_settings();
+  settings.view_distance_m = 1000;
+  const auto scene = make_scene(settings);
+  world::Edits edits;
+  const world::World& world = scene->state().facts.world;
+  models::GroundEdit flat;  // so that nothing else hides anything
+  flat.change = models::GroundChange::kFlatten;
+  flat.square = true;
+  flat.centre = {kHere, {31, 0, 31}};
+  flat.radius_m = 1500;
+  flat.height_m = 20;
+  expect_ok(edits.edit_ground(world, flat));
+  pose.position.local.y = 30;
+  scene->edit(edits);
+  scene->settle(pose);
+  tick_at(*scene, pose);
+  const std::uint32_t seen = scene->state().counters.nodes_in_view;
+  const std::uint32_t hidden = scene->state().counters.nodes_hidden;
+  models::GroundEdit wall;
+  wall.square = true;
+  wall.radius_m = 60;
+  wall.height_m = 90;
+  wall.falloff = 0.4;
+  for (int i = -4; i <= 4; ++i) {
+    wall.centre = {{256, 252}, {31.5 + 90.0 * i, 0, 0}};
+    expect_ok(edits.edit_ground(world, wall));
+  }
+  scene->edit(edits);
+  scene->settle(pose);
+  tick_at(*scene, pose);
+  EXPECT_GT(scene->state().counters.nodes_hidden, hidden);
+  EXPECT_LT(scene->state().counters.nodes_in_view, seen);
+  EXPECT_EQ(scene->state().counters.holes, 0u);
+}
+
+TEST(Edits, ManyEditsWhileFlyingLeaveTheSceneConsistent) {
+  auto scene = make_scene(small_settings());
+  scene->settle(pose_at(256, 256));
+  std::mt19937 random(4);
+  std::vector<world::Edits> history{world::Edits()};
+  const auto below = [&random](unsigned n) { return static_cast<double>(random() % n); };
+  for (int i = 0; i < 150; ++i) {
+    const world::World& world = scene->state().facts.world;
+    const models::Registry& registry = scene->state().facts.registry;
+    world::Edits edits = scene->edits();
+    const core::BlockCoord block{254 + static_cast<std::int32_t>(random() % 8),
+                                 254 + static_cast<std::int32_t>(random() % 5)};
+    const core::WorldPosition at{block, {below(63) + 0.25, 0, below(63) + 0.75}};
+    const auto index = static_cast<std::uint32_t>(random() % 60);
+    switch (random() % 6) {
+      case 0:
+        (void)edits.remove(world, {block, index});
+        break;
+      case 1:
+        (void)edits.move(world, registry, {block, index}, at);
+        break;
+      case 2:
+        (void)edits.raise(world, at, 1.0 + below(50), 12.0 - below(24));
+        break;
+      case 3:
+        (void)edits.flatten(world, at, 1.0 + below(50), 40);
+        break;
+      case 4:
+        edits = history[random() % history.size()];
+        break;
+      default:
+        (void)edits.restore({block, index});
+        break;
+    }
+    history.push_back(edits);
+    scene->edit(std::move(edits));
+    const auto pose = pose_at(256 + i / 40, 256, 0.05 * i);
+    tick_at(*scene, pose);
+    if (i % 10 == 0) expect_consistent(*scene);
+  }
+  tick_until_fresh(*scene, pose_at(259, 256));
+}
+
+}  // namespace
+}  // namespace psygen::scene

@@ -1,0 +1,118 @@
+// What happens to nodes, models and meshes reaches the systems of a game, each event once.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "engine/scene/systems.hpp"
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// What follows from the events alone.
+struct Seen {
+  std::set<visibility::NodeCoord> shown;
+  std::set<std::uint64_t> models;                      // entities
+  std::map<std::uint64_t, synthesis::MeshKey> meshes;  // by entity
+  std::size_t wrong = 0, events = 0;
+};
+
+template <class Event, class F>
+void drain(ecs::EventReader<Event>& reader, Seen& seen, const F& f) {
+  reader.drain([&](std::span<const Event> events) {
+    seen.events += events.size();
+    for (const Event& event : events)
+      seen.wrong += f(event) ? 0 : 1;
+  });
+}
+
+void add_watchers(Systems systems) {
+  systems.resource<Seen>();
+  systems.frame.add("watch nodes", [](Seen& seen, ecs::EventReader<NodeHidden>& hidden,
+                                      ecs::EventReader<NodeShown>& shown) {
+    drain(hidden, seen, [&](const NodeHidden& e) { return seen.shown.erase(e.at) == 1; });
+    drain(shown, seen, [&](const NodeShown& e) { return seen.shown.insert(e.at).second; });
+  });
+  systems.frame.add("watch models", [](Seen& seen, ecs::EventReader<ModelCreated>& created,
+                                       ecs::EventReader<ModelRemoved>& removed) {
+    drain(created, seen,
+          [&](const ModelCreated& e) { return seen.models.insert(owner_of(e.entity)).second; });
+    drain(removed, seen,
+          [&](const ModelRemoved& e) { return seen.models.erase(owner_of(e.entity)) == 1; });
+  });
+  systems.frame.add("watch meshes", [](Seen& seen, ecs::EventReader<MeshEvicted>& evicted,
+                                       ecs::EventReader<MeshLanded>& landed) {
+    drain(evicted, seen, [&](const MeshEvicted& e) {
+      const auto known = seen.meshes.find(owner_of(e.entity));
+      if (known != seen.meshes.end() && known->second == e.key) seen.meshes.erase(known);
+      return true;
+    });
+    drain(landed, seen, [&](const MeshLanded& e) {
+      seen.meshes.insert_or_assign(owner_of(e.entity), e.key);
+      return true;
+    });
+  });
+}
+
+Seen& seen_by(State& state) {
+  Seen* seen = nullptr;
+  state.tick.add("find", [&seen](Seen& s) { seen = &s; });
+  tick(state);
+  return *seen;
+}
+
+// Flies until everything has come and gone several times over; after each tick the events tell what
+// the scene says.
+TEST(Events, TellTheStateOfTheScene) {
+  Settings settings = small_settings();
+  settings.budget_bytes = 12ull << 20;
+  auto scene = make_scene(settings);
+  add_watchers(scene->systems());
+  State& state = scene->state();
+  state.input.pose = pose_at(256, 256);
+  Seen& seen = seen_by(state);
+  std::size_t evicted = 0;
+  for (int i = 0; i < 120; ++i) {
+    tick_at(*scene, pose_at(256 + i / 6, 256, 0.05 * i));
+    const std::set<visibility::NodeCoord> shown(state.draws.shown_nodes.begin(),
+                                                state.draws.shown_nodes.end());
+    ASSERT_EQ(seen.shown, shown) << i;
+    std::size_t models = 0;
+    state.entities.each<const Fading, const Source>(
+        [&](std::span<const ecs::Entity> rows, auto, std::span<const Source> sources) {
+          for (std::size_t k = 0; k < rows.size(); ++k) {
+            if (sources[k].index == kMergedIndex) continue;
+            ++models;
+            ASSERT_TRUE(seen.models.contains(owner_of(rows[k])));
+          }
+        });
+    ASSERT_EQ(seen.models.size(), models) << i;
+    state.entities.each<const Mesh, const Demand>([&](std::span<const ecs::Entity> rows,
+                                                      std::span<const Mesh> meshes,
+                                                      std::span<const Demand> demands) {
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (demands[k].drawn_level == kNoLevel) continue;
+        const auto known = seen.meshes.find(owner_of(rows[k]));
+        ASSERT_TRUE(known != seen.meshes.end());
+        ASSERT_EQ(known->second, state.meshes.get(meshes[k].handle)->key);
+      }
+    });
+    evicted += state.record.cache_evictions;
+  }
+  EXPECT_EQ(seen.wrong, 0U);
+  EXPECT_GT(seen.events, 1000U);
+  EXPECT_GT(evicted, 0U);
+}
+
+TEST(Events, NobodyReadsAreNotKept) {
+  auto scene = make_scene(small_settings());
+  for (int i = 0; i < 10; ++i)
+    tick_at(*scene, pose_at(256 + i, 256));
+  const Events& events = scene->state().events;
+  EXPECT_EQ(events.shown.size() + events.created.size() + events.landed.size(), 0U);
+  EXPECT_TRUE(scene->state().shown.nodes.empty());
+}
+
+}  // namespace
+}  // namespace psygen::scene

@@ -1,0 +1,116 @@
+#include "engine/world/edits/edit_bytes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include "tests/engine/world/edits/edited_world.hpp"
+
+namespace psygen::world {
+namespace {
+
+using ::testing::HasSubstr;
+
+class EditBytes : public ::testing::Test, protected testing::EditedWorld {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(edits.remove(world, {{2, 3}, 4}));
+    ASSERT_TRUE(edits.remove(world, {{2, 3}, 1}));
+    const std::uint32_t tree = unedited({2, 3})[3].index;
+    ASSERT_TRUE(edits.move(world, registry, {{2, 3}, tree}, {{2, 3}, {62.9999999, 0, 7}}));
+    ASSERT_TRUE(edits.raise(world, {{2, 3}, {30, 0, 31}}, 20, 9));
+    ASSERT_TRUE(edits.flatten(world, {{2, 3}, {35, 0, 31}}, 20, 30));
+    models::GroundEdit stamp;
+    stamp.change = models::GroundChange::kStampAdd;
+    stamp.centre = {{2, 4}, {1, 0, 1}};
+    stamp.radius_m = 30;
+    auto map = std::make_shared<models::Heightmap>();
+    *map = {3, 2, {1, 2, 3, 4, 5, 6}};
+    stamp.map = map;
+    ASSERT_TRUE(edits.edit_ground(world, stamp));
+  }
+};
+
+TEST_F(EditBytes, LoadingTheBlocksInAnyOrderGivesTheSameEdits) {
+  std::map<core::BlockCoord, std::vector<std::byte>> stored;
+  for (const core::BlockCoord block : changed_blocks({}, edits))
+    stored[block] = encode_block(edits, registry, block);
+  EXPECT_EQ(stored.size(), 2u);
+  Edits forward, backward;
+  for (auto it = stored.begin(); it != stored.end(); ++it)
+    ASSERT_TRUE(load_block(forward, world, registry, it->first, it->second));
+  for (auto it = stored.rbegin(); it != stored.rend(); ++it) {
+    const auto ok = load_block(backward, world, registry, it->first, it->second);
+    ASSERT_TRUE(ok) << ok.error().message;
+  }
+  for (const Edits& loaded : {forward, backward}) {
+    EXPECT_EQ(loaded.hash(), edits.hash());
+    EXPECT_EQ(loaded.layer()->ground.hash(), edits.layer()->ground.hash());
+    EXPECT_EQ(loaded.layer()->next_id, edits.layer()->next_id);
+    EXPECT_EQ(encode_block(loaded, registry, {2, 3}), stored.begin()->second);
+    EXPECT_EQ(loaded.layer()->blocks.root()->summary.reach_m,
+              edits.layer()->blocks.root()->summary.reach_m);
+  }
+}
+
+TEST_F(EditBytes, BlocksWithoutEditsHaveNoBytes) {
+  EXPECT_TRUE(encode_block(edits, registry, {9, 9}).empty());
+  EXPECT_TRUE(encode_block({}, registry, {2, 3}).empty());
+}
+
+TEST_F(EditBytes, WhatIsCutShortAtAnyByteOrGoesOnIsRefused) {
+  const std::vector<std::byte> whole = encode_block(edits, registry, {2, 3});
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const auto decoded = decode_block(world, registry, {2, 3}, std::span(whole).first(length));
+    ASSERT_FALSE(decoded) << length;
+    EXPECT_THAT(decoded.error().message, HasSubstr("edits of block (2, 3) cannot be read"));
+  }
+  std::vector<std::byte> longer = whole;
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(decode_block(world, registry, {2, 3}, longer));
+  EXPECT_FALSE(decode_block(world, registry, {-2, 3}, whole)) << "outside of the world";
+}
+
+TEST_F(EditBytes, ANewerVersionIsRefusedByItsNumber) {
+  std::vector<std::byte> newer = encode_block(edits, registry, {2, 3});
+  newer[4] = std::byte{9};
+  const auto decoded = decode_block(world, registry, {2, 3}, newer);
+  ASSERT_FALSE(decoded);
+  EXPECT_THAT(decoded.error().message, HasSubstr("version is 9"));
+}
+
+// Whatever is decoded is legal: it can be used, and is the same when stored again.
+TEST_F(EditBytes, AnyBytesAreRefusedOrGiveLegalEdits) {
+  std::mt19937 random(17);
+  std::size_t accepted = 0, refused = 0;
+  for (const core::BlockCoord block : {core::BlockCoord{2, 3}, core::BlockCoord{2, 4}}) {
+    const std::vector<std::byte> whole = encode_block(edits, registry, block);
+    for (int round = 0; round < 3000; ++round) {
+      std::vector<std::byte> bytes = whole;
+      for (std::size_t k = 0; k <= random() % 4; ++k)
+        bytes[random() % bytes.size()] = static_cast<std::byte>(random());
+      Edits loaded;
+      if (!load_block(loaded, world, registry, block, bytes)) {
+        ++refused;
+        EXPECT_TRUE(loaded.empty());
+        continue;
+      }
+      ++accepted;
+      World copy = function;
+      set_edits(copy, loaded.layer());
+      std::vector<Placement> out;
+      if (round % 50 == 0) place_models(copy, registry, block, out);
+      Edits again;
+      EXPECT_TRUE(load_block(again, world, registry, block, encode_block(loaded, registry, block)));
+      EXPECT_EQ(again.hash(), loaded.hash());
+    }
+  }
+  EXPECT_GT(accepted, 100u);
+  EXPECT_GT(refused, 100u);
+}
+
+}  // namespace
+}  // namespace psygen::world

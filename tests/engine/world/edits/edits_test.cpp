@@ -1,0 +1,174 @@
+#include "engine/world/edits/edits.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/placement.hpp"
+#include "tests/engine/world/edits/edited_world.hpp"
+
+namespace psygen::world {
+namespace {
+
+using testing::EditedWorld;
+using ::testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class EditsTest : public ::testing::Test, protected EditedWorld {};
+
+TEST_F(EditsTest, ARemovedModelIsGoneAndTheOthersAreAsTheyWere) {
+  const std::vector<Placement> before = placements({2, 3});
+  const std::uint32_t index = before[before.size() / 2].index;
+  ASSERT_TRUE(edits.remove(world, {{2, 3}, index}));
+  apply();
+  const std::vector<Placement> after = placements({2, 3});
+  ASSERT_EQ(after.size() + 1, before.size());
+  for (const Placement& placement : after) {
+    EXPECT_NE(placement.index, index);
+    const auto same = std::ranges::find(before, placement.index, &Placement::index);
+    ASSERT_NE(same, before.end());
+    EXPECT_EQ(same->position, placement.position);
+    EXPECT_EQ(same->parameters, placement.parameters);
+  }
+  EXPECT_EQ(placements({3, 3}).size(), unedited({3, 3}).size());
+  ASSERT_TRUE(edits.restore({{2, 3}, index}));
+  EXPECT_TRUE(edits.empty());
+}
+
+TEST_F(EditsTest, AMovedModelKeepsItsParametersAndStandsOnTheGroundOfItsNewPlace) {
+  const Placement tree = placements({2, 3})[4];
+  const auto moved = edits.move(world, registry, {{2, 3}, tree.index}, {{4, 3}, {10, 0, 20.5}});
+  ASSERT_TRUE(moved) << moved.error().message;
+  EXPECT_EQ(moved->block, (core::BlockCoord{4, 3}));
+  apply();
+  const std::vector<Placement> there = placements({4, 3});
+  const Placement& placed = there.back();
+  EXPECT_EQ(placed.index, kPlacedIndex + moved->id);
+  EXPECT_EQ(placed.model, tree.model);
+  EXPECT_EQ(placed.position.x, 10);
+  EXPECT_EQ(placed.position.z, 20.5F);
+  EXPECT_NEAR(placed.position.y, models::ground_height_m(world.terrain, {4, 3}, 10, 20.5), 1e-3);
+  EXPECT_EQ(placements({2, 3}).size() + 1, unedited({2, 3}).size());
+  EXPECT_EQ(there.size(), unedited({4, 3}).size() + 1);
+  EXPECT_EQ(edits.counts().removed, 1u);
+  EXPECT_EQ(edits.counts().placed, 1u);
+  // Moving it again would move what is not there any more.
+  const std::uint64_t hash = edits.hash();
+  EXPECT_FALSE(edits.move(world, registry, {{2, 3}, tree.index}, {{4, 3}, {1, 0, 1}}));
+  EXPECT_EQ(edits.hash(), hash);
+  ASSERT_TRUE(edits.restore({{2, 3}, tree.index}));
+  EXPECT_TRUE(edits.empty());
+}
+
+TEST_F(EditsTest, ModelsKeepTheirPlacesAndStandOnTheEditedGround) {
+  ASSERT_TRUE(edits.raise(world, {{2, 3}, {31, 0, 31}}, 40, 20));
+  apply();
+  const std::vector<Placement> after = placements({2, 3}), before = unedited({2, 3});
+  ASSERT_EQ(after.size(), before.size());
+  std::size_t lifted = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    EXPECT_EQ(after[i].position.x, before[i].position.x);
+    EXPECT_EQ(after[i].position.z, before[i].position.z);
+    const glm::dvec3 at(after[i].position);
+    EXPECT_NEAR(at.y, edited_ground(world, {2, 3}, 1).at({at.x, at.z}).height_m, 1e-3);
+    lifted += after[i].position.y > before[i].position.y + 1;
+  }
+  EXPECT_GT(lifted, after.size() / 4);
+}
+
+TEST_F(EditsTest, KeysOfUneditedNodesAreThoseOfAnUneditedWorld) {
+  ASSERT_TRUE(edits.remove(world, {{2, 3}, 0}));
+  ASSERT_TRUE(edits.raise(world, {{2, 3}, {31, 0, 31}}, 5, 3));
+  const World before = world;
+  apply();
+  EXPECT_NE(terrain_parameters(world, {2, 3}).hash(), terrain_parameters(before, {2, 3}).hash());
+  EXPECT_EQ(terrain_parameters(world, {9, 3}).hash(), terrain_parameters(before, {9, 3}).hash());
+  EXPECT_EQ(terrain_parameters(world, {9, 3}).edits(), nullptr);
+}
+
+TEST_F(EditsTest, ACopyTakesEverythingBackExactly) {
+  ASSERT_TRUE(edits.remove(world, {{2, 3}, 1}));
+  const Edits kept = edits;
+  const std::uint64_t hash = kept.hash();
+  ASSERT_TRUE(edits.flatten(world, {{2, 3}, {5, 0, 5}}, 12, 30));
+  ASSERT_TRUE(edits.remove(world, {{7, 7}, 2}));
+  EXPECT_NE(edits.hash(), hash);
+  EXPECT_EQ(kept.hash(), hash);
+  std::vector<core::BlockCoord> changed = changed_blocks(kept, edits);
+  std::ranges::sort(changed);
+  EXPECT_EQ(changed, (std::vector<core::BlockCoord>{{2, 3}, {7, 7}}));
+  EXPECT_TRUE(changed_blocks(edits, edits).empty());
+}
+
+TEST_F(EditsTest, WhatIsImpossibleIsRefusedWithASentenceAndChangesNothing) {
+  const auto refused = [&](const auto& result, const char* why) {
+    ASSERT_FALSE(result);
+    EXPECT_THAT(result.error().message, HasSubstr(why));
+    EXPECT_TRUE(edits.empty());
+  };
+  const core::WorldPosition good{{2, 3}, {5, 0, 5}};
+  const NewModel rock{world.scatter[0].model, scatter_parameters(registry, world.scatter[0]), good,
+                      0};
+  const auto rock_at = [&](core::WorldPosition at, double above_m = 0) {
+    NewModel model = rock;
+    model.at = at;
+    model.above_m = above_m;
+    return edits.place(world, registry, model);
+  };
+  refused(edits.remove(world, {{-1, 3}, 0}), "outside of the world");
+  refused(edits.remove(world, {{2, 3}, 1'000'000}), "has no model 1000000");
+  refused(edits.restore({{2, 3}, 0}), "was not removed");
+  refused(edits.remove_placed({{2, 3}, 4}), "has no placed model");
+  refused(edits.remove_ground(world, {{2, 3}, 4}), "has no edit of the ground");
+  refused(rock_at({{2, 3}, {kNan, 0, 1}}), "not a place");
+  refused(rock_at({{2, 3}, {1, 0, 1e300}}), "not a place");
+  refused(rock_at({{2, 3}, {-1000, 0, 1}}), "outside of the world");
+  refused(rock_at(good, kNan), "above the ground");
+  refused(edits.raise(world, {{2, 3}, {1e8, 0, 1}}, 5, 1), "outside of the world");
+  refused(edits.raise(world, good, kNan, 1), "radius");
+  refused(edits.raise(world, good, 1e6, 1), "radius");
+  refused(edits.raise(world, good, 0, 1), "radius");
+  refused(edits.raise(world, good, 5, kNan), "raising ground by nan m");
+  refused(edits.raise(world, good, 5, 1e5), "not allowed");
+  refused(edits.flatten(world, good, 5, -1), "relief of the terrain");
+  refused(edits.flatten(world, good, 5, 1e4), "relief of the terrain");
+  models::GroundEdit stamp;
+  stamp.centre = good;
+  stamp.change = models::GroundChange::kStampSet;
+  refused(edits.edit_ground(world, stamp), "no heightmap");
+  auto map = std::make_shared<models::Heightmap>();
+  *map = {5000, 2, {}};
+  stamp.map = map;
+  refused(edits.edit_ground(world, stamp), "5000 × 2 points is not allowed");
+  *map = {2, 2, {1, 2, 3}};
+  refused(edits.edit_ground(world, stamp), "3 heights");
+  *map = {2, 2, {1, 2, 3, std::numeric_limits<float>::quiet_NaN()}};
+  refused(edits.edit_ground(world, stamp), "nan m in the heightmap");
+  *map = {1024, 1024, std::vector<float>(1024 * 1024, 1.0F)};
+  Edits full = edits;
+  for (int i = 0; i < 3; ++i)
+    ASSERT_TRUE(full.edit_ground(world, stamp));
+  const auto fourth = full.edit_ground(world, stamp);
+  ASSERT_FALSE(fourth);
+  EXPECT_THAT(fourth.error().message, HasSubstr("4194304 heights"));
+  NewModel wrong = rock;
+  wrong.model = 999;
+  refused(edits.place(world, registry, wrong), "no model type 999");
+  wrong = rock;
+  wrong.model = world.terrain_model;
+  wrong.parameters = world.terrain;
+  refused(edits.place(world, registry, wrong), "not a model that can be placed");
+  wrong = rock;
+  wrong.parameters.set_integer(0, -5);
+  wrong.parameters.set_real(1, kNan);
+  refused(edits.place(world, registry, wrong), "not allowed");
+}
+
+}  // namespace
+}  // namespace psygen::world

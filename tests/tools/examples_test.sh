@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Builds the examples of docs/guide against an installed psygen, runs each, and looks at what it
+# leaves. Nothing of the engine is compiled again.
+#   examples_test.sh BUILD_DIR SOURCE_DIR
+set -euo pipefail
+build="$1" source="$2"
+folder="$(mktemp -d)"
+trap 'rm -rf "$folder"' EXIT
+
+cmake --install "$build" --prefix "$folder/psygen" >/dev/null
+cmake -S "$source/examples" -B "$folder/build" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
+  -DCMAKE_PREFIX_PATH="$folder/psygen" >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt"; exit 1; }
+cmake --build "$folder/build" >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt"; exit 1; }
+
+# Of a step of the guide: at most so many lines.
+for program in "$source"/examples/*/*.cpp; do
+  lines="$(wc -l <"$program")"
+  [ "$lines" -le 150 ] || { echo "$program has $lines lines; at most 150 are a step"; exit 1; }
+done
+
+cd / # programs find their files from any folder
+picture() { # FOLDER NAME: the example draws a picture that is not empty
+  "$folder/build/$1/example_$2" "$folder/$2.png" 2>"$folder/log.txt" || { cat "$folder/log.txt"; exit 1; }
+  [ "$(stat -c %s "$folder/$2.png")" -gt 50000 ] || { echo "$2: the picture is empty"; exit 1; }
+}
+picture 01_window window
+picture 02_world world
+picture 03_model_type model_type
+"$folder/build/04_systems/example_systems" 2 2>/dev/null | tee "$folder/systems.txt"
+grep -qE '^1[12][0-9] steps, block [0-9-]+, [1-9][0-9]+ models seen$' "$folder/systems.txt"
+"$folder/build/05_walking/example_walking" 20 2>/dev/null | tee "$folder/walking.txt"
+grep -qE '^walked [1-9][0-9]+ m, -?0\.0[0-9] m above the ground$' "$folder/walking.txt"
+for run in 1 2; do # the second run starts from what the first one saved
+  "$folder/build/06_felling/example_felling" "$folder/game.save" "$folder/felling$run.png" 2>/dev/null |
+    tee -a "$folder/felling.txt"
+done
+grep -q '; 1 oaks in all$' "$folder/felling.txt" && grep -q '; 2 oaks in all$' "$folder/felling.txt"
+[ "$(cut -d';' -f1 "$folder/felling.txt" | sort -u | wc -l)" -eq 2 ] # two different ones
+picture 07_hud hud
+[ -z "${KEEP_PICTURES:-}" ] || cp "$folder"/*.png "$KEEP_PICTURES"

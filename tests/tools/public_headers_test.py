@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""Holds the lists of public headers together: every header under HEADERS of a folder's CMakeLists.txt is
+there, and includes only public headers. Otherwise the installed package would not compile.
+
+usage: public_headers_test.py SOURCE_DIR
+       public_headers_test.py --self-test
+"""
+import pathlib
+import re
+import sys
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
+
+
+def listed(folder, cmake):
+    """The paths under HEADERS of one CMakeLists.txt."""
+    match = re.search(r"^  HEADERS (.*?)(?=^  [A-Z_]+ |\))", cmake, re.S | re.M)
+    return [f"{folder}/{name}" for name in match[1].split()] if match else []
+
+
+def violations(public, text_of):
+    """Sentences about the public headers; text_of gives a header's text, None if there is none."""
+    for header in sorted(public):
+        text = text_of(header)
+        if text is None:
+            yield f"{header} is listed under HEADERS, and there is no such file"
+            continue
+        for name in INCLUDE.findall(text):
+            if name not in public and not name.startswith("../"):
+                yield f"{header} is public and includes {name}, which is not under HEADERS"
+
+
+def self_test():
+    assert listed("a", "f(a\n  SOURCES x.cpp\n  HEADERS b.hpp\n          c/d.hpp\n  PUBLIC e)") == [
+        "a/b.hpp", "a/c/d.hpp"]
+    texts = {"a/b.hpp": '#include "a/c.hpp"\n', "a/c.hpp": "#include <span>\n"}
+    assert not list(violations({"a/b.hpp", "a/c.hpp"}, texts.get))
+    assert len(list(violations({"a/b.hpp"}, texts.get))) == 1
+    assert len(list(violations({"a/gone.hpp"}, texts.get))) == 1
+
+
+def main():
+    self_test()
+    if sys.argv[1:] == ["--self-test"]:
+        return 0
+    root = pathlib.Path(sys.argv[1])
+    public = set()
+    for file in [root / "ecs/CMakeLists.txt", *sorted(root.glob("engine/*/CMakeLists.txt"))]:
+        public.update(listed(file.parent.relative_to(root).as_posix(), file.read_text(encoding="utf-8")))
+    assert len(public) > 50, "the scan found too few headers to mean anything"
+    texts = {name: (root / name).read_text(encoding="utf-8") for name in public if (root / name).exists()}
+    found = list(violations(public, texts.get))
+    print("\n".join(found) or f"public headers: {len(public)}, all complete")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
