@@ -99,7 +99,8 @@ concept HasFields = requires {
   ComponentTraits<T>::fields;
 };
 
-// The description of T, built on first use. Ends the program when T contains itself. Any thread.
+// The description of T, built on first use. Ends the program when T contains itself. Passes on what
+// a constructor of T throws; the next use tries again. Any thread.
 template <class T>
 const TypeDescription& description_of();
 
@@ -195,11 +196,15 @@ TypeDescription make_description() {
 
 template <class T>
 const TypeDescription& description_of() {
+  // Set while this thread builds the description, also until a constructor of T throws.
   thread_local bool under_way = false;
   if (under_way) give_up("a described type contains itself");
-  under_way = true;
+  struct UnderWay {
+    UnderWay() { under_way = true; }
+    ~UnderWay() { under_way = false; }
+  };
+  const UnderWay mark;
   static const TypeDescription description = make_description<T>();
-  under_way = false;
   return description;
 }
 

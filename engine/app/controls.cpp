@@ -1,5 +1,4 @@
-// What a person does in the window of a flight: its keys (keys.hpp), and the words over the
-// picture.
+// Handles the keys of a flight's window (keys.hpp) and lays out the text over the picture.
 #include <fmt/format.h>
 
 #include <utility>
@@ -16,7 +15,7 @@
 namespace psygen::app {
 namespace {
 
-// Whether the person wants to fly rather than watch.
+// Whether the user presses a key or moves the mouse to fly.
 bool moves_camera(const platform::InputState& input) {
   using enum platform::Key;
   for (const platform::Key key : {kW, kA, kS, kD, kQ, kE, kUp, kDown, kLeft, kRight}) {
@@ -27,7 +26,7 @@ bool moves_camera(const platform::InputState& input) {
 
 }  // namespace
 
-// Keys that the flight itself knows; everything else belongs to the camera.
+// Handles the keys of the flight. All others belong to the camera.
 void Flight::handle_keys() {
   using enum platform::Key;
   const platform::InputState& input = session_->input();
@@ -56,7 +55,7 @@ void Flight::handle_keys() {
   if (path_) hud_.notify(Hud::Subject::kFlight, "You fly now; the path is left.", now_s);
 }
 
-// Pictures that the user takes have no notices, which are about other pictures.
+// Screenshots show no notices: those are about other pictures.
 void Flight::write_over_picture() {
   scene::State& state = session_->scene().state();
   const HudFacts facts{session_->renderer().device(), session_->renderer().preset(),
@@ -69,7 +68,7 @@ void Flight::write_over_picture() {
       text_scale(session_->window()->content_scale(), session_->picture_size());
 }
 
-// A picture for the user: the first free name, and no part of the run's hash.
+// Saves a screenshot under the first free name. It does not enter the run's hash.
 void Flight::save_screenshot() {
   photograph_ = false;
   std::filesystem::path file;

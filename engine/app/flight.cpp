@@ -1,4 +1,5 @@
-// The main loop: from the first pose to the end of the flight, and on in a window.
+// The main loop, from the first pose to the end of the flight. In a window it goes on after the
+// path has ended.
 #include "engine/app/flight.hpp"
 
 #include <fmt/format.h>
@@ -65,7 +66,7 @@ bool Flight::wants_more() const {
   return session_->window() != nullptr || now_s < kDefaultSeconds;
 }
 
-// Where only the path has ended the user goes on.
+// A window stays open when only the path has ended.
 bool Flight::stays_open() const {
   const bool limited = options_.frames > 0 || options_.seconds > 0;
   return session_->window() != nullptr && !limited && !session_->over();
@@ -165,8 +166,8 @@ core::Result<void> Flight::loop() {
   return {};
 }
 
-// A window that is being resized may have no picture in this frame; that is no failure. A file that
-// cannot be written is one, but not the end of the flight.
+// A window that is being resized may have no picture in this frame, which is not a failure. A file
+// that cannot be written is a failure, but it does not end the flight.
 core::Result<void> Flight::save_numbered_picture() {
   const auto file = options_.out_folder / fmt::format("frame_{:05}.png", frames_);
   const auto image = session_->picture();
@@ -200,7 +201,7 @@ void Flight::log_frame() {
   }
 }
 
-// The end of the flight: what was measured is written down, also when it ended early.
+// Ends the flight and writes what was measured, also when it ended early.
 FlightReport Flight::land(bool whole) {
   recorded_ = false;
   FlightReport report;
@@ -211,7 +212,7 @@ FlightReport Flight::land(bool whole) {
         return {};
       });
   if (!written) failures_.push_back(written.error());
-  session_->scene().state().trace.log = nullptr;  // what comes now is none of the flight
+  session_->scene().state().trace.log = nullptr;  // the flight is over
   report.files = files_;
   report.failures = failures_;
   report.validation_messages = session_->renderer().validation_messages();

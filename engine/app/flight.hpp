@@ -1,6 +1,6 @@
-// A flight through a world: along a path or as the user likes, with what is written about it. In a
-// window it obeys the keys of keys.hpp. `psygen fly` is one. Games drive a Session themselves. Main
-// thread only.
+// A flight through a world along a path, or where the user flies, with its log and its outputs. In
+// a window it obeys the keys of keys.hpp. `psygen fly` runs one. Games drive a Session themselves.
+// Main thread only.
 #pragma once
 
 #include <memory>
@@ -16,6 +16,7 @@
 
 namespace psygen::app {
 
+// The result of a flight.
 struct FlightReport {
   telemetry::Summary summary;
   std::vector<std::filesystem::path> files;  // what was written
@@ -25,6 +26,7 @@ struct FlightReport {
   std::vector<std::string> validation_messages;
 };
 
+// One flight. Owns its session.
 class Flight {
  public:
   // Creates the output folder, reads the path and creates the session; fails as Session::create(),
@@ -39,6 +41,7 @@ class Flight {
   // Whether what happens now belongs to the report. False before the flight, and after its end.
   bool is_recorded() const { return recorded_; }
 
+  // The session that it stands on; lives as long as the flight.
   Session& session() { return *session_; }
 
  private:

@@ -81,7 +81,7 @@ std::vector<render::TextLine> Hud::figures(const scene::State& state, const HudF
                    record.nodes_in_view)},
       {fmt::format("cache {:.0f} of {:.0f} MiB   {} missing   {} coarse",
                    static_cast<double>(record.cache_bytes) / kMiB,
-                   static_cast<double>(state.settings.budget_bytes) / kMiB, record.holes,
+                   static_cast<double>(state.meshes.stats().budget_bytes) / kMiB, record.holes,
                    record.coarse_nodes)},
       {fmt::format("{} requests   {} models made   modelers: {}", record.requests_queued,
                    record.models_synthesised, state.settings.modelers)},

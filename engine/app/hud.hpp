@@ -1,5 +1,6 @@
-// What stands over the picture in a window: figures or help in one corner, the legend of the view
-// in another, notices at the bottom. Text from values; the renderer draws it. No clock of its own.
+// The text over the picture in a window: figures or help in one corner, the legend of the view in
+// another, notices at the bottom. Makes text from values; the renderer draws it. Has no clock. Main
+// thread.
 #pragma once
 
 #include <array>
@@ -12,29 +13,31 @@
 
 namespace psygen::app {
 
-// What the scene does not know.
+// What the figures show beyond the state of the scene.
 struct HudFacts {
   render::DeviceInfo device;
   render::Preset preset = render::Preset::kLow;
   double key_speed_m_s = 0;  // at which the keys move the camera
 };
 
+// Shows figures at first.
 class Hud {
  public:
   static constexpr double kNoticeSeconds = 5;
   // What a notice is about; a new one takes the place of the last about the same.
   enum class Subject : std::uint8_t { kFlight, kPreset, kScreen, kPicture, kCount };
 
+  // The time of a frame in milliseconds, for the figures.
   void add_frame(double frame_ms);
-  // From figures to help, to nothing, to figures.
+  // Switches from figures to help, from help to nothing, and from nothing to figures.
   void next_page();
-  // A sentence for kNoticeSeconds from `now_s` on: core::monotonic_seconds() or a test's clock.
+  // Shows a sentence for kNoticeSeconds, starting at `now_s` of the clock that panels() gets.
   void notify(Subject subject, std::string text, double now_s);
-  // A sentence that stays until a key is pressed.
+  // Shows a sentence until key_pressed().
   void notify_until_key(Subject subject, std::string text);
   void key_pressed();
 
-  // What stands over the picture at `now_s`. The figures are those of the last tick.
+  // The text at `now_s` seconds. The figures are those of the last tick.
   std::vector<render::TextPanel> panels(const scene::State& state, const HudFacts& facts,
                                         double now_s) const;
   // The same without notices, for pictures that are kept.

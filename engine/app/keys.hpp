@@ -1,5 +1,5 @@
-// The keys of a window and what they do: one list for the help on the screen and for whoever
-// documents them (docs/cli.md). What they do is in controls.cpp and platform/fly_camera.cpp.
+// The keys of a window and what they do: one list for the help on the screen and for the
+// documentation (docs/cli.md). What they do is in controls.cpp and platform/fly_camera.cpp.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 
 namespace psygen::app {
 
+// A key and what it does.
 struct KeyHelp {
   std::string_view keys, meaning;
 };

@@ -45,6 +45,7 @@ struct Plugin {
   std::function<void(Session&)> on_gui = {};
 };
 
+// Options of a session.
 struct SessionOptions {
   std::filesystem::path world_file;
   core::Extent size{1280, 720};
@@ -68,6 +69,7 @@ struct SessionOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
+// Options of a flight.
 struct FlightOptions {
   SessionOptions session;
   std::filesystem::path path_file;   // empty: the camera stands and turns, or the user flies

@@ -1,4 +1,4 @@
-// What a run leaves behind: the facts of the summary and the files of the output folder.
+// Writes the outputs of a flight: the facts of the summary and the files of the output folder.
 #include <fmt/format.h>
 
 #include "engine/amplify/block_synthesizer.hpp"
@@ -65,7 +65,7 @@ telemetry::Count sample_hash(const scene::State& state, core::BlockCoord block) 
 
 }  // namespace
 
-// `whole`: the flight came to its end. Otherwise nothing more is drawn and no model made for
+// `whole`: the flight was not cut short. Otherwise no frame is drawn and no model is made for
 // figures.
 telemetry::RunFacts Flight::run_facts(bool whole) {
   scene::State& state = session_->scene().state();
@@ -124,7 +124,7 @@ void Flight::note_written(const std::filesystem::path& file, const core::Result<
   }
 }
 
-// What is asked for most comes first, and what is largest last: a full disk takes the rest.
+// The most useful files come first and the largest last, in case the disk becomes full.
 void Flight::write_outputs(const telemetry::Summary& summary) {
   if (options_.out_folder.empty()) return;
   const auto file = [this](const char* name) { return options_.out_folder / name; };

@@ -22,7 +22,7 @@
 namespace psygen::app {
 namespace {
 
-constexpr double kHomeHeightM = 25.0;          // of the camera that nobody has moved
+constexpr double kHomeHeightM = 25.0;          // of the camera before it is moved
 constexpr double kWindowHz = 60;               // held in windows unless the options say otherwise
 constexpr double kMinimisedWaitSeconds = 0.1;  // between looks at a minimised window
 

@@ -1,4 +1,4 @@
-// psygen amplify: synthesises a region or the whole world and names it by one hash.
+// psygen amplify: synthesises a region or the whole world and prints its hash.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

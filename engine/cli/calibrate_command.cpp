@@ -70,7 +70,7 @@ int CalibrateCommand::run() const {
   options.seconds_limit = 600;
   options.seconds_per_measurement = 50e-6;
   options.rounds = 3;
-  options.sweeps = 5;  // what else runs on the machine comes and goes
+  options.sweeps = 5;  // other programs disturb single measurements
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "calibrating", 3.0);
   Calibration found;
   if (world) found.world = world->name;

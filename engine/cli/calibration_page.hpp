@@ -7,6 +7,7 @@
 
 namespace psygen::cli {
 
+// What `psygen calibrate` found.
 struct Calibration {
   std::string world;  // whose models were fitted; empty: parameters drawn from all usual ranges
   synthesis::CalibrationReport fits;
@@ -16,6 +17,7 @@ struct Calibration {
   double seconds = 0;
 };
 
+// As a table for the terminal, as JSON, and as a page of HTML with plots.
 std::string calibration_text(const Calibration& found, const models::Registry& registry);
 std::string calibration_json(const Calibration& found, const models::Registry& registry);
 std::string calibration_page(const Calibration& found, const models::Registry& registry);

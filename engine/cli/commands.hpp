@@ -1,4 +1,5 @@
-// The subcommands of psygen. Each declares its options when it is made and runs when it was chosen.
+// The subcommands of psygen. The constructor declares a command and its options, chosen() says
+// whether the command line named it, and run() runs it and returns the exit code. Main thread.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,12 +18,15 @@
 
 namespace psygen::cli {
 
+// What `psygen` returns to the shell.
 enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
 
+// kNoDevice for an error of that code, else kFailed.
 inline int exit_code_of(const core::Error& error) {
   return error.code == core::ErrorCode::kNoDevice ? kNoDevice : kFailed;
 }
 
+// `psygen fly`.
 class FlyCommand {
  public:
   explicit FlyCommand(CLI::App& cli);
@@ -45,6 +49,7 @@ class FlyCommand {
   bool json_ = false;
 };
 
+// `psygen picture`.
 class PictureCommand {
  public:
   explicit PictureCommand(CLI::App& cli);
@@ -61,6 +66,7 @@ class PictureCommand {
   double height_m_ = 1.7, yaw_deg_ = 0, pitch_deg_ = 0;
 };
 
+// `psygen models`.
 class ModelsCommand {
  public:
   explicit ModelsCommand(CLI::App& cli);
@@ -73,6 +79,7 @@ class ModelsCommand {
   bool json_ = false;
 };
 
+// `psygen amplify`.
 class AmplifyCommand {
  public:
   explicit AmplifyCommand(CLI::App& cli);
@@ -97,6 +104,7 @@ class AmplifyCommand {
   bool json_ = false;
 };
 
+// `psygen export`.
 class ExportCommand {
  public:
   explicit ExportCommand(CLI::App& cli);
@@ -116,6 +124,7 @@ class ExportCommand {
   int level_ = 0;
 };
 
+// `psygen calibrate`.
 class CalibrateCommand {
  public:
   explicit CalibrateCommand(CLI::App& cli);
@@ -130,6 +139,7 @@ class CalibrateCommand {
   bool json_ = false;
 };
 
+// `psygen schedule`.
 class ScheduleCommand {
  public:
   explicit ScheduleCommand(CLI::App& cli);

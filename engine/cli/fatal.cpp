@@ -27,7 +27,7 @@ void say(std::string_view sentence) {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), bytes);
 }
 
-// False for exceptions that are no want of memory or threads.
+// False for exceptions other than a lack of memory or threads.
 bool say_want() {
   std::array<char, 512> buffer;
   try {

@@ -120,7 +120,7 @@ core::Result<void> FlyCommand::load_what_pictures_take() const {
   return options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
 }
 
-// A window that is closed before the flight begins is no failure.
+// Closing the window before the flight begins is not a failure.
 int FlyCommand::code_of(const core::Error& error) {
   if (error.code == core::ErrorCode::kInterrupted) {
     core::log_info(error.message);

@@ -10,7 +10,7 @@ namespace psygen::cli {
 // second SIGINT or SIGTERM ends the program at once.
 const std::atomic<bool>& stop_at_interrupt();
 
-// A pipe that nobody reads any more (SIGPIPE) and a file beyond `ulimit -f` (SIGXFSZ) do not end
+// A pipe without a reader (SIGPIPE) and a file beyond `ulimit -f` (SIGXFSZ) do not end
 // the program: the write fails. Call first in main.
 void ignore_what_write_errors_say();
 

@@ -44,6 +44,7 @@ CLI::Validator decimal_between(Number low, Number high, std::string_view kind) {
       fmt::format("{} to {}", low, high));
 }
 
+// Accepts finite numbers from `low` to `high`.
 inline CLI::Validator number_between(double low, double high) {
   return decimal_between(low, high, "a number");
 }

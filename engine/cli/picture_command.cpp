@@ -43,7 +43,7 @@ core::Result<void> check_complete(const scene::State& state) {
         core::ErrorCode::kOverBudget,
         fmt::format("the budget of {:.0f} MiB does not hold this picture with an error of {:g} "
                     "pixels; raise --budget or --error",
-                    static_cast<double>(state.settings.budget_bytes) / kMiB,
+                    static_cast<double>(state.meshes.stats().budget_bytes) / kMiB,
                     state.settings.max_error_pixels));
   }
   if (state.totals.failed > 0 || state.counters.holes > 0)
@@ -90,7 +90,7 @@ int PictureCommand::run() {
   options_.headless = true;
   options_.stop = &stop_at_interrupt();
   const auto folder = std::filesystem::path(out_).parent_path();
-  // What cannot be written is told before all the work.
+  // Reports a folder that cannot be written before all the work.
   const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
   auto session = writable.and_then(image::load_picture_libraries)
                      .and_then(render::fit_software_rendering_to_threads)

@@ -9,6 +9,7 @@
 
 namespace psygen::cli {
 
+// Records the requests of one flight.
 class RequestRecorder {
  public:
   // After a tick: what it wanted. Times are those of the flight.

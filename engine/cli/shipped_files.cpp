@@ -50,7 +50,7 @@ bool has_folder(const std::string& name) {
   return name.find('/') != std::string::npos;
 }
 
-// What is said where there is no such file.
+// The error for a name without a file.
 std::string missing(Shipped kind, const std::string& name, std::vector<fs::path> folders) {
   const std::vector<std::string> names = names_in(folders);
   const std::string_view nearest = core::nearest_word(fs::path(name).stem().string(), names);
@@ -81,7 +81,7 @@ core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
         if (is_file(folder / file)) return folder / file;
     }
   }
-  // What is there and is no file is told by whoever reads it.
+  // Anything there that is not a file is reported when it is read.
   if (status.type() != fs::file_type::not_found) return fs::path(name);
   return core::fail(core::ErrorCode::kIo, missing(kind, name, folders));
 }

@@ -1,22 +1,28 @@
 #include "engine/core/heap_geometry_memory.hpp"
 
+#include <algorithm>
 #include <new>
 
 #include "engine/core/assert.hpp"
 
 namespace psygen::core {
+namespace {
+// What meshes are charged that are too large for any memory.
+constexpr std::uint32_t kTooManyBytes = UINT32_MAX;
+}  // namespace
 
 std::uint32_t HeapGeometryMemory::charged_bytes(VertexLayout layout, std::uint32_t vertex_count,
                                                 std::uint32_t index_count) const {
-  const std::uint32_t bytes = vertex_count * vertex_stride_bytes(layout) + index_count * 2;
-  return (bytes + 15) / 16 * 16;
+  const std::uint64_t bytes =
+      std::uint64_t{vertex_count} * vertex_stride_bytes(layout) + std::uint64_t{index_count} * 2;
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>((bytes + 15) / 16 * 16, kTooManyBytes));
 }
 
 Result<GeometryReservation> HeapGeometryMemory::reserve(VertexLayout layout,
                                                         std::uint32_t vertex_count,
                                                         std::uint32_t index_count) {
   const std::uint32_t bytes = charged_bytes(layout, vertex_count, index_count);
-  if (used_bytes_ + bytes > capacity_bytes_) {
+  if (bytes == kTooManyBytes || used_bytes_ + bytes > capacity_bytes_) {
     return fail(ErrorCode::kOutOfMemory, "geometry memory is full");
   }
   std::unique_ptr<std::byte[]> memory(new (std::nothrow) std::byte[bytes]);
@@ -30,6 +36,7 @@ Result<GeometryReservation> HeapGeometryMemory::reserve(VertexLayout layout,
   }
   Slot& slot = slots_[id];
   slot.bytes = std::move(memory);
+  slot.charged_bytes = bytes;
   slot.vertex_bytes = vertex_count * vertex_stride_bytes(layout);
   slot.committed = false;
   used_bytes_ += bytes;
@@ -50,9 +57,9 @@ void HeapGeometryMemory::commit(const GeometryRange& range) {
 void HeapGeometryMemory::release(const GeometryRange& range) {
   PSYGEN_CHECK(range.id < slots_.size() && slots_[range.id].bytes,
                "release of a range not reserved");
+  used_bytes_ -= slots_[range.id].charged_bytes;
   slots_[range.id] = {};
   free_slots_.push_back(range.id);
-  used_bytes_ -= range.bytes;
 }
 
 const HeapGeometryMemory::Slot& HeapGeometryMemory::slot_of(const GeometryRange& range) const {

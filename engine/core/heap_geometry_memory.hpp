@@ -32,6 +32,7 @@ class HeapGeometryMemory final : public GeometryMemory {
  private:
   struct Slot {
     std::unique_ptr<std::byte[]> bytes;  // vertices, then indices
+    std::uint32_t charged_bytes = 0;
     std::uint32_t vertex_bytes = 0;
     bool committed = false;
   };

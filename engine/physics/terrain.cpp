@@ -112,7 +112,10 @@ void Terrain::need(const glm::dvec2& low, const glm::dvec2& high, std::uint64_t 
                                 sum(origin_.z, static_cast<std::int64_t>(z))};
       if (!query_.world().contains(at)) continue;
       const auto [block, is_new] = blocks_.try_emplace(at);
-      if (is_new) make(at, block->second);
+      if (is_new) {
+        make(at, block->second);
+        block->second.edits = query::edits_of_block(query_.world(), at);
+      }
       block->second.needed = step;
     }
   }
@@ -126,6 +129,17 @@ Terrain::Blocks::iterator Terrain::erase(Blocks::iterator block) {
 
 void Terrain::remove(core::BlockCoord at) {
   if (const auto block = blocks_.find(at); block != blocks_.end()) erase(block);
+}
+
+bool Terrain::follow_edits() {
+  if (query_.world().edits == edits_) return false;
+  edits_ = query_.world().edits;
+  const std::size_t before = blocks_.size();
+  for (auto block = blocks_.begin(); block != blocks_.end();) {
+    const bool changed = block->second.edits != query::edits_of_block(query_.world(), block->first);
+    block = changed ? erase(block) : std::next(block);
+  }
+  return blocks_.size() != before;
 }
 
 void Terrain::clear() {

@@ -38,6 +38,9 @@ class Terrain {
   // others.
   void drop_idle(std::uint64_t step, std::uint32_t keep_steps, std::size_t most);
   void remove(core::BlockCoord block);
+  // Removes the blocks that edits of the world have changed since the last call. Returns whether
+  // there are any.
+  bool follow_edits();
   void clear();
   std::size_t size() const { return blocks_.size(); }
 
@@ -53,6 +56,7 @@ class Terrain {
  private:
   struct Block {
     std::uint64_t needed = 0;  // the last step in which it was
+    std::uint64_t edits = 0;   // query::edits_of_block() when it was made
     std::optional<query::GroundGrid> grid;
     std::vector<double> heights;  // for Bullet
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
@@ -68,6 +72,7 @@ class Terrain {
 
   btDynamicsWorld& bullet_;
   query::World& query_;
+  std::shared_ptr<const models::EditLayer> edits_;  // when they were last looked at
   core::BlockCoord origin_;
   Blocks blocks_;
 };

@@ -63,7 +63,8 @@ class World {
   core::Result<std::optional<BodyHit>> cast(const core::WorldPosition& origin,
                                             const glm::dvec3& direction, double longest_m) const;
 
-  // A block was edited: its ground and models are made anew in the next step. Wakes all bodies.
+  // Something other than edits has changed a block: its ground and models are made anew in the next
+  // step. Wakes all bodies. Edits of the world are followed by themselves.
   void refresh(core::BlockCoord block);
   // Blocks with ground and models in Bullet now.
   std::size_t block_count() const;

@@ -107,6 +107,7 @@ void World::Impl::make_terrain(double dt) {
 void World::Impl::step(double dt) {
   ++steps;
   shift_origin();
+  if (terrain.follow_edits()) rouse();
   make_terrain(dt);
   for (auto& [number, character] : characters)
     character.step(dt, settings.gravity);

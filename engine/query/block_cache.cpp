@@ -22,15 +22,28 @@ void add(BlockSolids& all, StandingSolid solid) {
 
 BlockCache::BlockCache(const world::World& world, const models::Registry& registry,
                        std::size_t most_bytes)
-    : world_(world), registry_(registry), most_bytes_(most_bytes) {}
+    : world_(world), registry_(registry), most_bytes_(most_bytes), edits_(world.edits) {}
+
+// Forgets the blocks that edits have changed since the last look.
+void BlockCache::follow_edits() {
+  if (world_.edits == edits_) return;
+  edits_ = world_.edits;
+  for (auto block = blocks_.begin(); block != blocks_.end();) {
+    const core::BlockCoord at = block->at;
+    const bool changed = block->edits != edits_of_block(world_, at);
+    ++block;
+    if (changed) forget(at);
+  }
+}
 
 BlockCache::Block& BlockCache::touch(core::BlockCoord block) {
+  follow_edits();
   if (!blocks_.empty() && blocks_.front().at == block) return blocks_.front();
   if (const auto found = index_.find(block); found != index_.end()) {
     blocks_.splice(blocks_.begin(), blocks_, found->second);
     return blocks_.front();
   }
-  blocks_.push_front({.at = block});
+  blocks_.push_front({.at = block, .edits = edits_of_block(world_, block)});
   index_.emplace(block, blocks_.begin());
   charge(blocks_.front(), kBlockBytes);
   return blocks_.front();

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <list>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -29,8 +30,8 @@ struct BlockSolids {
   core::Bounds box;                 // around all of them; of no meaning without any
 };
 
-// World and registry must outlive it and must not change. Spans and references that it returns are
-// valid until the next call.
+// World and registry must outlive it and must not change, except for the world's edits: what they
+// changed is made anew. Spans and references that it returns are valid until the next call.
 class BlockCache {
  public:
   BlockCache(const world::World& world, const models::Registry& registry, std::size_t most_bytes);
@@ -52,6 +53,7 @@ class BlockCache {
   struct Block {
     core::BlockCoord at;
     std::size_t bytes = 0;
+    std::uint64_t edits = 0;  // edits_of_block() when it was made
     std::optional<GroundGrid> ground{};
     std::optional<std::vector<world::Placement>> models{};
     std::optional<BlockSolids> solids{};
@@ -59,11 +61,13 @@ class BlockCache {
   using Order = std::list<Block>;  // most recently used first
 
   Block& touch(core::BlockCoord block);
+  void follow_edits();
   void charge(Block& block, std::size_t bytes);
 
   const world::World& world_;
   const models::Registry& registry_;
   std::size_t most_bytes_, bytes_ = 0;
+  std::shared_ptr<const models::EditLayer> edits_;  // of the world when they were last looked at
   Order blocks_;
   std::unordered_map<core::BlockCoord, Order::iterator, core::BlockCoordHash> index_;
 };

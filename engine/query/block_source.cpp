@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "engine/core/hash.hpp"
+#include "engine/models/edits.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 
@@ -23,6 +25,14 @@ std::vector<world::Placement> models_of_block(const world::World& world,
   world::place_models(world, registry, block, models);
   models.shrink_to_fit();
   return models;
+}
+
+std::uint64_t edits_of_block(const world::World& world, core::BlockCoord block) {
+  if (!world.edits) return 0;
+  const models::BlockEdits* const edits = world.edits->block(block);
+  const std::uint64_t ground = world::terrain_parameters(world, block).edits_hash();
+  if (ground == 0 && edits == nullptr) return 0;
+  return core::combine(ground, edits != nullptr ? edits->hash() : 0);
 }
 
 }  // namespace psygen::query

@@ -21,4 +21,8 @@ std::vector<world::Placement> models_of_block(const world::World& world,
                                               const models::Registry& registry,
                                               core::BlockCoord block);
 
+// Tells whether the edits of a world changed a block: equal hashes, equal ground and models;
+// 0: no edits. Logarithmic in the edits.
+std::uint64_t edits_of_block(const world::World& world, core::BlockCoord block);
+
 }  // namespace psygen::query

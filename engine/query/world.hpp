@@ -59,8 +59,8 @@ struct NearModel {
   double distance_m = 0;         // from its foot to the place asked about
 };
 
-// The queries of one world. World and registry must outlive it and must not change. Move it, do not
-// share it: each thread has its own.
+// The queries of one world. World and registry must outlive it and must not change, except for the
+// world's edits, which it follows. Move it, do not share it: each thread has its own.
 class World {
  public:
   // A position's metres may have at most this size.
@@ -107,7 +107,8 @@ class World {
   // How far models may reach sideways from their feet, in metres.
   double models_reach_m() const { return reach_m_; }
 
-  // The block's ground or models have changed; they are made again when next asked for.
+  // Something other than edits has changed the block's ground or models; they are made again when
+  // next asked for.
   void forget(core::BlockCoord block) { cache_.forget(block); }
   // What the world looks like to queries, and the memory of the cache.
   const world::World& world() const { return *world_; }

@@ -137,9 +137,8 @@ std::vector<std::vector<std::uint8_t>> mip_levels(const TexturePixels& pixels) {
 
 Result<void> MaterialTable::create(const Device& device, std::uint64_t texture_budget_bytes) {
   texture_budget_bytes_ = texture_budget_bytes;
-  Result<Buffer> buffer =
-      make_buffer(device, PSYGEN_MAX_MATERIALS * sizeof(shaders::MaterialData),
-                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite);
+  Result<Buffer> buffer = make_buffer(device, PSYGEN_MAX_MATERIALS * sizeof(shaders::MaterialData),
+                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite);
   if (!buffer) return tl::unexpected(buffer.error());
   buffer_ = std::move(*buffer);
   Result<UniqueSampler> sampler = make_sampler(device);
@@ -166,11 +165,11 @@ Result<TextureId> MaterialTable::add_texture(const Device& device, const Texture
   const std::uint64_t bytes = std::uint64_t{pixels.width} * pixels.height * 4;
   if (bytes == 0 || pixels.width > kMaxTextureSide || pixels.height > kMaxTextureSide ||
       pixels.rgba.size() != bytes) {
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("a texture of {} x {} pixels with {} bytes: it has 1 to {} pixels "
-                                  "a side, and 4 bytes a pixel",
-                                  pixels.width, pixels.height, pixels.rgba.size(),
-                                  kMaxTextureSide));
+    return core::fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("a texture of {} x {} pixels with {} bytes: it has 1 to {} pixels "
+                    "a side, and 4 bytes a pixel",
+                    pixels.width, pixels.height, pixels.rgba.size(), kMaxTextureSide));
   }
   if (texture_bytes_ + bytes + bytes / 3 > texture_budget_bytes_ ||
       textures_.size() > kMaxTextures) {
@@ -203,10 +202,10 @@ Result<TextureId> MaterialTable::store(const Device& device, const TexturePixels
   std::vector<std::span<const std::uint8_t>> levels{pixels.rgba};
   levels.insert(levels.end(), smaller.begin(), smaller.end());
   const core::Extent size{pixels.width, pixels.height};
-  Result<Image> image = make_image(
-      device, size, pixels.colours ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, VK_IMAGE_ASPECT_COLOR_BIT,
-      {.mips = static_cast<std::uint32_t>(levels.size())});
+  Result<Image> image =
+      make_image(device, size, pixels.colours ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+                 VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                 VK_IMAGE_ASPECT_COLOR_BIT, {.mips = static_cast<std::uint32_t>(levels.size())});
   if (!image) return tl::unexpected(image.error());
   if (Result<void> filled = upload_levels(device, *image, size, levels); !filled)
     return tl::unexpected(filled.error());

@@ -1,8 +1,8 @@
-// The materials of objects with their textures: a buffer that all shaders read, and a descriptor set
-// for each material with textures. Textures have mip levels, made here. Both live as long as the
-// table; nothing is removed from it. Not a cache and no streaming: textures have a budget of their
-// own, and what goes beyond it is refused. Main thread; adding a texture waits for the device.
-// Private to engine/render.
+// The materials of objects with their textures: a buffer that all shaders read, and a descriptor
+// set for each material with textures. Textures have mip levels, made here. Both live as long as
+// the table; nothing is removed from it. Not a cache and no streaming: textures have a budget of
+// their own, and what goes beyond it is refused. Main thread; adding a texture waits for the
+// device. Private to engine/render.
 #pragma once
 
 #include <vector>
@@ -59,8 +59,8 @@ class MaterialTable {
 };
 
 // The mip levels of a texture below the first, each the mean of 2 × 2 texels of the one above, down
-// to 1 × 1. Colours are averaged as light (by the square of their values), alpha and numbers as they
-// are. Pure.
+// to 1 × 1. Colours are averaged as light (by the square of their values), alpha and numbers as
+// they are. Pure.
 std::vector<std::vector<std::uint8_t>> mip_levels(const TexturePixels& pixels);
 
 }  // namespace psygen::render

@@ -54,8 +54,9 @@ class Renderer {
   std::uint64_t texture_bytes() const;
 
   // Draws and submits one frame. Waits at most for the frame before the last. While the window is
-  // minimised it does nothing and presents nothing. Instead of an invalid camera it uses the last
-  // valid one. Fails with kDeviceLost, and with kOutOfMemory if there is no memory for the draws.
+  // minimised it does nothing and presents nothing. Fails with kInvalidArgument for a camera that
+  // FrameInput does not allow, with kDeviceLost, and with kOutOfMemory if there is no memory for
+  // the draws.
   core::Result<FrameResult> render(const FrameInput& input);
 
   // Draws a picture without a scene, for example while there is none yet, and waits for it: the

@@ -31,6 +31,18 @@ bool is_empty(core::Extent extent) {
   return extent.width == 0 || extent.height == 0;
 }
 
+// Fails for a camera that cannot be drawn. Its owner keeps the last valid one.
+Result<void> check_camera(const FrameInput& input) {
+  const core::Projection& p = input.projection;
+  const auto is_length = [](float value) { return value > 1e-6F && value < 1e6F; };
+  const bool drawable = p.vertical_fov > 0.001F && p.vertical_fov < 3.13F && is_length(p.aspect) &&
+                        is_length(p.near_m);
+  if (drawable && core::is_valid(input.pose)) return {};
+  return core::fail(ErrorCode::kInvalidArgument,
+                    drawable ? "the pose of a frame is not finite, or is beyond all worlds"
+                             : "the projection of a frame is not one that can be drawn");
+}
+
 VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
                                      VkPipelineStageFlags2 stage) {
   VkSemaphoreSubmitInfo info{};
@@ -263,17 +275,16 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
     const Result<void> copied = staged_->flush(*device_, pool_blocks_, slot.commands());
     if (!copied) return copied;
   }
-  const ScenePass pass{
-      .list = list_,
-      .materials = &materials_,
-      .buffers = {pool_blocks_, shared_.buffer()},
-      .culled = {culling_.get(), index_of(slot)},
-      .glyph_vertex_count = text_vertices_,
-      .line_vertex_count = line_vertices_,
-      .gui = gui_runs_,
-      .view = view_,
-      .water = water_,
-      .shadows = frame_.shadow.y > 0};
+  const ScenePass pass{.list = list_,
+                       .materials = &materials_,
+                       .buffers = {pool_blocks_, shared_.buffer()},
+                       .culled = {culling_.get(), index_of(slot)},
+                       .glyph_vertex_count = text_vertices_,
+                       .line_vertex_count = line_vertices_,
+                       .gui = gui_runs_,
+                       .view = view_,
+                       .water = water_,
+                       .shadows = frame_.shadow.y > 0};
   record_scene(*device_, pipelines_, slot, targets_of(slot), pass);
   if (windowed) {
     record_copy_to_window(*device_, slot.commands(), targets_of(slot), swapchain_.image(),
@@ -282,17 +293,9 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   return slot.end(*device_);
 }
 
-// Stores the camera values that can be drawn; the last ones replace invalid values.
-void RendererImpl::remember_valid(const FrameInput& input) {
-  const core::Projection& p = input.projection;
-  const bool drawable = p.vertical_fov > 0.001F && p.vertical_fov < 3.13F && p.aspect > 0.001F &&
-                        p.aspect < 1000.0F && p.near_m > 0.0F && p.near_m < 1e6F;
-  if (core::is_valid(input.pose)) last_pose_ = input.pose;
-  if (drawable) last_projection_ = p;
-}
-
 Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
+  if (const Result<void> ok = check_camera(input); !ok) return tl::unexpected(ok.error());
   if (options_.surface != nullptr) {
     const Result<bool> shown = noted(prepare_window());
     if (!shown) return tl::unexpected(shown.error());
@@ -305,7 +308,6 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   if (targets_.empty()) {
     return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
   }
-  remember_valid(input);
   if (!input.objects.empty()) {
     if (Result<void> made = prepare_objects(); !made) return tl::unexpected(made.error());
   }
@@ -369,16 +371,13 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   if (const auto gpu = slot.timer().read(*device_); gpu && gpu->frame > warm_up_value_) gpu_ = gpu;
 
   const double build_start = core::monotonic_seconds();
-  FrameInput checked = input;
-  checked.pose = last_pose_.value_or(core::CameraPose{});
-  checked.projection = last_projection_.value_or(core::Projection{});
   lay_out_overlay(input);
   view_ = input.view;
   water_ = input.water.has_value();
-  frame_ = frame_data(checked, size(), pipelines_.traits());
+  frame_ = frame_data(input, size(), pipelines_.traits());
   const GpuCulling::Counts counted =
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
-  list_draws(checked);
+  list_draws(input);
   if (Result<void> written = write_frame(slot); !written) return tl::unexpected(written.error());
   out.cpu_ms = ms_since(build_start);
 

@@ -102,7 +102,6 @@ class RendererImpl {
   Apart apart_now();
   void lay_out_overlay(const FrameInput& input);
   void add_lines(std::span<const Line> lines);
-  void remember_valid(const FrameInput& input);
   // Stores in lost_ that the device was lost. After that nothing more is submitted.
   template <class T>
   core::Result<T> noted(core::Result<T> result) {
@@ -139,8 +138,6 @@ class RendererImpl {
   bool has_picture_ = false;
   bool has_list_ = false;
   bool lost_ = false;
-  std::optional<core::CameraPose> last_pose_;
-  std::optional<core::Projection> last_projection_;
   DrawList list_;  // on the CPU path
   shaders::FrameData frame_{};
   std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines, then ImGui's

@@ -130,19 +130,15 @@ struct WorldEdge {
 };
 
 // Linear albedos of the ground, and the extent of each kind of ground. Heights are in metres of the
-// world. Slope is 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
+// world. Slope is 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical. The defaults are black: the
+// values come from the world (world::Palette).
 struct TerrainPalette {
-  glm::vec3 grass{0.085F, 0.125F, 0.030F};
-  glm::vec3 forest{0.045F, 0.070F, 0.022F};
-  glm::vec3 dry{0.200F, 0.165F, 0.075F};
-  glm::vec3 rock{0.150F, 0.138F, 0.125F};
-  glm::vec3 snow{0.74F, 0.78F, 0.84F};
-  glm::vec3 sand{0.36F, 0.30F, 0.19F};
-  float sand_end_m = -1e6F, sand_blend_m = 2.0F;    // sand below this height
-  float dry_start_m = 60.0F, dry_blend_m = 40.0F;   // dry meadow above this height
-  float snow_start_m = 1e6F, snow_blend_m = 15.0F;  // snow above this height, except where steep
-  float rock_slope_start = 0.16F, rock_slope_full = 0.34F;
-  float snow_slope_max = 0.40F;  // no snow on steeper ground
+  glm::vec3 grass{0.0F}, forest{0.0F}, dry{0.0F}, rock{0.0F}, snow{0.0F}, sand{0.0F};
+  float sand_end_m = 0, sand_blend_m = 0;    // sand below this height
+  float dry_start_m = 0, dry_blend_m = 0;    // dry meadow above this height
+  float snow_start_m = 0, snow_blend_m = 0;  // snow above this height, except where steep
+  float rock_slope_start = 0, rock_slope_full = 0;
+  float snow_slope_max = 0;  // no snow on steeper ground
 };
 
 // The id for "no shared list": the mesh has its own indices.
@@ -240,7 +236,9 @@ struct Morph {
   float from_m = 0, to_m = 0;  // distances at which it begins, and at which heights are coarse
 };
 
-// Everything that a frame shows. Spans must stay valid during render().
+// Everything that a frame shows. Spans must stay valid during render(). The pose is
+// core::is_valid(); the field of view is between 0.001 and 3.13 rad, aspect and near plane between
+// 1e-6 and 1e6.
 struct FrameInput {
   core::CameraPose pose;
   core::Projection projection;
@@ -255,7 +253,7 @@ struct FrameInput {
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
   std::span<const ObjectDraw> objects;   // nearest first, committed ranges only
-  std::span<const Line> lines;  // at most kMaxLines are drawn, in every view
+  std::span<const Line> lines;           // at most kMaxLines are drawn, in every view
   // Over the picture, in this order.
   const HudDrawing* hud = nullptr;  // of the game; null: none
   std::span<const TextPanel> panels;

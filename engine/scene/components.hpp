@@ -129,6 +129,7 @@ struct Demand {
 };
 static_assert(sizeof(Demand) == 20);
 
+// An entity as the cache's name for an owner, and back.
 inline std::uint64_t owner_of(ecs::Entity entity) {
   return (std::uint64_t{entity.generation} << 32) | entity.index;
 }

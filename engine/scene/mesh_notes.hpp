@@ -10,6 +10,7 @@
 
 namespace psygen::scene {
 
+// What is noted of the ground of a node.
 struct GroundNote {
   GroundRelief relief;
   GroundSun sun;

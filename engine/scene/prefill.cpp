@@ -1,4 +1,4 @@
-// What happens before the first frame: filling the cache for a pose, or amplifying a region.
+// The work before the first frame: fills the cache for a pose, or amplifies a region.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,22 +11,22 @@
 namespace psygen::scene {
 namespace {
 
-// A tick looks at each node around the camera once in 8 turns; so long must nothing be missing.
+// Nodes around the camera are revisited every 8th tick, so nothing is missing after 9 quiet ones.
 constexpr int kQuietTicks = 9;
-// After so many ticks in which nothing became ready, or so many altogether in which there was no
-// room for something, what is still wanted cannot be had.
+// Filling ends after 40 ticks in a row in which no mesh became ready, or after 300 ticks in which a
+// request was refused for want of memory.
 constexpr int kIdleTicks = 40, kRefusedTicks = 300;
 
 struct RegionSize {
   std::uint64_t meshes = 0, bytes = 0;
 };
 
-// Of a mesh entity, the first so many; the levels are those of its Detail.
+// How many levels of a mesh entity amplification makes, finest first.
 int levels_needed(const Settings& settings, const Detail& detail) {
   return settings.levels_of_detail ? static_cast<int>(detail.level_count) : 1;
 }
 
-// What amplifying everything that exists now would take.
+// The size of all meshes of the entities that exist now.
 RegionSize region_size(const State& s) {
   RegionSize size;
   s.entities.each<const Source, const Detail>([&](std::span<const ecs::Entity>,
@@ -45,7 +45,7 @@ RegionSize region_size(const State& s) {
   return size;
 }
 
-// Wants for everything that exists now.
+// Wants for all meshes of the entities that exist now.
 std::vector<synthesis::Want> want_everything(const State& s) {
   std::vector<synthesis::Want> wants;
   s.entities.each<const Placed, const Source, const Detail>(
@@ -91,7 +91,7 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
   s.clock.real_s = s.clock.read_real_s();
   s.counters = {};
   s.rules = rules_of(s.settings, true);
-  s.pressure.awaited = 0;  // nobody looks
+  s.pressure.awaited = 0;  // nothing is drawn
   input_system(s.input, s.clock, s.facts, s.camera);
   quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
   daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
@@ -144,14 +144,15 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
 
 core::Result<void> Scene::check_region() const {
   const RegionSize size = region_size(state_);
-  if (size.bytes <= state_.settings.budget_bytes) return {};
+  const std::uint64_t budget_bytes = state_.meshes.stats().budget_bytes;
+  if (size.bytes <= budget_bytes) return {};
   constexpr double kMiB = 1 << 20;
   return core::fail(
       core::ErrorCode::kOverBudget,
       fmt::format("amplifying the {} nodes around the camera takes {:.0f} MiB for {} meshes, more "
                   "than the budget of {:.0f} MiB; lower the view distance or raise the budget",
                   state_.entities.count<Node>(), static_cast<double>(size.bytes) / kMiB,
-                  size.meshes, static_cast<double>(state_.settings.budget_bytes) / kMiB));
+                  size.meshes, static_cast<double>(budget_bytes) / kMiB));
 }
 
 core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const Progress& progress) {

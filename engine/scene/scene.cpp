@@ -93,7 +93,7 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
   return {};
 }
 
-// As many as there are from now on. Without any no mesh would ever be made.
+// Takes over how many modelers started. Fails if there are none: no mesh would ever be made.
 core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
                                   synthesis::MeshSupply& meshes, Settings& settings) {
   const unsigned wanted = synthesis::modeler_count_for(settings.modelers);

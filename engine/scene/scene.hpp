@@ -33,6 +33,7 @@ struct Systems {
   }
 };
 
+// One world with its entities, its meshes and its tick.
 class Scene {
  public:
   // `world` may have edits. `renderer` (may be null) and `trace` (may be null) outlive the scene.
@@ -45,6 +46,7 @@ class Scene {
                                                      telemetry::TraceLog* trace = nullptr,
                                                      const Progress& progress = {});
 
+  // All that the tick reads and writes.
   State& state() { return state_; }
   const State& state() const { return state_; }
   const synthesis::CalibrationReport& calibration() const { return calibration_; }

@@ -14,7 +14,7 @@ namespace psygen::scene {
 enum class Paradigm : std::uint8_t {
   kParallelLazyAmplification,  // on demand, in parallel, cached, prefetched
   kDataAmplification,          // a region is synthesised before the first frame, nothing after it
-  kLazyEvaluation,             // whatever is visible, in every frame anew; nothing is kept
+  kLazyEvaluation,             // what is visible is made again in every frame; nothing is kept
 };
 std::string_view to_string(Paradigm paradigm);  // "pla", "amplify", "lazy"
 core::Result<Paradigm> paradigm_from(std::string_view name);
@@ -23,6 +23,7 @@ core::Result<Paradigm> paradigm_from(std::string_view name);
 std::string_view to_string(visibility::PlpMode mode);
 core::Result<visibility::PlpMode> plp_mode_from(std::string_view name);
 
+// The defaults suit a machine with a few cores.
 struct Settings {
   Paradigm paradigm = Paradigm::kParallelLazyAmplification;
   synthesis::Policy policy = synthesis::Policy::kDeadline;

@@ -77,6 +77,7 @@ struct Quality {
   bool warned_budget = false;
 };
 
+// The times of this tick.
 struct Clock {
   double now_s = 0;   // of the flight: real, or frame / rate with a fixed step
   double real_s = 0;  // real seconds since the scene was made, for latencies; set by the tick
@@ -84,6 +85,7 @@ struct Clock {
   std::uint32_t tick = 1;
 };
 
+// The camera of this tick and its predicted poses.
 struct Camera {
   core::CameraPose pose;  // the last valid one
   core::Projection projection;
@@ -91,6 +93,7 @@ struct Camera {
   float pixels_per_radian = 0;
   std::uint64_t rejected_poses = 0;
   visibility::CameraPredictor predictor;
+  // The pose in tau_s seconds.
   struct Prediction {
     float tau_s = 0;
     core::CameraPose pose;
@@ -133,6 +136,7 @@ struct Editing {
   bool pending = false;  // not in WorldFacts yet
 };
 
+// Which nodes exist as entities.
 struct Streaming {
   std::vector<NodeGrid> grids;                        // one for each level
   std::vector<visibility::LevelDistances> distances;  // where nodes are split in this tick
@@ -189,6 +193,7 @@ struct Found {
   std::vector<Mesh> meshes;
 };
 
+// What this tick draws, and its working memory.
 struct DrawLists {
   std::vector<ecs::Entity> entities;  // per node of the cut; null where there is none
   std::vector<std::uint32_t> nodes;   // of the cut: what stands for it while meshes are missing
@@ -279,6 +284,7 @@ struct Tracing {
   std::vector<telemetry::TraceLog::Name> models;                        // by index in the registry
 };
 
+// All of a scene.
 struct State {
   Settings settings;
   Rules rules;

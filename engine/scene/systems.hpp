@@ -1,7 +1,7 @@
 // The systems of the tick, one .cpp each. Free functions; const parameters and components are read,
 // the others written: the schedule takes what a system touches from here. Main thread only; none of
 // them waits for a modeler, a file or the GPU beyond the frames in flight (lazy evaluation waits
-// for its modelers: that is what it is). Order and data: tick.cpp.
+// for its modelers). Order and data: tick.cpp.
 #pragma once
 
 #include "engine/scene/state.hpp"

@@ -13,6 +13,7 @@
 
 namespace psygen::synthesis {
 
+// Destroyed when neither side uses it any more.
 class CompletionQueue {
  public:
   CompletionQueue() : tail_(new Segment), head_(tail_) {}

@@ -17,8 +17,10 @@ inline std::uint64_t content_hash(const MeshKey& key, const models::MeshView& me
   return core::combine(h, core::hash_bytes(std::as_bytes(mesh.indices)));
 }
 
+// The sum of the hashes of a world's meshes. The order of add() does not matter.
 class WorldHash {
  public:
+  // The content_hash() of one mesh.
   void add(std::uint64_t mesh_hash) {
     sum_ += core::mix64(mesh_hash);
     ++count_;
@@ -28,6 +30,7 @@ class WorldHash {
     sum_ += part.sum_;
     count_ += part.count_;
   }
+  // How many meshes were added, and the hash of all of them.
   std::uint64_t count() const { return count_; }
   std::uint64_t value() const { return core::combine(sum_, count_); }
 

@@ -22,6 +22,7 @@ inline constexpr std::size_t kWarmths = 3;
 struct RequestCost {
   std::array<double, kWarmths> seconds{};  // of one core, by warmth
   std::size_t code = 0;                    // CostModel::code_of
+  // Seconds of one core where the caches are warm, and by warmth.
   double warm_s() const { return seconds[0]; }
   double of(Warmth warmth) const { return seconds[static_cast<std::size_t>(warmth)]; }
 };
@@ -45,6 +46,7 @@ class LearnedSeconds {
 class ColdSeconds {
  public:
   static constexpr std::uint32_t kEnough = 3;  // observations that are believed
+  // What a request of this warmth takes beyond a warm one.
   const LearnedSeconds& of(Warmth warmth) const { return added_[static_cast<std::size_t>(warmth)]; }
   LearnedSeconds& of(Warmth warmth) { return added_[static_cast<std::size_t>(warmth)]; }
 
@@ -52,10 +54,12 @@ class ColdSeconds {
   std::array<LearnedSeconds, kWarmths> added_;  // nothing where it is warm
 };
 
+// What finished requests teach of one level of a type.
 class CostCorrection {
  public:
   // The curve was measured on this machine: one observation says little against it.
   void trust_curve() { count_ = kTrusted; }
+  // On the curve's prediction; 1 until something was observed.
   double factor() const { return factor_; }
 
   // A request that took `seconds` where the curve says `curve_s`, both above 0; `shared` knows of

@@ -107,7 +107,7 @@ std::vector<CurvePoint> points_over(const models::ModelType& type, models::Model
     Value at{static_cast<double>(value), runs_at(type, sample, seeds)};
     if (measure_all(at.runs, cost, options, deadline_s)) values.push_back(std::move(at));
   }
-  // What else runs on the machine comes and goes; the least counts.
+  // Other programs disturb single measurements, so the least counts.
   for (int sweep = 1; sweep < options.sweeps; ++sweep) {
     for (Value& at : values)
       measure_all(at.runs, cost, options, deadline_s);
@@ -215,7 +215,8 @@ std::vector<CostSample> random_samples(const models::Registry& registry, std::si
   for (std::size_t m = 0; m < registry.size(); ++m) {
     const auto model = static_cast<models::ModelIndex>(m);
     core::RandomStream random(seed, 0, 0, model, core::Purpose::kParameters);
-    // Ranges may allow more together than a mesh can hold: then draw again, but not for ever.
+    // Parameters at their upper ends may give a mesh that is too large. Then draw again, a few
+    // times.
     std::size_t found = 0;
     for (std::size_t tries = 0; found < count && tries < 100 * count; ++tries) {
       const models::Parameters p = random_parameters(registry[model], random);

@@ -12,6 +12,7 @@
 
 namespace psygen::synthesis {
 
+// What one value of a parameter costs.
 struct CurvePoint {
   double value = 0;       // of the parameter
   double seconds = 0;     // mean over the seeds
@@ -39,6 +40,7 @@ std::vector<CostCurve> cost_curves(const models::Registry& registry, const CostM
 std::vector<CostSample> random_samples(const models::Registry& registry, std::size_t count,
                                        std::uint64_t seed);
 
+// How far predictions are off: for a level, for a type, and for all of them.
 struct LevelAccuracy {
   models::ModelIndex model = 0;
   int level = 0;

@@ -12,6 +12,7 @@
 
 namespace psygen::synthesis {
 
+// What one synthesis has to do.
 struct Work {
   double operations = 1;
   double triangles = 0;  // of the level
@@ -19,6 +20,7 @@ struct Work {
   friend bool operator==(const Work&, const Work&) = default;
 };
 
+// The line and its correction. Default: everything takes no time.
 struct CostFit {
   static constexpr std::size_t kMaxKnots = 8;
   struct Knot {
@@ -32,6 +34,7 @@ struct CostFit {
   std::size_t knot_count = 0;           // 0: the line as it is
   std::array<Knot, kMaxKnots> knots{};  // ascending; linear between them and on
 
+  // Seconds of one core: by the line, the factor over steps, and both together.
   double line_seconds(const Work& work) const {
     return fixed_s + per_operation_s * work.operations + per_triangle_s * work.triangles +
            per_step_s * work.steps;
@@ -40,6 +43,7 @@ struct CostFit {
   double seconds(const Work& work) const { return line_seconds(work) * correction(work); }
 };
 
+// How long one synthesis took.
 struct Measurement {
   Work work;
   double seconds = 0;  // above 0

@@ -1,8 +1,8 @@
 // How long a synthesis takes: one measured curve over operations, triangles and steps
 // (cost_fit.hpp) per model type and level (paper, sections 5.2 and 6: the constants are computed at
 // start-up). Calibrated in well under a second, then corrected by every finished request, which
-// meets colder caches (cost_correction.hpp); the error of its own predictions is kept, so that a
-// schedule never rests on a figure that nobody checked.
+// meets colder caches (cost_correction.hpp); it keeps the error of its own predictions, so
+// every figure that a schedule uses has been checked.
 // One thread. Not a profiler. predict() and observe() are O(1) beside the type's complexity(),
 // mesh_size() and steps().
 #pragma once
@@ -20,11 +20,13 @@
 
 namespace psygen::synthesis {
 
+// A model to measure, with legal parameters of its type.
 struct CostSample {
   models::ModelIndex model = 0;
   models::Parameters parameters;
 };
 
+// How long and how exactly calibration measures.
 struct CalibrationOptions {
   // Wall-clock time after which nothing more is measured. A level whose predicted time does not fit
   // any more is skipped, so that only a model that is slower than its own formula says can run
@@ -38,6 +40,7 @@ struct CalibrationOptions {
   std::function<double()> cpu_clock = {};   // default: core::thread_cpu_seconds
 };
 
+// What calibration found out about one level of a type.
 struct LevelCalibration {
   models::ModelIndex model = 0;
   int level = 0;
@@ -50,10 +53,11 @@ struct LevelCalibration {
 struct WorkRange {
   static constexpr double kSlack = 1.25;  // beyond either end
   Work least, most;
-  // Whether as little and as much was measured: what lies beyond is predicted, but nobody checked.
+  // Whether work of this size lies within what was measured. Predictions beyond are unchecked.
   bool holds(const Work& work) const;
 };
 
+// What calibration found out, and what it took.
 struct CalibrationReport {
   std::vector<LevelCalibration> levels;
   double seconds = 0;                // wall-clock time spent
@@ -63,12 +67,14 @@ struct CalibrationReport {
   std::vector<std::string> failures;  // "rock level 2 threw: ...": those are not measured
 };
 
+// How far predictions were from what requests took.
 struct CostError {
   std::uint64_t count = 0;  // observations over which the percentiles are taken, at most 4,096
   double p50_percent = 0;   // of |predicted − measured| / measured
   double p95_percent = 0;
 };
 
+// The registry must outlive it.
 class CostModel {
  public:
   // Before calibration every step takes what its type says, and a triangle 5 ns.
@@ -82,7 +88,7 @@ class CostModel {
 
   // What synthesising it has to do. Where the formula fails (throws, NaN, not positive) one
   // operation, where the size is unknown no triangle. `size`, if given, is set to the size of the
-  // mesh, so that nobody need count it again; to nothing where the type does not tell it.
+  // mesh, so that it is not counted twice; to nothing if the type cannot tell it.
   Work work(models::ModelIndex model, const models::Parameters& parameters, int level,
             std::optional<models::MeshSize>* size = nullptr) const;
   // Seconds of one core with warm caches, by the calibrated curve. Finite and positive for any

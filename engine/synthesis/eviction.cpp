@@ -1,5 +1,5 @@
 // The part of GeometryCache that keeps the budget: what is used, what is on its way back, and which
-// meshes go. What nobody wants goes ahead of need, the oldest first; the order of eviction of all
+// meshes go. Unwanted meshes go ahead of need, the oldest first; the order of eviction of all
 // the others is selected once per batch and then walked.
 #include <algorithm>
 #include <utility>
@@ -33,7 +33,7 @@ void GeometryCache::keep_room_free() {
   }
 }
 
-// The mesh that nobody wants for longest; false if there is none.
+// Evicts the mesh that is unwanted for longest. False if there is none.
 bool GeometryCache::evict_unwanted() {
   while (const std::optional<MeshHandle> mesh = unwanted_.pop()) {
     const MeshRecord* r = get(*mesh);

@@ -27,6 +27,7 @@
 
 namespace psygen::synthesis {
 
+// All that the cache knows of one mesh.
 struct MeshRecord {
   MeshKey key;
   models::MeshSize size;
@@ -34,7 +35,7 @@ struct MeshRecord {
   models::MeshView destination;  // what the modeler writes; only while requested
   core::Bounds tight;            // of the vertices written; only when ready
   std::any note;                 // what its modeler noted of it; only when ready, not in the budget
-  std::uint64_t owner = 0;       // the caller's name for whoever asked, e.g. an entity
+  std::uint64_t owner = 0;       // the caller's name for the one that asked, e.g. an entity
   Rank rank;
   std::uint32_t generation = 0;
   MeshState state = MeshState::kEmpty;
@@ -43,19 +44,21 @@ struct MeshRecord {
   bool still_writing = false;  // failed, but a hung modeler holds the destination
 };
 
+// A mesh that was taken to make room.
 struct Eviction {
   std::uint64_t owner = 0;
   MeshKey key;
   MeshHandle handle;  // stale by now
 };
 
+// Figures of the cache: of now, and counts since it was made.
 struct CacheStats {
   std::uint64_t budget_bytes = 0;
   std::uint64_t capacity_bytes = 0;  // of the memory: below the budget where the system has no more
   std::uint64_t limit_bytes = 0;     // the budget, or less for a while after memory ran out
   std::uint64_t bytes = 0;           // used now, everything counted
   std::uint64_t visible_bytes = 0;   // of meshes whose rank is that of something visible
-  std::uint64_t unwanted_bytes = 0;  // of ready meshes that nobody asks for
+  std::uint64_t unwanted_bytes = 0;  // of ready meshes that are unwanted
   std::uint64_t peak_bytes = 0;
   std::uint64_t hits = 0, misses = 0;  // of look_up()
   std::uint64_t evictions = 0;
@@ -88,6 +91,7 @@ class EvictedKeys {
   std::vector<std::uint64_t> table_;
 };
 
+// One cache in one memory.
 class GeometryCache {
  public:
   static constexpr std::size_t kMaxFailures = 1u << 16;  // remembered; the oldest are forgotten
@@ -116,7 +120,7 @@ class GeometryCache {
 
   // Starts a batch of reservations (a tick): enforces the budget, forgets who waits for room, and
   // keeps a little room free for this batch and the next ones, as long as there is something that
-  // nobody wants: what is evicted only when room is needed comes back frames later.
+  // unwanted: memory that is freed only when it is needed comes back some frames later.
   void begin_batch();
 
   // Room for the mesh `key`, exactly as large as its type says, evicting ready meshes that
@@ -140,7 +144,7 @@ class GeometryCache {
   void settle(MeshHandle handle);
   // Gives back a reservation that no modeler claimed.
   void cancel(MeshHandle handle);
-  // Nobody needs the mesh any more: a ready one goes at once, a requested one as soon as its
+  // The mesh is no longer needed: a ready one goes at once, a requested one as soon as its
   // modeler is done. Failed ones stay remembered.
   void release(MeshHandle handle);
 

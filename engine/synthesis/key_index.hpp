@@ -11,9 +11,11 @@
 
 namespace psygen::synthesis {
 
+// Empty at first.
 class KeyIndex {
  public:
   KeyIndex() : entries_(64) {}
+  // How many keys are there.
   std::size_t size() const { return size_; }
 
   // The slot with this hash for which same_key(slot) holds, or kNoSlot.

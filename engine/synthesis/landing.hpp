@@ -11,6 +11,7 @@
 
 namespace psygen::synthesis {
 
+// What one land() did, in meshes.
 struct LandingReport {
   std::uint32_t ready = 0;
   std::uint32_t failed = 0;   // threw, or was given up

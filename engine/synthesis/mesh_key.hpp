@@ -13,6 +13,7 @@
 
 namespace psygen::synthesis {
 
+// Names a mesh of the world.
 struct MeshKey {
   core::BlockCoord block;
   std::uint32_t index = 0;            // which model of the block; 0 is usually its terrain
@@ -41,11 +42,14 @@ constexpr MeshKey spare_of(MeshKey key) {
 
 // empty → requested → ready, or failed. A key that the cache does not know is empty.
 enum class MeshState : std::uint8_t { kEmpty, kRequested, kReady, kFailed };
+// "empty", "requested", "ready", "failed".
 std::string_view name_of(MeshState state);
 
+// A place in the cache.
 using Slot = std::uint32_t;
 inline constexpr Slot kNoSlot = UINT32_MAX;
 
+// Names a place in the cache and its tenant. Null by default.
 struct MeshHandle {
   Slot slot = kNoSlot;
   std::uint32_t generation = 0;

@@ -1,7 +1,7 @@
-// Meshes for whoever draws them: the one front of this folder. Say every tick what is wanted, plan,
-// and take what has landed; what is kept is ranked, and the worst gives way when room is needed.
-// Behind it are the cost model, the planner, the modelers and the cache, which are private here and
-// tested alone. Not the judge of what is wanted (visibility, scene).
+// Supplies meshes; the only front of this folder. The caller says every tick what it wants, plans,
+// and lands what has arrived. Kept meshes are ranked, and the worst ones are evicted when memory is
+// needed. The cost model, the planner, the modelers and the cache are private parts with tests of
+// their own. It does not decide what is wanted (visibility and scene do).
 //
 // Main thread only. Nothing blocks except wait() and the destructor.
 #pragma once
@@ -22,6 +22,7 @@
 
 namespace psygen::synthesis {
 
+// One for each scene.
 class MeshSupply {
  public:
   // Nothing else may be called before open().
@@ -42,7 +43,7 @@ class MeshSupply {
   unsigned start_modelers(const SynthesisOptions& options);
   // Why there are fewer modelers than asked for; empty if there are not.
   const std::string& shortage() const { return manager_->shortage(); }
-  // From now on modelers get only the processor time that nobody else wants.
+  // From now on modelers get only the processor time that no other program wants.
   void lower_priority() { manager_->lower_priority(); }
 
   // What is there -------------------------------------------------------------------------------
@@ -64,6 +65,7 @@ class MeshSupply {
   void begin_wants() { wants_.clear(); }
   // Its parameters must live until the next begin_wants().
   void want(const Want& want) { wants_.push_back(want); }
+  // What was wanted since begin_wants(), in that order.
   std::span<const Want> wants() const { return wants_; }
   // Replaces the plan of the modelers by one for these wants; see Planner::plan().
   PlanReport plan(const PlanLimits& limits, Policy policy);
@@ -75,6 +77,7 @@ class MeshSupply {
   // What has come -------------------------------------------------------------------------------
   // Takes what modelers have finished since the last call. Returns it; it waits for land().
   std::span<const Completion> collect();
+  // Whether something was collected and not landed.
   bool has_arrived() const { return !arrived_.empty(); }
   struct Landed {
     std::vector<Completion> completions;  // oldest first, failed ones too
@@ -96,6 +99,7 @@ class MeshSupply {
   std::span<const Eviction> take_evictions() { return cache_->take_evictions(); }
   // These meshes are drawn now, for the statistics.
   void note_drawn(std::span<const MeshHandle> handles) { cache_->note_drawn(handles); }
+  // Changes the budget; see GeometryCache::set_budget().
   void set_budget(std::uint64_t bytes) { cache_->set_budget(bytes); }
 
   // Waiting and figures -------------------------------------------------------------------------
@@ -103,7 +107,9 @@ class MeshSupply {
   bool wait(const std::function<bool()>& go_on = {}) { return manager_->wait_all(go_on); }
   // Requests that are planned and not finished.
   std::uint64_t outstanding() const { return manager_->outstanding(); }
+  // Requests whose modelers hung and were given up.
   const std::vector<HungRequest>& hung() const { return manager_->hung(); }
+  // Figures of the cache and of the modelers, since open().
   CacheStats stats() const { return cache_->stats(); }
   SynthesisStats modeler_stats() const { return manager_->stats(); }
   // All slots of the cache; free ones are empty.

@@ -51,7 +51,7 @@ void Modeler::perform(Workshop& workshop, const Request& request) {
   execute(workshop);
 }
 
-// Then what the request and the hook refer to may be gone.
+// True once the request and what the hook refers to may be gone.
 bool Modeler::is_given_up() const {
   return (state_.load(std::memory_order_acquire) & kPhaseMask) == kGivenUp;
 }
@@ -93,8 +93,8 @@ models::MeshView Modeler::scratch_for(const models::MeshView& destination) {
            destination.indices.size()}};
 }
 
-// Of what the present request needs. Who does nothing for a while, whether it slept or others had
-// its processor, comes back to caches that are full of something else.
+// How warm the caches are for this request. After a pause, in sleep or without a processor, they
+// hold other data.
 Warmth Modeler::warmth_at(double now_s) {
   constexpr double kForgotten_s = 100e-6;
   if (now_s - finished_s_ > kForgotten_s) warm_.clear();

@@ -48,6 +48,7 @@ struct ModelerCounters {
   std::atomic<std::uint64_t> locks{0}, retries{0};
 };
 
+// One modeler. Its functions are for its own thread unless they say otherwise.
 class Modeler {
  public:
   Modeler(std::uint32_t number, std::shared_ptr<PlanBoard::Reader> reader)
@@ -65,10 +66,12 @@ class Modeler {
   // Main thread: whether a request that runs now was started before `limit_s`.
   bool is_older(double limit_s) const;
 
+  // Whether the main thread has given it up. Any thread.
   bool given_up() const {
     return (state_.load(std::memory_order_acquire) & kPhaseMask) == kGivenUp;
   }
 
+  // Its number, its view of the board, its completions and its counters.
   std::uint32_t number() const { return number_; }
   const std::shared_ptr<PlanBoard::Reader>& reader() const { return reader_; }
   CompletionQueue& queue() { return queue_; }

@@ -15,7 +15,7 @@ void PlanBoard::remove_reader(const std::shared_ptr<Reader>& reader) {
   std::erase(readers_, reader);
 }
 
-// A plan that nobody looks at any more, to use its memory again, or a new one.
+// A plan without readers, to reuse its memory, or a new one.
 std::unique_ptr<PlanBoard::Plan> PlanBoard::take_plan() {
   for (auto& plan : plans_) {
     const bool read = std::any_of(readers_.begin(), readers_.end(), [&](const auto& reader) {

@@ -13,6 +13,7 @@
 
 namespace psygen::synthesis {
 
+// The board on which the newest plan is published.
 class PlanBoard {
   struct Plan {
     std::vector<Request> requests;
@@ -25,14 +26,14 @@ class PlanBoard {
     std::atomic<const Plan*> plan{nullptr};
   };
 
-  // Main thread. Readers live as long as whoever holds them; the board keeps its share.
+  // Main thread. A reader lives as long as its holder; the board shares it.
   std::shared_ptr<Reader> add_reader();
   void remove_reader(const std::shared_ptr<Reader>& reader);
 
-  // Main thread: hangs up a plan and wakes whoever waits. Requires that the last one is closed.
+  // Main thread: publishes a plan and wakes waiting readers. Requires that the last one is closed.
   void publish(std::vector<Request>&& requests);
-  // Main thread: nobody claims from the current plan any more. Appends what nobody claimed, in
-  // order, and returns how many requests had been claimed from it.
+  // Main thread: closes the current plan, appends its unclaimed requests in order, and returns how
+  // many were claimed from it.
   std::size_t close(std::vector<Request>& unclaimed);
 
   // Modelers: the next request of the newest plan, or false when there is none. Counts how often it

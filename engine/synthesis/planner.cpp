@@ -123,7 +123,7 @@ void Planner::give_back_unwanted(GeometryCache& cache, PlanReport& report) {
   }
 }
 
-// Gives back the reservation that would be served last, so that its room can serve a better one.
+// Gives back the reservation that would be served last, to make room for a better one.
 bool Planner::give_back_last(GeometryCache& cache, PlanReport& report) {
   while (!last_first_.empty()) {
     const std::uint32_t position = last_first_.back();

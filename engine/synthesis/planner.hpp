@@ -21,6 +21,7 @@
 
 namespace psygen::synthesis {
 
+// A mesh that is wanted, and how urgently.
 struct Want {
   MeshKey key;
   const models::Parameters* parameters = nullptr;  // read during plan() only; see set_edits()
@@ -30,6 +31,7 @@ struct Want {
   bool at_once = false;  // made by this thread if it may be, even beyond PlanLimits::seconds_here
 };
 
+// Limits of one plan.
 struct PlanLimits {
   double seconds_ahead = 0.25;  // predicted work per modeler in one plan
   std::uint32_t max_requests = 4096;
@@ -47,6 +49,7 @@ struct PlanLimits {
   std::uint32_t max_new_hidden = UINT32_MAX;
 };
 
+// What planning did.
 struct PlanReport {
   std::uint32_t published = 0;  // requests in the new plan: carried + reserved − executed
   std::uint32_t carried = 0;    // unclaimed ones of the last plan that are wanted still
@@ -61,6 +64,7 @@ struct PlanReport {
   double predicted_seconds = 0;       // of the whole plan, one core
 };
 
+// Makes the plans of one cache. Keeps what is requested from plan to plan.
 class Planner {
  public:
   // From now on the parameters of wants refer to this layer, or to none. Requests keep their own.

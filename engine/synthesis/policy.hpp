@@ -10,6 +10,7 @@
 
 namespace psygen::synthesis {
 
+// In which order requests are synthesised.
 enum class Policy : std::uint8_t {
   kFifo,      // first come, first served (the paper's prototype)
   kPlp,       // by rank: group, PLP key, distance; then the shorter one
@@ -20,9 +21,11 @@ enum class Policy : std::uint8_t {
 inline constexpr Policy kAllPolicies[] = {Policy::kFifo, Policy::kPlp, Policy::kShortest,
                                           Policy::kLongest, Policy::kDeadline};
 
+// The names of policies on the command line; policy_from() gives nothing for others.
 std::string_view name_of(Policy policy);  // "fifo", "plp", "shortest", "longest", "deadline"
 std::optional<Policy> policy_from(std::string_view name);
 
+// The values of a request that policies sort by.
 struct ScheduleKey {
   Rank rank;
   float deadline_s = 0;  // seconds from now until it is visible; 0 for what is in view

@@ -5,7 +5,7 @@
 // Two laws make eviction safe. What is visible is taken only when nothing invisible is left,
 // because the visible groups come first. And a request takes only what may_evict() allows: what is
 // strictly worse, or what is drawn finer than it need be and can come back smaller. So evictions in
-// turn end, and room is never held by detail that nobody wants.
+// turn end, and unwanted detail never holds memory.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 
 namespace psygen::synthesis {
 
+// What a mesh or a request is for, most important first.
 enum class RankGroup : std::uint8_t {
   kVisibleHole = 0,    // in view, drawn at no level
   kVisibleFine = 1,    // in view, drawn finer than wanted; of a request: what frees that room
@@ -23,12 +24,14 @@ enum class RankGroup : std::uint8_t {
   kDrawn = 3,          // in view and drawn now; of a request: the same anew
   kPredicted = 4,      // will be in view, by deadline
   kPrefetch = 5,       // around the camera, by PLP layer
-  kUnwanted = 6,       // nobody asks for it; kept while there is room
+  kUnwanted = 6,       // not asked for; kept while there is room
 };
+// Whether it is of something in view.
 constexpr bool is_visible(RankGroup group) {
   return group <= RankGroup::kDrawn;
 }
 
+// Default: unwanted().
 class Rank {
  public:
   static constexpr std::uint32_t kMaxMajor = (1u << 24) - 1;
@@ -65,6 +68,7 @@ class Rank {
     return rank;
   }
 
+  // The group, and all of it as an integer that sorts alike.
   constexpr RankGroup group() const { return static_cast<RankGroup>(bits_ >> 56); }
   constexpr std::uint64_t bits() const { return bits_; }
   friend constexpr auto operator<=>(Rank, Rank) = default;
@@ -78,7 +82,7 @@ class Rank {
 };
 static_assert(sizeof(Rank) == 8);
 
-// Where a ready mesh stands in the order of eviction, larger goes first: what nobody wants is all
+// Where a ready mesh stands in the order of eviction, larger goes first: unwanted meshes are all
 // alike, and all visible groups are one, of which those that are too fine go first; then layer and
 // distance count.
 constexpr std::uint64_t eviction_order(Rank rank) {

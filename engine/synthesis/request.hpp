@@ -15,11 +15,12 @@
 
 namespace psygen::synthesis {
 
+// One mesh to synthesise, and where it goes.
 struct Request {
   MeshHandle handle;
   MeshKey key;
   models::Parameters parameters;
-  models::MeshView destination;  // reserved for this request; written by whoever claims it
+  models::MeshView destination;  // reserved for this request; its modeler writes it
   models::MeshSize size;
   Work work;  // for the cost model
   RequestCost cost;
@@ -28,11 +29,12 @@ struct Request {
   std::shared_ptr<const models::EditLayer> edits;
 };
 
-// What shall be known of a mesh when it lands, so that nobody has to read it back: any value, a
-// pure function of the request and of the mesh that was made for it. Called by modelers, several at
-// once. A std::exception fails the request.
+// What the main thread must know of a mesh when it lands, so that it need not be read back: any
+// value, a pure function of the request and of the mesh that was made for it. Called by modelers,
+// several at once. A std::exception fails the request.
 using Annotate = std::function<std::any(const Request&, const models::MeshView& mesh)>;
 
+// The result of one request.
 struct Completion {
   MeshHandle handle;
   MeshKey key;

@@ -56,8 +56,8 @@ std::vector<SimulatedJob> initial_fill(std::span<const SimulatedJob> jobs) {
   return fill;
 }
 
-// Whether it could be in time. What is due at once stands beside the picture, on ground that is in
-// view: no policy could have it by then.
+// Whether a request could be in time. Models that are due at once stand beside the picture on
+// ground in view: no policy could have them by then.
 bool is_due_later(const SimulatedJob& job) {
   return job.deadline_s < kNoDeadline && job.deadline_s > job.arrival_s + kLeastNoticeSeconds;
 }

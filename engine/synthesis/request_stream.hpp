@@ -23,6 +23,7 @@ std::string stream_text(std::vector<SimulatedJob> jobs);
 // Fails with kParse, naming `file` and the line. Times must be finite and not negative.
 core::Result<std::vector<SimulatedJob>> parse_stream(std::string_view text, std::string_view file);
 
+// How one policy serves the recorded requests.
 struct PolicyFigures {
   Policy policy = Policy::kFifo;
   // What was wanted first of all, alone (the initial fill): its makespan, and how much of it
@@ -36,7 +37,7 @@ struct PolicyFigures {
   double lateness_mean_s = 0, lateness_max_s = 0;
 };
 
-// How much there is to do for so many modelers.
+// How much work recorded jobs are for a number of modelers.
 struct StreamLoad {
   std::size_t requests = 0;
   double span_s = 0;   // from the first to the last arrival

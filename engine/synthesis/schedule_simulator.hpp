@@ -11,6 +11,7 @@
 
 namespace psygen::synthesis {
 
+// One request to simulate.
 struct SimulatedJob {
   double arrival_s = 0;   // before it the job is unknown
   double seconds = 0;     // what it takes; the prediction is assumed to be right
@@ -18,11 +19,13 @@ struct SimulatedJob {
   Rank rank;
 };
 
+// When a job ran.
 struct SimulatedRun {
   double start_s = 0, finish_s = 0;
   std::uint32_t modeler = 0;
 };
 
+// The result of a simulation.
 struct SimulationResult {
   std::vector<SimulatedRun> runs;  // as the jobs were given
   double makespan_s = 0;           // when the last one is finished

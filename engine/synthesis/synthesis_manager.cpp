@@ -166,8 +166,8 @@ void SynthesisManager::drain_threads(std::vector<Completion>& out) {
   drain_retired(out);
 }
 
-// Which thread executes what, and when, is nobody's business: completions come in the order of the
-// virtual clock, behind those of execute_here(), and say what they took by it. False if there was
+// Any thread may execute any request at any time: completions come in the order of the virtual
+// clock, behind those of execute_here(), and say what they took by it. False if there was
 // no modeler left for some; these have failed.
 bool SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& jobs) {
   std::vector<Request> plan;

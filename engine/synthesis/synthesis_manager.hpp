@@ -22,6 +22,7 @@
 
 namespace psygen::synthesis {
 
+// Options of the modelers.
 struct SynthesisOptions {
   unsigned modelers = 0;               // 0: number of cores − 1, at least 1
   bool hash_content = false;           // fill Completion::content_hash
@@ -40,6 +41,7 @@ struct SynthesisOptions {
 // Number of modelers that `requested` (0: default) stands for on this machine.
 unsigned modeler_count_for(unsigned requested);
 
+// Figures of one modeler.
 struct ModelerStats {
   std::uint32_t modeler = 0;  // kMainThreadModeler: execute_here()
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
@@ -48,6 +50,7 @@ struct ModelerStats {
   std::uint64_t locks = 0, retries = 0;  // see ModelerCounters
 };
 
+// Figures of all modelers.
 struct SynthesisStats {
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
   double cpu_seconds = 0;  // of all modelers
@@ -64,6 +67,7 @@ struct HungRequest {
   double started_s = 0;
 };
 
+// Owns the modelers.
 class SynthesisManager {
  public:
   // Starts as many modelers as it gets threads and memory for; with none nothing is ever finished.
@@ -76,7 +80,7 @@ class SynthesisManager {
   SynthesisManager(const SynthesisManager&) = delete;
   SynthesisManager& operator=(const SynthesisManager&) = delete;
 
-  // Replaces the plan. Modelers take requests from the front. What nobody claimed of the plan
+  // Replaces the plan. Modelers take requests from the front. What was not claimed of the plan
   // before is not lost: the next reclaim() returns it.
   void publish(std::vector<Request>&& plan);
   // Executes a request that was never published, in the calling thread; its completion is collected
@@ -84,12 +88,12 @@ class SynthesisManager {
   // may not get a processor for a while.
   void execute_here(const Request& request);
   // From now on modelers take only what other threads leave of the processors: nice 19 per thread,
-  // where the system can. For when frames begin; before, whoever waits for meshes has nothing else
-  // to do. With a virtual clock the caller waits for them, and they stay as they are.
+  // where the system can. For when frames begin; before, the thread that waits for meshes has
+  // nothing else to do. With a virtual clock the caller waits for them, and they stay as they are.
   void lower_priority() {
     if (!virtual_) workshop_->lowest_priority.store(true, std::memory_order_relaxed);
   }
-  // Closes the plan; returns what nobody claimed, in order. Everything else was or will be
+  // Closes the plan; returns what was not claimed, in order. Everything else was or will be
   // collected.
   std::vector<Request> reclaim();
   // What was finished when the plan was last closed: the next collect() returns it.

@@ -11,6 +11,7 @@
 
 namespace psygen::synthesis {
 
+// The result of one synthesis.
 struct SynthesisOutcome {
   bool ok = false;
   core::Bounds tight;  // if ok
@@ -26,6 +27,7 @@ SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models:
 core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
                                                  const models::Parameters& p, int level);
 
+// Memory on the heap for one mesh.
 class HeapDestination {
  public:
   // Fails as mesh_size_guarded(), and with kOutOfMemory if the heap is exhausted.

@@ -6,7 +6,8 @@
 
 namespace psygen::synthesis {
 
-// Nice 19 for the calling thread alone (Linux): it gets what nobody else wants.
+// Nice 19 for the calling thread alone (Linux): it gets the processor time that no other thread
+// wants.
 void lower_priority_of_this_thread();
 // At most 15 characters are kept.
 void name_this_thread(const std::string& name);

@@ -1,4 +1,4 @@
-// Ready meshes that nobody wants, in the order in which they became so. Knows nothing of what they
+// Unwanted ready meshes, in the order in which they became unwanted. Knows nothing of what they
 // are: some may be wanted again, or gone.
 #pragma once
 
@@ -12,9 +12,10 @@
 
 namespace psygen::synthesis {
 
+// Empty at first.
 class UnwantedMeshes {
  public:
-  // From now on nobody wants it. Of a slot only what was pushed last counts.
+  // Adds a mesh. Of several entries for a slot only the last counts.
   void push(MeshHandle mesh) {
     if (mesh.slot >= turns_.size()) turns_.resize(std::size_t{mesh.slot} + 1);
     turns_[mesh.slot] = ++turn_;
@@ -23,7 +24,7 @@ class UnwantedMeshes {
     std::erase_if(queue_, [this](const Entry& entry) { return !is_last(entry); });
   }
 
-  // The one that nobody wants for longest.
+  // The mesh that is unwanted for longest.
   std::optional<MeshHandle> pop() {
     while (!queue_.empty()) {
       const Entry first = queue_.front();

@@ -24,7 +24,8 @@ void VirtualModelers::publish(std::vector<Request>&& plan, double now_s) {
   published_s_ = now_s;
 }
 
-// Whoever is free first claims next. A request that is claimed is finished, whatever comes.
+// The modeler that is free first claims next. A request that is claimed is finished, whatever
+// comes.
 void VirtualModelers::claim_until(double now_s) {
   while (next_ < plan_.size()) {
     const auto first = std::ranges::min_element(free_s_);

@@ -12,6 +12,7 @@
 
 namespace psygen::synthesis {
 
+// Modelers of a virtual clock, all free at 0 s.
 class VirtualModelers {
  public:
   // A request that a modeler claimed, and from when to when it works on it.
@@ -25,7 +26,7 @@ class VirtualModelers {
 
   // Hangs up a plan at `now_s`. Requires that the last one was reclaimed.
   void publish(std::vector<Request>&& plan, double now_s);
-  // What nobody has claimed until `now_s`, in order. Times never go back.
+  // What is unclaimed at `now_s`, in order. Times never go back.
   std::vector<Request> reclaim(double now_s);
   // What is finished at `now_s`, in the order of finishing.
   std::vector<Job> take_finished(double now_s);
@@ -33,6 +34,7 @@ class VirtualModelers {
   // `now_s`.
   std::vector<Job> finish_all(double now_s);
 
+  // How many modelers there are, and how many requests are not finished.
   unsigned count() const { return static_cast<unsigned>(free_s_.size()); }
   std::size_t outstanding() const { return plan_.size() - next_ + running_.size(); }
 
@@ -41,7 +43,7 @@ class VirtualModelers {
 
   std::vector<double> free_s_;  // by modeler: when it is done with what it claimed
   std::vector<Request> plan_;
-  std::size_t next_ = 0;  // of plan_, the first that nobody claimed
+  std::size_t next_ = 0;  // of plan_, the first unclaimed one
   double published_s_ = 0;
   std::vector<Job> running_;
 };

@@ -16,14 +16,6 @@ namespace {
 constexpr double kWidth = 500, kHeight = 300;
 constexpr double kLeft = 62, kRight = 488, kTop = 14, kBottom = 252;
 
-// 1, 2 or 5 times a power of ten, such that `range` has at most about six steps.
-double step_of(double range) {
-  const double raw = std::max(range, 1e-12) / 6;
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  const double ratio = raw / power;
-  return power * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
-}
-
 class Drawing {
  public:
   explicit Drawing(const CurvePlot& plot) : plot_(plot) {
@@ -55,7 +47,7 @@ class Drawing {
   double y_of(double value) const { return kBottom - value / top_ * (kBottom - kTop); }
 
   void draw_axes() {
-    const double y_step = step_of(top_);
+    const double y_step = nice_step(top_, 6);
     for (double value = 0; value <= top_; value += y_step) {
       fmt::format_to(out(),
                      "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
@@ -64,7 +56,7 @@ class Drawing {
     }
     const bool integers =
         std::all_of(plot_.x.begin(), plot_.x.end(), [](double x) { return x == std::floor(x); });
-    const double x_step = std::max(step_of(high_x_ - low_x_), integers ? 1.0 : 1e-9);
+    const double x_step = std::max(nice_step(high_x_ - low_x_, 6), integers ? 1.0 : 1e-9);
     for (double x = std::ceil(low_x_ / x_step) * x_step; x <= high_x_ + 1e-9; x += x_step) {
       fmt::format_to(out(), "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.6g}</text>",
                      x_of(x), kBottom + 18, x);

@@ -57,14 +57,6 @@ void for_each_stretch(std::span<const Column> columns, const Visit& visit) {
   }
 }
 
-// 1, 2 or 5 times a power of ten, such that `range` has about `steps` steps.
-double nice_step(double range, double steps) {
-  const double raw = std::max(range, 1e-9) / steps;
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  const double ratio = raw / power;
-  return power * (ratio <= 1.0 ? 1.0 : ratio <= 2.0 ? 2.0 : ratio <= 5.0 ? 5.0 : 10.0);
-}
-
 std::string tick_text(double value, double step) {
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
   return fmt::format("{:.{}f}", value, decimals);
@@ -314,6 +306,13 @@ std::string escaped(std::string_view text) {
     }
   }
   return result;
+}
+
+double nice_step(double range, double steps) {
+  const double raw = std::max(range, 1e-12) / steps;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double ratio = raw / power;
+  return power * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
 }
 
 std::string plot_html(const Plot& plot) {

@@ -48,6 +48,10 @@ struct Plot {
 // A <figure> element. All text is escaped. At most 900 columns are drawn.
 std::string plot_html(const Plot& plot);
 
+// The step between the ticks of an axis: 1, 2 or 5 times a power of ten, such that `range` has at
+// most `steps` steps. Ranges below 1e-12 count as 1e-12.
+double nice_step(double range, double steps);
+
 // The text with &, <, >, " and ' written as entities.
 std::string escaped(std::string_view text);
 

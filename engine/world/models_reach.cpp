@@ -10,7 +10,8 @@
 namespace psygen::world {
 
 glm::vec2 models_reach_m(const World& world, const models::Registry& registry) {
-  constexpr std::size_t kMaxVaried = 12;  // parameters that are tried at both ends together
+  // How many parameters with a range are tried at both ends in all combinations.
+  constexpr std::size_t kMaxVaried = 12;
   glm::vec2 reach_m(0.0F);
   for (const Scatter& scatter : world.scatter) {
     const models::ModelType& type = registry[scatter.model];

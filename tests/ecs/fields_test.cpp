@@ -4,8 +4,28 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <stdexcept>
 
 #include "tests/ecs/described.hpp"
+
+namespace psygen::ecs::test {
+namespace {
+// A type whose first value cannot be made.
+struct Reluctant {
+  static inline int made = 0;
+  int value = 0;
+  Reluctant() {
+    if (made++ == 0) throw std::runtime_error("not yet");
+  }
+};
+}  // namespace
+}  // namespace psygen::ecs::test
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::ecs::test::Reluctant> {
+  static constexpr std::string_view name = "reluctant";
+  static constexpr auto fields = std::tuple{field("value", &test::Reluctant::value)};
+};
 
 namespace psygen::ecs::test {
 namespace {
@@ -57,6 +77,13 @@ TEST(Fields, a_type_that_says_nothing_is_not_described_and_an_empty_one_has_no_f
   EXPECT_EQ(describe<Position>(), nullptr);
   ASSERT_NE(describe<Hidden>(), nullptr);
   EXPECT_TRUE(describe<Hidden>()->fields.empty());
+}
+
+TEST(Fields, a_constructor_that_throws_is_tried_again_with_the_next_use) {
+  EXPECT_THROW(describe<Reluctant>(), std::runtime_error);
+  const TypeDescription* type = describe<Reluctant>();
+  ASSERT_NE(type, nullptr);
+  EXPECT_EQ(type->fields.size(), 1U);
 }
 
 }  // namespace

@@ -28,4 +28,13 @@ picture 02_world world
 picture 03_model_type model_type
 "$folder/build/04_systems/example_systems" 2 2>/dev/null | tee "$folder/systems.txt"
 grep -qE '^1[12][0-9] steps, block [0-9-]+, [1-9][0-9]+ models seen$' "$folder/systems.txt"
+"$folder/build/05_walking/example_walking" 20 2>/dev/null | tee "$folder/walking.txt"
+grep -qE '^walked [1-9][0-9]+ m, -?0\.0[0-9] m above the ground$' "$folder/walking.txt"
+for run in 1 2; do # the second run starts from what the first one saved
+  "$folder/build/06_felling/example_felling" "$folder/game.save" "$folder/felling$run.png" 2>/dev/null |
+    tee -a "$folder/felling.txt"
+done
+grep -q '; 1 oaks in all$' "$folder/felling.txt" && grep -q '; 2 oaks in all$' "$folder/felling.txt"
+[ "$(cut -d';' -f1 "$folder/felling.txt" | sort -u | wc -l)" -eq 2 ] # two different ones
+picture 07_hud hud
 [ -z "${KEEP_PICTURES:-}" ] || cp "$folder"/*.png "$KEEP_PICTURES"

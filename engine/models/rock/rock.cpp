@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <span>
+#include <vector>
 
 #include "engine/core/assert.hpp"
 #include "engine/models/kit/packing.hpp"
@@ -193,12 +195,32 @@ core::Bounds RockType::synthesize(const Parameters& p, int level, const MeshView
   return mesh_rock(shape_of(p, bounds(p)), topology_, n, out.vertices.data());
 }
 
-// Coarser levels have a subset of the corners of level 0, so their hull lies inside that of level
-// 0.
+// The points that are farthest in 56 directions, each once: those of the surface of a lattice of
+// 4 x 4 x 4 points.
+std::vector<glm::vec3> farthest(const std::vector<glm::vec3>& points) {
+  std::vector<std::size_t> chosen;
+  for (int i = 0; i < 64; ++i) {
+    const glm::ivec3 at = 2 * glm::ivec3(i % 4, i / 4 % 4, i / 16) - 3;
+    if (std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) < 3) continue;
+    const glm::vec3 direction(at);
+    chosen.push_back(static_cast<std::size_t>(
+        std::ranges::max_element(points, {},
+                                 [&](const glm::vec3& p) { return glm::dot(p, direction); }) -
+        points.begin()));
+  }
+  std::ranges::sort(chosen);
+  std::vector<glm::vec3> result;
+  for (const std::size_t i : std::span(chosen.begin(), std::ranges::unique(chosen).begin()))
+    result.push_back(points[i]);
+  return result;
+}
+
+// All corners of rocks with up to two subdivisions. The corners of others, up to four subdivisions,
+// are too many: some of them span nearly the same hull.
 Collider RockType::collider(const Parameters& p) const {
-  constexpr int kSubdivisions = 2;
-  constexpr std::uint32_t kMost = rock_mesh_vertices(kSubdivisions, true);
-  const int n = std::min(subdivisions_at(p, 0), kSubdivisions);
+  constexpr int kAll = 2, kFinest = 4;
+  constexpr std::uint32_t kMost = rock_mesh_vertices(kFinest, true);
+  const int n = std::min(subdivisions_at(p, 0), kFinest);
   const core::Bounds box = bounds(p);
   std::array<core::ModelVertex, kMost> vertices;
   const std::span mesh = std::span(vertices).first(rock_mesh_vertices(n, family_of(p).facet > 0));
@@ -208,8 +230,9 @@ Collider RockType::collider(const Parameters& p) const {
   std::ranges::sort(mesh, {}, place);
   Collider::Hull hull;
   for (const core::ModelVertex& v :
-       mesh.first(mesh.size() - std::ranges::unique(mesh, {}, place).size()))
+       std::span(mesh.begin(), std::ranges::unique(mesh, {}, place).begin()))
     hull.points.push_back(unpack_position(v, box));
+  if (n > kAll) hull.points = farthest(hull.points);
   Collider collider;
   collider.shapes.emplace_back(std::move(hull));
   return collider;

@@ -20,6 +20,7 @@ struct NodeTiles {
   glm::vec3 corner{0.0F};           // of the node, at height 0
   float cell_m = 1, low_m = 0;      // of the grid at its finest; below all ground and its skirts
 
+  // The box of a tile with its skirt.
   core::Bounds box(int column, int row) const;
 };
 

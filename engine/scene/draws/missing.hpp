@@ -27,6 +27,7 @@ struct SeenPiece {
   bool awaits = true;   // … until what is better has been synthesised
 };
 
+// Counts a piece in all figures of what is missing.
 inline void count_seen(const Camera& camera, const SeenPiece& piece, Counters& counters) {
   const double percent = covered_percent(camera, piece.center, piece.radius_m);
   const bool lacks = piece.hole || piece.coarse;

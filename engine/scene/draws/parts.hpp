@@ -20,6 +20,7 @@ class DrawParts {
   DrawParts(const DrawParts&) = delete;
   DrawParts& operator=(const DrawParts&) = delete;
 
+  // Draws a part too. Parts come in the order of the list.
   void add(core::IndexPart part) {
     if (part.first != draw_.part.first + draw_.part.count) {
       flush();

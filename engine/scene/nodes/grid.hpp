@@ -12,11 +12,13 @@
 
 namespace psygen::scene {
 
+// The window of one level.
 class NodeGrid {
  public:
   // A window of 2·radius + 1 nodes of `level` a side, which is the largest that it can have.
   explicit NodeGrid(std::uint8_t level = 0, std::uint32_t radius = 0);
 
+  // The level, and how many nodes the window reaches from its middle and across.
   std::uint8_t level() const { return level_; }
   std::uint32_t radius() const { return radius_; }
   std::uint32_t side() const { return 2 * radius_ + 1; }

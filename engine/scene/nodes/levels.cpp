@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kMinSplitRatio = 0.6, kMaxSplitRatio = 3.0;
 constexpr double kMergeFactor = 1.1;
-// Children exist before their parent is split by so much of its distance, and nodes of the coarsest
-// level before they can be seen.
+// Children exist from this multiple of the distance at which their parent is split, and nodes of
+// the coarsest level from this multiple of the view distance.
 constexpr double kAheadFactor = 1.1;
 // The error of a level of the terrain type is the sum of what its octaves could lose. The largest
 // error in a block of the paper's world is 0.9 of it and in nodes of level 1 to 7 1.1 to 2.5

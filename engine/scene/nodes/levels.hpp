@@ -13,6 +13,7 @@
 
 namespace psygen::scene {
 
+// What the nodes of one level have in common.
 struct NodeLevel {
   double size_m = 0;             // side of a node
   double ground_error_m = 0;     // of the ground that its nodes draw (blocks: when not near)
@@ -28,7 +29,7 @@ struct NodeLevel {
 std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
                                    const Settings& settings, const models::ModelType* merged);
 
-// How many nodes of a level a world has along an axis with so many blocks; 0: endless.
+// How many nodes of a level a world of this many blocks has along an axis. 0 stands for endless.
 constexpr std::int64_t nodes_along(std::int64_t blocks, std::size_t level) {
   return (blocks + (std::int64_t{1} << level) - 1) >> level;
 }

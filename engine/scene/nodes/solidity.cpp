@@ -10,9 +10,9 @@
 namespace psygen::scene {
 namespace {
 
-// What lies behind a node is to be seen in so much height above its lowest ground.
+// Height above a node's lowest ground in which things behind it can be seen, in metres.
 constexpr float kBandM = 80.0F;
-// Of the light through a model's box, what it stops.
+// Share of the light through a model's box that the model stops.
 constexpr float kModelDensity = 0.4F;
 // The ground between five places is somewhat higher and lower than at these.
 constexpr double kReliefFactor = 1.2;

@@ -9,7 +9,7 @@
 namespace psygen::scene {
 namespace {
 
-// Enough of a type to know how large they are.
+// How many models of a type are measured.
 constexpr std::size_t kSamples = 8;
 constexpr core::Bounds kWhole{glm::vec3(-1.0F), glm::vec3(1.0F)};
 

@@ -7,8 +7,8 @@ namespace psygen::scene {
 namespace {
 
 constexpr double kNewest = 1.0 / 120;  // share of the newest frame
-// While triangles have hardly changed nothing tells how they count: they make no difference then,
-// and with this spread, in parts of their mean, half of what was measured.
+// While triangle counts have hardly changed, the slope cannot be measured and counts as zero. With
+// this spread of the counts, relative to their mean, half of the measured slope counts.
 constexpr double kTrustedSpread = 0.1;
 
 }  // namespace

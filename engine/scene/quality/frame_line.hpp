@@ -5,6 +5,7 @@
 
 namespace psygen::scene {
 
+// The fit over the frames observed so far.
 class FrameLine {
  public:
   // One frame; the last ones of about two seconds at 60 Hz count.

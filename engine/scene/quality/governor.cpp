@@ -12,7 +12,7 @@ constexpr double kSmoothing = 0.1;  // share of the newest frame; the first coun
 constexpr double kStepUp = 0.012, kStepDown = 0.003, kStartStepDown = 0.012;
 constexpr double kFullStepAt = 0.25;
 constexpr double kMostSteps = 3;
-// Where too many triangles are seen, so much of the error is added in a frame at most, beside that.
+// With too many triangles in view, the error also grows by at most this share in a frame.
 constexpr double kJump = 0.12;
 
 }  // namespace
@@ -33,7 +33,7 @@ void Governor::observe(double frame_ms, double triangles) {
   next_ = (next_ + 1) % kLagFrames;
 }
 
-// By the times of the last frames.
+// Changes the error by the times of the last frames.
 void Governor::follow() {
   const double target_ms = settings_.target_ms;
   const double over = smoothed_ms_ / target_ms - 1;

@@ -14,12 +14,14 @@
 
 namespace psygen::scene {
 
+// What the governor holds, and how far it may go.
 struct GovernorSettings {
   double target_ms = 0;      // of a frame; 0: the error stays at its lower bound
   double max_factor = 4;     // upper bound of the error over its lower bound, >= 1
   double rest_share = 0.85;  // of the target: between it and the target nothing changes
 };
 
+// The factor on the allowed error. Follows every observe().
 class Governor {
  public:
   explicit Governor(const GovernorSettings& settings = {})

@@ -1,6 +1,5 @@
 #include "engine/scene/quality/mesh_choice.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -15,11 +14,13 @@ using synthesis::RankGroup;
 // How long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
 
-// The wanted level; with `coarse_first` the coarsest one first; the nearest one to it where it
-// cannot be synthesised. kNoLevel if nothing is better than what is drawn.
+// The wanted level; for a hole in view whose wanted level is not cached, the coarsest one first;
+// the nearest one to it where it cannot be synthesised. kNoLevel if nothing is better than what is
+// drawn.
 std::uint8_t level_to_request(const ChoiceRules& rules, const Detail& detail, const Demand& demand,
-                              bool coarse_first) {
+                              bool hole, bool cached) {
   const auto levels = static_cast<int>(detail.level_count);
+  const bool coarse_first = hole && rules.coarse_first && !cached;
   // A modeler that holds the coarsest level may get no processor for a while. Then the next level
   // is asked for, unless the request waits for memory.
   const bool stuck = !rules.settle && !rules.short_of_memory && !rules.awaits_memory &&
@@ -46,10 +47,7 @@ std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8
 }
 
 std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                         float radius_m, float distance_m, std::uint8_t drawn_level) {
-  const float size_m = detail.seen_size_m > 0 ? detail.seen_size_m : 2 * radius_m;
-  const float size_pixels =
-      size_m * rules.pixels_per_radian / std::max(distance_m + radius_m, rules.near_m);
+                         float size_pixels, float distance_m, std::uint8_t drawn_level) {
   if (node.level == 0 && size_pixels < rules.min_size_pixels) return kNoLevel;
   if (!rules.levels_of_detail) return 0;
   const std::span<const float> errors(detail.error_m.data(), detail.level_count);
@@ -60,15 +58,18 @@ std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const D
                                node.error_factor * error_pixels, keep ? drawn_level : -1));
 }
 
+bool is_hole(const NodeView& node, const Demand& demand, bool in_view) {
+  return demand.drawn_level == kNoLevel && in_view && !node.covered;
+}
+
 MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
                        const Demand& demand, bool in_view, bool is_ground, bool cached) {
   const bool wanted = in_view || (node.wanted && !node.in_view);
   const bool nothing = demand.drawn_level == kNoLevel;
-  const bool hole = nothing && in_view && !node.covered;
+  const bool hole = is_hole(node, demand, in_view);
   MeshChoice choice;
   choice.there = demand.drawn_level == demand.wanted_level && !demand.stale;
-  if (!choice.there)
-    choice.request = level_to_request(rules, detail, demand, hole && rules.coarse_first && !cached);
+  if (!choice.there) choice.request = level_to_request(rules, detail, demand, hole, cached);
   const bool too_fine =
       !is_ground && !nothing && choice.request != kNoLevel && choice.request > demand.drawn_level;
   const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;
@@ -76,9 +77,9 @@ MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Det
   if (hole) {
     choice.requested = RankGroup::kVisibleHole;
   } else if (wanted && choice.request == demand.drawn_level) {
-    // Ground that is only lit anew waits for what lacks detail: with a fast sun it is all of it.
+    // New light on ground waits for missing detail: a fast sun changes the light of all ground.
     choice.requested = RankGroup::kDrawn;
-  } else if (wanted) {  // what frees room is urgent only where room is short
+  } else if (wanted) {  // freeing memory is urgent only while memory is short
     choice.requested =
         too_fine && rules.short_of_memory ? RankGroup::kVisibleFine : RankGroup::kVisibleCoarse;
   }

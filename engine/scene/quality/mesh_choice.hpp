@@ -13,7 +13,6 @@ namespace psygen::scene {
 // What all choices of one tick have in common.
 struct ChoiceRules {
   float pixels_per_radian = 1;
-  float near_m = 0.1F;           // of the projection
   float min_size_pixels = 0;     // models smaller than this are not drawn
   float error_pixels = 1;        // that nodes may have
   float model_error_pixels = 1;  // that single models may have
@@ -43,11 +42,11 @@ struct NodeView {
 // The level that the ground of a node should show.
 std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8_t drawn_level);
 
-// The level that a model of this radius should show at this distance from the camera; kNoLevel if
-// it is too small on screen to be drawn. Its drawn level is kept within the hysteresis of
+// The level that a model of this size on screen should show at this distance from the camera;
+// kNoLevel if it is too small to be drawn. Its drawn level is kept within the hysteresis of
 // visibility::choose_level().
 std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                         float radius_m, float distance_m, std::uint8_t drawn_level);
+                         float size_pixels, float distance_m, std::uint8_t drawn_level);
 
 // What to do about the mesh of an entity whose wanted level is known.
 struct MeshChoice {
@@ -58,10 +57,14 @@ struct MeshChoice {
   synthesis::RankGroup requested = synthesis::RankGroup::kPrefetch;  // of the request
   bool at_once = false;  // the request fills so much of the picture that nothing goes before it
 };
-// `in_view`: of the mesh itself. `cached`: the wanted level is in the cache, so a hole needs no
-// coarser one first. Ground never gives way for being too fine: that would open the picture.
+// `in_view`: of the mesh itself. `cached`: the mesh of the wanted level is ready in the cache; only
+// read for holes. Ground never gives way for being too fine: that would open the picture.
 MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
                        const Demand& demand, bool in_view, bool is_ground, bool cached = false);
+
+// True if the picture lacks something here: the mesh is in view, and neither it nor the mesh of an
+// ancestor of its node can be drawn.
+bool is_hole(const NodeView& node, const Demand& demand, bool in_view);
 
 // The rank of a mesh on a node, at this distance from the camera.
 synthesis::Rank rank_on(const NodeView& node, synthesis::RankGroup group, float distance_m);

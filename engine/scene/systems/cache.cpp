@@ -2,7 +2,6 @@
 // it has, ranks what it keeps, and plans what is missing. Nodes that the picture depends on are
 // visited in every tick, front to back; those around the camera every 8th.
 #include <algorithm>
-#include <glm/geometric.hpp>
 #include <limits>
 
 #include "engine/scene/draws/seen.hpp"
@@ -31,8 +30,9 @@ constexpr double kCoarsePatienceSeconds = 0.03;
 struct CacheTick {
   ChoiceRules choice;
   std::uint32_t tick = 0;
+  float near_m = 0;      // of the projection
   bool request = true;   // what is missing is synthesised
-  bool roomy = false;    // ranks do not matter: only what nobody wants need go
+  bool roomy = false;    // ranks do not matter: only unwanted meshes will be evicted
   bool shadows = false;  // what is out of view may cast some into the picture
 };
 
@@ -52,8 +52,8 @@ bool is_roomy(const synthesis::CacheStats& stats) {
          kRoomyShare * static_cast<double>(stats.limit_bytes);
 }
 
-// What is seen, as a share of what there is room for. What is kept only because it was there gives
-// way, and says nothing of how much is needed.
+// The bytes of what is seen as a share of the limit. Meshes that are only kept do not count: they
+// give way.
 double seen_share(const synthesis::CacheStats& stats) {
   return static_cast<double>(stats.visible_bytes) / static_cast<double>(stats.limit_bytes);
 }
@@ -62,7 +62,6 @@ ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clo
                          const Camera& camera, const Quality& quality, const Pressure& pressure) {
   ChoiceRules choice;
   choice.pixels_per_radian = camera.pixels_per_radian;
-  choice.near_m = camera.projection.near_m;
   choice.min_size_pixels = static_cast<float>(settings.min_size_pixels);
   choice.error_pixels = static_cast<float>(quality.error_pixels);
   choice.model_error_pixels = static_cast<float>(quality.model_error_pixels);
@@ -75,8 +74,9 @@ ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clo
   return choice;
 }
 
-// Around what is or was drawn, or all that could be; from the foot. What a mesh taught outlasts it:
-// otherwise one that is out of view would be a hole again as soon as it is evicted.
+// The box around the mesh that is or was drawn, else around all that is possible; from the foot.
+// The box of an evicted mesh is kept: otherwise a mesh out of view would be a hole after its
+// eviction.
 core::Bounds box_of(const MeshEntity& row, bool shadows) {
   if (row.mesh.tight != core::Bounds{} && !shadows) return row.mesh.tight;
   return core::Bounds::around(row.placed.box_center, row.placed.box_half_extent);
@@ -94,7 +94,7 @@ void note_in_view(const CacheTick& tick, bool leaf, Demand& demand, Counters& co
   }
 }
 
-// Tells the cache how important the drawn mesh is, where that is due.
+// Tells the cache how important the drawn mesh is, if it is due (kRankTurns).
 void keep(const CacheTick& tick, const NodeView& node, const MeshEntity& row, RankGroup group,
           float distance_m, synthesis::MeshSupply& meshes) {
   const bool turn =
@@ -115,6 +115,7 @@ synthesis::MeshKey key_of(const MeshEntity& row, std::uint8_t level) {
 void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
              const MeshChoice& choice, float distance_m, synthesis::MeshSupply& meshes,
              Found& found) {
+  const Source& source = row.source;
   Demand& demand = row.demand;
   const synthesis::MeshKey key = key_of(row, choice.request);
   const bool first_time = demand.requested_level != choice.request;
@@ -134,7 +135,7 @@ void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
     return;
   }
   if (!tick.request) return;
-  meshes.want({key, &row.source.parameters, owner_of(row.entity),
+  meshes.want({key, &source.parameters, owner_of(row.entity),
                rank_on(node, choice.requested, distance_m), node.visibility.deadline_s,
                choice.at_once});
 }
@@ -147,12 +148,17 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
   const glm::vec3 foot = node.corner + placed.position;
   const bool near = is_ground || node.level > 0;  // as near as the node itself
   const float distance_m =
-      near ? node.visibility.distance_m : distance_to(placed, foot, tick.choice.near_m);
+      near ? node.visibility.distance_m : distance_to(placed, foot, tick.near_m);
   const bool in_view =
       node.in_view && (near || mesh_can_be_seen(box_of(row, tick.shadows), foot, view));
-  demand.wanted_level = is_ground ? ground_level(node, row.detail, demand.drawn_level)
-                                  : model_level(tick.choice, node, row.detail, placed.radius_m,
-                                                distance_m, demand.drawn_level);
+  if (is_ground) {
+    demand.wanted_level = ground_level(node, row.detail, demand.drawn_level);
+  } else {
+    const float pixels =
+        size_pixels(placed, row.detail, distance_m, tick.choice.pixels_per_radian, tick.near_m);
+    demand.wanted_level =
+        model_level(tick.choice, node, row.detail, pixels, distance_m, demand.drawn_level);
+  }
   if (in_view) {
     note_in_view(tick, node.leaf, demand, counters);
   } else {
@@ -164,9 +170,9 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
     if (drawn) keep(tick, node, row, RankGroup::kUnwanted, distance_m, meshes);
     return true;
   }
-  const bool hole = !drawn && in_view && !node.covered;
-  const bool cached =
-      hole && meshes.ready(meshes.find(key_of(row, demand.wanted_level))) != nullptr;
+  // Only holes ask: looking a mesh up takes time.
+  const bool cached = tick.choice.coarse_first && is_hole(node, demand, in_view) &&
+                      meshes.ready(meshes.find(key_of(row, demand.wanted_level))) != nullptr;
   const MeshChoice choice =
       choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground, cached);
   if (drawn) keep(tick, node, row, choice.drawn, distance_m, meshes);
@@ -277,14 +283,18 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
                   ecs::EventQueue<PlaceReady>& places_ready, Counters& counters) {
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
+  assets.want_all(meshes);
   found.meshes.clear();
   // Before the picture's wants: where both want a mesh, it is the picture's.
   if (rules.request && !rules.settle)
     want_places(settings.modelers, foresight, meshes, places_ready);
-  assets.want_all(meshes);
 
-  CacheTick tick{choice_rules(settings, rules, clock, camera, quality, pressure), clock.tick,
-                 rules.request, is_roomy(meshes.stats()), facts.shadows};
+  CacheTick tick{choice_rules(settings, rules, clock, camera, quality, pressure),
+                 clock.tick,
+                 camera.projection.near_m,
+                 rules.request,
+                 is_roomy(meshes.stats()),
+                 facts.shadows};
   tick.choice.node_levels = facts.levels.size();
   const auto visit = [&](std::span<const ecs::Entity> nodes, const NodeView& common) {
     visit_nodes(entities, nodes, camera.pose.position, facts.world.block_size_m(), common,

@@ -135,7 +135,8 @@ void list_missing_nodes(const Window& window, const Camera& camera, const WorldF
   }
 }
 
-// What is new is there by the middle of the time until more of it is, if that goes on as before.
+// Spreads the creation of new nodes over half of the ticks since the window was last listed: at
+// this speed they exist halfway to the next listing.
 void spread_missing(const Settings& settings, Streaming& streaming) {
   const bool leapt = streaming.missing.size() > kLeapt;
   const std::uint32_t ticks =

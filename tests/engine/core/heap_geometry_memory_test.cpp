@@ -35,5 +35,26 @@ TEST(HeapGeometryMemory, RefusesWhatDoesNotFitAndCountsExactly) {
   EXPECT_TRUE(memory.reserve(VertexLayout::kTerrain, 50, 3));
 }
 
+TEST(HeapGeometryMemory, CountsWhatItReservedWhateverTheRangeSays) {
+  HeapGeometryMemory memory(1 << 20);
+  const auto kept = memory.reserve(VertexLayout::kModel, 10, 3);
+  const auto released = memory.reserve(VertexLayout::kModel, 20, 3);
+  ASSERT_TRUE(kept && released);
+  GeometryRange range = released->range;
+  range.bytes = 1;
+  memory.release(range);
+  EXPECT_EQ(memory.used_bytes(), kept->range.bytes);
+}
+
+TEST(HeapGeometryMemory, RefusesMeshesWhoseBytesDoNotFit32Bits) {
+  HeapGeometryMemory memory(UINT64_MAX / 2);
+  // 2^28 vertices of 16 bytes are 2^32 bytes, which would be 0.
+  EXPECT_EQ(memory.charged_bytes(VertexLayout::kModel, 1u << 28, 0), UINT32_MAX);
+  const auto refused = memory.reserve(VertexLayout::kModel, 1u << 28, 0);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kOutOfMemory);
+  EXPECT_EQ(memory.used_bytes(), 0u);
+}
+
 }  // namespace
 }  // namespace psygen::core

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "engine/world/edits/edits.hpp"
 #include "tests/engine/physics/scene.hpp"
 
 namespace psygen::physics {
@@ -172,6 +173,27 @@ TEST(PhysicsWorld, TerrainIsThereBeforeTheFirstStepEndsAndGoesWhenNobodyIsThere)
   ASSERT_TRUE(scene.physics.remove(*id));
   scene.steps(10);
   EXPECT_EQ(scene.physics.block_count(), 0U);
+}
+
+TEST(PhysicsWorld, BodiesAndCharactersFollowEditsOfTheGround) {
+  Scene scene(Loaded::shipped("five_species"));
+  const core::WorldPosition place = scene.above({3, 4}, 20, 20, 0.5);
+  const auto body = scene.physics.add(BodySettings{.shape = ball(0.4F), .position = place});
+  const auto walker = scene.physics.add(CharacterSettings{.feet = scene.above({3, 4}, 26, 20, 0)});
+  ASSERT_TRUE(body);
+  ASSERT_TRUE(walker);
+  scene.steps(120);
+  const double before_m = scene.ground_m(place);
+  world::Edits edits;
+  ASSERT_TRUE(edits.raise(scene.loaded.world, place, 30, -4));
+  world::set_edits(scene.loaded.world, edits.layer());
+  scene.steps(240);
+  const double after_m = scene.ground_m(place);
+  EXPECT_NEAR(before_m - after_m, 4, 0.2);
+  const core::WorldPosition lies = scene.physics.state(*body)->position;
+  EXPECT_LT(lies.local.y - scene.ground_m(lies), 1) << "it does not hang in the air";
+  const core::WorldPosition feet = scene.physics.state(*walker)->feet;
+  EXPECT_NEAR(feet.local.y, scene.ground_m(feet), 0.05);
 }
 
 }  // namespace

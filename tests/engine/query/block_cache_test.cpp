@@ -1,5 +1,6 @@
 #include "engine/query/block_cache.hpp"
 
+#include "engine/world/edits/edits.hpp"
 #include "tests/engine/query/worlds.hpp"
 
 namespace psygen::query {
@@ -65,6 +66,34 @@ TEST(BlockCache, ForgetsBlocks) {
   EXPECT_EQ(cache.bytes(), 0U);
   EXPECT_EQ(cache.size(), 0U);
   EXPECT_EQ(cache.solids({0, 0}).solids.size(), 8U);
+}
+
+TEST(BlockCache, FollowsEditsAndKeepsTheBlocksThatTheyDoNotReach) {
+  Loaded loaded = Loaded::parsed(kBounded);
+  BlockCache cache(loaded.world, loaded.registry, std::size_t{1} << 22);
+  for (std::int32_t x = 0; x < 8; ++x)
+    cache.solids({x, 1});
+  const std::size_t models = cache.models({2, 1}).size();
+  const std::uint16_t low = cache.ground({6, 1}).heights()[10 * 33 + 10];
+  const std::size_t blocks = cache.size();
+
+  world::Edits edits;
+  const std::uint32_t index = cache.models({2, 1})[0].index;
+  ASSERT_TRUE(edits.remove(loaded.world, {{2, 1}, index}));
+  world::set_edits(loaded.world, edits.layer());
+  EXPECT_EQ(cache.models({2, 1}).size(), models - 1);
+  EXPECT_EQ(cache.size(), blocks) << "one is made anew";
+
+  const double size = loaded.world.block_size_m();
+  ASSERT_TRUE(edits.raise(loaded.world, {{6, 1}, {0.3 * size, 0, 0.3 * size}}, 0.3 * size, 3));
+  world::set_edits(loaded.world, edits.layer());
+  EXPECT_GT(cache.ground({6, 1}).heights()[10 * 33 + 10], low);
+  EXPECT_LE(cache.size(), blocks);
+  EXPECT_GE(cache.size(), blocks / 2);
+
+  world::set_edits(loaded.world, nullptr);
+  EXPECT_EQ(cache.models({2, 1}).size(), models);
+  EXPECT_EQ(cache.ground({6, 1}).heights()[10 * 33 + 10], low);
 }
 
 }  // namespace

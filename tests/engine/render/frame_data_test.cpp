@@ -51,6 +51,7 @@ TEST(FrameData, survives_a_sun_without_direction_and_palettes_without_blends) {
   FrameInput input;
   input.light.sun_direction = {0, 0, 0};
   input.palette.dry_blend_m = 0;
+  input.palette.rock_slope_start = 0.16F;
   input.palette.rock_slope_full = 0;
   const shaders::FrameData frame = frame_data(input, kSize);
   EXPECT_FLOAT_EQ(glm::length(glm::vec3(frame.sun_direction)), 1.0F);

@@ -224,13 +224,21 @@ TEST_P(RendererTest, writes_a_panel_into_its_corner_only) {
   EXPECT_EQ(changed_right, 0);
 }
 
-TEST_P(RendererTest, keeps_the_last_valid_camera_when_given_nonsense) {
+TEST_P(RendererTest, refuses_cameras_that_cannot_be_drawn_and_draws_the_next_valid_one) {
   add_ground();
   const Picture good = draw(input(0.05));
   FrameInput bad = input(0.05);
   bad.pose.position.local.y = std::nan("");
+  auto refused = renderer_->render(bad);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::ErrorCode::kInvalidArgument);
+  EXPECT_EQ(refused.error().message, "the pose of a frame is not finite, or is beyond all worlds");
+  bad = input(0.05);
   bad.projection.vertical_fov = -1.0F;
-  EXPECT_EQ(draw(bad).rgba, good.rgba);
+  refused = renderer_->render(bad);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "the projection of a frame is not one that can be drawn");
+  EXPECT_EQ(draw(input(0.05)).rgba, good.rgba);
 }
 
 TEST_P(RendererTest, replays_the_last_frame_as_its_floor) {

@@ -85,25 +85,6 @@ Result<GeometryRange> make_box(GeometryMemory& memory, glm::vec3 albedo) {
   return reserved->range;
 }
 
-Result<GeometryRange> make_object_box(GeometryMemory& memory, glm::vec3 albedo) {
-  core::HeapGeometryMemory heap(1 << 16);
-  const auto box = make_box(heap, albedo);
-  if (!box) return box;
-  const auto from = core::vertices_of<core::ModelVertex>(heap.vertex_bytes(*box));
-  std::vector<core::ObjectVertex> vertices;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const bool right = i % 4 == 1 || i % 4 == 2, down = i % 4 < 2;
-    vertices.push_back({from[i], {right ? 1.0F : 0.0F, down ? 1.0F : 0.0F}});
-  }
-  const auto reserved = memory.reserve(core::VertexLayout::kObject, 24, 36);
-  if (!reserved) return tl::unexpected(reserved.error());
-  std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
-  std::ranges::copy(heap.indices(*box), reserved->indices.begin());
-  memory.commit(reserved->range);
-  heap.release(*box);
-  return reserved->range;
-}
-
 Result<GeometryRange> make_sheet(GeometryMemory& memory, int side) {
   const std::vector<std::uint16_t> indices = grid_indices(side);
   const auto reserved =
@@ -125,11 +106,60 @@ Result<GeometryRange> make_sheet(GeometryMemory& memory, int side) {
   return reserved->range;
 }
 
+namespace {
+
+// A mesh of the heap's as an object's, with whole textures on each four of its vertices.
+Result<GeometryRange> as_object(core::HeapGeometryMemory& heap, const Result<GeometryRange>& mesh,
+                                GeometryMemory& memory) {
+  if (!mesh) return mesh;
+  const auto from = core::vertices_of<core::ModelVertex>(heap.vertex_bytes(*mesh));
+  std::vector<core::ObjectVertex> vertices;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const bool right = i % 4 == 1 || i % 4 == 2, down = i % 4 < 2;
+    vertices.push_back({from[i], {right ? 1.0F : 0.0F, down ? 1.0F : 0.0F}});
+  }
+  const auto reserved =
+      memory.reserve(core::VertexLayout::kObject, mesh->vertex_count, mesh->index_count);
+  if (!reserved) return tl::unexpected(reserved.error());
+  std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
+  std::ranges::copy(heap.indices(*mesh), reserved->indices.begin());
+  memory.commit(reserved->range);
+  heap.release(*mesh);
+  return reserved->range;
+}
+
+}  // namespace
+
+Result<GeometryRange> make_object_box(GeometryMemory& memory, glm::vec3 albedo) {
+  core::HeapGeometryMemory heap(1 << 16);
+  return as_object(heap, make_box(heap, albedo), memory);
+}
+
+Result<GeometryRange> make_object_sheet(GeometryMemory& memory, int side) {
+  core::HeapGeometryMemory heap(1 << 24);
+  return as_object(heap, make_sheet(heap, side), memory);
+}
+
 FrameInput look(double altitude_m, double pitch, core::Extent size) {
   FrameInput input;
   input.pose.position.local = {0.0, altitude_m, 0.0};
   input.pose.pitch = pitch;
   input.projection.aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  input.palette = {.grass = {0.085F, 0.125F, 0.030F},
+                   .forest = {0.045F, 0.070F, 0.022F},
+                   .dry = {0.200F, 0.165F, 0.075F},
+                   .rock = {0.150F, 0.138F, 0.125F},
+                   .snow = {0.74F, 0.78F, 0.84F},
+                   .sand = {0.36F, 0.30F, 0.19F},
+                   .sand_end_m = -1e6F,
+                   .sand_blend_m = 2.0F,
+                   .dry_start_m = 60.0F,
+                   .dry_blend_m = 40.0F,
+                   .snow_start_m = 1e6F,
+                   .snow_blend_m = 15.0F,
+                   .rock_slope_start = 0.16F,
+                   .rock_slope_full = 0.34F,
+                   .snow_slope_max = 0.40F};
   return input;
 }
 

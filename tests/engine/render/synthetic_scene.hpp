@@ -29,8 +29,10 @@ core::Result<core::GeometryRange> make_object_box(core::GeometryMemory& memory, 
 
 // A grid of side² vertices in the box as a model mesh with its own indices: many small triangles.
 core::Result<core::GeometryRange> make_sheet(core::GeometryMemory& memory, int side);
+// The same as an object.
+core::Result<core::GeometryRange> make_object_sheet(core::GeometryMemory& memory, int side);
 
-// A camera at height `altitude_m` that looks along −Z, `pitch` radians up.
+// A camera at height `altitude_m` that looks along −Z, `pitch` radians up, over meadows and rock.
 FrameInput look(double altitude_m, double pitch, core::Extent size);
 
 }  // namespace psygen::render::synthetic

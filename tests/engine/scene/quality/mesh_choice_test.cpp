@@ -52,7 +52,7 @@ TEST(MeshChoice, ModelsGetCoarserWithDistanceUntilTheyAreTooSmall) {
     const int level = model_level(rules, node, four_levels(), 2, distance_m, kNoLevel);
     EXPECT_EQ(level, last++);
   }
-  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 2100, kNoLevel), kNoLevel);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 1.9F, 1700, kNoLevel), kNoLevel);
   rules.levels_of_detail = false;
   EXPECT_EQ(model_level(rules, node, four_levels(), 2, 1700, kNoLevel), 0);
 }
@@ -63,17 +63,17 @@ TEST(MeshChoice, MergedModelsAreNeverTooSmall) {
   rules.min_size_pixels = 2;
   NodeView node;
   node.level = 1;
-  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 1e6F, kNoLevel), 3);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 0.1F, 1e6F, kNoLevel), 3);
 }
 
 TEST(MeshChoice, HysteresisHoldsUnlessTheSceneSettles) {
   ChoiceRules rules;
   rules.pixels_per_radian = 1000;
   const NodeView node;
-  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 110, kNoLevel), 1);
-  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 110, 0), 0);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 50, 110, kNoLevel), 1);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 50, 110, 0), 0);
   rules.settle = true;
-  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 110, 0), 1);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 50, 110, 0), 1);
 }
 
 TEST(MeshChoice, AHoleAsksForTheCoarsestLevelUnlessTheWantedOneIsCached) {
@@ -98,6 +98,21 @@ TEST(MeshChoice, AHoleAsksForItsCoarsestLevelFirst) {
   rules.coarse_first = false;
   choice = choose_mesh(rules, in_view(), four_levels(), hole, true, false);
   EXPECT_EQ(choice.request, 0);
+}
+
+TEST(MeshChoice, AHoleAsksForItsWantedLevelWhereTheCacheHasIt) {
+  const Demand hole = demand(kNoLevel, 1);
+  EXPECT_EQ(choose_mesh({}, in_view(), four_levels(), hole, true, false, true).request, 1);
+  EXPECT_EQ(choose_mesh({}, in_view(), four_levels(), hole, true, false, false).request, 3);
+}
+
+TEST(MeshChoice, HolesAreInViewAndNeitherDrawnNorCovered) {
+  NodeView node = in_view();
+  EXPECT_TRUE(is_hole(node, demand(kNoLevel, 1), true));
+  EXPECT_FALSE(is_hole(node, demand(kNoLevel, 1), false));
+  EXPECT_FALSE(is_hole(node, demand(2, 1), true));
+  node.covered = true;
+  EXPECT_FALSE(is_hole(node, demand(kNoLevel, 1), true));
 }
 
 TEST(MeshChoice, AHoleThatWaitsTooLongAsksForTheNextLevelUnlessItWaitsForMemory) {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "engine/models/model_type.hpp"
 #include "tests/engine/scene/fixture.hpp"
@@ -85,12 +84,13 @@ TEST_F(Objects, FollowTheirTransformFromBlockToBlock) {
   const ecs::Entity entity = put(ahead(20));
   tick(5);
   Transform& transform = *state().entities.get<Transform>(entity);
-  transform.position.local.x += 64;  // not normalised
-  const Transform beside = transform;
+  const double block_m = state().facts.world.block_size_m();
+  transform.position.local.x += block_m;  // not normalised
   tick();
-  ASSERT_EQ(drawn().size(), 0u) << "64 m to the side at 20 m is out of view";
-  transform.position = core::normalised(beside.position, state().facts.world.block_size_m());
-  transform.position.local.x -= 60;
+  ASSERT_EQ(drawn().size(), 0u) << "a block to the side at 20 m is out of view";
+  transform.position = core::normalised(transform.position, block_m);
+  EXPECT_EQ(transform.position.block.x, 1);
+  transform.position.local.x -= block_m - 4;
   tick();
   ASSERT_EQ(drawn().size(), 1u);
   EXPECT_NEAR(drawn()[0].origin.x, 4, 1e-3);

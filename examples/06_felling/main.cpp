@@ -1,0 +1,94 @@
+// Felling the nearest tree, for good: an edit of the world that is seen from near and far, and a
+// saved game that keeps it. Every run fells one tree more, saves, and takes a picture.
+//   example_felling game.save picture.png
+#include <cstdio>
+
+#include "engine/app/session.hpp"
+#include "engine/core/data_file.hpp"
+#include "engine/query/world.hpp"
+#include "engine/save/save_game.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/world/edits/edit_bytes.hpp"
+
+using namespace psygen;
+
+namespace {
+
+// What the save has of the world's edits.
+core::Result<world::Edits> load_edits(const save::SaveGame& save, const scene::WorldFacts& facts) {
+  world::Edits edits;
+  core::Result<void> loaded;
+  auto visited = save.for_each_edits([&](core::BlockCoord block, std::uint32_t, auto bytes) {
+    if (loaded) loaded = world::load_block(edits, facts.world, facts.registry, block, bytes);
+  });
+  if (!visited) return tl::unexpected(visited.error());
+  if (!loaded) return tl::unexpected(loaded.error());
+  return edits;
+}
+
+// The blocks that differ, and how often was felled, in one transaction.
+core::Result<void> store(save::SaveGame& save, const scene::WorldFacts& facts,
+                         const world::Edits& before, const world::Edits& now) {
+  for (const core::BlockCoord block : world::changed_blocks(before, now)) {
+    constexpr std::uint32_t kVersion = 1;  // of the bytes; they also say it themselves
+    const auto bytes = world::encode_block(now, facts.registry, block);
+    if (bytes.empty()) {
+      save.erase_edits(block);
+    } else if (auto ok = save.put_edits(block, kVersion, bytes); !ok) {
+      return ok;
+    }
+  }
+  const auto count = static_cast<std::int64_t>(now.counts().removed);
+  return save.put_value("felled", count).and_then([&] { return save.save(); });
+}
+
+core::Result<void> fell(const char* save_file, const char* picture) {
+  const auto world = core::data_file("worlds/five_species.toml");
+  if (!world) return tl::unexpected(world.error());
+  app::SessionOptions options;
+  options.world_file = *world;
+  options.headless = true;
+  auto session = app::Session::create(options);
+  if (!session) return tl::unexpected(session.error());
+  const scene::WorldFacts& facts = (*session)->scene().state().facts;
+
+  auto save = save::SaveGame::open(save_file, save::identity_of(facts.world, facts.registry));
+  if (!save) return tl::unexpected(save.error());
+  const auto before = load_edits(*save, facts);
+  if (!before) return tl::unexpected(before.error());
+  (*session)->scene().edit(*before);
+
+  core::CameraPose pose = (*session)->home();
+  pose.position.local.y -= 15;
+  if (auto ok = (*session)->prepare(pose); !ok) return ok;
+
+  // Models that stand there now: felled ones are not among them.
+  query::World query(facts.world, facts.registry);
+  const auto oak = static_cast<models::ModelIndex>(facts.registry.find("oak"));
+  const auto tree = query.nearest(pose.position, 300, {{oak}});
+  if (!tree) return tl::unexpected(tree.error());
+  if (!*tree) return core::fail(core::ErrorCode::kInvalidArgument, "no oak is left");
+  world::Edits now = *before;
+  if (auto ok = now.remove(facts.world, {(*tree)->block, (*tree)->index}); !ok) return ok;
+  (*session)->scene().edit(now);
+  if (auto ok = store(*save, facts, *before, now); !ok) return ok;
+  std::printf("felled oak %u of block %d, %d at %.1f m; %llu oaks in all\n", (*tree)->index,
+              (*tree)->block.x, (*tree)->block.z, (*tree)->distance_m,
+              static_cast<unsigned long long>(now.counts().removed));
+
+  if (auto ok = (*session)->prepare(pose); !ok) return ok;
+  if (auto ok = (*session)->tick(pose, 1.0 / 60); !ok) return ok;
+  return (*session)->save_picture(picture);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: example_felling game.save picture.png\n");
+    return 2;
+  }
+  const auto done = fell(argv[1], argv[2]);
+  if (!done) std::fprintf(stderr, "%s\n", done.error().message.c_str());
+  return done ? 0 : 1;
+}
