@@ -290,7 +290,7 @@ class World {
 template <Component... Cs>
 Created<Cs...> World::create(std::size_t count) {
   const detail::Storage::Batch batch = storage_.create(signature<Cs...>(), count);
-  const auto column = [&]<class C>(std::type_identity<C>) {
+  [[maybe_unused]] const auto column = [&]<class C>(std::type_identity<C>) {
     const detail::ComponentId id = storage_.find_id(detail::kComponentInfo<C>);
     return std::span<C>(detail::rows_of<C>(batch.table->column_data(id)) + batch.first, count);
   };

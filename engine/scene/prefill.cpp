@@ -101,8 +101,8 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
                    s.entities, s.meshes, s.events.created, s.events.removed, s.counters);
   visibility_system(s.settings, s.rules, s.camera, s.facts, s.streaming,
                     VisibilityQuery(s.entities), s.view, s.counters);
-  cache_system(s.settings, s.rules, s.clock, s.camera, s.quality, s.facts, s.streaming, s.view,
-               CacheQuery(s.entities), s.assets, s.meshes, s.found, s.foresight, s.pressure,
+  cache_system(s.settings, s.rules, s.clock, s.camera, s.quality, s.facts, s.daylight, s.streaming,
+               s.view, CacheQuery(s.entities), s.assets, s.meshes, s.found, s.foresight, s.pressure,
                s.events.evicted, s.events.places_ready, s.counters);
   s.meshes.wait(go_on);
   synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);

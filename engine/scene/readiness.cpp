@@ -18,7 +18,7 @@ constexpr float kDeadlineSeconds = 1;
 constexpr double kMostShare = 0.5;  // of the memory for meshes
 
 // The nodes that a camera at the position would draw up to the radius.
-visibility::Cut cut_at(const State& s, const core::WorldPosition& position, double radius_m) {
+visibility::Cut cut_at(const PlaceRules& s, const core::WorldPosition& position, double radius_m) {
   const WorldFacts& facts = s.facts;
   const auto top = static_cast<std::uint8_t>(facts.levels.size() - 1);
   std::vector<visibility::LevelDistances> distances;
@@ -42,7 +42,7 @@ visibility::Cut cut_at(const State& s, const core::WorldPosition& position, doub
 
 // Collects the meshes of one place.
 struct Collector {
-  const State& s;
+  const PlaceRules& s;
   const core::WorldPosition& position;
   std::vector<Foresight::Mesh>& meshes;
   std::vector<world::Placement> scratch = {};
@@ -102,26 +102,62 @@ struct Collector {
   }
 };
 
-core::Result<std::vector<Foresight::Mesh>> meshes_of(const State& s,
-                                                     const core::WorldPosition& position,
-                                                     double radius_m) {
+core::Result<void> check(const core::WorldPosition& position, double radius_m) {
   const glm::dvec3& local = position.local;
   if (!(std::isfinite(local.x) && std::isfinite(local.y) && std::isfinite(local.z)))
     return core::fail(core::ErrorCode::kInvalidArgument, "the position of a place is not finite");
-  if (!(radius_m > 0 && radius_m <= kMostReadyRadiusM)) {
-    return core::fail(
-        core::ErrorCode::kInvalidArgument,
-        fmt::format("the radius of a place must be above 0 and at most {} m", kMostReadyRadiusM));
-  }
-  std::vector<Foresight::Mesh> meshes;
-  const core::WorldPosition normal = core::normalised(position, s.facts.world.block_size_m());
-  Collector collector{s, normal, meshes};
-  for (const visibility::CutNode& node : cut_at(s, normal, radius_m).nodes) {
+  if (radius_m > 0 && radius_m <= kMostReadyRadiusM) return {};
+  return core::fail(
+      core::ErrorCode::kInvalidArgument,
+      fmt::format("the radius of a place must be above 0 and at most {} m", kMostReadyRadiusM));
+}
+
+PlaceRules rules_for(const State& s) {
+  return {s.settings, s.facts, s.camera, s.quality, s.daylight};
+}
+
+// Lists the nodes and meshes of a place by its position and radius.
+void list(const PlaceRules& rules, Foresight::Place& place) {
+  place.nodes.clear();
+  place.meshes.clear();
+  place.sun_azimuth_deg = rules.daylight.azimuth_deg;
+  place.sun_elevation_deg = rules.daylight.elevation_deg;
+  place.stale = false;
+  const core::WorldPosition normal =
+      core::normalised(place.position, rules.facts.world.block_size_m());
+  Collector collector{rules, normal, place.meshes};
+  for (const visibility::CutNode& node : cut_at(rules, normal, place.radius_m).nodes) {
     if (!node.leaf) continue;
+    place.nodes.push_back(node.node);
     collector.add_ground(node);
     collector.add_models(node);
   }
-  return meshes;
+  place.readiness.meshes = static_cast<std::uint32_t>(place.meshes.size());
+}
+
+core::Result<Foresight::Place> place_at(const State& s, const core::WorldPosition& position,
+                                        double radius_m) {
+  if (const auto ok = check(position, radius_m); !ok) return tl::unexpected(ok.error());
+  Foresight::Place place;
+  place.position = position;
+  place.radius_m = radius_m;
+  list(rules_for(s), place);
+  return place;
+}
+
+// The ground of a place under the present sun.
+void light(const PlaceRules& rules, Foresight::Place& place) {
+  const Daylight& sun = rules.daylight;
+  if (place.sun_azimuth_deg == sun.azimuth_deg && place.sun_elevation_deg == sun.elevation_deg)
+    return;
+  place.sun_azimuth_deg = sun.azimuth_deg;
+  place.sun_elevation_deg = sun.elevation_deg;
+  const models::ModelType& terrain = rules.facts.registry[rules.facts.world.terrain_model];
+  for (Foresight::Mesh& mesh : place.meshes) {
+    if (mesh.key.model != rules.facts.world.terrain_model) continue;
+    world::set_sun(mesh.parameters, sun.azimuth_deg, sun.elevation_deg);
+    mesh.key.parameters_hash = models::parameters_hash(terrain, mesh.parameters);
+  }
 }
 
 bool is_there(const synthesis::MeshSupply& meshes, const synthesis::MeshKey& key) {
@@ -156,11 +192,10 @@ const Foresight::Place* find(const Foresight& foresight, PlaceId id) {
 
 core::Result<Readiness> readiness(const State& state, const core::WorldPosition& position,
                                   double radius_m) {
-  const auto meshes = meshes_of(state, position, radius_m);
-  if (!meshes) return tl::unexpected(meshes.error());
-  Readiness result;
-  result.meshes = static_cast<std::uint32_t>(meshes->size());
-  for (const Foresight::Mesh& mesh : *meshes) {
+  const auto place = place_at(state, position, radius_m);
+  if (!place) return tl::unexpected(place.error());
+  Readiness result = place->readiness;
+  for (const Foresight::Mesh& mesh : place->meshes) {
     if (is_there(state.meshes, mesh.key)) continue;
     ++result.missing;
     result.expected_s += state.meshes.predict(want_of(mesh)) / state.settings.modelers;
@@ -170,12 +205,12 @@ core::Result<Readiness> readiness(const State& state, const core::WorldPosition&
 
 core::Result<PlaceId> ask_ready(State& state, const core::WorldPosition& position,
                                 double radius_m) {
-  auto meshes = meshes_of(state, position, radius_m);
-  if (!meshes) return tl::unexpected(meshes.error());
-  const std::uint64_t bytes = bytes_of(state, *meshes);
-  std::uint64_t all = bytes;
-  for (const Foresight::Place& place : state.foresight.places)
-    all += place.bytes;
+  auto place = place_at(state, position, radius_m);
+  if (!place) return tl::unexpected(place.error());
+  place->bytes = bytes_of(state, place->meshes);
+  std::uint64_t all = place->bytes;
+  for (const Foresight::Place& other : state.foresight.places)
+    all += other.bytes;
   constexpr double kMiB = 1 << 20;
   const double most = kMostShare * static_cast<double>(state.meshes.stats().budget_bytes);
   if (static_cast<double>(all) > most) {
@@ -183,14 +218,12 @@ core::Result<PlaceId> ask_ready(State& state, const core::WorldPosition& positio
         core::ErrorCode::kOverBudget,
         fmt::format("{:.0f} MiB are needed for a place of {:g} m, with all places {:.0f} MiB; half "
                     "of the budget, {:.0f} MiB, is allowed",
-                    static_cast<double>(bytes) / kMiB, radius_m, static_cast<double>(all) / kMiB,
-                    most / kMiB));
+                    static_cast<double>(place->bytes) / kMiB, radius_m,
+                    static_cast<double>(all) / kMiB, most / kMiB));
   }
-  const PlaceId id = ++state.foresight.last_id;
-  Readiness unknown{static_cast<std::uint32_t>(meshes->size()),
-                    static_cast<std::uint32_t>(meshes->size()), 0};
-  state.foresight.places.push_back({id, std::move(*meshes), bytes, unknown, false});
-  return id;
+  place->id = ++state.foresight.last_id;
+  place->readiness.missing = place->readiness.meshes;
+  return state.foresight.places.emplace_back(std::move(*place)).id;
 }
 
 Readiness readiness(const State& state, PlaceId id) {
@@ -210,9 +243,11 @@ void stop_asking(State& state, PlaceId id) {
   std::erase_if(state.foresight.places, [id](const auto& asked) { return asked.id == id; });
 }
 
-void want_places(std::uint32_t modelers, Foresight& foresight, synthesis::MeshSupply& meshes,
+void want_places(const PlaceRules& rules, Foresight& foresight, synthesis::MeshSupply& meshes,
                  ecs::EventQueue<PlaceReady>& ready) {
   for (Foresight::Place& place : foresight.places) {
+    if (place.stale) list(rules, place);
+    light(rules, place);
     place.readiness.missing = 0;
     place.readiness.expected_s = 0;
     for (const Foresight::Mesh& mesh : place.meshes) {
@@ -225,7 +260,7 @@ void want_places(std::uint32_t modelers, Foresight& foresight, synthesis::MeshSu
         if (free || record->owner == want.owner) meshes.rank(handle, want.rank);
       } else if (record == nullptr || record->state != synthesis::MeshState::kFailed) {
         ++place.readiness.missing;
-        place.readiness.expected_s += meshes.predict(want) / modelers;
+        place.readiness.expected_s += meshes.predict(want) / rules.settings.modelers;
         meshes.want(want);
       }
     }

@@ -10,10 +10,16 @@
 #include "ecs/ecs.hpp"
 #include "engine/core/error.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
+#include "engine/visibility/quadtree.hpp"
 
 namespace psygen::scene {
 
+struct Camera;
+struct Daylight;
+struct Quality;
+struct Settings;
 struct State;
+struct WorldFacts;
 
 // Meshes of a place: the ground and the models up to a radius, at the levels of detail that a
 // camera there would choose.
@@ -37,8 +43,9 @@ struct PlaceReady {
   PlaceId id = 0;
 };
 
-// Asks that a place become ready and stay so. Fails as readiness(), and with kOverBudget where it
-// needs more than half of the memory for meshes, or together with other places.
+// Asks that a place become ready and stay so, through edits and the course of the sun. Fails as
+// readiness(), and with kOverBudget where it needs more than half of the memory for meshes, or
+// together with other places.
 core::Result<PlaceId> ask_ready(State& state, const core::WorldPosition& position, double radius_m);
 // What is missing of it, as of the last tick. Ready with no meshes for an id that is not asked for.
 Readiness readiness(const State& state, PlaceId id);
@@ -54,18 +61,33 @@ struct Foresight {
   };
   struct Place {
     PlaceId id = 0;
+    core::WorldPosition position;
+    double radius_m = 0;
+    std::vector<visibility::NodeCoord> nodes;  // whose ground and models it shows
     std::vector<Mesh> meshes;
+    double sun_azimuth_deg = 0, sun_elevation_deg = 0;  // that its ground is lit by
     std::uint64_t bytes = 0;
     Readiness readiness;
     bool told = false;
+    bool stale = false;  // edits have changed one of the nodes: the meshes are not these any more
   };
   std::vector<Place> places;
   PlaceId last_id = 0;
 };
 
-// Wants what is missing of all places, keeps what is there, and tells which became ready. Part of
-// the cache system. O(meshes of all places).
-void want_places(std::uint32_t modelers, Foresight& foresight, synthesis::MeshSupply& meshes,
+// What decides which meshes a place needs.
+struct PlaceRules {
+  const Settings& settings;
+  const WorldFacts& facts;
+  const Camera& camera;
+  const Quality& quality;
+  const Daylight& daylight;
+};
+
+// Wants what is missing of all places, keeps what is there, and tells which became ready. Follows
+// edits and the sun. Part of the cache system. O(meshes of all places); a place whose nodes were
+// edited is listed anew.
+void want_places(const PlaceRules& rules, Foresight& foresight, synthesis::MeshSupply& meshes,
                  ecs::EventQueue<PlaceReady>& ready);
 
 }  // namespace psygen::scene

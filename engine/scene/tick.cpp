@@ -107,8 +107,9 @@ void note_system_times(State& state) {
 // Runs all systems. What one throws ends the flight with a sentence, except that memory ran out.
 void run_systems(State& state) {
   const auto fail = [&state](const char* what) {
+    const std::string& outer = state.tick.threw();
     const std::string& step = state.simulation.systems.threw();
-    const std::string& system = step.empty() ? state.tick.threw() : step;
+    const std::string& system = outer == kSimulationSystem && !step.empty() ? step : outer;
     state.output.error = core::Error{core::ErrorCode::kInternal,
                                      fmt::format("the system '{}' threw: {}", system, what)};
   };

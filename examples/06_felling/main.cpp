@@ -1,4 +1,4 @@
-// Felling the nearest tree, for good: an edit of the world that is seen from near and far, and a
+// Felling the nearest oak ahead, for good: an edit of the world that is seen from near and far, and a
 // saved game that keeps it. Every run fells one tree more, saves, and takes a picture.
 //   example_felling game.save picture.png
 #include <cstdio>
@@ -65,7 +65,9 @@ core::Result<void> fell(const char* save_file, const char* picture) {
   // Models that stand there now: felled ones are not among them.
   query::World query(facts.world, facts.registry);
   const auto oak = static_cast<models::ModelIndex>(facts.registry.find("oak"));
-  const auto tree = query.nearest(pose.position, 300, {{oak}});
+  core::WorldPosition ahead = pose.position;
+  ahead.local += 50.0 * glm::dvec3(core::forward_of(pose));
+  const auto tree = query.nearest(ahead, 300, {{oak}});
   if (!tree) return tl::unexpected(tree.error());
   if (!*tree) return core::fail(core::ErrorCode::kInvalidArgument, "no oak is left");
   world::Edits now = *before;

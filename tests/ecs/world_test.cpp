@@ -258,14 +258,20 @@ template <std::size_t>
 struct Numbered {
   std::uint8_t value = 3;
 };
-template <std::size_t... I>
-Entity create_many(World& world, std::index_sequence<I...>) {
-  return world.create<Numbered<I>...>(1).entities[0];
+constexpr std::size_t kRun = 16;
+template <std::size_t First, std::size_t... I>
+void add_run(World& world, Entity e, std::index_sequence<I...>) {
+  world.add<Numbered<First + I>...>({&e, 1});
+}
+template <std::size_t... Runs>
+void add_runs(World& world, Entity e, std::index_sequence<Runs...>) {
+  (add_run<Runs * kRun>(world, e, std::make_index_sequence<kRun>{}), ...);
 }
 
 TEST(World, a_kind_may_have_all_256_component_types) {
   World world;
-  const Entity e = create_many(world, std::make_index_sequence<256>{});
+  const Entity e = world.create<>(1).entities[0];
+  add_runs(world, e, std::make_index_sequence<256 / kRun>{});
   EXPECT_EQ(world.get<Numbered<0>>(e)->value, 3);
   EXPECT_EQ(world.get<Numbered<255>>(e)->value, 3);
 }

@@ -35,6 +35,7 @@ for run in 1 2; do # the second run starts from what the first one saved
     tee -a "$folder/felling.txt"
 done
 grep -q '; 1 oaks in all$' "$folder/felling.txt" && grep -q '; 2 oaks in all$' "$folder/felling.txt"
+! cmp -s "$folder/felling1.png" "$folder/felling2.png" || { echo "no tree is gone"; exit 1; }
 [ "$(cut -d';' -f1 "$folder/felling.txt" | sort -u | wc -l)" -eq 2 ] # two different ones
 picture 07_hud hud
 [ -z "${KEEP_PICTURES:-}" ] || cp "$folder"/*.png "$KEEP_PICTURES"

@@ -27,9 +27,10 @@ void each_model(const RenderQuery& entities, const ecs::Children& children, bool
       entities.children(children),
       [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
+          const bool replaces = merged && fading[i].old_mesh;
           visit(ModelRow{placed[i], demands[i], meshes[i], fading[i],
                          merged ? entities.get<MeshParts>(rows[i]) : nullptr,
-                         merged ? &entities.get<OldParts>(rows[i])->parts : nullptr});
+                         replaces ? &entities.get<OldParts>(rows[i])->parts : nullptr});
         }
       });
 }

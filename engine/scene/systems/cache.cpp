@@ -59,8 +59,10 @@ double seen_share(const synthesis::CacheStats& stats) {
 }
 
 ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clock& clock,
-                         const Camera& camera, const Quality& quality, const Pressure& pressure) {
+                         const Camera& camera, const Quality& quality, const WorldFacts& facts,
+                         const Pressure& pressure) {
   ChoiceRules choice;
+  choice.node_levels = facts.levels.size();
   choice.pixels_per_radian = camera.pixels_per_radian;
   choice.min_size_pixels = static_cast<float>(settings.min_size_pixels);
   choice.error_pixels = static_cast<float>(quality.error_pixels);
@@ -277,25 +279,25 @@ synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, 
 
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
-                  const Streaming& streaming, const View& view, CacheQuery entities,
-                  const Assets& assets, synthesis::MeshSupply& meshes, Found& found,
-                  Foresight& foresight, Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
-                  ecs::EventQueue<PlaceReady>& places_ready, Counters& counters) {
+                  const Daylight& daylight, const Streaming& streaming, const View& view,
+                  CacheQuery entities, const Assets& assets, synthesis::MeshSupply& meshes,
+                  Found& found, Foresight& foresight, Pressure& pressure,
+                  ecs::EventQueue<MeshEvicted>& evicted, ecs::EventQueue<PlaceReady>& places_ready,
+                  Counters& counters) {
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
   assets.want_all(meshes);
   found.meshes.clear();
   // Before the picture's wants: where both want a mesh, it is the picture's.
   if (rules.request && !rules.settle)
-    want_places(settings.modelers, foresight, meshes, places_ready);
+    want_places({settings, facts, camera, quality, daylight}, foresight, meshes, places_ready);
 
-  CacheTick tick{choice_rules(settings, rules, clock, camera, quality, pressure),
+  CacheTick tick{choice_rules(settings, rules, clock, camera, quality, facts, pressure),
                  clock.tick,
                  camera.projection.near_m,
                  rules.request,
                  is_roomy(meshes.stats()),
                  facts.shadows};
-  tick.choice.node_levels = facts.levels.size();
   const auto visit = [&](std::span<const ecs::Entity> nodes, const NodeView& common) {
     visit_nodes(entities, nodes, camera.pose.position, facts.world.block_size_m(), common,
                 [&](const NodeView& node, const MeshEntity& row, bool is_ground) {

@@ -7,10 +7,8 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "engine/models/terrain/terrain.hpp"
 #include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -56,32 +54,14 @@ glm::vec2 reach_of(const WorldFacts& facts) {
   return glm::max(facts.scattered_reach_m, glm::vec2(placed.x, placed.y));
 }
 
-// What is made ready ahead of time shows the edits too. Models that came since are not waited for.
-void renew_places(const WorldFacts& facts, Foresight& foresight) {
-  const auto renew = [&](Foresight::Mesh& mesh) {
-    const models::Parameters& old = mesh.parameters;
-    const auto node = [&old](std::size_t x, std::size_t z) {
-      return core::BlockCoord{static_cast<std::int32_t>(old.integer(x)),
-                              static_cast<std::int32_t>(old.integer(z))};
-    };
-    models::Parameters now;
-    if (mesh.key.model == facts.world.terrain_model) {
-      now = world::terrain_parameters(facts.world,
-                                      node(models::kTerrainBlockX, models::kTerrainBlockZ),
-                                      static_cast<int>(old.integer(models::kTerrainNodeLevel)));
-      for (const std::size_t sun : {models::kTerrainSunAzimuth, models::kTerrainSunElevation})
-        now.set_real(sun, old.real(sun));
-    } else if (facts.merged_model != 0 && mesh.key.model == facts.merged_model) {
-      now = world::merged_parameters(facts.world, node(world::kMergedBlockX, world::kMergedBlockZ),
-                                     static_cast<int>(old.integer(world::kMergedNodeLevel)));
-    } else {
-      return;
-    }
-    mesh.parameters = now;
-    mesh.key.parameters_hash = models::parameters_hash(facts.registry[mesh.key.model], now);
+// Places whose nodes changed need other meshes.
+void note_stale(const LayerChange& change, Foresight& foresight) {
+  const auto changed = [&change](const visibility::NodeCoord& node) {
+    const NodeChange of = change.of(node);
+    return of.ground || of.models;
   };
   for (Foresight::Place& place : foresight.places)
-    std::ranges::for_each(place.meshes, renew);
+    place.stale = place.stale || std::ranges::any_of(place.nodes, changed);
 }
 
 }  // namespace
@@ -101,7 +81,7 @@ void edits_system(const Daylight& daylight, Editing& editing, WorldFacts& facts,
   entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node>) {
     nodes.insert(nodes.end(), rows.begin(), rows.end());
   });
-  renew_places(facts, foresight);
+  note_stale(change, foresight);
   std::vector<world::Placement> scratch;
   for (const ecs::Entity node : nodes) {
     const visibility::NodeCoord at = entities.get<Node>(node)->at;

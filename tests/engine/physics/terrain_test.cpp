@@ -119,10 +119,11 @@ TEST(PhysicsTerrain, CoordinatesAreExactFarFromTheOrigin) {
   Terrain terrain(bare.bullet, query);
   const core::BlockCoord far{1 << 30, INT32_MIN + 1};
   terrain.set_origin(far);
-  const btVector3 at = terrain.coordinates({{far.x + 2, far.z - 3}, {1.25, 7, 2.5}});
+  const core::BlockCoord other{far.x + 2, INT32_MAX - 1};  // 3 blocks north, across the seam
+  const btVector3 at = terrain.coordinates({other, {1.25, 7, 2.5}});
   EXPECT_EQ(at, btVector3(127.25, 7, -186.5));
   const core::WorldPosition back = terrain.position(at);
-  EXPECT_EQ(back.block, (core::BlockCoord{far.x + 2, far.z - 3}));
+  EXPECT_EQ(back.block, other);
   EXPECT_EQ(back.local, glm::dvec3(1.25, 7, 2.5));
 }
 

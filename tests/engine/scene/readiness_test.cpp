@@ -102,6 +102,52 @@ TEST(Readiness, WhatIsAskedForIsKeptAndOtherwiseItMayGo) {
   EXPECT_TRUE(state.foresight.places.empty());
 }
 
+// Nothing that a camera there would ask for is missing.
+void expect_there(const State& state, PlaceId id, double radius_m) {
+  ASSERT_TRUE(readiness(state, id).ready());
+  const auto afresh = readiness(state, kThere.position, radius_m);
+  ASSERT_TRUE(afresh);
+  EXPECT_EQ(afresh->missing, 0U);
+  EXPECT_EQ(afresh->meshes, readiness(state, id).meshes);
+}
+
+TEST(Readiness, AnAskedForPlaceFollowsTheSun) {
+  auto scene =
+      make_scene_of(small_settings(), [](world::World& world) { world.sky.day_length_s = 60; });
+  State& state = scene->state();
+  scene->settle(kHere);
+  tick_at(*scene, kHere);
+  const PlaceId id = ask_ready(state, kThere.position, 60).value();
+  EXPECT_LT(ticks_until_ready(*scene, id, 500), 500);
+  const Daylight before = state.daylight;
+  state.clock.now_s += 10;
+  tick_at(*scene, kHere);
+  ASSERT_NE(state.daylight.elevation_deg, before.elevation_deg);
+  EXPECT_FALSE(readiness(state, id).ready()) << "the ground is lit otherwise now";
+  EXPECT_LT(ticks_until_ready(*scene, id, 500), 500);
+  expect_there(state, id, 60);
+}
+
+TEST(Readiness, AnAskedForPlaceHasTheModelsThatEditsPlaceThere) {
+  auto scene = make_scene(small_settings());
+  State& state = scene->state();
+  scene->settle(kHere);
+  tick_at(*scene, kHere);
+  const PlaceId id = ask_ready(state, kThere.position, 60).value();
+  EXPECT_LT(ticks_until_ready(*scene, id, 500), 500);
+  const std::uint32_t meshes = readiness(state, id).meshes;
+  const world::Scatter& rocks = state.facts.world.scatter[1];
+  const models::Parameters rock = world::scatter_parameters(state.facts.registry, rocks);
+  world::Edits edits;
+  ASSERT_TRUE(edits.place(state.facts.world, state.facts.registry,
+                          {rocks.model, rock, kThere.position, 0}));
+  scene->edit(std::move(edits));
+  tick_at(*scene, kHere);
+  EXPECT_EQ(readiness(state, id).meshes, meshes + 1);
+  EXPECT_LT(ticks_until_ready(*scene, id, 500), 500);
+  expect_there(state, id, 60);
+}
+
 TEST(Readiness, APlaceThatIsNoneOrTooLargeIsRefused) {
   Settings settings = small_settings();
   settings.budget_bytes = 8ull << 20;

@@ -73,10 +73,12 @@ TEST(Simulation, AClockThatIsSetBackUndoesNothing) {
 
 TEST(Simulation, IsTimedAndTracedSystemBySystem) {
   telemetry::TraceLog log;
-  auto scene = make_scene(small_settings());
+  models::Registry registry = models::make_standard_registry();
+  const world::World world = paper_world(registry);
+  auto made = Scene::create(world, std::move(registry), small_settings(), nullptr, &log);
+  ASSERT_TRUE(made) << made.error().message;
+  const std::unique_ptr<Scene> scene = std::move(*made);
   State& state = scene->state();
-  state.trace.log = &log;
-  state.trace.main = log.add_track("main thread");
   Systems systems = scene->systems();
   systems.frame.add(
       "look", [](const FixedStep&) {}, ecs::after("simulation"));
