@@ -88,7 +88,7 @@ void furnish(Session& session, const core::CameraPose& pose) {
   const auto boulder = assets.add_model("rock", models::default_parameters(rock));
   ASSERT_TRUE(wood && lamp && boulder);
   for (int i = 0; i < 5; ++i)
-    put(session, pose, {-8.0 + 4.0 * i, -18.0 - i}, {.mesh = *mesh, .material = *wood}, 0.3F * i);
+    put(session, pose, {-8.0 + 4.0 * i, -18.0 - i}, {.mesh = *mesh, .material = *wood}, 0.3F * static_cast<float>(i));
   put(session, pose, {3, -11}, {.mesh = *mesh, .material = *lamp}, 0.5F, glm::vec3(0.4F));
   put(session, pose, {-4, -11}, {.mesh = *boulder}, 0, glm::vec3(1.5F));
 }
