@@ -158,6 +158,10 @@ Result<void> MaterialTable::create(const Device& device, std::uint64_t texture_b
       device.vk.vkCreateDescriptorSetLayout(device.handle, &info, nullptr, &layout);
   if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor set layout");
   set_layout_ = UniqueSetLayout(device.vk, device.handle, layout);
+  // Numbers that no material has yet look like the plain one.
+  const shaders::MaterialData plain = data_of(Material{});
+  for (std::size_t i = 0; i < PSYGEN_MAX_MATERIALS; ++i)
+    std::memcpy(buffer_.mapped + i * sizeof(plain), &plain, sizeof(plain));
   return add(device, {}).map([](MaterialId) {});
 }
 

@@ -108,8 +108,8 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
   synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
   upload_system(s.settings, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
                 s.output, s.events.landed, s.counters, s.totals);
-  objects_system(s.settings, s.input, s.clock, s.camera, s.quality, s.facts, s.streaming, s.view,
-                 ObjectQuery(s.entities), s.meshes, s.assets, s.object_draws, s.counters);
+  objects_system(s.settings, s.rules, s.input, s.clock, s.camera, s.quality, s.facts, s.streaming,
+                 s.view, ObjectQuery(s.entities), s.meshes, s.assets, s.object_draws, s.counters);
   ++s.clock.tick;
 }
 

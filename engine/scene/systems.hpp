@@ -74,11 +74,11 @@ void upload_system(const Settings& settings, const Rules& rules, const Clock& cl
 // Draws the game's objects: culls them, chooses their levels of detail, fades them, and notes what
 // their meshes lack.
 using ObjectQuery = ecs::Query<const Transform, const GroundSun, Object>;
-void objects_system(const Settings& settings, const Input& input, const Clock& clock,
-                    const Camera& camera, const Quality& quality, const WorldFacts& facts,
-                    const Streaming& streaming, const View& view, ObjectQuery entities,
-                    synthesis::MeshSupply& meshes, Assets& assets, ObjectDraws& draws,
-                    Counters& counters);
+void objects_system(const Settings& settings, const Rules& rules, const Input& input,
+                    const Clock& clock, const Camera& camera, const Quality& quality,
+                    const WorldFacts& facts, const Streaming& streaming, const View& view,
+                    ObjectQuery entities, synthesis::MeshSupply& meshes, Assets& assets,
+                    ObjectDraws& draws, Counters& counters);
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
 using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,

@@ -44,8 +44,8 @@ struct ObjectState {
 // What an entity looks like.
 struct Object {
   MeshId mesh;
-  render::MaterialId material = render::kPlainMaterial;
-  bool visible = true;  // else it fades out, and stays away
+  render::MaterialId material = render::kPlainMaterial;  // also drawn where there is none such
+  bool visible = true;                                   // else it fades out, and stays away
   ObjectState state = {};
 };
 static_assert(sizeof(Object) == 32);

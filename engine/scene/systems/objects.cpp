@@ -161,6 +161,13 @@ bool go(ObjectState& state, const ObjectTick& tick) {
   return state.share > 0;
 }
 
+// A game may give an object another mesh, which has fewer levels.
+void forget_other_levels(ObjectState& state, std::uint32_t level_count) {
+  if (state.level != kNone && state.level >= level_count)
+    state.level = static_cast<std::uint8_t>(level_count - 1);
+  if (state.old_level >= level_count) state.old_level = kNone;
+}
+
 class ObjectWalk {
  public:
   ObjectWalk(const ObjectTick& tick, const Camera& camera, const WorldFacts& facts,
@@ -186,14 +193,15 @@ class ObjectWalk {
       ++counters_.objects_invalid;
       return;
     }
+    forget_other_levels(object.state, mesh.level_count);
     const float away = place.distance_m - place.radius_m;
-    if (away > tick_.view_distance_m) return;
     const core::Bounds box = core::Bounds::around(place.center, glm::vec3(place.radius_m));
     const bool in_view = can_be_seen(box, view_);
     const bool near = in_view || (facts_.shadows && away < kShadowReachM);
     const float pixels =
         2 * place.radius_m * tick_.pixels_per_radian / std::max(place.distance_m, tick_.near_m);
-    const bool wanted = object.visible && pixels >= tick_.least_pixels;
+    const bool wanted =
+        object.visible && pixels >= tick_.least_pixels && away <= tick_.view_distance_m;
     if (wanted) use(object, place, in_view, near, mesh);
     if (near) draw(entity, transform, object, place, in_view, wanted);
     if (!in_view) return;
@@ -301,16 +309,16 @@ void rank_meshes(std::uint32_t tick, double block_size_m, Assets& assets,
 
 }  // namespace
 
-void objects_system(const Settings& settings, const Input& input, const Clock& clock,
-                    const Camera& camera, const Quality& quality, const WorldFacts& facts,
-                    const Streaming& streaming, const View& view, ObjectQuery entities,
-                    synthesis::MeshSupply& meshes, Assets& assets, ObjectDraws& draws,
-                    Counters& counters) {
+void objects_system(const Settings& settings, const Rules& rules, const Input& input,
+                    const Clock& clock, const Camera& camera, const Quality& quality,
+                    const WorldFacts& facts, const Streaming& streaming, const View& view,
+                    ObjectQuery entities, synthesis::MeshSupply& meshes, Assets& assets,
+                    ObjectDraws& draws, Counters& counters) {
   constexpr double kLeastSeconds = 1.0 / 240.0;
   const double passed_s = std::max(clock.now_s - draws.now_s, kLeastSeconds);
   ObjectTick tick;
   tick.tick = clock.tick;
-  tick.step = settings.fade_seconds <= passed_s
+  tick.step = rules.settle || settings.fade_seconds <= passed_s
                   ? 1.0F
                   : static_cast<float>(passed_s / settings.fade_seconds);
   tick.continues = draws.tick + 1 == clock.tick;

@@ -50,6 +50,26 @@ image::Image planks() {
   return picture;
 }
 
+// Two square metres of a fence, with holes between its posts.
+core::MeshData panel() {
+  core::MeshData mesh;
+  mesh.positions = {{-1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+image::Image fence() {
+  image::Image picture = planks();
+  for (std::uint32_t y = 0; y < 64; ++y) {
+    for (std::uint32_t x = 0; x < 64; ++x) {
+      const bool there = x % 16 < 7 || (y + 20) % 32 < 7;
+      picture.pixel(x, y)[3] = there ? 255 : 0;
+    }
+  }
+  return picture;
+}
+
 std::unique_ptr<Session> open(render::RenderPath path, render::Preset preset) {
   SessionOptions options = short_session();
   options.size = {480, 270};
@@ -75,7 +95,8 @@ void put(Session& session, const core::CameraPose& pose, glm::dvec2 at, const sc
   scene::spawn(state.entities, object, transform);
 }
 
-// Crates in a row, one that glows, and a rock of the game's own.
+// Crates in a row, one that glows, a rock of the game's own, a fence with holes, and a tower beyond
+// the view distance.
 void furnish(Session& session, const core::CameraPose& pose) {
   scene::Assets& assets = session.scene().state().assets;
   const auto mesh = assets.add_mesh(crate(), "crate");
@@ -86,11 +107,19 @@ void furnish(Session& session, const core::CameraPose& pose) {
   const models::Registry& registry = session.scene().state().facts.registry;
   const auto& rock = registry[static_cast<models::ModelIndex>(registry.find("rock"))];
   const auto boulder = assets.add_model("rock", models::default_parameters(rock));
-  ASSERT_TRUE(wood && lamp && boulder);
+  const auto board = assets.add_mesh(panel(), "fence");
+  const auto slats = assets.add_texture(fence());
+  ASSERT_TRUE(wood && lamp && boulder && board && slats);
+  const auto holes = assets.add_material({.least_opacity = 0.5F, .base_texture = *slats});
+  ASSERT_TRUE(holes);
   for (int i = 0; i < 5; ++i)
-    put(session, pose, {-8.0 + 4.0 * i, -18.0 - i}, {.mesh = *mesh, .material = *wood}, 0.3F * static_cast<float>(i));
+    put(session, pose, {-8.0 + 4.0 * i, -18.0 - i}, {.mesh = *mesh, .material = *wood},
+        0.3F * static_cast<float>(i));
   put(session, pose, {3, -11}, {.mesh = *mesh, .material = *lamp}, 0.5F, glm::vec3(0.4F));
   put(session, pose, {-4, -11}, {.mesh = *boulder}, 0, glm::vec3(1.5F));
+  put(session, pose, {0, -10}, {.mesh = *board, .material = *holes}, 0.2F);
+  const double beyond_m = session.scene().state().settings.view_distance_m + 60;
+  put(session, pose, {0, -beyond_m}, {.mesh = *mesh}, 0, glm::vec3(4, 40, 4));
 }
 
 class ObjectPictures : public testing::TestWithParam<render::Preset> {};
@@ -108,7 +137,7 @@ TEST_P(ObjectPictures, AreTheSameOnBothPathsAndAsTheyWere) {
     session->scene().settle(pose);
     for (int frame = 0; frame < 3; ++frame)
       ASSERT_TRUE(session->tick(pose, 1.0 / 60.0));
-    EXPECT_EQ(session->scene().state().counters.objects_drawn, 7u);
+    EXPECT_EQ(session->scene().state().counters.objects_drawn, 8u);
     images[i] = captured(*session);
     EXPECT_THAT(session->renderer().validation_messages(), testing::IsEmpty());
   }

@@ -127,6 +127,54 @@ TEST_F(Objects, ThatComeIntoViewFromTheSideAreThereAtOnce) {
   EXPECT_EQ(drawn()[0].fade, 1.0F);
 }
 
+TEST_F(Objects, ThatWereThereWhileTheCacheWasFilledAreWholeInTheFirstFrame) {
+  put(ahead(20));
+  scene_->settle(pose_);
+  tick();
+  ASSERT_EQ(drawn().size(), 1u);
+  EXPECT_EQ(drawn()[0].fade, 1.0F);
+}
+
+TEST_F(Objects, FadeAtTheViewDistance) {
+  const double end_m = state().settings.view_distance_m;
+  const ecs::Entity entity = put(ahead(20));
+  tick(20);
+  Transform& transform = *state().entities.get<Transform>(entity);
+  transform = ahead(end_m + 20);
+  tick(2);
+  ASSERT_EQ(drawn().size(), 1u);
+  EXPECT_LT(drawn()[0].fade, 0.0F) << "goes";
+  tick(20);
+  EXPECT_TRUE(drawn().empty());
+  transform = ahead(end_m - 20);
+  tick(3);
+  ASSERT_EQ(drawn().size(), 1u);
+  EXPECT_GT(drawn()[0].fade, 0.0F);
+  EXPECT_LT(drawn()[0].fade, 1.0F) << "comes";
+}
+
+TEST_F(Objects, ThatGetAMeshWithFewerLevelsAskForNoneThatItLacks) {
+  const models::Registry registry = models::make_standard_registry();
+  const auto& tree = registry[static_cast<models::ModelIndex>(registry.find("tree"))];
+  const auto mesh = state().assets.add_model("tree", models::default_parameters(tree));
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  const ecs::Entity entity = spawn(state().entities, {.mesh = *mesh}, ahead(110));
+  tick(60);
+  Object& object = *state().entities.get<Object>(entity);
+  ASSERT_GT(object.state.level, 0);
+  object.mesh = mesh_;
+  object.visible = false;
+  tick();
+  EXPECT_LE(object.state.level, 0);
+  for (const auto& [index, level] : state().assets.used)
+    EXPECT_LT(level, state().assets.mesh({index}).level_count);
+  object.visible = true;
+  tick(20);
+  ASSERT_EQ(drawn().size(), 1u);
+  EXPECT_EQ(drawn()[0].range.index_count, 6u);
+  EXPECT_EQ(state().counters.failed, 0u);
+}
+
 TEST_F(Objects, WithPlacesThatAreNoneAreCountedAndNotDrawn) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Transform> bad(6, ahead(20));
@@ -166,6 +214,23 @@ TEST_F(Objects, OfAModelTypeTakeACoarserLevelFarAway) {
   ASSERT_EQ(drawn().size(), 1u);
   EXPECT_LT(drawn()[0].range.index_count, near);
   expect_within_budget(*scene_);
+}
+
+TEST_F(Objects, TenThousandThatMoveShareOneMesh) {
+  const std::uint64_t before = state().meshes.stats().bytes;
+  for (int i = 0; i < 10'000; ++i)
+    put(ahead(20 + i / 100 * 0.8, (i % 100 - 50) * 0.1));
+  for (int frame = 0; frame < 4; ++frame) {
+    state().entities.each<Transform>([](auto, std::span<Transform> all) {
+      for (Transform& transform : all)
+        transform.position.local.x += 0.25;
+    });
+    tick();
+  }
+  ASSERT_EQ(drawn().size(), 10'000u);
+  EXPECT_NEAR(drawn()[0].origin.x, -5 + 4 * 0.25, 1e-3);
+  EXPECT_EQ(state().counters.objects_missing, 0u);
+  EXPECT_LT(state().meshes.stats().bytes - before, 1024u) << "one mesh is charged";
 }
 
 TEST_F(Objects, MeshesThatAreNoneAreRefused) {
