@@ -1,6 +1,8 @@
 # Compiler settings, and the functions that every folder uses:
 #   psygen_library(NAME ...)                        the library of a folder: target, headers, component
 #   psygen_executable(NAME SOURCES ... PRIVATE ...) a program in bin/ of the build folder
+# Sanitizers compile libraries with CMAKE_UNITY_BUILD, several files at a time: a third of the time.
+# Files whose private names clash with others have SKIP_UNITY_BUILD_INCLUSION.
 # All settings are of this project's own targets. Projects that use them, or that contain this one,
 # keep theirs.
 include(GNUInstallDirs)
@@ -53,8 +55,8 @@ target_link_libraries(psygen_settings INTERFACE psygen_sanitizers)
 
 # psygen_library(NAME SOURCES ... HEADERS ... PUBLIC ... PRIVATE ... [PUBLIC_PACKAGES ...] [PACKAGES ...])
 # Target psygen_NAME with alias psygen::NAME. It is static, or shared with BUILD_SHARED_LIBS.
-#   HEADERS           the public headers: installed, in the reference, each compiled alone by a test.
-#                     All other headers are private.
+#   HEADERS           the public headers, which are installed. They include only each other (a test
+#                     sees to that); all other headers are private.
 #   PUBLIC, PRIVATE   the libraries that it may use. Folders are added in the order of their layers.
 #   PUBLIC_PACKAGES, PACKAGES   arguments of find_package(), one package an item ("fmt 9"): what
 #                     public headers need, and what only the sources need. They are looked for here

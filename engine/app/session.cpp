@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/app/gui.hpp"
 #include "engine/app/loading.hpp"
@@ -194,7 +195,7 @@ double Session::now_s() const {
 }
 
 void Session::set_now(double now_s) {
-  scene_->state().clock.now_s = now_s;
+  if (std::isfinite(now_s)) scene_->state().clock.now_s = now_s;
 }
 
 bool Session::has_hung_modelers() const {
@@ -290,6 +291,10 @@ core::Result<void> Session::draw_gui(double dt_s) {
 }
 
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
+  if (!(std::isfinite(dt_s) && dt_s >= 0)) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("a frame cannot take {} seconds", dt_s));
+  }
   if (auto ok = start(); !ok) return ok;
   scene::State& state = scene_->state();
   state.input.pose = pose;

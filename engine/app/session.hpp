@@ -56,7 +56,8 @@ class Session {
   // once the session is over: close(), a closed window, or SessionOptions::stop.
   bool poll();
   // One frame with a pose: runs the systems, draws and presents. Then moves the clock on by `dt_s`
-  // and calls the plugins. Fails with kDeviceLost and the like; the session is over then.
+  // and calls the plugins. Fails with kInvalidArgument for a time that is negative or not finite;
+  // with kDeviceLost and the like the session is over.
   core::Result<void> tick(const core::CameraPose& pose, double dt_s);
   // The next poll() is the last.
   void close() { closed_ = true; }
@@ -82,7 +83,7 @@ class Session {
   render::HudDrawing& hud();
   // The ImGui of the plugins' on_gui; it is made when it is first asked for.
   Gui& gui();
-  // The clock: seconds, at which the next tick is drawn.
+  // The clock: seconds, at which the next tick is drawn. Times that are not finite are ignored.
   double now_s() const;
   void set_now(double now_s);
   // Pixels of the next picture; {0, 0} while the window is minimised.

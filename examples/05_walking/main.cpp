@@ -1,6 +1,6 @@
 // Walking with collision: a character of physics, actions that can be rebound, and a camera in its
-// eyes. In a window: W A S D, mouse, space to jump, shift to run. With a number: walks by itself for
-// that many seconds, without a window, and prints how far it came.
+// eyes. In a window: W A S D, mouse, space to jump, shift to run. With a number: walks by itself
+// for that many seconds, without a window, and prints how far it came.
 //   example_walking [seconds]
 #include <algorithm>
 #include <chrono>
@@ -75,9 +75,9 @@ core::CameraPose eyes(const Game& game, double share) {
   core::CameraPose pose;
   pose.position = game.feet;
   const core::WorldPosition corner{game.feet.block, glm::dvec3(0.0)};
-  const glm::dvec3 before = core::offset_m(game.feet_before.block, corner,
-                                           game.query->world().block_size_m()) +
-                            game.feet_before.local;
+  const glm::dvec3 before =
+      core::offset_m(game.feet_before.block, corner, game.query->world().block_size_m()) +
+      game.feet_before.local;
   pose.position.local = before + (game.feet.local - before) * share;
   pose.position.local.y += kEyesM;
   pose.yaw = game.yaw;

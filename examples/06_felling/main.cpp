@@ -1,5 +1,5 @@
-// Felling the nearest oak ahead, for good: an edit of the world that is seen from near and far, and a
-// saved game that keeps it. Every run fells one tree more, saves, and takes a picture.
+// Felling the nearest oak ahead, for good: an edit of the world that is seen from near and far, and
+// a saved game that keeps it. Every run fells one tree more, saves, and takes a picture.
 //   example_felling game.save picture.png
 #include <cstdio>
 

@@ -1,5 +1,6 @@
 // Runs the fixed steps that are due at the time of this frame.
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/clock.hpp"
 #include "engine/scene/systems.hpp"
@@ -28,6 +29,7 @@ void trace_step(const Simulation& simulation, Tracing& trace) {
 }  // namespace
 
 void simulation_system(const Clock& clock, ecs::World&, Simulation& simulation, Tracing& trace) {
+  if (!std::isfinite(clock.now_s)) return;
   FixedStep& step = simulation.step;
   // A clock that is set back does not undo steps.
   simulation.behind_s += std::max(clock.now_s - simulation.clock_s, 0.0);

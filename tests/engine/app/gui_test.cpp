@@ -133,8 +133,14 @@ TEST_F(GuiOfAPerson, StandsTimesAndSizesThatMakeNoSense) {
     gui_.begin(input_, {0, 0}, NAN, dt_s);
     gui_.end();
   }
+  const ImGuiIO& io = ImGui::GetIO();
+  EXPECT_GT(io.DeltaTime, 0.0F);
+  EXPECT_TRUE(std::isfinite(io.DeltaTime));
+  EXPECT_TRUE(std::isfinite(io.FontGlobalScale));
   input_.pointer_px = {std::nan(""), 1e300};
   frame();
+  click(button_);
+  EXPECT_EQ(presses_, 1);
 }
 
 TEST(GuiInAWindow, KeepsClicksOnAMenuFromTheGameAndLetsOthersThrough) {
@@ -182,7 +188,7 @@ TEST(GuiInAWindow, KeepsClicksOnAMenuFromTheGameAndLetsOthersThrough) {
   EXPECT_EQ(presses, 1);
 }
 
-TEST(GuiInASession, IsInPicturesWithoutAWindowAndTakesNoTimeOfAnother) {
+TEST(GuiInASession, IsInPicturesWithoutAWindowAndOnlyInsideItsOwn) {
   const auto picture = [](bool with_gui) {
     SessionOptions options = short_session();
     options.preset = render::Preset::kLow;

@@ -51,6 +51,14 @@ TEST(Overlay, makes_one_quad_a_visible_character_and_a_panel_around_them) {
   EXPECT_TRUE(all_in(out, area(out, 0)));
 }
 
+TEST(Overlay, appends_panels_to_what_is_there) {
+  Vertices out(6);
+  Overlay().lay_out(std::vector<TextPanel>{{Anchor::kTopLeft, {{"12 ms"}}}}, kPicture, 1, out);
+  EXPECT_EQ(out.size(), 6 + (1u + 4) * 6);
+  EXPECT_EQ(out[0].colour, glm::vec4(0.0F));
+  EXPECT_NE(out[6].colour, glm::vec4(0.0F));
+}
+
 TEST(Overlay, puts_panels_where_they_belong) {
   const auto placed = [](Anchor anchor) { return area(lay_out({{anchor, {{"some words"}}}}), 0); };
   EXPECT_LT(placed(Anchor::kTopLeft).x1, 320);

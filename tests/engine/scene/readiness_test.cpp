@@ -12,13 +12,13 @@ namespace {
 
 const core::CameraPose kHere = pose_at(256, 256), kThere = pose_at(290, 240);
 
-std::size_t ready_events(State& state) {
-  static std::size_t count;
-  count = 0;
-  state.tick.add("count", [](ecs::EventReader<PlaceReady>& ready) {
-    count += ready.drain([](std::span<const PlaceReady>) {});
+std::vector<PlaceId> drain(ecs::EventReader<PlaceReady>& ready) {
+  std::vector<PlaceId> ids;
+  ready.drain([&ids](std::span<const PlaceReady> events) {
+    for (const PlaceReady& event : events)
+      ids.push_back(event.id);
   });
-  return count;
+  return ids;
 }
 
 // Ticks until the place is ready, at most so many.
@@ -48,19 +48,22 @@ TEST(Readiness, APlaceNobodyAskedForIsNotReadyAndSaysHowLongItTakes) {
 TEST(Readiness, AnAskedForPlaceBecomesReadyAndAJumpThereFindsItAll) {
   auto scene = make_scene(small_settings());
   State& state = scene->state();
-  ready_events(state);
+  ecs::EventReader<PlaceReady> ready = state.events.places_ready.reader();
   scene->settle(kHere);
   tick_at(*scene, kHere);
   const auto id = ask_ready(state, kThere.position, 60);
   ASSERT_TRUE(id) << id.error().message;
   EXPECT_FALSE(readiness(state, *id).ready());
+  EXPECT_TRUE(drain(ready).empty());
   EXPECT_LT(ticks_until_ready(*scene, *id, 500), 500);
+  EXPECT_EQ(drain(ready), std::vector{*id});
   EXPECT_EQ(readiness(state, *id).expected_s, 0.0);
   const auto again = readiness(state, kThere.position, 60);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->missing, 0U);
   tick_at(*scene, kHere);
   EXPECT_EQ(state.counters.requests, 0U) << "nothing is asked for any more";
+  EXPECT_TRUE(drain(ready).empty()) << "told once";
   // What is near is drawn as it should be at once, from the cache.
   tick_at(*scene, kThere);
   tick_at(*scene, kThere);
@@ -91,15 +94,22 @@ TEST(Readiness, WhatIsAskedForIsKeptAndOtherwiseItMayGo) {
   ASSERT_TRUE(id) << id.error().message;
   EXPECT_LT(ticks_until_ready(*scene, *id, 500), 500);
   // The camera turns and walks: what it wants next would take the room of what nobody wants.
-  for (int i = 0; i < 60; ++i) {
-    tick_at(*scene, pose_at(256 - i / 10, 256, 0.1 * i));
-    state.meshes.wait();
-  }
+  const auto walk = [&](int from_block) {
+    const std::uint64_t before = state.meshes.stats().evictions;
+    for (int i = 0; i < 60; ++i) {
+      tick_at(*scene, pose_at(from_block - i / 10, 256, 0.1 * i));
+      state.meshes.wait();
+    }
+    EXPECT_GT(state.meshes.stats().evictions, before);
+  };
+  walk(256);
   EXPECT_TRUE(readiness(state, *id).ready());
   expect_within_budget(*scene);
   stop_asking(state, *id);
   stop_asking(state, *id);  // is ignored
   EXPECT_TRUE(state.foresight.places.empty());
+  walk(250);
+  EXPECT_GT(readiness(state, kThere.position, 40)->missing, 0U);
 }
 
 // Nothing that a camera there would ask for is missing.
