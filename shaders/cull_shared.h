@@ -49,7 +49,7 @@ struct CullCandidate {
 
 #ifdef __cplusplus
 static_assert(sizeof(CullFrame) == 5 * 16 + 64 + 3 * 16);
-static_assert(sizeof(CullCandidate) == 112);
+static_assert(sizeof(CullCandidate) == 128);
 }  // namespace psygen::shaders
 #endif
 #endif

@@ -9,7 +9,7 @@ layout(push_constant, std430) uniform Pushed {
 DrawData this_draw() { return pushed; }
 #else
 layout(push_constant, std430) uniform Pushed {
-  layout(offset = 48) uint pushed_cascade;
+  layout(offset = 64) uint pushed_cascade;
 };
 layout(set = 0, binding = PSYGEN_BINDING_DRAWS, std430) readonly buffer Draws { DrawData draws[]; };
 DrawData this_draw() { return draws[gl_BaseInstance + gl_DrawID]; }

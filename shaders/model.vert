@@ -1,5 +1,6 @@
 // Trees, rocks and all other models: unpacks core::ModelVertex, turns billboards, applies wind,
-// light and haze. On software devices all of this is per vertex, and the fragment shader only
+// light and haze. With PSYGEN_OBJECT: a game's own objects (core::ObjectVertex), which are turned
+// and scaled, and have a material. On software devices all of this is per vertex, and the fragment shader only
 // writes the colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -8,8 +9,14 @@
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "surface_out.glsl"
+#ifdef PSYGEN_OBJECT
+#include "materials.glsl"
+#endif
 
 layout(location = 0) in uvec4 packed;  // position, ambient, sway, normal, colour, material
+#ifdef PSYGEN_OBJECT
+layout(location = 1) in vec2 texture_place;
+#endif
 
 vec2 snorm16(uint v) {
   return max(vec2(int(v << 16) >> 16, int(v) >> 16) * (1.0 / 32767.0), -1.0);
@@ -33,6 +40,12 @@ vec2 ahead_of_viewer(vec3 p) {
   return ahead * inversesqrt(dot(ahead, ahead));
 }
 
+// `v` turned by the unit quaternion `q`.
+vec3 turned(vec4 q, vec3 v) {
+  vec3 t = 2.0 * cross(q.xyz, v);
+  return v + q.w * t + cross(q.xyz, t);
+}
+
 void main() {
   DrawData draw = this_draw();
   vec2 xy = snorm16(packed.x);
@@ -45,7 +58,14 @@ void main() {
   uint material = packed.w >> 24;
   float leaf = float(material & 1u);
 
+#ifdef PSYGEN_OBJECT
+  float number = floor(draw.origin.w);
+  vec3 p = draw.origin.xyz + turned(draw.turn, draw.scale.xyz * vec3(xy, z));
+  vec3 across = turned(draw.turn, n * draw.light.yzw);
+  n = across * inversesqrt(max(dot(across, across), 1e-20));
+#else
   vec3 p = draw.origin.xyz + draw.scale.xyz * vec3(xy, z);
+#endif
   if ((material & PSYGEN_BILLBOARD_BIT) != 0u) {
     vec2 ahead = ahead_of_viewer(p);
     vec2 right = vec2(-ahead.y, ahead.x);
@@ -54,12 +74,20 @@ void main() {
     vec2 flat_n = 0.7 * (sign(aside.x) * right - ahead);  // as of a round crown
     n = normalize(vec3(flat_n.x, 0.35 + 0.7 * sign(aside.y), flat_n.y));
   }
+#ifdef PSYGEN_OBJECT
+  float time = frame.sun_direction.w * 0.31 + draw.origin.w - number;
+#else
   float time = frame.sun_direction.w * 0.31 + draw.origin.w;
+#endif
   p.x += sway * 0.12 * wave(time + xy.y * 0.3);
   p.z += sway * 0.09 * wave(time * 1.37 + xy.x * 0.4);
 
-#ifdef PSYGEN_FADING
+#if defined(PSYGEN_FADING)
   fade = draw.scale.w;
+#elif defined(PSYGEN_OBJECT)
+  fade = draw.scale.w;
+  uv = texture_place;
+  material_number = uint(max(number, 0.0));
 #endif
 #if defined(PSYGEN_DRAW_COLOUR)
   colour = colour_of_draw(draw.origin.w, n);
@@ -68,6 +96,12 @@ void main() {
   normal = n;
   albedo_ambient = vec4(albedo, ambient);
   sun_leaf_ground = vec3(draw.light.x, leaf, 0.0);
+#elif !defined(PSYGEN_SHADOW) && defined(PSYGEN_OBJECT)
+  MaterialData m = materials[uint(number)];
+  albedo *= m.base.rgb;
+  vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x) +
+               m.emissive.rgb * frame.sun_colour.w;
+  colour = shown(through_haze(light, p));
 #elif !defined(PSYGEN_SHADOW)
   colour = shown(through_haze(model_light(albedo, n, p, ambient, leaf, draw.light.x), p));
 #endif

@@ -20,6 +20,19 @@ using glm::vec4;
 #define PSYGEN_BINDING_FONT 3
 #define PSYGEN_BINDING_GLYPHS 4
 #define PSYGEN_BINDING_SHADOWS 5
+#define PSYGEN_BINDING_MATERIALS 6
+
+// Bindings of the second descriptor set: the textures of a material.
+#define PSYGEN_TEXTURE_BASE 0
+#define PSYGEN_TEXTURE_NORMAL 1
+#define PSYGEN_TEXTURE_EMISSIVE 2
+
+// Bits of MaterialData::options.x.
+#define PSYGEN_MATERIAL_NORMAL_MAP 1u
+#define PSYGEN_MATERIAL_TWO_SIDED 2u
+
+// Materials of objects, and a factor by which DrawData carries their number beside the wind.
+#define PSYGEN_MAX_MATERIALS 4096
 
 // Largest number of cascades of the sun's shadow.
 #define PSYGEN_MAX_CASCADES 3
@@ -52,8 +65,8 @@ struct FrameData {
   vec4 ray_right;  // direction of a pixel = ray_forward + ndc.x · ray_right + ndc.y · ray_down
   vec4 ray_down;
   vec4 ray_forward;
-  vec4 sun_direction;  // unit, towards the sun; w: seconds for wind and clouds
-  vec4 sun_colour;
+  vec4 sun_direction;    // unit, towards the sun; w: seconds for wind and clouds
+  vec4 sun_colour;       // w: exposure
   vec4 zenith_colour;    // w: fall-off of the haze with height, 1/m
   vec4 horizon_colour;   // w: height of the camera, m
   vec4 ground_colour;    // light from below; w: strength of the ground pattern, 0 or 1
@@ -83,13 +96,23 @@ struct FrameData {
 // The data of a draw.
 // Terrain: x, z = origin + cell · grid; y = origin.y + range · height.
 // Models:  p = center + half_extent · position.
+// Objects: p = center + turn · (half_extent · position).
 // In views that colour draws, the cover of terrain and the phase of models are replaced by the
 // debug colour: red · 65536 + green · 256 + blue.
 struct DrawData {
-  vec4 origin;  // terrain: origin, w cell size in m; model: center, w phase of the wind, 0 to 1
+  vec4 origin;  // terrain: origin, w cell size in m; model: center, w phase of the wind, 0 to 1;
+                // object: the same, w number of the material + phase
   vec4 scale;  // terrain: height range, skirt, morph or < 0 (FrameData), cover; model: half extent,
                // w fade (fading.glsl), 1 if it does not fade
-  vec4 light;  // model: x share of the sun that no terrain hides
+  vec4 light;  // model: x share of the sun that no terrain hides; object: y, z, w 1 / scale
+  vec4 turn;   // object: unit quaternion
+};
+
+// A material of objects. Colours are linear; the emitted light is before the exposure.
+struct MaterialData {
+  vec4 base;      // albedo, opacity; multiplied by the colours of vertices and texture
+  vec4 emissive;  // w: least opacity that is drawn, 0: all is
+  vec4 options;   // x: bits; y: strength of the normal map
 };
 
 // A corner of a quad of the overlay, or an end of a line.
@@ -103,7 +126,8 @@ struct OverlayVertex {
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameData) == 64 + 28 * 16 + 3 * 64);
-static_assert(sizeof(DrawData) == 48);
+static_assert(sizeof(DrawData) == 64);
+static_assert(sizeof(MaterialData) == 48);
 static_assert(sizeof(OverlayVertex) == 48);
 static_assert(offsetof(FrameData, ray_right) == 64);
 }  // namespace psygen::shaders

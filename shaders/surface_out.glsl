@@ -12,8 +12,13 @@ layout(location = 3) out vec3 sun_leaf_ground;
 layout(location = 0) out vec3 colour;
 #endif
 // Also with PSYGEN_FADING: the share of the draw's pixels (fading.glsl).
-#ifdef PSYGEN_FADING
+#if defined(PSYGEN_FADING) || defined(PSYGEN_OBJECT)
 layout(location = 4) flat out float fade;
+#endif
+// Of objects: the place in textures, and the number of the material.
+#ifdef PSYGEN_OBJECT
+layout(location = 5) out vec2 uv;
+layout(location = 6) flat out uint material_number;
 #endif
 
 // The debug colour of a draw (DrawData), shaded by the normal.

@@ -1,4 +1,4 @@
-// The two vertex formats. Modelers (engine/models) write them and shaders read them
+// The three vertex formats. Modelers (engine/models) write them and shaders read them
 // (shaders/terrain.vert, shaders/model.vert). The interface between synthesis and rendering: byte
 // layouts, no behaviour. Any thread.
 #pragma once
@@ -9,8 +9,8 @@
 
 namespace psygen::core {
 
-// Which of the two formats a mesh has.
-enum class VertexLayout : std::uint8_t { kTerrain = 0, kModel = 1 };
+// Which of the formats a mesh has.
+enum class VertexLayout : std::uint8_t { kTerrain = 0, kModel = 1, kObject = 2 };
 
 // Octahedral normals here fold about y (up). With s = |x| + |y| + |z| of the unit normal, the
 // stored pair is (x, z) / s where y >= 0, else ((1 - |z|/s) · sign x, (1 - |x|/s) · sign z),
@@ -49,6 +49,13 @@ struct ModelVertex {
 };
 static_assert(sizeof(ModelVertex) == 16);
 
+// A vertex of a game's own object: a model's vertex and its place in the textures of its material.
+struct ObjectVertex {
+  ModelVertex model;
+  float uv[2];  // (0, 0) is the corner of a texture's first texel; outside of [0, 1] it repeats
+};
+static_assert(sizeof(ObjectVertex) == 24);
+
 // A bit of ModelVertex::material. The vertex turns about the vertical line through `position` to
 // face the camera (in shadow maps, the sun). `normal` then holds its offset from that line as the
 // camera sees it, to the right and behind, in units of kBillboardReachM / 32767 metres. The shading
@@ -66,7 +73,14 @@ constexpr float billboard_reach_m(const ModelVertex& v) {
 
 // Bytes per vertex of a layout.
 constexpr std::uint32_t vertex_stride_bytes(VertexLayout layout) {
-  return layout == VertexLayout::kTerrain ? sizeof(TerrainVertex) : sizeof(ModelVertex);
+  switch (layout) {
+    case VertexLayout::kTerrain:
+      return sizeof(TerrainVertex);
+    case VertexLayout::kObject:
+      return sizeof(ObjectVertex);
+    default:
+      return sizeof(ModelVertex);
+  }
 }
 
 // The bytes of a mesh as vertices. `Vertex` is the type of the mesh's layout.

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/render/draw_list.hpp"
@@ -17,10 +18,11 @@ namespace psygen::render {
 struct DrawGroup {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
-  bool fading = false;  // models that fade in or out
+  bool fading = false;  // models that fade in or out, objects with holes
   std::uint32_t pool_block = 0;
   std::uint32_t first_command = 0;
   std::uint32_t capacity = 0;
+  MaterialId textures = kPlainMaterial;  // of objects: the material whose textures are bound
 };
 
 // The candidates of one frame. Spans are valid until the next build().
@@ -33,6 +35,9 @@ class CandidateList {
   // each draw. `lists` is indexed by shared_indices − 1.
   void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
              std::span<const IndexList> lists, bool coloured = false);
+  // Adds objects, after build(), with the same `coloured`.
+  void add_objects(std::span<const ObjectDraw> objects, MaterialKinds materials,
+                   bool coloured = false);
 
   // The list: candidates, groups, and first commands in the order of groups().
   std::span<const shaders::CullCandidate> candidates() const { return candidates_; }
@@ -46,12 +51,15 @@ class CandidateList {
   template <class Draw>
   void add(const Draw& draw, bool coloured);
   std::uint32_t group_for(const core::GeometryRange& range, bool shared, bool fading);
+  std::uint32_t group_for(const ObjectDraw& draw, MaterialKind kind);
+  void place_groups();
 
   std::vector<shaders::CullCandidate> candidates_;
   std::vector<DrawGroup> groups_;
   std::vector<std::uint32_t> first_commands_;
-  std::vector<std::uint32_t> open_;   // 1 + the group being filled, by layout and buffers
-  std::span<const IndexList> lists_;  // while build() runs
+  std::vector<std::uint32_t> open_;  // 1 + the group being filled, by layout and buffers
+  std::unordered_map<std::uint64_t, std::uint32_t> open_objects_;  // the group being filled
+  std::span<const IndexList> lists_;                               // while build() runs
   std::uint32_t name_count_ = 0;
 };
 

@@ -4,13 +4,15 @@
 #include <cmath>
 
 #include "engine/core/assert.hpp"
+#include "engine/render/view_volume.hpp"
 
 namespace psygen::render {
 
 shaders::DrawData data_of(const TerrainDraw& draw) {
   return {.origin = {draw.origin.x, draw.origin.y + draw.height_min_m, draw.origin.z, draw.cell_m},
           .scale = {draw.height_range_m, draw.skirt_m, draw.morph, draw.cover},
-          .light = {}};
+          .light = {},
+          .turn = {}};
 }
 
 shaders::DrawData data_of(const MeshDraw& draw) {
@@ -18,13 +20,28 @@ shaders::DrawData data_of(const MeshDraw& draw) {
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
   return {.origin = {draw.origin + draw.box_center, phase - std::floor(phase)},
           .scale = {draw.box_half_extent, draw.fade},
-          .light = {draw.sun, 0, 0, 0}};
+          .light = {draw.sun, 0, 0, 0},
+          .turn = {}};
+}
+
+shaders::DrawData data_of(const ObjectDraw& draw) {
+  const glm::vec3 center = draw.origin + object_axes(draw) * draw.box_center;
+  const auto number = static_cast<float>(std::min(draw.material, PSYGEN_MAX_MATERIALS - 1U));
+  const float phase = 0.9375F * (draw.phase - std::floor(draw.phase));  // stays below the number
+  return {.origin = {center, number + phase},
+          .scale = {draw.scale * draw.box_half_extent, draw.fade},
+          .light = {draw.sun, 1.0F / draw.scale.x, 1.0F / draw.scale.y, 1.0F / draw.scale.z},
+          .turn = {draw.rotation[0], draw.rotation[1], draw.rotation[2], draw.rotation[3]}};
 }
 
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw) {
   data.scale.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
 }
 void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
+  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
+}
+
+void set_colour(shaders::DrawData& data, const ObjectDraw& draw) {
   data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
 }
 
@@ -39,16 +56,41 @@ IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indi
   return {all.first_index + part.first, part.count};
 }
 
+namespace {
+
+template <class Draw>
+IndexList indices_of(const Draw& draw, std::span<const IndexList> lists) {
+  return indices_of(draw.range, draw.shared_indices, draw.part, lists);
+}
+IndexList indices_of(const ObjectDraw& draw, std::span<const IndexList>) {
+  return {draw.range.first_index, draw.range.index_count};
+}
+
+}  // namespace
+
+// Of one draw, without its place.
+template <class Draw>
+DrawRun DrawList::run_of(const Draw& draw) const {
+  DrawRun run;
+  run.layout = draw.range.layout;
+  run.pushed = indices_of(draw, lists_).index_count >= pushed_from_;
+  run.pool_block = draw.range.pool_block;
+  if constexpr (requires { draw.material; }) {
+    const MaterialKind kind = kind_of(materials_, draw.material);
+    run.fading = kind.holes || draw.fade < 1.0F;
+    run.textures = kind.textured ? draw.material : kPlainMaterial;
+  } else {
+    run.fading = is_fading(draw);
+    run.shared = draw.shared_indices != kNoSharedIndices;
+  }
+  return run;
+}
+
 template <class Draw>
 void DrawList::append(const Draw& draw) {
-  const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
-  const DrawRun run{draw.range.layout,
-                    draw.shared_indices != kNoSharedIndices,
-                    indices.index_count >= pushed_from_,
-                    is_fading(draw),
-                    draw.range.pool_block,
-                    static_cast<std::uint32_t>(draws_.size()),
-                    0};
+  const IndexList indices = indices_of(draw, lists_);
+  DrawRun run = run_of(draw);
+  run.first = static_cast<std::uint32_t>(draws_.size());
   if (runs_.empty() || !run.continues(runs_.back())) runs_.push_back(run);
   ++runs_.back().count;
   draws_.push_back({indices.first_index, indices.index_count,
@@ -62,11 +104,10 @@ template <class Draw>
 void DrawList::add(std::span<const Draw> input) {
   // The properties that separate runs, as a sort key.
   const auto key = [&](const Draw& draw) {
-    const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
-    const std::uint64_t pushed = indices.index_count >= pushed_from_ ? 0 : 2;
-    const std::uint64_t fading = is_fading(draw) ? 1 : 0;
-    return fading << 33 | pushed << 31 | std::uint64_t{draw.range.pool_block} * 2 |
-           (draw.shared_indices != kNoSharedIndices ? 1u : 0u);
+    const DrawRun run = run_of(draw);
+    return std::uint64_t{run.textures} << 34 | (run.fading ? 1ULL : 0ULL) << 33 |
+           (run.pushed ? 0ULL : 2ULL) << 31 | std::uint64_t{run.pool_block} * 2 |
+           (run.shared ? 1u : 0u);
   };
   for (std::size_t first = 0; first < input.size(); first += kWindow) {
     const std::span<const Draw> window =
@@ -81,7 +122,8 @@ void DrawList::add(std::span<const Draw> input) {
 }
 
 void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-                     std::span<const IndexList> lists, std::uint32_t pushed_from, bool coloured) {
+                     std::span<const IndexList> lists, std::uint32_t pushed_from, bool coloured,
+                     std::span<const ObjectDraw> objects, MaterialKinds materials) {
   runs_.clear();
   draws_.clear();
   data_.clear();
@@ -91,6 +133,9 @@ void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshD
   coloured_ = coloured;
   add(terrain);
   add(models);
+  materials_ = materials;
+  add(objects);
+  materials_ = {};
   lists_ = {};
 }
 

@@ -29,6 +29,7 @@ IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indi
 // The data of a draw for the shaders.
 shaders::DrawData data_of(const TerrainDraw& draw);
 shaders::DrawData data_of(const MeshDraw& draw);
+shaders::DrawData data_of(const ObjectDraw& draw);
 // Whether a draw covers only some of its pixels.
 constexpr bool is_fading(const TerrainDraw&) {
   return false;
@@ -39,6 +40,18 @@ constexpr bool is_fading(const MeshDraw& draw) {
 // Puts the debug colour of a draw into its data, for the views that show it.
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw);
 void set_colour(shaders::DrawData& data, const MeshDraw& draw);
+void set_colour(shaders::DrawData& data, const ObjectDraw& draw);
+
+// How the draws of a material differ from those of others. Materials are named by their place in a
+// span; those beyond it are plain.
+struct MaterialKind {
+  bool textured = false;  // its textures are bound
+  bool holes = false;     // pixels of little opacity are left out
+};
+using MaterialKinds = std::span<const MaterialKind>;
+inline MaterialKind kind_of(MaterialKinds kinds, MaterialId material) {
+  return material < kinds.size() ? kinds[material] : MaterialKind{};
+}
 
 // One draw, in indices and vertices of its buffers. Same layout as VkMultiDrawIndexedInfoEXT.
 struct IndexedDraw {
@@ -52,15 +65,16 @@ struct DrawRun {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
   bool pushed = false;  // one call per draw with its data pushed, else one call for all
-  bool fading = false;  // models that fade in or out
+  bool fading = false;  // models that fade in or out, objects with holes
   std::uint32_t pool_block = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
+  MaterialId textures = kPlainMaterial;  // of objects: the material whose textures are bound
 
   // Whether this draw can be appended to the run `r`.
   bool continues(const DrawRun& r) const {
     return layout == r.layout && shared == r.shared && pushed == r.pushed && fading == r.fading &&
-           pool_block == r.pool_block;
+           pool_block == r.pool_block && textures == r.textures;
   }
 };
 
@@ -69,12 +83,13 @@ class DrawList {
  public:
   static constexpr std::size_t kWindow = 512;  // draws that may be reordered together
 
-  // Replaces the list: terrain first, then models. `lists` is indexed by shared_indices − 1. Meshes
-  // with at least `pushed_from` indices are pushed. With `coloured` the data has the debug colour
-  // of each draw (shared.h).
+  // Replaces the list: terrain first, then models, then objects. `lists` is indexed by
+  // shared_indices − 1. Meshes with at least `pushed_from` indices are pushed. With `coloured` the
+  // data has the debug colour of each draw (shared.h).
   void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
              std::span<const IndexList> lists, std::uint32_t pushed_from = UINT32_MAX,
-             bool coloured = false);
+             bool coloured = false, std::span<const ObjectDraw> objects = {},
+             MaterialKinds materials = {});
 
   // The list: runs, draws, their data, and the triangles of all of them.
   std::span<const DrawRun> runs() const { return runs_; }
@@ -86,6 +101,8 @@ class DrawList {
   template <class Draw>
   void add(std::span<const Draw> input);
   template <class Draw>
+  DrawRun run_of(const Draw& draw) const;
+  template <class Draw>
   void append(const Draw& draw);
 
   std::vector<DrawRun> runs_;
@@ -94,6 +111,7 @@ class DrawList {
   std::vector<std::pair<std::uint64_t, std::size_t>> order_;  // (buffers, position) of a window
   std::uint64_t triangle_count_ = 0;
   std::span<const IndexList> lists_;  // while build() runs
+  MaterialKinds materials_;           // the same
   std::uint32_t pushed_from_ = UINT32_MAX;
   bool coloured_ = false;
 };

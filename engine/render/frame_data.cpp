@@ -43,7 +43,7 @@ void set_light(shaders::FrameData& out, const FrameInput& input) {
   const float length = glm::length(light.sun_direction);
   const glm::vec3 sun = length > 0 ? light.sun_direction / length : glm::vec3(0, 1, 0);
   out.sun_direction = {sun, light.time_seconds};
-  out.sun_colour = {light.sun_colour * e, 0.0F};
+  out.sun_colour = {light.sun_colour * e, e};
   out.glow_colour = {light.glow_colour * e, 0.0F};
   out.glow_direction = {glm::normalize(glm::vec3(sun.x, std::max(sun.y, 0.01F), sun.z)), 0.0F};
   out.cloud_colour = {light.cloud_colour * e, 0.0F};

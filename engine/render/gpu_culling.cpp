@@ -103,8 +103,9 @@ Result<void> GpuCulling::grow_seen(const Device& device) {
 
 void GpuCulling::set_frame(const ViewVolume& volume, const shaders::FrameData& frame,
                            const FrameInput& input, core::Extent size,
-                           std::span<const IndexList> lists) {
+                           std::span<const IndexList> lists, MaterialKinds materials) {
   list_.build(input.terrain, input.models, lists, colours_draws(input.view));
+  list_.add_objects(input.objects, materials, colours_draws(input.view));
   std::copy(volume.planes.begin(), volume.planes.end(), frame_.planes);
   frame_.clip_from_camera = frame.clip_from_camera;
   frame_.near = {input.projection.near_m, 0.0F, 0.0F, 0.0F};

@@ -27,7 +27,7 @@ class GpuCulling {
 
   // Sets the candidates of the following frames, until the next call. Linear in the draws.
   void set_frame(const ViewVolume& volume, const shaders::FrameData& frame, const FrameInput& input,
-                 core::Extent size, std::span<const IndexList> lists);
+                 core::Extent size, std::span<const IndexList> lists, MaterialKinds materials = {});
   // Copies them into the buffers of a slot whose last frame has finished. Fails with kOutOfMemory
   // if the buffers cannot grow.
   core::Result<void> write(const Device& device, std::size_t slot);

@@ -91,7 +91,7 @@ Result<Image> make_image(const Device& device, core::Extent size, VkFormat forma
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = format;
   info.extent = {size.width, size.height, 1};
-  info.mipLevels = 1;
+  info.mipLevels = shape.mips;
   info.arrayLayers = shape.layers;
   info.samples = shape.samples;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
@@ -110,7 +110,7 @@ Result<Image> make_image(const Device& device, core::Extent size, VkFormat forma
   view_info.image = image;
   view_info.viewType = shape.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   view_info.format = format;
-  view_info.subresourceRange = {aspect, 0, 1, 0, shape.layers};
+  view_info.subresourceRange = {aspect, 0, shape.mips, 0, shape.layers};
   VkImageView view = VK_NULL_HANDLE;
   result = device.vk.vkCreateImageView(device.handle, &view_info, nullptr, &view);
   if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image view");

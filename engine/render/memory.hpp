@@ -46,8 +46,9 @@ struct ImageShape {
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   bool array = false;  // the view is of an array, even with one layer
   std::uint32_t layers = 1;
+  std::uint32_t mips = 1;  // levels, each half as large as the one before
 };
-// Creates a device-local 2-D image with one mip level.
+// Creates a device-local 2-D image.
 core::Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
                                VkImageUsageFlags usage, VkImageAspectFlags aspect,
                                const ImageShape& shape = {});

@@ -1,6 +1,7 @@
 #include "engine/render/pipeline_build.hpp"
 
 #include <array>
+#include <cstddef>
 
 #include "shaders/shared.h"
 
@@ -79,23 +80,28 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   stages[1].pSpecializationInfo = &constants;
 
   const PipelineKind kind = shape.kind;
-  const bool meshes = kind == PipelineKind::kTerrain || kind == PipelineKind::kModel;
+  const bool object = kind == PipelineKind::kObject;
+  const bool meshes = kind == PipelineKind::kTerrain || kind == PipelineKind::kModel || object;
   const bool terrain = kind == PipelineKind::kTerrain;
   const bool writes_depth = meshes || kind == PipelineKind::kWater;
   const VkVertexInputBindingDescription binding{
       0,
-      core::vertex_stride_bytes(terrain ? core::VertexLayout::kTerrain
-                                        : core::VertexLayout::kModel),
+      core::vertex_stride_bytes(terrain  ? core::VertexLayout::kTerrain
+                                : object ? core::VertexLayout::kObject
+                                         : core::VertexLayout::kModel),
       VK_VERTEX_INPUT_RATE_VERTEX};
   // One fetch of whole words, which the shader unpacks, is cheaper than four attributes.
-  const VkVertexInputAttributeDescription attribute{
-      0, 0, terrain ? VK_FORMAT_R32G32B32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0};
+  const std::array attributes{
+      VkVertexInputAttributeDescription{
+          0, 0, terrain ? VK_FORMAT_R32G32B32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0},
+      VkVertexInputAttributeDescription{1, 0, VK_FORMAT_R32G32_SFLOAT,
+                                        offsetof(core::ObjectVertex, uv)}};
   VkPipelineVertexInputStateCreateInfo input{};
   input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
   input.vertexBindingDescriptionCount = meshes ? 1 : 0;
   input.pVertexBindingDescriptions = &binding;
-  input.vertexAttributeDescriptionCount = meshes ? 1 : 0;
-  input.pVertexAttributeDescriptions = &attribute;
+  input.vertexAttributeDescriptionCount = object ? 2 : meshes ? 1 : 0;
+  input.pVertexAttributeDescriptions = attributes.data();
 
   VkPipelineInputAssemblyStateCreateInfo assembly{};
   assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;

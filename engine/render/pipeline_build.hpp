@@ -16,6 +16,7 @@ inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 enum class PipelineKind : std::uint8_t {
   kTerrain,
   kModel,
+  kObject,
   kWater,
   kSky,
   kDome,

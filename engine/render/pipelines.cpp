@@ -48,7 +48,8 @@ Result<Image> make_texture(const Device& device, core::Extent size, VkFormat for
 
 Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
                                const PresetTraits& traits, const Overlay& overlay,
-                               std::uint32_t sets) {
+                               std::uint32_t sets, const MaterialTable& materials) {
+  materials_ = &materials;
   traits_ = traits;
   samples_ = device.samples_for(traits.samples);
   colour_format_ = colour_format;
@@ -102,7 +103,9 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
                                    VK_SHADER_STAGE_VERTEX_BIT, nullptr},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_SHADOWS,
                                    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
-                                   VK_SHADER_STAGE_FRAGMENT_BIT, shadows_.sampler()}};
+                                   VK_SHADER_STAGE_FRAGMENT_BIT, shadows_.sampler()},
+      VkDescriptorSetLayoutBinding{PSYGEN_BINDING_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+                                   both, nullptr}};
   VkDescriptorSetLayoutCreateInfo set_info{};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set_info.bindingCount = static_cast<std::uint32_t>(bindings.size());
@@ -114,7 +117,7 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
   set_layout_ = UniqueSetLayout(device.vk, device.handle, set_layout);
 
   const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, sets},
-                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * sets},
+                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 * sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 3 * sets}};
   VkDescriptorPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
@@ -130,8 +133,9 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
                                  sizeof(shaders::DrawData) + sizeof(std::uint32_t)};
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  info.setLayoutCount = 1;
-  info.pSetLayouts = set_layout_.address();
+  const std::array set_layouts{set_layout_.get(), materials_->set_layout()};
+  info.setLayoutCount = static_cast<std::uint32_t>(set_layouts.size());
+  info.pSetLayouts = set_layouts.data();
   info.pushConstantRangeCount = 1;
   info.pPushConstantRanges = &push;
   VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -261,6 +265,65 @@ VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, 
   return all.of(layout, pushed, fading && !edges);
 }
 
+// The eight pipelines of a look. Those of kColour light textured objects per pixel.
+Result<void> Pipelines::create_objects(Making& making, MeshLook look, bool wireframe,
+                                       std::vector<UniquePipeline>& out) {
+  const OtherCode& code = other_code();
+  const bool views = wireframe || look == MeshLook::kDrawColour;
+  const auto on = [](bool yes) -> VkBool32 { return yes ? VK_TRUE : VK_FALSE; };
+  for (std::size_t i = 0; i < 8; ++i) {
+    const bool pushed = (i & 1U) != 0, textured = (i & 2U) != 0, fading = (i & 4U) != 0;
+    out.emplace_back();
+    if (textured && views) continue;
+    PipelineShape shape = usual_shape();
+    shape.kind = PipelineKind::kObject;
+    shape.wireframe = wireframe;
+    shape.shadow = look == MeshLook::kShadow;
+    shape.constants = {VK_FALSE, on(traits_.cascades > 0)};
+    const bool lit = look == MeshLook::kLit || (look == MeshLook::kColour && textured);
+    if (shape.shadow) {
+      shape.frag = !fading    ? ShaderCode{}
+                   : textured ? code.object_shadow_frag
+                              : code.shadow_fading_frag;
+    } else if (lit) {
+      shape.frag = textured
+                       ? (fading ? code.object_textured_fading_frag : code.object_textured_frag)
+                       : (fading ? code.object_fading_frag : code.object_frag);
+    } else {
+      shape.frag = fading ? code.surface_fading_frag : code.surface_frag;
+    }
+    shape.vert = object_vertex_code(lit ? MeshLook::kLit : look, pushed);
+    if (Result<void> made = make(making, shape, out.back()); !made) return made;
+  }
+  return {};
+}
+
+Result<void> Pipelines::create_objects(const Device& device) {
+  if (has_objects()) return {};
+  const Progress nobody;
+  Making making{device, nobody};
+  ObjectPipelines made;
+  const MeshLook look = traits_.pixel_light ? MeshLook::kLit : MeshLook::kColour;
+  return create_objects(making, look, false, made.whole)
+      .and_then([&] { return create_objects(making, MeshLook::kDrawColour, false, made.coloured); })
+      .and_then([&]() -> Result<void> {
+        if (!device.info.wireframe) return {};
+        return create_objects(making, MeshLook::kColour, true, made.wireframe);
+      })
+      .and_then([&]() -> Result<void> {
+        if (traits_.cascades == 0) return {};
+        return create_objects(making, MeshLook::kShadow, false, made.shadow);
+      })
+      .map([&] { objects_ = std::move(made); });
+}
+
+VkPipeline Pipelines::object(bool pushed, bool textured, bool fading, View view) const {
+  if (colours_draws(view)) return objects_.coloured[index_of_object(pushed, false, fading)].get();
+  if (view == View::kWireframe && !objects_.wireframe.empty())
+    return objects_.wireframe[index_of_object(pushed, false, false)].get();
+  return objects_.whole[index_of_object(pushed, textured, fading)].get();
+}
+
 Result<void> Pipelines::create_sets(const Device& device, std::uint32_t count) {
   const std::vector<VkDescriptorSetLayout> layouts(count, set_layout_.get());
   sets_.resize(count);
@@ -279,6 +342,7 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
   const VkDescriptorBufferInfo frame_info{frame.buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorBufferInfo draws_info{draws.buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorBufferInfo glyphs_info{glyphs.buffer.get(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorBufferInfo materials_info{materials_->buffer().buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorImageInfo clouds_info{VK_NULL_HANDLE, clouds_.view.get(),
                                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   const VkDescriptorImageInfo font_info{VK_NULL_HANDLE, font_.view.get(),
@@ -305,7 +369,8 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
       write(PSYGEN_BINDING_CLOUDS, texture, nullptr, &clouds_info),
       write(PSYGEN_BINDING_FONT, texture, nullptr, &font_info),
       write(PSYGEN_BINDING_GLYPHS, storage, &glyphs_info, nullptr),
-      write(PSYGEN_BINDING_SHADOWS, texture, nullptr, &shadows_info)};
+      write(PSYGEN_BINDING_SHADOWS, texture, nullptr, &shadows_info),
+      write(PSYGEN_BINDING_MATERIALS, storage, &materials_info, nullptr)};
   device.vk.vkUpdateDescriptorSets(device.handle, static_cast<std::uint32_t>(writes.size()),
                                    writes.data(), 0, nullptr);
 }

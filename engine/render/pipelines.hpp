@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/render/materials.hpp"
 #include "engine/render/overlay.hpp"
 #include "engine/render/pipeline_build.hpp"
 #include "engine/render/preset.hpp"
@@ -17,10 +18,15 @@ class Pipelines {
  public:
   // Creates the textures, `sets` descriptor sets, and the pipeline for text.
   core::Result<void> create(const Device& device, VkFormat colour_format,
-                            const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets);
+                            const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets,
+                            const MaterialTable& materials);
   // Creates all other pipelines; call it once, after create(). `progress` is called after each
   // pipeline and can end it with kInterrupted.
   core::Result<void> create_others(const Device& device, const Progress& progress);
+
+  // Creates those for objects, which few programs need, unless they exist.
+  core::Result<void> create_objects(const Device& device);
+  bool has_objects() const { return !objects_.whole.empty(); }
 
   // The preset, the samples per pixel that the device supports, and the pipeline layout.
   const PresetTraits& traits() const { return traits_; }
@@ -32,6 +38,12 @@ class Pipelines {
   // The same for drawing into a cascade, if the preset has cascades.
   VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, bool fading) const {
     return shadow_.of(layout, pushed, fading);
+  }
+  // The pipeline for objects, after create_objects(). `textured`: the material's set is bound;
+  // `fading`: those that fade or have holes.
+  VkPipeline object(bool pushed, bool textured, bool fading, View view) const;
+  VkPipeline object_shadow(bool pushed, bool textured, bool fading) const {
+    return objects_.shadow[index_of_object(pushed, textured, fading)].get();
   }
   // Pipelines for water and lines, and the shadow maps.
   VkPipeline water() const { return water_.get(); }
@@ -66,6 +78,13 @@ class Pipelines {
       return whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed].get();
     }
   };
+  static std::size_t index_of_object(bool pushed, bool textured, bool fading) {
+    return (pushed ? 1U : 0U) + (textured ? 2U : 0U) + (fading ? 4U : 0U);
+  }
+  // Empty, or indexed by index_of_object(). Those of views have no textures.
+  struct ObjectPipelines {
+    std::vector<UniquePipeline> whole, coloured, wireframe, shadow;
+  };
   // State while pipelines are created.
   struct Making {
     const Device& device;
@@ -81,6 +100,8 @@ class Pipelines {
                                    MeshPipelines& out);
   core::Result<void> create_fading(Making& making, PipelineShape shape, MeshLook look,
                                    MeshPipelines& out);
+  core::Result<void> create_objects(Making& making, MeshLook look, bool wireframe,
+                                    std::vector<UniquePipeline>& out);
 
   PresetTraits traits_;
   VkSampleCountFlagBits samples_ = VK_SAMPLE_COUNT_1_BIT;
@@ -93,6 +114,8 @@ class Pipelines {
   std::vector<VkDescriptorSet> sets_;
   UniquePipelineLayout layout_;
   MeshPipelines landscape_, coloured_, wireframe_, shadow_;
+  ObjectPipelines objects_;
+  const MaterialTable* materials_ = nullptr;
   UniquePipeline water_, sky_, sky_below_, sun_, lines_, overlay_;
 };
 

@@ -35,6 +35,19 @@ Result<std::uint32_t> Renderer::upload_shared_indices(std::span<const std::uint1
   return impl_->add_shared_indices(indices);
 }
 
+Result<TextureId> Renderer::add_texture(const TexturePixels& pixels) {
+  return impl_->add_texture(pixels);
+}
+Result<MaterialId> Renderer::add_material(const Material& material) {
+  return impl_->add_material(material);
+}
+Result<void> Renderer::prepare_objects() {
+  return impl_->prepare_objects();
+}
+std::uint64_t Renderer::texture_bytes() const {
+  return impl_->texture_bytes();
+}
+
 Result<FrameResult> Renderer::render(const FrameInput& input) {
   return impl_->render(input);
 }

@@ -39,6 +39,20 @@ class Renderer {
   // 4 MiB for such lists, outside the geometry budget, are full.
   core::Result<std::uint32_t> upload_shared_indices(std::span<const std::uint16_t> indices);
 
+  // Stores a texture for materials, with mip levels. It is kept as long as the renderer, and waited
+  // for. Fails with kInvalidArgument for a size of 0, above 8192 or that does not match the bytes;
+  // kOverBudget beyond RendererOptions::texture_budget_bytes; kOutOfMemory, kDeviceLost.
+  core::Result<TextureId> add_texture(const TexturePixels& pixels);
+  // Stores a material of objects. It is kept as long as the renderer. Fails with kInvalidArgument
+  // for numbers that are not finite or colours below 0, and for unknown textures; kOverBudget
+  // beyond 4096 materials.
+  core::Result<MaterialId> add_material(const Material& material);
+  // Creates the pipelines for objects, if they do not exist. Otherwise the first frame with objects
+  // does. Takes up to a second. Fails with kOutOfMemory or kDeviceLost.
+  core::Result<void> prepare_objects();
+  // Bytes of all textures of materials.
+  std::uint64_t texture_bytes() const;
+
   // Draws and submits one frame. Waits at most for the frame before the last. While the window is
   // minimised it does nothing and presents nothing. Fails with kInvalidArgument for a camera that
   // FrameInput does not allow, with kDeviceLost, and with kOutOfMemory if there is no memory for

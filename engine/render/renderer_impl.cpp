@@ -132,6 +132,8 @@ Result<void> RendererImpl::create(const Progress& progress) {
   if (!timeline) return tl::unexpected(timeline.error());
   timeline_ = std::move(*timeline);
   if (Result<void> made = shared_.create(*device_); !made) return made;
+  if (Result<void> made = materials_.create(*device_, options_.texture_budget_bytes); !made)
+    return made;
   for (FrameSlot& slot : slots_) {
     if (Result<void> made = slot.create(*device_); !made) return made;
   }
@@ -274,6 +276,7 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
     if (!copied) return copied;
   }
   const ScenePass pass{.list = list_,
+                       .materials = &materials_,
                        .buffers = {pool_blocks_, shared_.buffer()},
                        .culled = {culling_.get(), index_of(slot)},
                        .glyph_vertex_count = text_vertices_,
@@ -305,6 +308,9 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   if (targets_.empty()) {
     return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
   }
+  if (!input.objects.empty()) {
+    if (Result<void> made = prepare_objects(); !made) return tl::unexpected(made.error());
+  }
   return noted(draw_frame(input, slot_of(frame_value_ + 1)));
 }
 
@@ -314,12 +320,13 @@ void RendererImpl::list_draws(const FrameInput& input) {
   std::uint32_t pushed_from = pushed_from_;
   if (culling_) {
     culling_->set_frame(view_volume(frame_.clip_from_camera), frame_, input, size(),
-                        shared_.lists());
+                        shared_.lists(), materials_.kinds());
     // Cascades are drawn from a list of the CPU, with pushed data.
     if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
     pushed_from = 0;
   }
-  list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured);
+  list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured, input.objects,
+              materials_.kinds());
 }
 
 Result<void> RendererImpl::write_frame(FrameSlot& slot) {

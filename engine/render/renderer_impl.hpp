@@ -43,6 +43,14 @@ class RendererImpl {
   core::Result<std::uint32_t> add_shared_indices(std::span<const std::uint16_t> indices) {
     return shared_.add(indices);
   }
+  core::Result<TextureId> add_texture(const TexturePixels& pixels) {
+    return noted(materials_.add_texture(*device_, pixels));
+  }
+  core::Result<MaterialId> add_material(const Material& material) {
+    return materials_.add(*device_, material);
+  }
+  core::Result<void> prepare_objects();
+  std::uint64_t texture_bytes() const { return materials_.texture_bytes(); }
   core::Result<FrameResult> render(const FrameInput& input);
   core::Result<void> show(std::span<const TextPanel> panels, float text_scale,
                           const HudDrawing& hud);
@@ -71,6 +79,7 @@ class RendererImpl {
   core::Result<void> create_looks(Preset preset, const Progress& progress);
   void use_pipelines();
   core::Result<void> warm_up(const Progress& progress);
+  core::Result<void> warm_up_objects();
   core::Result<void> warm_up_culling(FrameSlot& slot, Targets& small);
   core::Result<void> write_frame(FrameSlot& slot);
   void list_draws(const FrameInput& input);
@@ -111,6 +120,7 @@ class RendererImpl {
   std::unique_ptr<GeometryPool> pool_;
   std::unique_ptr<StagedGeometry> staged_;  // null if the CPU writes the blocks directly
   SharedIndexLists shared_;
+  MaterialTable materials_;
   Preset preset_ = Preset::kLow;
   Pipelines pipelines_;
   std::array<FrameSlot, kFramesInFlight> slots_;

@@ -26,7 +26,7 @@ Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress)
   preset_ = preset;
   return pipelines_
       .create(*device_, colour_format_, traits_of(preset), overlay_,
-              static_cast<std::uint32_t>(kFramesInFlight))
+              static_cast<std::uint32_t>(kFramesInFlight), materials_)
       .and_then([&] {
         use_pipelines();
         return create_culling();
@@ -63,6 +63,7 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
   };
   exchange();  // keeps the old ones until the new ones exist
   Result<void> made = noted(create_looks(preset, progress));
+  if (made && other_pipelines.has_objects()) made = noted(pipelines_.create_objects(*device_));
   wait_idle();
   has_list_ = has_picture_ = false;
   gpu_.reset();
@@ -96,6 +97,38 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
     if (!drawn) return drawn;
   }
   return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
+}
+
+Result<void> RendererImpl::prepare_objects() {
+  if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
+  if (pipelines_.has_objects()) return {};
+  return noted(pipelines_.create_objects(*device_).and_then([&] { return warm_up_objects(); }));
+}
+
+// An even number of submissions: the last picture stays that of the slot of the last frame.
+Result<void> RendererImpl::warm_up_objects() {
+  static_assert(kObjectWarmUpSteps % kFramesInFlight == 0);
+  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
+  if (!small) return tl::unexpected(small.error());
+  const Result<VkDescriptorSet> textures = materials_.blank_set(*device_);
+  if (!textures) return tl::unexpected(textures.error());
+  wait_idle();
+  for (int step = 0; step < kObjectWarmUpSteps; ++step) {
+    FrameSlot& slot = slot_of(frame_value_ + 1);
+    const Result<void> drawn = slot.write(*device_, pipelines_, frame_data({}, small->extent),
+                                          std::vector<shaders::DrawData>(1), {})
+                                   .and_then([&] { return slot.begin(*device_); })
+                                   .and_then([&] {
+                                     record_object_warm_up(*device_, pipelines_, slot, *small,
+                                                           shared_.buffer(), *textures, step);
+                                     return slot.end(*device_);
+                                   })
+                                   .and_then([&] { return submit(slot, false); })
+                                   .and_then([&] { return wait_for(slot); });
+    if (!drawn) return drawn;
+  }
+  idle_value_ = warm_up_value_ = frame_value_;
+  return {};
 }
 
 // Draws an empty frame with every dispatch.

@@ -141,12 +141,45 @@ void draw_many(const Device& device, VkCommandBuffer commands, const DrawList& l
   }
 }
 
+// Binds the textures of a material of objects, unless they are bound.
+class TextureBinder {
+ public:
+  TextureBinder(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                const MaterialTable* materials)
+      : device_(device), pipelines_(pipelines), commands_(commands), materials_(materials) {}
+
+  void bind(MaterialId material) {
+    if (material == bound_ || material == kPlainMaterial) return;
+    const VkDescriptorSet set = materials_->set(material);
+    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                       pipelines_.layout(), 1, 1, &set, 0, nullptr);
+    bound_ = material;
+  }
+
+ private:
+  const Device& device_;
+  const Pipelines& pipelines_;
+  VkCommandBuffer commands_;
+  const MaterialTable* materials_;
+  MaterialId bound_ = kPlainMaterial;
+};
+
+// `Draws`: a run or a group.
+template <class Draws>
+VkPipeline picture_pipeline(const Pipelines& pipelines, const Draws& draws, bool pushed,
+                            View view) {
+  if (draws.layout != core::VertexLayout::kObject)
+    return pipelines.mesh(draws.layout, pushed, draws.fading, view);
+  return pipelines.object(pushed, draws.textures != kPlainMaterial, draws.fading, view);
+}
+
 // Draws the runs of the list, each with the pipeline pipeline_of(run).
 template <class PipelineOf>
 void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
                  const ScenePass& pass, const PipelineOf& pipeline_of) {
   VkPipeline bound = VK_NULL_HANDLE;
   VkBuffer bound_vertices = VK_NULL_HANDLE, bound_indices = VK_NULL_HANDLE;
+  TextureBinder textures(device, pipelines, commands, pass.materials);
   for (const DrawRun& run : pass.list.runs()) {
     const VkPipeline pipeline = pipeline_of(run);
     const VkBuffer vertices = pass.buffers.pool_blocks[run.pool_block].buffer.get();
@@ -159,6 +192,7 @@ void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuff
     if (indices != bound_indices) {
       device.vk.vkCmdBindIndexBuffer(commands, indices, 0, VK_INDEX_TYPE_UINT16);
     }
+    textures.bind(run.textures);
     bound = pipeline;
     bound_vertices = vertices;
     bound_indices = indices;
@@ -174,9 +208,11 @@ void draw_culled(const Device& device, const Pipelines& pipelines, VkCommandBuff
                  const ScenePass& pass, std::uint32_t phase) {
   const GpuCulling& culling = *pass.culled.culling;
   VkPipeline bound = VK_NULL_HANDLE;
+  TextureBinder textures(device, pipelines, commands, pass.materials);
   for (std::size_t i = 0; i < culling.groups().size(); ++i) {
     const DrawGroup& group = culling.groups()[i];
-    const VkPipeline pipeline = pipelines.mesh(group.layout, false, group.fading, pass.view);
+    const VkPipeline pipeline = picture_pipeline(pipelines, group, false, pass.view);
+    textures.bind(group.textures);
     const VkBuffer vertices = pass.buffers.pool_blocks[group.pool_block].buffer.get();
     const VkBuffer indices = group.shared ? pass.buffers.shared_indices : vertices;
     const VkDeviceSize zero = 0;
@@ -212,7 +248,9 @@ void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameS
     device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT,
                                  sizeof(shaders::DrawData), sizeof(cascade), &cascade);
     draw_meshes(device, pipelines, commands, pass, [&](const DrawRun& run) {
-      return pipelines.mesh_shadow(run.layout, run.pushed, run.fading);
+      if (run.layout != core::VertexLayout::kObject)
+        return pipelines.mesh_shadow(run.layout, run.pushed, run.fading);
+      return pipelines.object_shadow(run.pushed, run.textures != kPlainMaterial, run.fading);
     });
   });
 }
@@ -326,7 +364,7 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
     begin_pass(device, commands, targets);
     bind_set(device, pipelines, slot);
     draw_meshes(device, pipelines, commands, pass, [&](const DrawRun& run) {
-      return pipelines.mesh(run.layout, run.pushed, run.fading, pass.view);
+      return picture_pipeline(pipelines, run, run.pushed, pass.view);
     });
   }
   draw_water_and_sky(device, pipelines, commands, pass.water);
@@ -361,6 +399,28 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
   if (step == 2) draw_twice(core::VertexLayout::kModel, true);
   if (step == 3) draw_water_and_sky(device, pipelines, commands, true);
   if (step == 4) draw_lines_and_text(device, pipelines, commands, 3, 0);
+  device.vk.vkCmdEndRendering(commands);
+}
+
+void record_object_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                           Targets& targets, VkBuffer blank, VkDescriptorSet textures, int step) {
+  const VkCommandBuffer commands = slot.commands();
+  begin_pass(device, commands, targets);
+  bind_set(device, pipelines, slot);
+  device.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.layout(),
+                                    1, 1, &textures, 0, nullptr);
+  const VkDeviceSize zero = 0;
+  device.vk.vkCmdBindVertexBuffers(commands, 0, 1, &blank, &zero);
+  device.vk.vkCmdBindIndexBuffer(commands, blank, 0, VK_INDEX_TYPE_UINT16);
+  const shaders::DrawData data{};
+  device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT, 0,
+                               sizeof(data), &data);
+  for (const bool pushed : {false, true}) {
+    for (const bool fading : {false, true}) {
+      bind_pipeline(device, commands, pipelines.object(pushed, step == 1, fading, View::kNormal));
+      device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
+    }
+  }
   device.vk.vkCmdEndRendering(commands);
 }
 

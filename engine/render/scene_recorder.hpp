@@ -44,6 +44,7 @@ struct CulledDraws {
 // The content of a frame.
 struct ScenePass {
   const DrawList& list;
+  const MaterialTable* materials = nullptr;  // needed for objects
   SceneBuffers buffers;
   CulledDraws culled = {};
   std::uint32_t glyph_vertex_count = 0;  // in the overlay's buffer; the ends of lines follow
@@ -69,6 +70,11 @@ void record_text(const Device& device, const Pipelines& pipelines, FrameSlot& sl
 inline constexpr int kWarmUpSteps = 5;
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                     Targets& targets, VkBuffer blank, int step);
+
+// The same for the pipelines of objects, which must exist. kObjectWarmUpSteps submissions.
+inline constexpr int kObjectWarmUpSteps = 2;
+void record_object_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                           Targets& targets, VkBuffer blank, VkDescriptorSet textures, int step);
 
 // Copies the colour target to a swapchain image and makes that ready to be presented.
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,

@@ -128,6 +128,46 @@ constexpr std::uint32_t kOverlayFrag[] =
 #include "overlay_frag_spv.h"
     ;
 
+constexpr std::uint32_t kObjectVert[] =
+#include "object_vert_spv.h"
+    ;
+constexpr std::uint32_t kObjectPushedVert[] =
+#include "object_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kObjectLitVert[] =
+#include "object_lit_vert_spv.h"
+    ;
+constexpr std::uint32_t kObjectLitPushedVert[] =
+#include "object_lit_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kObjectColouredVert[] =
+#include "object_coloured_vert_spv.h"
+    ;
+constexpr std::uint32_t kObjectColouredPushedVert[] =
+#include "object_coloured_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kObjectShadowVert[] =
+#include "object_shadow_vert_spv.h"
+    ;
+constexpr std::uint32_t kObjectShadowPushedVert[] =
+#include "object_shadow_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kObjectFrag[] =
+#include "object_frag_spv.h"
+    ;
+constexpr std::uint32_t kObjectFadingFrag[] =
+#include "object_fading_frag_spv.h"
+    ;
+constexpr std::uint32_t kObjectTexturedFrag[] =
+#include "object_textured_frag_spv.h"
+    ;
+constexpr std::uint32_t kObjectTexturedFadingFrag[] =
+#include "object_textured_fading_frag_spv.h"
+    ;
+constexpr std::uint32_t kObjectShadowFrag[] =
+#include "object_shadow_frag_spv.h"
+    ;
+
 // Indexed by layout, look and whether the data is pushed.
 constexpr ShaderCode kMeshes[2][4][2] = {
     {{kTerrainVert, kTerrainPushedVert},
@@ -148,12 +188,36 @@ constexpr ShaderCode kFadingModels[4][2] = {
     {kModelFadingShadowVert, kModelFadingShadowPushedVert},
 };
 
-constexpr OtherCode kOthers{
-    kSurfaceFrag,      kSurfaceLitFrag, kSurfaceFadingFrag, kSurfaceLitFadingFrag,
-    kShadowFadingFrag, kWaterVert,      kWaterLitVert,      kWaterFrag,
-    kLineVert,         kSkyVert,        kSkyFrag,           kSkyDomeVert,
-    kSkyDomeFrag,      kSkyBelowVert,   kSunVert,           kOverlayVert,
-    kOverlayFrag};
+// Objects, indexed by look and whether the data is pushed.
+constexpr ShaderCode kObjects[4][2] = {
+    {kObjectVert, kObjectPushedVert},
+    {kObjectLitVert, kObjectLitPushedVert},
+    {kObjectColouredVert, kObjectColouredPushedVert},
+    {kObjectShadowVert, kObjectShadowPushedVert},
+};
+
+constexpr OtherCode kOthers{kSurfaceFrag,
+                            kSurfaceLitFrag,
+                            kSurfaceFadingFrag,
+                            kSurfaceLitFadingFrag,
+                            kShadowFadingFrag,
+                            kWaterVert,
+                            kWaterLitVert,
+                            kWaterFrag,
+                            kLineVert,
+                            kSkyVert,
+                            kSkyFrag,
+                            kSkyDomeVert,
+                            kSkyDomeFrag,
+                            kSkyBelowVert,
+                            kSunVert,
+                            kOverlayVert,
+                            kOverlayFrag,
+                            kObjectFrag,
+                            kObjectFadingFrag,
+                            kObjectTexturedFrag,
+                            kObjectTexturedFadingFrag,
+                            kObjectShadowFrag};
 
 }  // namespace
 
@@ -164,6 +228,10 @@ ShaderCode mesh_vertex_code(core::VertexLayout layout, MeshLook look, bool pushe
 
 ShaderCode fading_vertex_code(MeshLook look, bool pushed) {
   return kFadingModels[static_cast<std::size_t>(look)][pushed ? 1 : 0];
+}
+
+ShaderCode object_vertex_code(MeshLook look, bool pushed) {
+  return kObjects[static_cast<std::size_t>(look)][pushed ? 1 : 0];
 }
 
 const OtherCode& other_code() {

@@ -22,11 +22,16 @@ ShaderCode mesh_vertex_code(core::VertexLayout layout, MeshLook look, bool pushe
 // The vertex shader of models that fade in or out (shaders/fading.glsl).
 ShaderCode fading_vertex_code(MeshLook look, bool pushed);
 
+// The vertex shader of objects.
+ShaderCode object_vertex_code(MeshLook look, bool pushed);
+
 // All other shaders, named after their files and defines.
 struct OtherCode {
   ShaderCode surface_frag, surface_lit_frag, surface_fading_frag, surface_lit_fading_frag,
       shadow_fading_frag, water_vert, water_lit_vert, water_frag, line_vert, sky_vert, sky_frag,
-      sky_dome_vert, sky_dome_frag, sky_below_vert, sun_vert, overlay_vert, overlay_frag;
+      sky_dome_vert, sky_dome_frag, sky_below_vert, sun_vert, overlay_vert, overlay_frag,
+      object_frag, object_fading_frag, object_textured_frag, object_textured_fading_frag,
+      object_shadow_frag;
 };
 // The other shaders; static data.
 const OtherCode& other_code();

@@ -3,6 +3,7 @@
 // to the camera. It does nothing itself (renderer.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
@@ -74,6 +75,7 @@ struct RendererOptions {
   std::function<bool(Renderer&, double)> progress;
   double device_timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
   bool timestamps = true;              // FrameResult::gpu, if the device supports it
+  std::uint64_t texture_budget_bytes = 256ull << 20;  // hard limit of all textures of materials
 };
 
 // A device and its abilities.
@@ -175,6 +177,51 @@ struct TerrainDraw {
   std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };
 
+// Names of a texture and of a material (Renderer::add_texture, add_material). kNoTexture is none;
+// kPlainMaterial is white, solid and has no textures.
+using TextureId = std::uint32_t;
+using MaterialId = std::uint32_t;
+inline constexpr TextureId kNoTexture = 0;
+inline constexpr MaterialId kPlainMaterial = 0;
+
+// How the surface of an object looks. All parts are multiplied: the colours of its vertices, of the
+// material and of the texture.
+struct Material {
+  glm::vec3 base_colour{1.0F};  // linear albedo
+  float opacity = 1.0F;         // together with the texture's alpha; compared with least_opacity
+  float least_opacity = 0.0F;   // pixels of less opacity are left out; 0: all are drawn
+  glm::vec3 emissive{0.0F};     // light that it emits, before the exposure; sunlit white is 1 to 2
+  TextureId base_texture = kNoTexture;
+  TextureId normal_texture = kNoTexture;    // +Y up, as in glTF
+  TextureId emissive_texture = kNoTexture;  // multiplied by `emissive`
+  float normal_strength = 1.0F;
+  bool two_sided = true;  // normals turn towards the camera; both sides are drawn in any case
+};
+
+// Pixels for a texture: rows from the top, 4 bytes per pixel (red, green, blue, alpha).
+struct TexturePixels {
+  std::uint32_t width = 0, height = 0;
+  std::span<const std::uint8_t> rgba;
+  bool colours = true;  // sRGB; false: numbers, as in normal maps
+};
+
+// An object of the game: a mesh of core::VertexLayout::kObject, turned and scaled. `fade` as of
+// MeshDraw.
+struct ObjectDraw {
+  core::GeometryRange range;
+  MaterialId material = kPlainMaterial;
+  glm::vec3 origin{0.0F};                                 // of the mesh, relative to the camera
+  std::array<float, 4> rotation{0.0F, 0.0F, 0.0F, 1.0F};  // unit quaternion x, y, z, w
+  glm::vec3 scale{1.0F};                                  // not 0; before the rotation
+  glm::vec3 box_center{0.0F};                             // box of the snorm16 positions
+  glm::vec3 box_half_extent{1.0F};
+  float fade = 1.0F;
+  float sun = 1.0F;                       // share of the sun that no terrain hides, 0 … 1
+  float phase = 0.0F;                     // of the wind, 0 … 1
+  std::uint32_t name = 0;                 // differs between objects; for occlusion culling
+  std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
+};
+
 // A line between two points relative to the camera.
 struct Line {
   glm::vec3 from{0.0F}, to{0.0F};
@@ -205,6 +252,7 @@ struct FrameInput {
   double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
+  std::span<const ObjectDraw> objects;   // nearest first, committed ranges only
   std::span<const Line> lines;           // at most kMaxLines are drawn, in every view
   // Over the picture, in this order.
   const HudDrawing* hud = nullptr;  // of the game; null: none

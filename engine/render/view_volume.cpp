@@ -1,6 +1,7 @@
 #include "engine/render/view_volume.hpp"
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace psygen::render {
@@ -44,6 +45,24 @@ core::Bounds bounds_of(const TerrainDraw& draw) {
 
 core::Bounds bounds_of(const MeshDraw& draw) {
   return core::Bounds::around(draw.origin + draw.box_center, draw.box_half_extent + kSwayM);
+}
+
+// The box around the turned box: each of its half extents is the sum of the projections of the
+// turned axes.
+core::Bounds bounds_of(const ObjectDraw& draw) {
+  const glm::mat3 axes = object_axes(draw);
+  const glm::vec3 extent = glm::abs(axes[0]) * draw.box_half_extent.x +
+                           glm::abs(axes[1]) * draw.box_half_extent.y +
+                           glm::abs(axes[2]) * draw.box_half_extent.z;
+  return core::Bounds::around(draw.origin + axes * draw.box_center, extent + kSwayM);
+}
+
+glm::mat3 object_axes(const ObjectDraw& draw) {
+  const auto [x, y, z, w] = draw.rotation;
+  return {
+      glm::vec3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)) * draw.scale.x,
+      glm::vec3(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)) * draw.scale.y,
+      glm::vec3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)) * draw.scale.z};
 }
 
 }  // namespace psygen::render

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
 #include "engine/core/coordinates.hpp"
@@ -25,5 +26,8 @@ bool in_view(const ViewVolume& volume, const core::Bounds& box);
 // the camera.
 core::Bounds bounds_of(const TerrainDraw& draw);
 core::Bounds bounds_of(const MeshDraw& draw);
+core::Bounds bounds_of(const ObjectDraw& draw);
+// The axes of an object's mesh in the world, each as long as its scale.
+glm::mat3 object_axes(const ObjectDraw& draw);
 
 }  // namespace psygen::render

@@ -102,12 +102,14 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
   visibility_system(s.settings, s.rules, s.camera, s.facts, s.streaming,
                     VisibilityQuery(s.entities), s.view, s.counters);
   cache_system(s.settings, s.rules, s.clock, s.camera, s.quality, s.facts, s.daylight, s.streaming,
-               s.view, CacheQuery(s.entities), s.meshes, s.found, s.foresight, s.pressure,
+               s.view, CacheQuery(s.entities), s.assets, s.meshes, s.found, s.foresight, s.pressure,
                s.events.evicted, s.events.places_ready, s.counters);
   s.meshes.wait(go_on);
   synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
   upload_system(s.settings, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
                 s.output, s.events.landed, s.counters, s.totals);
+  objects_system(s.settings, s.rules, s.input, s.clock, s.camera, s.quality, s.facts, s.streaming,
+                 s.view, ObjectQuery(s.entities), s.meshes, s.assets, s.object_draws, s.counters);
   ++s.clock.tick;
 }
 

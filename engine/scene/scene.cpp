@@ -209,6 +209,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   facts.standing = standing_on_block(facts.world, facts.registry);
 
   if (auto ok = find_levels(settings, facts); !ok) return tl::unexpected(ok.error());
+  if (auto ok = s.assets.open(facts.registry, renderer); !ok) return tl::unexpected(ok.error());
   for (std::size_t k = 0; k < facts.levels.size(); ++k) {
     s.streaming.grids.emplace_back(static_cast<std::uint8_t>(k),
                                    largest_radius(facts.world, facts.levels, settings, k));

@@ -22,6 +22,7 @@
 #include "engine/scene/nodes/ground_relief.hpp"
 #include "engine/scene/nodes/ground_sun.hpp"
 #include "engine/scene/nodes/levels.hpp"
+#include "engine/scene/objects/assets.hpp"
 #include "engine/scene/quality/governor.hpp"
 #include "engine/scene/readiness.hpp"
 #include "engine/scene/settings.hpp"
@@ -208,6 +209,14 @@ struct DrawLists {
   double now_s = 0;        // the clock's then
 };
 
+// What is drawn of the game's objects in this tick.
+struct ObjectDraws {
+  std::vector<render::ObjectDraw> objects;
+  std::vector<synthesis::MeshHandle> meshes;  // of objects in view
+  std::uint32_t tick = 0;                     // of these lists
+  double now_s = 0;                           // the clock's then
+};
+
 // The nodes that the last frame showed, in order. Empty while nobody asks.
 struct ShownNode {
   ecs::Entity entity;
@@ -228,7 +237,10 @@ struct Counters {
   std::uint32_t awaited = 0;
   double missing_pixels_percent = 0;
   double seen_area = 0,
-         too_coarse_area = 0;         // of pieces (draws/missing.hpp), in percent of the picture
+         too_coarse_area = 0;  // of pieces (draws/missing.hpp), in percent of the picture
+  // Objects of the game: in view and drawn; in view without a mesh that can be drawn; with a place
+  // that is none.
+  std::uint32_t objects_drawn = 0, objects_missing = 0, objects_invalid = 0;
   std::uint32_t requests = 0;         // wanted, but not there
   std::uint32_t refused = 0;          // of these, for want of memory
   std::uint32_t refused_visible = 0;  // … of what is in view
@@ -297,6 +309,8 @@ struct State {
   Found found;
   Foresight foresight;
   DrawLists draws;
+  Assets assets;
+  ObjectDraws object_draws;
   ShownNodes shown;
   Counters counters;
   Totals totals;

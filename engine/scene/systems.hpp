@@ -54,9 +54,10 @@ using CacheQuery = ecs::Query<const Node, const ecs::Children, const Visibility,
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Daylight& daylight, const Streaming& streaming, const View& view,
-                  CacheQuery entities, synthesis::MeshSupply& meshes, Found& found,
-                  Foresight& foresight, Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
-                  ecs::EventQueue<PlaceReady>& places_ready, Counters& counters);
+                  CacheQuery entities, const Assets& assets, synthesis::MeshSupply& meshes,
+                  Found& found, Foresight& foresight, Pressure& pressure,
+                  ecs::EventQueue<MeshEvicted>& evicted, ecs::EventQueue<PlaceReady>& places_ready,
+                  Counters& counters);
 
 // Collects what the modelers have finished since the last tick.
 void synthesis_system(const Settings& settings, const Rules& rules, synthesis::MeshSupply& meshes,
@@ -70,14 +71,24 @@ void upload_system(const Settings& settings, const Rules& rules, const Clock& cl
                    synthesis::MeshSupply& meshes, Output& output,
                    ecs::EventQueue<MeshLanded>& landed, Counters& counters, Totals& totals);
 
+// Draws the game's objects: culls them, chooses their levels of detail, fades them, and notes what
+// their meshes lack.
+using ObjectQuery = ecs::Query<const Transform, const GroundSun, Object>;
+void objects_system(const Settings& settings, const Rules& rules, const Input& input,
+                    const Clock& clock, const Camera& camera, const Quality& quality,
+                    const WorldFacts& facts, const Streaming& streaming, const View& view,
+                    ObjectQuery entities, synthesis::MeshSupply& meshes, Assets& assets,
+                    ObjectDraws& draws, Counters& counters);
+
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
 using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
                                const Demand, const Mesh, const MeshParts, const OldParts,
                                const GroundRelief, const GroundSun, Fading>;
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                   const View& view, RenderQuery entities, synthesis::MeshSupply& meshes,
-                   DrawLists& draws, Output& output, Pressure& pressure, Counters& counters);
+                   const View& view, const ObjectDraws& objects, RenderQuery entities,
+                   synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
+                   Pressure& pressure, Counters& counters);
 
 // Tells which nodes came into the picture and which left it.
 void events_system(const View& view, const DrawLists& draws, ShownNodes& shown,

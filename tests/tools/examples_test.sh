@@ -38,4 +38,5 @@ grep -q '; 1 oaks in all$' "$folder/felling.txt" && grep -q '; 2 oaks in all$' "
 ! cmp -s "$folder/felling1.png" "$folder/felling2.png" || { echo "no tree is gone"; exit 1; }
 [ "$(cut -d';' -f1 "$folder/felling.txt" | sort -u | wc -l)" -eq 2 ] # two different ones
 picture 07_hud hud
+picture 08_objects objects
 [ -z "${KEEP_PICTURES:-}" ] || cp "$folder"/*.png "$KEEP_PICTURES"

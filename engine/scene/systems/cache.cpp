@@ -280,11 +280,13 @@ synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, 
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Daylight& daylight, const Streaming& streaming, const View& view,
-                  CacheQuery entities, synthesis::MeshSupply& meshes, Found& found,
-                  Foresight& foresight, Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
-                  ecs::EventQueue<PlaceReady>& places_ready, Counters& counters) {
+                  CacheQuery entities, const Assets& assets, synthesis::MeshSupply& meshes,
+                  Found& found, Foresight& foresight, Pressure& pressure,
+                  ecs::EventQueue<MeshEvicted>& evicted, ecs::EventQueue<PlaceReady>& places_ready,
+                  Counters& counters) {
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
+  assets.want_all(meshes);
   found.meshes.clear();
   // Before the picture's wants: where both want a mesh, it is the picture's.
   if (rules.request && !rules.settle)

@@ -171,8 +171,9 @@ FadeStep fade_step(const Settings& settings, const Clock& clock, const DrawLists
 
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                   const View& view, RenderQuery entities, synthesis::MeshSupply& meshes,
-                   DrawLists& draws, Output& output, Pressure& pressure, Counters& counters) {
+                   const View& view, const ObjectDraws& objects, RenderQuery entities,
+                   synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
+                   Pressure& pressure, Counters& counters) {
   draws.terrain.clear();
   draws.models.clear();
   draws.meshes.clear();
@@ -210,6 +211,7 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   frame.block_size_m = facts.world.block_size_m();
   frame.terrain = draws.terrain;
   frame.models = draws.models;
+  frame.objects = objects.objects;
   frame.lines = draws.lines;
   frame.canopy = facts.canopy;
   frame.morph = morph;

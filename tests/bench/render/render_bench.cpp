@@ -152,8 +152,79 @@ void BM_terrain(benchmark::State& state) {
   state.counters["triangles"] = triangles;
 }
 
+// Ten thousand meshes that all move in every frame, of 12 or of 128
+// triangles each: as models and as objects, in turns, with the lists made anew.
+// `objects_per_models` is the ratio of the CPU time of the whole process, the median over pairs of
+// frames.
+void BM_moving(benchmark::State& state) {
+  const auto renderer = make_renderer(submission_of(state));
+  const bool boxes = state.range(1) == 0;
+  const auto model = boxes ? synthetic::make_box(renderer->geometry(), {0.3F, 0.2F, 0.1F})
+                           : synthetic::make_sheet(renderer->geometry(), 9);
+  const auto object = boxes ? synthetic::make_object_box(renderer->geometry(), {0.3F, 0.2F, 0.1F})
+                            : synthetic::make_object_sheet(renderer->geometry(), 9);
+  if (!model || !object) return state.SkipWithError("no memory for the mesh");
+  const int side = 100;
+  std::vector<MeshDraw> models(side * side);
+  std::vector<ObjectDraw> objects(side * side);
+  FrameInput input = synthetic::look(30, -0.2, kSize);
+  float time = 0;
+  const auto move = [&](auto& draws, const core::GeometryRange& range) {
+    time += 0.02F;
+    for (int i = 0; i < side * side; ++i) {
+      auto& draw = draws[static_cast<std::size_t>(i)];
+      draw.range = range;
+      draw.origin = {static_cast<float>(i % side - side / 2) * 1.5F + std::sin(time), -20.0F,
+                     -20.0F - static_cast<float>(i / side) * 1.5F};
+      draw.box_half_extent = glm::vec3(0.5F);
+      if constexpr (requires { draw.rotation; }) {
+        draw.rotation = {0, std::sin(time), 0, std::cos(time)};
+        draw.name = static_cast<std::uint32_t>(i);
+      }
+    }
+  };
+  const auto cpu_ms_of = [&](bool as_objects) {
+    const std::clock_t start = std::clock();
+    constexpr int kFrames = 4;
+    for (int i = 0; i < kFrames; ++i) {
+      if (as_objects) {
+        move(objects, *object);
+      } else {
+        move(models, *model);
+      }
+      input.models = as_objects ? std::span<const MeshDraw>() : models;
+      input.objects =
+          as_objects ? std::span<const ObjectDraw>(objects) : std::span<const ObjectDraw>();
+      if (!renderer->render(input)) return 0.0;
+    }
+    renderer->wait_idle();
+    return static_cast<double>(std::clock() - start) * 1e3 / CLOCKS_PER_SEC / kFrames;
+  };
+  cpu_ms_of(false);
+  cpu_ms_of(true);
+  std::vector<double> ratios, models_ms, objects_ms;
+  for (auto _ : state) {
+    models_ms.push_back(cpu_ms_of(false));
+    objects_ms.push_back(cpu_ms_of(true));
+    ratios.push_back(objects_ms.back() / models_ms.back());
+    state.SetIterationTime(objects_ms.back() * 1e-3);
+  }
+  const auto median = [](std::vector<double>& values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+  };
+  state.counters["models_ms"] = median(models_ms);
+  state.counters["objects_ms"] = median(objects_ms);
+  state.counters["objects_per_models"] = median(ratios);
+}
+
 }  // namespace
 
+BENCHMARK(BM_moving)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(25)
+    ->ArgsProduct({{0}, {0, 1}});
 BENCHMARK(BM_sky)->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3)->Arg(0);
 BENCHMARK(BM_sheets)
     ->UseManualTime()

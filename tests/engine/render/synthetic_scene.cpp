@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "engine/core/heap_geometry_memory.hpp"
+
 namespace psygen::render::synthetic {
 
 using core::GeometryMemory;
@@ -102,6 +104,40 @@ Result<GeometryRange> make_sheet(GeometryMemory& memory, int side) {
   std::copy(indices.begin(), indices.end(), reserved->indices.begin());
   memory.commit(reserved->range);
   return reserved->range;
+}
+
+namespace {
+
+// A mesh of the heap's as an object's, with whole textures on each four of its vertices.
+Result<GeometryRange> as_object(core::HeapGeometryMemory& heap, const Result<GeometryRange>& mesh,
+                                GeometryMemory& memory) {
+  if (!mesh) return mesh;
+  const auto from = core::vertices_of<core::ModelVertex>(heap.vertex_bytes(*mesh));
+  std::vector<core::ObjectVertex> vertices;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const bool right = i % 4 == 1 || i % 4 == 2, down = i % 4 < 2;
+    vertices.push_back({from[i], {right ? 1.0F : 0.0F, down ? 1.0F : 0.0F}});
+  }
+  const auto reserved =
+      memory.reserve(core::VertexLayout::kObject, mesh->vertex_count, mesh->index_count);
+  if (!reserved) return tl::unexpected(reserved.error());
+  std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
+  std::ranges::copy(heap.indices(*mesh), reserved->indices.begin());
+  memory.commit(reserved->range);
+  heap.release(*mesh);
+  return reserved->range;
+}
+
+}  // namespace
+
+Result<GeometryRange> make_object_box(GeometryMemory& memory, glm::vec3 albedo) {
+  core::HeapGeometryMemory heap(1 << 16);
+  return as_object(heap, make_box(heap, albedo), memory);
+}
+
+Result<GeometryRange> make_object_sheet(GeometryMemory& memory, int side) {
+  core::HeapGeometryMemory heap(1 << 24);
+  return as_object(heap, make_sheet(heap, side), memory);
 }
 
 FrameInput look(double altitude_m, double pitch, core::Extent size) {

@@ -24,8 +24,13 @@ core::Result<core::GeometryRange> make_terrain(core::GeometryMemory& memory, int
 // A committed box that fills its bounds, 24 vertices and 36 indices, of one linear albedo.
 core::Result<core::GeometryRange> make_box(core::GeometryMemory& memory, glm::vec3 albedo);
 
+// The same as an object. Each side shows a whole texture.
+core::Result<core::GeometryRange> make_object_box(core::GeometryMemory& memory, glm::vec3 albedo);
+
 // A grid of side² vertices in the box as a model mesh with its own indices: many small triangles.
 core::Result<core::GeometryRange> make_sheet(core::GeometryMemory& memory, int side);
+// The same as an object.
+core::Result<core::GeometryRange> make_object_sheet(core::GeometryMemory& memory, int side);
 
 // A camera at height `altitude_m` that looks along −Z, `pitch` radians up, over meadows and rock.
 FrameInput look(double altitude_m, double pitch, core::Extent size);

@@ -76,6 +76,12 @@ TEST(MeshChoice, HysteresisHoldsUnlessTheSceneSettles) {
   EXPECT_EQ(model_level(rules, node, four_levels(), 50, 110, 0), 1);
 }
 
+TEST(MeshChoice, AHoleAsksForTheCoarsestLevelUnlessTheWantedOneIsCached) {
+  const Demand hole = demand(kNoLevel, 1);
+  EXPECT_EQ(choose_mesh({}, in_view(), four_levels(), hole, true, false).request, 3);
+  EXPECT_EQ(choose_mesh({}, in_view(), four_levels(), hole, true, false, true).request, 1);
+}
+
 TEST(MeshChoice, WhatIsDrawnAsWantedAsksForNothing) {
   const MeshChoice choice = choose_mesh({}, in_view(), four_levels(), demand(2, 2), true, false);
   EXPECT_TRUE(choice.there);

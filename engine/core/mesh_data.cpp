@@ -1,0 +1,85 @@
+#include "engine/core/mesh_data.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+#include <unordered_map>
+
+namespace psygen::core {
+namespace {
+
+tl::unexpected<Error> refuse(std::string sentence) {
+  return fail(ErrorCode::kInvalidArgument, std::move(sentence));
+}
+
+// Every number of a list is at most `most` in size.
+template <class Vector>
+Result<void> check_list(std::string_view name, const std::vector<Vector>& list, std::size_t count,
+                        float most) {
+  if (!list.empty() && list.size() != count)
+    return refuse(fmt::format("a mesh has {} positions but {} {}", count, list.size(), name));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (glm::length_t axis = 0; axis < list[i].length(); ++axis) {
+      if (std::abs(list[i][axis]) <= most) continue;
+      return refuse(fmt::format("{}[{}] of a mesh is {}; at most {} is allowed", name, i,
+                                list[i][axis], most));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> check(const MeshData& mesh) {
+  const std::size_t count = mesh.positions.size();
+  if (count == 0 || mesh.indices.empty()) return refuse("a mesh has no triangles");
+  if (mesh.indices.size() % 3 != 0) {
+    return refuse(fmt::format("a mesh has {} indices; three make a triangle", mesh.indices.size()));
+  }
+  if (count > UINT32_MAX || mesh.indices.size() > UINT32_MAX)
+    return refuse("a mesh has more than 2^32 vertices or indices");
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    if (mesh.indices[i] >= count) {
+      return refuse(fmt::format("indices[{}] of a mesh is {}, but it has {} vertices", i,
+                                mesh.indices[i], count));
+    }
+  }
+  constexpr float kMostUv = 1e6F;
+  return check_list("positions", mesh.positions, count, kMostMeshReachM)
+      .and_then([&] { return check_list("normals", mesh.normals, count, 1e6F); })
+      .and_then([&] { return check_list("uvs", mesh.uvs, count, kMostUv); })
+      .and_then([&] { return check_list("colours", mesh.colours, count, 1e6F); });
+}
+
+std::vector<MeshData> split(const MeshData& mesh, std::uint32_t most_vertices) {
+  std::vector<MeshData> parts;
+  if (mesh.positions.size() <= most_vertices) {
+    parts.push_back(mesh);
+    return parts;
+  }
+  std::unordered_map<std::uint32_t, std::uint32_t> placed;  // vertex → its place in the part
+  const auto place = [&](std::uint32_t vertex) {
+    MeshData& part = parts.back();
+    const auto [at, is_new] =
+        placed.try_emplace(vertex, static_cast<std::uint32_t>(part.positions.size()));
+    if (is_new) {
+      part.positions.push_back(mesh.positions[vertex]);
+      if (!mesh.normals.empty()) part.normals.push_back(mesh.normals[vertex]);
+      if (!mesh.uvs.empty()) part.uvs.push_back(mesh.uvs[vertex]);
+      if (!mesh.colours.empty()) part.colours.push_back(mesh.colours[vertex]);
+    }
+    part.indices.push_back(at->second);
+  };
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    if (parts.empty() || parts.back().positions.size() + 3 > most_vertices) {
+      parts.emplace_back();
+      placed.clear();
+    }
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      place(mesh.indices[i + corner]);
+  }
+  return parts;
+}
+
+}  // namespace psygen::core

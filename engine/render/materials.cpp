@@ -1,0 +1,293 @@
+#include "engine/render/materials.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace psygen::render {
+
+using core::ErrorCode;
+using core::Result;
+
+namespace {
+
+constexpr std::uint32_t kSetsInPool = 64;
+constexpr std::uint32_t kMapsOfMaterial = 3;
+
+core::Extent extent_at(core::Extent size, std::size_t level) {
+  return {std::max(size.width >> level, 1u), std::max(size.height >> level, 1u)};
+}
+
+// The mean of four texels in one channel.
+std::uint8_t mean(std::array<std::uint32_t, 4> v, bool squared) {
+  if (!squared) return static_cast<std::uint8_t>((v[0] + v[1] + v[2] + v[3] + 2) / 4);
+  const double sum = v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3];
+  return static_cast<std::uint8_t>(std::lround(std::sqrt(sum / 4)));
+}
+
+std::vector<std::uint8_t> half(std::span<const std::uint8_t> from, core::Extent size,
+                               bool colours) {
+  const core::Extent to = extent_at(size, 1);
+  std::vector<std::uint8_t> out(std::size_t{to.width} * to.height * 4);
+  for (std::uint32_t y = 0; y < to.height; ++y) {
+    for (std::uint32_t x = 0; x < to.width; ++x) {
+      const auto at = [&](std::uint32_t dx, std::uint32_t dy, std::uint32_t channel) {
+        const std::uint32_t px = std::min(2 * x + dx, size.width - 1);
+        const std::uint32_t py = std::min(2 * y + dy, size.height - 1);
+        return std::uint32_t{from[(std::size_t{py} * size.width + px) * 4 + channel]};
+      };
+      for (std::uint32_t c = 0; c < 4; ++c) {
+        out[(std::size_t{y} * to.width + x) * 4 + c] =
+            mean({at(0, 0, c), at(1, 0, c), at(0, 1, c), at(1, 1, c)}, colours && c < 3);
+      }
+    }
+  }
+  return out;
+}
+
+Result<UniqueSampler> make_sampler(const Device& device) {
+  VkSamplerCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+  info.magFilter = VK_FILTER_LINEAR;
+  info.minFilter = VK_FILTER_LINEAR;
+  info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  info.maxLod = VK_LOD_CLAMP_NONE;
+  VkSampler sampler = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
+  return UniqueSampler(device.vk, device.handle, sampler);
+}
+
+// Fills the levels of an image, one after the other, and makes it readable.
+Result<void> upload_levels(const Device& device, const Image& image, core::Extent size,
+                           std::span<const std::span<const std::uint8_t>> levels) {
+  std::size_t bytes = 0;
+  for (const auto& level : levels)
+    bytes += level.size();
+  Result<Buffer> staging =
+      make_buffer(device, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::kWrite);
+  if (!staging) return tl::unexpected(staging.error());
+  std::vector<VkBufferImageCopy> copies;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    std::memcpy(staging->mapped + at, levels[i].data(), levels[i].size());
+    VkBufferImageCopy copy{};
+    copy.bufferOffset = at;
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, static_cast<std::uint32_t>(i), 0, 1};
+    const core::Extent extent = extent_at(size, i);
+    copy.imageExtent = {extent.width, extent.height, 1};
+    copies.push_back(copy);
+    at += levels[i].size();
+  }
+  return run_once(device, [&](VkCommandBuffer commands) {
+    VkImageMemoryBarrier2 barrier = barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+    barrier.subresourceRange.levelCount = static_cast<std::uint32_t>(levels.size());
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    image_barrier(device, commands, barrier);
+    device.vk.vkCmdCopyBufferToImage(commands, staging->buffer.get(), image.image.get(),
+                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                     static_cast<std::uint32_t>(copies.size()), copies.data());
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+    barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    image_barrier(device, commands, barrier);
+  });
+}
+
+shaders::MaterialData data_of(const Material& m) {
+  std::uint32_t bits = 0;
+  if (m.normal_texture != kNoTexture) bits |= PSYGEN_MATERIAL_NORMAL_MAP;
+  if (m.two_sided) bits |= PSYGEN_MATERIAL_TWO_SIDED;
+  return {.base = {m.base_colour, m.opacity},
+          .emissive = {m.emissive, m.least_opacity},
+          .options = {static_cast<float>(bits), m.normal_strength, 0, 0}};
+}
+
+bool is_valid(const Material& m) {
+  constexpr float kMost = 1e6F;
+  const auto ok = [](float v) { return v >= 0 && v <= kMost; };
+  for (int i = 0; i < 3; ++i) {
+    if (!ok(m.base_colour[i]) || !ok(m.emissive[i])) return false;
+  }
+  return ok(m.opacity) && ok(m.least_opacity) && std::abs(m.normal_strength) <= kMost;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::uint8_t>> mip_levels(const TexturePixels& pixels) {
+  std::vector<std::vector<std::uint8_t>> levels;
+  core::Extent size{pixels.width, pixels.height};
+  std::span<const std::uint8_t> above = pixels.rgba;
+  while (size.width > 1 || size.height > 1) {
+    levels.push_back(half(above, size, pixels.colours));
+    above = levels.back();
+    size = extent_at(size, 1);
+  }
+  return levels;
+}
+
+Result<void> MaterialTable::create(const Device& device, std::uint64_t texture_budget_bytes) {
+  texture_budget_bytes_ = texture_budget_bytes;
+  Result<Buffer> buffer = make_buffer(device, PSYGEN_MAX_MATERIALS * sizeof(shaders::MaterialData),
+                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite);
+  if (!buffer) return tl::unexpected(buffer.error());
+  buffer_ = std::move(*buffer);
+  Result<UniqueSampler> sampler = make_sampler(device);
+  if (!sampler) return tl::unexpected(sampler.error());
+  sampler_ = std::move(*sampler);
+  std::array<VkDescriptorSetLayoutBinding, kMapsOfMaterial> bindings{};
+  for (std::uint32_t i = 0; i < kMapsOfMaterial; ++i) {
+    bindings[i] = {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
+                   sampler_.address()};
+  }
+  VkDescriptorSetLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  info.bindingCount = kMapsOfMaterial;
+  info.pBindings = bindings.data();
+  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+  const VkResult result =
+      device.vk.vkCreateDescriptorSetLayout(device.handle, &info, nullptr, &layout);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor set layout");
+  set_layout_ = UniqueSetLayout(device.vk, device.handle, layout);
+  // Numbers that no material has yet look like the plain one.
+  const shaders::MaterialData plain = data_of(Material{});
+  for (std::size_t i = 0; i < PSYGEN_MAX_MATERIALS; ++i)
+    std::memcpy(buffer_.mapped + i * sizeof(plain), &plain, sizeof(plain));
+  return add(device, {}).map([](MaterialId) {});
+}
+
+Result<TextureId> MaterialTable::add_texture(const Device& device, const TexturePixels& pixels) {
+  const std::uint64_t bytes = std::uint64_t{pixels.width} * pixels.height * 4;
+  if (bytes == 0 || pixels.width > kMaxTextureSide || pixels.height > kMaxTextureSide ||
+      pixels.rgba.size() != bytes) {
+    return core::fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("a texture of {} x {} pixels with {} bytes: it has 1 to {} pixels "
+                    "a side, and 4 bytes a pixel",
+                    pixels.width, pixels.height, pixels.rgba.size(), kMaxTextureSide));
+  }
+  if (texture_bytes_ + bytes + bytes / 3 > texture_budget_bytes_ ||
+      textures_.size() > kMaxTextures) {
+    return core::fail(ErrorCode::kOverBudget,
+                      fmt::format("a texture of {} x {} pixels goes beyond the budget: {} of {} "
+                                  "bytes and {} of {} textures are used",
+                                  pixels.width, pixels.height, texture_bytes_,
+                                  texture_budget_bytes_, textures_.size(), kMaxTextures));
+  }
+  if (Result<void> white = make_white(device); !white) return tl::unexpected(white.error());
+  return store(device, pixels);
+}
+
+// The texture of maps that a material does not have.
+Result<void> MaterialTable::make_white(const Device& device) {
+  if (!textures_.empty()) return {};
+  constexpr std::array<std::uint8_t, 4> kWhite{255, 255, 255, 255};
+  return store(device, {1, 1, kWhite, false}).map([](TextureId) {});
+}
+
+Result<VkDescriptorSet> MaterialTable::blank_set(const Device& device) {
+  if (blank_set_ != VK_NULL_HANDLE) return blank_set_;
+  return make_white(device).and_then([&] { return make_set(device, {}); }).map([&](auto set) {
+    return blank_set_ = set;
+  });
+}
+
+Result<TextureId> MaterialTable::store(const Device& device, const TexturePixels& pixels) {
+  const std::vector<std::vector<std::uint8_t>> smaller = mip_levels(pixels);
+  std::vector<std::span<const std::uint8_t>> levels{pixels.rgba};
+  levels.insert(levels.end(), smaller.begin(), smaller.end());
+  const core::Extent size{pixels.width, pixels.height};
+  Result<Image> image =
+      make_image(device, size, pixels.colours ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+                 VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                 VK_IMAGE_ASPECT_COLOR_BIT, {.mips = static_cast<std::uint32_t>(levels.size())});
+  if (!image) return tl::unexpected(image.error());
+  if (Result<void> filled = upload_levels(device, *image, size, levels); !filled)
+    return tl::unexpected(filled.error());
+  for (const auto& level : levels)
+    texture_bytes_ += level.size();
+  textures_.push_back(std::move(*image));
+  return static_cast<TextureId>(textures_.size() - 1);
+}
+
+Result<VkDescriptorSet> MaterialTable::make_set(const Device& device, const Material& material) {
+  if (pools_.size() * kSetsInPool <= set_count_) {
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                    kMapsOfMaterial * kSetsInPool};
+    VkDescriptorPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    info.maxSets = kSetsInPool;
+    info.poolSizeCount = 1;
+    info.pPoolSizes = &size;
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    const VkResult result = device.vk.vkCreateDescriptorPool(device.handle, &info, nullptr, &pool);
+    if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor pool");
+    pools_.emplace_back(device.vk, device.handle, pool);
+  }
+  VkDescriptorSetAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  info.descriptorPool = pools_.back().get();
+  info.descriptorSetCount = 1;
+  info.pSetLayouts = set_layout_.address();
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkAllocateDescriptorSets(device.handle, &info, &set);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a descriptor set");
+  ++set_count_;
+  const std::array maps{material.base_texture, material.normal_texture, material.emissive_texture};
+  std::array<VkDescriptorImageInfo, kMapsOfMaterial> images{};
+  std::array<VkWriteDescriptorSet, kMapsOfMaterial> writes{};
+  for (std::uint32_t i = 0; i < kMapsOfMaterial; ++i) {
+    images[i] = {VK_NULL_HANDLE, textures_[maps[i]].view.get(),
+                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[i].dstSet = set;
+    writes[i].dstBinding = i;
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    writes[i].pImageInfo = &images[i];
+  }
+  device.vk.vkUpdateDescriptorSets(device.handle, kMapsOfMaterial, writes.data(), 0, nullptr);
+  return set;
+}
+
+Result<MaterialId> MaterialTable::add(const Device& device, const Material& material) {
+  if (!is_valid(material)) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      "the numbers of a material are finite, and its colours at least 0");
+  }
+  bool textured = false;
+  for (const TextureId map :
+       {material.base_texture, material.normal_texture, material.emissive_texture}) {
+    if (map != kNoTexture && map >= textures_.size()) {
+      return core::fail(ErrorCode::kInvalidArgument,
+                        fmt::format("a material names texture {}, which does not exist", map));
+    }
+    textured = textured || map != kNoTexture;
+  }
+  if (kinds_.size() >= PSYGEN_MAX_MATERIALS) {
+    return core::fail(ErrorCode::kOverBudget,
+                      fmt::format("there are {} materials already", PSYGEN_MAX_MATERIALS));
+  }
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  if (textured) {
+    const Result<VkDescriptorSet> made = make_set(device, material);
+    if (!made) return tl::unexpected(made.error());
+    set = *made;
+  }
+  const shaders::MaterialData data = data_of(material);
+  std::memcpy(buffer_.mapped + kinds_.size() * sizeof(data), &data, sizeof(data));
+  sets_.push_back(set);
+  kinds_.push_back({textured, material.least_opacity > 0});
+  return static_cast<MaterialId>(kinds_.size() - 1);
+}
+
+}  // namespace psygen::render

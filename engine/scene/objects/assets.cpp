@@ -1,0 +1,126 @@
+#include "engine/scene/objects/assets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace psygen::scene {
+
+using core::ErrorCode;
+
+namespace {
+
+// Of ecs::kNullEntity: no entity that a finished mesh lands in.
+constexpr std::uint64_t kNoOwner = ecs::kNullEntity.index;
+
+}  // namespace
+
+core::Result<void> Assets::open(models::Registry& registry, render::Renderer* renderer) {
+  sources_ = std::make_shared<ObjectSources>();
+  registry_ = &registry;
+  renderer_ = renderer;
+  const auto copied = registry.add(make_object_type(sources_, true));
+  if (!copied) return tl::unexpected(copied.error());
+  const auto synthesised = registry.add(make_object_type(sources_, false));
+  if (!synthesised) return tl::unexpected(synthesised.error());
+  copied_ = *copied;
+  synthesised_ = *synthesised;
+  return {};
+}
+
+core::Result<MeshId> Assets::add(ObjectSource source, models::ModelIndex type) {
+  ObjectMesh mesh;
+  mesh.box = source.box;
+  mesh.level_count = static_cast<std::uint32_t>(source.level_count);
+  const std::string name = source.name;
+  const std::uint32_t index = sources_->add(std::move(source));
+  if (index == ObjectSources::kMost) {
+    return core::fail(
+        ErrorCode::kOverBudget,
+        fmt::format("{}: a scene has at most {} meshes of objects", name, ObjectSources::kMost));
+  }
+  mesh.parameters = object_parameters(index);
+  const models::ModelType& of = (*registry_)[type];
+  for (std::uint32_t level = 0; level < mesh.level_count; ++level) {
+    mesh.levels[level].key = {{},
+                              index,
+                              type,
+                              static_cast<std::uint16_t>(level),
+                              models::parameters_hash(of, mesh.parameters)};
+    mesh.levels[level].error_m =
+        static_cast<float>(of.level_error_m(mesh.parameters, static_cast<int>(level)));
+  }
+  meshes_.push_back(mesh);
+  return MeshId{index};
+}
+
+core::Result<MeshId> Assets::add_mesh(const core::MeshData& mesh, std::string name) {
+  auto packed = pack(mesh);
+  if (!packed)
+    return core::fail(packed.error().code, fmt::format("{}: {}", name, packed.error().message));
+  ObjectSource source;
+  source.name = std::move(name);
+  source.box = packed->box;
+  source.copied = std::move(*packed);
+  return add(std::move(source), copied_);
+}
+
+core::Result<MeshId> Assets::add_model(std::string_view type, const models::Parameters& parameters,
+                                       int first_level, int level_count) {
+  const int found = registry_->find(type);
+  if (found < 0 || found == copied_ || found == synthesised_) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("there is no model type \"{}\" for objects", type));
+  }
+  const models::ModelType& model = (*registry_)[static_cast<models::ModelIndex>(found)];
+  if (auto ok = models::validate(model, parameters); !ok) {
+    return core::fail(ok.error().code, fmt::format("{}: {}", type, ok.error().message));
+  }
+  const int there_are = model.level_count_of(parameters);
+  if (first_level < 0 || level_count < 0 || first_level + std::max(level_count, 1) > there_are) {
+    return core::fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("{}: levels {} to {} are not among its {} levels", type, first_level,
+                    first_level + std::max(level_count, 1) - 1, there_are));
+  }
+  if (model.mesh_size(parameters, first_level).layout != core::VertexLayout::kModel) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("{} is ground, which is no mesh of an object", type));
+  }
+  ObjectSource source;
+  source.name = std::string(type);
+  source.type = &model;
+  source.parameters = parameters;
+  source.first_level = first_level;
+  const int most = std::min(there_are - first_level, static_cast<int>(ObjectMesh::kMostLevels));
+  source.level_count = level_count == 0 ? most : std::min(level_count, most);
+  source.box = model.bounds(parameters);
+  return add(std::move(source), synthesised_);
+}
+
+core::Result<render::TextureId> Assets::add_texture(const image::Image& picture, bool colours) {
+  if (renderer_ == nullptr) return ++textures_;
+  return renderer_->add_texture({picture.width, picture.height, picture.rgba, colours});
+}
+
+core::Result<render::MaterialId> Assets::add_material(const render::Material& material) {
+  if (renderer_ == nullptr) return ++materials_;
+  return renderer_->add_material(material);
+}
+
+void Assets::want_all(synthesis::MeshSupply& meshes) const {
+  using synthesis::Rank;
+  using synthesis::RankGroup;
+  for (const auto& [index, number] : used) {
+    const ObjectMesh& mesh = meshes_[index];
+    const ObjectMeshLevel& level = mesh.levels[number];
+    if (level.ready || level.failed) continue;
+    const RankGroup group = level.hole   ? RankGroup::kVisibleHole
+                            : level.seen ? RankGroup::kVisibleCoarse
+                                         : RankGroup::kPrefetch;
+    meshes.want({level.key, &mesh.parameters, kNoOwner,
+                 Rank(group, 0, level.hole ? level.hole_m : level.nearest_m), 0.0F, false});
+  }
+}
+
+}  // namespace psygen::scene

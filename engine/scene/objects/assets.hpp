@@ -1,0 +1,87 @@
+// The meshes, textures and materials of a scene's objects, by number. They live as long as the
+// scene. The vertices of copied meshes stay with the host; what is drawn lies in the geometry
+// memory, is charged to the byte budget and may be evicted and copied again. Main thread only.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/mesh_data.hpp"
+#include "engine/image/image.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/objects/components.hpp"
+#include "engine/scene/objects/object_type.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+
+namespace psygen::scene {
+
+// One level of detail of a mesh, as objects_system keeps it.
+struct ObjectMeshLevel {
+  synthesis::MeshKey key;
+  synthesis::MeshHandle handle;
+  core::GeometryRange range;  // if `ready`
+  float error_m = 0;
+  float nearest_m = 0;                 // distance of the nearest object that uses it, in `tick`
+  float hole_m = 0;                    // of the nearest that can draw nothing instead
+  std::uint32_t tick = UINT32_MAX;     // the last one in which an object used it
+  bool ready = false, failed = false;  // in `tick`
+  bool seen = false, hole = false;     // by an object in view
+};
+
+// One mesh.
+struct ObjectMesh {
+  static constexpr std::size_t kMostLevels = 8;
+  core::Bounds box;
+  models::Parameters parameters;
+  std::uint32_t level_count = 0;
+  std::array<ObjectMeshLevel, kMostLevels> levels;
+};
+
+class Assets {
+ public:
+  // For a scene with this registry, to which it adds the types of object meshes. `renderer` may be
+  // null. Both outlive it. Once. Fails like Registry::add().
+  core::Result<void> open(models::Registry& registry, render::Renderer* renderer);
+
+  // A mesh of the program's own, or of a file. `name` is for messages. Fails like scene::pack(),
+  // and with kOverBudget beyond 65,536 meshes.
+  core::Result<MeshId> add_mesh(const core::MeshData& mesh, std::string name = "mesh");
+  // The mesh of a model type ("tree", "rock", or one of a plugin), made by modelers when it is
+  // needed. `level_count` levels of detail from `first_level` on, of which each object takes one by
+  // its distance; 0: all that there are. Fails with kInvalidArgument for unknown types, terrain,
+  // parameters that models::validate() refuses and levels that do not exist.
+  core::Result<MeshId> add_model(std::string_view type, const models::Parameters& parameters,
+                                 int first_level = 0, int level_count = 0);
+  // A picture as a texture; `colours`: else numbers, as normal maps have. Fails like
+  // Renderer::add_texture(). Without a renderer it only gets a number.
+  core::Result<render::TextureId> add_texture(const image::Image& picture, bool colours = true);
+  // Fails like Renderer::add_material(). Without a renderer it only gets a number.
+  core::Result<render::MaterialId> add_material(const render::Material& material);
+
+  bool exists(MeshId mesh) const { return mesh.index < meshes_.size(); }
+  std::size_t mesh_count() const { return meshes_.size(); }
+  // The box of a mesh that exists, in metres from its origin.
+  const core::Bounds& box(MeshId mesh) const { return meshes_[mesh.index].box; }
+
+  // The engine's: what a mesh has, and the wants of those that lack something (cache_system).
+  ObjectMesh& mesh(MeshId mesh) { return meshes_[mesh.index]; }
+  void want_all(synthesis::MeshSupply& meshes) const;
+  // Meshes that objects used in the last tick, for objects_system.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> used, used_before;  // mesh, level
+
+ private:
+  core::Result<MeshId> add(ObjectSource source, models::ModelIndex type);
+
+  std::shared_ptr<ObjectSources> sources_;
+  const models::Registry* registry_ = nullptr;
+  models::ModelIndex copied_ = 0, synthesised_ = 0;
+  render::Renderer* renderer_ = nullptr;
+  std::uint32_t textures_ = 0, materials_ = 0;  // without a renderer
+  std::vector<ObjectMesh> meshes_;
+};
+
+}  // namespace psygen::scene

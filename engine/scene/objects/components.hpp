@@ -1,0 +1,61 @@
+// What makes an entity of the game visible. Give it a Transform and an Object, in one call or two,
+// and it is drawn, culled, shadowed and faded; destroy the entity and it is gone:
+//   world.create<Transform, Object>(1)
+// or scene::spawn(). Meshes and materials come from the scene's Assets (assets.hpp). Plain data;
+// main thread only.
+#pragma once
+
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "ecs/ecs.hpp"
+#include "engine/core/coordinates.hpp"
+#include "engine/render/types.hpp"
+
+namespace psygen::scene {
+
+// Names a mesh of Assets.
+struct MeshId {
+  std::uint32_t index = UINT32_MAX;  // UINT32_MAX: none
+  friend bool operator==(const MeshId&, const MeshId&) = default;
+};
+
+// Where an entity is. An object with numbers that are not finite, without a rotation, or with a
+// scale outside of 10⁻⁴ … 10⁴ is not drawn (Counters::objects_invalid).
+struct Transform {
+  core::WorldPosition position;                // need not be normalised
+  glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  // w, x, y, z; need not be unit
+  glm::vec3 scale{1.0F};                       // before the rotation; negative ones mirror
+};
+
+// How an object is drawn now. Only the engine writes it (objects_system).
+struct ObjectState {
+  static constexpr std::uint8_t kNoLevel = 0xFF;
+  float share = 0;                          // of its pixels that are there
+  float sun = 1;                            // share of the sun that no terrain hides
+  std::uint32_t drawn_tick = UINT32_MAX;    // the last one in which it was drawn
+  std::uint32_t in_view_tick = UINT32_MAX;  // the last one in which it was in view
+  std::uint8_t level = kNoLevel;            // of detail that is drawn
+  std::uint8_t old_level = kNoLevel;        // that it takes the place of, until `share` is 1
+  bool fresh = true;                        // never in view so far
+};
+
+// What an entity looks like.
+struct Object {
+  MeshId mesh;
+  render::MaterialId material = render::kPlainMaterial;  // also drawn where there is none such
+  bool visible = true;                                   // else it fades out, and stays away
+  ObjectState state = {};
+};
+static_assert(sizeof(Object) == 32);
+
+// A new object: an entity with a Transform and an Object.
+inline ecs::Entity spawn(ecs::World& world, const Object& object, const Transform& transform) {
+  const auto made = world.create<Transform, Object>(1);
+  made.column<Transform>()[0] = transform;
+  made.column<Object>()[0] = object;
+  return made.entities[0];
+}
+
+}  // namespace psygen::scene

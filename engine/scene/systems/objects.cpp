@@ -1,0 +1,350 @@
+// Draws the objects of the game: those in view whose mesh is there, each at the level of detail for
+// its distance, fading in and out. What their meshes lack is wanted in the next tick (Assets).
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "engine/scene/draws/seen.hpp"
+#include "engine/scene/draws/views.hpp"
+#include "engine/scene/systems.hpp"
+
+namespace psygen::scene {
+namespace {
+
+constexpr std::uint8_t kNone = ObjectState::kNoLevel;
+// Objects out of view may cast shadows into the picture from as far as this, in metres.
+constexpr float kShadowReachM = 120.0F;
+// A level stays until another is better by this factor.
+constexpr float kLevelSlack = 1.25F;
+// The ground's shadow on an object is looked up every so many ticks.
+constexpr std::uint32_t kSunTurns = 8;
+
+// What all objects are judged by in this tick.
+struct ObjectTick {
+  std::uint32_t tick = 0;
+  float step = 1;         // of a whole fade
+  bool continues = true;  // the last tick was drawn too
+  float pixels_per_radian = 1, error_pixels = 1, least_pixels = 1, near_m = 0.1F;
+  float view_distance_m = 0;
+  double block_size_m = 64;
+  bool levels = true;
+  render::View shown = render::View::kNormal;
+};
+
+// An object's place relative to the camera.
+struct Place {
+  glm::vec3 foot{0.0F}, center{0.0F};
+  glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
+  float radius_m = 0, distance_m = 0, scale = 1;
+};
+
+bool place_of(const Transform& transform, const core::Bounds& box,
+              const core::WorldPosition& camera, double block_size_m, Place& place) {
+  constexpr float kLeastScale = 1e-4F, kMostScale = 1e4F;
+  constexpr double kFarM = 1e9;
+  const glm::dvec3 local = transform.position.local;
+  const auto finite = [](double v) { return std::abs(v) <= kFarM; };
+  if (!finite(local.x) || !finite(local.y) || !finite(local.z)) return false;
+  const glm::vec3 size = glm::abs(transform.scale);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(size[axis] >= kLeastScale && size[axis] <= kMostScale)) return false;
+  }
+  const glm::quat q = transform.rotation;
+  const float length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(length > 1e-6F && length < 1e6F)) return false;
+  place.rotation = q * (1.0F / length);
+  place.foot = glm::vec3(core::offset_m(transform.position.block, camera, block_size_m) + local);
+  place.scale = std::max({size.x, size.y, size.z});
+  place.center = place.foot + place.rotation * (transform.scale * box.center());
+  place.radius_m = glm::length(box.half_extent() * size);
+  place.distance_m = glm::length(place.center);
+  return true;
+}
+
+// The share of the sun that the ground lets through to a place.
+float ground_sun_at(core::WorldPosition at, double block_size_m, const Streaming& streaming,
+                    const ObjectQuery& entities) {
+  at = core::normalised(at, block_size_m);
+  for (const NodeGrid& grid : streaming.grids) {
+    const visibility::NodeCoord node = visibility::node_of(at.block, grid.level());
+    if (!grid.contains(node.coord)) continue;
+    const GroundSun* sun = entities.get<GroundSun>(grid.entity_of(node.coord));
+    if (sun == nullptr) continue;
+    const core::BlockCoord corner = visibility::corner_block(node);
+    const double side_m = block_size_m * static_cast<double>(1U << grid.level());
+    const glm::dvec3 in_node = -core::offset_m(corner, at, block_size_m);
+    return sun_at(*sun, glm::vec2(static_cast<float>(in_node.x / side_m),
+                                  static_cast<float>(in_node.z / side_m)));
+  }
+  return 1.0F;
+}
+
+// Finds what the cache has of a level, once a tick.
+ObjectMeshLevel& refresh(Assets& assets, MeshId id, std::uint32_t number, std::uint32_t tick,
+                         const synthesis::MeshSupply& supply) {
+  ObjectMeshLevel& level = assets.mesh(id).levels[number];
+  if (level.tick == tick) return level;
+  level.tick = tick;
+  level.seen = level.hole = false;
+  level.nearest_m = level.hole_m = 1e9F;
+  const synthesis::MeshRecord* record = supply.get(level.handle);
+  if (record == nullptr) {
+    level.handle = supply.find(level.key);
+    record = supply.get(level.handle);
+  }
+  level.ready = record != nullptr && record->state == synthesis::MeshState::kReady;
+  level.failed = record != nullptr && record->state == synthesis::MeshState::kFailed;
+  if (level.ready) level.range = record->range;
+  assets.used.push_back({id.index, number});
+  return level;
+}
+
+// The coarsest level whose error is not seen.
+std::uint32_t wanted_level(const ObjectMesh& mesh, const Place& place, std::uint8_t drawn,
+                           const ObjectTick& tick) {
+  if (!tick.levels) return 0;
+  const float away = std::max(place.distance_m - place.radius_m, tick.near_m);
+  std::uint32_t level = 0;
+  while (level + 1 < mesh.level_count) {
+    const float slack = drawn != kNone && level + 1 > drawn ? kLevelSlack : 1.0F;
+    const float pixels =
+        mesh.levels[level + 1].error_m * place.scale * tick.pixels_per_radian / away;
+    if (pixels * slack > tick.error_pixels) break;
+    ++level;
+  }
+  return level;
+}
+
+// The level nearest to the wanted one that is there, coarser ones first; kNone if there is none.
+std::uint8_t available_level(Assets& assets, MeshId id, std::uint32_t wanted, std::uint32_t tick,
+                             const synthesis::MeshSupply& supply) {
+  if (refresh(assets, id, wanted, tick, supply).ready) return static_cast<std::uint8_t>(wanted);
+  const std::uint32_t count = assets.mesh(id).level_count;
+  for (std::uint32_t away = 1; away < count; ++away) {
+    for (const std::int64_t level : {std::int64_t{wanted} + away, std::int64_t{wanted} - away}) {
+      if (level < 0 || level >= count) continue;
+      // Only looked at, not used: it is not to be made for this.
+      const ObjectMeshLevel& other = assets.mesh(id).levels[static_cast<std::size_t>(level)];
+      const synthesis::MeshRecord* record = supply.ready(supply.find(other.key));
+      if (record == nullptr) continue;
+      refresh(assets, id, static_cast<std::uint32_t>(level), tick, supply);
+      return static_cast<std::uint8_t>(level);
+    }
+  }
+  return kNone;
+}
+
+// Moves the state of an object that is drawn at `level` on by a tick.
+void come(ObjectState& state, std::uint8_t level, bool fades_in, const ObjectTick& tick) {
+  if (state.drawn_tick + 1 != tick.tick) {
+    state.share = fades_in ? 0.0F : 1.0F;
+    state.level = level;
+    state.old_level = kNone;
+  } else if (level != state.level) {
+    const bool whole = state.share >= 1.0F;
+    state.old_level = whole ? state.level : kNone;
+    if (whole) state.share = 0.0F;
+    state.level = level;
+  }
+  state.drawn_tick = tick.tick;
+  state.share = std::min(state.share + tick.step, 1.0F);
+  if (state.share >= 1.0F) state.old_level = kNone;
+}
+
+// Moves on one that is drawn no more. False once it is gone.
+bool go(ObjectState& state, const ObjectTick& tick) {
+  if (state.drawn_tick + 1 != tick.tick || state.level == kNone) return false;
+  state.old_level = kNone;
+  state.share = std::max(state.share - tick.step, 0.0F);
+  if (state.share > 0) state.drawn_tick = tick.tick;
+  return state.share > 0;
+}
+
+// A game may give an object another mesh, which has fewer levels.
+void forget_other_levels(ObjectState& state, std::uint32_t level_count) {
+  if (state.level != kNone && state.level >= level_count)
+    state.level = static_cast<std::uint8_t>(level_count - 1);
+  if (state.old_level >= level_count) state.old_level = kNone;
+}
+
+class ObjectWalk {
+ public:
+  ObjectWalk(const ObjectTick& tick, const Camera& camera, const WorldFacts& facts,
+             const Streaming& streaming, const View& view, const ObjectQuery& entities,
+             const synthesis::MeshSupply& supply, Assets& assets, ObjectDraws& draws,
+             Counters& counters)
+      : tick_(tick),
+        camera_(camera),
+        facts_(facts),
+        streaming_(streaming),
+        view_(view),
+        entities_(entities),
+        supply_(supply),
+        assets_(assets),
+        draws_(draws),
+        counters_(counters) {}
+
+  void visit(ecs::Entity entity, const Transform& transform, Object& object) {
+    if (!assets_.exists(object.mesh)) return;
+    const ObjectMesh& mesh = assets_.mesh(object.mesh);
+    Place place;
+    if (!place_of(transform, mesh.box, camera_.pose.position, tick_.block_size_m, place)) {
+      ++counters_.objects_invalid;
+      return;
+    }
+    forget_other_levels(object.state, mesh.level_count);
+    const float away = place.distance_m - place.radius_m;
+    const core::Bounds box = core::Bounds::around(place.center, glm::vec3(place.radius_m));
+    const bool in_view = can_be_seen(box, view_);
+    const bool near = in_view || (facts_.shadows && away < kShadowReachM);
+    const float pixels =
+        2 * place.radius_m * tick_.pixels_per_radian / std::max(place.distance_m, tick_.near_m);
+    const bool wanted =
+        object.visible && pixels >= tick_.least_pixels && away <= tick_.view_distance_m;
+    if (wanted) use(object, place, in_view, near, mesh);
+    if (near) draw(entity, transform, object, place, in_view, wanted);
+    if (!in_view) return;
+    object.state.in_view_tick = tick_.tick;
+    object.state.fresh = false;
+  }
+
+ private:
+  // Notes what it needs of its mesh; finds the level to draw.
+  void use(Object& object, const Place& place, bool in_view, bool near, const ObjectMesh& mesh) {
+    const std::uint32_t wanted = wanted_level(mesh, place, object.state.level, tick_);
+    ObjectMeshLevel& level = refresh(assets_, object.mesh, wanted, tick_.tick, supply_);
+    level.nearest_m = std::min(level.nearest_m, place.distance_m);
+    level.seen = level.seen || in_view;
+    if (!near) return;
+    level_ = level.ready ? static_cast<std::uint8_t>(wanted)
+                         : available_level(assets_, object.mesh, wanted, tick_.tick, supply_);
+    if (level_ != kNone) {
+      ObjectMeshLevel& drawn = assets_.mesh(object.mesh).levels[level_];
+      drawn.seen = drawn.seen || in_view;
+      drawn.nearest_m = std::min(drawn.nearest_m, place.distance_m);
+      return;
+    }
+    if (!in_view || level.failed) return;
+    level.hole = true;
+    level.hole_m = std::min(level.hole_m, place.distance_m);
+    ++counters_.objects_missing;
+  }
+
+  void draw(ecs::Entity entity, const Transform& transform, Object& object, const Place& place,
+            bool in_view, bool wanted) {
+    ObjectState& state = object.state;
+    if (wanted && level_ == kNone) return;
+    float fade = 1.0F;
+    if (wanted) {
+      const bool was_in_view = state.in_view_tick + 1 == tick_.tick;
+      come(state, level_, tick_.continues && in_view && (state.fresh || was_in_view), tick_);
+      fade = state.share;
+    } else {
+      if (!in_view || !go(state, tick_)) return;
+      if (!refresh(assets_, object.mesh, state.level, tick_.tick, supply_).ready) return;
+      fade = state.share - 1.0F;
+    }
+    if (state.fresh || (tick_.tick + entity.index) % kSunTurns == 0)
+      state.sun = ground_sun_at(transform.position, tick_.block_size_m, streaming_, entities_);
+    counters_.objects_drawn += in_view ? 1 : 0;
+    add(entity, transform, object, place, state.level, fade);
+    if (!wanted || state.old_level == kNone) return;
+    if (refresh(assets_, object.mesh, state.old_level, tick_.tick, supply_).ready)
+      add(entity, transform, object, place, state.old_level, -state.share);
+  }
+
+  void add(ecs::Entity entity, const Transform& transform, const Object& object, const Place& place,
+           std::uint8_t level, float fade) {
+    const ObjectMesh& mesh = assets_.mesh(object.mesh);
+    render::ObjectDraw& draw = draws_.objects.emplace_back();
+    draw.range = mesh.levels[level].range;
+    draw.material = object.material;
+    draw.origin = place.foot;
+    draw.rotation = {place.rotation.x, place.rotation.y, place.rotation.z, place.rotation.w};
+    draw.scale = transform.scale;
+    draw.box_center = mesh.box.center();
+    draw.box_half_extent = mesh.box.half_extent();
+    draw.fade = fade;
+    draw.sun = object.state.sun;
+    draw.phase = static_cast<float>(entity.index % 64) * (1.0F / 64.0F);
+    draw.name = entity.index;
+    if (tick_.shown != render::View::kNormal)
+      draw.debug_colour = colour_of(tick_.shown, {.level = level});
+  }
+
+  const ObjectTick& tick_;
+  const Camera& camera_;
+  const WorldFacts& facts_;
+  const Streaming& streaming_;
+  const View& view_;
+  const ObjectQuery& entities_;
+  const synthesis::MeshSupply& supply_;
+  Assets& assets_;
+  ObjectDraws& draws_;
+  Counters& counters_;
+  std::uint8_t level_ = kNone;  // to draw of the object that is visited
+};
+
+// Tells the cache how important each mesh is that is used, or was in the last tick.
+void rank_meshes(std::uint32_t tick, double block_size_m, Assets& assets,
+                 synthesis::MeshSupply& supply, ObjectDraws& draws) {
+  using synthesis::Rank;
+  using synthesis::RankGroup;
+  draws.meshes.clear();
+  for (const auto& [index, number] : assets.used) {
+    const ObjectMeshLevel& level = assets.mesh({index}).levels[number];
+    if (!level.ready) continue;
+    if (level.seen) draws.meshes.push_back(level.handle);
+    const auto layer = static_cast<std::uint32_t>(level.nearest_m / block_size_m);
+    supply.rank(level.handle, level.seen ? Rank(RankGroup::kDrawn, 0, level.nearest_m)
+                                         : Rank(RankGroup::kPrefetch, layer, level.nearest_m));
+  }
+  for (const auto& [index, number] : assets.used_before) {
+    const ObjectMeshLevel& level = assets.mesh({index}).levels[number];
+    if (level.tick != tick && level.ready) supply.rank(level.handle, Rank::unwanted());
+  }
+  supply.note_drawn(draws.meshes);
+}
+
+}  // namespace
+
+void objects_system(const Settings& settings, const Rules& rules, const Input& input,
+                    const Clock& clock, const Camera& camera, const Quality& quality,
+                    const WorldFacts& facts, const Streaming& streaming, const View& view,
+                    ObjectQuery entities, synthesis::MeshSupply& meshes, Assets& assets,
+                    ObjectDraws& draws, Counters& counters) {
+  constexpr double kLeastSeconds = 1.0 / 240.0;
+  const double passed_s = std::max(clock.now_s - draws.now_s, kLeastSeconds);
+  ObjectTick tick;
+  tick.tick = clock.tick;
+  tick.step = rules.settle || settings.fade_seconds <= passed_s
+                  ? 1.0F
+                  : static_cast<float>(passed_s / settings.fade_seconds);
+  tick.continues = draws.tick + 1 == clock.tick;
+  tick.pixels_per_radian = camera.pixels_per_radian;
+  tick.error_pixels = static_cast<float>(quality.model_error_pixels);
+  tick.least_pixels = static_cast<float>(settings.min_size_pixels);
+  tick.near_m = camera.projection.near_m;
+  tick.view_distance_m = static_cast<float>(settings.view_distance_m);
+  tick.block_size_m = facts.world.block_size_m();
+  tick.levels = settings.levels_of_detail;
+  tick.shown = input.view;
+  draws.tick = clock.tick;
+  draws.now_s = clock.now_s;
+  draws.objects.clear();
+  assets.used_before.swap(assets.used);
+  assets.used.clear();
+  entities.each<const Transform, Object>([&](std::span<const ecs::Entity> rows,
+                                             std::span<const Transform> transforms,
+                                             std::span<Object> objects) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      ObjectWalk walk(tick, camera, facts, streaming, view, entities, meshes, assets, draws,
+                      counters);
+      walk.visit(rows[i], transforms[i], objects[i]);
+    }
+  });
+  rank_meshes(clock.tick, tick.block_size_m, assets, meshes, draws);
+}
+
+}  // namespace psygen::scene
