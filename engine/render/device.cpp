@@ -275,7 +275,7 @@ core::Result<void> Device::wait(VkSemaphore semaphore, std::uint64_t value,
   waited.pValues = &value;
   const VkResult result = vk.vkWaitSemaphores(handle, &waited, timeout_ns_);
   if (result == VK_SUCCESS) return {};
-  hangs_ = hangs_ || result == VK_TIMEOUT;
+  vk.hangs = vk.hangs || result == VK_TIMEOUT;
   return vulkan_failure(result, what);
 }
 

@@ -44,7 +44,7 @@ class Device {
   VkSampleCountFlagBits samples_for(std::uint32_t wanted) const;
 
   // Functions, handles, queues and limits; fixed after create().
-  VolkDeviceTable vk{};
+  DeviceTable vk{};
   VkDevice handle = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
@@ -61,11 +61,8 @@ class Device {
   DeviceInfo info;
 
   // Returns when a timeline semaphore has reached `value`. `what` is for the error: "waiting for
-  // ...". Fails with kDeviceLost, also after the timeout.
+  // ...". Fails with kDeviceLost, also after the timeout, which sets vk.hangs.
   core::Result<void> wait(VkSemaphore semaphore, std::uint64_t value, const char* what) const;
-  // A wait has timed out. Then calls that destroy Vulkan objects may hang too.
-  bool hangs() const { return hangs_; }
-
   // Size in bytes of the largest device-local heap that the CPU can write.
   std::uint64_t writable_bytes() const;
 
@@ -73,7 +70,6 @@ class Device {
   Device() = default;
 
   std::uint64_t timeout_ns_ = 0;
-  mutable bool hangs_ = false;
 };
 
 }  // namespace psygen::render

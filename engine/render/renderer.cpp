@@ -8,7 +8,7 @@ using core::Result;
 
 Renderer::Renderer(std::unique_ptr<RendererImpl> impl) : impl_(std::move(impl)) {}
 
-// If the driver hangs, destroying its objects would hang too. So they are leaked.
+// If the driver hangs, so would destroying its device.
 void Renderer::leave(std::unique_ptr<RendererImpl> impl) {
   if (impl && impl->hangs()) (void)impl.release();
 }

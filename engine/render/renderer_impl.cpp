@@ -85,7 +85,7 @@ RendererImpl::~RendererImpl() {
 }
 
 bool RendererImpl::hangs() const {
-  return device_ && device_->hangs();
+  return device_ && device_->vk.hangs;
 }
 
 Result<void> RendererImpl::create_device() {

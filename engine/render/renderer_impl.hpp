@@ -36,7 +36,7 @@ class RendererImpl {
   // After an error only destruction is allowed.
   core::Result<void> create(const Progress& progress);
 
-  // Renderer's functions, and hangs(): Device::hangs().
+  // Renderer's functions, and hangs(): DeviceTable::hangs.
   core::GeometryMemory& geometry() {
     return staged_ ? static_cast<core::GeometryMemory&>(*staged_) : *pool_;
   }

@@ -24,6 +24,13 @@ inline tl::unexpected<core::Error> vulkan_failure(VkResult result, const char* w
   return tl::unexpected(vulkan_error(result, what));
 }
 
+// The functions of a VkDevice.
+struct DeviceTable : VolkDeviceTable {
+  // A wait for the device has timed out. It may still use its objects, and destroying them may wait
+  // for ever. So from then on they are leaked.
+  mutable bool hangs = false;
+};
+
 // An owning handle of an object of a VkDevice. `Destroy` is the function of the table that destroys
 // it. Move-only. The table and the device must outlive it.
 template <class T, auto Destroy>
@@ -31,7 +38,7 @@ class DeviceHandle {
  public:
   // Empty, or the owner of `handle`.
   DeviceHandle() = default;
-  DeviceHandle(const VolkDeviceTable& vk, VkDevice device, T handle)
+  DeviceHandle(const DeviceTable& vk, VkDevice device, T handle)
       : vk_(&vk), device_(device), handle_(handle) {}
   DeviceHandle(DeviceHandle&& other) noexcept
       : vk_(other.vk_), device_(other.device_), handle_(std::exchange(other.handle_, {})) {}
@@ -42,14 +49,14 @@ class DeviceHandle {
     return *this;
   }
   ~DeviceHandle() {
-    if (handle_ != T{}) (vk_->*Destroy)(device_, handle_, nullptr);
+    if (handle_ != T{} && !vk_->hangs) (vk_->*Destroy)(device_, handle_, nullptr);
   }
   // The handle, null if empty, and its address for Vulkan's arrays.
   T get() const { return handle_; }
   const T* address() const { return &handle_; }
 
  private:
-  const VolkDeviceTable* vk_ = nullptr;
+  const DeviceTable* vk_ = nullptr;
   VkDevice device_ = VK_NULL_HANDLE;
   T handle_{};
 };

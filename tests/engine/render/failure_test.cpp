@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "engine/render/renderer.hpp"
+#include "engine/render/vulkan.hpp"
 #include "tests/faults.hpp"
 
 namespace psygen::render {
@@ -80,6 +81,24 @@ TEST(RendererFailureDeathTest,
      a_driver_that_never_answers_is_given_up_and_not_waited_for_at_the_end) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(create_with_few_threads_of_the_driver(), testing::ExitedWithCode(0), "");
+}
+
+int destroyed_buffers = 0;
+
+TEST(RendererFailure, objects_of_a_device_that_hangs_are_not_destroyed) {
+  DeviceTable table;
+  table.vkDestroyBuffer = [](VkDevice, VkBuffer, const VkAllocationCallbacks*) {
+    ++destroyed_buffers;
+  };
+  // A value that is never used as a pointer.
+  const auto buffer = reinterpret_cast<VkBuffer>(&table);
+  { const UniqueBuffer answers(table, VK_NULL_HANDLE, buffer); }
+  EXPECT_EQ(destroyed_buffers, 1);
+  {
+    const UniqueBuffer used(table, VK_NULL_HANDLE, buffer);
+    table.hangs = true;
+  }
+  EXPECT_EQ(destroyed_buffers, 1);
 }
 
 }  // namespace
