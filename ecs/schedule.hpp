@@ -167,7 +167,9 @@ namespace detail {
 
 // The parameters of a function pointer, or of an object with one operator(), as a tuple type.
 template <class F>
-struct ParametersOf : ParametersOf<decltype(&F::operator())> {};
+struct ParametersOf {
+  using type = typename ParametersOf<decltype(&F::operator())>::type;
+};
 template <class R, class... Ps>
 struct ParametersOf<R (*)(Ps...)> : std::type_identity<std::tuple<Ps...>> {};
 template <class R, class F, class... Ps>

@@ -227,9 +227,9 @@ Overlay::Overlay() : fonts_(std::make_unique<Fonts>()) {
   atlas.TexDesiredWidth = static_cast<int>(std::bit_ceil(hud.size.width + 2));
   // ImGui's default font is the first one. Its letters are replaced by those of the HUD below.
   constexpr ImWchar kOneLetter[] = {' ', ' ', 0};
-  ImFontConfig placeholder;
-  placeholder.GlyphRanges = kOneLetter;
-  atlas.AddFontDefault(&placeholder);
+  ImFontConfig first_font;
+  first_font.GlyphRanges = kOneLetter;
+  atlas.AddFontDefault(&first_font);
   for (std::size_t i = 0; i < fonts_->by_scale.size(); ++i) {
     ImFontConfig config;
     config.OversampleH = config.OversampleV = 1;

@@ -158,7 +158,7 @@ namespace {
 using Text = std::back_insert_iterator<std::string>;
 
 // A TOML string. Names and letters of valid species need no escapes, but user texts may.
-std::string quoted(std::string_view text) {
+std::string toml_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -186,18 +186,18 @@ void write_species(const std::vector<models::Species>& species, std::string& tex
     fmt::format_to(out,
                    "\n[[species]]\nname = {}\ndoc = {}\naxiom = {}\niterations = {}\nbranches = "
                    "{}\nspread = {}\n",
-                   quoted(s.name), quoted(s.doc), quoted(s.axiom), s.iterations, s.branches,
-                   s.spread);
+                   toml_string(s.name), toml_string(s.doc), toml_string(s.axiom), s.iterations,
+                   s.branches, s.spread);
     models::visit_numbers(s, NumberWriter{out});
     for (const models::SpeciesKind& kind : s.kinds) {
       fmt::format_to(out, "\n[[species.kind]]\nsymbol = {}\nleader = {}\nleaves = {}\n",
-                     quoted(kind.symbol), kind.leader, quoted(kind.leaves));
+                     toml_string(kind.symbol), kind.leader, toml_string(kind.leaves));
       models::visit_kind_numbers(kind, NumberWriter{out});
     }
     for (const models::SpeciesRule& rule : s.rules)
       fmt::format_to(out, "\n[[species.rule]]\nfrom = {}\nto = {}\nprobability = {}\n",
-                     quoted(rule.from), quoted(rule.to), rule.probability);
-    fmt::format_to(out, "\n[species.foliage]\nform = {}\n", quoted(s.foliage.form));
+                     toml_string(rule.from), toml_string(rule.to), rule.probability);
+    fmt::format_to(out, "\n[species.foliage]\nform = {}\n", toml_string(s.foliage.form));
     models::visit_foliage_numbers(s.foliage, NumberWriter{out});
     fmt::format_to(out, "\n[species.colours]\n");
     for (std::size_t i = 0; i < 4; ++i)

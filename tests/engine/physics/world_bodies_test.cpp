@@ -96,6 +96,7 @@ TEST(PhysicsBodies, AreStoppedByTrunks) {
       static_cast<models::ModelIndex>(scene.loaded.registry.find("tree"))};
   std::vector<query::NearModel> trees;
   ASSERT_TRUE(scene.query.models_within(scene.above({50, 50}, 30, 30, 0), 150, trees, tree));
+  ASSERT_GE(trees.size(), 20U);
   int stopped = 0, thrown = 0;
   for (std::size_t i = 0; i < 20; ++i) {
     core::WorldPosition at = trees[i].position;

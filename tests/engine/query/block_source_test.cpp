@@ -1,5 +1,6 @@
 #include "engine/query/block_source.hpp"
 
+#include "engine/world/edits/edits.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/query/worlds.hpp"
 
@@ -32,6 +33,35 @@ TEST(BlockSource, ModelsAreThoseThatTheWorldPlaces) {
     EXPECT_EQ(models[i].index, placed[i].index);
     EXPECT_EQ(models[i].position, placed[i].position);
   }
+}
+
+TEST(BlockSource, EditsOfABlockChangeItsHashAndWhatIsThere) {
+  Loaded loaded = Loaded::shipped("silver_combe");
+  const core::BlockCoord block{5, 6}, far{50, 60};
+  const std::vector<std::uint16_t> ground = ground_of_block(loaded.world, block);
+  const auto models = models_of_block(loaded.world, loaded.registry, block);
+  ASSERT_FALSE(models.empty());
+  EXPECT_EQ(edits_of_block(loaded.world, block), 0U);
+
+  world::Edits edits;
+  ASSERT_TRUE(edits.remove(loaded.world, {block, models[0].index}));
+  world::set_edits(loaded.world, edits.layer());
+  const std::uint64_t felled = edits_of_block(loaded.world, block);
+  EXPECT_NE(felled, 0U);
+  const auto left = models_of_block(loaded.world, loaded.registry, block);
+  ASSERT_EQ(left.size(), models.size() - 1);
+  EXPECT_EQ(left[0].index, models[1].index);
+  EXPECT_EQ(ground_of_block(loaded.world, block), ground);
+
+  ASSERT_TRUE(edits.raise(loaded.world, {block, {30, 0, 30}}, 10, 2));
+  world::set_edits(loaded.world, edits.layer());
+  EXPECT_NE(edits_of_block(loaded.world, block), felled);
+  EXPECT_NE(ground_of_block(loaded.world, block), ground);
+  EXPECT_EQ(edits_of_block(loaded.world, far), 0U);
+
+  world::set_edits(loaded.world, nullptr);
+  EXPECT_EQ(edits_of_block(loaded.world, block), 0U);
+  EXPECT_EQ(ground_of_block(loaded.world, block), ground);
 }
 
 }  // namespace

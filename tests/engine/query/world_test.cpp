@@ -102,6 +102,8 @@ TEST(QueryWorld, GroundHasTheKindThatIsSeen) {
     if (ground->water_depth_m > 0) {
       ++wet;
       ASSERT_NEAR(ground->water_depth_m, loaded.world.water.level_m - ground->height_m, 1e-12);
+    } else {
+      ASSERT_GE(ground->height_m, loaded.world.water.level_m);
     }
     if (ground->height_m < loaded.world.water.level_m - 3 && ground->normal.y > 0.97F) {
       ASSERT_EQ(ground->kind, world::GroundKind::kSand);
@@ -382,27 +384,35 @@ TEST(QueryWorld, RaysMeetTheFirstModelOfAll) {
   }
 }
 
-TEST(QueryWorld, ARayBeforeAModelMeetsTheGroundAndOneBehindTheGroundMeetsNoModel) {
+TEST(QueryWorld, ARayMeetsWhateverComesFirst) {
   const Loaded loaded = Loaded::shipped("paper");
   World query(loaded.world, loaded.registry);
   std::vector<NearModel> rocks;
   const models::ModelIndex rock[] = {static_cast<models::ModelIndex>(loaded.registry.find("rock"))};
   ASSERT_TRUE(query.models_within({{100, 100}, {30, 100, 30}}, 300, rocks, rock));
   ASSERT_GT(rocks.size(), 20U);
-  int stones = 0;
+  const double long_m = 400;
+  int ground_before_model = 0, model_before_ground = 0;
   for (const NearModel& m : rocks) {
-    Ray ray{.origin = m.position, .longest_m = 100};
-    ray.origin.local.y += 50;
-    const auto hit = query.cast(ray);
-    ASSERT_TRUE(hit);
-    ASSERT_NE(hit->kind, HitKind::kNothing);
-    ASSERT_LE(hit->distance_m, 50 + 1e-6);
-    if (hit->kind == HitKind::kModel) ++stones;
-    ray.origin.local.y -= 100;  // from below, the ground is never first met above a model's foot
-    ray.direction = {0, 1, 0};
-    ASSERT_LE(query.cast(ray)->distance_m, 50 + 1e-6);
+    for (const glm::dvec3 from : {glm::dvec3{0, 50, 0}, {0, -50, 0}, {200, 10, 0}, {0, 10, 200}}) {
+      Ray ray{.origin = m.position, .direction = -from, .longest_m = long_m};
+      ray.origin.local += from;
+      const auto both = query.cast(ray);
+      ray.models = false;
+      const auto ground = query.cast(ray);
+      ray.models = true;
+      ray.ground = false;
+      const auto model = query.cast(ray);
+      ASSERT_TRUE(both && ground && model);
+      ASSERT_EQ(both->distance_m, std::min(ground->distance_m, model->distance_m));
+      const bool model_first = model->distance_m < ground->distance_m;
+      ASSERT_EQ(both->kind, model_first ? model->kind : ground->kind);
+      if (ground->kind != HitKind::kGround || model->kind != HitKind::kModel) continue;
+      ++(model_first ? model_before_ground : ground_before_model);
+    }
   }
-  EXPECT_GT(stones, static_cast<int>(rocks.size() * 9 / 10));
+  EXPECT_GT(ground_before_model, 20);
+  EXPECT_GT(model_before_ground, 20);
 }
 
 TEST(QueryWorld, ModelsWithinARadiusAreAllOfThemNearestFirst) {

@@ -1,0 +1,45 @@
+// The game in its window.
+//   my_game [picture.png]      with a picture: two seconds without a window, then the picture
+#include <chrono>
+#include <cstdio>
+
+#include "engine/scene/scene.hpp"
+#include "game.hpp"
+
+using namespace psygen;
+
+namespace {
+
+core::Result<void> play(const char* picture) {
+  Game game;  // before the session, which calls it
+  auto options = game.options();
+  if (!options) return tl::unexpected(options.error());
+  options->headless = picture != nullptr;
+  auto made = app::Session::create(std::move(*options));
+  if (!made) return tl::unexpected(made.error());
+  app::Session& session = **made;
+  if (auto ok = game.start(session); !ok) return ok;
+  if (auto ok = session.prepare(game.eyes(1)); !ok) return ok;
+
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last = Clock::now();
+  double dt_s = 1.0 / 60;
+  while (session.poll() && (picture == nullptr || session.now_s() < 2)) {
+    game.write_hud(session);
+    const double share = session.scene().state().simulation.step.share;
+    if (auto ok = session.tick(game.eyes(share), dt_s); !ok) return ok;
+    const Clock::time_point now = Clock::now();
+    if (picture == nullptr) dt_s = std::chrono::duration<double>(now - last).count();
+    last = now;
+  }
+  return picture != nullptr ? session.save_picture(picture) : core::Result<void>{};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto played = play(argc > 1 ? argv[1] : nullptr);
+  if (played || played.error().code == core::ErrorCode::kInterrupted) return 0;
+  std::fprintf(stderr, "%s\n", played.error().message.c_str());
+  return 1;
+}
