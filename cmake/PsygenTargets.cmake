@@ -19,10 +19,12 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
 endif()
 
+# One compiler cache for all clones: paths in it are relative to the clone.
 find_program(PSYGEN_CCACHE ccache)
 if(PSYGEN_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${PSYGEN_CCACHE})
-  set(CMAKE_C_COMPILER_LAUNCHER ${PSYGEN_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${PSYGEN_CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
 # What dlopen() needs: nothing where it is a part of the C library (glibc 2.34).

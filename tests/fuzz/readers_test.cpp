@@ -7,6 +7,7 @@
 
 #include "tests/fuzz/mutator.hpp"
 #include "tests/fuzz/reading.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::fuzz {
 namespace {
@@ -17,8 +18,7 @@ constexpr std::size_t kMostBytes = 1 << 16;
 std::vector<std::string> shipped_texts() {
   std::vector<std::filesystem::path> files;
   for (const char* folder : {"worlds", "paths"}) {
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(PSYGEN_SOURCE_DIR "/game/") + folder))
+    for (const auto& entry : std::filesystem::directory_iterator(source_file("game/") + folder))
       files.push_back(entry.path());
   }
   std::ranges::sort(files);

@@ -37,7 +37,7 @@ PROGRAMS = {
 def program_differences(root):
     for page, sources in PROGRAMS.items():
         test = "".join((root / source).read_text(encoding="utf-8") for source in sources)
-        test = test.replace('PSYGEN_SOURCE_DIR "/', '"')
+        test = re.sub(r'source_file\(("[^"]*")\)', r'\1', test)
         programs = re.findall(r"```cpp\n(.*?)```", (root / page).read_text(encoding="utf-8"), re.S)
         lines = [re.sub(r"\s*//.*", "", line).strip().rstrip(";")
                  for program in programs for line in program.splitlines()]

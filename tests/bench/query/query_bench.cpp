@@ -8,6 +8,7 @@
 #include "engine/core/assert.hpp"
 #include "engine/query/world.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::query {
 namespace {
@@ -18,8 +19,7 @@ struct Loaded {
 
   explicit Loaded(std::int64_t number) {
     const char* const name = number == 0 ? "paper.toml" : "silver_combe.toml";
-    auto loaded = world::load_world(
-        std::filesystem::path(PSYGEN_SOURCE_DIR) / "game" / "worlds" / name, registry);
+    auto loaded = world::load_world(source_file("game/worlds/") + name, registry);
     PSYGEN_CHECK(loaded.has_value(), "the world is shipped");
     world = *loaded;
   }

@@ -15,12 +15,13 @@
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::scene {
 namespace {
 
 world::World paper_world(const models::Registry& registry) {
-  return world::load_world(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml", registry).value();
+  return world::load_world(source_file("game/worlds/paper.toml"), registry).value();
 }
 
 template <class Vertex>

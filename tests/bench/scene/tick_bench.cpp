@@ -18,11 +18,12 @@
 #include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::scene {
 namespace {
 
-const std::string kGame = PSYGEN_SOURCE_DIR "/game/";
+const std::string kGame = source_file("game/");
 
 // Value `share` of the way up.
 double percentile(std::vector<double> values, double share) {

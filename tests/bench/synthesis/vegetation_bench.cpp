@@ -8,6 +8,7 @@
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::world {
 namespace {
@@ -17,8 +18,7 @@ constexpr const char* kFiles[] = {"paper", "five_species", "silver_combe"};
 // Nodes after nodes of one level. Arguments: world, node level, level of detail.
 void vegetation(benchmark::State& state) {
   models::Registry registry = models::make_standard_registry();
-  const std::string file =
-      std::string(PSYGEN_SOURCE_DIR) + "/game/worlds/" + kFiles[state.range(0)] + ".toml";
+  const std::string file = source_file("game/worlds/") + kFiles[state.range(0)] + ".toml";
   auto loaded = load_world(file, registry);
   if (!loaded) return state.SkipWithError(loaded.error().message.c_str());
   const auto type = make_merged_type(std::make_shared<const World>(*std::move(loaded)), registry);

@@ -11,6 +11,7 @@
 #include "engine/models/kit/simd_targets.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::amplify {
 namespace {
@@ -32,7 +33,7 @@ class GoldenHash : public testing::TestWithParam<Golden> {
 
 TEST_P(GoldenHash, IsTheSameInEveryBuildAndOnEveryInstructionSet) {
   models::Registry registry = models::make_standard_registry();
-  const auto file = std::string(PSYGEN_SOURCE_DIR "/game/worlds/") + GetParam().world;
+  const auto file = source_file("game/worlds/") + GetParam().world;
   const auto world = world::load_world(file, registry);
   ASSERT_TRUE(world) << world.error().message;
   for (const std::string_view target : models::simd_targets()) {

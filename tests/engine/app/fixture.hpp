@@ -11,15 +11,16 @@
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/telemetry/trace_log.hpp"
+#include "tests/source_file.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::app {
 
-inline const std::filesystem::path kWalk = PSYGEN_SOURCE_DIR "/game/paths/walk27.toml";
+inline const std::filesystem::path kWalk = source_file("game/paths/walk27.toml");
 
 inline SessionOptions short_session() {
   SessionOptions options;
-  options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/paper.toml";
+  options.world_file = source_file("game/worlds/paper.toml");
   options.headless = true;
   options.validation = true;
   options.size = {320, 180};

@@ -8,6 +8,7 @@
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "tests/engine/app/fixture.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::app {
 
@@ -15,7 +16,7 @@ namespace psygen::app {
 // to the test's folder to be looked at.
 inline void expect_golden(const std::string& name, const image::Image& image) {
   const auto stored =
-      std::filesystem::path(PSYGEN_SOURCE_DIR "/tests/engine/app/golden") / (name + ".png");
+      std::filesystem::path(source_file("tests/engine/app/golden")) / (name + ".png");
   if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
     ASSERT_TRUE(image::write_png(stored, image));
   }

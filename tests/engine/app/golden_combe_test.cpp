@@ -7,6 +7,7 @@
 
 #include "engine/world/camera_path.hpp"
 #include "tests/engine/app/golden.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::app {
 namespace {
@@ -16,7 +17,7 @@ class GoldenCombe : public testing::Test {
   void SetUp() override { open(render::Preset::kLow); }
   void open(render::Preset preset) {
     SessionOptions options = short_session();
-    options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/silver_combe.toml";
+    options.world_file = source_file("game/worlds/silver_combe.toml");
     options.preset = preset;
     options.size = {480, 270};
     options.scene.view_distance_m = 16000;

@@ -2,6 +2,7 @@
 #include "engine/render/preset.hpp"
 #include "engine/world/camera_path.hpp"
 #include "tests/engine/app/golden.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::app {
 namespace {
@@ -10,7 +11,7 @@ class GoldenLakes : public testing::TestWithParam<render::Preset> {};
 
 TEST_P(GoldenLakes, LieBetweenTheirHills) {
   SessionOptions options = short_session();
-  options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/lakes.toml";
+  options.world_file = source_file("game/worlds/lakes.toml");
   options.preset = GetParam();
   options.size = {480, 270};
   options.scene.view_distance_m = 16000;

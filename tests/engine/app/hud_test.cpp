@@ -9,6 +9,7 @@
 #include "engine/app/keys.hpp"
 #include "engine/render/preset.hpp"
 #include "tests/engine/scene/fixture.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::app {
 namespace {
@@ -165,7 +166,7 @@ TEST_F(HudTest, LeavesNoticesOutOfPicturesThatAreKept) {
 
 TEST(Keys, AreAllDocumented) {
   std::stringstream documented;
-  documented << std::ifstream(PSYGEN_SOURCE_DIR "/docs/cli.md").rdbuf();
+  documented << std::ifstream(source_file("docs/cli.md")).rdbuf();
   for (const KeyHelp& key : kKeyHelp)
     EXPECT_THAT(documented.str(), HasSubstr("| " + std::string(key.keys) + " |"));
 }

@@ -8,6 +8,7 @@
 #include "engine/image/image.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/app/fixture.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::app {
 
@@ -24,7 +25,7 @@ class Studio {
  public:
   // `world` is a file of game/worlds, or the text of one.
   Studio(const std::string& world, SessionOptions options) {
-    options.world_file = std::filesystem::path(PSYGEN_SOURCE_DIR "/game/worlds") / world;
+    options.world_file = std::filesystem::path(source_file("game/worlds")) / world;
     const TemporaryFolder folder;
     if (world.find('\n') != std::string::npos) {
       options.world_file = folder / "world.toml";

@@ -3,13 +3,14 @@
 
 #include "engine/app/session.hpp"
 #include "engine/scene/scene.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen {
 namespace {
 
 TEST(Tutorial, AProgramThatTurnsAroundOnceAndTakesAPicture) {
   app::SessionOptions options;
-  options.world_file = PSYGEN_SOURCE_DIR "/game/worlds/paper.toml";
+  options.world_file = source_file("game/worlds/paper.toml");
   options.headless = true;
   options.size = {320, 180};
   options.scene.view_distance_m = 200;

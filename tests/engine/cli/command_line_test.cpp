@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "tests/engine/cli/psygen_process.hpp"
+#include "tests/source_file.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::cli {
@@ -167,7 +168,7 @@ TEST(CommandLine, APictureIsTakenAtEyeHeightInTheMiddleOfTheWorldUnlessItIsToldO
 TEST(CommandLine, APictureOverWaterIsTakenAboveIt) {
   const TemporaryFolder folder;
   const std::string flooded = (folder / "flooded.toml").string();
-  std::ofstream(flooded) << read(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml")
+  std::ofstream(flooded) << read(source_file("game/worlds/paper.toml"))
                          << "\n[water]\nlevel_m = 5000\n";
   const std::string sky = " --pitch 60 --world " + flooded;
   // Wherever the ground is, the same sky is above.
@@ -178,7 +179,7 @@ TEST(CommandLine, APictureOverWaterIsTakenAboveIt) {
 TEST(CommandLine, APictureOfAnHourNeedsAWorldThatHasOne) {
   const TemporaryFolder folder;
   const std::string day = " --world " + (folder / "day.toml").string();
-  std::ofstream(folder / "day.toml") << read(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml")
+  std::ofstream(folder / "day.toml") << read(source_file("game/worlds/paper.toml"))
                                      << "\n[sky]\nday_length_s = 3600\nstart_hour = 12\n";
   const std::string noon = picture(folder, "--hour 12" + day);
   EXPECT_EQ(picture(folder, day), noon);
@@ -395,7 +396,7 @@ TEST(CommandLine, ExportColoursTerrainAsTheWorldDoes) {
     return read(file);
   };
   std::ofstream(folder / "flooded.toml")
-      << read(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml") << "\n[water]\nlevel_m = 5000\n";
+      << read(source_file("game/worlds/paper.toml")) << "\n[water]\nlevel_m = 5000\n";
   const std::string flooded = exported(" --world " + (folder / "flooded.toml").string());
   EXPECT_FALSE(flooded.empty());
   EXPECT_NE(flooded, exported(""));

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/source_file.hpp"
+
 namespace psygen::cli {
 
 struct Outcome {
@@ -29,7 +31,7 @@ inline std::string read(const std::filesystem::path& file) {
 // Leaks are looked for in the tests of the libraries, which keep drivers loaded so that reports
 // have names.
 inline Outcome run_psygen(const std::string& arguments, const std::string& environment = "",
-                          const std::filesystem::path& folder = PSYGEN_SOURCE_DIR,
+                          const std::filesystem::path& folder = source_file(""),
                           const std::string& redirection = "") {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const auto outputs = std::filesystem::path(testing::TempDir());

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/cli/psygen_process.hpp"
+#include "tests/source_file.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::cli {
@@ -10,7 +11,7 @@ constexpr const char* kFull = ">/dev/full";
 constexpr const char* kClosed = ">&-";
 
 Outcome run_with(const std::string& redirection, const std::string& arguments) {
-  return run_psygen(arguments, "", PSYGEN_SOURCE_DIR, redirection);
+  return run_psygen(arguments, "", source_file(""), redirection);
 }
 
 TEST(StandardStreams, AStdoutThatIsFullOrClosedIsAFailureWithASentenceForEveryCommand) {

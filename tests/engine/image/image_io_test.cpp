@@ -7,14 +7,14 @@
 
 #include "tests/engine/image/test_files.hpp"
 #include "tests/full_disk.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::image {
 namespace {
 
 using core::ErrorCode;
 
-const std::filesystem::path kJpeg =
-    std::filesystem::path(PSYGEN_SOURCE_DIR) / "tests/engine/image/data/two_halves.jpg";
+const std::filesystem::path kJpeg = source_file("tests/engine/image/data/two_halves.jpg");
 
 void put_big_endian(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i)

@@ -10,6 +10,7 @@
 #include "engine/image/image_io.hpp"
 #include "engine/render/preset.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::render {
 namespace {
@@ -69,7 +70,7 @@ class Looks : public testing::Test {
   }
   // Compares with, or renews, the stored picture of this name.
   static void expect_golden(const image::Image& image, std::string_view name) {
-    const auto stored = std::filesystem::path(PSYGEN_SOURCE_DIR "/tests/engine/render/golden") /
+    const auto stored = std::filesystem::path(source_file("tests/engine/render/golden")) /
                         (std::string(name) + ".png");
     if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
       std::filesystem::create_directories(stored.parent_path());

@@ -10,6 +10,7 @@
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "tests/engine/render/on_a_path.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::render {
 namespace {
@@ -207,7 +208,7 @@ TEST_P(Objects, of_all_kinds_look_as_they_did) {
   const image::Image image{picture.width, picture.height, picture.rgba};
   const std::string name = "objects_" + std::string(to_string(renderer_->preset()));
   const auto stored =
-      std::filesystem::path(PSYGEN_SOURCE_DIR "/tests/engine/render/golden") / (name + ".png");
+      std::filesystem::path(source_file("tests/engine/render/golden")) / (name + ".png");
   if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
     ASSERT_TRUE(image::write_png(stored, image));
   }

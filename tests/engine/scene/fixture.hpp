@@ -9,6 +9,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::scene {
 
@@ -24,7 +25,7 @@ inline Settings small_settings() {
 }
 
 inline world::World paper_world(const models::Registry& registry) {
-  auto world = world::load_world(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml", registry);
+  auto world = world::load_world(source_file("game/worlds/paper.toml"), registry);
   EXPECT_TRUE(world) << world.error().message;
   return *world;
 }

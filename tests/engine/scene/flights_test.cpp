@@ -5,6 +5,7 @@
 #include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "tests/engine/scene/gate.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 // times as long as a core of today.
 TEST(Flights, OnThePapersWalkOneModelerIsEnoughForNoHoles) {
   constexpr int kMeshesPerTick = 40, kWarmupTicks = 60;
-  const auto path = world::load_camera_path(PSYGEN_SOURCE_DIR "/game/paths/walk27.toml");
+  const auto path = world::load_camera_path(source_file("game/paths/walk27.toml"));
   ASSERT_TRUE(path) << path.error().message;
   Settings settings = gated_settings();
   settings.plan_seconds_ahead = 1e6;  // nothing that depends on what the machine takes

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/source_file.hpp"
+
 namespace psygen::scene {
 namespace {
 
@@ -21,7 +23,7 @@ std::string names(const ecs::SystemInfo& system, bool writes) {
 }
 
 TEST(Tick, TheListIsTheOneOfTheArchitecturePage) {
-  std::ifstream file(PSYGEN_SOURCE_DIR "/docs/architecture.md");
+  std::ifstream file(source_file("docs/architecture.md"));
   ASSERT_TRUE(file);
   std::stringstream text;
   text << file.rdbuf();

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/source_file.hpp"
+
 namespace psygen::synthesis {
 namespace {
 
@@ -19,7 +21,7 @@ SimulatedJob job(double arrival_s, double seconds, double deadline_s, RankGroup 
 // with --record-requests NAME.requests; of the leap what was wanted from 4.9 to 6.2 s, on the way.
 // Every synthesis takes 200 times as long, so that modelers have to choose.
 std::vector<SimulatedJob> recorded(const std::string& name) {
-  std::ifstream file(PSYGEN_SOURCE_DIR "/tests/engine/synthesis/data/" + name + ".requests");
+  std::ifstream file(source_file("tests/engine/synthesis/data/") + name + ".requests");
   std::stringstream text;
   text << file.rdbuf();
   auto jobs = parse_stream(text.str(), name);

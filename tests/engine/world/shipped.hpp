@@ -7,11 +7,12 @@
 #include "engine/core/assert.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::world::testing {
 
 inline std::filesystem::path game_file(const std::string& name) {
-  return std::filesystem::path(PSYGEN_SOURCE_DIR) / "game" / name;
+  return std::filesystem::path(source_file("game")) / name;
 }
 
 inline const models::Registry& registry() {

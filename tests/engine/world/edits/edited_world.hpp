@@ -11,6 +11,7 @@
 #include "engine/world/edits/edits.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::world::testing {
 
@@ -21,7 +22,7 @@ inline std::uint64_t hash_of(const Edits& edits) {
 
 struct EditedWorld {
   models::Registry registry = models::make_standard_registry();
-  World function = *load_world(PSYGEN_SOURCE_DIR "/game/worlds/paper.toml", registry);
+  World function = *load_world(source_file("game/worlds/paper.toml"), registry);
   World world = function;
   Edits edits;
 
