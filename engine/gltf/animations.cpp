@@ -31,9 +31,8 @@ core::Result<std::vector<float>> read_times(Reading& reading, int accessor,
   return times;
 }
 
-core::Result<std::vector<glm::vec4>> read_values(Reading& reading, int accessor,
-                                                 std::size_t count, int width,
-                                                 const std::string& what) {
+core::Result<std::vector<glm::vec4>> read_values(Reading& reading, int accessor, std::size_t count,
+                                                 int width, const std::string& what) {
   const auto elements = elements_of(reading.file, accessor, what);
   if (!elements) return tl::unexpected(elements.error());
   if (elements->width != width || elements->count != count)
@@ -76,8 +75,7 @@ core::Result<std::optional<Channel>> read_channel(Reading& reading,
     return std::optional<Channel>{};
   }
   const auto property = property_of(described.target_path);
-  if (!property)
-    return wrong(what + ".path is none of translation, rotation, scale and weights");
+  if (!property) return wrong(what + ".path is none of translation, rotation, scale and weights");
   if (reading.node_numbers[*node] == kNone) return std::optional<Channel>{};
 
   const tinygltf::AnimationSampler& sampler = animation.samplers[*sampler_number];

@@ -84,8 +84,8 @@ core::Result<void> read_numbers(const tinygltf::Material& described, const std::
       number_in(emissive_strength(described), kMostLight, name + ".emissiveStrength");
   if (!strength) return tl::unexpected(strength.error());
   out.emissive = *light * *strength;
-  const auto normals = number_in(std::abs(described.normalTexture.scale), kMostLight,
-                                 name + ".normalTexture.scale");
+  const auto normals =
+      number_in(std::abs(described.normalTexture.scale), kMostLight, name + ".normalTexture.scale");
   if (!normals) return tl::unexpected(normals.error());
   out.normal_strength = static_cast<float>(described.normalTexture.scale);
   out.two_sided = described.doubleSided;
@@ -125,8 +125,9 @@ core::Result<void> read_materials(Reading& reading) {
       out = *picture;
       if (out == kNone) return {};
       if (set >= 0 && set != coordinates)
-        reading.note("has textures with coordinates of their own in one material, which are "
-                     "placed like its first texture");
+        reading.note(
+            "has textures with coordinates of their own in one material, which are "
+            "placed like its first texture");
       if (set < 0) set = coordinates;
       return {};
     };

@@ -56,9 +56,8 @@ core::Result<void> read_vertices(const Part& part, MeshData& mesh) {
   const int set = material < 0 ? 0 : reading.uv_sets[static_cast<std::size_t>(material)];
   return read_attribute(part, "POSITION", count, 3, mesh.positions)
       .and_then([&] { return read_attribute(part, "NORMAL", count, 3, mesh.normals); })
-      .and_then([&] {
-        return read_attribute(part, fmt::format("TEXCOORD_{}", set), count, 2, mesh.uvs);
-      })
+      .and_then(
+          [&] { return read_attribute(part, fmt::format("TEXCOORD_{}", set), count, 2, mesh.uvs); })
       .and_then([&] { return read_attribute(part, "COLOR_0", count, 4, mesh.colours); });
 }
 
@@ -95,8 +94,7 @@ std::vector<std::uint32_t> triangles_of(int mode, std::vector<std::uint32_t> cor
       triangles.insert(triangles.end(), {corners[0], corners[i - 1], corners[i]});
     } else {
       const std::size_t odd = i % 2;
-      triangles.insert(triangles.end(),
-                       {corners[i - 2], corners[i - 1 + odd], corners[i - odd]});
+      triangles.insert(triangles.end(), {corners[i - 2], corners[i - 1 + odd], corners[i - odd]});
     }
   }
   return triangles;
@@ -150,8 +148,8 @@ core::Result<void> read_primitive(const Part& part, Mesh& out) {
     reading.note("has morph targets, which are not supported: it keeps the shape without them");
   Primitive primitive;
   if (part.described.material != -1) {
-    const auto material = index_in(part.described.material, reading.out.materials.size(),
-                                   part.name + ".material");
+    const auto material =
+        index_in(part.described.material, reading.out.materials.size(), part.name + ".material");
     if (!material) return tl::unexpected(material.error());
     primitive.material = *material;
   }

@@ -58,7 +58,8 @@ enum class Interpolation : std::uint8_t { kStep, kLinear, kCubic };
 enum class Property : std::uint8_t { kTranslation, kRotation, kScale };
 
 // How one property of one node changes. Times grow; a value has x, y, z, and w for rotations
-// (x, y, z, w). kCubic has three values for each time: the tangent before, the value, the one after.
+// (x, y, z, w). kCubic has three values for each time: the tangent before, the value, the one
+// after.
 struct Channel {
   std::uint32_t node = 0;
   Property property = Property::kTranslation;

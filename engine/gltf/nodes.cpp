@@ -116,8 +116,8 @@ core::Result<std::vector<std::uint32_t>> roots_of(const tinygltf::Model& file,
     const auto index = index_in(root, parents.size(), fmt::format("a node of scenes[{}]", *scene));
     if (!index) return tl::unexpected(index.error());
     if (parents[*index] != kNone || listed[*index])
-      return wrong(fmt::format("nodes[{}] of scenes[{}] is there twice, or not a root", *index,
-                               *scene));
+      return wrong(
+          fmt::format("nodes[{}] of scenes[{}] is there twice, or not a root", *index, *scene));
     listed[*index] = true;
     roots.push_back(*index);
   }

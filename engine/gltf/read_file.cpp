@@ -20,7 +20,8 @@ core::Result<Model> read_parsed(const std::filesystem::path& path, const tinyglt
   Reading reading{.file = file, .limits = limits, .out = model, .uv_sets = {}, .node_numbers = {}};
   for (const std::string& name : file.extensionsUsed) {
     if (!is_supported(name))
-      reading.note(fmt::format("uses the extension \"{}\", which is left out", core::shown(name, 100)));
+      reading.note(
+          fmt::format("uses the extension \"{}\", which is left out", core::shown(name, 100)));
   }
   const auto ok = read_materials(reading)
                       .and_then([&] { return read_meshes(reading); })

@@ -108,10 +108,11 @@ core::Result<Elements> elements_of(const tinygltf::Model& file, int accessor,
           ? 0
           : (room - element_bytes) / std::max<std::size_t>(elements.stride_bytes, 1) + 1;
   if (elements.stride_bytes < element_bytes || elements.count > most) {
-    return wrong(fmt::format("{} has {} elements of {} bytes every {} from byte {} on, but its "
-                             "bufferView has {} bytes",
-                             name, elements.count, element_bytes, elements.stride_bytes,
-                             described.byteOffset, bytes->size()));
+    return wrong(
+        fmt::format("{} has {} elements of {} bytes every {} from byte {} on, but its "
+                    "bufferView has {} bytes",
+                    name, elements.count, element_bytes, elements.stride_bytes,
+                    described.byteOffset, bytes->size()));
   }
   elements.first = bytes->data() + std::min(described.byteOffset, bytes->size());
   return elements;

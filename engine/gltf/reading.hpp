@@ -18,8 +18,8 @@ struct Reading {
   const tinygltf::Model& file;
   const Limits& limits;
   Model& out;
-  std::vector<int> uv_sets;                   // of each material: which coordinates it has
-  std::vector<std::uint32_t> node_numbers;    // of each node of the file, in Model::nodes
+  std::vector<int> uv_sets;                 // of each material: which coordinates it has
+  std::vector<std::uint32_t> node_numbers;  // of each node of the file, in Model::nodes
   std::uint64_t vertices = 0, indices = 0, keys = 0, pixel_bytes = 0;  // so far
 
   // Says something once that the file has and the engine does not.

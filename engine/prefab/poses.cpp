@@ -72,9 +72,9 @@ class Composer {
     Transform* own = transforms_.get(entity);
     if (parent == nullptr || own == nullptr) return;
     const Attached* above = attached_.get(node.parent);
-    const glm::mat3 basis =
-        above != nullptr ? above->state.basis
-                         : scaled(glm::normalize(parent->rotation), parent->scale);
+    const glm::mat3 basis = above != nullptr
+                                ? above->state.basis
+                                : scaled(glm::normalize(parent->rotation), parent->scale);
     own->position = parent->position;
     own->position.local += glm::dvec3(basis * node.pose.translation);
     node.state.basis = basis * scaled(node.pose.rotation, node.pose.scale);
