@@ -28,7 +28,7 @@ gltf::Model two_nodes() {
   model.materials.resize(1);
   model.nodes = {{"arm", gltf::kNone, 0, {}}, {"hand", 0, 0, {}}};
   model.nodes[1].rest.translation = {2, 0, 0};
-  gltf::Channel channel{.node = 0, .property = gltf::Property::kTranslation};
+  gltf::Channel channel;  // moves node 0
   channel.times_s = {0, 2};
   channel.values = {{0, 0, 0, 0}, {0, 4, 0, 0}};
   model.animations = {{"lift", 2, {channel}}};
