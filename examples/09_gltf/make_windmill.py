@@ -161,7 +161,7 @@ def main():
             "baseColorFactor": colour + [1], **rough}, **more})
     slate, oak = plain("slate", [0.07, 0.075, 0.09]), plain("oak", [0.16, 0.08, 0.035])
     glow = plain("glow", [0.9, 0.6, 0.3], emissiveFactor=[1, 0.62, 0.25],
-                 extensions={"KHR_materials_emissive_strength": {"emissiveStrength": 6}})
+                 extensions={"KHR_materials_emissive_strength": {"emissiveStrength": 2.5}})
     slats = file.add("materials", {"name": "slats", "alphaMode": "MASK", "alphaCutoff": 0.5,
                                    "doubleSided": True, "pbrMetallicRoughness": {
                                        "baseColorTexture": file.texture("slats", SIZE, lattice), **rough}})

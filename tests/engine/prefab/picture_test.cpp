@@ -31,7 +31,7 @@ TEST(PrefabPicture, IsTheSameOnBothPathsAndAsItWas) {
     const auto mill = prefabs.load(state.assets, source_file("examples/09_gltf/windmill.glb"));
     ASSERT_TRUE(mill) << mill.error().message;
     scene::Transform where{.position = pose.position};
-    where.position.local += glm::dvec3(-2, 0, -19);
+    where.position.local += glm::dvec3(-2, 0, -30);
     where.position = core::normalised(where.position, state.facts.world.block_size_m());
     const core::WorldPosition& at = where.position;
     where.position.local.y =
