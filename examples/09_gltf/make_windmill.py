@@ -165,7 +165,7 @@ def main():
     slats = file.add("materials", {"name": "slats", "alphaMode": "MASK", "alphaCutoff": 0.5,
                                    "doubleSided": True, "pbrMetallicRoughness": {
                                        "baseColorTexture": file.texture("slats", SIZE, lattice), **rough}})
-    tower = file.mesh("tower", ring(16, (3.6, -1.5, 5.75), (2.3, 10.0, 0.0)), bricks)
+    tower = file.mesh("tower", ring(16, (3.83, -3.5, 6.75), (2.3, 10.0, 0.0)), bricks)
     roof = file.mesh("roof", ring(16, (2.75, 9.7, 0.0), (0.02, 12.8, 0.0)) +
                      ring(16, (2.2, 9.7, 0.0), (2.75, 9.7, 0.0)) +
                      box((-0.22, 10.35, 0.0), (0.22, 10.8, 3.3)), slate)
