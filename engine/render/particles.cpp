@@ -23,7 +23,7 @@ bool within(const glm::vec3& v, float least, float greatest) {
          within(v.z, least, greatest);
 }
 bool is_colour(const glm::vec4& c) {
-  return within(glm::vec3(c), 0, 1e6F) && within(c.a, 0, 1);
+  return within(glm::vec3(c), 0, 1e6F) && within(c.w, 0, 1);
 }
 
 }  // namespace

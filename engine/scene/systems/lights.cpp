@@ -35,8 +35,8 @@ struct Candidate {
 
 bool is_valid(const PointLight& light) {
   const auto within = [](float v, float least, float most) { return v >= least && v <= most; };
-  return within(light.colour.r, 0, 1000) && within(light.colour.g, 0, 1000) &&
-         within(light.colour.b, 0, 1000) && within(light.intensity, 0, 1e6F) &&
+  return within(light.colour.x, 0, 1000) && within(light.colour.y, 0, 1000) &&
+         within(light.colour.z, 0, 1000) && within(light.intensity, 0, 1e6F) &&
          within(light.range_m, 0.1F, 1000);
 }
 

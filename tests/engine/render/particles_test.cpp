@@ -50,7 +50,7 @@ TEST(ParticleKinds, WithNumbersOutsideOfTheirRangesAreRefused) {
     EXPECT_FALSE(is_valid(kind));
   }
   ParticleKind kind;
-  kind.last_colour.g = -1;
+  kind.last_colour.y = -1;
   EXPECT_FALSE(is_valid(kind));
   kind = {};
   kind.volume = ParticleVolume::kAroundCamera;

@@ -58,15 +58,15 @@ TEST_F(Lights, FadeInWhereTheyAppearAndOutWhereTheyAreSwitchedOff) {
   for (int i = 0; i < 20; ++i) {
     tick();
     ASSERT_EQ(lit().size(), 1u);
-    EXPECT_GE(lit()[0].light.r, before);
-    if (i == 0) EXPECT_LT(lit()[0].light.r, 0.5F);
-    before = lit()[0].light.r;
+    EXPECT_GE(lit()[0].light.x, before);
+    if (i == 0) EXPECT_LT(lit()[0].light.x, 0.5F);
+    before = lit()[0].light.x;
   }
   EXPECT_EQ(before, 2.0F);
   light(entity).visible = false;
   tick();
   ASSERT_EQ(lit().size(), 1u);
-  EXPECT_LT(lit()[0].light.r, 2.0F);
+  EXPECT_LT(lit()[0].light.x, 2.0F);
   tick(20);
   EXPECT_TRUE(lit().empty());
 }
@@ -80,7 +80,7 @@ TEST_F(Lights, ThatComeIntoViewFromTheSideAreThereAtOnce) {
   pose_.yaw = 0;
   tick();
   ASSERT_EQ(lit().size(), 1u);
-  EXPECT_EQ(lit()[0].light.r, 2.0F);
+  EXPECT_EQ(lit()[0].light.x, 2.0F);
 }
 
 TEST_F(Lights, OutOfViewLightWhatTheirRangeReachesInView) {
@@ -109,7 +109,7 @@ TEST_F(Lights, TakeTurnsWithoutAJumpOfLight) {
   const auto sum = [&] {
     float all = 0;
     for (const render::PointLight& one : lit())
-      all += one.light.r;
+      all += one.light.x;
     return all;
   };
   for (int i = 0; i < 60; ++i) {
