@@ -26,7 +26,7 @@ struct LightTick {
   double block_size_m = 64;
 };
 
-struct Candidate {
+struct LightCandidate {
   PointLight* light = nullptr;
   glm::vec3 place{0.0F};
   float importance = 0;
@@ -59,8 +59,8 @@ class LightChoice {
       ++counters_.lights_invalid;
       return;
     }
-    Candidate found{&light,
-                    offset_of(transform.position, camera_.pose.position, tick_.block_size_m)};
+    LightCandidate found{&light,
+                         offset_of(transform.position, camera_.pose.position, tick_.block_size_m)};
     PointLightState& state = light.state;
     const float distance_m = glm::length(found.place);
     if (distance_m - light.range_m > tick_.view_distance_m ||
@@ -79,12 +79,12 @@ class LightChoice {
   }
 
   void take(LightDraws& draws) {
-    for (const Candidate& lit : std::span(best_).first(lit_)) {
+    for (const LightCandidate& lit : std::span(best_).first(lit_)) {
       float& share = lit.light->state.share;
       share = lit.at_once ? 1.0F : std::min(share + tick_.step, 1.0F);
       add(lit, draws);
     }
-    for (const Candidate& going : std::span(going_).first(going_count_)) {
+    for (const LightCandidate& going : std::span(going_).first(going_count_)) {
       float& share = going.light->state.share;
       share = std::max(share - tick_.step, 0.0F);
       if (share > 0) add(going, draws);
@@ -93,12 +93,12 @@ class LightChoice {
   }
 
  private:
-  static bool matters_more(const Candidate& a, const Candidate& b) {
+  static bool matters_more(const LightCandidate& a, const LightCandidate& b) {
     return a.importance > b.importance;
   }
 
   // Among the best so far, which are a heap with the least on top.
-  void propose(const Candidate& found) {
+  void propose(const LightCandidate& found) {
     const auto begin = best_.begin();
     if (lit_ == kMostLit) {
       ++counters_.lights_left_out;
@@ -111,7 +111,7 @@ class LightChoice {
   }
 
   // One that is lit no more.
-  void go(const Candidate& found) {
+  void go(const LightCandidate& found) {
     if (found.light->state.share <= 0) return;
     if (found.at_once || going_count_ == kMostGoing) {
       found.light->state.share = 0;
@@ -120,7 +120,7 @@ class LightChoice {
     going_[going_count_++] = found;
   }
 
-  static void add(const Candidate& found, LightDraws& draws) {
+  static void add(const LightCandidate& found, LightDraws& draws) {
     const PointLight& light = *found.light;
     draws.lights.push_back(
         {found.place, light.range_m, light.colour * (light.intensity * light.state.share)});
@@ -130,8 +130,8 @@ class LightChoice {
   const Camera& camera_;
   const View& view_;
   Counters& counters_;
-  std::array<Candidate, kMostLit> best_;
-  std::array<Candidate, kMostGoing> going_;
+  std::array<LightCandidate, kMostLit> best_;
+  std::array<LightCandidate, kMostGoing> going_;
   std::size_t lit_ = 0, going_count_ = 0;
 };
 

@@ -24,7 +24,7 @@ struct ParticleTick {
   float view_distance_m = 0;
 };
 
-struct Candidate {
+struct EmitterCandidate {
   float distance_m = 0;
   const Transform* transform = nullptr;
   const ParticleEmitter* emitter = nullptr;
@@ -82,7 +82,7 @@ class EmitterChoice {
     }
     const double since_stop_s = tick_.now_s - emitter.stop_s;
     if (tick_.now_s < emitter.start_s || since_stop_s > emitter.kind.lifetime_s) return;
-    Candidate found{0, &transform, &emitter};
+    EmitterCandidate found{0, &transform, &emitter};
     if (!is_around(emitter)) {
       const glm::vec3 place =
           offset_of(transform.position, camera_.pose.position, tick_.block_size_m);
@@ -98,23 +98,23 @@ class EmitterChoice {
   }
 
   // The chosen ones, nearest first.
-  std::span<const Candidate> chosen() {
+  std::span<const EmitterCandidate> chosen() {
     std::sort(best_.begin(), best_.begin() + static_cast<std::ptrdiff_t>(count_), is_nearer);
     return std::span(best_).first(count_);
   }
 
-  void leave_out(const Candidate& found) {
+  void leave_out(const EmitterCandidate& found) {
     ++counters_.emitters_left_out;
     counters_.particles_left_out += render::particle_count(found.emitter->kind);
   }
 
  private:
-  static bool is_nearer(const Candidate& a, const Candidate& b) {
+  static bool is_nearer(const EmitterCandidate& a, const EmitterCandidate& b) {
     return a.distance_m < b.distance_m;
   }
 
   // Among the nearest so far, which are a heap with the farthest on top.
-  void propose(const Candidate& found) {
+  void propose(const EmitterCandidate& found) {
     const auto begin = best_.begin();
     if (count_ == best_.size()) {
       if (!is_nearer(found, best_[0])) return leave_out(found);
@@ -129,12 +129,13 @@ class EmitterChoice {
   const Camera& camera_;
   const View& view_;
   Counters& counters_;
-  std::array<Candidate, render::kMostEmitters> best_;
+  std::array<EmitterCandidate, render::kMostEmitters> best_;
   std::size_t count_ = 0;
 };
 
-render::ParticleDraw draw_of(const Candidate& found, const ParticleTick& tick, const Camera& camera,
-                             const Streaming& streaming, const ParticleQuery& entities) {
+render::ParticleDraw draw_of(const EmitterCandidate& found, const ParticleTick& tick,
+                             const Camera& camera, const Streaming& streaming,
+                             const ParticleQuery& entities) {
   const Transform& transform = *found.transform;
   render::ParticleDraw draw;
   draw.kind = found.emitter->kind;
@@ -176,7 +177,7 @@ void particles_system(const Settings& settings, const Clock& clock, const Camera
           choice.visit(transforms[i], emitters[i]);
       });
   std::uint64_t left = render::kMostParticles;
-  for (const Candidate& found : choice.chosen()) {
+  for (const EmitterCandidate& found : choice.chosen()) {
     render::ParticleDraw draw = draw_of(found, tick, camera, streaming, entities);
     if (draw.count > left) {
       choice.leave_out(found);
