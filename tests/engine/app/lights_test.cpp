@@ -76,6 +76,9 @@ void put_lantern(Session& session, const scene::Transform& transform) {
 
 void furnish_night(Session& session, const core::CameraPose& pose) {
   put_lantern(session, at(session, pose, -2, 12, 2.5));
+  scene::spawn(session.scene().state().entities,
+               scene::PointLight{.colour = {0.7F, 0.85F, 1}, .intensity = 14, .range_m = 40},
+               at(session, pose, 13, 33, 4));
   scene::spawn(session.scene().state().entities, scene::ParticleEmitter{.kind = scene::fire()},
                at(session, pose, 4, 14, 0.1));
   scene::spawn(session.scene().state().entities,

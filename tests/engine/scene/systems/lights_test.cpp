@@ -59,7 +59,9 @@ TEST_F(Lights, FadeInWhereTheyAppearAndOutWhereTheyAreSwitchedOff) {
     tick();
     ASSERT_EQ(lit().size(), 1u);
     EXPECT_GE(lit()[0].light.x, before);
-    if (i == 0) EXPECT_LT(lit()[0].light.x, 0.5F);
+    if (i == 0) {
+      EXPECT_LT(lit()[0].light.x, 0.5F);
+    }
     before = lit()[0].light.x;
   }
   EXPECT_EQ(before, 2.0F);
@@ -72,7 +74,7 @@ TEST_F(Lights, FadeInWhereTheyAppearAndOutWhereTheyAreSwitchedOff) {
 }
 
 TEST_F(Lights, ThatComeIntoViewFromTheSideAreThereAtOnce) {
-  put(20);
+  put(20, 0, {.range_m = 5});
   tick(20);
   pose_.yaw = 3;
   tick(5);

@@ -125,7 +125,7 @@ TEST_F(Emitters, WithValuesThatAreNoneAreNotDrawnAndAreCounted) {
   put(20, {.kind = {.rate = -1}});
   put(20, {.kind = {.lifetime_s = nan}});
   put(20, {.kind = {.first_size_m = 1e9F}});
-  put(20, {.start_s = static_cast<double>(nan)});
+  put(20, {.kind = {}, .start_s = static_cast<double>(nan)});
   const ecs::Entity lost = put(20), flat = put(20);
   state().entities.get<Transform>(lost)->position.local.x = static_cast<double>(nan);
   state().entities.get<Transform>(flat)->scale.y = 0;
