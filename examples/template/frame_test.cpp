@@ -36,6 +36,7 @@ core::Result<telemetry::Summary> fly() {
   options.session = std::move(*session);
   options.session.headless = true;
   options.path_file = *path;
+  options.fixed_step_hz = 60;  // the same frames on every machine, however long they take
   auto flight = app::Flight::create(std::move(options));
   if (!flight) return tl::unexpected(flight.error());
   if (auto ok = game.start((*flight)->session()); !ok) return tl::unexpected(ok.error());

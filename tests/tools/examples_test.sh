@@ -39,4 +39,17 @@ grep -q '; 1 oaks in all$' "$folder/felling.txt" && grep -q '; 2 oaks in all$' "
 [ "$(cut -d';' -f1 "$folder/felling.txt" | sort -u | wc -l)" -eq 2 ] # two different ones
 picture 07_hud hud
 picture 08_objects objects
+
+# The game to start from, and its frame-time test: within its budgets, and with one that none holds.
+"$folder/build/template/my_game" "$folder/game.png" 2>"$folder/log.txt" || { cat "$folder/log.txt"; exit 1; }
+[ "$(stat -c %s "$folder/game.png")" -gt 50000 ] || { echo "the game's picture is empty"; exit 1; }
+frames() { # EXIT_CODE FRAME_MS MISSING_PERCENT
+  local code=0
+  "$folder/build/template/my_game_frame_test" "$2" "$3" >"$folder/frames.txt" 2>&1 || code=$?
+  cat "$folder/frames.txt"
+  [ "$code" -eq "$1" ] || { echo "the frame-time test ended with $code instead of $1"; exit 1; }
+}
+frames 0 1e9 100
+frames 3 0 100
+grep -qE '^frame_ms.p99 .* of +0.00  MISSED$' "$folder/frames.txt"
 [ -z "${KEEP_PICTURES:-}" ] || cp "$folder"/*.png "$KEEP_PICTURES"
