@@ -40,14 +40,15 @@ struct ParticleEmitter {
 };
 
 // A new light, or a new emitter: an entity with these components.
-inline ecs::Entity spawn(ecs::World& world, const PointLight& light, const Transform& transform) {
+inline ecs::Entity spawn_light(ecs::World& world, const PointLight& light,
+                               const Transform& transform) {
   const auto made = world.create<Transform, PointLight>(1);
   made.column<Transform>()[0] = transform;
   made.column<PointLight>()[0] = light;
   return made.entities[0];
 }
-inline ecs::Entity spawn(ecs::World& world, const ParticleEmitter& emitter,
-                         const Transform& transform) {
+inline ecs::Entity spawn_emitter(ecs::World& world, const ParticleEmitter& emitter,
+                                 const Transform& transform) {
   const auto made = world.create<Transform, ParticleEmitter>(1);
   made.column<Transform>()[0] = transform;
   made.column<ParticleEmitter>()[0] = emitter;

@@ -71,28 +71,25 @@ void put_lantern(Session& session, const scene::Transform& transform) {
   part.position.local += glm::dvec3(1.5, -1, 0);
   part.scale = {1, 3, 1};
   scene::spawn(state.entities, {.mesh = *mesh}, part);
-  scene::spawn(state.entities, scene::PointLight{.intensity = 6, .range_m = 25}, transform);
+  scene::spawn_light(state.entities, {.intensity = 6, .range_m = 25}, transform);
 }
 
 void furnish_night(Session& session, const core::CameraPose& pose) {
   put_lantern(session, at(session, pose, -2, 12, 2.5));
-  scene::spawn(session.scene().state().entities,
-               scene::PointLight{.colour = {0.7F, 0.85F, 1}, .intensity = 14, .range_m = 40},
-               at(session, pose, 13, 33, 4));
-  scene::spawn(session.scene().state().entities, scene::ParticleEmitter{.kind = scene::fire()},
-               at(session, pose, 4, 14, 0.1));
-  scene::spawn(session.scene().state().entities,
-               scene::PointLight{.colour = {1, 0.45F, 0.15F}, .intensity = 3},
-               at(session, pose, 4, 14, 0.8));
+  scene::spawn_light(session.scene().state().entities,
+                     {.colour = {0.7F, 0.85F, 1}, .intensity = 14, .range_m = 40},
+                     at(session, pose, 13, 33, 4));
+  scene::spawn_emitter(session.scene().state().entities, {.kind = scene::fire()},
+                       at(session, pose, 4, 14, 0.1));
+  scene::spawn_light(session.scene().state().entities,
+                     {.colour = {1, 0.45F, 0.15F}, .intensity = 3}, at(session, pose, 4, 14, 0.8));
 }
 
 void furnish_day(Session& session, const core::CameraPose& pose) {
   ecs::World& entities = session.scene().state().entities;
-  scene::spawn(entities, scene::ParticleEmitter{.kind = scene::smoke()},
-               at(session, pose, -3, 22, 0));
-  scene::spawn(entities, scene::ParticleEmitter{.kind = scene::snow()}, {});
-  scene::spawn(entities, scene::ParticleEmitter{.kind = scene::leaves(), .seed = 3},
-               at(session, pose, 4, 12, 3));
+  scene::spawn_emitter(entities, {.kind = scene::smoke()}, at(session, pose, -3, 22, 0));
+  scene::spawn_emitter(entities, {.kind = scene::snow()}, {});
+  scene::spawn_emitter(entities, {.kind = scene::leaves(), .seed = 3}, at(session, pose, 4, 12, 3));
 }
 
 image::Image picture(Session& session, const core::CameraPose& pose) {

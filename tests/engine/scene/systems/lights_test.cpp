@@ -29,7 +29,7 @@ class Lights : public testing::Test {
     Transform transform;
     transform.position = pose_.position;
     transform.position.local += glm::dvec3(aside_m, -0.2 * ahead_m, -ahead_m);
-    return spawn(state().entities, light, transform);
+    return spawn_light(state().entities, light, transform);
   }
   PointLight& light(ecs::Entity entity) { return *state().entities.get<PointLight>(entity); }
 

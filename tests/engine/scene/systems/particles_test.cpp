@@ -28,7 +28,7 @@ class Emitters : public testing::Test {
     Transform transform;
     transform.position = pose_.position;
     transform.position.local += glm::dvec3(0, -0.2 * ahead_m, -ahead_m);
-    return spawn(state().entities, emitter, transform);
+    return spawn_emitter(state().entities, emitter, transform);
   }
 
   core::CameraPose pose_ = pose_at(0, 0);
@@ -108,7 +108,7 @@ TEST_F(Emitters, StartAndStop) {
 
 TEST_F(Emitters, AroundTheCameraAreDrawnWhereverTheyStand) {
   Transform nowhere;
-  spawn(state().entities, ParticleEmitter{.kind = rain()}, nowhere);
+  spawn_emitter(state().entities, {.kind = rain()}, nowhere);
   tick();
   ASSERT_EQ(drawn().size(), 1u);
   const glm::vec3 before = drawn()[0].origin;
