@@ -27,9 +27,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 // from examples of what is in no shipped file.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {
-  static const std::vector<std::string> examples{psygen::fuzz::example_bindings(),
-                                                 psygen::fuzz::example_recording(),
-                                                 psygen::fuzz::example_edits()};
+  static const std::vector<std::string> examples{
+      psygen::fuzz::example_bindings(), psygen::fuzz::example_frame_test(),
+      psygen::fuzz::example_recording(), psygen::fuzz::example_edits()};
   static std::vector<std::string> others(1);
   std::mt19937_64 random(seed);
   if (random() % 2 == 0) return LLVMFuzzerMutate(data, size, most);

@@ -39,4 +39,9 @@ grep -q '; 1 oaks in all$' "$folder/felling.txt" && grep -q '; 2 oaks in all$' "
 [ "$(cut -d';' -f1 "$folder/felling.txt" | sort -u | wc -l)" -eq 2 ] # two different ones
 picture 07_hud hud
 picture 08_objects objects
+# The game to start from, by the test that needs no time of its own.
+cmake -S "$source/examples/template" -B "$folder/template" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
+  -DCMAKE_PREFIX_PATH="$folder/psygen" >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt"; exit 1; }
+cmake --build "$folder/template" >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt"; exit 1; }
+ctest --test-dir "$folder/template" --tests-regex '^exact$' --output-on-failure --no-tests=error
 [ -z "${KEEP_PICTURES:-}" ] || cp "$folder"/*.png "$KEEP_PICTURES"
