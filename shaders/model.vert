@@ -8,6 +8,7 @@
 #include "draw.glsl"
 #include "atmosphere.glsl"
 #include "lighting.glsl"
+#include "lamps.glsl"
 #include "surface_out.glsl"
 #ifdef PSYGEN_OBJECT
 #include "materials.glsl"
@@ -101,9 +102,12 @@ void main() {
   albedo *= m.base.rgb;
   vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x) +
                m.emissive.rgb * frame.sun_colour.w;
+  if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
   colour = shown(through_haze(light, p));
 #elif !defined(PSYGEN_SHADOW)
-  colour = shown(through_haze(model_light(albedo, n, p, ambient, leaf, draw.light.x), p));
+  vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x);
+  if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
+  colour = shown(through_haze(light, p));
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);
 }

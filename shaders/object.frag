@@ -5,6 +5,7 @@
 #include "frame.glsl"
 #include "atmosphere.glsl"
 #include "lighting.glsl"
+#include "lamps.glsl"
 #include "shadows.glsl"
 #include "fading.glsl"
 #include "materials.glsl"
@@ -54,5 +55,6 @@ void main() {
   if ((options & PSYGEN_MATERIAL_TWO_SIDED) != 0u && dot(n, place) > 0.0) n = -n;
   float sun = sun_leaf_ground.x * (shadows ? sun_at(place, n) : 1.0);
   vec3 light = model_light(base.rgb, n, place, albedo_ambient.a, sun_leaf_ground.y, sun);
+  if (lamps) light += base.rgb * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_ground.y);
   pixel = vec4(shown(through_haze(light + emitted * frame.sun_colour.w, place)), 1.0);
 }

@@ -21,6 +21,7 @@ using glm::vec4;
 #define PSYGEN_BINDING_GLYPHS 4
 #define PSYGEN_BINDING_SHADOWS 5
 #define PSYGEN_BINDING_MATERIALS 6
+#define PSYGEN_BINDING_EMITTER 7
 
 // Bindings of the second descriptor set: the textures of a material.
 #define PSYGEN_TEXTURE_BASE 0
@@ -36,6 +37,12 @@ using glm::vec4;
 
 // Largest number of cascades of the sun's shadow.
 #define PSYGEN_MAX_CASCADES 3
+
+// Most point lights of a frame.
+#define PSYGEN_MAX_LAMPS 40
+
+// Vertices of a particle (particle.vert): two triangles.
+#define PSYGEN_PARTICLE_VERTICES 6
 
 // Vertices that turn towards the camera: core::kBillboardBit and kBillboardReachM.
 #define PSYGEN_BILLBOARD_BIT 2u
@@ -91,6 +98,8 @@ struct FrameData {
   vec4 shadow;        // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
   vec4 shadow_reach;  // largest distance from the camera of each cascade, m
   mat4 shadow_from_camera[PSYGEN_MAX_CASCADES];  // to texture and depth, nearest cascade first
+  vec4 lamp_count;                               // x: lamps
+  vec4 lamps[2 * PSYGEN_MAX_LAMPS];  // place, 1 / range² in 1/m²; light on what faces it at 1 m
 };
 
 // The data of a draw.
@@ -115,6 +124,27 @@ struct MaterialData {
   vec4 options;   // x: bits; y: strength of the normal map
 };
 
+// An emitter of particles (particle.vert; render::ParticleKind has the meaning of the parts).
+struct EmitterData {
+  vec4 origin;        // of the volume; w: share of its cycle that the first particle has passed
+  vec4 axis_x;        // half axes of the volume, m; w: particles
+  vec4 axis_y;        // w: lifetime, s
+  vec4 axis_z;        // w: variation of lifetimes
+  vec4 velocity;      // m/s; w: spread, m/s
+  vec4 wind;          // m/s; w: gravity, m/s²
+  vec4 first_colour;  // at the beginning of a life, with opacity
+  vec4 last_colour;   // at its end
+  vec4 size;          // x: first, y: last, m; z: variation; w: s of motion that a streak shows
+  vec4 shape;         // x: fade in, y: fade out, shares of a life; z: softness; w: width / height
+  vec4 motion;        // x: drag, 1/s; y: turbulence, m; z: spin, rad/s; w: tumbling, rad/s
+  vec4 light;         // x: share of the sun; y: opacity of all; z: glow; w: share that it covers
+  vec4 names;         // x: seed of this generation, y: of the next; z: youngest, w: oldest age, s
+  vec4 around;  // edges of the box around the camera that particles stay in, or 0; w: variation of
+                // brightness
+  vec4 cycle;   // x: s from a birth of a particle to its next one
+  vec4 spare;   // to 256 bytes, the largest alignment of offsets that devices ask for
+};
+
 // A corner of a quad of the overlay, or an end of a line.
 struct OverlayVertex {
   vec4 place;   // pixels x, y; texture u, v; for lines: metres, relative to the camera
@@ -125,9 +155,10 @@ struct OverlayVertex {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 64 + 28 * 16 + 3 * 64);
+static_assert(sizeof(FrameData) == 64 + 28 * 16 + 3 * 64 + 16 + PSYGEN_MAX_LAMPS * 32);
 static_assert(sizeof(DrawData) == 64);
 static_assert(sizeof(MaterialData) == 48);
+static_assert(sizeof(EmitterData) == 256);
 static_assert(sizeof(OverlayVertex) == 48);
 static_assert(offsetof(FrameData, ray_right) == 64);
 }  // namespace psygen::shaders

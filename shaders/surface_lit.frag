@@ -5,6 +5,7 @@
 #include "frame.glsl"
 #include "atmosphere.glsl"
 #include "lighting.glsl"
+#include "lamps.glsl"
 #include "ground.glsl"
 #include "fading.glsl"
 #include "shadows.glsl"
@@ -32,5 +33,9 @@ void main() {
   vec3 light = sun_leaf_ground.z > 0.5
                    ? ground_light(albedo, n, sun, albedo_ambient.a)
                    : model_light(albedo, n, place, albedo_ambient.a, sun_leaf_ground.y, sun);
+  if (lamps) {
+    light += albedo * mix(albedo_ambient.a, 1.0, sun_leaf_ground.z) *
+             lamp_light(place, n, 0.5 * sun_leaf_ground.y);
+  }
   pixel = vec4(shown(through_haze(light, place)), 1.0);
 }

@@ -7,6 +7,7 @@
 #include "draw.glsl"
 #include "atmosphere.glsl"
 #include "lighting.glsl"
+#include "lamps.glsl"
 #include "ground.glsl"
 #include "surface_out.glsl"
 
@@ -44,7 +45,9 @@ void main() {
   albedo_ambient = vec4(albedo, visible.y);
   sun_leaf_ground = vec3(visible.x, 0.0, 1.0);
 #elif !defined(PSYGEN_DRAW_COLOUR) && !defined(PSYGEN_SHADOW)
-  colour = shown(through_haze(ground_light(albedo, n, visible.x, visible.y), p));
+  vec3 light = ground_light(albedo, n, visible.x, visible.y);
+  if (lamps) light += albedo * lamp_light(p, n, 0.0);
+  colour = shown(through_haze(light, p));
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);
 }

@@ -4,6 +4,7 @@
 #include "frame.glsl"
 #include "atmosphere.glsl"
 #include "lighting.glsl"
+#include "lamps.glsl"
 #include "water.glsl"
 
 layout(constant_id = 0) const bool waves = false;
@@ -21,6 +22,22 @@ vec2 slope_of(vec2 plane, float length_m, vec2 drift) {
               texture(heights, at + vec2(0, texel)).r - here);
 }
 
+// The reflections of lamps in ripples, as the sun's in water_light().
+vec3 lamp_glint(vec3 p, vec3 n) {
+  vec3 v = normalize(p);
+  vec3 sum = vec3(0.0);
+  int count = int(frame.lamp_count.x);
+  for (int i = 0; i < count; ++i) {
+    vec3 to_lamp;
+    vec3 light = lamp_at(i, p, to_lamp);
+    vec3 h = to_lamp - v;
+    vec2 slope = h.xz / max(h.y, 1e-3) - n.xz / n.y;
+    float steep = dot(slope, slope);
+    sum += light * (1.3 * exp(-400.0 * steep) + 0.2 * exp(-45.0 * steep));
+  }
+  return sum;
+}
+
 void main() {
   vec3 n = vec3(0, 1, 0);
   if (waves) {
@@ -30,5 +47,7 @@ void main() {
                  slope_of(plane.yx, 128.0, vec2(-0.006, 0.009));
     n = normalize(vec3(-slope.x * near, 1.0, -slope.y * near));
   }
-  pixel = vec4(shown(through_haze(water_light(place, n), place)), 1.0);
+  vec3 light = water_light(place, n);
+  if (lamps) light += frame.water.rgb * lamp_light(place, n, 0.0) + lamp_glint(place, n);
+  pixel = vec4(shown(through_haze(light, place)), 1.0);
 }

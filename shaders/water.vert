@@ -6,6 +6,7 @@
 #include "frame.glsl"
 #include "atmosphere.glsl"
 #include "lighting.glsl"
+#include "lamps.glsl"
 #include "water.glsl"
 
 #ifdef PSYGEN_PIXEL_LIGHT
@@ -35,7 +36,9 @@ void main() {
 #ifdef PSYGEN_PIXEL_LIGHT
   place = p;
 #else
-  colour = shown(through_haze(water_light(p, vec3(0, 1, 0)), p));
+  vec3 light = water_light(p, vec3(0, 1, 0));
+  if (lamps) light += frame.water.rgb * lamp_light(p, vec3(0, 1, 0), 0.0);
+  colour = shown(through_haze(light, p));
 #endif
   gl_Position = frame.clip_from_camera * vec4(p, 1.0);
 }

@@ -11,11 +11,14 @@
 
 namespace psygen::audio {
 
+// The samples of one sound.
 struct Clip {
   std::uint32_t rate_hz = 44100;      // frames per second, kMinRate to kMaxRate
   std::uint32_t channels = 1;         // 1 or 2; samples of two are interleaved
   std::vector<std::int16_t> samples;  // frames() · channels
+  // Samples of each channel.
   std::size_t frames() const { return channels == 0 ? 0 : samples.size() / channels; }
+  // Its length at its own rate. Infinite or not a number where rate_hz is 0.
   double seconds() const { return static_cast<double>(frames()) / rate_hz; }
 };
 

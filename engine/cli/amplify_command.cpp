@@ -93,14 +93,14 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
        "several times")
       ->check(valid_if(parse_place, "X,Z"))
       ->excludes(region);
-  c.add_option("--out", out_, "Folder that gets one file per block; can be gone on with")
+  c.add_option("--out", out_, "Folder for one file per block; an interrupted run goes on")
       ->excludes("--sample");
-  c.add_option("--format", format_, "Of these files: glb or obj")
-      ->check(CLI::IsMember({"glb", "obj"}))
+  c.add_option("--format", format_, "Format of the files of --out: glb or obj")
+      ->check(one_of({"glb", "obj"}))
       ->capture_default_str()
       ->needs("--out");
   c.add_option("--simd", simd_, "Instruction set of the kernels, to compare; default: the best")
-      ->check(CLI::IsMember(models::simd_targets()));
+      ->check(one_of(models::simd_targets()));
   c.add_flag("--json", json_, "Print the figures as JSON");
 }
 

@@ -33,7 +33,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
   c.add_flag("--loop", options_.loop,
              "Fly the path again and again, until --seconds (27 if headless) are over")
       ->needs("--path");
-  c.add_option("--frames", options_.frames, "End after so many frames; 0: no limit")
+  c.add_option("--frames", options_.frames, "End after this many frames; 0: no limit")
       ->transform(integer_between(0, 1'000'000'000));
   c.add_option("--fixed-step", options_.fixed_step_hz,
                "Every frame advances the flight by 1/HZ seconds, however long it took")
@@ -63,7 +63,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
          options_.session.scene.policy = *synthesis::policy_from(text);
        },
        "Order of synthesis: fifo, plp, shortest, longest, deadline")
-      ->check(CLI::IsMember({"fifo", "plp", "shortest", "longest", "deadline"}))
+      ->check(one_of({"fifo", "plp", "shortest", "longest", "deadline"}))
       ->default_str("deadline");
   c.add_option_function<std::string>(
        "--plp",

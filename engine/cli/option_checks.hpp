@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "engine/cli/text_values.hpp"
 #include "engine/core/utf8.hpp"
@@ -61,6 +64,19 @@ inline CLI::Validator zero_or_between(double low, double high) {
   return CLI::Validator(
       [zero, other](std::string& text) { return zero(text).empty() ? std::string() : other(text); },
       fmt::format("0, or {} to {}", low, high));
+}
+
+// One of these words, which outlive the command line. Help shows them as low|high.
+inline CLI::Validator one_of(std::vector<std::string_view> words) {
+  const std::string shown = fmt::format("{}", fmt::join(words, "|"));
+  return CLI::Validator(
+      [words = std::move(words)](std::string& text) {
+        if (std::ranges::find(words, text) != words.end()) return std::string();
+        constexpr std::size_t kMostShownBytes = 60;
+        return fmt::format("'{}' is unknown; allowed are {}", core::shown(text, kMostShownBytes),
+                           fmt::join(words, ", "));
+      },
+      shown);
 }
 
 // For an option with parse_bytes(); whole MiB.

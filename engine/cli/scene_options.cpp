@@ -34,7 +34,7 @@ void add_detail(CLI::App& c, scene::Settings& scene) {
   c.add_option_function<std::string>(
        "--lod", [&scene](const std::string& text) { scene.levels_of_detail = text == "on"; },
        "Levels of detail: on, or off for full detail everywhere")
-      ->check(CLI::IsMember({"on", "off"}))
+      ->check(one_of({"on", "off"}))
       ->default_str("on");
   c.add_option("--view-distance", scene.view_distance_m, "Metres; nothing beyond exists")
       ->capture_default_str()
@@ -45,7 +45,7 @@ void add_detail(CLI::App& c, scene::Settings& scene) {
   c.add_option_function<std::string>(
        "--occlusion", [&scene](const std::string& text) { scene.occlusion = text == "on"; },
        "Leave out what lies behind ridges: on, off")
-      ->check(CLI::IsMember({"on", "off"}))
+      ->check(one_of({"on", "off"}))
       ->default_str("on");
 }
 

@@ -78,7 +78,7 @@ ScheduleCommand::ScheduleCommand(CLI::App& cli)
   c.add_option("--modelers", modelers_, "Simulated modelers")
       ->capture_default_str()
       ->transform(integer_between(1, 256));
-  c.add_option("--slower", slower_, "Every synthesis takes so many times as long")
+  c.add_option("--slower", slower_, "Every synthesis takes this many times as long")
       ->capture_default_str()
       ->check(number_between(0.001, 1e6));
   c.add_flag("--json", json_, "Print the figures as JSON");

@@ -40,6 +40,7 @@ void put_varint(Bytes& out, std::uint64_t value) {
 // Reads bytes from the first to the last. They must outlive it.
 class ByteReader {
  public:
+  // Reads `bytes`, which must outlive it, from the start.
   explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
   explicit ByteReader(std::string_view bytes) : bytes_(std::as_bytes(std::span(bytes))) {}
 

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <exception>
-#include <memory>
 #include <new>
 #include <string>
 
 #include "engine/core/out_of_memory.hpp"
+#include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/image/picture_codec.hpp"
 #include "engine/image/picture_header.hpp"
@@ -24,28 +23,8 @@ tl::unexpected<core::Error> fail_at(ErrorCode code, const std::filesystem::path&
   return core::fail(code, fmt::format("{}: {}", path.string(), sentence));
 }
 
-core::Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return fail_at(ErrorCode::kIo, path, error ? error.message() : "is not a regular file");
-  }
-  const std::uint64_t size = std::filesystem::file_size(path, error);
-  if (error) return fail_at(ErrorCode::kIo, path, error.message());
-  if (size > max_bytes) {
-    return fail_at(ErrorCode::kOverBudget, path,
-                   fmt::format("the file has {} bytes; at most {} are allowed", size, max_bytes));
-  }
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (!file) return fail_at(ErrorCode::kIo, path, "cannot be opened for reading");
-  Bytes bytes(size);
-  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
-    return fail_at(ErrorCode::kIo, path, "cannot be read to its end");
-  }
-  return bytes;
-}
-
-core::Result<PictureHeader> checked_header(const std::filesystem::path& path, const Bytes& bytes,
+core::Result<PictureHeader> checked_header(const std::filesystem::path& path,
+                                           std::span<const std::uint8_t> bytes,
                                            const ImageLimits& limits) {
   const auto header = read_picture_header(bytes);
   if (!header) return fail_at(ErrorCode::kParse, path, "is not a PNG or JPEG picture");
@@ -89,14 +68,21 @@ core::Result<void> load_picture_libraries() {
   return picture_codec().map([](const PictureCodec*) {});
 }
 
+core::Result<Image> decode_image(std::span<const std::uint8_t> bytes,
+                                 const std::filesystem::path& name, const ImageLimits& limits) {
+  return without_exceptions(name, ErrorCode::kParse, [&]() -> core::Result<Image> {
+    return checked_header(name, bytes, limits).and_then([&](const PictureHeader& header) {
+      return with_path(name, picture_codec().and_then([&](const PictureCodec* codec) {
+        return codec->decode(bytes, header);
+      }));
+    });
+  });
+}
+
 core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits) {
   return without_exceptions(path, ErrorCode::kParse, [&]() -> core::Result<Image> {
-    return read_file(path, limits.max_file_bytes).and_then([&](const Bytes& bytes) {
-      return checked_header(path, bytes, limits).and_then([&](const PictureHeader& header) {
-        return with_path(path, picture_codec().and_then([&](const PictureCodec* codec) {
-          return codec->decode(bytes, header);
-        }));
-      });
+    return core::read_file(path, limits.max_file_bytes).and_then([&](const Bytes& bytes) {
+      return decode_image(bytes, path, limits);
     });
   });
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "engine/core/error.hpp"
 #include "engine/image/image.hpp"
@@ -29,6 +30,9 @@ core::Result<void> load_picture_libraries();
 // than the limits) or kOutOfMemory; the message starts with the path. Also fails like
 // load_picture_libraries().
 core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
+// The same for the bytes of such a file, which `name` names in messages.
+core::Result<Image> decode_image(std::span<const std::uint8_t> bytes,
+                                 const std::filesystem::path& name, const ImageLimits& limits = {});
 
 // Writes a temporary file next to `path`, flushes it to the disk and renames it: `path` holds the
 // old picture or the new one, never a mix. Refuses to replace anything that is not a regular file.

@@ -37,6 +37,7 @@ struct Control {
   std::uint8_t code = 0;
 
   Control() = default;
+  // A key, button, or half of an axis by its own name.
   Control(platform::Key key) : code(static_cast<std::uint8_t>(key)) {}
   Control(platform::MouseButton button)
       : device(Device::kMouseButton), code(static_cast<std::uint8_t>(button)) {}

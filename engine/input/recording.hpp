@@ -21,6 +21,7 @@ namespace psygen::input {
 
 inline constexpr std::uint32_t kRecordingFormat = 1;
 
+// The states of all actions in every step, and the names of the actions.
 class Recording {
  public:
   static constexpr std::uint64_t kMostBytes = 256ull << 20;
@@ -33,8 +34,11 @@ class Recording {
   // Fails with kOverBudget once changes would take more than kMostBytes; nothing is added then.
   core::Result<void> add(std::span<const ActionState> states);
 
+  // Names, in the order of the states.
   const std::vector<std::string>& actions() const { return names_; }
+  // The length of a step in seconds.
   double step_s() const { return step_s_; }
+  // The number of steps that were added.
   std::uint64_t steps() const { return steps_; }
 
   // Replaces the file as a whole. Fails with kIo.
@@ -44,6 +48,7 @@ class Recording {
   static core::Result<Recording> load(const std::filesystem::path& file);
   // The same from bytes; `name` is for messages.
   static core::Result<Recording> parse(std::string_view bytes, std::string_view name);
+  // What save() writes. Linear in the changes.
   std::string bytes() const;
 
  private:
@@ -68,6 +73,7 @@ class Replay {
 
   // The next step, in place of Actions::step(); false, with everything at rest, after the last one.
   bool step(Actions& actions);
+  // Steps of the recording that step() has not given yet.
   std::uint64_t steps_left() const { return recording_.steps_ - step_; }
 
  private:

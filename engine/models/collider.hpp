@@ -32,6 +32,7 @@ struct Collider {
   using Shape = std::variant<Sphere, Capsule, Box, Hull>;
 
   std::vector<Shape> shapes;
+  // Whether it stops nothing.
   bool empty() const { return shapes.empty(); }
 };
 

@@ -42,9 +42,11 @@ struct BlockEdits {
   std::vector<PlacedModel> placed;                        // by growing id
   std::vector<std::shared_ptr<const GroundEdit>> ground;  // centred in the block, by growing id
 
+  // Numbers of edits, of one block or of several.
   struct Summary {
     std::uint64_t removed = 0, placed = 0, ground = 0;
     glm::vec3 reach_m{0.0F};  // the largest of PlacedModel::reach_m
+    // Takes in the blocks of another summary.
     void add(const Summary& part) {
       removed += part.removed;
       placed += part.placed;
@@ -53,8 +55,11 @@ struct BlockEdits {
         reach_m[i] = std::max(reach_m[i], part.reach_m[i]);
     }
   };
+  // Whether the block is as the world's function makes it.
   bool empty() const { return removed.empty() && placed.empty() && ground.empty(); }
+  // Of all edits of the block; equal edits have equal hashes. Linear in the edits.
   std::uint64_t hash() const;
+  // Linear in the edits.
   Summary summary() const;
   // Whether an instance of the world's function was removed or moved. O(log n).
   bool is_removed(std::uint32_t index) const {

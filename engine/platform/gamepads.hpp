@@ -20,6 +20,7 @@ struct Gamepad {
   PadButtonSet held, went_down, went_up;  // as InputState's
   std::array<float, kPadAxes> axes{};     // without a dead zone; see PadAxis
 
+  // The state of one button or axis; false and 0 without a gamepad.
   bool is_held(PadButton button) const { return held[static_cast<std::size_t>(button)]; }
   float axis(PadAxis which) const { return axes[static_cast<std::size_t>(which)]; }
 };

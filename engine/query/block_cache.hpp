@@ -35,6 +35,7 @@ struct BlockSolids {
 // next call.
 class BlockCache {
  public:
+  // Empty. Both outlive it; `most_bytes` is the bound of what it keeps.
   BlockCache(const world::World& world, const models::Registry& registry, std::size_t most_bytes);
   BlockCache(BlockCache&&) = default;
   BlockCache(const BlockCache&) = delete;

@@ -27,6 +27,7 @@ enum class Side : std::uint8_t {
 struct GroundRay {
   PlaneLine plane;
   double height = 0, rise = 0;
+  // Its height in metres at parameter `t`.
   double height_at(double t) const { return height + rise * t; }
 };
 
@@ -48,10 +49,12 @@ class GroundGrid {
   GroundGrid(std::vector<std::uint16_t> heights, double cell_m, double relief_m);
 
   int size() const { return size_; }  // vertices along a side
+  // Metres between vertices, and all heights in rows along x.
   double cell_m() const { return cell_m_; }
   std::span<const std::uint16_t> heights() const { return heights_; }
   // Metres of a quantised height; the same bits as models::BlockGround::at().
   double metres(std::uint16_t height) const { return relief_m_ * height / 65535.0; }
+  // The least and the greatest height in metres.
   double lowest_m() const { return lowest_m_; }
   double highest_m() const { return highest_m_; }
   // Memory that it holds.

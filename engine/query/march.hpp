@@ -17,14 +17,17 @@ struct PlaneLine {
   static constexpr double kLeastStep = 1e-15;
   glm::dvec2 from{0.0}, step{0.0}, inverse{0.0};
 
+  // `direction` may have any length; components below kLeastStep become 0.
   PlaneLine(glm::dvec2 first, glm::dvec2 direction) : from(first), step(direction) {
     for (int i = 0; i < 2; ++i) {
       if (std::abs(step[i]) < kLeastStep) step[i] = 0;
       inverse[i] = step[i] == 0 ? 0 : 1 / step[i];
     }
   }
+  // The point at parameter `t`.
   glm::dvec2 at(double t) const { return from + t * step; }
-  // The parameter at which coordinate `axis` leaves the square `index` of this side.
+  // The parameter at which coordinate `axis` leaves the square `index` of this side; infinite where
+  // the line does not move along the axis.
   double leaves(int axis, std::int64_t index, double side) const {
     if (step[axis] == 0) return std::numeric_limits<double>::infinity();
     const auto border = static_cast<double>(step[axis] > 0 ? index + 1 : index) * side;

@@ -73,6 +73,8 @@ class World {
   static constexpr std::int64_t kMostBlocks = 4096;
   static constexpr std::size_t kUsualBytes = std::size_t{32} << 20;
 
+  // Keeps blocks that were asked about within `cache_bytes`, least recently used out first. Makes
+  // none yet.
   World(const world::World& world, const models::Registry& registry,
         std::size_t cache_bytes = kUsualBytes);
 

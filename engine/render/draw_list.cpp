@@ -75,6 +75,7 @@ DrawRun DrawList::run_of(const Draw& draw) const {
   run.layout = draw.range.layout;
   run.pushed = indices_of(draw, lists_).index_count >= pushed_from_;
   run.pool_block = draw.range.pool_block;
+  run.lamps = !lights_.empty() && any_reaches(lights_, bounds_of(draw));
   if constexpr (requires { draw.material; }) {
     const MaterialKind kind = kind_of(materials_, draw.material);
     run.fading = kind.holes || draw.fade < 1.0F;
@@ -105,9 +106,9 @@ void DrawList::add(std::span<const Draw> input) {
   // The properties that separate runs, as a sort key.
   const auto key = [&](const Draw& draw) {
     const DrawRun run = run_of(draw);
-    return std::uint64_t{run.textures} << 34 | (run.fading ? 1ULL : 0ULL) << 33 |
-           (run.pushed ? 0ULL : 2ULL) << 31 | std::uint64_t{run.pool_block} * 2 |
-           (run.shared ? 1u : 0u);
+    return (run.lamps ? 0ULL : 1ULL) << 46 | std::uint64_t{run.textures} << 34 |
+           (run.fading ? 1ULL : 0ULL) << 33 | (run.pushed ? 0ULL : 2ULL) << 31 |
+           std::uint64_t{run.pool_block} * 2 | (run.shared ? 1u : 0u);
   };
   for (std::size_t first = 0; first < input.size(); first += kWindow) {
     const std::span<const Draw> window =
@@ -123,7 +124,8 @@ void DrawList::add(std::span<const Draw> input) {
 
 void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
                      std::span<const IndexList> lists, std::uint32_t pushed_from, bool coloured,
-                     std::span<const ObjectDraw> objects, MaterialKinds materials) {
+                     std::span<const ObjectDraw> objects, MaterialKinds materials,
+                     std::span<const PointLight> lights) {
   runs_.clear();
   draws_.clear();
   data_.clear();
@@ -131,12 +133,14 @@ void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshD
   lists_ = lists;
   pushed_from_ = pushed_from;
   coloured_ = coloured;
+  lights_ = lights;
   add(terrain);
   add(models);
   materials_ = materials;
   add(objects);
   materials_ = {};
   lists_ = {};
+  lights_ = {};
 }
 
 }  // namespace psygen::render

@@ -66,6 +66,7 @@ struct DrawRun {
   bool shared = false;  // indices from the shared lists, else from the pool block
   bool pushed = false;  // one call per draw with its data pushed, else one call for all
   bool fading = false;  // models that fade in or out, objects with holes
+  bool lamps = false;   // point lights may reach it
   std::uint32_t pool_block = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
@@ -74,7 +75,7 @@ struct DrawRun {
   // Whether this draw can be appended to the run `r`.
   bool continues(const DrawRun& r) const {
     return layout == r.layout && shared == r.shared && pushed == r.pushed && fading == r.fading &&
-           pool_block == r.pool_block && textures == r.textures;
+           lamps == r.lamps && pool_block == r.pool_block && textures == r.textures;
   }
 };
 
@@ -85,11 +86,11 @@ class DrawList {
 
   // Replaces the list: terrain first, then models, then objects. `lists` is indexed by
   // shared_indices − 1. Meshes with at least `pushed_from` indices are pushed. With `coloured` the
-  // data has the debug colour of each draw (shared.h).
+  // data has the debug colour of each draw (shared.h). Runs that `lights` may reach are apart.
   void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
              std::span<const IndexList> lists, std::uint32_t pushed_from = UINT32_MAX,
              bool coloured = false, std::span<const ObjectDraw> objects = {},
-             MaterialKinds materials = {});
+             MaterialKinds materials = {}, std::span<const PointLight> lights = {});
 
   // The list: runs, draws, their data, and the triangles of all of them.
   std::span<const DrawRun> runs() const { return runs_; }
@@ -110,8 +111,9 @@ class DrawList {
   std::vector<shaders::DrawData> data_;
   std::vector<std::pair<std::uint64_t, std::size_t>> order_;  // (buffers, position) of a window
   std::uint64_t triangle_count_ = 0;
-  std::span<const IndexList> lists_;  // while build() runs
-  MaterialKinds materials_;           // the same
+  std::span<const IndexList> lists_;    // while build() runs
+  MaterialKinds materials_;             // the same
+  std::span<const PointLight> lights_;  // the same
   std::uint32_t pushed_from_ = UINT32_MAX;
   bool coloured_ = false;
 };

@@ -98,6 +98,17 @@ void set_palette(shaders::FrameData& out, const TerrainPalette& palette) {
                    0.0F};
 }
 
+void set_lamps(shaders::FrameData& out, const FrameInput& input) {
+  static_assert(kMostPointLights == PSYGEN_MAX_LAMPS);
+  const std::size_t count = std::min(input.point_lights.size(), kMostPointLights);
+  out.lamp_count = {static_cast<float>(count), 0.0F, 0.0F, 0.0F};
+  for (std::size_t i = 0; i < count; ++i) {
+    const PointLight& light = input.point_lights[i];
+    out.lamps[2 * i] = {light.position, 1.0F / std::max(light.range_m * light.range_m, 1e-6F)};
+    out.lamps[2 * i + 1] = {light.light * input.light.exposure, 0.0F};
+  }
+}
+
 }  // namespace
 
 shaders::FrameData frame_data(const FrameInput& input, core::Extent size,
@@ -108,6 +119,7 @@ shaders::FrameData frame_data(const FrameInput& input, core::Extent size,
   set_palette(out, input.palette);
   set_water_and_far_things(out, input);
   set_shadows(input, traits, out);
+  set_lamps(out, input);
   return out;
 }
 

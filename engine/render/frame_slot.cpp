@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstring>
 
+#include "engine/render/particles.hpp"
 #include "engine/render/swapchain.hpp"
 
 namespace psygen::render {
@@ -47,6 +48,10 @@ Result<void> FrameSlot::create(const Device& device) {
   Result<Buffer> glyphs =
       storage_buffer(device, Overlay::kMaxQuads * 6 * sizeof(shaders::OverlayVertex));
   if (!glyphs) return tl::unexpected(glyphs.error());
+  Result<Buffer> emitters = make_buffer(device, kMostEmitters * sizeof(shaders::EmitterData),
+                                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::kWrite);
+  if (!emitters) return tl::unexpected(emitters.error());
+  emitters_ = std::move(*emitters);
   frame_ = std::move(*frame);
   draws_ = std::move(*draws);
   glyphs_ = std::move(*glyphs);
@@ -55,24 +60,26 @@ Result<void> FrameSlot::create(const Device& device) {
 
 void FrameSlot::use(const Device& device, const Pipelines& pipelines, std::size_t number) {
   set_ = pipelines.set(number);
-  pipelines.write_set(device, set_, frame_, draws_, glyphs_);
+  pipelines.write_set(device, set_, frame_, draws_, glyphs_, emitters_);
 }
 
 Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,
                               const shaders::FrameData& frame,
                               std::span<const shaders::DrawData> draws,
-                              std::span<const shaders::OverlayVertex> glyphs) {
+                              std::span<const shaders::OverlayVertex> glyphs,
+                              std::span<const shaders::EmitterData> emitters) {
   const auto grow = [&](Buffer& buffer, std::size_t bytes) -> Result<void> {
     if (bytes <= buffer.bytes) return {};
     Result<Buffer> larger = storage_buffer(device, std::bit_ceil(bytes));
     if (!larger) return tl::unexpected(larger.error());
     buffer = std::move(*larger);
-    pipelines.write_set(device, set_, frame_, draws_, glyphs_);
+    pipelines.write_set(device, set_, frame_, draws_, glyphs_, emitters_);
     return {};
   };
   if (Result<void> grown = grow(draws_, draws.size_bytes()); !grown) return grown;
   if (Result<void> grown = grow(glyphs_, glyphs.size_bytes()); !grown) return grown;
   std::memcpy(frame_.mapped, &frame, sizeof(frame));
+  if (!emitters.empty()) std::memcpy(emitters_.mapped, emitters.data(), emitters.size_bytes());
   if (!draws.empty()) std::memcpy(draws_.mapped, draws.data(), draws.size_bytes());
   if (!glyphs.empty()) std::memcpy(glyphs_.mapped, glyphs.data(), glyphs.size_bytes());
   return {};

@@ -22,11 +22,12 @@ class FrameSlot {
   void use(const Device& device, const Pipelines& pipelines, std::size_t number);
 
   // Copies a frame's data into the slot's buffers. They grow if needed, which can fail with
-  // kOutOfMemory.
+  // kOutOfMemory. At most kMostEmitters emitters.
   core::Result<void> write(const Device& device, const Pipelines& pipelines,
                            const shaders::FrameData& frame,
                            std::span<const shaders::DrawData> draws,
-                           std::span<const shaders::OverlayVertex> glyphs);
+                           std::span<const shaders::OverlayVertex> glyphs,
+                           std::span<const shaders::EmitterData> emitters = {});
 
   // begin() resets the command buffer and starts recording; end() makes it ready to submit.
   core::Result<void> begin(const Device& device);
@@ -37,7 +38,7 @@ class FrameSlot {
   // Binds `draws`, which the device writes, instead of the slot's own data of draws.
   void read_draws_from(const Device& device, const Pipelines& pipelines,
                        const Buffer& draws) const {
-    pipelines.write_set(device, set_, frame_, draws, glyphs_);
+    pipelines.write_set(device, set_, frame_, draws, glyphs_, emitters_);
   }
   // The semaphore for the acquired image of the window, and the frame's timestamps.
   VkSemaphore acquired() const { return acquired_.get(); }
@@ -49,7 +50,7 @@ class FrameSlot {
  private:
   UniqueCommandPool pool_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  Buffer frame_, draws_, glyphs_;
+  Buffer frame_, draws_, glyphs_, emitters_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
   UniqueSemaphore acquired_;
   GpuTimer timer_;

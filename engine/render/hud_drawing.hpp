@@ -51,6 +51,7 @@ struct HudDrawing {
   std::vector<HudArea> areas;
   std::vector<HudText> texts;
 
+  // Whether there is nothing to draw.
   bool empty() const { return areas.empty() && texts.empty(); }
 };
 

@@ -38,9 +38,10 @@ VkPipelineColorBlendAttachmentState blend_of(PipelineKind kind) {
   VkPipelineColorBlendAttachmentState blend{};
   blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                          VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  if (kind != PipelineKind::kOverlay && kind != PipelineKind::kSun) return blend;
+  const bool particles = kind == PipelineKind::kParticles;
+  if (kind != PipelineKind::kOverlay && kind != PipelineKind::kSun && !particles) return blend;
   blend.blendEnable = VK_TRUE;
-  blend.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+  blend.srcColorBlendFactor = particles ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_ALPHA;
   blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
   blend.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
   blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
@@ -60,9 +61,11 @@ VkPrimitiveTopology topology_of(PipelineKind kind) {
   }
 }
 
-// The specialisation constants of fragment shaders, by number.
-constexpr std::array kConstants{VkSpecializationMapEntry{0, 0, sizeof(VkBool32)},
-                                VkSpecializationMapEntry{1, sizeof(VkBool32), sizeof(VkBool32)}};
+// The specialisation constants, by number.
+constexpr std::array kConstants{
+    VkSpecializationMapEntry{0, 0, sizeof(VkBool32)},
+    VkSpecializationMapEntry{1, sizeof(VkBool32), sizeof(VkBool32)},
+    VkSpecializationMapEntry{2, 2 * sizeof(VkBool32), sizeof(VkBool32)}};
 
 }  // namespace
 
@@ -77,7 +80,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
                     stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, frag_module->get())};
   const VkSpecializationInfo constants{kConstants.size(), kConstants.data(),
                                        sizeof(shape.constants), shape.constants.data()};
-  stages[1].pSpecializationInfo = &constants;
+  stages[0].pSpecializationInfo = stages[1].pSpecializationInfo = &constants;
 
   const PipelineKind kind = shape.kind;
   const bool object = kind == PipelineKind::kObject;

@@ -21,6 +21,7 @@ enum class PipelineKind : std::uint8_t {
   kSky,
   kDome,
   kSun,
+  kParticles,
   kLines,
   kOverlay
 };
@@ -31,9 +32,10 @@ struct PipelineShape {
   ShaderCode vert, frag;
   VkFormat colour_format = VK_FORMAT_UNDEFINED;
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-  std::array<VkBool32, 2> constants{};  // of the fragment shader; those it lacks are ignored
-  bool wireframe = false;               // needs DeviceInfo::wireframe
-  bool shadow = false;                  // only depth, of a cascade; `frag` may be empty
+  // Of both shaders; those that they lack are ignored: fine grain or waves, shadows, point lights.
+  std::array<VkBool32, 3> constants{};
+  bool wireframe = false;  // needs DeviceInfo::wireframe
+  bool shadow = false;     // only depth, of a cascade; `frag` may be empty
 };
 
 // Creates a pipeline. Takes milliseconds to seconds, if the driver has to compile the shaders.

@@ -18,6 +18,10 @@ namespace {
 // Largest number of pipelines of a preset, for the progress.
 constexpr double kMostPipelines = 25;
 
+constexpr VkBool32 on(bool yes) {
+  return yes ? VK_TRUE : VK_FALSE;
+}
+
 Result<UniqueSampler> make_sampler(const Device& device, VkSamplerAddressMode mode) {
   VkSamplerCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
@@ -105,7 +109,10 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
                                    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
                                    VK_SHADER_STAGE_FRAGMENT_BIT, shadows_.sampler()},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                                   both, nullptr}};
+                                   both, nullptr},
+      VkDescriptorSetLayoutBinding{PSYGEN_BINDING_EMITTER,
+                                   VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1,
+                                   VK_SHADER_STAGE_VERTEX_BIT, nullptr}};
   VkDescriptorSetLayoutCreateInfo set_info{};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set_info.bindingCount = static_cast<std::uint32_t>(bindings.size());
@@ -117,6 +124,7 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
   set_layout_ = UniqueSetLayout(device.vk, device.handle, set_layout);
 
   const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, sets},
+                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 * sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 3 * sets}};
   VkDescriptorPoolCreateInfo pool_info{};
@@ -191,7 +199,7 @@ Result<void> Pipelines::create_fading(Making& making, PipelineShape shape, MeshL
 
 Result<void> Pipelines::create_others(const Device& device, const Progress& progress) {
   Making making{device, progress};
-  return create_landscape(making)
+  return create_landscape(making, false, landscape_, water_)
       .and_then([&] { return create_views(making); })
       .and_then([&]() -> Result<void> {
         if (traits_.cascades == 0) return {};
@@ -205,22 +213,22 @@ Result<void> Pipelines::create_others(const Device& device, const Progress& prog
 }
 
 // Pipelines for ground, models and water.
-Result<void> Pipelines::create_landscape(Making& making) {
+Result<void> Pipelines::create_landscape(Making& making, bool lamps, MeshPipelines& out,
+                                         UniquePipeline& water_out) {
   const OtherCode& code = other_code();
   const bool lit = traits_.pixel_light;
-  const auto on = [](bool yes) -> VkBool32 { return yes ? VK_TRUE : VK_FALSE; };
   PipelineShape meshes = usual_shape();
   meshes.frag = lit ? code.surface_lit_frag : code.surface_frag;
-  meshes.constants = {on(traits_.fine_grain), on(traits_.cascades > 0)};
+  meshes.constants = {on(traits_.fine_grain), on(traits_.cascades > 0), on(lamps)};
   const MeshLook look = lit ? MeshLook::kLit : MeshLook::kColour;
   PipelineShape water = usual_shape();
   water.kind = PipelineKind::kWater;
   water.vert = lit ? code.water_lit_vert : code.water_vert;
   water.frag = lit ? code.water_frag : code.surface_frag;
-  water.constants = {on(traits_.waves), VK_FALSE};
-  return create_meshes(making, meshes, look, landscape_)
-      .and_then([&] { return create_fading(making, meshes, look, landscape_); })
-      .and_then([&] { return make(making, water, water_); });
+  water.constants = {on(traits_.waves), VK_FALSE, on(lamps)};
+  return create_meshes(making, meshes, look, out)
+      .and_then([&] { return create_fading(making, meshes, look, out); })
+      .and_then([&] { return make(making, water, water_out); });
 }
 
 Result<void> Pipelines::create_sky(Making& making) {
@@ -259,18 +267,21 @@ Result<void> Pipelines::create_views(Making& making) {
       });
 }
 
-VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, View view) const {
+VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, bool lamps,
+                           View view) const {
   const bool edges = view == View::kWireframe && wireframe_.whole[0][0].get() != VK_NULL_HANDLE;
-  const MeshPipelines& all = edges ? wireframe_ : colours_draws(view) ? coloured_ : landscape_;
+  const MeshPipelines& all = edges                 ? wireframe_
+                             : colours_draws(view) ? coloured_
+                             : lamps               ? lamplit_
+                                                   : landscape_;
   return all.of(layout, pushed, fading && !edges);
 }
 
 // The eight pipelines of a look. Those of kColour light textured objects per pixel.
-Result<void> Pipelines::create_objects(Making& making, MeshLook look, bool wireframe,
+Result<void> Pipelines::create_objects(Making& making, MeshLook look, bool wireframe, bool lamps,
                                        std::vector<UniquePipeline>& out) {
   const OtherCode& code = other_code();
   const bool views = wireframe || look == MeshLook::kDrawColour;
-  const auto on = [](bool yes) -> VkBool32 { return yes ? VK_TRUE : VK_FALSE; };
   for (std::size_t i = 0; i < 8; ++i) {
     const bool pushed = (i & 1U) != 0, textured = (i & 2U) != 0, fading = (i & 4U) != 0;
     out.emplace_back();
@@ -279,7 +290,7 @@ Result<void> Pipelines::create_objects(Making& making, MeshLook look, bool wiref
     shape.kind = PipelineKind::kObject;
     shape.wireframe = wireframe;
     shape.shadow = look == MeshLook::kShadow;
-    shape.constants = {VK_FALSE, on(traits_.cascades > 0)};
+    shape.constants = {VK_FALSE, on(traits_.cascades > 0), on(lamps)};
     const bool lit = look == MeshLook::kLit || (look == MeshLook::kColour && textured);
     if (shape.shadow) {
       shape.frag = !fading    ? ShaderCode{}
@@ -304,24 +315,68 @@ Result<void> Pipelines::create_objects(const Device& device) {
   Making making{device, nobody};
   ObjectPipelines made;
   const MeshLook look = traits_.pixel_light ? MeshLook::kLit : MeshLook::kColour;
-  return create_objects(making, look, false, made.whole)
-      .and_then([&] { return create_objects(making, MeshLook::kDrawColour, false, made.coloured); })
+  return create_objects(making, look, false, false, made.whole)
+      .and_then([&] {
+        return create_objects(making, MeshLook::kDrawColour, false, false, made.coloured);
+      })
       .and_then([&]() -> Result<void> {
         if (!device.info.wireframe) return {};
-        return create_objects(making, MeshLook::kColour, true, made.wireframe);
+        return create_objects(making, MeshLook::kColour, true, false, made.wireframe);
       })
       .and_then([&]() -> Result<void> {
         if (traits_.cascades == 0) return {};
-        return create_objects(making, MeshLook::kShadow, false, made.shadow);
+        return create_objects(making, MeshLook::kShadow, false, false, made.shadow);
       })
-      .map([&] { objects_ = std::move(made); });
+      .and_then([&]() -> Result<void> {
+        objects_ = std::move(made);
+        return has_lamps() ? create_lamplit_objects(device) : Result<void>{};
+      });
 }
 
-VkPipeline Pipelines::object(bool pushed, bool textured, bool fading, View view) const {
+Result<void> Pipelines::create_lamplit_objects(const Device& device) {
+  const Progress nobody;
+  Making making{device, nobody};
+  objects_.lamplit.clear();
+  return create_objects(making, traits_.pixel_light ? MeshLook::kLit : MeshLook::kColour, false,
+                        true, objects_.lamplit);
+}
+
+Result<void> Pipelines::create_lamps(const Device& device) {
+  if (has_lamps()) return {};
+  const Progress nobody;
+  Making making{device, nobody};
+  MeshPipelines made;
+  UniquePipeline water;
+  return create_landscape(making, true, made, water).and_then([&]() -> Result<void> {
+    lamplit_ = std::move(made);
+    if (has_objects()) {
+      if (Result<void> objects = create_lamplit_objects(device); !objects) return objects;
+    }
+    lamplit_water_ = std::move(water);
+    return {};
+  });
+}
+
+Result<void> Pipelines::create_particles(const Device& device) {
+  if (has_particles()) return {};
+  const Progress nobody;
+  Making making{device, nobody};
+  PipelineShape shape = usual_shape();
+  shape.kind = PipelineKind::kParticles;
+  shape.vert = other_code().particle_vert;
+  shape.constants[2] = VK_TRUE;
+  shape.frag = other_code().particle_textured_frag;
+  if (Result<void> made = make(making, shape, particles_[1]); !made) return made;
+  shape.frag = other_code().particle_frag;
+  return make(making, shape, particles_[0]);
+}
+
+VkPipeline Pipelines::object(bool pushed, bool textured, bool fading, bool lamps, View view) const {
   if (colours_draws(view)) return objects_.coloured[index_of_object(pushed, false, fading)].get();
   if (view == View::kWireframe && !objects_.wireframe.empty())
     return objects_.wireframe[index_of_object(pushed, false, false)].get();
-  return objects_.whole[index_of_object(pushed, textured, fading)].get();
+  return (lamps ? objects_.lamplit : objects_.whole)[index_of_object(pushed, textured, fading)]
+      .get();
 }
 
 Result<void> Pipelines::create_sets(const Device& device, std::uint32_t count) {
@@ -338,10 +393,12 @@ Result<void> Pipelines::create_sets(const Device& device, std::uint32_t count) {
 }
 
 void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,
-                          const Buffer& draws, const Buffer& glyphs) const {
+                          const Buffer& draws, const Buffer& glyphs, const Buffer& emitters) const {
   const VkDescriptorBufferInfo frame_info{frame.buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorBufferInfo draws_info{draws.buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorBufferInfo glyphs_info{glyphs.buffer.get(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorBufferInfo emitters_info{emitters.buffer.get(), 0,
+                                             sizeof(shaders::EmitterData)};
   const VkDescriptorBufferInfo materials_info{materials_->buffer().buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorImageInfo clouds_info{VK_NULL_HANDLE, clouds_.view.get(),
                                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -370,7 +427,9 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
       write(PSYGEN_BINDING_FONT, texture, nullptr, &font_info),
       write(PSYGEN_BINDING_GLYPHS, storage, &glyphs_info, nullptr),
       write(PSYGEN_BINDING_SHADOWS, texture, nullptr, &shadows_info),
-      write(PSYGEN_BINDING_MATERIALS, storage, &materials_info, nullptr)};
+      write(PSYGEN_BINDING_MATERIALS, storage, &materials_info, nullptr),
+      write(PSYGEN_BINDING_EMITTER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, &emitters_info,
+            nullptr)};
   device.vk.vkUpdateDescriptorSets(device.handle, static_cast<std::uint32_t>(writes.size()),
                                    writes.data(), 0, nullptr);
 }

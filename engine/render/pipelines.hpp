@@ -28,25 +28,33 @@ class Pipelines {
   core::Result<void> create_objects(const Device& device);
   bool has_objects() const { return !objects_.whole.empty(); }
 
+  // The same for what point lights reach, and for particles.
+  core::Result<void> create_lamps(const Device& device);
+  bool has_lamps() const { return lamplit_water_.get() != VK_NULL_HANDLE; }
+  core::Result<void> create_particles(const Device& device);
+  bool has_particles() const { return particles_[0].get() != VK_NULL_HANDLE; }
+
   // The preset, the samples per pixel that the device supports, and the pipeline layout.
   const PresetTraits& traits() const { return traits_; }
   VkSampleCountFlagBits samples() const { return samples_; }
   VkPipelineLayout layout() const { return layout_.get(); }
   // The pipeline for meshes. `pushed`: the data of a draw is in push constants, else in the buffer
-  // of draws. `fading`: for models that fade in or out.
-  VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, View view) const;
+  // of draws. `fading`: for models that fade in or out. `lamps`, after create_lamps(): with point
+  // lights.
+  VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, bool lamps, View view) const;
   // The same for drawing into a cascade, if the preset has cascades.
   VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, bool fading) const {
     return shadow_.of(layout, pushed, fading);
   }
   // The pipeline for objects, after create_objects(). `textured`: the material's set is bound;
   // `fading`: those that fade or have holes.
-  VkPipeline object(bool pushed, bool textured, bool fading, View view) const;
+  VkPipeline object(bool pushed, bool textured, bool fading, bool lamps, View view) const;
   VkPipeline object_shadow(bool pushed, bool textured, bool fading) const {
     return objects_.shadow[index_of_object(pushed, textured, fading)].get();
   }
   // Pipelines for water and lines, and the shadow maps.
-  VkPipeline water() const { return water_.get(); }
+  VkPipeline water(bool lamps) const { return lamps ? lamplit_water_.get() : water_.get(); }
+  VkPipeline particles(bool textured) const { return particles_[textured ? 1 : 0].get(); }
   VkPipeline lines() const { return lines_.get(); }
   const ShadowMaps& shadows() const { return shadows_; }
   // The sky. With light per pixel, sky() fills the whole picture and the others are null. With
@@ -61,7 +69,7 @@ class Pipelines {
   VkDescriptorSet set(std::size_t number) const { return sets_[number]; }
   // Binds these buffers and the textures to a set that no unfinished commands use.
   void write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,
-                 const Buffer& draws, const Buffer& glyphs) const;
+                 const Buffer& draws, const Buffer& glyphs, const Buffer& emitters) const;
 
  private:
   core::Result<void> create_layouts(const Device& device, std::uint32_t sets);
@@ -83,7 +91,7 @@ class Pipelines {
   }
   // Empty, or indexed by index_of_object(). Those of views have no textures.
   struct ObjectPipelines {
-    std::vector<UniquePipeline> whole, coloured, wireframe, shadow;
+    std::vector<UniquePipeline> whole, lamplit, coloured, wireframe, shadow;
   };
   // State while pipelines are created.
   struct Making {
@@ -93,15 +101,17 @@ class Pipelines {
   };
   PipelineShape usual_shape() const;
   core::Result<void> make(Making& making, const PipelineShape& shape, UniquePipeline& out);
-  core::Result<void> create_landscape(Making& making);
+  core::Result<void> create_landscape(Making& making, bool lamps, MeshPipelines& out,
+                                      UniquePipeline& water);
   core::Result<void> create_sky(Making& making);
   core::Result<void> create_views(Making& making);
   core::Result<void> create_meshes(Making& making, PipelineShape shape, MeshLook look,
                                    MeshPipelines& out);
   core::Result<void> create_fading(Making& making, PipelineShape shape, MeshLook look,
                                    MeshPipelines& out);
-  core::Result<void> create_objects(Making& making, MeshLook look, bool wireframe,
+  core::Result<void> create_objects(Making& making, MeshLook look, bool wireframe, bool lamps,
                                     std::vector<UniquePipeline>& out);
+  core::Result<void> create_lamplit_objects(const Device& device);
 
   PresetTraits traits_;
   VkSampleCountFlagBits samples_ = VK_SAMPLE_COUNT_1_BIT;
@@ -113,10 +123,11 @@ class Pipelines {
   UniqueDescriptorPool descriptor_pool_;
   std::vector<VkDescriptorSet> sets_;
   UniquePipelineLayout layout_;
-  MeshPipelines landscape_, coloured_, wireframe_, shadow_;
+  MeshPipelines landscape_, lamplit_, coloured_, wireframe_, shadow_;
   ObjectPipelines objects_;
   const MaterialTable* materials_ = nullptr;
-  UniquePipeline water_, sky_, sky_below_, sun_, lines_, overlay_;
+  std::array<UniquePipeline, 2> particles_;  // indexed by whether they have a texture
+  UniquePipeline water_, lamplit_water_, sky_, sky_below_, sun_, lines_, overlay_;
 };
 
 }  // namespace psygen::render

@@ -41,6 +41,12 @@ Result<TextureId> Renderer::add_texture(const TexturePixels& pixels) {
 Result<MaterialId> Renderer::add_material(const Material& material) {
   return impl_->add_material(material);
 }
+Result<void> Renderer::prepare_lights() {
+  return impl_->prepare_lights();
+}
+Result<void> Renderer::prepare_particles() {
+  return impl_->prepare_particles();
+}
 Result<void> Renderer::prepare_objects() {
   return impl_->prepare_objects();
 }

@@ -50,6 +50,9 @@ class Renderer {
   // Creates the pipelines for objects, if they do not exist. Otherwise the first frame with objects
   // does. Takes up to a second. Fails with kOutOfMemory or kDeviceLost.
   core::Result<void> prepare_objects();
+  // The same for what point lights reach, and for particles.
+  core::Result<void> prepare_lights();
+  core::Result<void> prepare_particles();
   // Bytes of all textures of materials.
   std::uint64_t texture_bytes() const;
 

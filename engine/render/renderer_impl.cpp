@@ -9,6 +9,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/render/emitter_data.hpp"
 #include "engine/render/frame_data.hpp"
 #include "engine/render/software_tuning.hpp"
 
@@ -284,6 +285,8 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
                        .gui = gui_runs_,
                        .view = view_,
                        .water = water_,
+                       .lamps = frame_.lamp_count.x > 0,
+                       .emitters = emitter_runs_,
                        .shadows = frame_.shadow.y > 0};
   record_scene(*device_, pipelines_, slot, targets_of(slot), pass);
   if (windowed) {
@@ -291,6 +294,17 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
                           swapchain_.extent());
   }
   return slot.end(*device_);
+}
+
+// Makes what only few programs need and this frame is the first to have.
+Result<void> RendererImpl::prepare(const FrameInput& input) {
+  if (!input.objects.empty()) {
+    if (Result<void> made = prepare_objects(); !made) return made;
+  }
+  if (!input.point_lights.empty()) {
+    if (Result<void> made = prepare_lights(); !made) return made;
+  }
+  return input.particles.empty() ? Result<void>{} : prepare_particles();
 }
 
 Result<FrameResult> RendererImpl::render(const FrameInput& input) {
@@ -308,9 +322,7 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   if (targets_.empty()) {
     return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
   }
-  if (!input.objects.empty()) {
-    if (Result<void> made = prepare_objects(); !made) return tl::unexpected(made.error());
-  }
+  if (Result<void> made = prepare(input); !made) return tl::unexpected(made.error());
   return noted(draw_frame(input, slot_of(frame_value_ + 1)));
 }
 
@@ -318,6 +330,7 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
 void RendererImpl::list_draws(const FrameInput& input) {
   const bool coloured = colours_draws(input.view);
   std::uint32_t pushed_from = pushed_from_;
+  const std::size_t lamps = std::min(input.point_lights.size(), kMostPointLights);
   if (culling_) {
     culling_->set_frame(view_volume(frame_.clip_from_camera), frame_, input, size(),
                         shared_.lists(), materials_.kinds());
@@ -326,11 +339,27 @@ void RendererImpl::list_draws(const FrameInput& input) {
     pushed_from = 0;
   }
   list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured, input.objects,
-              materials_.kinds());
+              materials_.kinds(), input.point_lights.first(lamps));
+}
+
+// Views for debugging show no particles.
+void RendererImpl::list_particles(const FrameInput& input) {
+  emitters_.clear();
+  emitter_runs_.clear();
+  if (colours_draws(input.view) || input.view == View::kWireframe) return;
+  const std::size_t last = input.particles.size();
+  for (std::size_t i = last - std::min<std::size_t>(last, kMostEmitters); i < last; ++i) {
+    const ParticleDraw& draw = input.particles[i];
+    const MaterialId material = draw.kind.material;
+    const bool textured = kind_of(materials_.kinds(), material).textured;
+    emitters_.push_back(data_of(draw));
+    emitter_runs_.push_back(
+        {std::min(draw.count, kMostParticlesPerEmitter), textured ? material : kPlainMaterial});
+  }
 }
 
 Result<void> RendererImpl::write_frame(FrameSlot& slot) {
-  Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_);
+  Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_, emitters_);
   if (!written || !culling_) return written;
   written = culling_->write(*device_, index_of(slot));
   if (written) slot.read_draws_from(*device_, pipelines_, culling_->draw_data(index_of(slot)));
@@ -378,6 +407,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   const GpuCulling::Counts counted =
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
   list_draws(input);
+  list_particles(input);
   if (Result<void> written = write_frame(slot); !written) return tl::unexpected(written.error());
   out.cpu_ms = ms_since(build_start);
 

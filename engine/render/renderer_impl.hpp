@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -50,6 +51,8 @@ class RendererImpl {
     return materials_.add(*device_, material);
   }
   core::Result<void> prepare_objects();
+  core::Result<void> prepare_lights();
+  core::Result<void> prepare_particles();
   std::uint64_t texture_bytes() const { return materials_.texture_bytes(); }
   core::Result<FrameResult> render(const FrameInput& input);
   core::Result<void> show(std::span<const TextPanel> panels, float text_scale,
@@ -79,10 +82,14 @@ class RendererImpl {
   core::Result<void> create_looks(Preset preset, const Progress& progress);
   void use_pipelines();
   core::Result<void> warm_up(const Progress& progress);
-  core::Result<void> warm_up_objects();
+  core::Result<void> warm_up_objects(bool lamps);
+  using RecordStep = std::function<void(FrameSlot&, Targets&, VkDescriptorSet, int)>;
+  core::Result<void> warm_up_later(int steps, const RecordStep& record);
   core::Result<void> warm_up_culling(FrameSlot& slot, Targets& small);
   core::Result<void> write_frame(FrameSlot& slot);
   void list_draws(const FrameInput& input);
+  void list_particles(const FrameInput& input);
+  core::Result<void> prepare(const FrameInput& input);
   std::size_t index_of(const FrameSlot& slot) const {
     return static_cast<std::size_t>(&slot - slots_.data());
   }
@@ -140,6 +147,8 @@ class RendererImpl {
   bool lost_ = false;
   DrawList list_;  // on the CPU path
   shaders::FrameData frame_{};
+  std::vector<shaders::EmitterData> emitters_;
+  std::vector<EmitterRun> emitter_runs_;
   std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines, then ImGui's
   std::uint32_t text_vertices_ = 0, line_vertices_ = 0;
   std::vector<GuiRun> gui_runs_;

@@ -64,6 +64,8 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
   exchange();  // keeps the old ones until the new ones exist
   Result<void> made = noted(create_looks(preset, progress));
   if (made && other_pipelines.has_objects()) made = noted(pipelines_.create_objects(*device_));
+  if (made && other_pipelines.has_lamps()) made = noted(pipelines_.create_lamps(*device_));
+  if (made && other_pipelines.has_particles()) made = noted(pipelines_.create_particles(*device_));
   wait_idle();
   has_list_ = has_picture_ = false;
   gpu_.reset();
@@ -102,25 +104,66 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
 Result<void> RendererImpl::prepare_objects() {
   if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
   if (pipelines_.has_objects()) return {};
-  return noted(pipelines_.create_objects(*device_).and_then([&] { return warm_up_objects(); }));
+  return noted(pipelines_.create_objects(*device_)
+                   .and_then([&] { return warm_up_objects(false); })
+                   .and_then([&] {
+                     return pipelines_.has_lamps() ? warm_up_objects(true) : Result<void>{};
+                   }));
 }
 
-// An even number of submissions: the last picture stays that of the slot of the last frame.
-Result<void> RendererImpl::warm_up_objects() {
+Result<void> RendererImpl::prepare_lights() {
+  if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
+  if (pipelines_.has_lamps()) return {};
+  return noted(
+      pipelines_.create_lamps(*device_)
+          .and_then([&] {
+            return warm_up_later(
+                kLampWarmUpSteps, [&](FrameSlot& slot, Targets& small, VkDescriptorSet, int step) {
+                  record_warm_up(*device_, pipelines_, slot, small, shared_.buffer(), step, true);
+                });
+          })
+          .and_then(
+              [&] { return pipelines_.has_objects() ? warm_up_objects(true) : Result<void>{}; }));
+}
+
+Result<void> RendererImpl::prepare_particles() {
+  if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
+  if (pipelines_.has_particles()) return {};
+  return noted(pipelines_.create_particles(*device_).and_then([&] {
+    return warm_up_later(kParticleWarmUpSteps, [&](FrameSlot& slot, Targets& small,
+                                                   VkDescriptorSet textures, int step) {
+      record_particle_warm_up(*device_, pipelines_, slot, small, textures, step);
+    });
+  }));
+}
+
+Result<void> RendererImpl::warm_up_objects(bool lamps) {
+  return warm_up_later(kObjectWarmUpSteps,
+                       [&](FrameSlot& slot, Targets& small, VkDescriptorSet textures, int step) {
+                         record_object_warm_up(*device_, pipelines_, slot, small, shared_.buffer(),
+                                               textures, step, lamps);
+                       });
+}
+
+// Draws with pipelines that were made after the first frames. An even number of submissions: the
+// last picture stays that of the slot of the last frame.
+Result<void> RendererImpl::warm_up_later(int steps, const RecordStep& record) {
   static_assert(kObjectWarmUpSteps % kFramesInFlight == 0);
+  static_assert(kLampWarmUpSteps % kFramesInFlight == 0);
+  static_assert(kParticleWarmUpSteps % kFramesInFlight == 0);
   Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
   if (!small) return tl::unexpected(small.error());
   const Result<VkDescriptorSet> textures = materials_.blank_set(*device_);
   if (!textures) return tl::unexpected(textures.error());
   wait_idle();
-  for (int step = 0; step < kObjectWarmUpSteps; ++step) {
+  const std::vector<shaders::EmitterData> emitters(1);
+  for (int step = 0; step < steps; ++step) {
     FrameSlot& slot = slot_of(frame_value_ + 1);
     const Result<void> drawn = slot.write(*device_, pipelines_, frame_data({}, small->extent),
-                                          std::vector<shaders::DrawData>(1), {})
+                                          std::vector<shaders::DrawData>(1), {}, emitters)
                                    .and_then([&] { return slot.begin(*device_); })
                                    .and_then([&] {
-                                     record_object_warm_up(*device_, pipelines_, slot, *small,
-                                                           shared_.buffer(), *textures, step);
+                                     record(slot, *small, *textures, step);
                                      return slot.end(*device_);
                                    })
                                    .and_then([&] { return submit(slot, false); })

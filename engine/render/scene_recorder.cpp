@@ -108,10 +108,13 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
   device.vk.vkCmdSetScissor(commands, 0, 1, &area);
 }
 
-void bind_set(const Device& device, const Pipelines& pipelines, const FrameSlot& slot) {
+// `emitter`: whose data the shaders of particles read.
+void bind_set(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
+              std::size_t emitter = 0) {
   const VkDescriptorSet set = slot.set();
+  const auto offset = static_cast<std::uint32_t>(emitter * sizeof(shaders::EmitterData));
   device.vk.vkCmdBindDescriptorSets(slot.commands(), VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                    pipelines.layout(), 0, 1, &set, 0, nullptr);
+                                    pipelines.layout(), 0, 1, &set, 1, &offset);
 }
 
 void bind_pipeline(const Device& device, VkCommandBuffer commands, VkPipeline pipeline) {
@@ -166,11 +169,11 @@ class TextureBinder {
 
 // `Draws`: a run or a group.
 template <class Draws>
-VkPipeline picture_pipeline(const Pipelines& pipelines, const Draws& draws, bool pushed,
+VkPipeline picture_pipeline(const Pipelines& pipelines, const Draws& draws, bool pushed, bool lamps,
                             View view) {
   if (draws.layout != core::VertexLayout::kObject)
-    return pipelines.mesh(draws.layout, pushed, draws.fading, view);
-  return pipelines.object(pushed, draws.textures != kPlainMaterial, draws.fading, view);
+    return pipelines.mesh(draws.layout, pushed, draws.fading, lamps, view);
+  return pipelines.object(pushed, draws.textures != kPlainMaterial, draws.fading, lamps, view);
 }
 
 // Draws the runs of the list, each with the pipeline pipeline_of(run).
@@ -211,7 +214,7 @@ void draw_culled(const Device& device, const Pipelines& pipelines, VkCommandBuff
   TextureBinder textures(device, pipelines, commands, pass.materials);
   for (std::size_t i = 0; i < culling.groups().size(); ++i) {
     const DrawGroup& group = culling.groups()[i];
-    const VkPipeline pipeline = picture_pipeline(pipelines, group, false, pass.view);
+    const VkPipeline pipeline = picture_pipeline(pipelines, group, false, pass.lamps, pass.view);
     textures.bind(group.textures);
     const VkBuffer vertices = pass.buffers.pool_blocks[group.pool_block].buffer.get();
     const VkBuffer indices = group.shared ? pass.buffers.shared_indices : vertices;
@@ -256,9 +259,9 @@ void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameS
 }
 
 void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
-                        bool water) {
+                        bool water, bool lamps) {
   if (water) {
-    bind_pipeline(device, commands, pipelines.water());
+    bind_pipeline(device, commands, pipelines.water(lamps));
     device.vk.vkCmdDraw(commands, PSYGEN_WATER_RINGS * PSYGEN_WATER_STRIP, 1, 0, 0);
   }
   if (pipelines.sun() == VK_NULL_HANDLE) {
@@ -271,6 +274,22 @@ void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkComm
   device.vk.vkCmdDraw(commands, PSYGEN_DOME_COLUMNS * PSYGEN_DOME_STRIP, 1, 0, 0);
   bind_pipeline(device, commands, pipelines.sun());
   device.vk.vkCmdDraw(commands, 4, 1, 0, 0);
+}
+
+void draw_particles(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
+                    const ScenePass& pass) {
+  const VkCommandBuffer commands = slot.commands();
+  TextureBinder textures(device, pipelines, commands, pass.materials);
+  VkPipeline bound = VK_NULL_HANDLE;
+  for (std::size_t i = 0; i < pass.emitters.size(); ++i) {
+    const EmitterRun& run = pass.emitters[i];
+    const VkPipeline pipeline = pipelines.particles(run.textures != kPlainMaterial);
+    if (pipeline != bound) bind_pipeline(device, commands, pipeline);
+    bound = pipeline;
+    bind_set(device, pipelines, slot, i);
+    textures.bind(run.textures);
+    device.vk.vkCmdDraw(commands, run.count * PSYGEN_PARTICLE_VERTICES, 1, 0, 0);
+  }
 }
 
 void draw_lines_and_text(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
@@ -364,10 +383,11 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
     begin_pass(device, commands, targets);
     bind_set(device, pipelines, slot);
     draw_meshes(device, pipelines, commands, pass, [&](const DrawRun& run) {
-      return picture_pipeline(pipelines, run, run.pushed, pass.view);
+      return picture_pipeline(pipelines, run, run.pushed, run.lamps, pass.view);
     });
   }
-  draw_water_and_sky(device, pipelines, commands, pass.water);
+  draw_water_and_sky(device, pipelines, commands, pass.water, pass.lamps);
+  draw_particles(device, pipelines, slot, pass);
   draw_lines_and_text(device, pipelines, commands, pass.glyph_vertex_count, pass.line_vertex_count);
   draw_gui(device, pipelines, commands, pass.gui);
   device.vk.vkCmdEndRendering(commands);
@@ -378,7 +398,7 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
 }
 
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
-                    Targets& targets, VkBuffer blank, int step) {
+                    Targets& targets, VkBuffer blank, int step, bool lamps) {
   const VkCommandBuffer commands = slot.commands();
   begin_pass(device, commands, targets);
   bind_set(device, pipelines, slot);
@@ -390,20 +410,21 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
                                sizeof(data), &data);
   const auto draw_twice = [&](core::VertexLayout layout, bool fading) {
     for (const bool pushed : {false, true}) {
-      bind_pipeline(device, commands, pipelines.mesh(layout, pushed, fading, View::kNormal));
+      bind_pipeline(device, commands, pipelines.mesh(layout, pushed, fading, lamps, View::kNormal));
       device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
     }
   };
   if (step == 0) draw_twice(core::VertexLayout::kTerrain, false);
   if (step == 1) draw_twice(core::VertexLayout::kModel, false);
   if (step == 2) draw_twice(core::VertexLayout::kModel, true);
-  if (step == 3) draw_water_and_sky(device, pipelines, commands, true);
+  if (step == 3) draw_water_and_sky(device, pipelines, commands, true, lamps);
   if (step == 4) draw_lines_and_text(device, pipelines, commands, 3, 0);
   device.vk.vkCmdEndRendering(commands);
 }
 
 void record_object_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
-                           Targets& targets, VkBuffer blank, VkDescriptorSet textures, int step) {
+                           Targets& targets, VkBuffer blank, VkDescriptorSet textures, int step,
+                           bool lamps) {
   const VkCommandBuffer commands = slot.commands();
   begin_pass(device, commands, targets);
   bind_set(device, pipelines, slot);
@@ -417,10 +438,23 @@ void record_object_warm_up(const Device& device, const Pipelines& pipelines, Fra
                                sizeof(data), &data);
   for (const bool pushed : {false, true}) {
     for (const bool fading : {false, true}) {
-      bind_pipeline(device, commands, pipelines.object(pushed, step == 1, fading, View::kNormal));
+      bind_pipeline(device, commands,
+                    pipelines.object(pushed, step == 1, fading, lamps, View::kNormal));
       device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
     }
   }
+  device.vk.vkCmdEndRendering(commands);
+}
+
+void record_particle_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                             Targets& targets, VkDescriptorSet textures, int step) {
+  const VkCommandBuffer commands = slot.commands();
+  begin_pass(device, commands, targets);
+  bind_set(device, pipelines, slot);
+  device.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.layout(),
+                                    1, 1, &textures, 0, nullptr);
+  bind_pipeline(device, commands, pipelines.particles(step == 1));
+  device.vk.vkCmdDraw(commands, PSYGEN_PARTICLE_VERTICES, 1, 0, 0);
   device.vk.vkCmdEndRendering(commands);
 }
 

@@ -41,6 +41,12 @@ struct CulledDraws {
   std::size_t slot = 0;
 };
 
+// An emitter of particles.
+struct EmitterRun {
+  std::uint32_t count = 0;
+  MaterialId textures = kPlainMaterial;  // whose base texture the particles show
+};
+
 // The content of a frame.
 struct ScenePass {
   const DrawList& list;
@@ -52,7 +58,9 @@ struct ScenePass {
   std::span<const GuiRun> gui = {};  // after them
   View view = View::kNormal;
   bool water = false;
-  bool shadows = false;  // draw the cascades of the preset
+  bool lamps = false;                         // there are point lights
+  std::span<const EmitterRun> emitters = {};  // back to front, in the order of their data
+  bool shadows = false;                       // draw the cascades of the preset
 };
 
 // Records a whole frame, between slot.begin() and slot.end(). Afterwards the colour target is in
@@ -69,12 +77,21 @@ void record_text(const Device& device, const Pipelines& pipelines, FrameSlot& sl
 // may take long. `blank` is the start of SharedIndexLists::buffer().
 inline constexpr int kWarmUpSteps = 5;
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
-                    Targets& targets, VkBuffer blank, int step);
+                    Targets& targets, VkBuffer blank, int step, bool lamps = false);
+
+// The first kLampWarmUpSteps of these draw with point lights too, if the pipelines exist.
+inline constexpr int kLampWarmUpSteps = 4;
 
 // The same for the pipelines of objects, which must exist. kObjectWarmUpSteps submissions.
 inline constexpr int kObjectWarmUpSteps = 2;
 void record_object_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
-                           Targets& targets, VkBuffer blank, VkDescriptorSet textures, int step);
+                           Targets& targets, VkBuffer blank, VkDescriptorSet textures, int step,
+                           bool lamps);
+
+// The same for those of particles: without and with a texture.
+inline constexpr int kParticleWarmUpSteps = 2;
+void record_particle_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
+                             Targets& targets, VkDescriptorSet textures, int step);
 
 // Copies the colour target to a swapchain image and makes that ready to be presented.
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,

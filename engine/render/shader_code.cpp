@@ -167,6 +167,15 @@ constexpr std::uint32_t kObjectTexturedFadingFrag[] =
 constexpr std::uint32_t kObjectShadowFrag[] =
 #include "object_shadow_frag_spv.h"
     ;
+constexpr std::uint32_t kParticleVert[] =
+#include "particle_vert_spv.h"
+    ;
+constexpr std::uint32_t kParticleFrag[] =
+#include "particle_frag_spv.h"
+    ;
+constexpr std::uint32_t kParticleTexturedFrag[] =
+#include "particle_textured_frag_spv.h"
+    ;
 
 // Indexed by layout, look and whether the data is pushed.
 constexpr ShaderCode kMeshes[2][4][2] = {
@@ -217,7 +226,10 @@ constexpr OtherCode kOthers{kSurfaceFrag,
                             kObjectFadingFrag,
                             kObjectTexturedFrag,
                             kObjectTexturedFadingFrag,
-                            kObjectShadowFrag};
+                            kObjectShadowFrag,
+                            kParticleVert,
+                            kParticleFrag,
+                            kParticleTexturedFrag};
 
 }  // namespace
 

@@ -31,7 +31,7 @@ struct OtherCode {
       shadow_fading_frag, water_vert, water_lit_vert, water_frag, line_vert, sky_vert, sky_frag,
       sky_dome_vert, sky_dome_frag, sky_below_vert, sun_vert, overlay_vert, overlay_frag,
       object_frag, object_fading_frag, object_textured_frag, object_textured_fading_frag,
-      object_shadow_frag;
+      object_shadow_frag, particle_vert, particle_frag, particle_textured_frag;
 };
 // The other shaders; static data.
 const OtherCode& other_code();

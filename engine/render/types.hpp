@@ -222,6 +222,18 @@ struct ObjectDraw {
   std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };
 
+// A light that shines in all directions, without shadows. It falls off with the square of the
+// distance, smoothly to nothing at `range_m`, and is half a metre across.
+struct PointLight {
+  glm::vec3 position{0.0F};  // relative to the camera
+  float range_m = 10.0F;     // > 0
+  // On a surface that faces it from 1 m away, before the exposure; the sun at noon gives about 2.
+  glm::vec3 light{1.0F};
+};
+inline constexpr std::size_t kMostPointLights = 40;
+
+struct ParticleDraw;  // particles.hpp
+
 // A line between two points relative to the camera.
 struct Line {
   glm::vec3 from{0.0F}, to{0.0F};
@@ -253,7 +265,10 @@ struct FrameInput {
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
   std::span<const ObjectDraw> objects;   // nearest first, committed ranges only
-  std::span<const Line> lines;           // at most kMaxLines are drawn, in every view
+  std::span<const PointLight> point_lights;  // the first kMostPointLights are used
+  // Back to front; drawn over everything else of the landscape. At most kMostEmitters are drawn.
+  std::span<const ParticleDraw> particles;
+  std::span<const Line> lines;  // at most kMaxLines are drawn, in every view
   // Over the picture, in this order.
   const HudDrawing* hud = nullptr;  // of the game; null: none
   std::span<const TextPanel> panels;

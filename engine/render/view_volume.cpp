@@ -1,5 +1,6 @@
 #include "engine/render/view_volume.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -55,6 +56,13 @@ core::Bounds bounds_of(const ObjectDraw& draw) {
                            glm::abs(axes[1]) * draw.box_half_extent.y +
                            glm::abs(axes[2]) * draw.box_half_extent.z;
   return core::Bounds::around(draw.origin + axes * draw.box_center, extent + kSwayM);
+}
+
+bool any_reaches(std::span<const PointLight> lights, const core::Bounds& box) {
+  return std::ranges::any_of(lights, [&](const PointLight& light) {
+    const glm::vec3 away = light.position - glm::clamp(light.position, box.min, box.max);
+    return glm::dot(away, away) < light.range_m * light.range_m;
+  });
 }
 
 glm::mat3 object_axes(const ObjectDraw& draw) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <span>
 
 #include "engine/core/coordinates.hpp"
 #include "engine/render/types.hpp"
@@ -27,6 +28,8 @@ bool in_view(const ViewVolume& volume, const core::Bounds& box);
 core::Bounds bounds_of(const TerrainDraw& draw);
 core::Bounds bounds_of(const MeshDraw& draw);
 core::Bounds bounds_of(const ObjectDraw& draw);
+// Whether the range of one of these lights reaches into the box.
+bool any_reaches(std::span<const PointLight> lights, const core::Bounds& box);
 // The axes of an object's mesh in the world, each as long as its scale.
 glm::mat3 object_axes(const ObjectDraw& draw);
 

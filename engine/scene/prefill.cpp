@@ -21,6 +21,13 @@ struct RegionSize {
   std::uint64_t meshes = 0, bytes = 0;
 };
 
+// Makes the pipelines of light and particles, which the first frame would wait for otherwise. What
+// fails here fails there too.
+void prepare_effects(const ecs::World& entities, render::Renderer& renderer) {
+  if (entities.count<PointLight>() > 0) static_cast<void>(renderer.prepare_lights());
+  if (entities.count<ParticleEmitter>() > 0) static_cast<void>(renderer.prepare_particles());
+}
+
 // How many levels of a mesh entity amplification makes, finest first.
 int levels_needed(const Settings& settings, const Detail& detail) {
   return settings.levels_of_detail ? static_cast<int>(detail.level_count) : 1;
@@ -139,6 +146,7 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
     fraction = made / (made + missing + 1.0);
     if (!go_on()) break;
   }
+  if (s.output.renderer != nullptr) prepare_effects(s.entities, *s.output.renderer);
   return synthesised;
 }
 

@@ -21,6 +21,7 @@ struct FixedStep {
 };
 
 struct Simulation {
+  // Without systems. `entities` must outlive it.
   explicit Simulation(ecs::World& entities) : systems(entities) {}
 
   FixedStep step;

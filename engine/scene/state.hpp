@@ -14,6 +14,7 @@
 #include "engine/core/camera.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/models/terrain/tiles.hpp"
+#include "engine/render/particles.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/draws/fading.hpp"
@@ -23,6 +24,7 @@
 #include "engine/scene/nodes/ground_sun.hpp"
 #include "engine/scene/nodes/levels.hpp"
 #include "engine/scene/objects/assets.hpp"
+#include "engine/scene/objects/effects.hpp"
 #include "engine/scene/quality/governor.hpp"
 #include "engine/scene/readiness.hpp"
 #include "engine/scene/settings.hpp"
@@ -217,6 +219,18 @@ struct ObjectDraws {
   double now_s = 0;                           // the clock's then
 };
 
+// The point lights of this tick.
+struct LightDraws {
+  std::vector<render::PointLight> lights;
+  std::uint32_t tick = 0;
+  double now_s = 0;  // the clock's then
+};
+
+// The emitters of this tick, back to front.
+struct ParticleDraws {
+  std::vector<render::ParticleDraw> emitters;
+};
+
 // The nodes that the last frame showed, in order. Empty while nobody asks.
 struct ShownNode {
   ecs::Entity entity;
@@ -241,6 +255,12 @@ struct Counters {
   // Objects of the game: in view and drawn; in view without a mesh that can be drawn; with a place
   // that is none.
   std::uint32_t objects_drawn = 0, objects_missing = 0, objects_invalid = 0;
+  // Point lights: those that light the picture; more in view, which had to stay dark; with values
+  // or a place that are none.
+  std::uint32_t lights_lit = 0, lights_left_out = 0, lights_invalid = 0;
+  // Emitters of particles and their particles, the same.
+  std::uint32_t emitters_drawn = 0, emitters_left_out = 0, emitters_invalid = 0;
+  std::uint64_t particles_drawn = 0, particles_left_out = 0;
   std::uint32_t requests = 0;         // wanted, but not there
   std::uint32_t refused = 0;          // of these, for want of memory
   std::uint32_t refused_visible = 0;  // … of what is in view
@@ -311,6 +331,8 @@ struct State {
   DrawLists draws;
   Assets assets;
   ObjectDraws object_draws;
+  LightDraws light_draws;
+  ParticleDraws particle_draws;
   ShownNodes shown;
   Counters counters;
   Totals totals;

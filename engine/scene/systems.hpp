@@ -80,13 +80,26 @@ void objects_system(const Settings& settings, const Rules& rules, const Input& i
                     ObjectQuery entities, synthesis::MeshSupply& meshes, Assets& assets,
                     ObjectDraws& draws, Counters& counters);
 
+// Chooses the point lights that light the picture, and fades them in and out.
+using LightQuery = ecs::Query<const Transform, PointLight>;
+void lights_system(const Settings& settings, const Clock& clock, const Camera& camera,
+                   const WorldFacts& facts, const View& view, LightQuery entities,
+                   LightDraws& draws, Counters& counters);
+
+// Chooses the emitters of particles that are drawn, nearest first where there are too many.
+using ParticleQuery = ecs::Query<const Transform, const ParticleEmitter, const GroundSun>;
+void particles_system(const Settings& settings, const Clock& clock, const Camera& camera,
+                      const WorldFacts& facts, const Streaming& streaming, const View& view,
+                      ParticleQuery entities, ParticleDraws& draws, Counters& counters);
+
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
 using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
                                const Demand, const Mesh, const MeshParts, const OldParts,
                                const GroundRelief, const GroundSun, Fading>;
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                   const View& view, const ObjectDraws& objects, RenderQuery entities,
+                   const View& view, const ObjectDraws& objects, const LightDraws& lights,
+                   const ParticleDraws& particles, RenderQuery entities,
                    synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
                    Pressure& pressure, Counters& counters);
 

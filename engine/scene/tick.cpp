@@ -21,10 +21,10 @@ constexpr std::string_view kRenderSystem = "render", kSimulationSystem = "simula
 void build_tick(State& s) {
   s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight, s.editing,
                  s.streaming, s.view, s.output, s.meshes, s.found, s.draws, s.counters, s.totals,
-                 s.trace, s.record, s.rules, s.pressure, s.assets, s.object_draws, s.shown,
-                 s.simulation, s.simulation.step, s.events.shown, s.events.hidden, s.events.created,
-                 s.events.removed, s.events.landed, s.events.evicted, s.events.places_ready,
-                 s.foresight);
+                 s.trace, s.record, s.rules, s.pressure, s.assets, s.object_draws, s.light_draws,
+                 s.particle_draws, s.shown, s.simulation, s.simulation.step, s.events.shown,
+                 s.events.hidden, s.events.created, s.events.removed, s.events.landed,
+                 s.events.evicted, s.events.places_ready, s.foresight);
   s.tick.add(kSimulationSystem, simulation_system);
   s.tick.add("input", input_system);
   s.tick.add("quality", quality_system);
@@ -36,6 +36,8 @@ void build_tick(State& s) {
   s.tick.add("synthesis", synthesis_system);
   s.tick.add("upload", upload_system);
   s.tick.add("objects", objects_system);
+  s.tick.add("lights", lights_system);
+  s.tick.add("particles", particles_system);
   s.tick.add(kRenderSystem, render_system, ecs::RunsOn::kCallingThread);
   s.tick.add("events", events_system);
   s.tick.add("telemetry", telemetry_system);

@@ -5,8 +5,10 @@
 
 namespace psygen::synthesis {
 namespace {
-constexpr double kLeastRate = 0.05;       // of one observation, however many there were
-constexpr double kLargestSurprise = 2.0;  // one observation counts as off by this factor at most
+constexpr double kLeastRate = 0.05;  // of one observation, however many there were
+// One observation counts as off by this factor at most, and as so much faster than a guess: a
+// request may be slow by chance, but not fast.
+constexpr double kLargestSurprise = 2.0, kLargestDoubt = 1000.0;
 // Steps towards an observation of what cold caches add: some microseconds at first, whatever it
 // says, because the very first requests of a thread take milliseconds.
 constexpr double kFirstStep_s = 20e-6, kLeastStep_s = 1e-6;
@@ -25,14 +27,19 @@ void LearnedSeconds::observe(double seconds, double beside_s) {
   value_ = std::max(0.0, value_ + rate_of(count_) * off);
 }
 
+void CostCorrection::follow(double warm_s, double seconds) {
+  const double fastest = count_ < kTrusted ? kLargestDoubt : kLargestSurprise;
+  const double surprise = std::clamp(seconds / warm_s, 1 / fastest, kLargestSurprise);
+  factor_ *= std::pow(surprise, rate_of(count_));
+  ++count_;
+}
+
 void CostCorrection::observe(double curve_s, Warmth warmth, double seconds, ColdSeconds& shared) {
   const double warm_s = factor_ * curve_s;
-  if (warmth == Warmth::kWarm) {
-    const double surprise = std::clamp(seconds / warm_s, 1 / kLargestSurprise, kLargestSurprise);
-    factor_ *= std::pow(surprise, rate_of(count_));
-    ++count_;
-    return;
-  }
+  if (warmth == Warmth::kWarm) return follow(warm_s, seconds);
+  // Cold caches only add time. Some levels are never met warm, so a curve that is too high would
+  // stay so.
+  if (seconds < warm_s) follow(warm_s, seconds);
   LearnedSeconds& own = cold_.of(warmth);
   LearnedSeconds& all = shared.of(warmth);
   if (own.count() == 0) own.guess(all.value());

@@ -63,12 +63,15 @@ class CostCorrection {
   double factor() const { return factor_; }
 
   // A request that took `seconds` where the curve says `curve_s`, both above 0; `shared` knows of
-  // other levels with the same code.
+  // other levels with the same code. A cold one that took less than a warm one should lowers the
+  // factor too.
   void observe(double curve_s, Warmth warmth, double seconds, ColdSeconds& shared);
-  // Of a request that the curve says takes `curve_s`.
+  // Predicted of a request that the curve says takes `curve_s`.
   double seconds(double curve_s, Warmth warmth, const ColdSeconds& shared) const;
 
  private:
+  void follow(double warm_s, double seconds);
+
   static constexpr std::uint32_t kTrusted = 10;
   double factor_ = 1;
   std::uint32_t count_ = 1;  // of observations, for the size of steps

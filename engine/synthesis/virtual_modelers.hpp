@@ -22,6 +22,7 @@ class VirtualModelers {
     double started_s = 0, finished_s = 0;
   };
 
+  // This many modelers, all free at time 0.
   explicit VirtualModelers(unsigned modelers) : free_s_(modelers, 0.0) {}
 
   // Publishes a plan at `now_s`. Requires that the last one was reclaimed.

@@ -47,11 +47,11 @@ TEST(Readme, the_example_runs) {
 
 TEST(Readme, the_readme_shows_the_example_as_it_is_tested) {
   const std::string mark = "// [example]\n";
-  const std::string source = text_of(source_file("tests/ecs/readme_test.cpp"));
+  const std::string source = text_of(psygen::source_file("tests/ecs/readme_test.cpp"));
   const std::size_t begin = source.find(mark) + mark.size();
   const std::string example = source.substr(begin, source.find(mark, begin) - begin);
   ASSERT_GT(example.size(), 100U);
-  EXPECT_NE(text_of(source_file("ecs/README.md")).find(example), std::string::npos);
+  EXPECT_NE(text_of(psygen::source_file("ecs/README.md")).find(example), std::string::npos);
 }
 
 }  // namespace

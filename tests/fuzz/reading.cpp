@@ -11,6 +11,8 @@
 #include "engine/core/hash.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/frametest/frame_test.hpp"
+#include "engine/gltf/animation.hpp"
+#include "engine/gltf/read_file.hpp"
 #include "engine/input/bindings_file.hpp"
 #include "engine/input/recording.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -24,10 +26,11 @@
 namespace psygen::fuzz {
 namespace {
 
-// `name`: how the refusal names what is refused.
-void check_refusal(const core::Error& error, const std::string& name) {
+// `name`: how the refusal names what is refused. `names_files`: it may name files that are missing.
+void check_refusal(const core::Error& error, const std::string& name, bool names_files = false) {
   using enum core::ErrorCode;
-  PSYGEN_CHECK(error.code == kParse || error.code == kInvalidArgument || error.code == kOverBudget,
+  PSYGEN_CHECK(error.code == kParse || error.code == kInvalidArgument ||
+                   error.code == kOverBudget || (names_files && error.code == kIo),
                "a text is refused for what it says");
   PSYGEN_CHECK(error.message.starts_with(name), "a refusal names what is refused");
   PSYGEN_CHECK(core::shown(error.message) == error.message, "a refusal can be printed");
@@ -148,6 +151,35 @@ bool read_as_recording(std::string_view text, const std::filesystem::path& file)
   return is_recording(input::Recording::parse(with_right_hash(text), "hashed"), "hashed") || whole;
 }
 
+bool read_as_gltf(const std::filesystem::path& file) {
+  const auto model = gltf::read_file(file);
+  if (!model) {
+    check_refusal(model.error(), file.string() + ":", true);
+    return false;
+  }
+  for (const gltf::Mesh& mesh : model->meshes) {
+    for (const gltf::Primitive& primitive : mesh.primitives)
+      PSYGEN_CHECK(
+          core::check(primitive.mesh).has_value() &&
+              (primitive.material == gltf::kNone || primitive.material < model->materials.size()),
+          "meshes are valid");
+  }
+  for (std::size_t i = 0; i < model->nodes.size(); ++i)
+    PSYGEN_CHECK(model->nodes[i].parent == gltf::kNone || model->nodes[i].parent < i,
+                 "parents come first");
+  for (const gltf::Animation& animation : model->animations) {
+    for (const gltf::Channel& channel : animation.channels) {
+      PSYGEN_CHECK(channel.node < model->nodes.size(), "animations move nodes that there are");
+      for (const float share : {0.0F, 0.3F, 1.0F}) {
+        const glm::vec4 value = gltf::value_at(channel, share * animation.duration_s);
+        PSYGEN_CHECK(std::isfinite(value.x + value.y + value.z + value.w),
+                     "animations have finite values");
+      }
+    }
+  }
+  return true;
+}
+
 constexpr core::BlockCoord kEdited{2, 3};
 
 struct EditedWorld {
@@ -235,6 +267,23 @@ std::string example_edits() {
   return std::string(characters(world::encode_block(edits, registry, kEdited)));
 }
 
+std::string example_gltf() {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"name": "leaf", "mesh": 0, "rotation": [0, 0, 0, 1], "children": [1]},
+ {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 3, 4, 1]}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 5, "material": 0}]}],
+"materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1]},
+ "emissiveFactor": [0, 0.5, 0], "alphaMode": "MASK", "alphaCutoff": 0.25}],
+"animations": [{"channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}],
+ "samplers": [{"input": 1, "output": 0, "interpolation": "STEP"}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+ {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "SCALAR"}],
+"bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48}],
+"buffers": [{"byteLength": 48, "uri": "data:application/octet-stream;base64,)"
+         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAABA"
+         "\"}]}\n";
+}
+
 FileInMemory::FileInMemory() : descriptor_(memfd_create("text", MFD_CLOEXEC)) {
   PSYGEN_CHECK(descriptor_ >= 0, "there is memory for a file");
 }
@@ -258,7 +307,8 @@ int read_as_everything(std::string_view text, FileInMemory& file) {
   file.write(text);
   return int{read_as_world(file.path())} + int{read_as_path(file.path())} +
          int{read_as_bindings(file.path())} + int{read_as_frame_test(text)} +
-         int{read_as_recording(text, file.path())} + int{read_as_edits(text)};
+         int{read_as_recording(text, file.path())} + int{read_as_edits(text)} +
+         int{read_as_gltf(file.path())};
 }
 
 }  // namespace psygen::fuzz

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds README.md and docs/ together with the tree: links lead somewhere, nothing is left to be filled
-in, options of the command line are described, and the README's program is the tutorial test.
+in, options of the command line are described, commands in the text have options, worlds, paths and
+scripts that exist, and the README's program is the tutorial test.
 
 usage: docs_test.py SOURCE_DIR
 """
@@ -10,15 +11,28 @@ import sys
 
 
 def pages(root):
-    return [root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md", *sorted((root / "docs").glob("*.md"))]
+    return [root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md", root / "ecs/README.md",
+            *sorted((root / "docs").rglob("*.md"))]
+
+
+def anchors(page):
+    """What links within a page may name: its headings as GitHub writes them."""
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+    headings = re.findall(r"^#+ (.*)$", text, re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
 def dead_links(root):
     for page in pages(root):
         prose = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
-        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", prose):
-            if "://" not in target and not (page.parent / target).exists():
+        for target, anchor in re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", prose):
+            if "://" in target:
+                continue
+            linked = page.parent / target if target else page
+            if not linked.exists():
                 yield f"{page.name}: the link to {target} is dead"
+            elif anchor and linked.suffix == ".md" and anchor not in anchors(linked):
+                yield f"{page.name}: {linked.name} has no heading #{anchor}"
 
 
 def gaps(root):
@@ -61,9 +75,45 @@ def undescribed_options(root):
                 yield f"docs/cli.md does not describe {option} of psygen {command}"
 
 
+def options_of(root, command):
+    sources = [root / f"engine/cli/{command}_command.cpp"]
+    if command in ("fly", "picture"):
+        sources.append(root / "engine/cli/scene_options.cpp")
+    text = "".join(source.read_text(encoding="utf-8") for source in sources)
+    return set(re.findall(r'"!?(--[a-z-]+)[",]', text)) | {"--help"}
+
+
+def commands(text):
+    """The command lines in blocks of code for a shell, without comments."""
+    for block in re.findall(r"```sh\n(.*?)```", text, re.S):
+        for line in block.replace("\\\n", " ").splitlines():
+            yield re.sub(r"\s#.*", "", line)
+
+
+def wrong_commands(root):
+    seen = 0
+    for page in pages(root):
+        for line in commands(page.read_text(encoding="utf-8")):
+            for command, rest in re.findall(r"\bpsygen (fly|picture|amplify|export|calibrate|schedule|models)\b([^|;&]*)", line):
+                seen += 1
+                for option in re.findall(r"(?<=\s)--[a-z-]+", rest):
+                    if option not in options_of(root, command):
+                        yield f"{page.name}: psygen {command} has no option {option}"
+                for kind, name in re.findall(r"--(world|path) ([\w/.-]+)", rest):
+                    if name.startswith(("out/", "game/worlds/WORLD", "game/paths/PATH")):
+                        continue  # stands for others, or was made by a command above
+                    if not (root / name).exists() and not (root / f"game/{kind}s/{name}.toml").exists():
+                        yield f"{page.name}: there is no {kind} {name}"
+            for script in re.findall(r"(?<!\S)(?:tools|\.ci)/[\w.]+", line):
+                if not (root / script).exists():
+                    yield f"{page.name}: there is no {script}"
+    assert seen > 10, "the scan found too few commands to mean anything"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
-    found = [*dead_links(root), *gaps(root), *program_differences(root), *undescribed_options(root)]
+    found = [*dead_links(root), *gaps(root), *program_differences(root), *undescribed_options(root),
+             *wrong_commands(root)]
     print("\n".join(found) or "docs: nothing missing")
     return 1 if found else 0
 

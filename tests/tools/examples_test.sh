@@ -39,9 +39,16 @@ grep -q '; 1 oaks in all$' "$folder/felling.txt" && grep -q '; 2 oaks in all$' "
 [ "$(cut -d';' -f1 "$folder/felling.txt" | sort -u | wc -l)" -eq 2 ] # two different ones
 picture 07_hud hud
 picture 08_objects objects
-# The game to start from, by the test that needs no time of its own.
-cmake -S "$source/examples/template" -B "$folder/template" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
-  -DCMAKE_PREFIX_PATH="$folder/psygen" >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt"; exit 1; }
-cmake --build "$folder/template" >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt"; exit 1; }
-ctest --test-dir "$folder/template" --tests-regex '^exact$' --output-on-failure --no-tests=error
+picture 09_gltf gltf
+
+# The game to start from, and its frame tests: one within its budgets, and one that none holds.
+"$folder/build/template/my_game" "$folder/game.png" 2>"$folder/log.txt" || { cat "$folder/log.txt"; exit 1; }
+[ "$(stat -c %s "$folder/game.png")" -gt 50000 ] || { echo "the game's picture is empty"; exit 1; }
+ctest --test-dir "$folder/build/template" --tests-regex '^exact$' --output-on-failure --no-tests=error
+sed -E 's/^frame_ms.p99 = .*/frame_ms.p99 = 0/; s|"(world\|walk).toml"|"'"$source"'/examples/template/\1.toml"|' \
+  "$source/examples/template/exact.toml" >"$folder/missed.toml"
+code=0
+"$folder/build/template/my_game_frame_test" "$folder/missed.toml" >"$folder/frames.txt" 2>/dev/null || code=$?
+[ "$code" -eq 3 ] || { echo "a missed budget ended with $code instead of 3"; exit 1; }
+grep -qE '^missed: frame_ms.p99 .* <= 0  MISSED$' "$folder/frames.txt"
 [ -z "${KEEP_PICTURES:-}" ] || cp "$folder"/*.png "$KEEP_PICTURES"

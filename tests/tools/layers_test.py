@@ -22,6 +22,7 @@ MAY_KNOW = {
                        "engine/exchange", "engine/telemetry"},
     "engine/visibility": {"engine/core"},
     "engine/image": {"engine/core"},
+    "engine/gltf": {"engine/core", "engine/image"},
     "engine/render": {"engine/core", "engine/image", "shaders"},
     "engine/platform": {"engine/core"},
     "engine/input": {"engine/core", "engine/platform", "engine/world"},
@@ -38,6 +39,7 @@ MAY_KNOW = {
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/input"}
 MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/frametest", "engine/compare"}
+MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
 MAY_KNOW["game"] = MAY_KNOW["engine/cli"] | {"engine/cli"}
 MAY_KNOW["editor"] = MAY_KNOW["game"]
 
@@ -71,7 +73,7 @@ ONLY_IN = {
     r"^toml\+\+/": {"engine/world"},
     r"^nlohmann/": {"engine/telemetry", "engine/compare", "engine/cli"},
     r"^CLI/": {"engine/cli", "game"},
-    r"^tiny_gltf": {"engine/exchange"},
+    r"^tiny_gltf": {"engine/exchange", "engine/gltf"},
     r"^spdlog/": {"engine/core"},
     r"^(AL/|sndfile)": {"engine/audio"},
     r"^sqlite3": {"engine/save"},
@@ -79,7 +81,7 @@ ONLY_IN = {
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
 NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/query", "engine/physics", "engine/visibility",
-              "engine/exchange", "engine/save"}
+              "engine/exchange", "engine/gltf", "engine/save"}
 BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

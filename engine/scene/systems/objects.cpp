@@ -6,7 +6,9 @@
 #include <glm/geometric.hpp>
 
 #include "engine/scene/draws/seen.hpp"
+#include "engine/scene/draws/sun_of_ground.hpp"
 #include "engine/scene/draws/views.hpp"
+#include "engine/scene/objects/transforms.hpp"
 #include "engine/scene/systems.hpp"
 
 namespace psygen::scene {
@@ -41,43 +43,15 @@ struct Place {
 
 bool place_of(const Transform& transform, const core::Bounds& box,
               const core::WorldPosition& camera, double block_size_m, Place& place) {
-  constexpr float kLeastScale = 1e-4F, kMostScale = 1e4F;
-  constexpr double kFarM = 1e9;
-  const glm::dvec3 local = transform.position.local;
-  const auto finite = [](double v) { return std::abs(v) <= kFarM; };
-  if (!finite(local.x) || !finite(local.y) || !finite(local.z)) return false;
+  if (!is_valid(transform)) return false;
+  place.rotation = glm::normalize(transform.rotation);
+  place.foot = offset_of(transform.position, camera, block_size_m);
   const glm::vec3 size = glm::abs(transform.scale);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(size[axis] >= kLeastScale && size[axis] <= kMostScale)) return false;
-  }
-  const glm::quat q = transform.rotation;
-  const float length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  if (!(length > 1e-6F && length < 1e6F)) return false;
-  place.rotation = q * (1.0F / length);
-  place.foot = glm::vec3(core::offset_m(transform.position.block, camera, block_size_m) + local);
   place.scale = std::max({size.x, size.y, size.z});
   place.center = place.foot + place.rotation * (transform.scale * box.center());
   place.radius_m = glm::length(box.half_extent() * size);
   place.distance_m = glm::length(place.center);
   return true;
-}
-
-// The share of the sun that the ground lets through to a place.
-float ground_sun_at(core::WorldPosition at, double block_size_m, const Streaming& streaming,
-                    const ObjectQuery& entities) {
-  at = core::normalised(at, block_size_m);
-  for (const NodeGrid& grid : streaming.grids) {
-    const visibility::NodeCoord node = visibility::node_of(at.block, grid.level());
-    if (!grid.contains(node.coord)) continue;
-    const GroundSun* sun = entities.get<GroundSun>(grid.entity_of(node.coord));
-    if (sun == nullptr) continue;
-    const core::BlockCoord corner = visibility::corner_block(node);
-    const double side_m = block_size_m * static_cast<double>(1U << grid.level());
-    const glm::dvec3 in_node = -core::offset_m(corner, at, block_size_m);
-    return sun_at(*sun, glm::vec2(static_cast<float>(in_node.x / side_m),
-                                  static_cast<float>(in_node.z / side_m)));
-  }
-  return 1.0F;
 }
 
 // Finds what the cache has of a level, once a tick.

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <tuple>
 
+#include "engine/render/particles.hpp"
 #include "engine/scene/draws/ground.hpp"
 #include "engine/scene/draws/lighting.hpp"
 #include "engine/scene/draws/missing.hpp"
@@ -171,7 +172,8 @@ FadeStep fade_step(const Settings& settings, const Clock& clock, const DrawLists
 
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                   const View& view, const ObjectDraws& objects, RenderQuery entities,
+                   const View& view, const ObjectDraws& objects, const LightDraws& lights,
+                   const ParticleDraws& particles, RenderQuery entities,
                    synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
                    Pressure& pressure, Counters& counters) {
   draws.terrain.clear();
@@ -212,6 +214,8 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   frame.terrain = draws.terrain;
   frame.models = draws.models;
   frame.objects = objects.objects;
+  frame.point_lights = lights.lights;
+  frame.particles = particles.emitters;
   frame.lines = draws.lines;
   frame.canopy = facts.canopy;
   frame.morph = morph;

@@ -158,15 +158,6 @@ namespace {
 using Text = std::back_insert_iterator<std::string>;
 
 // A TOML string. Names and letters of valid species need no escapes, but user texts may.
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
-
 struct NumberWriter {
   Text out;
   void operator()(std::string_view key, double value, double, double) const {

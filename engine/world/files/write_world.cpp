@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "engine/world/files/document.hpp"
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/species_file.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -13,15 +14,6 @@ namespace psygen::world {
 namespace {
 
 using Text = std::back_insert_iterator<std::string>;
-
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
 
 // As a string from 2^63 on, because TOML has no larger integers.
 std::string seed_text(std::uint64_t seed) {

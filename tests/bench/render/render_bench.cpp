@@ -13,6 +13,7 @@
 #include <ctime>
 #include <utility>
 
+#include "engine/render/particles.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
 
@@ -62,6 +63,26 @@ void measure(benchmark::State& state, Renderer& renderer, const FrameInput& inpu
   state.counters[counter] = (best.second - base_cpu_ms) * 1e6 / count;
   constexpr std::array kNames{"auto", "multi-draw", "pushed"};
   state.SetLabel(kNames[static_cast<std::size_t>(state.range(0))]);
+}
+
+// The CPU milliseconds that `more` takes beyond `base`, and the ratio `times` of the two, medians
+// over pairs of frames in turns.
+double compare(benchmark::State& state, Renderer& renderer, const FrameInput& base,
+               const FrameInput& more) {
+  std::vector<double> ratios, added_ms;
+  frame_cost(renderer, more);
+  for (auto _ : state) {
+    const double base_ms = frame_cost(renderer, base).second;
+    const auto [wall_ms, cpu_ms] = frame_cost(renderer, more);
+    state.SetIterationTime(wall_ms * 1e-3);
+    ratios.push_back(cpu_ms / base_ms);
+    added_ms.push_back(cpu_ms - base_ms);
+  }
+  std::ranges::sort(ratios);
+  std::ranges::sort(added_ms);
+  state.counters["times"] = ratios[ratios.size() / 2];
+  state.counters["added_ms"] = added_ms[added_ms.size() / 2];
+  return added_ms[added_ms.size() / 2];
 }
 
 // CPU ms of the frame without any mesh: sky over all pixels.
@@ -152,6 +173,60 @@ void BM_terrain(benchmark::State& state) {
   state.counters["triangles"] = triangles;
 }
 
+// A landscape of 4² blocks with range(1) point lights of 15 m on it. `times` is the CPU time over
+// that of the same frame without lights, the median over pairs of frames.
+void BM_lights(benchmark::State& state) {
+  const auto renderer = make_renderer(submission_of(state));
+  const auto grid = renderer->upload_shared_indices(synthetic::grid_indices(64));
+  const auto mesh =
+      synthetic::make_terrain(renderer->geometry(), 64, [](int, int) { return 0.5F; });
+  if (!grid || !mesh) return state.SkipWithError("no memory for the mesh");
+  std::vector<TerrainDraw> terrain(16);
+  for (std::size_t i = 0; i < terrain.size(); ++i) {
+    terrain[i].range = *mesh;
+    terrain[i].shared_indices = *grid;
+    terrain[i].origin = {static_cast<float>(i % 4) * 60.0F - 120.0F, -20.0F,
+                         -60.0F - static_cast<float>(i / 4) * 60.0F};
+    terrain[i].cell_m = 60.0F / 63.0F;
+    terrain[i].height_range_m = 20.0F;
+    terrain[i].side_m = 60.0F;
+  }
+  std::vector<PointLight> lights(static_cast<std::size_t>(state.range(1)));
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    lights[i] = {{static_cast<float>(i % 8) * 10.0F - 35.0F, -8.0F,
+                  -20.0F - static_cast<float>(i / 8) * 10.0F},
+                 15.0F,
+                 glm::vec3(2.0F)};
+  FrameInput dark = synthetic::look(30, -0.2, kSize);
+  dark.terrain = terrain;
+  FrameInput lit = dark;
+  lit.point_lights = lights;
+  compare(state, *renderer, dark, lit);
+}
+
+// range(1) particles of 20 cm in a box before the camera, in emitters of a thousand. `times` as of
+// BM_lights; `ns_per_particle` is CPU time.
+void BM_particles(benchmark::State& state) {
+  const auto renderer = make_renderer(submission_of(state));
+  std::vector<ParticleDraw> emitters(static_cast<std::size_t>(state.range(1)) / 1000);
+  for (std::size_t i = 0; i < emitters.size(); ++i) {
+    ParticleDraw& emitter = emitters[i];
+    emitter.kind.half_extent_m = {12, 7, 5};
+    emitter.kind.first_size_m = emitter.kind.last_size_m = 0.2F;
+    emitter.kind.velocity = {0, -1, 0};
+    emitter.origin = {0, 0, -20};
+    emitter.count = 1000;
+    emitter.cycle_s = 3;
+    emitter.seed = static_cast<std::uint32_t>(2 * i);
+    emitter.next_seed = emitter.seed + 1;
+  }
+  const FrameInput without = synthetic::look(10, 0, kSize);
+  FrameInput with = without;
+  with.particles = emitters;
+  const double added_ms = compare(state, *renderer, without, with);
+  state.counters["ns_per_particle"] = added_ms * 1e6 / static_cast<double>(state.range(1));
+}
+
 // Ten thousand meshes that all move in every frame, of 12 or of 128
 // triangles each: as models and as objects, in turns, with the lists made anew.
 // `objects_per_models` is the ratio of the CPU time of the whole process, the median over pairs of
@@ -225,6 +300,16 @@ BENCHMARK(BM_moving)
     ->Unit(benchmark::kMillisecond)
     ->Iterations(25)
     ->ArgsProduct({{0}, {0, 1}});
+BENCHMARK(BM_lights)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(9)
+    ->ArgsProduct({{0}, {0, 1, 32}});
+BENCHMARK(BM_particles)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(9)
+    ->ArgsProduct({{0}, {1000, 10000}});
 BENCHMARK(BM_sky)->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3)->Arg(0);
 BENCHMARK(BM_sheets)
     ->UseManualTime()

@@ -40,6 +40,19 @@ TEST(CostCorrection, ColdCachesAddTimeThatDoesNotTouchWarmPredictions) {
   EXPECT_NEAR(correction.seconds(9e-6, Warmth::kCold, shared), 13e-6, 0.5e-6) << "added";
 }
 
+// Where calibration had no time for a level, its curve is a guess that may be wrong a thousandfold,
+// and the ground of a node is seldom made twice in a row.
+TEST(CostCorrection, AGuessThatIsFarTooHighIsCorrectedThoughNoRequestIsWarm) {
+  CostCorrection correction;
+  ColdSeconds shared;
+  for (int i = 0; i < 10; ++i)
+    correction.observe(100e-3, Warmth::kWoken, 90e-6, shared);
+  EXPECT_LT(correction.seconds(100e-3, Warmth::kWoken, shared), 300e-6);
+  for (int i = 0; i < 100; ++i)
+    correction.observe(100e-3, Warmth::kWoken, 90e-6, shared);
+  EXPECT_NEAR(correction.seconds(100e-3, Warmth::kWoken, shared), 90e-6, 9e-6);
+}
+
 TEST(CostCorrection, TheFirstRequestOfAThreadTakesMillisecondsAndIsSoonForgotten) {
   CostCorrection correction;
   ColdSeconds shared;

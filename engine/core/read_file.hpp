@@ -1,0 +1,18 @@
+// Reads a whole file into memory, behind a limit. Not for files that change meanwhile, and not for
+// text (world/files/text_file.hpp). Any thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "engine/core/error.hpp"
+
+namespace psygen::core {
+
+// The bytes of a regular file. Nothing is allocated for one of more than `most_bytes` bytes. Fails
+// with kIo or kOverBudget; the message starts with the path. Throws std::bad_alloc.
+Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path,
+                                            std::uint64_t most_bytes);
+
+}  // namespace psygen::core

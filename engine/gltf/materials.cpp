@@ -1,0 +1,148 @@
+// Materials, and those pictures that they use as colours, normals or light.
+#include <fmt/format.h>
+
+#include <map>
+
+#include "engine/gltf/reading.hpp"
+
+namespace psygen::gltf {
+namespace {
+
+constexpr double kMostLight = 1e6;
+
+// Pictures by their number in the file.
+using Pictures = std::map<std::uint32_t, std::uint32_t>;
+
+core::Result<image::Image> decode(const Reading& reading, std::uint32_t number) {
+  const tinygltf::Image& described = reading.file.images[number];
+  const std::string name = fmt::format("images[{}]", number);
+  if (described.bufferView < 0)
+    return image::decode_image(described.image, name, reading.limits.images);
+  return bytes_of_view(reading.file, described.bufferView, name)
+      .and_then([&](std::span<const std::uint8_t> bytes) {
+        return image::decode_image(bytes, name, reading.limits.images);
+      });
+}
+
+// The number of a texture's picture in Model::images, which is decoded with its first use.
+core::Result<std::uint32_t> picture_of(Reading& reading, Pictures& pictures, int texture,
+                                       const std::string& what) {
+  if (texture == -1) return kNone;
+  const auto index = index_in(texture, reading.file.textures.size(), what);
+  if (!index) return index;
+  const auto number = index_in(reading.file.textures[*index].source, reading.file.images.size(),
+                               fmt::format("source of textures[{}]", *index));
+  if (!number) return number;
+  const auto [at, is_new] =
+      pictures.try_emplace(*number, static_cast<std::uint32_t>(reading.out.images.size()));
+  if (!is_new) return at->second;
+  auto picture = decode(reading, *number);
+  if (!picture) return tl::unexpected(picture.error());
+  if (auto ok = count_up(reading.pixel_bytes, picture->rgba.size(), reading.limits.pixel_bytes,
+                         "bytes of pixels");
+      !ok)
+    return tl::unexpected(ok.error());
+  reading.out.images.push_back(std::move(*picture));
+  return at->second;
+}
+
+core::Result<float> number_in(double value, double most, const std::string& what) {
+  if (value >= 0 && value <= most) return static_cast<float>(value);
+  return wrong(fmt::format("{} is {}; 0 to {} are allowed", what, value, most));
+}
+
+core::Result<glm::vec3> colour_of(const std::vector<double>& from, double most,
+                                  const std::string& what) {
+  glm::vec3 colour(0.0F);
+  if (from.size() < 3) return wrong(what + " has less than three numbers");
+  for (int i = 0; i < 3; ++i) {
+    const auto channel = number_in(from[static_cast<std::size_t>(i)], most, what);
+    if (!channel) return tl::unexpected(channel.error());
+    colour[i] = *channel;
+  }
+  return colour;
+}
+
+double emissive_strength(const tinygltf::Material& described) {
+  const auto found = described.extensions.find("KHR_materials_emissive_strength");
+  if (found == described.extensions.end() || !found->second.Has("emissiveStrength")) return 1;
+  const tinygltf::Value& strength = found->second.Get("emissiveStrength");
+  return strength.IsNumber() ? strength.GetNumberAsDouble() : 1;
+}
+
+core::Result<void> read_numbers(const tinygltf::Material& described, const std::string& name,
+                                Reading& reading, Material& out) {
+  const std::vector<double>& base = described.pbrMetallicRoughness.baseColorFactor;
+  const auto colour = colour_of(base, 1, name + ".baseColorFactor");
+  if (!colour) return tl::unexpected(colour.error());
+  out.base_colour = *colour;
+  const auto opacity = number_in(base.size() > 3 ? base[3] : 1, 1, name + ".baseColorFactor");
+  if (!opacity) return tl::unexpected(opacity.error());
+  const auto light = colour_of(described.emissiveFactor, 1, name + ".emissiveFactor");
+  if (!light) return tl::unexpected(light.error());
+  const auto strength =
+      number_in(emissive_strength(described), kMostLight, name + ".emissiveStrength");
+  if (!strength) return tl::unexpected(strength.error());
+  out.emissive = *light * *strength;
+  const auto normals =
+      number_in(std::abs(described.normalTexture.scale), kMostLight, name + ".normalTexture.scale");
+  if (!normals) return tl::unexpected(normals.error());
+  out.normal_strength = static_cast<float>(described.normalTexture.scale);
+  out.two_sided = described.doubleSided;
+  if (described.alphaMode == "MASK") {
+    const auto cutoff = number_in(described.alphaCutoff, kMostLight, name + ".alphaCutoff");
+    if (!cutoff) return tl::unexpected(cutoff.error());
+    out.least_opacity = *cutoff;
+    out.opacity = *opacity;
+  } else if (described.alphaMode == "BLEND") {
+    reading.note("has materials that blend, which are drawn solid where they hide at least half");
+    out.least_opacity = 0.5F;
+    out.opacity = *opacity;
+  } else if (described.alphaMode != "OPAQUE") {
+    return wrong(fmt::format("{}.alphaMode is none of OPAQUE, MASK and BLEND", name));
+  }
+  return {};
+}
+
+}  // namespace
+
+core::Result<void> read_materials(Reading& reading) {
+  Pictures pictures;
+  for (std::size_t i = 0; i < reading.file.materials.size(); ++i) {
+    const tinygltf::Material& described = reading.file.materials[i];
+    const std::string name = fmt::format("materials[{}]", i);
+    Material material;
+    material.name = described.name;
+    if (auto ok = read_numbers(described, name, reading, material); !ok) return ok;
+    const tinygltf::TextureInfo& base = described.pbrMetallicRoughness.baseColorTexture;
+    const tinygltf::NormalTextureInfo& normal = described.normalTexture;
+    const tinygltf::TextureInfo& light = described.emissiveTexture;
+    int set = -1;
+    const auto use = [&](int texture, int coordinates, const char* what,
+                         std::uint32_t& out) -> core::Result<void> {
+      const auto picture = picture_of(reading, pictures, texture, name + what);
+      if (!picture) return tl::unexpected(picture.error());
+      out = *picture;
+      if (out == kNone) return {};
+      if (set >= 0 && set != coordinates)
+        reading.note(
+            "has textures with coordinates of their own in one material, which are "
+            "placed like its first texture");
+      if (set < 0) set = coordinates;
+      return {};
+    };
+    if (auto ok = use(base.index, base.texCoord, ".baseColorTexture", material.base_texture); !ok)
+      return ok;
+    if (auto ok = use(normal.index, normal.texCoord, ".normalTexture", material.normal_texture);
+        !ok)
+      return ok;
+    if (auto ok = use(light.index, light.texCoord, ".emissiveTexture", material.emissive_texture);
+        !ok)
+      return ok;
+    reading.uv_sets.push_back(std::max(set, 0));
+    reading.out.materials.push_back(std::move(material));
+  }
+  return {};
+}
+
+}  // namespace psygen::gltf

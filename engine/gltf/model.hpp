@@ -1,0 +1,89 @@
+// What a glTF file holds, as plain values: meshes, materials, pictures, a hierarchy of nodes and
+// their animations (read_file.hpp reads them). Metres, seconds, +Y up, right-handed, as in glTF.
+// Not what is drawn: scene/objects/prefab.hpp puts it into a world. Values; any thread.
+#pragma once
+
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/core/mesh_data.hpp"
+#include "engine/image/image.hpp"
+
+namespace psygen::gltf {
+
+// In place of a number: there is none.
+inline constexpr std::uint32_t kNone = UINT32_MAX;
+
+// The triangles of one material. They have passed core::check().
+struct Primitive {
+  core::MeshData mesh;
+  std::uint32_t material = kNone;  // of Model::materials
+};
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;  // not empty, unless it had only points and lines
+};
+
+// Textures are numbers of Model::images.
+struct Material {
+  std::string name;
+  glm::vec3 base_colour{1.0F};  // linear albedo, multiplied with that of texture and vertices
+  float opacity = 1;
+  float least_opacity = 0;    // pixels of less are left out; 0: all are drawn
+  glm::vec3 emissive{0.0F};   // linear
+  float normal_strength = 1;  // of the normal map
+  std::uint32_t base_texture = kNone, normal_texture = kNone, emissive_texture = kNone;
+  bool two_sided = false;
+};
+
+// Where something is relative to its parent: scaled, then turned, then moved.
+struct Pose {
+  glm::vec3 translation{0.0F};
+  glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  // w, x, y, z; unit length
+  glm::vec3 scale{1.0F};
+};
+
+struct Node {
+  std::string name;
+  std::uint32_t parent = kNone;  // a smaller number than its own
+  std::uint32_t mesh = kNone;    // of Model::meshes
+  Pose rest;                     // without animations
+};
+
+enum class Interpolation : std::uint8_t { kStep, kLinear, kCubic };
+enum class Property : std::uint8_t { kTranslation, kRotation, kScale };
+
+// How one property of one node changes. Times grow; a value has x, y, z, and w for rotations
+// (x, y, z, w). kCubic has three values for each time: the tangent before, the value, the one
+// after.
+struct Channel {
+  std::uint32_t node = 0;
+  Property property = Property::kTranslation;
+  Interpolation interpolation = Interpolation::kLinear;
+  std::vector<float> times_s;
+  std::vector<glm::vec4> values;
+};
+struct Animation {
+  std::string name;
+  float duration_s = 0;  // the last time of all channels
+  std::vector<Channel> channels;
+};
+
+// The content of one file.
+struct Model {
+  std::string name;  // of the file, without its folder
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<image::Image> images;
+  std::vector<Node> nodes;  // of the file's scene, parents before their children
+  std::vector<Animation> animations;
+  // What the file has and this does not, a sentence each: skins, morph targets, blending, points
+  // and lines, extensions. Begins with the file's path.
+  std::vector<std::string> notes;
+};
+
+}  // namespace psygen::gltf

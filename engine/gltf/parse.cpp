@@ -1,0 +1,154 @@
+#include "engine/gltf/parse.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "engine/core/read_file.hpp"
+#include "engine/core/utf8.hpp"
+#include "engine/gltf/json_shape.hpp"
+
+namespace psygen::gltf {
+namespace {
+
+using core::ErrorCode;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::size_t kMostMessage = 300;  // of what a library says
+
+// The only way in which TinyGLTF gets files. It wants function pointers.
+struct FileGate {
+  std::filesystem::path file;
+  std::uint64_t left_bytes = 0;
+  std::optional<core::Error> error;  // the first one
+};
+
+core::Result<std::filesystem::path> beside(const std::filesystem::path& file,
+                                           const std::filesystem::path& name) {
+  const auto refuse = [&] {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("names the file \"{}\"; only files in its own folder are read",
+                                  core::shown(name.string(), kMostMessage)));
+  };
+  const std::string& text = name.native();
+  const bool has_scheme = text.find(':') != std::string::npos;
+  if (text.empty() || text.find('\0') != std::string::npos || name.is_absolute() || has_scheme ||
+      std::ranges::find(name, "..") != name.end())
+    return refuse();
+  std::error_code error;
+  const auto folder = std::filesystem::weakly_canonical(file.parent_path() / ".", error);
+  const auto target = std::filesystem::weakly_canonical(folder / name, error);
+  if (error) return core::fail(ErrorCode::kIo, error.message());
+  const auto [end, ignored] = std::ranges::mismatch(folder, target);
+  const bool inside = end == folder.end() || end->empty();
+  if (!inside) return refuse();
+  return target;
+}
+
+bool read_beside(std::vector<unsigned char>* out, std::string* message, const std::string& name,
+                 void* user) {
+  FileGate& gate = *static_cast<FileGate*>(user);
+  auto bytes = beside(gate.file, name).and_then([&](const std::filesystem::path& path) {
+    return core::read_file(path, gate.left_bytes);
+  });
+  if (!bytes) {
+    if (!gate.error) gate.error = bytes.error();
+    *message = "see above";
+    return false;
+  }
+  gate.left_bytes -= bytes->size();
+  *out = std::move(*bytes);
+  return true;
+}
+
+// Keeps the bytes of a picture that is not in a buffer. `bytes` of one in a buffer may lie outside
+// of it.
+bool keep_picture(tinygltf::Image* image, int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+std::string_view characters(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// The JSON in a file. Where a .glb is too short for it, nothing, which TinyGLTF refuses.
+std::string_view json_of(const Bytes& bytes, bool binary) {
+  constexpr std::size_t kHeader = 20, kLengthAt = 12;
+  if (!binary) return characters(bytes);
+  if (bytes.size() < kHeader) return {};
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + kLengthAt, sizeof length);
+  return characters(bytes).substr(kHeader, length);
+}
+
+core::Result<void> check_version(const tinygltf::Model& model) {
+  if (!model.asset.version.starts_with("2.")) {
+    return core::fail(ErrorCode::kParse,
+                      fmt::format("is glTF of version \"{}\"; version 2 can be read",
+                                  core::shown(model.asset.version, kMostMessage)));
+  }
+  for (const std::string& name : model.extensionsRequired) {
+    if (!is_supported(name)) {
+      return core::fail(ErrorCode::kInvalidArgument,
+                        fmt::format("requires the extension \"{}\", which is not supported",
+                                    core::shown(name, kMostMessage)));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_supported(std::string_view extension) {
+  return extension == "KHR_materials_emissive_strength" || extension == "KHR_mesh_quantization";
+}
+
+core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Limits& limits) {
+  const auto refuse = [&](ErrorCode code, std::string_view sentence) {
+    return core::fail(code, fmt::format("{}: {}", path.string(), sentence));
+  };
+  const std::uint64_t most_bytes = std::min<std::uint64_t>(limits.bytes, INT32_MAX);
+  const auto bytes = core::read_file(path, most_bytes);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const bool binary = characters(*bytes).starts_with("glTF");
+  if (auto ok = check_shape(json_of(*bytes, binary), limits.json_values); !ok)
+    return refuse(ok.error().code, ok.error().message);
+
+  FileGate gate{path, most_bytes - bytes->size(), {}};
+  tinygltf::TinyGLTF reader;
+  tinygltf::FsCallbacks files{};
+  files.FileExists = [](const std::string&, void*) { return true; };
+  files.ExpandFilePath = [](const std::string& name, void*) { return name; };
+  files.ReadWholeFile = read_beside;
+  files.user_data = &gate;
+  reader.SetFsCallbacks(files);
+  reader.SetImageLoader(keep_picture, nullptr);
+
+  tinygltf::Model model;
+  std::string errors, warnings;
+  const auto size = static_cast<unsigned>(bytes->size());
+  const bool parsed =
+      binary ? reader.LoadBinaryFromMemory(&model, &errors, &warnings, bytes->data(), size)
+             : reader.LoadASCIIFromString(&model, &errors, &warnings, characters(*bytes).data(),
+                                          size, "");
+  if (gate.error) return refuse(gate.error->code, gate.error->message);
+  // TinyGLTF goes on after many errors, without what is wrong. This one is none in glTF 2.0.
+  constexpr std::string_view kNoError = "'inverseBindMatrices' property is missing in Skin.\n";
+  for (std::size_t at = errors.find(kNoError); at != std::string::npos; at = errors.find(kNoError))
+    errors.erase(at, kNoError.size());
+  if (!parsed || !errors.empty()) {
+    const std::string what = errors.substr(0, errors.find_last_not_of('\n') + 1);
+    return refuse(ErrorCode::kParse,
+                  "is not glTF that can be read: " + core::shown(what, kMostMessage));
+  }
+  if (auto ok = check_version(model); !ok) return refuse(ok.error().code, ok.error().message);
+  return model;
+}
+
+}  // namespace psygen::gltf

@@ -1,0 +1,167 @@
+// Instances of glTF files on the null device: their hierarchy, their animations, and what goes
+// away.
+#include "engine/prefab/prefab.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "engine/gltf/read_file.hpp"
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::prefab {
+namespace {
+
+using scene::Object;
+using scene::Transform;
+
+gltf::Model two_nodes() {
+  gltf::Model model;
+  model.name = "arm.glb";
+  core::MeshData mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.indices = {0, 1, 2};
+  model.meshes.resize(1);
+  model.meshes[0].primitives = {{mesh, gltf::kNone}, {mesh, 0}};
+  model.materials.resize(1);
+  model.nodes = {{"arm", gltf::kNone, 0, {}}, {"hand", 0, 0, {}}};
+  model.nodes[1].rest.translation = {2, 0, 0};
+  gltf::Channel channel;  // moves node 0
+  channel.times_s = {0, 2};
+  channel.values = {{0, 0, 0, 0}, {0, 4, 0, 0}};
+  model.animations = {{"lift", 2, {channel}}};
+  return model;
+}
+
+class Prefabs : public testing::Test {
+ protected:
+  void SetUp() override {
+    scene_ = scene::make_scene_of(scene::small_settings(),
+                                  [](world::World& world) { world.scatter.clear(); });
+    scene::Systems systems = scene_->systems();
+    ASSERT_TRUE(library_.add_systems(systems));
+    scene_->settle(pose_);
+    const auto added = library_.add(state().assets, two_nodes());
+    ASSERT_TRUE(added) << added.error().message;
+    arm_ = *added;
+    where_.position = pose_.position;
+    where_.position.local += glm::dvec3(0, -4, -20);
+    root_ = library_.spawn(state().entities, arm_, where_);
+  }
+  scene::State& state() { return scene_->state(); }
+  void tick(int count = 1) {
+    for (int i = 0; i < count; ++i)
+      scene::tick_at(*scene_, pose_);
+  }
+  glm::dvec3 place_of(const char* node) {
+    const ecs::Entity entity = library_.node_of(state().entities, root_, node);
+    return state().entities.get<Transform>(entity)->position.local - where_.position.local;
+  }
+
+  core::CameraPose pose_ = scene::pose_at(0, 0);
+  Library library_;  // outlives the scene
+  std::unique_ptr<scene::Scene> scene_;
+  PrefabId arm_;
+  Transform where_;
+  ecs::Entity root_;
+};
+
+TEST_F(Prefabs, AreDrawnAndFollowTheirRoot) {
+  tick(3);
+  EXPECT_EQ(state().object_draws.objects.size(), 4u) << "two nodes with two materials each";
+  EXPECT_EQ(place_of("hand"), glm::dvec3(2, 0, 0));
+  Transform& root = *state().entities.get<Transform>(root_);
+  root.rotation = glm::angleAxis(1.5707964F, glm::vec3(0, 0, 1));
+  root.scale = {3, 1, 1};
+  tick();
+  EXPECT_LT(glm::length(place_of("hand") - glm::dvec3(0, 6, 0)), 1e-5);
+  const ecs::Entity hand = library_.node_of(state().entities, root_, "hand");
+  const Transform& turned = *state().entities.get<Transform>(hand);
+  EXPECT_LT(glm::length(turned.scale - glm::vec3(3, 1, 1)), 1e-5F);
+  EXPECT_LT(glm::length(turned.rotation * glm::vec3(1, 0, 0) - glm::vec3(0, 1, 0)), 1e-5F);
+}
+
+TEST_F(Prefabs, MirrorAsTheirScalesSay) {
+  state().entities.get<Transform>(root_)->scale = {1, -2, 1};
+  tick();
+  const ecs::Entity hand = library_.node_of(state().entities, root_, "hand");
+  const Transform& mirrored = *state().entities.get<Transform>(hand);
+  const auto place = [&](glm::vec3 p) { return mirrored.rotation * (mirrored.scale * p); };
+  EXPECT_LT(glm::length(place({1, 2, 3}) - glm::vec3(1, -4, 3)), 1e-5F);
+}
+
+TEST_F(Prefabs, PlayAnimationsByTheStepsOfTheSimulation) {
+  Instance& instance = *state().entities.get<Instance>(root_);
+  tick();
+  ASSERT_TRUE(library_.play(instance, "lift", state().simulation.step, {.speed = 2}));
+  const std::uint64_t from = state().simulation.step.index;
+  tick(31);
+  const scene::FixedStep& step = state().simulation.step;
+  const double passed_s = (static_cast<double>(step.index - from) - 1 + step.share) * step.step_s;
+  ASSERT_GT(passed_s, 0.4);
+  EXPECT_NEAR(place_of("arm").y, 2 * 2 * passed_s, 1e-5) << "2 m a second, twice as fast";
+  EXPECT_NEAR(place_of("hand").y, 2 * 2 * passed_s, 1e-5);
+  const double before = place_of("arm").y;
+  tick(60);
+  EXPECT_NEAR(place_of("arm").y, before, 1e-4) << "a second later it has gone around once";
+  ASSERT_TRUE(library_.play(instance, "lift", step, {.from_s = 1.5, .loops = false}));
+  tick(120);
+  EXPECT_NEAR(place_of("arm").y, 4, 1e-6) << "stays at its end";
+}
+
+TEST_F(Prefabs, SayWhichAnimationsThereAre) {
+  const auto played = library_.play(*state().entities.get<Instance>(root_), "sing", {});
+  ASSERT_FALSE(played);
+  EXPECT_EQ(played.error().message, "arm.glb has no animation \"sing\"; it has lift");
+}
+
+TEST_F(Prefabs, GoWithTheirRootAndLosePartsOneByOne) {
+  tick(3);
+  const ecs::Entity arm = library_.node_of(state().entities, root_, "arm");
+  state().entities.destroy(std::span(&arm, 1));
+  ASSERT_TRUE(library_.play(*state().entities.get<Instance>(root_), "lift", {}));
+  tick(3);
+  EXPECT_EQ(state().object_draws.objects.size(), 3u) << "what hung on it stays where it was";
+  state().entities.destroy_with_children(std::span(&root_, 1));
+  EXPECT_EQ(state().entities.count<Attached>(), 0u);
+  tick();
+  EXPECT_TRUE(state().object_draws.objects.empty());
+}
+
+TEST_F(Prefabs, HangOnOneAnotherInAnyOrderAndInCircles) {
+  const auto made = state().entities.create<Transform, Attached>(3);
+  const std::vector<ecs::Entity> own(made.entities.begin(), made.entities.end());
+  for (std::size_t i = 0; i < 3; ++i)
+    made.column<Attached>()[i] = {.parent = i == 2 ? root_ : own[i + 1],
+                                  .pose = {.translation = {1, 0, 0}}};
+  tick();
+  const auto x = [&](std::size_t i) {
+    return state().entities.get<Transform>(own[i])->position.local.x - where_.position.local.x;
+  };
+  EXPECT_EQ(x(0), 3);
+  EXPECT_EQ(x(2), 1);
+  state().entities.get<Attached>(own[2])->parent = own[0];
+  tick(3);
+}
+
+TEST_F(Prefabs, SplitMeshesThatAreTooLarge) {
+  gltf::Model model = two_nodes();
+  core::MeshData& mesh = model.meshes[0].primitives[0].mesh;
+  mesh = {};
+  for (std::uint32_t i = 0; i < 70'000; ++i) {
+    const auto at = static_cast<float>(i);
+    mesh.positions.insert(mesh.positions.end(),
+                          {{at * 1e-3F, 0, 0}, {at * 1e-3F, 1, 0}, {at * 1e-3F, 0, 1}});
+    mesh.indices.insert(mesh.indices.end(), {3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const std::size_t before = state().assets.mesh_count();
+  const auto added = library_.add(state().assets, model);
+  ASSERT_TRUE(added) << added.error().message;
+  EXPECT_EQ(state().assets.mesh_count() - before, 5u) << "four parts, and the second material";
+  EXPECT_EQ(library_[*added].parts.size(), 10u);
+}
+
+}  // namespace
+}  // namespace psygen::prefab

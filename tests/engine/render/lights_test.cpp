@@ -1,0 +1,122 @@
+// Point lights on every path, per vertex and per pixel: they light what they reach, and nothing
+// else changes.
+#include <gtest/gtest.h>
+
+#include "tests/engine/render/on_a_path.hpp"
+
+namespace psygen::render {
+namespace {
+
+class PointLights : public OnAPath {
+ protected:
+  void SetUp() override {
+    OnAPath::SetUp();
+    if (!renderer_) return;
+    const auto model = synthetic::make_box(renderer_->geometry(), glm::vec3(0.3F));
+    const auto object = synthetic::make_object_box(renderer_->geometry(), glm::vec3(0.3F));
+    const auto ground =
+        synthetic::make_terrain(renderer_->geometry(), 64, [](int, int) { return 0.5F; });
+    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(64));
+    ASSERT_TRUE(model && object && ground && grid);
+    model_.range = *model;
+    object_.range = *object;
+    ground_.range = *ground;
+    ground_.shared_indices = *grid;
+    model_.origin = {-3, 0, -12};
+    object_.origin = {3, 0, -12};
+    ground_.origin = {-32, -3, -60};
+    input_ = synthetic::look(60, 0, kSize);
+    input_.light.cloud_cover = 0;
+    for (glm::vec3* colour :
+         {&input_.light.sun_colour, &input_.light.zenith_colour, &input_.light.horizon_colour,
+          &input_.light.ground_colour, &input_.light.haze_colour, &input_.light.glow_colour})
+      *colour *= 0.05F;
+    input_.models = {&model_, 1};
+    input_.objects = {&object_, 1};
+    input_.terrain = {&ground_, 1};
+  }
+  Picture lit_by(std::vector<PointLight> lights) {
+    FrameInput input = input_;
+    input.point_lights = lights;
+    return draw(input);
+  }
+  // Of the pixels in a column of the picture's halves: left the model, right the object.
+  static double brightness(const Picture& picture, std::uint32_t from_x, std::uint32_t to_x,
+                           std::uint32_t from_y, std::uint32_t to_y) {
+    double sum = 0;
+    for (std::uint32_t y = from_y; y < to_y; ++y) {
+      for (std::uint32_t x = from_x; x < to_x; ++x)
+        sum += picture.rgba[4 * (y * picture.width + x)];
+    }
+    return sum / ((to_x - from_x) * (to_y - from_y));
+  }
+  static double model_of(const Picture& p) { return brightness(p, 44, 56, 56, 64); }
+  static double object_of(const Picture& p) { return brightness(p, 104, 116, 56, 64); }
+  static double ground_of(const Picture& p) { return brightness(p, 60, 100, 90, 118); }
+
+  MeshDraw model_;
+  ObjectDraw object_;
+  TerrainDraw ground_;
+  FrameInput input_;
+};
+
+TEST_P(PointLights, light_ground_models_and_objects_that_they_reach) {
+  const Picture dark = lit_by({});
+  const Picture lit = lit_by({{{0, 1, -8}, 30, glm::vec3(20.0F)}});
+  EXPECT_GT(model_of(lit), model_of(dark) + 20);
+  EXPECT_GT(object_of(lit), object_of(dark) + 20);
+  EXPECT_GT(ground_of(lit), ground_of(dark) + 20);
+}
+
+TEST_P(PointLights, light_nothing_beyond_their_range) {
+  const Picture dark = lit_by({});
+  const Picture lit = lit_by({{{3, 0, -8}, 4, glm::vec3(20.0F)}});
+  EXPECT_GT(object_of(lit), object_of(dark) + 20);
+  EXPECT_NEAR(model_of(lit), model_of(dark), 1.01);
+}
+
+TEST_P(PointLights, of_no_light_change_nothing) {
+  const Picture dark = lit_by({});
+  const Picture black = lit_by({{{0, 1, -8}, 30, glm::vec3(0.0F)}});
+  int most = 0;
+  for (std::size_t i = 0; i < dark.rgba.size(); ++i)
+    most = std::max(most, std::abs(int{dark.rgba[i]} - int{black.rgba[i]}));
+  EXPECT_LE(most, 1);
+  EXPECT_EQ(lit_by({}).rgba, dark.rgba) << "without lights again";
+}
+
+TEST_P(PointLights, have_a_colour_and_add_up) {
+  const Picture red = lit_by({{{0, 1, -8}, 30, {9, 0, 0}}});
+  const Picture green = lit_by({{{0, 1, -8}, 30, {0, 9, 0}}});
+  const Picture both = lit_by({{{0, 1, -8}, 30, {9, 0, 0}}, {{0, 1, -8}, 30, {0, 9, 0}}});
+  const std::size_t at = 4 * (60 * kSize.width + 110);
+  EXPECT_GT(red.rgba[at], red.rgba[at + 1] + 30);
+  EXPECT_GT(green.rgba[at + 1], green.rgba[at] + 30);
+  EXPECT_NEAR(both.rgba[at], red.rgba[at], 2);
+  EXPECT_NEAR(both.rgba[at + 1], green.rgba[at + 1], 2);
+}
+
+TEST_P(PointLights, beyond_the_most_are_ignored) {
+  std::vector<PointLight> many(kMostPointLights + 100, {{0, 1, 60}, 5, glm::vec3(1.0F)});
+  many.back() = {{0, 1, -8}, 30, glm::vec3(20.0F)};
+  EXPECT_NEAR(object_of(lit_by(many)), object_of(lit_by({})), 1.01);
+  many.front() = many.back();
+  EXPECT_GT(object_of(lit_by(many)), object_of(lit_by({})) + 20);
+}
+
+TEST_P(PointLights, survive_a_change_of_preset) {
+  lit_by({{{0, 1, -8}, 30, glm::vec3(20.0F)}});
+  ASSERT_TRUE(renderer_->set_preset(next_preset(renderer_->preset())));
+  const Picture dark = lit_by({});
+  EXPECT_GT(object_of(lit_by({{{0, 1, -8}, 30, glm::vec3(20.0F)}})), object_of(dark) + 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OnEveryPath, PointLights,
+    testing::Values(How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                    How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kMedium},
+                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}));
+
+}  // namespace
+}  // namespace psygen::render
