@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "engine/app/plugin_call.hpp"
+#include "engine/app/virtual_frame.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
@@ -27,6 +29,27 @@ namespace {
 
 constexpr double kDefaultSeconds = 27.0;  // the paper's walk
 constexpr double kEyeHeightM = 1.7;       // a flying user stays above the ground
+
+// On the virtual clock a flight must not depend on the device. What the GPU path draws is known
+// some frames later only, and a window draws when it can.
+core::Result<void> fit_virtual_clock(SessionOptions& options) {
+  if (!has_virtual_frames(options)) return {};
+  if (options.render_path == render::RenderPath::kGpu) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "the virtual clock needs the render path cpu: what the path gpu draws is "
+                      "known only some frames later");
+  }
+  options.render_path = render::RenderPath::kCpu;
+  if (!options.preset) options.preset = render::Preset::kLow;
+  return {};
+}
+
+// What the virtual clock does not know.
+void forget_real_times(telemetry::FrameRecord& record) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  record.main_cpu_ms = record.device_wait_ms = record.acquire_ms = record.present_ms = kUnknown;
+  record.record_ms = kUnknown;
+}
 
 }  // namespace
 
@@ -47,6 +70,7 @@ core::Result<void> Flight::open() {
     if (!path) return tl::unexpected(path.error());
     path_ = std::move(*path);
   }
+  if (auto ok = fit_virtual_clock(options_.session); !ok) return ok;
   options_.session.trace = true;
   auto session = Session::create(options_.session);
   if (!session) return tl::unexpected(session.error());
@@ -116,10 +140,14 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   record.time_s = now_s;
   record.frame_ms = frame_ms;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
+  if (has_virtual_frames(options_.session)) {
+    record.frame_ms = virtual_frame_ms(record.triangles, record.draws, state.input.size);
+    forget_real_times(record);
+  }
   if (recorded_ && !session_->paused()) log_frame();
   const bool like_others = record.apart == telemetry::Apart::kNo;
-  if (like_others) hud_.add_frame(frame_ms);
-  state.input.frame_ms = like_others ? governed_ms(frame_ms) : 0.0;
+  if (like_others) hud_.add_frame(record.frame_ms);
+  state.input.frame_ms = like_others ? governed_ms(record.frame_ms) : 0.0;
   // On a device of its own the time is that of some frames before.
   state.input.frame_triangles = static_cast<double>(state.counters.frame.triangles);
   return {};
@@ -129,6 +157,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
 // longer one; waiting, for it or a display, does not. A software device's time is this machine's
 // own.
 double Flight::governed_ms(double frame_ms) const {
+  if (has_virtual_frames(options_.session)) return frame_ms;
   const render::FrameResult& drawn = session_->scene().state().counters.frame;
   if (session_->renderer().device().software) return frame_ms - drawn.acquire.ms;
   return std::max(frame_ms - drawn.wait_ms(), drawn.gpu ? drawn.gpu->ms : 0.0);
@@ -149,7 +178,10 @@ core::Result<void> Flight::loop() {
     if (session_->over()) break;
     const double start_s = core::monotonic_seconds(), now_s = session_->now_s();
     if (auto ok = fly_frame(dt_s); !ok) return ok;
-    if (hz <= 0) dt_s = core::monotonic_seconds() - start_s;
+    if (hz <= 0) {
+      dt_s = has_virtual_frames(options_.session) ? session_->scene().state().record.frame_ms * 1e-3
+                                                  : core::monotonic_seconds() - start_s;
+    }
     bar.update(now_s);
     if (saves_picture()) {
       if (auto ok = save_numbered_picture(); !ok) return ok;
@@ -191,8 +223,12 @@ core::Result<void> Flight::save_numbered_picture() {
 // The last frame, and what is known now of earlier ones.
 void Flight::log_frame() {
   const scene::State& state = session_->scene().state();
-  log_->add(state.record, state.system_ms);
-  if (const auto& gpu = state.counters.frame.gpu)
+  if (has_virtual_frames(options_.session)) {
+    log_->add(state.record);
+  } else {
+    log_->add(state.record, state.system_ms);
+  }
+  if (const auto& gpu = state.counters.frame.gpu; gpu && !has_virtual_frames(options_.session))
     log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
   for (const float ms : state.counters.time_to_visible_ms)
     log_->add_time_to_visible(state.record.time_s, ms);

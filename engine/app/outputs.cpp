@@ -3,6 +3,7 @@
 
 #include "engine/amplify/block_synthesizer.hpp"
 #include "engine/app/flight.hpp"
+#include "engine/app/virtual_frame.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/telemetry/process_memory.hpp"
@@ -100,7 +101,9 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
                                               static_cast<double>(cache.triangles))
                           : telemetry::Figure::missing("nothing was synthesised");
   facts.floor_ratio = telemetry::Figure::missing("the flight failed");
-  if (whole) {
+  if (has_virtual_frames(options_.session)) {
+    facts.floor_ratio = telemetry::Figure::missing("the clock is virtual");
+  } else if (whole) {
     // Nothing else runs while the floor is measured.
     const bool alone = state.meshes.wait([this] { return !session_->stopped(); });
     facts.floor_ratio = alone ? floor_ratio(*log_, session_->renderer())

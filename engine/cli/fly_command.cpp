@@ -38,6 +38,12 @@ FlyCommand::FlyCommand(CLI::App& cli)
   c.add_option("--fixed-step", options_.fixed_step_hz,
                "Every frame advances the flight by 1/HZ seconds, however long it took")
       ->check(number_between(1, 1000));
+  c.add_option_function<std::string>(
+       "--clock",
+       [this](const std::string& text) { options_.session.scene.virtual_time = text == "virtual"; },
+       "What times are: wall, or virtual: fixed prices, the same on any machine; headless only")
+      ->check(CLI::IsMember({"wall", "virtual"}))
+      ->default_str("wall");
   c.add_option("--warmup", options_.warmup_seconds, "Seconds that are left out of the figures")
       ->capture_default_str()
       ->check(number_between(0, 3600));
@@ -88,6 +94,10 @@ int FlyCommand::run() {
       !ok) {
     core::log_error(ok.error().message);
     return exit_code_of(ok.error());
+  }
+  if (options_.session.scene.virtual_time && !options_.session.headless) {
+    core::log_error("--clock virtual needs --headless: a window draws when it can");
+    return kUsage;
   }
   options_.session.stop = &stop_at_interrupt();
   app::Plugin reporter;

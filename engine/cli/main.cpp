@@ -1,13 +1,16 @@
 // psygen: the command line. One subcommand a file; this one only chooses. Data goes to stdout,
 // messages and progress to stderr.
-// Exit codes: 0 ok, 1 failed, 2 usage, 4 no usable device or display.
+// Exit codes: 0 ok, 1 failed, 2 usage, 3 a budget is missed or B is worse, 4 no usable device or
+// display (77 of psygen test).
 
 #include <CLI/CLI.hpp>
 
 #include "engine/cli/commands.hpp"
+#include "engine/cli/compare_command.hpp"
 #include "engine/cli/fatal.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/standard_streams.hpp"
+#include "engine/cli/test_command.hpp"
 #include "engine/cli/usage.hpp"
 #include "engine/render/software_tuning.hpp"
 
@@ -27,6 +30,8 @@ int main(int argc, char** argv) {
   psygen::cli::ExportCommand exporter(cli);
   psygen::cli::CalibrateCommand calibrate(cli);
   psygen::cli::ScheduleCommand schedule(cli);
+  psygen::cli::TestCommand test(cli);
+  psygen::cli::CompareCommand compare(cli);
   // After the commands, which would take it over.
   cli.footer(
       "For example:\n"
@@ -41,6 +46,8 @@ int main(int argc, char** argv) {
     if (exporter.chosen()) return exporter.run();
     if (calibrate.chosen()) return calibrate.run();
     if (schedule.chosen()) return schedule.run();
+    if (test.chosen()) return test.run();
+    if (compare.chosen()) return compare.run();
     return models.run();
   } catch (...) {
     return psygen::cli::say_what_was_thrown();

@@ -96,7 +96,8 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
 // Takes over how many modelers started. Fails if there are none: no mesh would ever be made.
 core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
                                   synthesis::MeshSupply& meshes, Settings& settings) {
-  const unsigned wanted = synthesis::modeler_count_for(settings.modelers);
+  const unsigned wanted =
+      settings.virtual_time ? 1 : synthesis::modeler_count_for(settings.modelers);
   settings.modelers = meshes.start_modelers(options);
   if (settings.modelers == 0) {
     return core::fail(core::ErrorCode::kInternal,
@@ -228,8 +229,6 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
     });
   }
   synthesis::SynthesisOptions options;
-  // How many processors there are changes nothing on a virtual clock.
-  if (settings.virtual_time) s.settings.modelers = std::max(settings.modelers, 1U);
   options.modelers = s.settings.modelers;
   options.watchdog_seconds = settings.watchdog_seconds;
   options.annotate = mesh_notes(facts);

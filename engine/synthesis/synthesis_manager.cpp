@@ -31,10 +31,9 @@ ModelerStats stats_of(const Modeler& modeler) {
           c.retries.load(std::memory_order_relaxed)};
 }
 
-// Virtual modelers are executed by as many threads as there are processors.
-unsigned threads_for(const SynthesisOptions& options) {
-  return modeler_count_for(options.virtual_clock ? 0 : options.modelers);
-}
+// A virtual clock has one modeler, however many threads execute what it claims: their number must
+// change nothing.
+constexpr unsigned kVirtualModelers = 1;
 }  // namespace
 
 unsigned modeler_count_for(unsigned requested) {
@@ -45,8 +44,8 @@ unsigned modeler_count_for(unsigned requested) {
 // Delegates, so that an exception in it meets the destructor and not running threads.
 SynthesisManager::SynthesisManager(const models::Registry& registry,
                                    const SynthesisOptions& options)
-    : SynthesisManager(registry, options, threads_for(options)) {
-  while (active_.size() < threads_for(options)) {
+    : SynthesisManager(registry, options, modeler_count_for(options.modelers)) {
+  while (active_.size() < modeler_count_for(options.modelers)) {
     if (auto ok = start_modeler(); !ok) {
       shortage_ = ok.error().message;
       break;
@@ -64,7 +63,7 @@ SynthesisManager::SynthesisManager(const models::Registry& registry,
   workshop_->clock = options.clock ? options.clock : core::monotonic_seconds;
   workshop_->hash_content = options.hash_content;
   workshop_->annotate = options.annotate;
-  if (virtual_clock_) virtual_.emplace(modeler_count_for(options.modelers));
+  if (virtual_clock_) virtual_.emplace(kVirtualModelers);
   active_.reserve(most);
 }
 

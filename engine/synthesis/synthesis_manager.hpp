@@ -30,7 +30,7 @@ struct SynthesisOptions {
   unsigned max_replacements = 8;       // modelers started in place of hung ones, altogether
   std::function<double()> clock = {};  // thread-safe; default: core::monotonic_seconds
   // If given, modelers take what is predicted of requests by this clock, which the caller moves
-  // (virtual_modelers.hpp), and as many threads as there are processors execute what they claim.
+  // (virtual_modelers.hpp). It has one modeler; `modelers` threads execute what that claims.
   std::function<double()> virtual_clock = {};
   // What is noted of meshes, by model index; empty ones and those beyond the end note nothing. What
   // they refer to outlives the manager as the registry does. Meshes of these models are synthesised

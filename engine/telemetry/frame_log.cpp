@@ -27,15 +27,15 @@ constexpr std::string_view kColumnsAfterSystems =
 constexpr std::size_t kLatestFrames = 16;
 
 std::string cell(const std::optional<double>& ms) {
-  return ms ? fmt::format("{:.4f}", *ms) : std::string();
+  return ms && !std::isnan(*ms) ? fmt::format("{:.4f}", *ms) : std::string();
 }
 
 std::string row(const FrameRecord& r, std::span<const float> system_ms) {
   std::string text;
   const auto to = std::back_inserter(text);
-  fmt::format_to(to, "{},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{}", r.index,
-                 r.time_s, r.frame_ms, r.main_cpu_ms, r.wait_ms(), r.device_wait_ms, r.acquire_ms,
-                 r.present_ms, r.record_ms, cell(r.gpu_ms), cell(r.gpu_shadows_ms),
+  fmt::format_to(to, "{},{:.6f},{:.4f},{},{},{},{},{},{},{},{},{}", r.index, r.time_s, r.frame_ms,
+                 cell(r.main_cpu_ms), cell(r.wait_ms()), cell(r.device_wait_ms), cell(r.acquire_ms),
+                 cell(r.present_ms), cell(r.record_ms), cell(r.gpu_ms), cell(r.gpu_shadows_ms),
                  name_of(r.apart));
   for (const float ms : system_ms)
     std::isnan(ms) ? fmt::format_to(to, ",") : fmt::format_to(to, ",{:.4f}", ms);

@@ -11,6 +11,7 @@ namespace {
 using Frames = std::span<const FrameRecord>;
 
 constexpr double kLeastBusySeconds = 0.25;  // below it a share means nothing
+constexpr const char* kVirtual = "the clock is virtual";
 constexpr const char* kNoFrames = "no frame is left after the warm-up";
 
 // One value per frame.
@@ -46,8 +47,16 @@ std::vector<double> known(Frames frames, std::optional<double> FrameRecord::*fie
 template <class Field>
 Spread spread(Frames frames, const Field& field) {
   constexpr std::array kTwo{0.5, 0.99};
-  const std::vector<Figure> p = percentiles(column(frames, field), kTwo);
+  const std::vector<double> values = column(frames, field);
+  if (std::ranges::any_of(values, [](double value) { return std::isnan(value); }))
+    return {Figure::missing(kVirtual), Figure::missing(kVirtual)};
+  const std::vector<Figure> p = percentiles(values, kTwo);
   return {p[0], p[1]};
+}
+
+// Of these frames nothing is known that a real clock would have told.
+bool are_virtual(Frames frames) {
+  return !frames.empty() && std::isnan(frames.front().main_cpu_ms);
 }
 
 // The frames whose times can be compared.
@@ -89,6 +98,11 @@ void summarise_run(Summary& s, Frames frames, const FrameLog& log) {
 
 void summarise_device(Summary& s, Frames frames) {
   const std::vector<double> ms = known(frames, &FrameRecord::gpu_ms);
+  if (are_virtual(frames)) {
+    const Figure none = Figure::missing(kVirtual);
+    s.gpu_ms = {none, none, none, none};
+    return;
+  }
   if (ms.empty() && !s.device.timestamps) {
     const Figure none = Figure::missing("the device has no timestamps");
     s.gpu_ms = {none, none, none, none};
@@ -101,6 +115,11 @@ void summarise_device(Summary& s, Frames frames) {
 // Of the last `measured` frames of the log, those that are timed.
 void summarise_systems(Summary& s, const FrameLog& log, std::size_t measured) {
   const Frames frames = log.frames();
+  if (are_virtual(frames)) {
+    for (const std::string& system : log.systems())
+      s.system_ms.push_back({system, Figure::missing(kVirtual), Figure::missing(kVirtual)});
+    return;
+  }
   for (std::size_t system = 0; system < log.systems().size(); ++system) {
     std::vector<double> ms;
     for (std::size_t i = frames.size() - measured; i < frames.size(); ++i) {

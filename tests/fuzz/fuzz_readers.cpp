@@ -28,8 +28,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {
   static const std::vector<std::string> examples{
-      psygen::fuzz::example_bindings(), psygen::fuzz::example_recording(),
-      psygen::fuzz::example_edits(), psygen::fuzz::example_gltf()};
+      psygen::fuzz::example_bindings(), psygen::fuzz::example_frame_test(),
+      psygen::fuzz::example_recording(), psygen::fuzz::example_edits(),
+      psygen::fuzz::example_gltf()};
   static std::vector<std::string> others(1);
   std::mt19937_64 random(seed);
   if (random() % 2 == 0) return LLVMFuzzerMutate(data, size, most);

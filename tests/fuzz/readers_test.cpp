@@ -33,6 +33,7 @@ std::vector<std::string> shipped_texts() {
 TEST(Readers, TakeEveryShippedFileAsWhatItIs) {
   FileInMemory file;
   EXPECT_EQ(read_as_everything(example_bindings(), file), 1);
+  EXPECT_EQ(read_as_everything(example_frame_test(), file), 1);
   EXPECT_EQ(read_as_everything(example_recording(), file), 1);
   EXPECT_EQ(read_as_everything(example_edits(), file), 1);
   EXPECT_EQ(read_as_everything(example_gltf(), file), 1);
@@ -43,7 +44,8 @@ TEST(Readers, TakeEveryShippedFileAsWhatItIs) {
 TEST(Readers, SurviveShippedFilesWithUnicodeAndOtherThingsInWrongPlaces) {
   constexpr int kTextsOfEachFile = 40;
   std::vector<std::string> texts = shipped_texts();
-  for (const auto& example : {example_bindings, example_recording, example_edits, example_gltf})
+  for (const auto& example :
+       {example_bindings, example_frame_test, example_recording, example_edits, example_gltf})
     texts.push_back(example());
   ASSERT_GT(texts.size(), 10u);
   FileInMemory file;

@@ -10,6 +10,7 @@
 #include "engine/core/assert.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/frametest/frame_test.hpp"
 #include "engine/gltf/animation.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "engine/input/bindings_file.hpp"
@@ -101,6 +102,21 @@ bool read_as_bindings(const std::filesystem::path& file) {
   PSYGEN_CHECK(input::apply_bindings(written, "again", again).has_value() &&
                    input::bindings_text(again) == written,
                "bindings read back as they were");
+  return true;
+}
+
+bool read_as_frame_test(std::string_view text) {
+  const auto test = frametest::parse_frame_test(text, "test");
+  if (!test) {
+    check_refusal(test.error(), "test:");
+    return false;
+  }
+  PSYGEN_CHECK(!test->budgets.empty() && !test->name.empty(),
+               "a frame test has budgets and a name");
+  for (const frametest::Budget& budget : test->budgets) {
+    const double* number = std::get_if<double>(&budget.limit);
+    PSYGEN_CHECK(number == nullptr || std::isfinite(*number), "limits are finite");
+  }
   return true;
 }
 
@@ -215,6 +231,13 @@ std::string example_bindings() {
   return input::bindings_text(make_actions());
 }
 
+std::string example_frame_test() {
+  return "format = 1\nname = \"walk\"\n[flight]\nworld = \"paper\"\npath = \"walk27\"\n"
+         "size = [640, 360]\nseconds = 4\nclock = \"virtual\"\nfixed_step = 30\n"
+         "target_fps = 60\nbudget_mib = 64\n[at_most]\nframe_ms.p99 = 25\n"
+         "missing.pixels_max_percent = 1.5\n[equal]\npicture.grade = \"good\"\n";
+}
+
 std::string example_recording() {
   const input::Actions actions = make_actions();
   input::Recording recording(actions, 1.0 / 60);
@@ -283,8 +306,9 @@ std::filesystem::path FileInMemory::path() const {
 int read_as_everything(std::string_view text, FileInMemory& file) {
   file.write(text);
   return int{read_as_world(file.path())} + int{read_as_path(file.path())} +
-         int{read_as_bindings(file.path())} + int{read_as_recording(text, file.path())} +
-         int{read_as_edits(text)} + int{read_as_gltf(file.path())};
+         int{read_as_bindings(file.path())} + int{read_as_frame_test(text)} +
+         int{read_as_recording(text, file.path())} + int{read_as_edits(text)} +
+         int{read_as_gltf(file.path())};
 }
 
 }  // namespace psygen::fuzz

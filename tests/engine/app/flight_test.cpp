@@ -110,6 +110,7 @@ TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
 TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
   const TemporaryFolder folder;
   FlightOptions options = short_flight();
+  options.session.scene.virtual_time = false;  // which has no such times
   options.out_folder = folder / "out";
   const FlightReport report = fly(options);
   const auto rows = read_frames(options.out_folder / "frames.csv");

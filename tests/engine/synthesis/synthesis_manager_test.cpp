@@ -199,7 +199,7 @@ TEST(SynthesisManager, OnAVirtualClockWhatIsMadeByWhenFollowsFromPredictionsAlon
   SynthesisOptions options = with(2);
   options.virtual_clock = [&now_s] { return now_s; };
   SynthesisManager manager(registry, options);
-  EXPECT_EQ(manager.modeler_count(), 2u);
+  EXPECT_EQ(manager.modeler_count(), 1u) << "however many threads there are";
   Jobs jobs(registry);
   std::vector<Request> plan = jobs.make_many(0, 6);
   const std::array<double, 6> seconds{3, 1, 1, 5, 1, 1};
@@ -221,19 +221,19 @@ TEST(SynthesisManager, OnAVirtualClockWhatIsMadeByWhenFollowsFromPredictionsAlon
   using Owners = std::vector<std::uint64_t>;
   manager.publish(std::move(plan));
   EXPECT_EQ(owners_at(100.5), Owners{});
-  EXPECT_EQ(owners_at(103), (Owners{1, 2, 0}));
-  EXPECT_EQ(manager.outstanding(), 3u);
-  now_s = 103.5;
+  EXPECT_EQ(owners_at(104), (Owners{0, 1}));
+  EXPECT_EQ(manager.outstanding(), 4u);
+  now_s = 105.5;
   const std::vector<Request> unclaimed = manager.reclaim();
-  ASSERT_EQ(unclaimed.size(), 1u);
-  EXPECT_EQ(unclaimed[0].owner, 5u);
+  ASSERT_EQ(unclaimed.size(), 2u);
+  EXPECT_EQ(unclaimed[0].owner, 4u);
   Request here = jobs.make(9);
   here.cost.seconds.fill(0.25);
   manager.execute_here(here);
-  EXPECT_EQ(owners_at(103.5), (Owners{9})) << "at once";
-  EXPECT_EQ(owners_at(104), (Owners{4}));
+  EXPECT_EQ(owners_at(105.5), (Owners{2, 9})) << "at once";
+  EXPECT_EQ(owners_at(109), Owners{});
   EXPECT_TRUE(manager.wait_all());
-  EXPECT_EQ(owners_at(104), (Owners{3})) << "whoever waits gets everything";
+  EXPECT_EQ(owners_at(109), (Owners{3})) << "whoever waits gets everything";
 }
 
 TEST(SynthesisManager, OnAVirtualClockWithoutASingleThreadWhatIsClaimedFails) {

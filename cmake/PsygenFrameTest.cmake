@@ -1,0 +1,22 @@
+# psygen_add_frame_test(NAME FILE [PROGRAM target] [LABELS ...])
+# A CTest entry that runs the frame test FILE (docs/frame-tests.md) and fails where a budget is
+# missed. Without a device it is skipped. PROGRAM is a target of yours that ends in
+# frametest::frame_test_main(); without it `psygen test` flies without a game. Labels: frames, and
+# those given. A test on the wall clock runs alone, because other tests would take its time.
+function(psygen_add_frame_test name file)
+  cmake_parse_arguments(PARSE_ARGV 2 ARG "" "PROGRAM" "LABELS")
+  cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+  if(ARG_PROGRAM)
+    set(program ${ARG_PROGRAM})
+  elseif(TARGET psygen)
+    set(program psygen test)
+  else()
+    set(program ${psygen_EXECUTABLE} test)
+  endif()
+  add_test(NAME "${name}" COMMAND ${program} ${file})
+  set_tests_properties("${name}" PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 3600 LABELS "frames;${ARG_LABELS}")
+  file(READ ${file} text)
+  if(NOT text MATCHES "clock *= *\"virtual\"")
+    set_tests_properties("${name}" PROPERTIES RUN_SERIAL ON)
+  endif()
+endfunction()

@@ -1,0 +1,155 @@
+#include "engine/cli/compare_command.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <random>
+#include <sstream>
+
+#include "engine/cli/commands.hpp"
+#include "engine/cli/option_checks.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/replace_file.hpp"
+#include "engine/frametest/run.hpp"
+#include "engine/telemetry/output_file.hpp"
+
+namespace psygen::cli {
+namespace {
+
+bool is_folder(const std::string& name) {
+  std::error_code error;
+  return std::filesystem::is_directory(name, error);
+}
+
+// Runs a program with its output in a file; its exit code.
+core::Result<int> run_program(std::vector<std::string> words, const std::filesystem::path& log) {
+  std::vector<char*> arguments;
+  for (std::string& word : words)
+    arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  pid_t child = 0;
+  const int failed =
+      posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) {
+    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be run: {}", words.front(),
+                                                        std::generic_category().message(failed)));
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+CompareCommand::CompareCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("compare", "Tell whether frames became slower, or show less")) {
+  CLI::App& c = *command_;
+  c.add_option("A", a_, "Before: a folder of runs, or a command like \"old/psygen test\"")
+      ->required();
+  c.add_option("B", b_, "After: likewise")->required();
+  c.add_option("--test", test_, "Frame test that both commands run");
+  c.add_option("--out", out_, "Folder that keeps the runs and compare.json");
+  c.add_option("--pairs", pairs_, "Pairs of runs in a batch")
+      ->capture_default_str()
+      ->transform(integer_between(compare::kFewestPairs, compare::kMostPairs));
+  c.add_option("--aa", aa_, "Compare A with itself so many times, for the rate of false alarms")
+      ->transform(integer_between(0, 100'000));
+  c.add_flag("--json", json_, "Print the result as JSON");
+}
+
+// One run of a command: COMMAND TEST --out FOLDER. A missed budget (3) is no failure here.
+core::Result<compare::RecordedRun> CompareCommand::record(
+    const std::string& command, const std::filesystem::path& folder) const {
+  if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
+  std::vector<std::string> words;
+  std::istringstream text(command);
+  for (std::string word; text >> word;)
+    words.push_back(word);
+  words.insert(words.end(), {test_, "--out", folder.string()});
+  const auto log = folder / "output.txt";
+  const auto code = run_program(words, log);
+  if (!code) return tl::unexpected(code.error());
+  if (*code != frametest::kHeld && *code != frametest::kMissed) {
+    return core::fail(
+        *code == frametest::kSkipped ? core::ErrorCode::kNoDevice : core::ErrorCode::kInternal,
+        fmt::format("{}: exit code {}; what it said is in {}", command, *code, log.string()));
+  }
+  auto runs = compare::read_runs(folder);
+  if (!runs) return tl::unexpected(runs.error());
+  return std::move(runs->front());
+}
+
+// Which of a pair comes first is chance: what changes with time must not always meet the same one.
+core::Result<void> CompareCommand::record_batch(int batch) {
+  std::random_device random;
+  for (std::size_t pair = 0; pair < pairs_; ++pair) {
+    const auto folder = out_ / fmt::format("batch_{}", batch) / fmt::format("pair_{:02}", pair);
+    const bool b_first = random() % 2 == 1;
+    for (const bool is_b : {b_first, !b_first}) {
+      auto run = record(is_b ? b_ : a_, folder / (is_b ? "b" : "a"));
+      if (!run) return tl::unexpected(run.error());
+      const bool enough = run->virtual_clock;
+      (is_b ? runs_b_ : runs_a_).push_back(std::move(*run));
+      if (enough && runs_a_.size() == 1 && runs_b_.size() == 1) return {};
+    }
+  }
+  return {};
+}
+
+// The runs of both; a second batch where the first finds something.
+core::Result<void> CompareCommand::collect() {
+  if (is_folder(a_) && is_folder(b_)) {
+    auto a = compare::read_runs(a_), b = compare::read_runs(b_);
+    if (!a || !b) return tl::unexpected((a ? b : a).error());
+    runs_a_ = std::move(*a);
+    runs_b_ = std::move(*b);
+    return {};
+  }
+  if (test_.empty() || out_.empty()) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "two commands need --test and --out; two recorded sets are two folders");
+  }
+  if (auto ok = record_batch(1); !ok) return ok;
+  const auto first = compare::compare(runs_a_, runs_b_);
+  if (!first) return tl::unexpected(first.error());
+  const bool sure = first->exact || first->verdict == compare::Verdict::kSame;
+  return sure ? core::Result<void>{} : record_batch(2);
+}
+
+int CompareCommand::run() {
+  const auto result = collect().and_then([this] { return compare::compare(runs_a_, runs_b_); });
+  core::Result<compare::FalseAlarms> alarms = compare::FalseAlarms{};
+  if (result && aa_ > 0) alarms = compare::measure_false_alarms(runs_a_, aa_, 1);
+  if (!result || !alarms) {
+    const core::Error& error = result ? alarms.error() : result.error();
+    core::log_error(error.message);
+    return exit_code_of(error);
+  }
+  const compare::FalseAlarms* measured = aa_ > 0 ? &*alarms : nullptr;
+  const std::string json = compare::to_json(*result, measured);
+  if (!out_.empty()) {
+    const auto written = telemetry::create_output_folder(out_).and_then(
+        [&] { return core::replace_file(out_ / "compare.json", json); });
+    if (!written) {
+      core::log_error(written.error().message);
+      return kFailed;
+    }
+  }
+  const int printed = print(json_ ? json : compare::to_text(*result, measured));
+  return printed != kOk                                ? printed
+         : result->verdict == compare::Verdict::kWorse ? int{frametest::kMissed}
+                                                       : kOk;
+}
+
+}  // namespace psygen::cli

@@ -1,0 +1,353 @@
+#include "engine/compare/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <random>
+
+#include "engine/telemetry/statistics.hpp"
+
+namespace psygen::compare {
+namespace {
+
+using Runs = std::span<const RecordedRun>;
+
+tl::unexpected<core::Error> refuse(std::string sentence) {
+  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
+}
+
+// Why two runs cannot be compared; empty if they can.
+std::string difference(const RecordedRun& first, const RecordedRun& other) {
+  const auto differ = [&](const char* what, const auto& one, const auto& two) {
+    return fmt::format("{} and {} have different {}: {} and {}", first.folder, other.folder, what,
+                       one, two);
+  };
+  if (first.world_hash != other.world_hash)
+    return differ("world hashes, so their pictures and times say nothing about each other",
+                  first.world_hash, other.world_hash);
+  if (first.width != other.width || first.height != other.height)
+    return differ("sizes", fmt::format("{}x{}", first.width, first.height),
+                  fmt::format("{}x{}", other.width, other.height));
+  if (first.virtual_clock != other.virtual_clock)
+    return fmt::format("{} and {} have different clocks", first.folder, other.folder);
+  if (first.fixed_step != other.fixed_step)
+    return differ("steps", first.fixed_step.value_or(0), other.fixed_step.value_or(0));
+  // On the virtual clock without a step, times follow from what is compared.
+  if (first.virtual_clock && !first.fixed_step) return {};
+  if (first.frame_ms.size() != other.frame_ms.size())
+    return differ("numbers of frames", first.frame_ms.size(), other.frame_ms.size());
+  if (first.time_s != other.time_s)
+    return fmt::format("{} and {} have frames at different times: other paths or warm-ups",
+                       first.folder, other.folder);
+  return {};
+}
+
+core::Result<void> check(Runs a, Runs b) {
+  if (a.empty() || a.size() != b.size())
+    return refuse(fmt::format("a comparison needs pairs of runs; there are {} of A and {} of B",
+                              a.size(), b.size()));
+  const RecordedRun& first = a.front();
+  for (const Runs runs : {a, b}) {
+    for (const RecordedRun& run : runs)
+      if (std::string why = difference(first, run); !why.empty()) return refuse(std::move(why));
+  }
+  if (first.frame_ms.size() < kFewestFrames)
+    return refuse(fmt::format("{} has {} frames after the warm-up; a comparison needs {}",
+                              first.folder, first.frame_ms.size(), kFewestFrames));
+  if (first.virtual_clock) return {};
+  if (!first.fixed_step)
+    return refuse(
+        fmt::format("{} followed the wall clock, so that its frame k is not frame k of "
+                    "another run; it needs fixed_step",
+                    first.folder));
+  if (a.size() < kFewestPairs)
+    return refuse(
+        fmt::format("there are {} pairs of runs; with fewer than {} chance cannot be "
+                    "ruled out",
+                    a.size(), kFewestPairs));
+  return {};
+}
+
+// The frames that no run leaves out.
+Times times_of(Runs runs, const std::vector<bool>& left_out) {
+  Times times;
+  for (const RecordedRun& run : runs) {
+    times.emplace_back();
+    for (std::size_t k = 0; k < left_out.size(); ++k)
+      if (!left_out[k]) times.back().push_back(run.frame_ms[k]);
+  }
+  return times;
+}
+
+std::vector<bool> left_out_of(Runs a, Runs b) {
+  std::vector<bool> left_out(a.front().left_out.size(), false);
+  for (const Runs runs : {a, b})
+    for (const RecordedRun& run : runs)
+      for (std::size_t k = 0; k < left_out.size(); ++k)
+        left_out[k] = left_out[k] || run.left_out[k];
+  return left_out;
+}
+
+std::vector<double> slow_frames(const Times& runs, const std::vector<double>& minima) {
+  std::vector<double> counts;
+  for (const auto& run : runs) {
+    double count = 0;
+    for (std::size_t k = 0; k < minima.size(); ++k)
+      count += run[k] > kSlowFrame * minima[k] ? 1 : 0;
+    counts.push_back(count);
+  }
+  return counts;
+}
+
+template <class Field>
+std::vector<double> figures(Runs runs, const Field& field) {
+  std::vector<double> values;
+  for (const RecordedRun& run : runs)
+    values.push_back(field(run));
+  return values;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+std::uint64_t hitchy(const Times& runs) {
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(runs, [](const auto& run) { return *telemetry::hitches(run) > 0; }));
+}
+
+double missing_of(const RecordedRun& run) {
+  return run.missing_percent + run.coarse_percent;
+}
+
+double error_of(const RecordedRun& run) {
+  return run.error_pixels;
+}
+
+void judge_picture(Runs a, Runs b, Batch& batch) {
+  const auto missing_a = figures(a, missing_of), missing_b = figures(b, missing_of);
+  batch.missing_a = mean(missing_a);
+  batch.missing_b = mean(missing_b);
+  batch.p_missing = swap_test(missing_a, missing_b);
+  const auto error_a = figures(a, error_of), error_b = figures(b, error_of);
+  batch.error_a = mean(error_a);
+  batch.error_b = mean(error_b);
+  batch.p_error = swap_test(error_a, error_b);
+}
+
+core::Result<Batch> judge_batch(Runs a, Runs b) {
+  const std::vector<bool> left_out = left_out_of(a, b);
+  const Times times_a = times_of(a, left_out), times_b = times_of(b, left_out);
+  Batch batch;
+  batch.pairs = a.size();
+  batch.frames = times_a.front().size();
+  if (batch.frames < kFewestFrames)
+    return refuse(fmt::format("only {} frames are left out of no run; a comparison needs {}",
+                              batch.frames, kFewestFrames));
+  batch.minima = minima_test(times_a, times_b);
+  std::vector<double> minima = times_a.front();
+  for (const Times& times : {std::cref(times_a), std::cref(times_b)})
+    for (const auto& run : times)
+      std::ranges::transform(minima, run, minima.begin(),
+                             [](double x, double y) { return std::min(x, y); });
+  const auto slow_a = slow_frames(times_a, minima), slow_b = slow_frames(times_b, minima);
+  batch.slow_frames_a = mean(slow_a);
+  batch.slow_frames_b = mean(slow_b);
+  batch.p_slow_frames = swap_test(slow_a, slow_b);
+  batch.hitchy_a = hitchy(times_a);
+  batch.hitchy_b = hitchy(times_b);
+  batch.p_hitchy = fisher_more(batch.hitchy_a, a.size(), batch.hitchy_b, b.size());
+  judge_picture(a, b, batch);
+  return batch;
+}
+
+// What a batch finds. The same finding in both batches is a verdict.
+enum Finding { kMissing, kError, kSlower, kTail, kSlowFrames, kHitches, kFaster, kFindings };
+
+std::array<bool, kFindings> findings_of(const Batch& batch) {
+  std::array<bool, kFindings> found{};
+  constexpr double kPercent = 0.01;  // of the picture: less is not seen
+  found[kMissing] = batch.p_missing <= kSignificant && batch.missing_b > batch.missing_a + kPercent;
+  found[kError] = batch.p_error <= kSignificant && batch.error_b > 1.01 * batch.error_a;
+  found[kSlower] = batch.minima.p_slower <= kSignificant && batch.minima.ratio > kSlowerRatio;
+  found[kTail] = batch.minima.p_tail <= kSignificant && batch.minima.tail_ratio > kTailRatio;
+  found[kSlowFrames] =
+      batch.p_slow_frames <= kSignificant && batch.slow_frames_b > 1.2 * batch.slow_frames_a + 0.5;
+  found[kHitches] = batch.p_hitchy <= kSignificant;
+  found[kFaster] = batch.minima.p_faster <= kSignificant && batch.minima.ratio < 1 / kSlowerRatio;
+  return found;
+}
+
+std::string sentence_of(Finding finding, const Batch& b) {
+  const double percent = 100 * std::abs(b.minima.ratio - 1);
+  switch (finding) {
+    case kMissing:
+      return fmt::format(
+          "more geometry is missing or too coarse: {:.3g} % of the picture, before "
+          "{:.3g} %",
+          b.missing_b, b.missing_a);
+    case kError:
+      return fmt::format("levels of detail have a larger error: {:.3g} pixels, before {:.3g}",
+                         b.error_b, b.error_a);
+    case kSlower:
+      return fmt::format("frames take {:.1f} % more (p {:.3f})", percent, b.minima.p_slower);
+    case kTail:
+      return fmt::format("the 1 % of frames that changed most take {:.2f} times as long (p {:.3f})",
+                         b.minima.tail_ratio, b.minima.p_tail);
+    case kSlowFrames:
+      return fmt::format("{:.1f} frames of a run are slow, before {:.1f} (p {:.3f})",
+                         b.slow_frames_b, b.slow_frames_a, b.p_slow_frames);
+    case kHitches:
+      return fmt::format("{} of {} runs have a hitch, before {} (p {:.3f})", b.hitchy_b, b.pairs,
+                         b.hitchy_a, b.p_hitchy);
+    default:
+      return fmt::format("frames take {:.1f} % less (p {:.3f})", percent, b.minima.p_faster);
+  }
+}
+
+void conclude(Comparison& comparison) {
+  const Batch& last = comparison.batches.back();
+  std::array<bool, kFindings> found = findings_of(last);
+  const bool confirmed = comparison.batches.size() > 1;
+  std::array<bool, kFindings> first = findings_of(comparison.batches.front());
+  bool worse = false, once = false;
+  for (int f = 0; f < kFindings; ++f) {
+    once = once || (found[static_cast<std::size_t>(f)] || first[static_cast<std::size_t>(f)]);
+    found[static_cast<std::size_t>(f)] &= first[static_cast<std::size_t>(f)];
+    if (!found[static_cast<std::size_t>(f)]) continue;
+    comparison.reasons.push_back(sentence_of(static_cast<Finding>(f), last));
+    worse = worse || f != kFaster;
+  }
+  const bool faster = found[kFaster];
+  if (worse && faster)
+    comparison.reasons.push_back("faster with a worse picture or worse rare frames is not better");
+  const double limit = kSlowerRatio;
+  const bool narrow = last.minima.low > 1 / limit && last.minima.high < limit;
+  if (!confirmed && (worse || faster)) {
+    comparison.reasons.push_back(
+        fmt::format("no second batch confirms it: record {} pairs or more", 2 * kFewestPairs));
+  } else if (worse || faster) {
+    comparison.verdict = worse ? Verdict::kWorse : Verdict::kBetter;
+  } else if (narrow && !once) {
+    comparison.verdict = Verdict::kSame;
+  } else {
+    comparison.reasons.push_back(
+        once ? "one batch found a difference that the other did not confirm"
+             : fmt::format("noise hides changes below {:.1f} %", comparison.noise_percent));
+  }
+}
+
+// No noise: anything that differs was changed.
+core::Result<Comparison> compare_exactly(Runs a, Runs b) {
+  for (const Runs runs : {a, b}) {
+    for (const RecordedRun& run : runs)
+      if (run.frame_ms != runs.front().frame_ms || run.time_s != runs.front().time_s)
+        return refuse(fmt::format("{} and {} are of one set and on the virtual clock, but differ",
+                                  runs.front().folder, run.folder));
+  }
+  Comparison comparison;
+  comparison.exact = true;
+  const RecordedRun &x = a.front(), &y = b.front();
+  Batch batch;
+  batch.pairs = 1;
+  batch.frames = x.frame_ms.size();
+  judge_picture(a.first(1), b.first(1), batch);
+  batch.minima.ratio = batch.minima.low = batch.minima.high = mean(y.frame_ms) / mean(x.frame_ms);
+  batch.p_missing = batch.p_error = batch.minima.p_slower = batch.minima.p_faster = 0;
+  comparison.batches.push_back(batch);
+  const bool less = batch.missing_b > batch.missing_a || y.holes > x.holes;
+  const bool coarser = batch.error_b > batch.error_a;
+  if (less) comparison.reasons.push_back(sentence_of(kMissing, batch));
+  if (coarser) comparison.reasons.push_back(sentence_of(kError, batch));
+  const bool slower = batch.minima.ratio > 1, faster = batch.minima.ratio < 1;
+  if (slower)
+    comparison.reasons.push_back(
+        fmt::format("frames take {:.2f} % more", 100 * (batch.minima.ratio - 1)));
+  if (faster)
+    comparison.reasons.push_back(
+        fmt::format("frames take {:.2f} % less", 100 * (1 - batch.minima.ratio)));
+  if (faster && (less || coarser))
+    comparison.reasons.push_back("faster with a worse picture is not better");
+  const bool differ =
+      x.frame_ms != y.frame_ms || x.time_s != y.time_s || batch.missing_a != batch.missing_b;
+  comparison.verdict = less || coarser || slower ? Verdict::kWorse
+                       : faster                  ? Verdict::kBetter
+                       : differ                  ? Verdict::kInconclusive
+                                                 : Verdict::kSame;
+  if (comparison.verdict == Verdict::kInconclusive)
+    comparison.reasons.push_back("the runs differ, but neither mean time nor picture is worse");
+  return comparison;
+}
+
+bool pictures_differ(Runs a, Runs b) {
+  const auto constant = [](Runs runs) {
+    return std::ranges::all_of(runs, [&](const RecordedRun& run) {
+      return !run.images_hash.empty() && run.images_hash == runs.front().images_hash;
+    });
+  };
+  return constant(a) && constant(b) && a.front().images_hash != b.front().images_hash;
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  constexpr std::array<std::string_view, 4> kNames{"same", "worse", "better", "inconclusive"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+core::Result<Comparison> compare(Runs a, Runs b) {
+  if (auto ok = check(a, b); !ok) return tl::unexpected(ok.error());
+  core::Result<Comparison> result = Comparison{};
+  if (a.front().virtual_clock) {
+    result = compare_exactly(a, b);
+  } else {
+    const bool two = a.size() >= 2 * kFewestPairs;
+    const std::size_t half = std::min(two ? a.size() / 2 : a.size(), kMostPairs);
+    for (std::size_t from = 0; from == 0 || (two && from == half); from += half) {
+      auto batch = judge_batch(a.subspan(from, half), b.subspan(from, half));
+      if (!batch) return tl::unexpected(batch.error());
+      result->batches.push_back(std::move(*batch));
+    }
+    const MinimaTest& minima = result->batches.back().minima;
+    result->noise_percent = 50 * (minima.high - minima.low);
+    conclude(*result);
+  }
+  if (!result || !pictures_differ(a, b)) return result;
+  result->reasons.push_back("the pictures are not the same: look at them");
+  if (result->verdict != Verdict::kWorse) result->verdict = Verdict::kInconclusive;
+  return result;
+}
+
+core::Result<FalseAlarms> measure_false_alarms(Runs runs, std::size_t count, std::uint64_t seed) {
+  constexpr std::size_t kPairs = kFewestPairs + 1;
+  if (runs.size() < 2 * kPairs)
+    return refuse(
+        fmt::format("there are {} runs; measuring false alarms needs {}", runs.size(), 2 * kPairs));
+  std::mt19937_64 random(seed);
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  FalseAlarms alarms;
+  for (; alarms.comparisons < count; ++alarms.comparisons) {
+    std::vector<RecordedRun> a, b;
+    for (int batch = 0; batch < 2; ++batch) {
+      for (std::size_t i = order.size() - 1; i > 0; --i)  // the same on every machine
+        std::swap(order[i], order[random() % (i + 1)]);
+      for (std::size_t i = 0; i < kPairs; ++i) {
+        a.push_back(runs[order[2 * i]]);
+        b.push_back(runs[order[2 * i + 1]]);
+      }
+    }
+    const auto result = compare(a, b);
+    if (!result) return tl::unexpected(result.error());
+    alarms.worse += result->verdict == Verdict::kWorse ? 1U : 0U;
+    alarms.better += result->verdict == Verdict::kBetter ? 1U : 0U;
+    alarms.inconclusive += result->verdict == Verdict::kInconclusive ? 1U : 0U;
+  }
+  return alarms;
+}
+
+}  // namespace psygen::compare

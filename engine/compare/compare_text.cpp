@@ -1,0 +1,81 @@
+// A comparison in words and as JSON.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/compare/compare.hpp"
+
+namespace psygen::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json batch_json(const Batch& b) {
+  return {{"pairs", b.pairs},
+          {"frames", b.frames},
+          {"frame_ms",
+           {{"ratio", finite(b.minima.ratio)},
+            {"interval", {finite(b.minima.low), finite(b.minima.high)}},
+            {"p_slower", b.minima.p_slower},
+            {"p_faster", b.minima.p_faster}}},
+          {"tail", {{"ratio", finite(b.minima.tail_ratio)}, {"p", b.minima.p_tail}}},
+          {"slow_frames", {{"a", b.slow_frames_a}, {"b", b.slow_frames_b}, {"p", b.p_slow_frames}}},
+          {"hitchy_runs", {{"a", b.hitchy_a}, {"b", b.hitchy_b}, {"p", b.p_hitchy}}},
+          {"missing_percent", {{"a", b.missing_a}, {"b", b.missing_b}, {"p", b.p_missing}}},
+          {"error_pixels", {{"a", b.error_a}, {"b", b.error_b}, {"p", b.p_error}}}};
+}
+
+}  // namespace
+
+std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
+  std::string text = fmt::format("verdict: {}", name_of(comparison.verdict));
+  if (comparison.verdict == Verdict::kInconclusive && comparison.noise_percent > 0)
+    text += fmt::format(" (noise ±{:.1f} %)", comparison.noise_percent);
+  text += "\n";
+  for (const std::string& reason : comparison.reasons)
+    text += fmt::format("  {}\n", reason);
+  for (const Batch& b : comparison.batches) {
+    text += fmt::format("{} pair{}, {} frames: frame time B/A {:.4f}", b.pairs,
+                        b.pairs == 1 ? "" : "s", b.frames, b.minima.ratio);
+    if (comparison.exact) {
+      text += " (exact)";
+    } else {
+      text += fmt::format(
+          " ({:.3f} to {:.3f}), slow frames {:.1f} and {:.1f}, runs with a hitch "
+          "{} and {}",
+          b.minima.low, b.minima.high, b.slow_frames_a, b.slow_frames_b, b.hitchy_a, b.hitchy_b);
+    }
+    text += fmt::format(", missing or coarse {:.3g} and {:.3g} %, error {:.3g} and {:.3g} pixels\n",
+                        b.missing_a, b.missing_b, b.error_a, b.error_b);
+  }
+  if (alarms != nullptr)
+    text += fmt::format("A against itself, {} comparisons: {} worse, {} better, {} inconclusive\n",
+                        alarms->comparisons, alarms->worse, alarms->better, alarms->inconclusive);
+  return text;
+}
+
+std::string to_json(const Comparison& comparison, const FalseAlarms* alarms) {
+  Json json;
+  json["schema"] = "psygen.compare/1";
+  json["verdict"] = name_of(comparison.verdict);
+  json["reasons"] = comparison.reasons;
+  json["noise_percent"] = finite(comparison.noise_percent);
+  json["exact"] = comparison.exact;
+  json["batches"] = Json::array();
+  for (const Batch& batch : comparison.batches)
+    json["batches"].push_back(batch_json(batch));
+  json["false_alarms"] = nullptr;
+  if (alarms != nullptr)
+    json["false_alarms"] = {{"comparisons", alarms->comparisons},
+                            {"worse", alarms->worse},
+                            {"better", alarms->better},
+                            {"inconclusive", alarms->inconclusive}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace psygen::compare

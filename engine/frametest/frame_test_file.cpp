@@ -1,0 +1,241 @@
+// Reads [flight] and the budgets. The names of [flight] are those of the options of `psygen fly`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/data_file.hpp"
+#include "engine/core/nearest_word.hpp"
+#include "engine/core/utf8.hpp"
+#include "engine/frametest/frame_test.hpp"
+#include "engine/render/preset.hpp"
+#include "engine/render/render_path.hpp"
+#include "engine/telemetry/summary_fields.hpp"
+#include "engine/world/files/document.hpp"
+#include "engine/world/files/table_reader.hpp"
+#include "engine/world/files/text_file.hpp"
+
+namespace psygen::frametest {
+namespace {
+
+using world::Limits;
+using world::Node;
+using world::Problems;
+using world::TableReader;
+
+constexpr std::size_t kMaxNameBytes = 64, kMaxFileNameBytes = 4096;
+constexpr const char* kSystemTimes = "system_ms.";
+
+// A text with a parser that gives a core::Result.
+template <class Parse, class Value>
+void read_word(TableReader& reader, std::string_view key, const Parse& parse, Value& value) {
+  std::string text;
+  if (!reader.read(key, text, kMaxNameBytes)) return;
+  if (const auto parsed = parse(text)) {
+    value = *parsed;
+  } else {
+    reader.problem(reader.find(key)->value.line, key, parsed.error().message);
+  }
+}
+
+template <class Value>
+void read_count(TableReader& reader, std::string_view key, Limits limits, Value& value) {
+  std::int64_t number = 0;
+  if (reader.read(key, number, limits)) value = static_cast<Value>(number);
+}
+
+void read_file_name(TableReader& reader, std::string_view key, std::filesystem::path& file) {
+  std::string text;
+  if (reader.read(key, text, kMaxFileNameBytes)) file = text;
+}
+
+core::Result<bool> virtual_clock_from(const std::string& text) {
+  if (text == "wall" || text == "virtual") return text == "virtual";
+  return core::fail(core::ErrorCode::kParse, "it must be \"wall\" or \"virtual\"");
+}
+
+core::Result<synthesis::Policy> policy_from(const std::string& text) {
+  if (const auto policy = synthesis::policy_from(text)) return *policy;
+  return core::fail(core::ErrorCode::kParse, "it must be fifo, plp, shortest, longest or deadline");
+}
+
+void read_scene(TableReader& reader, scene::Settings& scene) {
+  read_word(reader, "clock", virtual_clock_from, scene.virtual_time);
+  read_word(reader, "paradigm", scene::paradigm_from, scene.paradigm);
+  read_word(reader, "policy", policy_from, scene.policy);
+  read_word(reader, "plp", scene::plp_mode_from, scene.plp_mode);
+  read_count(reader, "modelers", {0, 256}, scene.modelers);
+  if (std::int64_t mib = 0; reader.read("budget_mib", mib, {4, 1 << 20}))
+    scene.budget_bytes = static_cast<std::uint64_t>(mib) << 20;
+  reader.read("view_distance", scene.view_distance_m, {32, 65536});
+  reader.read("error", scene.max_error_pixels, {0.1, 1000});
+  reader.read("fade", scene.fade_seconds, {0, 60});
+  reader.read("lod", scene.levels_of_detail);
+  reader.read("occlusion", scene.occlusion);
+}
+
+void read_session(TableReader& reader, app::SessionOptions& session) {
+  read_file_name(reader, "world", session.world_file);
+  std::int64_t size[2] = {session.size.width, session.size.height};
+  if (reader.read_pair("size", size, {1, 16384}))
+    session.size = {static_cast<std::uint32_t>(size[0]), static_cast<std::uint32_t>(size[1])};
+  read_word(reader, "preset", render::preset_from, session.preset);
+  read_word(reader, "render_path", render::render_path_from, session.render_path);
+  if (double hour = 0; reader.read("hour", hour, {0, 24})) session.start_hour = hour;
+  if (double hz = 0; reader.read("target_fps", hz, {0, 1000})) session.target_hz = hz;
+  reader.read("prefill", session.prefill);
+  read_scene(reader, session.scene);
+}
+
+void read_flight(const world::Member& table, app::FlightOptions& flight, Problems& problems) {
+  TableReader reader(table.value, table.key, table.line, problems);
+  read_file_name(reader, "path", flight.path_file);
+  reader.read("seconds", flight.seconds, {0, 86400});
+  reader.read("warmup", flight.warmup_seconds, {0, 3600});
+  read_count(reader, "frames", {0, 1e9}, flight.frames);
+  read_count(reader, "images", {0, 1e9}, flight.images_every);
+  reader.read("fixed_step", flight.fixed_step_hz, {1, 1000});
+  reader.read("loop", flight.loop);
+  read_session(reader, flight.session);
+  reader.finish();
+  if (flight.loop && flight.seconds == 0 && flight.frames == 0)
+    reader.problem(reader.line(), "loop", "a path that is repeated needs seconds or frames");
+}
+
+// The names that every summary has, and which of them are texts.
+class KnownFields {
+ public:
+  KnownFields() {
+    const telemetry::Summary nothing;
+    for (const telemetry::SummaryField& field : telemetry::summary_fields(nothing)) {
+      names_.push_back(field.name);
+      if (std::holds_alternative<std::string>(field.value)) texts_.push_back(field.name);
+    }
+  }
+  // What is wrong with a budget; empty if nothing. Systems are known only when the flight is.
+  std::string problem(const Budget& budget) const {
+    const auto has = [&](const std::vector<std::string>& names) {
+      return std::ranges::find(names, budget.field) != names.end();
+    };
+    if (budget.field.starts_with(kSystemTimes)) {
+      const bool ends = budget.field.ends_with(".p50") || budget.field.ends_with(".p99");
+      return ends ? "" : "times of systems have the figures p50 and p99";
+    }
+    if (!has(names_)) {
+      const std::string_view nearest = core::nearest_word(budget.field, names_);
+      return nearest.empty()
+                 ? "summary.json has no such field"
+                 : fmt::format("summary.json has no such field; did you mean {}?", nearest);
+    }
+    if (budget.relation != Relation::kEqual && (has(texts_) || budget.field.starts_with("hash.")))
+      return "it is a text, which can only be equal";
+    return {};
+  }
+
+ private:
+  std::vector<std::string> names_, texts_;
+};
+
+// Dotted keys are tables in tables: "frame_ms.p99 = 25".
+void read_budgets(const Node& table, const std::string& prefix, Relation relation,
+                  const KnownFields& known, Problems& problems, std::vector<Budget>& budgets) {
+  for (const world::Member& member : table.members) {
+    const std::string field = prefix.empty() ? member.key : prefix + "." + member.key;
+    const Node& value = member.value;
+    const std::string where = fmt::format("{}.{}", name_of(relation), field);
+    if (value.kind == Node::Kind::kTable) {
+      read_budgets(value, field, relation, known, problems, budgets);
+      continue;
+    }
+    Budget budget{field, relation, 0.0, member.line};
+    const bool number = value.kind == Node::Kind::kInteger || value.kind == Node::Kind::kReal;
+    if (number && std::abs(value.real) <= 1e300) {
+      budget.limit = value.real;
+    } else if (value.kind == Node::Kind::kText && relation == Relation::kEqual) {
+      budget.limit = value.text;
+    } else {
+      problems.add(value.line, where,
+                   relation == Relation::kEqual ? "the limit must be a finite number or a text"
+                                                : "the limit must be a finite number");
+      continue;
+    }
+    if (const std::string problem = known.problem(budget); !problem.empty())
+      problems.add(member.line, where, problem);
+    budgets.push_back(std::move(budget));
+  }
+}
+
+core::Result<void> find(const char* kind, const std::filesystem::path& folder,
+                        std::filesystem::path& file) {
+  std::error_code error;
+  if (file.empty()) return {};
+  if (std::filesystem::is_regular_file(folder / file, error)) {
+    file = folder / file;
+    return {};
+  }
+  auto found = core::data_file(std::filesystem::path(kind) / file, folder);
+  if (!found) {
+    std::filesystem::path with_ending = file;
+    found = core::data_file(std::filesystem::path(kind) / (with_ending += ".toml"), folder);
+  }
+  if (!found) return tl::unexpected(found.error());
+  file = std::move(*found);
+  return {};
+}
+
+}  // namespace
+
+std::string_view name_of(Relation relation) {
+  return relation == Relation::kAtMost    ? "at_most"
+         : relation == Relation::kAtLeast ? "at_least"
+                                          : "equal";
+}
+
+core::Result<FrameTest> parse_frame_test(std::string_view text,
+                                         const std::filesystem::path& file_name) {
+  const core::Result<Node> document = world::parse_document(text, file_name.string());
+  if (!document) return tl::unexpected(document.error());
+  const std::string file = file_name.string();
+  Problems problems(file);
+  TableReader root(*document, "", 1, problems);
+  world::read_format(root, kFrameTestFormat);
+  if (problems.any()) return tl::unexpected(problems.first());
+  FrameTest test;
+  test.name = core::shown(file_name.stem().string(), kMaxNameBytes);
+  root.read("name", test.name, kMaxNameBytes);
+  if (test.name.find('/') != std::string::npos)
+    root.problem(root.find("name")->line, "name", "a name is also that of a folder: without /");
+  test.flight.session.headless = true;
+  test.flight.session.world_file = "paper";
+  test.flight.session.preset = render::Preset::kLow;
+  if (const world::Member* flight = root.table("flight"))
+    read_flight(*flight, test.flight, problems);
+  const KnownFields known;
+  for (const Relation relation : {Relation::kAtMost, Relation::kAtLeast, Relation::kEqual}) {
+    if (const world::Member* table = root.table(name_of(relation)))
+      read_budgets(table->value, "", relation, known, problems, test.budgets);
+  }
+  root.finish();
+  if (!problems.any() && test.budgets.empty())
+    problems.add(1, "at_most", "a frame test needs a budget, in [at_most], [at_least] or [equal]");
+  if (problems.any()) return tl::unexpected(problems.first());
+  std::ranges::stable_sort(test.budgets, {}, &Budget::line);
+  return test;
+}
+
+core::Result<FrameTest> load_frame_test(const std::filesystem::path& file) {
+  const core::Result<std::string> text = world::read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  core::Result<FrameTest> test = parse_frame_test(*text, file);
+  if (!test) return test;
+  const auto found =
+      find("worlds", file.parent_path(), test->flight.session.world_file).and_then([&] {
+        return find("paths", file.parent_path(), test->flight.path_file);
+      });
+  if (!found)
+    return core::fail(found.error().code,
+                      fmt::format("{}: {}", file.string(), found.error().message));
+  return test;
+}
+
+}  // namespace psygen::frametest

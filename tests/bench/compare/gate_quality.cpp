@@ -1,0 +1,96 @@
+// How good the gate of `psygen compare` is, over the noise of real runs (docs/frame-tests.md):
+//   psygen_bench_gate RUNS [COMPARISONS]
+// RUNS is a folder with at least 16 runs of one program. Each comparison draws two batches of 8
+// pairs from them at random, changes B's frames as the line says, and asks for the verdict.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <numeric>
+#include <random>
+
+#include "engine/compare/compare.hpp"
+
+namespace psygen::compare {
+namespace {
+
+using Random = std::mt19937_64;
+using Change = std::function<void(RecordedRun&, Random&)>;
+constexpr std::size_t kPairs = 8;
+
+void scale(RecordedRun& run, double factor) {
+  for (double& ms : run.frame_ms)
+    ms *= factor;
+}
+
+// Three frames in 200, always the same ones or others in each run.
+void double_frames(RecordedRun& run, Random random) {
+  const std::size_t count = 3 * run.frame_ms.size() / 200;
+  for (std::size_t i = 0; i < count; ++i)
+    run.frame_ms[random() % run.frame_ms.size()] *= 2;
+}
+
+const std::pair<const char*, Change> kChanges[] = {
+    {"nothing", [](RecordedRun&, Random&) {}},
+    {"every frame +10 %", [](RecordedRun& run, Random&) { scale(run, 1.1); }},
+    {"every frame -10 %", [](RecordedRun& run, Random&) { scale(run, 0.9); }},
+    {"3 in 200 doubled, the same",
+     [](RecordedRun& run, Random&) { double_frames(run, Random(5)); }},
+    {"3 in 200 doubled, any",
+     [](RecordedRun& run, Random& random) { double_frames(run, Random(random())); }},
+    {"-20 %, 1 % more missing", [](RecordedRun& run, Random&) {
+       scale(run, 0.8);
+       run.missing_percent += 1;
+     }}};
+
+std::array<std::size_t, 4> verdicts(const std::vector<RecordedRun>& runs, const Change& change,
+                                    std::size_t count) {
+  Random random(1);
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::array<std::size_t, 4> counts{};
+  for (std::size_t n = 0; n < count; ++n) {
+    std::vector<RecordedRun> a, b;
+    for (int batch = 0; batch < 2; ++batch) {
+      std::shuffle(order.begin(), order.end(), random);
+      for (std::size_t i = 0; i < kPairs; ++i) {
+        a.push_back(runs[order[2 * i]]);
+        b.push_back(runs[order[2 * i + 1]]);
+        change(b.back(), random);
+      }
+    }
+    const auto result = compare(a, b);
+    if (!result) {
+      std::fprintf(stderr, "%s\n", result.error().message.c_str());
+      std::exit(1);
+    }
+    ++counts[static_cast<std::size_t>(result->verdict)];
+  }
+  return counts;
+}
+
+}  // namespace
+}  // namespace psygen::compare
+
+int main(int argc, char** argv) {
+  using namespace psygen::compare;
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: psygen_bench_gate RUNS [COMPARISONS]\n");
+    return 2;
+  }
+  const auto runs = read_runs(argv[1]);
+  if (!runs || runs->size() < 2 * kPairs) {
+    std::fprintf(stderr, "%s\n", runs ? "16 runs are needed" : runs.error().message.c_str());
+    return 1;
+  }
+  const std::size_t count = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 100;
+  std::printf("%zu runs of %zu frames, %zu comparisons a line\n%-28s %6s %6s %7s %12s\n",
+              runs->size(), runs->front().frame_ms.size(), count, "B", "same", "worse", "better",
+              "inconclusive");
+  for (const auto& [name, change] : kChanges) {
+    const auto counts = verdicts(*runs, change, count);
+    std::printf("%-28s %6zu %6zu %7zu %12zu\n", name, counts[0], counts[1], counts[2], counts[3]);
+  }
+  return 0;
+}

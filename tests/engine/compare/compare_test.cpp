@@ -1,0 +1,169 @@
+#include "engine/compare/compare.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace psygen::compare {
+namespace {
+
+using testing::HasSubstr;
+using Runs = std::vector<RecordedRun>;
+
+// A run of 120 frames; times have noise of up to `noise`, as others take processors away.
+RecordedRun make_run(std::mt19937& random, double factor = 1, double noise = 0.3) {
+  RecordedRun run;
+  run.folder = "run";
+  run.world_hash = "00ab";
+  run.fixed_step = 30;
+  run.width = 640;
+  run.height = 360;
+  run.error_pixels = 4;
+  for (int k = 0; k < 120; ++k) {
+    const double share = static_cast<double>(random() % 1000) / 1000;
+    run.time_s.push_back(k / 30.0);
+    run.frame_ms.push_back(factor * (10 + k % 5) * (1 + noise * share * share));
+    run.left_out.push_back(false);
+  }
+  return run;
+}
+
+struct Sets {
+  Runs a, b;
+};
+
+template <class Change>
+Sets make_sets(std::size_t pairs, const Change& change, double factor = 1, double noise = 0.3) {
+  std::mt19937 random(7);
+  Sets sets;
+  for (std::size_t i = 0; i < pairs; ++i) {
+    sets.a.push_back(make_run(random, 1, noise));
+    sets.b.push_back(make_run(random, factor, noise));
+    change(sets.b.back(), random);
+  }
+  return sets;
+}
+
+constexpr auto kNothing = [](RecordedRun&, std::mt19937&) {};
+
+Comparison judged(const Sets& sets) {
+  const auto result = compare(sets.a, sets.b);
+  EXPECT_TRUE(result) << result.error().message;
+  return result ? *result : Comparison{};
+}
+
+std::string refusal(const Sets& sets) {
+  const auto result = compare(sets.a, sets.b);
+  return result ? "taken" : result.error().message;
+}
+
+TEST(Compare, FindsTheSameTheSameAndTenPercentWorseOrBetter) {
+  EXPECT_EQ(judged(make_sets(16, kNothing)).verdict, Verdict::kSame);
+  const Comparison worse = judged(make_sets(16, kNothing, 1.1));
+  EXPECT_EQ(worse.verdict, Verdict::kWorse);
+  EXPECT_THAT(worse.reasons.front(), HasSubstr("% more"));
+  EXPECT_EQ(judged(make_sets(16, kNothing, 1 / 1.1)).verdict, Verdict::kBetter);
+}
+
+TEST(Compare, FindsAFewDoubledFramesAlwaysTheSameOnesOrAnyOnes) {
+  const auto same = [](RecordedRun& run, std::mt19937&) {
+    for (const std::size_t k : {20u, 50u})
+      run.frame_ms[k] *= 2;
+  };
+  EXPECT_EQ(judged(make_sets(16, same)).verdict, Verdict::kWorse);
+  const auto any = [](RecordedRun& run, std::mt19937& random) {
+    for (int i = 0; i < 3; ++i)
+      run.frame_ms[random() % run.frame_ms.size()] *= 2;
+  };
+  EXPECT_EQ(judged(make_sets(16, any)).verdict, Verdict::kWorse);
+}
+
+TEST(Compare, FasterWithMoreMissingOrALargerErrorIsNotBetter) {
+  const auto skips = [](RecordedRun& run, std::mt19937&) { run.missing_percent = 2; };
+  const Comparison missing = judged(make_sets(16, skips, 0.8));
+  EXPECT_EQ(missing.verdict, Verdict::kWorse);
+  EXPECT_THAT(missing.reasons, testing::Contains(HasSubstr("more geometry is missing")));
+  EXPECT_THAT(missing.reasons, testing::Contains(HasSubstr("is not better")));
+  const auto coarser = [](RecordedRun& run, std::mt19937&) { run.error_pixels = 5; };
+  EXPECT_EQ(judged(make_sets(16, coarser, 0.8)).verdict, Verdict::kWorse);
+}
+
+TEST(Compare, ADifferenceWithoutASecondBatchIsNotAVerdict) {
+  const Comparison once = judged(make_sets(8, kNothing, 1.1));
+  EXPECT_EQ(once.verdict, Verdict::kInconclusive);
+  EXPECT_THAT(once.reasons, testing::Contains(HasSubstr("record 14 pairs")));
+}
+
+TEST(Compare, SaysHowMuchNoiseHides) {
+  const Comparison loud = judged(make_sets(16, kNothing, 1, 40));
+  EXPECT_EQ(loud.verdict, Verdict::kInconclusive);
+  EXPECT_GT(loud.noise_percent, 1);
+}
+
+TEST(Compare, OnTheVirtualClockEveryDifferenceCounts) {
+  const auto exact = [](double factor, double missing) {
+    Sets sets = make_sets(1, kNothing, 1, 0);
+    for (Runs* runs : {&sets.a, &sets.b})
+      runs->front().virtual_clock = true;
+    sets.b.front().frame_ms[3] *= factor;
+    sets.b.front().missing_percent = missing;
+    return judged(sets).verdict;
+  };
+  EXPECT_EQ(exact(1, 0), Verdict::kSame);
+  EXPECT_EQ(exact(1.001, 0), Verdict::kWorse);
+  EXPECT_EQ(exact(0.999, 0), Verdict::kBetter);
+  EXPECT_EQ(exact(0.5, 0.001), Verdict::kWorse);
+}
+
+TEST(Compare, RefusesWhatCannotBeCompared) {
+  const auto changed = [](auto change) {
+    return make_sets(8, [change](RecordedRun& run, std::mt19937&) { change(run); });
+  };
+  EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.world_hash = "00ac"; })),
+              HasSubstr("world hashes"));
+  EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.width = 320; })),
+              HasSubstr("sizes: 640x360 and 320x360"));
+  EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.fixed_step = 60; })),
+              HasSubstr("steps: 30 and 60"));
+  EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.time_s[5] += 0.001; })),
+              HasSubstr("other paths"));
+  EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.frame_ms.pop_back(); })),
+              HasSubstr("numbers of frames"));
+  EXPECT_THAT(refusal(make_sets(6, kNothing)), HasSubstr("6 pairs of runs; with fewer than 7"));
+  EXPECT_THAT(refusal({}), HasSubstr("0 of A and 0 of B"));
+  Sets sets = make_sets(8, kNothing);
+  for (Runs* runs : {&sets.a, &sets.b})
+    for (RecordedRun& run : *runs) {
+      run.frame_ms.resize(40);
+      run.time_s.resize(40);
+    }
+  EXPECT_THAT(refusal(sets), HasSubstr("40 frames after the warm-up; a comparison needs 50"));
+  sets = make_sets(8, kNothing);
+  for (Runs* runs : {&sets.a, &sets.b})
+    for (RecordedRun& run : *runs)
+      run.fixed_step.reset();
+  EXPECT_THAT(refusal(sets), HasSubstr("it needs fixed_step"));
+}
+
+TEST(FalseAlarms, AreCountedOverComparisonsOfASetWithItself) {
+  const Sets sets = make_sets(12, kNothing);
+  Runs all = sets.a;
+  all.insert(all.end(), sets.b.begin(), sets.b.end());
+  const auto alarms = measure_false_alarms(all, 5, 1);
+  ASSERT_TRUE(alarms) << alarms.error().message;
+  EXPECT_EQ(alarms->comparisons, 5u);
+  EXPECT_EQ(alarms->worse, 0u);
+  EXPECT_FALSE(measure_false_alarms(sets.a, 5, 1));
+}
+
+TEST(Compare, IsToldInWordsAndAsJson) {
+  const Comparison worse = judged(make_sets(16, kNothing, 1.1));
+  const FalseAlarms alarms{100, 1, 0, 3};
+  EXPECT_THAT(to_text(worse, &alarms), testing::StartsWith("verdict: worse\n"));
+  EXPECT_THAT(to_text(worse, &alarms), HasSubstr("100 comparisons: 1 worse"));
+  EXPECT_THAT(to_json(worse, nullptr), HasSubstr("\"verdict\": \"worse\""));
+}
+
+}  // namespace
+}  // namespace psygen::compare

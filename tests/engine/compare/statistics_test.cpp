@@ -1,0 +1,64 @@
+// The expected figures were computed by counting with whole numbers and fractions, in Python:
+//   fisher: sum(comb(nb, k) * comb(na, h - k) for k in range(b, min(h, nb) + 1)) / comb(na + nb, h)
+//   swap_test: the signs in {1, -1}^8 with sum(sign * (b - a)) >= sum(b - a), as Fractions
+//   minima_test: the labellings in {0, 1}^7 whose ratio or tail is at least that of no exchange
+#include "engine/compare/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+namespace psygen::compare {
+namespace {
+
+TEST(FisherMore, IsTheHypergeometricTail) {
+  EXPECT_NEAR(fisher_more(0, 8, 6, 8), 0.0034965034965034965, 1e-12);
+  EXPECT_NEAR(fisher_more(1, 8, 6, 8), 0.02027972027972028, 1e-12);
+  EXPECT_NEAR(fisher_more(3, 8, 3, 8), 0.6958041958041958, 1e-12);
+  EXPECT_NEAR(fisher_more(0, 12, 12, 12), 3.698011505253395e-07, 1e-15);
+  EXPECT_NEAR(fisher_more(8, 8, 0, 8), 1.0, 1e-12);
+}
+
+TEST(SwapTest, CountsTheLabellingsThatAreAtLeastAsExtreme) {
+  const std::vector<double> a{10.1, 9.8, 10.4, 10.0, 9.9, 10.2, 10.3, 9.7};
+  const std::vector<double> b{10.6, 10.0, 10.3, 10.9, 10.1, 10.0, 11.0, 10.2};
+  EXPECT_EQ(swap_test(a, b), 8.0 / 256);
+  EXPECT_EQ(swap_test(a, a), 1.0) << "all labellings are alike";
+  EXPECT_EQ(swap_test(std::vector<double>(8, 1.0), std::vector<double>(8, 2.0)), 1.0 / 256);
+}
+
+TEST(MinimaTest, ComparesTheSumsAndTheTailsOfTheMinima) {
+  const Times a{{10, 20, 30}, {11, 19, 33}, {10, 22, 31}, {12, 20, 30},
+                {11, 21, 29}, {10, 23, 35}, {13, 20, 31}};
+  const Times b{{11, 22, 33}, {12, 20, 35}, {10, 24, 31}, {14, 21, 33},
+                {11, 22, 30}, {11, 26, 38}, {13, 23, 33}};
+  const MinimaTest test = minima_test(a, b);
+  EXPECT_NEAR(test.ratio, 30.0 / 29, 1e-12) << "minima 10 + 20 + 30 and 10 + 19 + 29";
+  EXPECT_EQ(test.p_slower, 32.0 / 128);
+  EXPECT_EQ(test.p_faster, 128.0 / 128);
+  EXPECT_NEAR(test.tail_ratio, 20.0 / 19, 1e-12);
+  EXPECT_EQ(test.p_tail, 64.0 / 128);
+  EXPECT_LT(test.low, 30.0 / 29);
+  EXPECT_GT(test.high, 30.0 / 29);
+}
+
+TEST(MinimaTest, TheIntervalHoldsAKnownRatioAndShrinksWithTheNoise) {
+  const auto runs = [](double factor, double noise, unsigned seed) {
+    Times times;
+    for (unsigned run = 0; run < 8; ++run) {
+      times.emplace_back();
+      for (unsigned k = 0; k < 60; ++k) {
+        const unsigned random = (seed + run * 977 + k * 331) * 2654435761U >> 8;
+        times.back().push_back(factor * (10 + k % 7) * (1 + noise * (random % 1000) / 1000.0));
+      }
+    }
+    return times;
+  };
+  const MinimaTest quiet = minima_test(runs(1, 0.05, 1), runs(1.1, 0.05, 99));
+  EXPECT_LT(quiet.low, 1.1);
+  EXPECT_GT(quiet.high, 1.1);
+  EXPECT_EQ(quiet.p_slower, 1.0 / 256);
+  const MinimaTest loud = minima_test(runs(1, 0.8, 1), runs(1.1, 0.8, 99));
+  EXPECT_GT(loud.high - loud.low, quiet.high - quiet.low);
+}
+
+}  // namespace
+}  // namespace psygen::compare

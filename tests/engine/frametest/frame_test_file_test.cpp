@@ -1,0 +1,125 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "engine/frametest/frame_test.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace psygen::frametest {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string kWhole = R"(format = 1
+name = "walk"
+
+[flight]
+world = "paper"
+path = "walk27"
+size = [320, 180]
+preset = "medium"
+seconds = 4
+warmup = 0.5
+clock = "virtual"
+fixed_step = 30
+budget_mib = 64
+target_fps = 60
+
+[at_most]
+frame_ms.p99 = 25
+missing.pixels_max_percent = 1.5
+system_ms.cache.p99 = 3
+
+[at_least]
+low1_fps = 20
+
+[equal]
+missing.frames = 0
+hash.world = "0123456789abcdef"
+picture.grade = "good"
+)";
+
+std::string refusal(const std::string& text) {
+  const auto test = parse_frame_test(text, "folder/a.toml");
+  return test ? "taken" : test.error().message;
+}
+
+std::string with(const std::string& flight,
+                 const std::string& budgets = "[at_most]\nhitches = 0\n") {
+  return "format = 1\n[flight]\n" + flight + "\n" + budgets;
+}
+
+TEST(FrameTestFile, GivesTheFlightAndTheBudgetsInTheirOrder) {
+  const auto test = parse_frame_test(kWhole, "folder/other.toml");
+  ASSERT_TRUE(test) << test.error().message;
+  EXPECT_EQ(test->name, "walk");
+  EXPECT_TRUE(test->flight.session.headless);
+  EXPECT_TRUE(test->flight.session.scene.virtual_time);
+  EXPECT_EQ(test->flight.session.size, (core::Extent{320, 180}));
+  EXPECT_EQ(test->flight.session.preset, render::Preset::kMedium);
+  EXPECT_EQ(test->flight.session.scene.budget_bytes, 64ull << 20);
+  EXPECT_EQ(test->flight.session.target_hz, 60);
+  EXPECT_EQ(test->flight.seconds, 4);
+  EXPECT_EQ(test->flight.fixed_step_hz, 30);
+  ASSERT_EQ(test->budgets.size(), 7u);
+  EXPECT_EQ(test->budgets[0].field, "frame_ms.p99");
+  EXPECT_EQ(std::get<double>(test->budgets[0].limit), 25);
+  EXPECT_EQ(test->budgets[3].relation, Relation::kAtLeast);
+  EXPECT_EQ(test->budgets[6].field, "picture.grade");
+  EXPECT_EQ(std::get<std::string>(test->budgets[6].limit), "good");
+}
+
+TEST(FrameTestFile, HasTheNameOfTheFileAndUsualOptionsWhereItSaysNothing) {
+  const auto test = parse_frame_test("format = 1\n[at_most]\nhitches = 0\n", "folder/dash.toml");
+  ASSERT_TRUE(test) << test.error().message;
+  EXPECT_EQ(test->name, "dash");
+  EXPECT_EQ(test->flight.session.world_file, "paper");
+  EXPECT_FALSE(test->flight.session.scene.virtual_time);
+  EXPECT_EQ(test->flight.session.preset, render::Preset::kLow) << "not what suits the device";
+}
+
+TEST(FrameTestFile, IsRefusedWithFileLineFieldAndTheNearestWord) {
+  EXPECT_EQ(refusal(with("sise = [1, 1]")),
+            "folder/a.toml:3: flight.sise: this key is unknown; did you mean size?");
+  EXPECT_THAT(refusal(with("clock = \"sand\"")),
+              StartsWith("folder/a.toml:3: flight.clock: it must"));
+  EXPECT_THAT(refusal(with("preset = \"best\"")), StartsWith("folder/a.toml:3: flight.preset: "));
+  EXPECT_THAT(refusal(with("error = 0")), HasSubstr("it must be a number from 0.1 to 1000"));
+  EXPECT_THAT(refusal(with("loop = true")), HasSubstr("needs seconds or frames"));
+  EXPECT_THAT(refusal(with("", "[at_most]\nframe_ms.p98 = 1\n")),
+              StartsWith("folder/a.toml:5: at_most.frame_ms.p98: summary.json has no such field; "
+                         "did you mean frame_ms.p9"));
+  EXPECT_THAT(refusal(with("", "[at_most]\nframe_ms.p99 = \"fast\"\n")),
+              HasSubstr("at_most.frame_ms.p99: the limit must be a finite number"));
+  EXPECT_THAT(refusal(with("", "[at_most]\nframe_ms.p99 = nan\n")), HasSubstr("finite number"));
+  EXPECT_THAT(refusal(with("", "[at_least]\npicture.grade = 1\n")), HasSubstr("can only be equal"));
+  EXPECT_THAT(refusal(with("", "[at_most]\nsystem_ms.cache.p50x = 1\n")), HasSubstr("p50 and p99"));
+  EXPECT_THAT(refusal("format = 1\n"), HasSubstr("needs a budget"));
+  EXPECT_THAT(refusal("format = 2\n"), HasSubstr("newer than this program"));
+  EXPECT_THAT(refusal("format = 1\nname = \"a/b\"\n[at_most]\nhitches = 0\n"),
+              HasSubstr("without /"));
+}
+
+TEST(FrameTestFile, FindsWhatLiesBesideItThenWhatComesWithPsygen) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+  };
+  write("walk27.toml", "");  // one's own
+  write("test.toml", with("world = \"five_species\"\npath = \"walk27.toml\""));
+  const auto test = load_frame_test(folder / "test.toml");
+  ASSERT_TRUE(test) << test.error().message;
+  EXPECT_EQ(test->flight.path_file, folder / "walk27.toml");
+  EXPECT_THAT(test->flight.session.world_file.string(),
+              testing::EndsWith("worlds/five_species.toml"));
+  write("test.toml", with("world = \"nowhere\""));
+  const auto refused = load_frame_test(folder / "test.toml");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, StartsWith((folder / "test.toml").string() + ": "));
+  EXPECT_EQ(load_frame_test(folder / "none.toml").error().code, core::ErrorCode::kIo);
+}
+
+}  // namespace
+}  // namespace psygen::frametest
