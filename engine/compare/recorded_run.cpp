@@ -15,7 +15,7 @@
 namespace psygen::compare {
 namespace {
 
-using Json = nlohmann::json;
+using Parsed = nlohmann::json;
 
 constexpr std::size_t kMostShownBytes = 40;
 
@@ -34,7 +34,17 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 }
 
 // The columns that a comparison needs.
-enum Column { kTime, kFrame, kCpu, kApart, kError, kHoles, kMissing, kCoarse, kColumns };
+enum Column {
+  kColumnTime,
+  kColumnFrame,
+  kColumnCpu,
+  kColumnApart,
+  kColumnError,
+  kColumnHoles,
+  kColumnMissing,
+  kColumnCoarse,
+  kColumns
+};
 constexpr std::array<std::string_view, kColumns> kNames = {"time_s",
                                                            "frame_ms",
                                                            "main_cpu_ms",
@@ -77,24 +87,25 @@ core::Result<void> add_row(std::span<const std::string_view> cells,
                            const std::string& where, double warmup_s, RecordedRun& run,
                            Sums& sums) {
   std::array<double, kColumns> values{};
-  for (const Column column : {kTime, kFrame, kError, kHoles, kMissing, kCoarse}) {
+  for (const Column column :
+       {kColumnTime, kColumnFrame, kColumnError, kColumnHoles, kColumnMissing, kColumnCoarse}) {
     const auto value = number_in(cells[columns[column]], where, kNames[column]);
     if (!value) return tl::unexpected(value.error());
     values[column] = *value;
   }
-  if (!(values[kFrame] > 0)) return refuse(where, "frame_ms: a frame takes time");
-  if (!run.time_s.empty() && values[kTime] < run.time_s.back())
+  if (!(values[kColumnFrame] > 0)) return refuse(where, "frame_ms: a frame takes time");
+  if (!run.time_s.empty() && values[kColumnTime] < run.time_s.back())
     return refuse(where, fmt::format("time_s: the clock goes backwards, from {} to {}",
-                                     run.time_s.back(), values[kTime]));
-  if (values[kTime] < warmup_s) return {};
-  run.virtual_clock = cells[columns[kCpu]].empty();
-  run.time_s.push_back(values[kTime]);
-  run.frame_ms.push_back(values[kFrame]);
-  run.left_out.push_back(!cells[columns[kApart]].empty());
-  sums.missing += values[kMissing];
-  sums.coarse += values[kCoarse];
-  sums.error += values[kError];
-  sums.holes += values[kHoles];
+                                     run.time_s.back(), values[kColumnTime]));
+  if (values[kColumnTime] < warmup_s) return {};
+  run.virtual_clock = cells[columns[kColumnCpu]].empty();
+  run.time_s.push_back(values[kColumnTime]);
+  run.frame_ms.push_back(values[kColumnFrame]);
+  run.left_out.push_back(!cells[columns[kColumnApart]].empty());
+  sums.missing += values[kColumnMissing];
+  sums.coarse += values[kColumnCoarse];
+  sums.error += values[kColumnError];
+  sums.holes += values[kColumnHoles];
   return {};
 }
 
@@ -144,10 +155,10 @@ core::Result<void> parse_frames(std::string_view text, double warmup_s, Recorded
 
 // The member at a path ("hash.world") if it has the kind that T needs.
 template <class T>
-std::optional<T> member(const Json& json, const char* path) {
-  const Json::json_pointer pointer(path);
+std::optional<T> member(const Parsed& json, const char* path) {
+  const Parsed::json_pointer pointer(path);
   if (!json.contains(pointer)) return std::nullopt;
-  const Json& value = json[pointer];
+  const Parsed& value = json[pointer];
   if constexpr (std::is_same_v<T, std::string>) {
     if (!value.is_string()) return std::nullopt;
   } else {
@@ -168,7 +179,7 @@ core::Result<std::string> read_text(const std::filesystem::path& file) {
 core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_view summary_json,
                                     const std::string& folder) {
   const std::string file = folder + "/summary.json";
-  const Json json = Json::parse(summary_json, nullptr, false);
+  const Parsed json = Parsed::parse(summary_json, nullptr, false);
   if (json.is_discarded()) return refuse(file, "it is not JSON, or is cut");
   if (member<std::string>(json, "/schema") != "psygen.summary/1")
     return refuse(file, "schema: it must be \"psygen.summary/1\"");
