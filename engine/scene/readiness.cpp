@@ -121,6 +121,7 @@ void list(const PlaceRules& rules, Foresight::Place& place) {
   place.meshes.clear();
   place.sun_azimuth_deg = rules.daylight.azimuth_deg;
   place.sun_elevation_deg = rules.daylight.elevation_deg;
+  place.pixels_per_radian = rules.camera.pixels_per_radian;
   place.stale = false;
   const core::WorldPosition normal =
       core::normalised(place.position, rules.facts.world.block_size_m());
@@ -245,7 +246,8 @@ void stop_asking(State& state, PlaceId id) {
 void want_places(const PlaceRules& rules, Foresight& foresight, synthesis::MeshSupply& meshes,
                  ecs::EventQueue<PlaceReady>& ready) {
   for (Foresight::Place& place : foresight.places) {
-    if (place.stale) list(rules, place);
+    if (place.stale || place.pixels_per_radian != rules.camera.pixels_per_radian)
+      list(rules, place);
     light(rules, place);
     place.readiness.missing = 0;
     place.readiness.expected_s = 0;

@@ -43,9 +43,9 @@ struct PlaceReady {
   PlaceId id = 0;
 };
 
-// Asks that a place become ready and stay so, through edits and the course of the sun. Fails as
-// readiness(), and with kOverBudget where it needs more than half of the memory for meshes, or
-// together with other places.
+// Asks that a place become ready and stay so, through edits, the course of the sun and changes of
+// the picture's size. Fails as readiness(), and with kOverBudget where it needs more than half of
+// the memory for meshes, or together with other places.
 core::Result<PlaceId> ask_ready(State& state, const core::WorldPosition& position, double radius_m);
 // What is missing of it, as of the last tick. Ready with no meshes for an id that is not asked for.
 Readiness readiness(const State& state, PlaceId id);
@@ -66,6 +66,7 @@ struct Foresight {
     std::vector<visibility::NodeCoord> nodes;  // whose ground and models it shows
     std::vector<Mesh> meshes;
     double sun_azimuth_deg = 0, sun_elevation_deg = 0;  // that its ground is lit by
+    float pixels_per_radian = 0;                        // of the picture it is for
     std::uint64_t bytes = 0;
     Readiness readiness;
     bool told = false;

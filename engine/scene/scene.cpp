@@ -237,6 +237,9 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
     return tl::unexpected(ok.error());
   s.quality.governor =
       Governor({.target_ms = settings.target_frame_ms, .max_factor = settings.max_error_factor});
+  // Places may be asked for before the first tick (readiness.hpp).
+  fit_to_size(s.input.size, s.camera);
+  set_errors(s.settings, s.quality);
   s.simulation.step.step_s = 1 / settings.step_hz;
   build_tick(s);
   s.trace = tracing_of(trace, s.settings.modelers, facts.registry);

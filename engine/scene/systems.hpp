@@ -15,12 +15,16 @@ void simulation_system(const Clock& clock, ecs::World& entities, Simulation& sim
 // Takes over the wanted pose (an invalid one is refused, the last valid one stays) and predicts
 // poses.
 void input_system(const Input& input, const Clock& clock, const WorldFacts& facts, Camera& camera);
+// The part of it that the size of the picture decides; an empty size changes nothing.
+void fit_to_size(const core::Extent& size, Camera& camera);
 
 // Decides how fine the picture shall be, from the time that the last frames took and from what the
 // last tick lacked.
 void quality_system(const Settings& settings, const Rules& rules, const Input& input,
                     const Pressure& pressure, const synthesis::MeshSupply& meshes,
                     Quality& quality);
+// The part of it that follows from its factors: the errors that are allowed.
+void set_errors(const Settings& settings, Quality& quality);
 
 // Moves the sun of worlds that have a day; the ground whose shadows it changes is made anew.
 using DaylightQuery = ecs::Query<const Node, Source, Demand>;

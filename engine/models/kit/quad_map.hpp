@@ -23,7 +23,8 @@ struct QuadPlace {
   std::uint32_t level = 0;
   std::uint64_t x = 0, z = 0;
 
-  // The square of `level`, counted in squares of that level from block 0. Wraps like blocks do.
+  // The square of `level` < kMaxLevel, counted in squares of that level from block 0. Wraps like
+  // blocks do.
   static constexpr QuadPlace of(core::BlockCoord at, std::uint32_t level = 0) {
     const auto from_origin = [level](std::int32_t index) {
       const std::uint32_t block = static_cast<std::uint32_t>(index) << level;

@@ -8,6 +8,14 @@ namespace {
 constexpr std::array kPredictionSeconds{0.25F, 0.75F, 1.5F, 3.0F};
 }  // namespace
 
+void fit_to_size(const core::Extent& size, Camera& camera) {
+  if (size.width > 0 && size.height > 0) camera.size = size;
+  camera.projection.aspect =
+      static_cast<float>(camera.size.width) / static_cast<float>(camera.size.height);
+  camera.pixels_per_radian =
+      camera.projection.pixels_per_radian(static_cast<float>(camera.size.height));
+}
+
 void input_system(const Input& input, const Clock& clock, const WorldFacts& facts, Camera& camera) {
   const double block_size_m = facts.world.block_size_m();
   if (core::is_valid(input.pose)) {
@@ -16,11 +24,7 @@ void input_system(const Input& input, const Clock& clock, const WorldFacts& fact
   } else {
     ++camera.rejected_poses;
   }
-  if (input.size.width > 0 && input.size.height > 0) camera.size = input.size;
-  camera.projection.aspect =
-      static_cast<float>(camera.size.width) / static_cast<float>(camera.size.height);
-  camera.pixels_per_radian =
-      camera.projection.pixels_per_radian(static_cast<float>(camera.size.height));
+  fit_to_size(input.size, camera);
 
   camera.predictor.observe(clock.now_s, camera.pose, block_size_m);
   camera.predictions.clear();

@@ -48,6 +48,13 @@ void adapt_to_memory(const Settings& settings, const Rules& rules, const Pressur
 
 }  // namespace
 
+void set_errors(const Settings& settings, Quality& quality) {
+  const double factor = quality.governor.error_factor();
+  const double unhurried = settings.max_error_pixels * double{quality.coarsening};
+  quality.error_pixels = unhurried * factor;
+  quality.model_error_pixels = unhurried * std::sqrt(factor);
+}
+
 void quality_system(const Settings& settings, const Rules& rules, const Input& input,
                     const Pressure& pressure, const synthesis::MeshSupply& meshes,
                     Quality& quality) {
@@ -56,10 +63,7 @@ void quality_system(const Settings& settings, const Rules& rules, const Input& i
                                  ? std::min(quality.awaiting_since_s, pressure.at_s)
                                  : std::numeric_limits<double>::infinity();
   quality.governor.observe(input.frame_ms, input.frame_triangles);
-  const double factor = quality.governor.error_factor();
-  const double unhurried = settings.max_error_pixels * double{quality.coarsening};
-  quality.error_pixels = unhurried * factor;
-  quality.model_error_pixels = unhurried * std::sqrt(factor);
+  set_errors(settings, quality);
 }
 
 }  // namespace psygen::scene

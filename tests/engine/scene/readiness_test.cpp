@@ -121,6 +121,29 @@ void expect_there(const State& state, PlaceId id, double radius_m) {
   EXPECT_EQ(afresh->meshes, readiness(state, id).meshes);
 }
 
+TEST(Readiness, APlaceAskedForBeforeTheFirstTickHasWhatTheCameraWillNeed) {
+  auto scene = make_scene(small_settings());
+  State& state = scene->state();
+  const PlaceId id = ask_ready(state, kThere.position, 60).value();
+  const std::uint32_t meshes = readiness(state, id).meshes;
+  tick_at(*scene, kHere);
+  EXPECT_EQ(readiness(state, kThere.position, 60)->meshes, meshes);
+  EXPECT_LT(ticks_until_ready(*scene, id, 500), 500);
+  expect_there(state, id, 60);
+}
+
+TEST(Readiness, AnAskedForPlaceFollowsTheSizeOfThePicture) {
+  auto scene = make_scene(small_settings());
+  State& state = scene->state();
+  const PlaceId id = ask_ready(state, kThere.position, 60).value();
+  EXPECT_LT(ticks_until_ready(*scene, id, 500), 500);
+  state.input.size = {state.input.size.width * 4, state.input.size.height * 4};
+  tick_at(*scene, kHere);
+  EXPECT_FALSE(readiness(state, id).ready()) << "finer levels are needed now";
+  EXPECT_LT(ticks_until_ready(*scene, id, 500), 500);
+  expect_there(state, id, 60);
+}
+
 TEST(Readiness, AnAskedForPlaceFollowsTheSun) {
   auto scene =
       make_scene_of(small_settings(), [](world::World& world) { world.sky.day_length_s = 60; });

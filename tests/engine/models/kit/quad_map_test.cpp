@@ -119,7 +119,9 @@ TEST(QuadMap, TheSameValueAtAnotherPlaceHasAnotherHashInEverySquareAround) {
   here.set(QuadPlace::of({12, 7}), {5});
   beside.set(QuadPlace::of({13, 7}), {5});
   for (std::uint32_t level = 1; level <= QuadPlace::kMaxLevel; ++level) {
-    const QuadPlace around = QuadPlace::of({12 >> level, 7 >> level}, level);
+    QuadPlace around = QuadPlace::of({12, 7});
+    while (around.level < level)
+      around = around.parent();
     ASSERT_NE(here.at_or_below(around), nullptr);
     ASSERT_NE(beside.at_or_below(around), nullptr);
     EXPECT_NE(here.at_or_below(around)->hash, beside.at_or_below(around)->hash) << level;
