@@ -22,5 +22,5 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
         DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(FILES cmake/PsygenFrameTest.cmake DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(DIRECTORY cmake/modules DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)

@@ -75,6 +75,13 @@ core::Result<void> Flight::open() {
   auto session = Session::create(options_.session);
   if (!session) return tl::unexpected(session.error());
   session_ = std::move(*session);
+  const double view_m = options_.session.scene.view_distance_m;
+  const world::World& world = session_->scene().state().facts.world;
+  if (path_ && !path_->comes_within(view_m, world))
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{}: nothing of the world {} is ever in view: every point is "
+                                  "more than the view distance, {:g} m, outside the world",
+                                  options_.path_file.string(), world.name, view_m));
   log_ = std::make_unique<telemetry::FrameLog>(scene::system_names(session_->scene().state()));
   return {};
 }

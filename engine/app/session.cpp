@@ -23,8 +23,9 @@
 namespace psygen::app {
 namespace {
 
-constexpr double kHomeHeightM = 25.0;          // of the camera before it is moved
-constexpr double kWindowHz = 60;               // held in windows unless the options say otherwise
+constexpr double kHomeHeightM = 25.0;  // of the camera before it is moved
+constexpr double kWindowHz = 60;       // held in windows unless the options say otherwise
+constexpr double kMostTargetHz = 1000;
 constexpr double kMinimisedWaitSeconds = 0.1;  // between looks at a minimised window
 
 tl::unexpected<core::Error> closed_early() {
@@ -125,6 +126,10 @@ core::Result<void> Session::open_renderer(Loading& loading) {
 core::Result<void> Session::open_scene(world::World world, models::Registry registry,
                                        Loading& loading) {
   const double target_hz = options_.target_hz.value_or(options_.headless ? 0 : kWindowHz);
+  if (!(target_hz >= 0 && target_hz <= kMostTargetHz))
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("the target must be 0 to {:g} frames a second, not {:g}",
+                                  kMostTargetHz, target_hz));
   options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;
   if (options_.trace) trace_ = std::make_unique<telemetry::TraceLog>();
   auto scene =
@@ -161,6 +166,9 @@ core::CameraPose Session::home() const {
 }
 
 core::Result<void> Session::prepare(const core::CameraPose& first) {
+  if (!core::is_valid(first))
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "the first pose has a number that is not finite");
   Loading loading(scene_->state().facts.world.name, window_.get(), options_.stop);
   const auto progress = [&](std::string_view label, double fraction) {
     return loading.update(label, fraction, renderer_.get());
@@ -331,6 +339,9 @@ core::Result<void> Session::write_picture(const std::filesystem::path& file,
 }
 
 core::Result<void> Session::save_picture(const std::filesystem::path& file) {
+  if (file.extension() != ".png")
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{}: the name of a picture must end in .png", file.string()));
   const auto image = picture();
   if (!image) return tl::unexpected(image.error());
   if (auto ok = write_picture(file, *image); !ok) return ok;

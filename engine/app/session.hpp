@@ -49,7 +49,7 @@ class Session {
 
   // Makes what the first tick with this pose needs, as the paradigm says: fills the cache, or
   // amplifies. Ends early once SessionOptions::stop is set; kInterrupted once the window was
-  // closed.
+  // closed, kInvalidArgument for a pose that is none (core::is_valid).
   core::Result<void> prepare(const core::CameraPose& first);
 
   // Takes the events of the window: input(), its size, its end. Waits while it is minimised. False
@@ -91,7 +91,7 @@ class Session {
 
   // The picture of the last tick.
   core::Result<image::Image> picture();
-  // The same as a PNG.
+  // The same as a PNG; the name must end in .png.
   core::Result<void> save_picture(const std::filesystem::path& file);
   core::Result<void> write_picture(const std::filesystem::path& file, const image::Image& image);
   // What save_picture() has written since the last call.

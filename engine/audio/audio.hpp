@@ -57,7 +57,7 @@ enum class SoundId : std::uint64_t { kNone = 0 };
 
 class Audio {
  public:
-  // Opens the device. A missing one is told once as a warning. Options outside of their ranges are
+  // Opens the device. A missing one is told once as a warning. Options outside their ranges are
   // clamped.
   explicit Audio(const AudioOptions& options);
   ~Audio();

@@ -200,7 +200,8 @@ core::Result<exchange::Document> ExportCommand::block_document(
     const world::World& world, const models::Registry& registry) const {
   const std::int64_t x = block_->x, z = block_->z;
   if (auto ok = amplify::check_region(world, {x, z, x + 1, z + 1}); !ok)
-    return tl::unexpected(ok.error());
+    return core::fail(ok.error().code,
+                      fmt::format("there is no block {},{}: {}", x, z, ok.error().message));
   return amplify::block_document(world, registry, *block_, level_);
 }
 

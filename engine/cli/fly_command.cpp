@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "engine/app/flight.hpp"
 #include "engine/cli/commands.hpp"
@@ -14,6 +15,7 @@
 #include "engine/render/renderer.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/telemetry/output_file.hpp"
 
 namespace psygen::cli {
 FlyCommand::FlyCommand(CLI::App& cli)
@@ -104,6 +106,9 @@ int FlyCommand::run() {
   reporter.name = "report";
   if (!requests_.empty()) {
     options_.session.prefill = false;  // the initial fill is part of the flight
+    const auto folder = std::filesystem::path(requests_).parent_path();
+    if (auto ok = telemetry::create_output_folder(folder.empty() ? "." : folder); !ok)
+      return code_of(ok.error());
     reporter.on_frame = [this](app::Session& session, double) {
       if (flight_->is_recorded()) recorder_.observe(session.scene().state());
     };

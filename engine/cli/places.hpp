@@ -7,7 +7,7 @@
 
 namespace psygen::cli {
 
-// The place in its block, at world height 0. Fails with kInvalidArgument outside of the world.
+// The place in its block, at world height 0. Fails with kInvalidArgument outside the world.
 core::Result<core::WorldPosition> position_at(const world::World& world, glm::dvec2 place);
 
 }  // namespace psygen::cli

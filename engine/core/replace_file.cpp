@@ -70,7 +70,8 @@ FileReplacement::FileReplacement(std::filesystem::path path) : path_(std::move(p
   }
   file_ = open_temporary(path_, temporary_);
   if (file_ >= 0) return;
-  fail_with("cannot create a file in its folder", errno);
+  fail_with(errno == ENOENT ? "its folder is missing" : "cannot create a file in its folder",
+            errno);
   temporary_.clear();
 }
 

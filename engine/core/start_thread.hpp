@@ -17,8 +17,9 @@ Result<std::thread> start_thread(Work&& work) {
   try {
     return std::thread(std::forward<Work>(work));
   } catch (const std::exception& e) {  // std::system_error or std::bad_alloc
-    return fail(ErrorCode::kInternal,
-                std::string("the system gives no more threads (") + e.what() + ")");
+    return fail(
+        ErrorCode::kInternal,
+        std::string("the system gives no more threads, or no memory for one (") + e.what() + ")");
   }
 }
 

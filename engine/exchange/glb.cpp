@@ -53,6 +53,7 @@ class GlbWriter {
       return core::fail(core::ErrorCode::kOverBudget, name + " is larger than a .glb file can be");
     if (bytes > 0) join_views();
     std::ostringstream stream;
+    stream.exceptions(std::ios::badbit);  // rethrows std::bad_alloc, which streams swallow
     tinygltf::TinyGLTF writer;
     if (!writer.WriteGltfSceneToStream(&model_, stream, false, true))
       return core::fail(core::ErrorCode::kInternal, name + " cannot be written as glTF");

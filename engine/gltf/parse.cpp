@@ -103,6 +103,23 @@ core::Result<void> check_version(const tinygltf::Model& model) {
   return {};
 }
 
+// The header of a .glb says how long the file is.
+core::Result<void> check_length(const Bytes& bytes, bool binary) {
+  if (bytes.empty()) return core::fail(ErrorCode::kParse, "the file is empty");
+  if (!binary || bytes.size() < 12) return {};
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + 8, sizeof(length));
+  if (length <= bytes.size()) return {};
+  return core::fail(
+      ErrorCode::kParse,
+      fmt::format("the file is cut short: {} of its {} bytes are there", bytes.size(), length));
+}
+
+// The first line of what a library says.
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
 }  // namespace
 
 bool is_supported(std::string_view extension) {
@@ -117,6 +134,8 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
   const auto bytes = core::read_file(path, most_bytes);
   if (!bytes) return tl::unexpected(bytes.error());
   const bool binary = characters(*bytes).starts_with("glTF");
+  if (auto ok = check_length(*bytes, binary); !ok)
+    return refuse(ok.error().code, ok.error().message);
   if (auto ok = check_shape(json_of(*bytes, binary), limits.json_values); !ok)
     return refuse(ok.error().code, ok.error().message);
 
@@ -143,9 +162,8 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
   for (std::size_t at = errors.find(kNoError); at != std::string::npos; at = errors.find(kNoError))
     errors.erase(at, kNoError.size());
   if (!parsed || !errors.empty()) {
-    const std::string what = errors.substr(0, errors.find_last_not_of('\n') + 1);
     return refuse(ErrorCode::kParse,
-                  "is not glTF that can be read: " + core::shown(what, kMostMessage));
+                  "is not glTF that can be read: " + core::shown(first_line(errors), kMostMessage));
   }
   if (auto ok = check_version(model); !ok) return refuse(ok.error().code, ok.error().message);
   return model;

@@ -1,5 +1,5 @@
 // Reads glTF 2.0: .gltf with its buffers and pictures, and .glb. Files are not trusted: sizes and
-// numbers are checked before anything is allocated for them, and nothing outside of the file's
+// numbers are checked before anything is allocated for them, and nothing outside the file's
 // folder is read. TinyGLTF parses the JSON and stays hidden here; psygen::image decodes pictures.
 // Any thread; too slow for the tick.
 #pragma once
@@ -27,7 +27,7 @@ struct Limits {
 
 // The content of a file. Strips and fans become triangles. Fails with kIo (it or a file that it
 // names cannot be read), kParse (damaged, not glTF 2.0, or out of range), kInvalidArgument (an
-// extension is required that is not supported, sparse accessors, names of files outside of its
+// extension is required that is not supported, sparse accessors, names of files outside its
 // folder), kOverBudget (larger than the limits) or kOutOfMemory. The message starts with the path
 // and says what is wrong where.
 core::Result<Model> read_file(const std::filesystem::path& path, const Limits& limits = {});

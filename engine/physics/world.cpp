@@ -108,7 +108,7 @@ core::Result<void> World::set_velocity(CharacterId id, const glm::dvec3& velocit
 
 core::Result<void> World::step(double dt) {
   if (!(dt >= 0.001 && dt <= 0.1))
-    return refuse(fmt::format("a step of {} s is not in 0.001 … 0.1 s", dt));
+    return refuse(fmt::format("a step must take 0.001 to 0.1 s, not {}", dt));
   impl_->step(dt);
   return {};
 }

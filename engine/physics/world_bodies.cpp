@@ -31,7 +31,7 @@ core::Result<void> check_speeds(const glm::dvec3& velocity, const glm::dvec3& sp
 core::Result<void> check(const BodySettings& s) {
   if (auto speeds = check_speeds(s.velocity, s.spin); !speeds) return speeds;
   if (s.motion == Motion::kDynamic && !(s.mass_kg > 0 && s.mass_kg <= 1e9))
-    return refuse(fmt::format("the mass {} kg is not above 0 and at most 10^9", s.mass_kg));
+    return refuse(fmt::format("the mass must be above 0 and at most 10^9 kg, not {}", s.mass_kg));
   if (!(s.friction >= 0 && s.friction <= 10))
     return refuse(fmt::format("the friction {} is not in 0 … 10", s.friction));
   if (!(s.restitution >= 0 && s.restitution <= 1))

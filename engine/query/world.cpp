@@ -210,8 +210,9 @@ void World::cast_models(const Course& course, Hit& hit) {
 core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::WorldPosition& at,
                                                                    double radius_m) const {
   if (!(radius_m >= 0) || !std::isfinite(radius_m))
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("the radius {} m is not a finite number from 0 on", radius_m));
+    return core::fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("the radius must be finite and not negative, not {} m", radius_m));
   const glm::dvec2 centre(at.local.x, at.local.z);
   const BlockRange range = blocks_around(centre - radius_m, centre + radius_m, block_m_);
   if (!(range.count() <= static_cast<double>(kMostBlocks)))

@@ -75,12 +75,21 @@ Value Statement::value(int column) const {
   }
 }
 
+core::Result<std::filesystem::path> absolute_path(const std::filesystem::path& file) {
+  if (file.empty()) return core::fail(core::ErrorCode::kIo, "the file of a save needs a name");
+  std::error_code error;
+  std::filesystem::path path = std::filesystem::absolute(file, error);
+  if (!error) return path;
+  return core::fail(core::ErrorCode::kIo, fmt::format("{}: {}", file.string(), error.message()));
+}
+
 core::Result<Database> Database::open(const std::filesystem::path& file) {
   sqlite3* raw = nullptr;
   // An absolute path: SQLite takes names that begin with "file:" for URIs.
-  const std::string name = std::filesystem::absolute(file).string();
+  const auto name = absolute_path(file);
+  if (!name) return tl::unexpected(name.error());
   const int code =
-      sqlite3_open_v2(name.c_str(), &raw,
+      sqlite3_open_v2(name->c_str(), &raw,
                       SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
   Database database(file, raw);
   if (code != SQLITE_OK) return database.error("cannot be opened");
@@ -91,8 +100,10 @@ core::Result<Database> Database::open(const std::filesystem::path& file) {
 }
 
 core::Result<Database> Database::open_unlocked(const std::filesystem::path& file) {
+  const auto path = absolute_path(file);
+  if (!path) return tl::unexpected(path.error());
   std::string name = "file:";
-  for (const char c : std::filesystem::absolute(file).string()) {
+  for (const char c : path->string()) {
     if (c == '%' || c == '?' || c == '#')
       name += fmt::format("%{:02X}", static_cast<unsigned>(c));
     else

@@ -46,6 +46,10 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> statement_{nullptr, &sqlite3_finalize};
 };
 
+// The absolute path of a file that need not exist. Fails with kIo for an empty name, and where the
+// working folder is gone.
+core::Result<std::filesystem::path> absolute_path(const std::filesystem::path& file);
+
 // An open file. Holds no lock until it is used.
 class Database {
  public:

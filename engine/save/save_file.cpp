@@ -71,16 +71,30 @@ std::uint32_t big_endian(const unsigned char* bytes) {
          (std::uint32_t{bytes[2]} << 8) | bytes[3];
 }
 
-// Looks at the first bytes through SQLite's own file, before SQLite acts on them. A descriptor of
-// our own would be wrong: closing it drops all locks that this process has on the file.
+// The first bytes of a database.
 // https://www.sqlite.org/fileformat2.html#the_database_header
-core::Result<void> check_header(const Database& database) {
+using Header = std::array<unsigned char, 100>;
+
+// SQLite's own file. A descriptor of our own would be wrong: closing it drops all locks that this
+// process has on the file. Null where there is none.
+sqlite3_file* file_of(const Database& database) {
   sqlite3_file* raw = nullptr;
   sqlite3_file_control(database.get(), "main", SQLITE_FCNTL_FILE_POINTER, &raw);
-  std::array<unsigned char, 100> header{};
-  const int read = raw == nullptr || raw->pMethods == nullptr
-                       ? SQLITE_IOERR
-                       : raw->pMethods->xRead(raw, header.data(), int{header.size()}, 0);
+  return raw == nullptr || raw->pMethods == nullptr ? nullptr : raw;
+}
+
+// SQLITE_OK, or why the header could not be read.
+int read_header(const Database& database, Header& header) {
+  sqlite3_file* raw = file_of(database);
+  return raw == nullptr
+             ? SQLITE_IOERR
+             : raw->pMethods->xRead(raw, header.data(), static_cast<int>(header.size()), 0);
+}
+
+// Looks at the first bytes before SQLite acts on them.
+core::Result<void> check_header(const Database& database) {
+  Header header{};
+  const int read = read_header(database, header);
   const std::filesystem::path& file = database.file();
   if (read != SQLITE_OK && read != SQLITE_IOERR_SHORT_READ)
     return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be read", file.string()));
@@ -112,6 +126,24 @@ core::Result<void> lock(Database& database) {
   return {};
 }
 
+// After lock(), which may have mended the size. SQLite takes what is missing at the end of the last
+// page for zeros.
+core::Result<void> check_size(const Database& database) {
+  Header header{};
+  sqlite3_file* raw = file_of(database);
+  sqlite3_int64 bytes = 0;
+  if (raw == nullptr || read_header(database, header) != SQLITE_OK ||
+      raw->pMethods->xFileSize(raw, &bytes) != SQLITE_OK)
+    return database.error("cannot be read");
+  const std::int64_t page =
+      header[16] == 0 && header[17] == 1 ? 65536 : header[16] << 8 | header[17];
+  const std::int64_t needed = page * std::int64_t{big_endian(&header[28])};
+  // Other programs may have left the count of pages behind (bytes 24 and 92 tell).
+  if (bytes >= needed || std::memcmp(&header[24], &header[92], 4) != 0) return {};
+  return refuse(database.file(),
+                fmt::format("the file is cut short: {} of its {} bytes are there", bytes, needed));
+}
+
 // The content of the file is not trusted.
 void distrust(const Database& database) {
   sqlite3* raw = database.get();
@@ -138,9 +170,8 @@ core::Result<void> check_pages(const Database& database) {
   auto check = database.prepare("PRAGMA quick_check(1)", "cannot be read");
   if (!check) return tl::unexpected(check.error());
   if (check->step() != SQLITE_ROW) return database.error("cannot be read");
-  if (const std::string_view found = check->text(0); found != "ok")
-    return refuse(database.file(),
-                  fmt::format("the file is damaged ({})", core::shown(found, 200)));
+  if (check->text(0) != "ok")
+    return refuse(database.file(), "the file is damaged: its pages contradict each other");
   return {};
 }
 
@@ -154,12 +185,26 @@ core::Result<void> check_regular(const std::filesystem::path& file) {
                                                                 : "there is no such file"));
 }
 
+core::Result<void> check_folder(const std::filesystem::path& file,
+                                const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto status = std::filesystem::status(folder, error);
+  if (std::filesystem::is_directory(status)) return {};
+  const bool missing = status.type() == std::filesystem::file_type::not_found;
+  if (!error || missing)
+    return core::fail(core::ErrorCode::kIo,
+                      fmt::format("{}: there is no folder {}", file.string(), folder.string()));
+  return core::fail(core::ErrorCode::kIo, fmt::format("{}: {}", file.string(), error.message()));
+}
+
 core::Result<void> check_writable(const std::filesystem::path& file) {
   const auto say = [&](std::string_view what) {
     return core::fail(core::ErrorCode::kIo, fmt::format("{}: {}", file.string(), what));
   };
   if (access(file.c_str(), W_OK) != 0) return say("the file is read-only");
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const auto path = absolute_path(file);
+  if (!path) return tl::unexpected(path.error());
+  const std::filesystem::path folder = path->parent_path();
   if (access(folder.c_str(), W_OK) != 0) return say("its folder is read-only");
   return {};
 }
@@ -177,10 +222,10 @@ int rename_without_replacing(const char* from, const char* to) {
 }  // namespace
 
 core::Result<bool> create_file(const std::filesystem::path& file, const WorldIdentity& world) {
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  if (!std::filesystem::is_directory(folder))
-    return core::fail(core::ErrorCode::kIo,
-                      fmt::format("{}: there is no folder {}", file.string(), folder.string()));
+  const auto path = absolute_path(file);
+  if (!path) return tl::unexpected(path.error());
+  const std::filesystem::path folder = path->parent_path();
+  if (auto ok = check_folder(file, folder); !ok) return tl::unexpected(ok.error());
   core::remove_stale_partials(folder);
   const auto bytes = empty_save(world);
   if (!bytes) return tl::unexpected(bytes.error());
@@ -208,6 +253,7 @@ core::Result<Database> open_file(const std::filesystem::path& file) {
   if (!database) return database;
   ok = check_header(*database);
   if (ok) ok = lock(*database);
+  if (ok) ok = check_size(*database);
   if (!ok) return tl::unexpected(ok.error());  // the file may be another program's
   ok = configure(*database);
   if (ok) ok = check_pages(*database);

@@ -115,7 +115,8 @@ core::Result<std::vector<SimulatedJob>> parse_stream(std::string_view text, std:
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (number == 1) {
-      if (line != kHeader) return refuse(number, fmt::format("the first line is '{}'", kHeader));
+      if (line != kHeader)
+        return refuse(number, fmt::format("the first line must be '{}'", kHeader));
       continue;
     }
     const auto job = job_of(line);

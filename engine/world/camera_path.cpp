@@ -144,4 +144,18 @@ core::CameraPose CameraPath::pose_at(double t, const World& world) const {
   return pose;
 }
 
+bool CameraPath::comes_within(double reach_m, const World& world) const {
+  const double size_m = world.block_size_m();
+  const auto beside_m = [size_m](std::int32_t origin, double at_m, std::int64_t blocks) {
+    if (blocks == 0) return 0.0;  // endless
+    const double place_m = origin * size_m + at_m;
+    return std::max({0.0, -place_m, place_m - static_cast<double>(blocks) * size_m});
+  };
+  const core::BlockCoord origin = settings_.origin_block;
+  return std::ranges::any_of(points_, [&](const PathPoint& point) {
+    return std::hypot(beside_m(origin.x, point.at_m.x, world.blocks_x),
+                      beside_m(origin.z, point.at_m.y, world.blocks_z)) <= reach_m;
+  });
+}
+
 }  // namespace psygen::world

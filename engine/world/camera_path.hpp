@@ -60,6 +60,10 @@ class CameraPath {
   // end; for NaN that of the beginning. Normalised and valid. About 50 µs.
   core::CameraPose pose_at(double t, const World& world) const;
 
+  // Whether one of its points is less than `reach_m` beside the world, or over it. Linear in the
+  // points.
+  bool comes_within(double reach_m, const World& world) const;
+
  private:
   // Successive points without a jump between them.
   struct Run {

@@ -12,6 +12,7 @@ using namespace psygen;
 namespace {
 
 int failed(const core::Error& error) {
+  if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
   std::fprintf(stderr, "%s\n", error.message.c_str());
   return 1;
 }

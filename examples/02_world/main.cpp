@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto failed = [](const core::Error& error) {
+    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
     // A mistake in the world file is told with its line: try one.
     std::fprintf(stderr, "%s\n", error.message.c_str());
     return 1;

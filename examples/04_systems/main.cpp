@@ -57,6 +57,7 @@ void count(Trip& trip, ecs::EventReader<scene::ModelCreated>& created) {
 int main(int argc, char** argv) {
   const double seconds = argc > 1 ? std::atof(argv[1]) : 5;
   const auto failed = [](const core::Error& error) {
+    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
     std::fprintf(stderr, "%s\n", error.message.c_str());
     return 1;
   };

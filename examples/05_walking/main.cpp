@@ -90,6 +90,7 @@ core::CameraPose eyes(const Game& game, double share) {
 int main(int argc, char** argv) {
   const bool by_itself = argc > 1;
   const auto failed = [](const core::Error& error) {
+    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
     std::fprintf(stderr, "%s\n", error.message.c_str());
     return 1;
   };

@@ -51,6 +51,7 @@ void draw_hud(app::Session& session, double time_s) {
 
 int main(int argc, char** argv) {
   const auto failed = [](const core::Error& error) {
+    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
     std::fprintf(stderr, "%s\n", error.message.c_str());
     return 1;
   };

@@ -69,6 +69,8 @@ core::Result<void> run(const char* picture) {
 
 int main(int argc, char** argv) {
   const auto done = run(argc > 1 ? argv[1] : nullptr);
-  if (!done) std::fprintf(stderr, "%s\n", done.error().message.c_str());
-  return done ? 0 : 1;
+  // Closing the window while the world loads is not an error.
+  if (done || done.error().code == core::ErrorCode::kInterrupted) return 0;
+  std::fprintf(stderr, "%s\n", done.error().message.c_str());
+  return 1;
 }

@@ -29,7 +29,8 @@ fi
 for private in engine/render/vulkan.hpp engine/core/headroom.hpp engine/cli/places.hpp; do
   [ ! -e "$folder/psygen/include/psygen/$private" ] || { echo "$private is installed"; exit 1; }
 done
-[ -s "$folder/psygen/share/doc/psygen/architecture.md" ] && [ -s "$folder/psygen/share/psygen/paths/walk27.toml" ]
+installed_docs="$folder/psygen/share/doc/psygen"
+[ -s "$installed_docs/docs/guide/../../examples/template/game.cpp" ] && [ -s "$installed_docs/docs/architecture.md" ] && [ -s "$folder/psygen/share/psygen/paths/walk27.toml" ]
 
 configure only_ecs
 cmake --build "$folder/build/only_ecs" >/dev/null

@@ -17,7 +17,7 @@ struct PointLightState {
   bool fresh = true;                        // never in view so far
 };
 
-// A light that shines in all directions and casts no shadows. With values outside of these ranges
+// A light that shines in all directions and casts no shadows. With values outside these ranges
 // it stays dark (Counters::lights_invalid).
 struct PointLight {
   glm::vec3 colour{1.0F, 0.72F, 0.42F};  // linear, each 0 … 1000

@@ -51,7 +51,7 @@ std::string text_of(core::BlockCoord block) {
 
 core::Result<void> check_block(const World& world, core::BlockCoord block) {
   if (world.contains(block)) return {};
-  return refuse(fmt::format("{} is outside of the world", text_of(block)));
+  return refuse(fmt::format("{} is outside the world", text_of(block)));
 }
 
 core::Result<void> check_heights(const BlockEdits& edits, core::BlockCoord block) {
@@ -75,8 +75,7 @@ core::Result<void> check_removed(const World& world, core::BlockCoord block, std
   if (auto ok = check_block(world, block); !ok) return ok;
   const std::size_t count = models_per_block(world);
   if (index < count) return {};
-  return refuse(
-      fmt::format("{} has no model {}: there are {} a block", text_of(block), index, count));
+  return refuse(fmt::format("{} has no model {}: a block has {}", text_of(block), index, count));
 }
 
 core::Result<core::WorldPosition> check_place(const World& world, const core::WorldPosition& at) {
@@ -94,7 +93,7 @@ core::Result<core::WorldPosition> check_place(const World& world, const core::Wo
   core::WorldPosition place = core::normalised(at, size);
   const bool inside = fits(index(at.block.x, at.local.x)) && fits(index(at.block.z, at.local.z));
   if (!inside || !world.contains(place.block)) {
-    return refuse(fmt::format("the place {:g}, {:g} m from {} is outside of the world", at.local.x,
+    return refuse(fmt::format("the place {:g}, {:g} m from {} is outside the world", at.local.x,
                               at.local.z, text_of(at.block)));
   }
   place.local.y = 0;

@@ -17,7 +17,7 @@ namespace psygen::world {
 tl::unexpected<core::Error> refuse(std::string sentence);
 std::string text_of(core::BlockCoord block);
 
-// Fails for a block outside of the world.
+// Fails for a block outside the world.
 core::Result<void> check_block(const World& world, core::BlockCoord block);
 // Fails with kOverBudget for more heights in heightmaps than kMaxHeightsPerBlock, and where a block
 // has no room for one more edit.

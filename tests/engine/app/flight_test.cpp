@@ -255,6 +255,20 @@ TEST(Flight, AMissingWorldOrPathFileIsNamed) {
   EXPECT_NE(flight.error().message.find("no_such_path.toml"), std::string::npos);
 }
 
+TEST(Flight, APathThatNeverComesNearTheWorldIsRefused) {
+  const TemporaryFolder folder;
+  FlightOptions options = short_flight();
+  options.path_file = folder / "far.toml";
+  std::ofstream(options.path_file)
+      << "format = 1\n[path]\nname = \"far\"\norigin_block = [99999, 0]\n"
+         "[[point]]\ntime_s = 0\nat_m = [0, 0]\nheight_m = 10\n";
+  const auto flight = Flight::create(options);
+  ASSERT_FALSE(flight);
+  EXPECT_EQ(flight.error().code, core::ErrorCode::kInvalidArgument);
+  EXPECT_NE(flight.error().message.find("far.toml: nothing of the world"), std::string::npos)
+      << flight.error().message;
+}
+
 TEST(Flight, StoppingFromOutsideEndsTheFlightAndStillWritesItsOutputs) {
   std::atomic<bool> stop{true};
   const TemporaryFolder folder;

@@ -1,6 +1,8 @@
 // A session without a flight: what a program with a loop of its own relies on.
 #include "engine/app/session.hpp"
 
+#include <cmath>
+
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "tests/engine/app/fixture.hpp"
@@ -96,6 +98,28 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
   EXPECT_EQ((*session)->scene().state().facts.shadows, (*session)->renderer().casts_shadows());
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
   EXPECT_EQ((*session)->renderer().preset(), render::Preset::kMedium);
+}
+
+TEST(Session, RefusesPosesTargetsAndNamesThatAreNone) {
+  SessionOptions options = short_session();
+  for (const double hz : {-1.0, std::nan(""), 1e9}) {
+    options.target_hz = hz;
+    const auto none = Session::create(options);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, core::ErrorCode::kInvalidArgument) << hz;
+  }
+  options.target_hz.reset();
+  const auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  core::CameraPose nowhere = (*session)->home();
+  nowhere.position.local.x = std::nan("");
+  const auto prepared = (*session)->prepare(nowhere);
+  ASSERT_FALSE(prepared);
+  EXPECT_EQ(prepared.error().code, core::ErrorCode::kInvalidArgument);
+  ASSERT_TRUE((*session)->tick((*session)->home(), 0));
+  const auto saved = (*session)->save_picture("x.jpg");
+  ASSERT_FALSE(saved);
+  EXPECT_EQ(saved.error().message, "x.jpg: the name of a picture must end in .png");
 }
 
 TEST(Session, BeginsEveryFixedStepWithItsActionsAndReplaysThem) {

@@ -201,8 +201,8 @@ TEST(CommandLine, APictureThatCannotBeTakenSaysWhy) {
   const std::string out = " --out " + (folder / "a.png").string();
   for (const auto& [options, words] :
        {std::pair<std::string, std::string>{"--at 5,32256" + out, "Z is 0 to 32256 m"},
-        {"--at=-1,5" + out, "outside of the world paper"},
-        {"--at 1e300,0" + out, "outside of the world paper"},
+        {"--at=-1,5" + out, "outside the world paper"},
+        {"--at 1e300,0" + out, "outside the world paper"},
         {"--world missing.toml" + out, "missing.toml"},
         {"--out /proc/nowhere/a.png", "/proc/nowhere"},
         {"--budget 4M --view-distance 1000" + out, "raise --budget or --error"}}) {
@@ -338,6 +338,7 @@ TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
   EXPECT_TRUE(mentions(large.err, "an integer from 4 to 128, not '1e3'")) << large.err;
   const Outcome block = run_psygen("export --block 600,1 --out a.glb");
   EXPECT_EQ(block.code, 1);
+  EXPECT_TRUE(mentions(block.err, "there is no block 600,1: ")) << block.err;
   EXPECT_TRUE(mentions(block.err, "0 to 511")) << block.err;
   EXPECT_EQ(run_psygen("export --model rock --out /nonexistent/a.glb").code, 1);
   const Outcome world = run_psygen("export --model rock --world missing.toml --out a.glb");

@@ -184,6 +184,26 @@ TEST(Faults, WhateverTheLimitOfMemoryEveryCommandEndsOrderly) {
   }
 }
 
+TEST(Faults, WhateverTheLimitOfMemoryAnExportIsWholeOrThereIsNone) {
+  const TemporaryFolder folder;
+  const std::filesystem::path glb = folder / "a.glb";
+  int whole = 0, refused = 0;
+  for (int mib = 14; mib <= 32; mib += 2) {
+    std::filesystem::remove(glb);
+    const Outcome made = run_psygen("export --block 3,4 --out " + glb.string(), limit('d', mib));
+    expect_orderly(made, std::to_string(mib));
+    ++(made.code == 0 ? whole : refused);
+    ASSERT_EQ(std::filesystem::exists(glb), made.code == 0) << mib;
+    if (made.code != 0) continue;
+    std::array<unsigned char, 12> header{};
+    std::ifstream(glb, std::ios::binary).read(reinterpret_cast<char*>(header.data()), 12);
+    const std::size_t length = header[8] | header[9] << 8 | header[10] << 16;  // below 16 MiB
+    EXPECT_EQ(std::filesystem::file_size(glb), length) << mib;
+  }
+  EXPECT_GT(whole, 0);
+  EXPECT_GT(refused, 0);
+}
+
 TEST(Faults, WhateverTheLimitOfMemoryAFlightEndsOrderlyAndItsFilesAreWhole) {
   for (const int mib : {8, 60, 80, 90, 100, 130, 150, 180, 220, 260, 300}) {
     const TemporaryFolder folder;

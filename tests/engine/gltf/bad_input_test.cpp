@@ -81,7 +81,9 @@ TEST_F(BadGltf, WithAnyByteChangedIsReadOrRefusedWithASentence) {
 }
 
 TEST_F(BadGltf, OfOtherKindsIsRefused) {
-  refuse_bytes("", "not glTF");
+  refuse_bytes("", "the file is empty");
+  const std::string whole = square().glb();
+  refuse_bytes(whole.substr(0, whole.size() - 1), "the file is cut short: ");
   refuse_bytes("hello, world", "not glTF");
   refuse_bytes("[1, 2, 3]", "not glTF");
   Sample sample = square();

@@ -2,6 +2,8 @@
 #include "engine/save/save_file.hpp"
 
 #include <dlfcn.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -33,6 +35,7 @@ namespace psygen::save {
 namespace {
 
 using testing::file_content;
+using ::testing::HasSubstr;
 using testing::write_file;
 
 // The working directory of the process while the object lives.
@@ -104,6 +107,43 @@ TEST(SaveFile, DatabasesOfOtherProgramsAreRefused) {
       SQLITE_OK);
   sqlite3_close(other);
   EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), kForeign);
+}
+
+TEST(SaveFile, FilesThatLostTheirEndAreRefusedAndLeftAsTheyAre) {
+  const TemporaryFolder folder;
+  make_save(folder / "game.save");
+  const std::string whole = file_content(folder / "game.save");
+  for (const std::size_t lost : {1UL, 3UL, 60UL, 4000UL, 4095UL, 4096UL, 8000UL}) {
+    const std::string cut = whole.substr(0, whole.size() - lost);
+    write_file(folder / "game.save", cut);
+    // SQLite itself misses whole pages.
+    const std::string sentence =
+        lost >= 4096 ? "cannot be opened: the file is damaged"
+                     : fmt::format("the file is cut short: {} of its {} bytes are there",
+                                   cut.size(), whole.size());
+    EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), sentence);
+    EXPECT_TRUE(file_content(folder / "game.save") == cut) << lost;
+  }
+}
+
+TEST(SaveFile, NamesThatLeadNowhereAreSentences) {
+  const TemporaryFolder folder;
+  const auto sentence = [](const std::filesystem::path& file) {
+    const auto save = SaveGame::open(file, testing::kWorld);
+    return save ? "opened" : save.error().message;
+  };
+  EXPECT_EQ(sentence(""), "the file of a save needs a name");
+  std::filesystem::create_symlink("loop", folder / "loop");
+  EXPECT_THAT(sentence(folder / "loop/x.save"), HasSubstr("loop/x.save: Too many levels"));
+  EXPECT_THAT(sentence(folder / std::string(300, 'a') / "x.save"), HasSubstr("name too long"));
+  const int status = testing::in_child([&] {
+    const std::filesystem::path gone = folder / "gone";
+    std::filesystem::create_directory(gone);
+    std::filesystem::current_path(gone);
+    std::filesystem::remove(gone);
+    return sentence("x.save") == "x.save: No such file or directory";
+  });
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "the working folder is gone";
 }
 
 TEST(SaveFile, NewerFormatsAreRefused) {

@@ -124,6 +124,27 @@ TEST(CameraPath, EveryPathOfTheGameLoads) {
   }
 }
 
+TEST(CameraPath, ComesNearTheWorldOrDoesNot) {
+  const World world = paper();  // 0 … 32768 m
+  const auto near = [&](core::BlockCoord origin, glm::dvec2 at_m) {
+    return CameraPath({"", origin}, {point(0, at_m)}).comes_within(100, world);
+  };
+  const double side_m = world.block_size_m() * static_cast<double>(world.blocks_x);
+  EXPECT_TRUE(near({0, 0}, {5, 5}));
+  EXPECT_TRUE(near({0, 0}, {-99, 5}));
+  EXPECT_FALSE(near({0, 0}, {-101, 5}));
+  EXPECT_FALSE(near({0, 0}, {-80, -80})) << "113 m from the corner";
+  EXPECT_TRUE(near({0, 0}, {side_m + 99, 5}));
+  EXPECT_FALSE(near({0, 0}, {5, side_m + 101}));
+  EXPECT_FALSE(near({9999, 0}, {0, 0}));
+  World endless = paper();
+  endless.blocks_x = endless.blocks_z = 0;
+  EXPECT_TRUE(CameraPath({"", {-90000, 90000}}, {point(0, {0, 0})}).comes_within(1, endless));
+  EXPECT_TRUE(
+      CameraPath({"", {0, 0}}, {point(0, {-500, 0}), point(1, {5, 5})}).comes_within(1, world))
+      << "one point suffices";
+}
+
 TEST(CameraPath, HoldsItsEndsAndTakesNanForTheBeginning) {
   const World world = parsed(kSmallWorld);
   const CameraPath path({"p", {}, 1}, {point(1, {0, 0}), point(3, {40, 0})});

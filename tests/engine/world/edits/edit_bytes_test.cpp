@@ -75,7 +75,7 @@ TEST_F(EditBytes, WhatIsCutShortAtAnyByteOrGoesOnIsRefused) {
   std::vector<std::byte> longer = whole;
   longer.push_back(std::byte{0});
   EXPECT_FALSE(load_block(loaded, world, registry, {2, 3}, longer));
-  EXPECT_FALSE(load_block(loaded, world, registry, {-2, 3}, whole)) << "outside of the world";
+  EXPECT_FALSE(load_block(loaded, world, registry, {-2, 3}, whole)) << "outside the world";
   EXPECT_TRUE(loaded.empty());
 }
 
