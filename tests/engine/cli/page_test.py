@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Pages in headless Chromium, without network: what the report of a flight draws, and that zoom, values
-under the pointer and the panel of one frame work, in wide and narrow windows.
+under the pointer and the panel of one frame work, in wide and narrow windows; and a comparison.
 
 usage: page_test.py PSYGEN
 
@@ -123,12 +123,39 @@ def fly(psygen, out, *options):
     return out / "report.html"
 
 
+def check_comparison(psygen, folder):
+    """Of a flight with one that draws less, and is faster for it."""
+    sides = [folder / name for name in ("a", "b")]
+    for side, error in zip(sides, ("4", "16")):
+        fly(psygen, side, "--clock", "virtual", "--error", error)
+    out = folder / "compared"
+    done = subprocess.run([psygen, "compare", *sides, "--out", out], check=False,
+                          stdout=subprocess.DEVNULL)
+    assert done.returncode == 3, f"exit code {done.returncode}"
+    for width in (1280, 400):
+        seen = look(out / "compare.html", """
+result.verdict = all(".verdict b")[0].textContent;
+const plots = all("figure.plot");
+result.lines = plots.map(p => all("path.line", p).filter(l => l.getAttribute("d")).length);
+result.rows = all("#distribution tr").length;
+result.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
+click(plots[0], 0.5);
+result.panel = panel().textContent;
+""", width)
+        assert "Faster because it draws less is not better" in seen["verdict"], seen["verdict"]
+        assert seen["lines"] == [2, 1, 2, 2], seen["lines"]
+        assert seen["rows"] == 3, "percentiles of both"
+        assert seen["overflow"] <= 0, f"{seen['overflow']} pixels wider than {width}"
+        assert "A" in seen["panel"] and "B / A" in seen["panel"], seen["panel"]
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         page = fly(sys.argv[1], pathlib.Path(folder, "virtual"), "--clock", "virtual", "--images", "30")
         check_first_sight(page)
         check_zoom(page)
         check_values_and_frames(page)
+        check_comparison(sys.argv[1], pathlib.Path(folder))
         check_system_times(fly(sys.argv[1], pathlib.Path(folder, "wall")))
 
 
