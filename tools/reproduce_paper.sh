@@ -22,7 +22,7 @@ if [ "$quick" = 1 ]; then
   flight+=(--clock virtual --fixed-step 20 --seconds 3 --size 160x90)
   far=(--view-distance 300)
   near=("${far[@]}")
-  samples=1 region=256,256,258,258
+  samples=8 region=256,256,258,258
 fi
 
 rm -rf "$out"

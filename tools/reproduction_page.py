@@ -106,7 +106,7 @@ def rounded(values):
     return [None if value is None else round(value, 3) for value in values]
 
 
-def figure_8(runs, bins):
+def figure_8(runs, bins, quick):
     out = ["<h1 class=\"part\">Figure 8: frame rate while models are made</h1>\n"]
     out.append("<p>The paper flew for 27 seconds and measured the frame rate on one core, on two, and on two of "
                "which one was off. With one core it fell from about 25 frames/s to less than 15 while models "
@@ -137,7 +137,7 @@ def figure_8(runs, bins):
                       "too coarse, s", "models made"], lines))
     one, two = runs["one_core_lowest"], runs["two_cores_lowest"]
     normal = runs["one_core_normal"]
-    if not (one.failed or two.failed or normal.failed) and all(r.median_fps() for r in (one, two, normal)):
+    if not quick and not (one.failed or two.failed or normal.failed) and all(r.median_fps() for r in (one, two, normal)):
         out.append(f"<p>Measured: the median is {one.median_fps():.1f} frames/s with one core and "
                    f"{two.median_fps():.1f} with two. With modelers at normal priority one core gives "
                    f"{normal.median_fps():.1f}. A software device draws with all processors, so part of the "
@@ -269,7 +269,7 @@ def main():
         '<span class="hint">Drag across a plot to zoom, click for all values.</span></nav>'
         '<aside id="row" hidden></aside>'
         f'<script type="application/json" id="rows">{json.dumps(rows)}</script>\n'
-        f"{figure_8(runs, bins)}{figure_9(folder)}{world_table(runs, folder)}{paradigms(runs, bins)}"
+        f"{figure_8(runs, bins, quick)}{figure_9(folder)}{world_table(runs, folder)}{paradigms(runs, bins)}"
         f'<h1 class="part">Commands</h1><ol class="commands">{commands}</ol></main><script>{script}</script></body></html>\n')
     (folder / "paper.html").write_text(page, encoding="utf-8")
 

@@ -340,13 +340,15 @@ function pick(row) {
   if (row >= 0) fill(row);
   for (const plot of plots) plot.draw();
 }
+// Whether several plots have a series of this name.
+const shared = name => plots.filter(p => p.data.kind !== "stacked" && p.data.series.some(s => s.name === name)).length > 1;
 function fill(row) {
   const line = (name, text) => make("tr", {}, make("th", {}, name), make("td", {}, text));
   const figures = [];
   if (rows.apart[row] !== undefined) figures.push(line("set apart", rows.apart[row] + ": in no figure of times"));
   for (const plot of plots) if (plot.data.kind !== "stacked")
     for (const s of plot.data.series) if (s.v[row] !== null)
-      figures.push(line(s.name, withUnit(s.v[row], plot.data.unit)));
+      figures.push(line(shared(s.name) ? s.name + ": " + plot.data.title : s.name, withUnit(s.v[row], plot.data.unit)));
   for (const f of rows.figures) if (f.v[row] !== null) figures.push(line(f.name, withUnit(f.v[row], f.unit)));
   const columns = make("div", {class: "columns"}, make("div", {}, make("h3", {}, "Figures"), table("", figures)));
   const parts = rows.parts.filter(p => p.v[row] > 0).sort((a, b) => b.v[row] - a.v[row]);

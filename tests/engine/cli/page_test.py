@@ -146,7 +146,7 @@ result.panel = panel().textContent;
         assert seen["lines"] == [2, 1, 2, 2], seen["lines"]
         assert seen["rows"] == 3, "percentiles of both"
         assert seen["overflow"] <= 0, f"{seen['overflow']} pixels wider than {width}"
-        assert "A" in seen["panel"] and "B / A" in seen["panel"], seen["panel"]
+        assert "A: Frame time" in seen["panel"] and "B / A" in seen["panel"], seen["panel"]
 
 
 def main():
