@@ -13,7 +13,7 @@ packages=(
   libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libsqlite3-dev
   libopenal-dev libsndfile1-dev libbullet-dev
   libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen
-  xvfb openbox xdotool x11-utils x11-xkb-utils
+  xvfb openbox xdotool x11-utils x11-xkb-utils chromium
 )
 [ "${1:-}" = "--ci" ] && packages+=(clang-format)
 [ "${1:-}" = "--fuzz" ] && packages+=(clang libclang-rt-dev)

@@ -208,7 +208,7 @@ core::Result<void> Flight::loop() {
 // A window that is being resized may have no picture in this frame, which is not a failure. A file
 // that cannot be written is a failure, but it does not end the flight.
 core::Result<void> Flight::save_numbered_picture() {
-  const auto file = options_.out_folder / fmt::format("frame_{:05}.png", frames_);
+  const auto file = options_.out_folder / telemetry::picture_name(frames_);
   const auto image = session_->picture();
   if (!image) {
     if (session_->window() == nullptr) return tl::unexpected(image.error());

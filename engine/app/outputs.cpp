@@ -4,8 +4,10 @@
 #include "engine/amplify/block_synthesizer.hpp"
 #include "engine/app/flight.hpp"
 #include "engine/app/virtual_frame.hpp"
+#include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/telemetry/process_command.hpp"
 #include "engine/telemetry/process_memory.hpp"
 #include "engine/telemetry/report.hpp"
 #include "engine/telemetry/trace_log.hpp"
@@ -89,6 +91,9 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   const double target_ms = session.scene.target_frame_ms;
   facts.run.target_fps = target_ms > 0 ? telemetry::Figure(1000 / target_ms)
                                        : telemetry::Figure::missing("no frame rate is held");
+  facts.run.command = telemetry::process_command();
+  facts.run.preset = render::to_string(session_->renderer().preset());
+  facts.run.view_distance_m = session.scene.view_distance_m;
   const synthesis::CacheStats cache = state.meshes.stats();
   facts.cache_budget_bytes = cache.budget_bytes;
   facts.cache_peak_bytes = cache.peak_bytes;

@@ -11,8 +11,8 @@
 
 #include "engine/models/tree/species.hpp"
 #include "engine/telemetry/curve_plot.hpp"
+#include "engine/telemetry/page_style.hpp"
 #include "engine/telemetry/report_plot.hpp"
-#include "engine/telemetry/report_style.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -23,7 +23,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kStyle =
     ".plots { display:grid; gap:0 14px;"
     " grid-template-columns:repeat(auto-fit,minmax(min(420px,100%),1fr)) }\n"
-    "@media (max-width:700px) { .plots svg { min-width:420px } }\n"
+    "@media (max-width:700px) { .plots figure { overflow-x:auto } .plots svg { min-width:420px } "
+    "}\n"
     ".costs section { background:var(--card); border:1px solid var(--edge); border-radius:10px;"
     " margin-top:14px; padding:14px 16px; overflow-x:auto }\n"
     ".costs td { padding-left:14px; white-space:nowrap }\n";
@@ -292,7 +293,7 @@ std::string calibration_page(const Calibration& found, const models::Registry& r
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
   html += fmt::format("<title>psygen: {}</title><style>{}{}</style></head><body><main>\n",
-                      telemetry::escaped(title), telemetry::report_style(), kStyle);
+                      telemetry::escaped(title), telemetry::page_style(), kStyle);
   html += fmt::format("<h1>{}</h1>\n<p class=\"lead\">{}</p>\n<div class=\"plots\">\n",
                       telemetry::escaped(title), telemetry::escaped(lead_of(found, registry)));
   for (const synthesis::CostCurve& curve : found.curves)

@@ -12,6 +12,7 @@
 
 #include "engine/cli/commands.hpp"
 #include "engine/cli/option_checks.hpp"
+#include "engine/compare/compare_page.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/frametest/run.hpp"
@@ -59,7 +60,7 @@ CompareCommand::CompareCommand(CLI::App& cli)
       ->required();
   c.add_option("B", b_, "After: likewise")->required();
   c.add_option("--test", test_, "Frame test that both commands run");
-  c.add_option("--out", out_, "Folder that keeps the runs and compare.json");
+  c.add_option("--out", out_, "Folder that keeps the runs, compare.json and compare.html");
   c.add_option("--pairs", pairs_, "Pairs of runs in a batch")
       ->capture_default_str()
       ->transform(integer_between(compare::kFewestPairs, compare::kMostPairs));
@@ -139,8 +140,11 @@ int CompareCommand::run() {
   const compare::FalseAlarms* measured = aa_ > 0 ? &*alarms : nullptr;
   const std::string json = compare::to_json(*result, measured);
   if (!out_.empty()) {
-    const auto written = telemetry::create_output_folder(out_).and_then(
-        [&] { return core::replace_file(out_ / "compare.json", json); });
+    const std::string page = compare::to_html(*result, runs_a_, runs_b_, {a_, b_, test_}, measured);
+    const auto written =
+        telemetry::create_output_folder(out_)
+            .and_then([&] { return core::replace_file(out_ / "compare.json", json); })
+            .and_then([&] { return core::replace_file(out_ / "compare.html", page); });
     if (!written) {
       core::log_error(written.error().message);
       return kFailed;

@@ -68,6 +68,12 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->check(one_of({"fifo", "plp", "shortest", "longest", "deadline"}))
       ->default_str("deadline");
   c.add_option_function<std::string>(
+       "--modeler-priority",
+       [&scene](const std::string& text) { scene.modelers_yield = text == "lowest"; },
+       "Priority of modelers: lowest, or normal, to see what they then take from frames")
+      ->check(one_of({"lowest", "normal"}))
+      ->default_str("lowest");
+  c.add_option_function<std::string>(
        "--plp",
        [this](const std::string& text) {
          options_.session.scene.plp_mode = *scene::plp_mode_from(text);

@@ -102,6 +102,8 @@ core::Result<void> add_row(std::span<const std::string_view> cells,
   run.time_s.push_back(values[kColumnTime]);
   run.frame_ms.push_back(values[kColumnFrame]);
   run.left_out.push_back(!cells[columns[kColumnApart]].empty());
+  run.lacking.push_back(values[kColumnMissing] + values[kColumnCoarse]);
+  run.error.push_back(values[kColumnError]);
   sums.missing += values[kColumnMissing];
   sums.coarse += values[kColumnCoarse];
   sums.error += values[kColumnError];

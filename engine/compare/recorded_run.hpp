@@ -19,6 +19,7 @@ struct RecordedRun {
   std::string folder;
   // Of every frame after the warm-up.
   std::vector<double> time_s, frame_ms;
+  std::vector<double> lacking, error;   // percent of the picture missing or too coarse; pixels
   std::vector<bool> left_out;           // set apart in frames.csv, or suspended
   std::size_t suspended = 0;            // how many frames
   double missing_percent = 0;           // mean over the frames, of the picture

@@ -29,6 +29,9 @@ struct Settings {
   synthesis::Policy policy = synthesis::Policy::kDeadline;
   visibility::PlpMode plp_mode = visibility::PlpMode::kLayers;
   std::uint32_t modelers = 0;  // 0: cores − 1, at least 1; threads, as virtual time has 1
+  // Whether modelers run at the lowest priority of the operating system. Else they take processors
+  // from the frame; for comparison only.
+  bool modelers_yield = true;
   std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
   double view_distance_m = 16'000;            // nothing farther away is drawn
   double max_error_pixels = 4.0;              // of the level of detail that is chosen

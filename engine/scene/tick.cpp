@@ -134,7 +134,7 @@ void tick(State& state) {
   state.clock.real_s = state.clock.read_real_s();
   state.record = {};
   state.rules = rules_of(state.settings, false);
-  state.meshes.lower_priority();
+  if (state.settings.modelers_yield) state.meshes.lower_priority();
   run_systems(state);
   note_system_times(state);
   if (state.trace.log != nullptr) trace_tick(state);

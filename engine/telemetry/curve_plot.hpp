@@ -1,5 +1,5 @@
 // A plot of values over a parameter as an SVG picture: measured values as points, curves through
-// them as lines, with axes and a legend. In the style of report_style.cpp. Not for values over
+// them as lines, with axes and a legend. In the style of page_style.cpp. Not for values over
 // time: report_plot.hpp draws those. Pure; linear in the values.
 #pragma once
 

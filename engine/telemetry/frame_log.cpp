@@ -58,6 +58,10 @@ std::string_view name_of(Apart apart) {
   return kNames[static_cast<std::size_t>(apart)];
 }
 
+std::string picture_name(std::uint64_t index) {
+  return fmt::format("frame_{:05}.png", index);
+}
+
 FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
     : systems_(std::move(systems)), max_frames_(max_frames) {
   constexpr std::size_t kSmallPart = 4;  // of the memory that is left

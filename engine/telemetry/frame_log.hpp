@@ -31,6 +31,9 @@ inline constexpr std::size_t kApartKinds = 5;
 // "", "picture", "after_idle", "resized", "not_drawn".
 std::string_view name_of(Apart apart);
 
+// The file that a flight writes the picture of frame `index` to: "frame_00040.png".
+std::string picture_name(std::uint64_t index);
+
 // One row. Counts are those of this frame alone; "queued" and "cache_bytes" are the state at its
 // end.
 struct FrameRecord {

@@ -1,7 +1,8 @@
 // report.html: one self-contained page about a run, for people. Headline figures, facts, and plots
-// of frame time, systems, missing geometry, cache bytes and synthesis over the flight. Without
-// external resources; follows the reader's light or dark theme; readable without scripts, which
-// only show values under the pointer. Not for programs: summary.json is. Pure, apart from writing.
+// of frame time, the picture's error, systems, missing geometry, cache and modelers over the
+// flight, with zoom, values, and each frame whole. Without external resources but the run's
+// pictures beside it; follows the reader's light or dark theme; without scripts the figures can be
+// read, not the plots. Not for programs: summary.json is. Pure, apart from writing.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +14,7 @@
 
 namespace psygen::telemetry {
 
-// The page. Its size does not grow with the number of frames: plots have at most 900 columns.
+// The page. At most 20,000 frames are in it: of longer flights every nth, the slowest of so many.
 std::string report_html(const FrameLog& log, const Summary& summary);
 
 // Writes the page to a file. Fails with kIo and the path.

@@ -48,6 +48,11 @@ std::string world_facts(const Summary& s) {
 
 std::string run_facts(const Summary& s) {
   Facts facts("Run and device");
+  if (!s.run.command.empty()) facts.add("command", "<code>" + escaped(s.run.command) + "</code>");
+  facts.add("preset", escaped(s.run.preset));
+  facts.add("view distance", s.run.view_distance_m > 0
+                                 ? fmt::format("{:g} m", s.run.view_distance_m)
+                                 : std::string("–"));
   facts.add("paradigm", escaped(s.run.paradigm));
   facts.add("policy", escaped(s.run.policy));
   facts.add("modelers", std::to_string(s.run.modelers));

@@ -1,8 +1,8 @@
-// One plot of a report: values over the flight's time as an SVG picture with axes, a legend and the
-// data for its read-out under the pointer. Knows nothing of frames or figures. Pure; linear in the
-// values.
+// One plot of a page: values over time, as a figure whose data the page's script (page_script.hpp)
+// draws. Knows nothing of frames or figures. Pure; linear in the values.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,42 +10,41 @@
 
 namespace psygen::telemetry {
 
-// How the series of a plot are drawn.
-enum class PlotKind {
-  kLine,     // the mean of each column with a band from its lowest to its highest value
-  kPeaks,    // the highest value of each column, filled
+// How the series of a plot are drawn. Where several rows share a pixel:
+enum class PlotKind : std::uint8_t {
+  kLine,     // their mean, with a band from the lowest to the highest value
+  kPeaks,    // the highest value, filled
   kStacked,  // means of the series stacked on each other
 };
 
 // One quantity over time.
 struct PlotSeries {
   std::string name;
-  int colour = 0;              // of the palette in report_style.cpp, 1 … 8; 0 and 9 are greys
-  std::vector<double> values;  // one per entry of Plot::times_s; not finite: no value
+  int colour = 0;              // of the palette in page_style.cpp, 1 … 8; 0 and 9 are greys
+  std::vector<double> values;  // one per row of the page; not finite: no value
 };
 
-// A dashed horizontal line with a label to its right, just above or below its height.
+// A dashed horizontal line with a label at its right end, just above or below its height.
 struct PlotLevel {
   std::string label;
   double value = 0;
   bool label_below = false;
 };
 
-// What is drawn. `times_s` must stay valid during the call.
+// What is drawn.
 struct Plot {
   std::string title;
   std::string unit;  // "ms"; at the axis and after values
   std::string note;  // a sentence below the plot; may be empty
   PlotKind kind = PlotKind::kLine;
-  std::span<const double> times_s;  // ascending
   std::vector<PlotSeries> series;
   std::vector<PlotLevel> levels;
-  std::vector<double> marks_s;  // times marked below the drawing
-  double warmup_s = 0;          // shaded from the start to this time
-  double top = 0;               // of the axis, higher values are cut off; 0: from the data
+  double top = 0;      // of the axis, higher values are cut off; 0: from the data
+  bool zooms = true;   // the axis follows what a zoomed plot shows; else `top` stays
+  bool small = false;  // half as high as others
 };
 
-// A <figure> element. All text is escaped. At most 900 columns are drawn.
+// A <figure> element. All text is escaped.
 std::string plot_html(const Plot& plot);
 
 // The step between the ticks of an axis: 1, 2 or 5 times a power of ten, such that `range` has at
@@ -54,5 +53,10 @@ double nice_step(double range, double steps);
 
 // The text with &, <, >, " and ' written as entities.
 std::string escaped(std::string_view text);
+
+// Of JSON inside of a <script>: a text with its quotes, in which no tag can begin, and a list of
+// numbers with six digits. Numbers that are not finite are null.
+std::string json_text(std::string_view text);
+std::string json_numbers(std::span<const double> values);
 
 }  // namespace psygen::telemetry

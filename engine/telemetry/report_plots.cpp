@@ -27,13 +27,6 @@ std::vector<double> column(const FrameLog& log, const Field& field) {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-Plot base_plot(const FrameLog& log, const Summary& s, std::span<const double> times) {
-  Plot plot;
-  plot.times_s = times;
-  plot.warmup_s = log.frames().empty() ? 0 : s.run.warmup_seconds;
-  return plot;
-}
-
 // A value for each timed frame, no value for frames that are set apart.
 template <class Field>
 std::vector<double> timed_column(const FrameLog& log, const Field& field) {
@@ -42,16 +35,16 @@ std::vector<double> timed_column(const FrameLog& log, const Field& field) {
   });
 }
 
-// Marks the frames whose time is not shown.
-void mark_apart(const FrameLog& log, const Summary& s, Plot& plot) {
-  for (const FrameRecord& r : log.frames())
-    if (r.apart != Apart::kNo) plot.marks_s.push_back(r.time_s);
-  if (plot.marks_s.empty()) return;
+// About the frames whose time is not shown.
+void tell_apart(const FrameLog& log, const Summary& s, Plot& plot) {
+  if (std::ranges::all_of(log.frames(), [](const auto& r) { return r.apart == Apart::kNo; }))
+    return;
   const std::string text = left_out_text(s);
   plot.note = text.empty() ? "Marked frames are within the warm-up." : text + " They are marked.";
 }
 
-Plot frame_time_plot(const FrameLog& log, const Summary& s, Plot plot) {
+Plot frame_time_plot(const FrameLog& log, const Summary& s) {
+  Plot plot;
   plot.title = "Frame time";
   plot.unit = "ms";
   plot.series = {{"frame", 1, timed_column(log, [](const auto& r) { return r.frame_ms; })}};
@@ -60,7 +53,7 @@ Plot frame_time_plot(const FrameLog& log, const Summary& s, Plot plot) {
                              return r.gpu_ms.value_or(kNothing);
                            })});
   }
-  mark_apart(log, s, plot);
+  tell_apart(log, s, plot);
   if (s.frame_ms.p50.has_value()) {
     plot.levels.push_back(
         {fmt::format("median {}", ms_text(*s.frame_ms.p50)), *s.frame_ms.p50, true});
@@ -119,7 +112,8 @@ std::vector<PlotSeries> system_series(const FrameLog& log) {
   return all;
 }
 
-Plot systems_plot(const FrameLog& log, const Summary& s, Plot plot) {
+Plot systems_plot(const FrameLog& log, const Summary& s) {
+  Plot plot;
   plot.title = "Where the frame goes: systems of the tick, and waiting";
   plot.unit = "ms";
   plot.kind = PlotKind::kStacked;
@@ -138,13 +132,16 @@ Plot systems_plot(const FrameLog& log, const Summary& s, Plot plot) {
   const auto window_ms = [](const FrameRecord& r) { return r.acquire_ms + r.present_ms; };
   if (std::ranges::any_of(log.frames(), [&](const auto& r) { return window_ms(r) > 0; }))
     plot.series.push_back({"presenting, waiting for the window", 9, timed_column(log, window_ms)});
-  // The axis fits nearly all frames, as in the plot above.
+  if (log.frames().size() > 0 && std::isnan(log.frames().front().device_wait_ms))
+    plot.note = "The virtual clock knows no times of systems.";
+  // The axis fits nearly all frames, as in the plot of frame time.
   if (s.frame_ms.p99.has_value()) plot.top = 1.25 * *s.frame_ms.p99;
-  mark_apart(log, s, plot);
+  tell_apart(log, s, plot);
   return plot;
 }
 
-Plot coarse_plot(const FrameLog& log, const Summary& s, Plot plot) {
+Plot coarse_plot(const FrameLog& log, const Summary& s) {
+  Plot plot;
   plot.title = "Picture: what of it is missing or too coarse";
   plot.unit = "% of the picture";
   plot.kind = PlotKind::kPeaks;
@@ -166,7 +163,8 @@ Plot coarse_plot(const FrameLog& log, const Summary& s, Plot plot) {
   return plot;
 }
 
-Plot missing_plot(const FrameLog& log, const Summary&, Plot plot) {
+Plot missing_plot(const FrameLog& log) {
+  Plot plot;
   plot.title = "Missing geometry: nodes in view that are not drawn as wanted";
   plot.unit = "nodes";
   plot.kind = PlotKind::kPeaks;
@@ -182,22 +180,21 @@ Plot missing_plot(const FrameLog& log, const Summary&, Plot plot) {
   return plot;
 }
 
-// The error that levels of detail may have, for runs in which it was raised.
-Plot error_plot(const FrameLog& log, const Summary& s, Plot plot) {
-  plot.title = "Error that levels of detail might have";
+// The error that levels of detail may have: what the frame times above are bought with.
+Plot error_plot(const FrameLog& log, const Summary& s) {
+  Plot plot;
+  plot.title = "Error of the picture that these times bought";
   plot.unit = "pixels";
+  plot.small = true;
   plot.series = {{"error", 5, column(log, [](const auto& r) { return r.error_pixels; })}};
-  plot.levels = {{fmt::format("asked for {:g}", s.run.error_pixels), s.run.error_pixels, true}};
+  if (s.run.error_pixels > 0)
+    plot.levels = {{fmt::format("asked for {:g}", s.run.error_pixels), s.run.error_pixels, true}};
+  plot.note = "What levels of detail may be wrong by. A larger error makes frames faster.";
   return plot;
 }
 
-bool is_error_raised(const FrameLog& log, const Summary& s) {
-  return std::ranges::any_of(log.frames(), [&](const auto& r) {
-    return s.run.error_pixels > 0 && r.error_pixels > 1.005 * s.run.error_pixels;
-  });
-}
-
-Plot cache_plot(const FrameLog& log, const Summary& s, Plot plot) {
+Plot cache_plot(const FrameLog& log, const Summary& s) {
+  Plot plot;
   plot.title = "Geometry cache";
   plot.unit = "MiB";
   plot.kind = PlotKind::kPeaks;
@@ -210,30 +207,71 @@ Plot cache_plot(const FrameLog& log, const Summary& s, Plot plot) {
   if (budget > 0 && !plot.series[0].values.empty()) {
     const auto& values = plot.series[0].values;
     plot.top = 1.15 * std::max(budget / kMebibyte, *std::max_element(values.begin(), values.end()));
+    plot.zooms = false;
   }
   return plot;
 }
 
-// Synthesised triangles per second, in windows of a quarter of a second or a hundredth of the run.
-Plot synthesis_plot(const FrameLog& log, const Summary&, Plot plot) {
-  plot.title = "Synthesis: triangles made per second of the flight, all modelers";
-  plot.unit = "million/s";
-  plot.kind = PlotKind::kPeaks;
-  std::vector<double> rates(log.frames().size(), 0.0);
+// A value for each window of a quarter of a second or a hundredth of the run.
+// `value(frames)` is that of the window's frames, at least one.
+template <class Value>
+std::vector<double> by_window(const FrameLog& log, const Value& value) {
   const auto frames = log.frames();
+  std::vector<double> values(frames.size(), 0.0);
   const double window =
       frames.empty() ? 1.0 : std::max(0.25, (frames.back().time_s - frames[0].time_s) / 100.0);
   for (std::size_t first = 0; first < frames.size();) {
     std::size_t end = first;
-    double triangles = 0;
-    for (; end < frames.size() && frames[end].time_s < frames[first].time_s + window; ++end)
-      triangles += static_cast<double>(frames[end].triangles_synthesised);
+    while (end < frames.size() && frames[end].time_s < frames[first].time_s + window)
+      ++end;
     end = std::max(end, first + 1);
-    std::fill(rates.begin() + static_cast<std::ptrdiff_t>(first),
-              rates.begin() + static_cast<std::ptrdiff_t>(end), triangles / window * 1e-6);
+    std::fill(values.begin() + static_cast<std::ptrdiff_t>(first),
+              values.begin() + static_cast<std::ptrdiff_t>(end),
+              value(frames.subspan(first, end - first), window));
     first = end;
   }
-  plot.series = {{"synthesis", 5, std::move(rates)}};
+  return values;
+}
+
+// In virtual time there is one modeler, and it works by the flight's clock.
+Plot modelers_plot(const FrameLog& log, const Summary& s) {
+  Plot plot;
+  plot.title = "Modelers: how busy they were";
+  plot.unit = "% of their time";
+  plot.kind = PlotKind::kPeaks;
+  plot.small = true;
+  plot.series = {
+      {"busy", 7, by_window(log, [&](std::span<const FrameRecord> frames, double window_s) {
+         const bool is_virtual = std::isnan(frames.front().main_cpu_ms);
+         double busy_s = 0, real_s = 0;
+         for (const FrameRecord& r : frames) {
+           busy_s += r.synthesis_seconds;
+           real_s += r.frame_ms * 1e-3;
+         }
+         const double all_s = is_virtual ? window_s : real_s * s.run.modelers;
+         return all_s > 0 ? std::min(100 * busy_s / all_s, 100.0) : 0;
+       })}};
+  plot.top = 105;
+  plot.zooms = false;
+  plot.note =
+      "Processor time of synthesis, of what all modelers could have used. Far below 100 % while "
+      "geometry is missing, they got no processor.";
+  return plot;
+}
+
+Plot synthesis_plot(const FrameLog& log) {
+  Plot plot;
+  plot.title = "Synthesis: triangles made per second of the flight, all modelers";
+  plot.unit = "million/s";
+  plot.kind = PlotKind::kPeaks;
+  plot.small = true;
+  plot.series = {
+      {"synthesis", 3, by_window(log, [](std::span<const FrameRecord> frames, double window_s) {
+         double triangles = 0;
+         for (const FrameRecord& r : frames)
+           triangles += static_cast<double>(r.triangles_synthesised);
+         return triangles / window_s * 1e-6;
+       })}};
   return plot;
 }
 
@@ -241,12 +279,22 @@ Plot synthesis_plot(const FrameLog& log, const Summary&, Plot plot) {
 
 std::string report_plots(const FrameLog& log, const Summary& s) {
   if (log.frames().empty()) return "<p>No frame was drawn.</p>\n";
-  const std::vector<double> times = column(log, [](const auto& r) { return r.time_s; });
-  const Plot base = base_plot(log, s, times);
-  return plot_html(frame_time_plot(log, s, base)) + plot_html(systems_plot(log, s, base)) +
-         plot_html(coarse_plot(log, s, base)) + plot_html(missing_plot(log, s, base)) +
-         (is_error_raised(log, s) ? plot_html(error_plot(log, s, base)) : "") +
-         plot_html(cache_plot(log, s, base)) + plot_html(synthesis_plot(log, s, base));
+  const ShownFrames shown = shown_frames(log);
+  std::string html = page_tools_html(page_rows(log, s, shown));
+  const auto add = [&](Plot plot) {
+    thin(plot, shown);
+    html += plot_html(plot);
+  };
+  add(frame_time_plot(log, s));
+  add(error_plot(log, s));
+  html += distribution_html();
+  add(systems_plot(log, s));
+  add(coarse_plot(log, s));
+  add(missing_plot(log));
+  add(cache_plot(log, s));
+  add(modelers_plot(log, s));
+  add(synthesis_plot(log));
+  return html;
 }
 
 }  // namespace psygen::telemetry

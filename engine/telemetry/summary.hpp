@@ -58,6 +58,10 @@ struct RunSettings {
   Figure fixed_step;        // Hz; missing when the flight follows the wall clock
   double error_pixels = 0;  // requested error of levels of detail
   Figure target_fps;        // held by raising the error; missing when none is held
+  // For the report alone: the program with its arguments, the quality of the picture by name, and
+  // how far it reaches (0: unknown).
+  std::string command = {}, preset = {};
+  double view_distance_m = 0;
 };
 
 // What summarise cannot find in the log.

@@ -1,4 +1,4 @@
-#include "engine/telemetry/report_style.hpp"
+#include "engine/telemetry/page_style.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -41,7 +41,7 @@ figcaption { font-weight:600; margin-bottom:2px }
   margin:2px 0 4px }
 .legend i { display:inline-block; width:11px; height:11px; border-radius:3px; margin-right:6px;
   vertical-align:-1px }
-svg { display:block; width:100%; height:auto; overflow:visible }
+svg { display:block; width:100%; height:auto } .drawing svg { overflow:visible }
 svg text { font-size:12px; fill:var(--soft) }
 text.level { fill:var(--level); font-weight:600; paint-order:stroke; stroke:var(--card);
   stroke-width:4px; stroke-linejoin:round }
@@ -50,6 +50,33 @@ line.level { stroke:var(--level); stroke-dasharray:5 4 }
 .cursor { stroke:var(--soft); pointer-events:none }
 .line { fill:none; stroke-width:1.4; stroke-linejoin:round } .band { opacity:.28 }
 .dashed { stroke-dasharray:5 4 } .ring { fill:none; stroke-width:2 }
+.plot .drawing { touch-action:pan-y; user-select:none; cursor:crosshair }
+.picked { stroke:var(--text); stroke-width:1.4; pointer-events:none } .selection { fill:var(--c1); opacity:.22 }
+.pin { fill:var(--text) } .p { stroke:var(--level); stroke-dasharray:5 4 }
+.tools { position:sticky; top:0; z-index:3; display:flex; flex-wrap:wrap; align-items:center;
+  gap:4px 14px; background:var(--page); padding:8px 0; margin-top:10px; font-size:13.5px;
+  border-bottom:1px solid var(--edge) }
+.tools[hidden] { display:none } .tools .hint { color:var(--soft) } .buttons { white-space:nowrap }
+button { font:inherit; font-size:13px; color:var(--text); background:var(--card);
+  border:1px solid var(--edge); border-radius:7px; padding:3px 10px; cursor:pointer }
+button:hover { border-color:var(--soft) } button:disabled { opacity:.45; cursor:default }
+.buttons button + button { margin-left:6px }
+.slowest { display:flex; flex-wrap:wrap; gap:6px; align-items:center; font-size:13px;
+  color:var(--soft); margin:4px 0 6px }
+#row { position:fixed; left:0; right:0; bottom:0; z-index:4; max-height:46vh; overflow:auto;
+  background:var(--card); border-top:1px solid var(--edge); box-shadow:0 -6px 24px #0004 }
+#row .inner { max-width:1120px; margin:0 auto; padding:10px 20px 14px }
+#row header { display:flex; flex-wrap:wrap; gap:6px 10px; align-items:center; margin-bottom:6px }
+#row header b { font-size:16px; margin-right:auto }
+#row .columns { display:grid; gap:6px 28px; grid-template-columns:repeat(auto-fit,minmax(250px,1fr)) }
+#row img { max-width:100%; border-radius:6px; display:block } #row h3 { font-size:13px; margin:2px 0 4px }
+#row .bar { height:5px; margin-top:8px; border-radius:3px; background:var(--c1) } #row .wait .bar { background:var(--c0) }
+#row .bars td:first-child { text-align:left; width:42% } #row .bars td:last-child { width:90px }
+.open { padding-bottom:48vh } .percentiles { overflow-x:auto } .percentiles td,.percentiles th { padding:3px 8px; text-align:right }
+.percentiles th:first-child { text-align:left }
+.command { margin:-14px 0 18px; font-size:13px } .command code,.facts code { overflow-wrap:anywhere;
+  font:12.5px/1.4 ui-monospace,"DejaVu Sans Mono",monospace }
+.key { color:#fff; border-radius:4px; padding:0 6px; font-weight:600 }
 .stack { opacity:.88 } .mark { stroke:var(--bad); stroke-width:1.4 }
 .note { margin:2px 0 4px; color:var(--soft); font-size:13px }
 .readout { position:absolute; pointer-events:none; background:var(--card); border:1px solid
@@ -77,51 +104,13 @@ td { text-align:right; overflow-wrap:anywhere }
 .swatch0{background:var(--c0)}.swatch1{background:var(--c1)}.swatch2{background:var(--c2)}
 .swatch3{background:var(--c3)}.swatch4{background:var(--c4)}.swatch5{background:var(--c5)}
 .swatch6{background:var(--c6)}.swatch7{background:var(--c7)}.swatch8{background:var(--c8)}.swatch9{background:var(--c9)}
-@media (max-width:700px) { figure { overflow-x:auto } figure > svg { min-width:640px } }
-@media print { figure,.card,.verdict,.facts section { break-inside:avoid } }
+@media print { .tools,#row,.slowest { display:none } figure,.card,.verdict,.facts section { break-inside:avoid } }
 )css";
-
-constexpr std::string_view kScript = R"js(
-for (const figure of document.querySelectorAll("figure")) {
-  const data = JSON.parse(figure.querySelector("script").textContent);
-  const svg = figure.querySelector("svg"), cursor = svg.querySelector(".cursor");
-  const readout = figure.querySelector(".readout");
-  const hide = () => { readout.hidden = true; cursor.setAttribute("visibility", "hidden"); };
-  svg.addEventListener("pointerleave", hide);
-  svg.addEventListener("pointermove", event => {
-    const box = svg.getBoundingClientRect();
-    const x = (event.clientX - box.left) / box.width * 1000;
-    if (!data.x.length || x < 50 || x > 900) return hide();
-    let low = 0, high = data.x.length - 1;
-    while (low < high) { const middle = (low + high) >> 1;
-      if (data.x[middle] < x) low = middle + 1; else high = middle; }
-    if (low > 0 && x - data.x[low - 1] < data.x[low] - x) low--;
-    cursor.setAttribute("x1", data.x[low]); cursor.setAttribute("x2", data.x[low]);
-    cursor.setAttribute("visibility", "visible");
-    readout.replaceChildren();
-    const add = (tag, text) => { const line = document.createElement(tag);
-      line.textContent = text; readout.append(line); };
-    add("b", data.t[low].toFixed(2) + " s");
-    for (const series of data.series) if (series.v[low] !== null)
-      add("div", series.name + ": " + Number(series.v[low].toPrecision(4)) + " " + data.unit);
-    readout.hidden = false;
-    const outer = figure.getBoundingClientRect();
-    let left = event.clientX - outer.left + 16;
-    if (left + readout.offsetWidth > outer.width - 8) left -= readout.offsetWidth + 32;
-    readout.style.left = left + "px";
-    readout.style.top = event.clientY - outer.top + 12 + "px";
-  });
-}
-)js";
 
 }  // namespace
 
-std::string_view report_style() {
+std::string_view page_style() {
   return kStyle;
-}
-
-std::string_view report_script() {
-  return kScript;
 }
 
 }  // namespace psygen::telemetry

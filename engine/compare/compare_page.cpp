@@ -1,0 +1,261 @@
+#include "engine/compare/compare_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "engine/telemetry/page_rows.hpp"
+#include "engine/telemetry/page_script.hpp"
+#include "engine/telemetry/page_style.hpp"
+#include "engine/telemetry/units.hpp"
+
+namespace psygen::compare {
+namespace {
+
+using Runs = std::span<const RecordedRun>;
+using telemetry::escaped;
+using telemetry::Plot;
+using telemetry::PlotKind;
+using telemetry::three_digits;
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kColourA = 1, kColourB = 2;
+
+// A value at each of `times`: that of the frame of `run` which is nearest. Only on the virtual
+// clock without a step have runs frames at other times than their rows.
+std::vector<double> at_times(const RecordedRun& run, const std::vector<double>& values,
+                             const std::vector<double>& times) {
+  if (run.time_s == times) return values;
+  std::vector<double> taken;
+  for (const double time : times) {
+    auto next = std::ranges::lower_bound(run.time_s, time);
+    if (next == run.time_s.end() ||
+        (next != run.time_s.begin() && time - *std::prev(next) < *next - time))
+      --next;
+    taken.push_back(values[static_cast<std::size_t>(next - run.time_s.begin())]);
+  }
+  return taken;
+}
+
+// Over the runs of a set: the least time of each frame, without those that any run leaves out.
+std::vector<double> least_times(Runs runs, const std::vector<double>& times,
+                                const std::vector<bool>& left_out) {
+  std::vector<double> least(times.size(), std::numeric_limits<double>::infinity());
+  for (const RecordedRun& run : runs) {
+    const std::vector<double> ms = at_times(run, run.frame_ms, times);
+    for (std::size_t k = 0; k < least.size(); ++k)
+      least[k] = left_out[k] ? kNothing : std::min(least[k], ms[k]);
+  }
+  return least;
+}
+
+std::vector<double> means(Runs runs, const std::vector<double>& times,
+                          const std::vector<double> RecordedRun::*field) {
+  std::vector<double> sums(times.size(), 0.0);
+  for (const RecordedRun& run : runs)
+    std::ranges::transform(sums, at_times(run, run.*field, times), sums.begin(), std::plus{});
+  for (double& value : sums)
+    value /= static_cast<double>(runs.size());
+  return sums;
+}
+
+std::vector<bool> left_out_of_any(Runs a, Runs b, std::size_t count) {
+  std::vector<bool> left_out(count, false);
+  for (const Runs runs : {a, b})
+    for (const RecordedRun& run : runs)
+      for (std::size_t k = 0; k < std::min(count, run.left_out.size()); ++k)
+        left_out[k] = left_out[k] || run.left_out[k];
+  return left_out;
+}
+
+Plot overlay(const char* title, const char* unit, std::vector<double> a, std::vector<double> b,
+             const char* note) {
+  Plot plot;
+  plot.title = title;
+  plot.unit = unit;
+  plot.note = note;
+  plot.series = {{"A", kColourA, std::move(a)}, {"B", kColourB, std::move(b)}};
+  return plot;
+}
+
+std::string plots(Runs a, Runs b) {
+  const std::vector<double>& times = a.front().time_s;
+  const std::vector<bool> left_out = left_out_of_any(a, b, times.size());
+  const std::vector<double> a_ms = least_times(a, times, left_out);
+  const std::vector<double> b_ms = least_times(b, times, left_out);
+  telemetry::PageRows rows;
+  rows.times_s = times;
+  rows.timed_series = 2;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    rows.numbers.push_back(static_cast<double>(k));
+    if (left_out[k]) rows.apart[k] = "left out of all runs";
+  }
+  Plot ratio;
+  ratio.title = "Frame time of B over that of A";
+  ratio.unit = "B / A";
+  ratio.series = {{"B / A", 5, {}}};
+  for (std::size_t k = 0; k < times.size(); ++k)
+    ratio.series[0].values.push_back(b_ms[k] / a_ms[k]);
+  ratio.levels = {{"the same", 1, true}};
+  ratio.small = true;
+  Plot lacking =
+      overlay("Picture: what of it is missing or too coarse", "% of the picture",
+              means(a, times, &RecordedRun::lacking), means(b, times, &RecordedRun::lacking),
+              "Means of all runs. Frames are faster where less is drawn.");
+  lacking.kind = PlotKind::kPeaks;
+  Plot error = overlay("Error of levels of detail", "pixels", means(a, times, &RecordedRun::error),
+                       means(b, times, &RecordedRun::error), "Means of all runs.");
+  error.small = true;
+  return telemetry::page_tools_html(rows) +
+         telemetry::plot_html(overlay("Frame time, A and B", "ms", a_ms, b_ms,
+                                      "The least time of each frame over the runs of a side: its "
+                                      "work without what other programs took.")) +
+         telemetry::plot_html(ratio) + telemetry::plot_html(lacking) + telemetry::plot_html(error) +
+         telemetry::distribution_html();
+}
+
+// One line of the table of effects.
+struct Effect {
+  const char* name;
+  std::string a, b, effect, chance;
+};
+
+std::vector<Effect> effects_of(const Batch& b, bool exact) {
+  const auto p = [exact](double value) {
+    return exact ? std::string("exact") : fmt::format("p {:.3f}", value);
+  };
+  const auto times = [](double ratio) { return fmt::format("× {:.3f}", ratio); };
+  const auto change = [](double from, double to) { return fmt::format("{:+.3g}", to - from); };
+  const std::string interval = exact ? times(b.minima.ratio)
+                                     : fmt::format("× {:.3f} ({:.3f} to {:.3f})", b.minima.ratio,
+                                                   b.minima.low, b.minima.high);
+  std::vector<Effect> effects = {
+      {"frame time", "", "", interval, p(std::min(b.minima.p_slower, b.minima.p_faster))}};
+  if (!exact) {
+    effects.push_back(
+        {"1 % of frames that grew most", "", "", times(b.minima.tail_ratio), p(b.minima.p_tail)});
+    effects.push_back({"slow frames of a run", three_digits(b.slow_frames_a),
+                       three_digits(b.slow_frames_b), change(b.slow_frames_a, b.slow_frames_b),
+                       p(b.p_slow_frames)});
+    effects.push_back({"runs with a hitch", std::to_string(b.hitchy_a), std::to_string(b.hitchy_b),
+                       change(static_cast<double>(b.hitchy_a), static_cast<double>(b.hitchy_b)),
+                       p(b.p_hitchy)});
+  }
+  effects.push_back({"missing or too coarse, % of the picture", three_digits(b.missing_a),
+                     three_digits(b.missing_b), change(b.missing_a, b.missing_b), p(b.p_missing)});
+  effects.push_back({"error of levels of detail, pixels", three_digits(b.error_a),
+                     three_digits(b.error_b), change(b.error_a, b.error_b), p(b.p_error)});
+  return effects;
+}
+
+// The ratio of frame times with its interval, over the range in which frames count as the same.
+std::string interval_drawing(const Batch& batch) {
+  static constexpr double kLow = 0.8, kHigh = 1.25, kWidth = 320;
+  const auto x = [](double ratio) {
+    return (std::clamp(ratio, kLow, kHigh) - kLow) / (kHigh - kLow) * kWidth;
+  };
+  return fmt::format(
+      "<svg class=\"interval\" viewBox=\"-4 0 328 34\" role=\"img\" aria-label=\"interval\">"
+      "<rect class=\"fill9\" x=\"{:.1f}\" width=\"{:.1f}\" y=\"0\" height=\"18\"/>"
+      "<line class=\"grid\" x1=\"0\" x2=\"320\" y1=\"9\" y2=\"9\"/>"
+      "<line class=\"stroke2 thick\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"9\" y2=\"9\"/>"
+      "<circle class=\"fill2\" cx=\"{:.1f}\" cy=\"9\" r=\"4.5\"/>"
+      "<text x=\"0\" y=\"32\">B is 20 % faster</text><text x=\"{:.1f}\" y=\"32\" "
+      "text-anchor=\"middle\">same</text><text x=\"320\" y=\"32\" text-anchor=\"end\">25 % "
+      "slower</text></svg>",
+      x(1 / kSlowerRatio), x(kSlowerRatio) - x(1 / kSlowerRatio), x(batch.minima.low),
+      x(batch.minima.high), x(batch.minima.ratio), x(1.0));
+}
+
+std::string batch_section(const Comparison& comparison, std::size_t index) {
+  const Batch& batch = comparison.batches[index];
+  const std::string name = comparison.exact ? "Effects, on the virtual clock"
+                           : index == 0     ? "Effects, first batch"
+                                            : "Effects, second batch, which must confirm the first";
+  std::string html = fmt::format(
+      "<section><h2>{}: {} pair{}, {} frames each</h2>{}<table><tr><th></th><td>A</td><td>B</td>"
+      "<td>effect</td><td>by chance</td></tr>",
+      name, batch.pairs, batch.pairs == 1 ? "" : "s", batch.frames, interval_drawing(batch));
+  for (const Effect& e : effects_of(batch, comparison.exact))
+    html += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>", e.name,
+                        e.a, e.b, e.effect, e.chance);
+  return html + "</table></section>\n";
+}
+
+std::string_view class_of(Verdict verdict) {
+  return verdict == Verdict::kWorse ? "bad" : verdict == Verdict::kInconclusive ? "fair" : "good";
+}
+
+std::string verdict_section(const Comparison& comparison, const FalseAlarms* alarms) {
+  std::string html = fmt::format("<section class=\"verdict {}\"><b>{}</b>\n",
+                                 class_of(comparison.verdict), headline(comparison));
+  for (const std::string& reason : comparison.reasons)
+    html += fmt::format("<p>{}</p>\n", escaped(reason));
+  if (alarms != nullptr)
+    html += fmt::format(
+        "<p class=\"advice\">A compared with itself {} times: {} times worse, {} better, {} "
+        "inconclusive. This is how often the verdict is wrong on this machine.</p>\n",
+        alarms->comparisons, alarms->worse, alarms->better, alarms->inconclusive);
+  return html + "</section>\n";
+}
+
+constexpr std::string_view kStyle =
+    ".effects section { background:var(--card); border:1px solid var(--edge); border-radius:10px;"
+    " margin-top:14px; padding:14px 16px; overflow-x:auto }\n"
+    ".effects td { padding-left:12px; white-space:nowrap } .effects th { white-space:normal }\n"
+    ".interval { max-width:420px; margin:4px 0 8px } .thick { stroke-width:3 }\n";
+
+}  // namespace
+
+std::string headline(const Comparison& comparison) {
+  const Batch& last = comparison.batches.back();
+  const bool missing = last.missing_b > last.missing_a && last.p_missing <= kSignificant;
+  const bool coarser = last.error_b > last.error_a && last.p_error <= kSignificant;
+  const bool less = missing || coarser;
+  const bool slower = last.minima.ratio > (comparison.exact ? 1 : kSlowerRatio);
+  switch (comparison.verdict) {
+    case Verdict::kSame:
+      return "B is the same as A";
+    case Verdict::kBetter:
+      return "B is better: faster, and it shows as much";
+    case Verdict::kWorse:
+      if (less && last.minima.ratio < 1)
+        return "B is worse: its frames are faster because it draws less. Faster because it draws "
+               "less is not better";
+      return less     ? "B is worse: it shows less"
+             : slower ? "B is worse: it is slower"
+                      : "B is worse: some of its frames are slower";
+    case Verdict::kInconclusive:
+      break;
+  }
+  return comparison.noise_percent > 0
+             ? fmt::format("Inconclusive: the noise is ±{:.1f} %", comparison.noise_percent)
+             : "Inconclusive";
+}
+
+std::string to_html(const Comparison& comparison, Runs a, Runs b, const Sides& sides,
+                    const FalseAlarms* alarms) {
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
+  html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
+  html += fmt::format(
+      "<title>psygen: B is {} A</title><style>{}{}</style></head><body><main>\n"
+      "<h1>Comparison of two builds</h1>\n<p class=\"lead\">{} of each, at {} × {}{}</p>\n"
+      "<p class=\"command\"><span class=\"swatch{} key\">A</span> <code>{}</code><br>"
+      "<span class=\"swatch{} key\">B</span> <code>{}</code></p>\n",
+      comparison.verdict == Verdict::kSame ? "the same as" : "compared with",
+      telemetry::page_style(), kStyle,
+      a.size() == 1 ? std::string("One run") : fmt::format("{} runs", a.size()), a.front().width,
+      a.front().height, sides.test.empty() ? "" : ", test " + escaped(sides.test), kColourA,
+      escaped(sides.a), kColourB, escaped(sides.b));
+  html += verdict_section(comparison, alarms) + "<div class=\"effects\">\n";
+  for (std::size_t i = comparison.batches.size(); i-- > 0;)
+    html += batch_section(comparison, i);
+  html += "</div>\n" + plots(a, b);
+  html += fmt::format("</main><script>{}</script></body></html>\n", telemetry::page_script());
+  return html;
+}
+
+}  // namespace psygen::compare

@@ -1,0 +1,47 @@
+#include "engine/telemetry/process_command.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "engine/core/utf8.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+constexpr std::size_t kMostBytes = 2000;
+
+bool is_plain(char c) {
+  const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  return letter || std::string_view("-_./=,:+%@").find(c) != std::string_view::npos;
+}
+
+// In single quotes where a shell would read it otherwise.
+std::string quoted(std::string_view word) {
+  if (!word.empty() && std::ranges::all_of(word, is_plain)) return std::string(word);
+  std::string text = "'";
+  for (const char c : word)
+    text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+std::string shell_text(std::string_view words) {
+  std::string text;
+  while (!words.empty()) {
+    const std::size_t end = std::min(words.find('\0'), words.size());
+    if (!text.empty()) text += ' ';
+    text += quoted(words.substr(0, end));
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return core::shown(text, kMostBytes);
+}
+
+std::string process_command() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  const std::string words((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  return shell_text(words);
+}
+
+}  // namespace psygen::telemetry
