@@ -44,11 +44,12 @@ core::Result<void> fit_virtual_clock(SessionOptions& options) {
   return {};
 }
 
-// What the virtual clock does not know.
+// What the virtual clock does not know. Pictures take no time on it, and set no frame apart.
 void forget_real_times(telemetry::FrameRecord& record) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   record.main_cpu_ms = record.device_wait_ms = record.acquire_ms = record.present_ms = kUnknown;
   record.record_ms = kUnknown;
+  record.apart = telemetry::Apart::kNo;
 }
 
 }  // namespace

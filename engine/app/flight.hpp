@@ -43,6 +43,8 @@ class Flight {
 
   // The session that it stands on; lives as long as the flight.
   Session& session() { return *session_; }
+  // The rows of the frames so far.
+  const telemetry::FrameLog& log() const { return *log_; }
 
  private:
   explicit Flight(FlightOptions options) : options_(std::move(options)) {}

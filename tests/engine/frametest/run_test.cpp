@@ -13,11 +13,11 @@ namespace {
 using testing::HasSubstr;
 
 TestResult result_of(std::vector<BudgetResult> budgets) {
-  return {"dir/walk.toml", "walk", std::move(budgets), {}, 1.5};
+  return {"dir/walk.toml", "walk", std::move(budgets), {}, 1.5, {}};
 }
 
 TestResult result_of(core::ErrorCode code) {
-  return {"dir/walk.toml", "walk", {}, core::Error{code, "it <failed> & \"more\""}, 1.5};
+  return {"dir/walk.toml", "walk", {}, core::Error{code, "it <failed> & \"more\""}, 1.5, {}};
 }
 
 TEST(Judge, HoldsBudgetsAgainstTheFiguresAndMissesWhatWasNotMeasured) {
