@@ -78,6 +78,7 @@ class Flight {
   platform::FlyCamera fly_camera_;
   core::CameraPose pose_;
   std::uint64_t frames_ = 0;
+  double usual_ms_ = 0;  // of the last frame that nothing sets apart
   bool recorded_ = false;
   bool user_flies_ = false;
   Hud hud_;
