@@ -2,7 +2,8 @@
 # A CTest entry that runs the frame test FILE (docs/frame-tests.md) and fails where a budget is
 # missed. Without a device it is skipped. PROGRAM is a target of yours that ends in
 # frametest::frame_test_main(); without it `psygen test` flies without a game. Labels: frames, and
-# those given. A test on the wall clock runs alone, because other tests would take its time.
+# those given. Outputs, with pictures of the worst frames of a failed test, are in frame_tests/NAME of
+# the build folder. A test on the wall clock runs alone, because other tests would take its time.
 function(psygen_add_frame_test name file)
   cmake_parse_arguments(PARSE_ARGV 2 ARG "" "PROGRAM" "LABELS")
   cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
@@ -13,7 +14,8 @@ function(psygen_add_frame_test name file)
   else()
     set(program ${psygen_EXECUTABLE} test)
   endif()
-  add_test(NAME "${name}" COMMAND ${program} ${file})
+  string(MAKE_C_IDENTIFIER "${name}" folder)
+  add_test(NAME "${name}" COMMAND ${program} ${file} --out ${CMAKE_CURRENT_BINARY_DIR}/frame_tests/${folder})
   set_tests_properties("${name}" PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 3600 LABELS "frames;${ARG_LABELS}")
   file(READ ${file} text)
   if(NOT text MATCHES "clock *= *\"virtual\"")

@@ -1,7 +1,7 @@
-// Operating system faults on request: a full disk, threads that cannot be created. faults.cpp
-// replaces the C library's functions in any program that links it, and forwards to them while no
-// fault is requested. As a library of its own (psygen_faults) it is preloaded into whole programs,
-// which take their faults from the environment:
+// Operating system faults on request: a full disk, threads that cannot be created, clocks that
+// jump. faults.cpp replaces the C library's functions in any program that links it, and forwards to
+// them while no fault is requested. As a library of its own (psygen_faults) it is preloaded into
+// whole programs, which take their faults from the environment:
 //   PSYGEN_FULL_DISK=FOLDER PSYGEN_CALLS_LEFT=N     FullDisk(FOLDER, N)
 //   PSYGEN_THREADS_LEFT=N                           FewThreads(N)
 #pragma once
@@ -37,6 +37,17 @@ class FewThreads {
   ~FewThreads();
   FewThreads(const FewThreads&) = delete;
   FewThreads& operator=(const FewThreads&) = delete;
+};
+
+// While it lives, the program itself (not its libraries) reads clocks that are off by these
+// seconds: CLOCK_MONOTONIC, and CLOCK_BOOTTIME, which also counts time in which the machine is
+// suspended. One at a time.
+class WrongClock {
+ public:
+  WrongClock(double monotonic_s, double boot_s);
+  ~WrongClock();
+  WrongClock(const WrongClock&) = delete;
+  WrongClock& operator=(const WrongClock&) = delete;
 };
 
 }  // namespace psygen

@@ -12,7 +12,7 @@ packages=(
   libtomlplusplus-dev nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev
   libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libsqlite3-dev
   libopenal-dev libsndfile1-dev libbullet-dev
-  libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen
+  libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind
   xvfb openbox xdotool x11-utils x11-xkb-utils chromium
 )
 [ "${1:-}" = "--ci" ] && packages+=(clang-format)

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/app/gap.hpp"
 #include "engine/app/plugin_call.hpp"
 #include "engine/app/virtual_frame.hpp"
 #include "engine/core/clock.hpp"
@@ -28,6 +29,7 @@ namespace psygen::app {
 namespace {
 
 constexpr double kDefaultSeconds = 27.0;  // the paper's walk
+constexpr double kLeastFrameMs = 1e-3;    // of a frame in which the clock went back
 constexpr double kEyeHeightM = 1.7;       // a flying user stays above the ground
 
 // On the virtual clock a flight must not depend on the device. What the GPU path draws is known
@@ -44,11 +46,12 @@ core::Result<void> fit_virtual_clock(SessionOptions& options) {
   return {};
 }
 
-// What the virtual clock does not know.
+// What the virtual clock does not know. Pictures take no time on it, and set no frame apart.
 void forget_real_times(telemetry::FrameRecord& record) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   record.main_cpu_ms = record.device_wait_ms = record.acquire_ms = record.present_ms = kUnknown;
   record.record_ms = kUnknown;
+  record.apart = telemetry::Apart::kNo;
 }
 
 }  // namespace
@@ -134,7 +137,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   if (session_->window() != nullptr) write_over_picture();
   const double now_s = session_->now_s();
   const double start_s = core::monotonic_seconds();
-  const double cpu_start_s = core::thread_cpu_seconds();
+  const double cpu_start_s = core::thread_cpu_seconds(), asleep_s = core::suspended_seconds();
   if (auto ok = session_->tick(next_pose(session_->paused() ? 0 : dt_s), dt_s); !ok) return ok;
   // The flight's clock goes on while a picture waits for the device, as if the next frames had.
   if (saves_picture()) session_->renderer().wait_idle();
@@ -145,7 +148,9 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   if (!saved.empty() || saves_picture()) record.apart = telemetry::Apart::kPicture;
   record.index = frames_;
   record.time_s = now_s;
-  record.frame_ms = frame_ms;
+  record.frame_ms = std::max(frame_ms, kLeastFrameMs);
+  if (is_gap(frame_ms, usual_ms_, core::suspended_seconds() - asleep_s))
+    record.apart = telemetry::Apart::kGap;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
   if (has_virtual_frames(options_.session)) {
     record.frame_ms = virtual_frame_ms(record.triangles, record.draws, state.input.size);
@@ -153,6 +158,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   }
   if (recorded_ && !session_->paused()) log_frame();
   const bool like_others = record.apart == telemetry::Apart::kNo;
+  if (like_others) usual_ms_ = record.frame_ms;
   if (like_others) hud_.add_frame(record.frame_ms);
   state.input.frame_ms = like_others ? governed_ms(record.frame_ms) : 0.0;
   // On a device of its own the time is that of some frames before.
@@ -186,8 +192,12 @@ core::Result<void> Flight::loop() {
     const double start_s = core::monotonic_seconds(), now_s = session_->now_s();
     if (auto ok = fly_frame(dt_s); !ok) return ok;
     if (hz <= 0) {
-      dt_s = has_virtual_frames(options_.session) ? session_->scene().state().record.frame_ms * 1e-3
-                                                  : core::monotonic_seconds() - start_s;
+      const double passed_s = core::monotonic_seconds() - start_s;
+      if (has_virtual_frames(options_.session)) {
+        dt_s = session_->scene().state().record.frame_ms * 1e-3;
+      } else if (!is_gap(passed_s * 1000, usual_ms_, 0)) {
+        dt_s = passed_s;  // the flight does not leap over a gap
+      }
     }
     bar.update(now_s);
     if (saves_picture()) {

@@ -43,6 +43,8 @@ class Flight {
 
   // The session that it stands on; lives as long as the flight.
   Session& session() { return *session_; }
+  // The rows of the frames so far.
+  const telemetry::FrameLog& log() const { return *log_; }
 
  private:
   explicit Flight(FlightOptions options) : options_(std::move(options)) {}
@@ -76,6 +78,7 @@ class Flight {
   platform::FlyCamera fly_camera_;
   core::CameraPose pose_;
   std::uint64_t frames_ = 0;
+  double usual_ms_ = 0;  // of the last frame that nothing sets apart
   bool recorded_ = false;
   bool user_flies_ = false;
   Hud hud_;

@@ -78,6 +78,7 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   const render::DeviceInfo& device = session_->renderer().device();
   facts.device = {device.name, device.driver, device.api_version, device.timestamps};
   const core::Extent size = session_->renderer().size();
+  facts.run.path = options_.path_file.stem().string();
   facts.run.paradigm = scene::to_string(session.scene.paradigm);
   facts.run.policy = synthesis::name_of(session.scene.policy);
   facts.run.modelers = state.settings.modelers;
@@ -118,6 +119,8 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   facts.world_hash = !options_.hash_world ? telemetry::Count::missing("switched off")
                      : whole              ? sample_hash(state, session_->home().position.block)
                                           : telemetry::Count::missing("the flight failed");
+  facts.path_hash =
+      path_ ? telemetry::Count(path_->hash()) : telemetry::Count::missing("there was no path");
   facts.images_hash = pictures_failed_ ? telemetry::Count::missing("a picture was not written")
                       : images_ > 0    ? telemetry::Count(images_hash_)
                                        : telemetry::Count::missing("no pictures were written");

@@ -1,16 +1,12 @@
 #include "engine/cli/compare_command.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <random>
-#include <sstream>
 
+#include "engine/cli/child_process.hpp"
 #include "engine/cli/commands.hpp"
+#include "engine/cli/instruction_count.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/compare/compare_page.hpp"
 #include "engine/core/log.hpp"
@@ -24,31 +20,6 @@ namespace {
 bool is_folder(const std::string& name) {
   std::error_code error;
   return std::filesystem::is_directory(name, error);
-}
-
-// Runs a program with its output in a file; its exit code.
-core::Result<int> run_program(std::vector<std::string> words, const std::filesystem::path& log) {
-  std::vector<char*> arguments;
-  for (std::string& word : words)
-    arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int failed =
-      posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) {
-    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be run: {}", words.front(),
-                                                        std::generic_category().message(failed)));
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 }  // namespace
@@ -66,6 +37,9 @@ CompareCommand::CompareCommand(CLI::App& cli)
       ->transform(integer_between(compare::kFewestPairs, compare::kMostPairs));
   c.add_option("--aa", aa_, "Compare A with itself so many times, for the rate of false alarms")
       ->transform(integer_between(0, 100'000));
+  c.add_flag("--instructions", instructions_,
+             "Compare two commands by the instructions that they execute, as callgrind counts them")
+      ->excludes("--test", "--pairs", "--aa");
   c.add_flag("--json", json_, "Print the result as JSON");
 }
 
@@ -73,10 +47,7 @@ CompareCommand::CompareCommand(CLI::App& cli)
 core::Result<compare::RecordedRun> CompareCommand::record(
     const std::string& command, const std::filesystem::path& folder) const {
   if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
-  std::vector<std::string> words;
-  std::istringstream text(command);
-  for (std::string word; text >> word;)
-    words.push_back(word);
+  std::vector<std::string> words = words_of(command);
   words.insert(words.end(), {test_, "--out", folder.string()});
   const auto log = folder / "output.txt";
   const auto code = run_program(words, log);
@@ -129,6 +100,7 @@ core::Result<void> CompareCommand::collect() {
 }
 
 int CompareCommand::run() {
+  if (instructions_) return compare_instructions({a_, b_, out_, json_});
   const auto result = collect().and_then([this] { return compare::compare(runs_a_, runs_b_); });
   core::Result<compare::FalseAlarms> alarms = compare::FalseAlarms{};
   if (result && aa_ > 0) alarms = compare::measure_false_alarms(runs_a_, aa_, 1);

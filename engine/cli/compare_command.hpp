@@ -27,6 +27,7 @@ class CompareCommand {
   std::filesystem::path out_;
   std::size_t pairs_ = 8, aa_ = 0;
   bool json_ = false;
+  bool instructions_ = false;
   std::vector<compare::RecordedRun> runs_a_, runs_b_;
 };
 

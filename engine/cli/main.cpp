@@ -7,6 +7,7 @@
 
 #include "engine/cli/commands.hpp"
 #include "engine/cli/compare_command.hpp"
+#include "engine/cli/convert_command.hpp"
 #include "engine/cli/fatal.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/standard_streams.hpp"
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   psygen::cli::ScheduleCommand schedule(cli);
   psygen::cli::TestCommand test(cli);
   psygen::cli::CompareCommand compare(cli);
+  psygen::cli::ConvertCommand convert(cli);
   // After the commands, which would take it over.
   cli.footer(
       "For example:\n"
@@ -48,6 +50,7 @@ int main(int argc, char** argv) {
     if (schedule.chosen()) return schedule.run();
     if (test.chosen()) return test.run();
     if (compare.chosen()) return compare.run();
+    if (convert.chosen()) return convert.run();
     return models.run();
   } catch (...) {
     return psygen::cli::say_what_was_thrown();

@@ -1,6 +1,7 @@
 #include "engine/cli/test_command.hpp"
 
 #include "engine/cli/interrupt.hpp"
+#include "engine/cli/option_checks.hpp"
 #include "engine/core/log.hpp"
 #include "engine/render/software_tuning.hpp"
 
@@ -12,6 +13,10 @@ TestCommand::TestCommand(CLI::App& cli)
   c.add_option("FILE", options_.files, "Frame tests: TOML files")->required();
   c.add_option("--junit", options_.junit, "File that gets the results as JUnit XML");
   c.add_option("--out", options_.out, "Folder that keeps the outputs, one folder for each test");
+  c.add_option("--worst", options_.worst_frames,
+               "Pictures of the worst frames of a failed test, in --out; 0: none")
+      ->capture_default_str()
+      ->transform(integer_between(0, frametest::kMostWorstFrames));
   c.add_option("--device", options_.device, "Part of the name of the Vulkan device");
 }
 

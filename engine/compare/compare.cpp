@@ -29,6 +29,8 @@ std::string difference(const RecordedRun& first, const RecordedRun& other) {
   if (first.world_hash != other.world_hash)
     return differ("world hashes, so their pictures and times say nothing about each other",
                   first.world_hash, other.world_hash);
+  if (first.path_hash != other.path_hash && !first.path_hash.empty() && !other.path_hash.empty())
+    return differ("paths", first.path_hash, other.path_hash);
   if (first.width != other.width || first.height != other.height)
     return differ("sizes", fmt::format("{}x{}", first.width, first.height),
                   fmt::format("{}x{}", other.width, other.height));
@@ -72,15 +74,26 @@ core::Result<void> check(Runs a, Runs b) {
   return {};
 }
 
-// The frames that no run leaves out.
-Times times_of(Runs runs, const std::vector<bool>& left_out) {
+// The frames that no run leaves out. Times below a microsecond count as one.
+Times times_of(Runs runs, const std::vector<bool>& left_out,
+               std::vector<double> RecordedRun::*column) {
+  constexpr double kLeastMs = 1e-3;
   Times times;
   for (const RecordedRun& run : runs) {
     times.emplace_back();
     for (std::size_t k = 0; k < left_out.size(); ++k)
-      if (!left_out[k]) times.back().push_back(run.frame_ms[k]);
+      if (!left_out[k]) times.back().push_back(std::max((run.*column)[k], kLeastMs));
   }
   return times;
+}
+
+// Processor time of the main thread, where all runs have it.
+std::optional<MinimaTest> cpu_test(Runs a, Runs b, const std::vector<bool>& left_out) {
+  for (const Runs runs : {a, b})
+    for (const RecordedRun& run : runs)
+      if (run.cpu_ms.size() != left_out.size()) return std::nullopt;
+  return minima_test(times_of(a, left_out, &RecordedRun::cpu_ms),
+                     times_of(b, left_out, &RecordedRun::cpu_ms));
 }
 
 std::vector<bool> left_out_of(Runs a, Runs b) {
@@ -141,7 +154,8 @@ void judge_picture(Runs a, Runs b, Batch& batch) {
 
 core::Result<Batch> judge_batch(Runs a, Runs b) {
   const std::vector<bool> left_out = left_out_of(a, b);
-  const Times times_a = times_of(a, left_out), times_b = times_of(b, left_out);
+  const Times times_a = times_of(a, left_out, &RecordedRun::frame_ms),
+              times_b = times_of(b, left_out, &RecordedRun::frame_ms);
   Batch batch;
   batch.pairs = a.size();
   batch.frames = times_a.front().size();
@@ -149,6 +163,7 @@ core::Result<Batch> judge_batch(Runs a, Runs b) {
     return refuse(fmt::format("only {} frames are left out of no run; a comparison needs {}",
                               batch.frames, kFewestFrames));
   batch.minima = minima_test(times_a, times_b);
+  batch.cpu = cpu_test(a, b, left_out);
   std::vector<double> minima = times_a.front();
   for (const Times& times : {std::cref(times_a), std::cref(times_b)})
     for (const auto& run : times)
@@ -166,7 +181,18 @@ core::Result<Batch> judge_batch(Runs a, Runs b) {
 }
 
 // What a batch finds. The same finding in both batches is a verdict.
-enum Finding { kMissing, kError, kSlower, kTail, kSlowFrames, kHitches, kFaster, kFindings };
+enum Finding {
+  kMissing,
+  kError,
+  kSlower,
+  kMoreCpu,
+  kTail,
+  kSlowFrames,
+  kHitches,
+  kFaster,  // the last two are good
+  kLessCpu,
+  kFindings
+};
 
 std::array<bool, kFindings> findings_of(const Batch& batch) {
   std::array<bool, kFindings> found{};
@@ -179,6 +205,10 @@ std::array<bool, kFindings> findings_of(const Batch& batch) {
       batch.p_slow_frames <= kSignificant && batch.slow_frames_b > 1.2 * batch.slow_frames_a + 0.5;
   found[kHitches] = batch.p_hitchy <= kSignificant;
   found[kFaster] = batch.minima.p_faster <= kSignificant && batch.minima.ratio < 1 / kSlowerRatio;
+  if (batch.cpu) {
+    found[kMoreCpu] = batch.cpu->p_slower <= kSignificant && batch.cpu->ratio > kSlowerRatio;
+    found[kLessCpu] = batch.cpu->p_faster <= kSignificant && batch.cpu->ratio < 1 / kSlowerRatio;
+  }
   return found;
 }
 
@@ -204,9 +234,19 @@ std::string sentence_of(Finding finding, const Batch& b) {
     case kHitches:
       return fmt::format("{} of {} runs have a hitch, before {} (p {:.3f})", b.hitchy_b, b.pairs,
                          b.hitchy_a, b.p_hitchy);
+    case kMoreCpu:
+      return fmt::format("the main thread takes {:.1f} % more processor time (p {:.3f})",
+                         100 * (b.cpu->ratio - 1), b.cpu->p_slower);
+    case kLessCpu:
+      return fmt::format("the main thread takes {:.1f} % less processor time (p {:.3f})",
+                         100 * (1 - b.cpu->ratio), b.cpu->p_faster);
     default:
       return fmt::format("frames take {:.1f} % less (p {:.3f})", percent, b.minima.p_faster);
   }
+}
+
+bool is_narrow(const MinimaTest& test) {
+  return test.low > 1 / kSlowerRatio && test.high < kSlowerRatio;
 }
 
 void conclude(Comparison& comparison) {
@@ -220,13 +260,12 @@ void conclude(Comparison& comparison) {
     found[static_cast<std::size_t>(f)] &= first[static_cast<std::size_t>(f)];
     if (!found[static_cast<std::size_t>(f)]) continue;
     comparison.reasons.push_back(sentence_of(static_cast<Finding>(f), last));
-    worse = worse || f != kFaster;
+    worse = worse || f < kFaster;
   }
-  const bool faster = found[kFaster];
+  const bool faster = found[kFaster] || found[kLessCpu];
   if (worse && faster)
-    comparison.reasons.push_back("faster with a worse picture or worse rare frames is not better");
-  const double limit = kSlowerRatio;
-  const bool narrow = last.minima.low > 1 / limit && last.minima.high < limit;
+    comparison.reasons.push_back("faster with anything else worse is not better");
+  const bool narrow = is_narrow(last.minima) && (!last.cpu || is_narrow(*last.cpu));
   if (!confirmed && (worse || faster)) {
     comparison.reasons.push_back(
         fmt::format("no second batch confirms it: record {} pairs or more", 2 * kFewestPairs));
@@ -312,8 +351,11 @@ core::Result<Comparison> compare(Runs a, Runs b) {
       if (!batch) return tl::unexpected(batch.error());
       result->batches.push_back(std::move(*batch));
     }
-    const MinimaTest& minima = result->batches.back().minima;
-    result->noise_percent = 50 * (minima.high - minima.low);
+    const Batch& last = result->batches.back();
+    result->noise_percent = 50 * (last.minima.high - last.minima.low);
+    if (last.cpu)
+      result->noise_percent =
+          std::max(result->noise_percent, 50 * (last.cpu->high - last.cpu->low));
     conclude(*result);
   }
   if (!result || !pictures_differ(a, b)) return result;

@@ -3,6 +3,7 @@
 // statistics.hpp's; runs are recorded_run.hpp's. Pure.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,7 @@ inline constexpr std::size_t kFewestFrames = 50;
 struct Batch {
   std::size_t pairs = 0, frames = 0;
   MinimaTest minima;
+  std::optional<MinimaTest> cpu;  // of the main thread's processor time; none on the virtual clock
   double slow_frames_a = 0, slow_frames_b = 0, p_slow_frames = 1;  // mean of a run
   std::uint64_t hitchy_a = 0, hitchy_b = 0;                        // runs with a hitch
   double p_hitchy = 1;
@@ -38,8 +40,9 @@ struct Batch {
 struct Comparison {
   Verdict verdict = Verdict::kInconclusive;
   std::vector<std::string> reasons;  // sentences
-  double noise_percent = 0;          // half of the interval of the ratio, of the last batch
-  bool exact = false;                // by the virtual clock: no statistics
+  // Half of the interval of the ratio, of the last batch; the wider of frame and processor time.
+  double noise_percent = 0;
+  bool exact = false;  // by the virtual clock: no statistics
   std::vector<Batch> batches;
 };
 

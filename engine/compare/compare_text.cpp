@@ -15,14 +15,18 @@ Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+Json test_json(const MinimaTest& test) {
+  return {{"ratio", finite(test.ratio)},
+          {"interval", {finite(test.low), finite(test.high)}},
+          {"p_slower", test.p_slower},
+          {"p_faster", test.p_faster}};
+}
+
 Json batch_json(const Batch& b) {
   return {{"pairs", b.pairs},
           {"frames", b.frames},
-          {"frame_ms",
-           {{"ratio", finite(b.minima.ratio)},
-            {"interval", {finite(b.minima.low), finite(b.minima.high)}},
-            {"p_slower", b.minima.p_slower},
-            {"p_faster", b.minima.p_faster}}},
+          {"frame_ms", test_json(b.minima)},
+          {"main_cpu_ms", b.cpu ? test_json(*b.cpu) : Json(nullptr)},
           {"tail", {{"ratio", finite(b.minima.tail_ratio)}, {"p", b.minima.p_tail}}},
           {"slow_frames", {{"a", b.slow_frames_a}, {"b", b.slow_frames_b}, {"p", b.p_slow_frames}}},
           {"hitchy_runs", {{"a", b.hitchy_a}, {"b", b.hitchy_b}, {"p", b.p_hitchy}}},
@@ -50,6 +54,9 @@ std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
           "{} and {}",
           b.minima.low, b.minima.high, b.slow_frames_a, b.slow_frames_b, b.hitchy_a, b.hitchy_b);
     }
+    if (b.cpu)
+      text += fmt::format(", processor time of the main thread {:.4f} ({:.3f} to {:.3f})",
+                          b.cpu->ratio, b.cpu->low, b.cpu->high);
     text += fmt::format(", missing or coarse {:.3g} and {:.3g} %, error {:.3g} and {:.3g} pixels\n",
                         b.missing_a, b.missing_b, b.error_a, b.error_b);
   }

@@ -4,34 +4,18 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "engine/core/utf8.hpp"
+#include "engine/compare/csv_rows.hpp"
+#include "engine/compare/run_files.hpp"
 
 namespace psygen::compare {
 namespace {
 
 using Parsed = nlohmann::json;
-
-constexpr std::size_t kMostShownBytes = 40;
-
-tl::unexpected<core::Error> refuse(const std::string& where, std::string_view sentence) {
-  return core::fail(core::ErrorCode::kParse, core::shown(fmt::format("{}: {}", where, sentence)));
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    cells.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
 
 // The columns that a comparison needs.
 enum Column {
@@ -58,32 +42,7 @@ struct Sums {
   double missing = 0, coarse = 0, error = 0, holes = 0;
 };
 
-core::Result<double> number_in(std::string_view cell, const std::string& where,
-                               std::string_view name) {
-  double value = 0;
-  const auto parsed = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (parsed.ec == std::errc() && parsed.ptr == cell.data() + cell.size() && value >= 0 &&
-      value < 1e15)
-    return value;
-  return refuse(where, fmt::format("{}: '{}' is not a number from 0 on", name,
-                                   core::shown(cell, kMostShownBytes)));
-}
-
-core::Result<std::array<std::size_t, kColumns>> find_columns(std::string_view header,
-                                                             const std::string& where) {
-  const std::vector<std::string_view> names = cells_of(header);
-  std::array<std::size_t, kColumns> columns{};
-  for (std::size_t i = 0; i < kColumns; ++i) {
-    const auto found = std::ranges::find(names, kNames[i]);
-    if (found == names.end())
-      return refuse(where, fmt::format("the column {} is missing", kNames[i]));
-    columns[i] = static_cast<std::size_t>(found - names.begin());
-  }
-  return columns;
-}
-
-core::Result<void> add_row(std::span<const std::string_view> cells,
-                           const std::array<std::size_t, kColumns>& columns,
+core::Result<void> add_row(CsvCells cells, std::span<const std::size_t> columns,
                            const std::string& where, double warmup_s, RecordedRun& run,
                            Sums& sums) {
   std::array<double, kColumns> values{};
@@ -93,12 +52,18 @@ core::Result<void> add_row(std::span<const std::string_view> cells,
     if (!value) return tl::unexpected(value.error());
     values[column] = *value;
   }
-  if (!(values[kColumnFrame] > 0)) return refuse(where, "frame_ms: a frame takes time");
+  if (!(values[kColumnFrame] > 0)) return refuse_file(where, "frame_ms: a frame takes time");
   if (!run.time_s.empty() && values[kColumnTime] < run.time_s.back())
-    return refuse(where, fmt::format("time_s: the clock goes backwards, from {} to {}",
-                                     run.time_s.back(), values[kColumnTime]));
+    return refuse_file(where, fmt::format("time_s: the clock goes backwards, from {} to {}",
+                                          run.time_s.back(), values[kColumnTime]));
   if (values[kColumnTime] < warmup_s) return {};
+  // On the virtual clock there is no processor's time.
   run.virtual_clock = cells[columns[kColumnCpu]].empty();
+  if (!run.virtual_clock) {
+    const auto cpu = number_in(cells[columns[kColumnCpu]], where, kNames[kColumnCpu]);
+    if (!cpu) return tl::unexpected(cpu.error());
+    run.cpu_ms.push_back(*cpu);
+  }
   run.time_s.push_back(values[kColumnTime]);
   run.frame_ms.push_back(values[kColumnFrame]);
   run.left_out.push_back(!cells[columns[kColumnApart]].empty());
@@ -124,28 +89,23 @@ void leave_out_suspended(RecordedRun& run) {
 
 core::Result<void> parse_frames(std::string_view text, double warmup_s, RecordedRun& run) {
   const std::string file = run.folder + "/frames.csv";
-  if (!text.ends_with('\n')) return refuse(file, "the file is cut: its last line has no end");
-  std::array<std::size_t, kColumns> columns{};
-  std::size_t cells_in_header = 0, number = 0;
+  std::vector<std::size_t> columns;
   Sums sums;
-  while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(line.size() + 1);
-    const std::string where = fmt::format("{}:{}", file, ++number);
-    const std::vector<std::string_view> cells = cells_of(line);
-    if (number == 1) {
-      const auto found = find_columns(line, where);
-      if (!found) return tl::unexpected(found.error());
-      columns = *found;
-      cells_in_header = cells.size();
-      continue;
-    }
-    if (cells.size() != cells_in_header)
-      return refuse(where, fmt::format("the line has {} cells, and the header {}", cells.size(),
-                                       cells_in_header));
-    if (auto ok = add_row(cells, columns, where, warmup_s, run, sums); !ok) return ok;
-  }
-  if (run.frame_ms.empty()) return refuse(file, "no frame is left after the warm-up");
+  const auto read = read_csv(
+      text, file,
+      [&](CsvCells header, const std::string& where) -> core::Result<void> {
+        auto found = find_columns(header, kNames, where);
+        if (!found) return tl::unexpected(found.error());
+        columns = std::move(*found);
+        return {};
+      },
+      [&](CsvCells cells, const std::string& where) {
+        return add_row(cells, columns, where, warmup_s, run, sums);
+      });
+  if (!read) return read;
+  if (!run.cpu_ms.empty() && run.cpu_ms.size() != run.frame_ms.size())
+    return refuse_file(file, "main_cpu_ms: some frames have it and some have not");
+  if (run.frame_ms.empty()) return refuse_file(file, "no frame is left after the warm-up");
   const auto count = static_cast<double>(run.frame_ms.size());
   run.missing_percent = sums.missing / count;
   run.coarse_percent = sums.coarse / count;
@@ -182,12 +142,13 @@ core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_vie
                                     const std::string& folder) {
   const std::string file = folder + "/summary.json";
   const Parsed json = Parsed::parse(summary_json, nullptr, false);
-  if (json.is_discarded()) return refuse(file, "it is not JSON, or is cut");
+  if (json.is_discarded()) return refuse_file(file, "it is not JSON, or is cut");
   if (member<std::string>(json, "/schema") != "psygen.summary/1")
-    return refuse(file, "schema: it must be \"psygen.summary/1\"");
+    return refuse_file(file, "schema: it must be \"psygen.summary/1\"");
   RecordedRun run;
   run.folder = folder;
   run.world_hash = member<std::string>(json, "/hash/world").value_or("");
+  run.path_hash = member<std::string>(json, "/hash/path").value_or("");
   run.images_hash = member<std::string>(json, "/hash/images").value_or("");
   const auto pixels = [&json](const char* path) {
     return static_cast<std::uint64_t>(std::clamp(member<double>(json, path).value_or(0), 0.0, 1e6));
@@ -200,12 +161,18 @@ core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_vie
   return run;
 }
 
-core::Result<RecordedRun> read_run(const std::filesystem::path& folder) {
-  const auto frames = read_text(folder / "frames.csv");
+core::Result<RunFiles> read_run_files(const std::filesystem::path& folder) {
+  auto frames = read_text(folder / "frames.csv");
   if (!frames) return tl::unexpected(frames.error());
-  const auto summary = read_text(folder / "summary.json");
+  auto summary = read_text(folder / "summary.json");
   if (!summary) return tl::unexpected(summary.error());
-  return parse_run(*frames, *summary, folder.string());
+  return RunFiles{std::move(*frames), std::move(*summary)};
+}
+
+core::Result<RecordedRun> read_run(const std::filesystem::path& folder) {
+  const auto files = read_run_files(folder);
+  if (!files) return tl::unexpected(files.error());
+  return parse_run(files->frames_csv, files->summary_json, folder.string());
 }
 
 core::Result<std::vector<RecordedRun>> read_runs(const std::filesystem::path& folder) {

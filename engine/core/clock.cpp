@@ -14,6 +14,9 @@ double seconds_of(clockid_t clock) {
 double monotonic_seconds() {
   return seconds_of(CLOCK_MONOTONIC);
 }
+double suspended_seconds() {
+  return seconds_of(CLOCK_BOOTTIME) - seconds_of(CLOCK_MONOTONIC);
+}
 double thread_cpu_seconds() {
   return seconds_of(CLOCK_THREAD_CPUTIME_ID);
 }

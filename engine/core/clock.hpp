@@ -6,6 +6,9 @@ namespace psygen::core {
 
 // Seconds since an arbitrary start that is fixed while the system runs; never goes back.
 double monotonic_seconds();
+// Seconds since some start in which the machine was suspended; monotonic_seconds() does not count
+// them. Two readings differ by microseconds where it was not.
+double suspended_seconds();
 // Seconds of processor time that the calling thread has used.
 double thread_cpu_seconds();
 

@@ -3,22 +3,11 @@
 
 #include <algorithm>
 
-#include "engine/core/utf8.hpp"
+#include "engine/frametest/escaped.hpp"
 #include "engine/frametest/run.hpp"
-#include "engine/telemetry/report_plot.hpp"
 
 namespace psygen::frametest {
 namespace {
-
-// shown() leaves no control characters, which XML has no way to write.
-std::string escaped(std::string_view text) {
-  return telemetry::escaped(core::shown(text));
-}
-
-std::string limit_of(const Budget& budget) {
-  const double* number = std::get_if<double>(&budget.limit);
-  return number != nullptr ? fmt::format("{:g}", *number) : std::get<std::string>(budget.limit);
-}
 
 std::string suite_of(const TestResult& result) {
   const bool skipped = result.error && result.error->code == core::ErrorCode::kNoDevice;
@@ -41,6 +30,10 @@ std::string suite_of(const TestResult& result) {
     text += r.holds ? fmt::format("><system-out>{}</system-out></testcase>\n", escaped(r.value))
                     : fmt::format("><failure message=\"{}\"/></testcase>\n", escaped(r.value));
   }
+  // What several CI servers show as a file of the suite.
+  if (!result.page.empty())
+    text += fmt::format("<system-out>[[ATTACHMENT|{}]]</system-out>\n",
+                        escaped(std::filesystem::absolute(result.page).string()));
   return text + "</testsuite>\n";
 }
 

@@ -3,25 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <string_view>
 
-#include "engine/app/flight.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/frametest/failure.hpp"
+#include "engine/frametest/start_flight.hpp"
 #include "engine/telemetry/summary_fields.hpp"
 
 namespace psygen::frametest {
 namespace {
-
-std::string_view sign_of(Relation relation) {
-  return relation == Relation::kAtMost ? "<=" : relation == Relation::kAtLeast ? ">=" : "=";
-}
-
-std::string limit_text(const Budget& budget) {
-  const double* number = std::get_if<double>(&budget.limit);
-  return number != nullptr ? fmt::format("{:g}", *number) : std::get<std::string>(budget.limit);
-}
 
 bool holds_for(const Budget& budget, double value) {
   const double* limit = std::get_if<double>(&budget.limit);
@@ -43,28 +36,58 @@ BudgetResult judge_one(const Budget& budget, std::span<const telemetry::SummaryF
   return {budget, "not measured: " + field->reason, false};
 }
 
-core::Result<telemetry::Summary> fly(FrameTest test, const RunOptions& options,
-                                     const Hooks& hooks) {
-  if (!options.out.empty()) test.flight.out_folder = options.out / test.name;
-  test.flight.session.device_name = options.device;
-  test.flight.session.stop = options.stop;
-  if (hooks.prepare) {
-    if (auto ok = hooks.prepare(test.flight.session); !ok) return tl::unexpected(ok.error());
+struct Flown {
+  std::vector<BudgetResult> budgets;
+  std::vector<WorstFrame> worst;  // of a failed test
+};
+
+core::Result<Flown> fly(FrameTest test, const RunOptions& options, const Hooks& hooks) {
+  if (!options.out.empty()) {
+    test.flight.out_folder = options.out / test.name;
+    remove_failure(test.flight.out_folder);
   }
-  auto flight = app::Flight::create(std::move(test.flight));
+  auto flight = start_flight(test.flight, options, hooks);
   if (!flight) return tl::unexpected(flight.error());
-  if (hooks.start) {
-    if (auto ok = hooks.start((*flight)->session()); !ok) return tl::unexpected(ok.error());
-  }
   auto report = (*flight)->run();
   if (!report) return tl::unexpected(report.error());
   if ((*flight)->session().stopped())
     return core::fail(core::ErrorCode::kInterrupted, "the flight was stopped");
   if (!report->failures.empty()) return tl::unexpected(report->failures.front());
-  return std::move(report->summary);
+  Flown flown;
+  flown.budgets = judge(test.budgets, report->summary);
+  flown.worst = worst_frames(flown.budgets, (*flight)->log(), test.flight.warmup_seconds,
+                             static_cast<std::size_t>(options.worst_frames));
+  return flown;
+}
+
+// What is known of the failure, where outputs are kept. The verdict stands without it.
+void show_failure(const FrameTest& test, std::span<const WorstFrame> worst,
+                  const RunOptions& options, const Hooks& hooks, TestResult& result) {
+  if (options.out.empty() || options.worst_frames <= 0) return;
+  const auto page = write_failure(test, result, worst, options, hooks);
+  if (page) {
+    result.page = *page;
+  } else {
+    std::fprintf(stderr, "%s: %s\n", result.name.c_str(), page.error().message.c_str());
+  }
+}
+
+bool read_worst_count(std::string_view text, int& count) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), count);
+  return read.ec == std::errc() && read.ptr == text.data() + text.size() && count >= 0 &&
+         count <= kMostWorstFrames;
 }
 
 }  // namespace
+
+std::string_view sign_of(Relation relation) {
+  return relation == Relation::kAtMost ? "<=" : relation == Relation::kAtLeast ? ">=" : "=";
+}
+
+std::string limit_of(const Budget& budget) {
+  const double* number = std::get_if<double>(&budget.limit);
+  return number != nullptr ? fmt::format("{:g}", *number) : std::get<std::string>(budget.limit);
+}
 
 bool TestResult::holds() const {
   return !error && std::ranges::all_of(budgets, &BudgetResult::holds);
@@ -92,14 +115,17 @@ std::vector<BudgetResult> judge(std::span<const Budget> budgets,
 TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& options,
                           const Hooks& hooks) {
   const double start_s = core::monotonic_seconds();
-  TestResult result{file, file.stem().string(), {}, {}, 0};
+  TestResult result;
+  result.file = file;
+  result.name = file.stem().string();
   const auto test = load_frame_test(file);
   if (test) result.name = test->name;
-  const auto summary = test.and_then([&](const FrameTest& t) { return fly(t, options, hooks); });
-  if (summary) {
-    result.budgets = judge(test->budgets, *summary);
+  auto flown = test.and_then([&](const FrameTest& t) { return fly(t, options, hooks); });
+  if (flown) {
+    result.budgets = std::move(flown->budgets);
+    if (!result.holds()) show_failure(*test, flown->worst, options, hooks, result);
   } else {
-    result.error = summary.error();
+    result.error = flown.error();
   }
   result.seconds = core::monotonic_seconds() - start_s;
   return result;
@@ -108,10 +134,11 @@ TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& o
 std::string to_text(const TestResult& result) {
   std::string text;
   for (const BudgetResult& r : result.budgets) {
-    text +=
-        fmt::format("{}: {} {}  {} {}{}\n", result.name, r.budget.field, r.value,
-                    sign_of(r.budget.relation), limit_text(r.budget), r.holds ? "" : "  MISSED");
+    text += fmt::format("{}: {} {}  {} {}{}\n", result.name, r.budget.field, r.value,
+                        sign_of(r.budget.relation), limit_of(r.budget), r.holds ? "" : "  MISSED");
   }
+  if (!result.page.empty())
+    text += fmt::format("{}: pictures in {}\n", result.name, result.page.string());
   return text;
 }
 
@@ -144,15 +171,19 @@ int frame_test_main(int argc, char** argv, const Hooks& hooks) {
       continue;
     }
     const char* value = i + 1 < argc ? argv[++i] : nullptr;
-    const bool known = argument == "--junit" || argument == "--out" || argument == "--device";
+    const bool known = argument == "--junit" || argument == "--out" || argument == "--device" ||
+                       argument == "--worst";
     usable = usable && known && value != nullptr;
     if (!usable) break;
+    if (argument == "--worst") usable = read_worst_count(value, options.worst_frames);
     if (argument == "--junit") options.junit = value;
     if (argument == "--out") options.out = value;
     if (argument == "--device") options.device = value;
   }
   if (!usable || options.files.empty()) {
-    std::fprintf(stderr, "usage: %s FILE... [--junit FILE] [--out DIR] [--device NAME]\n", argv[0]);
+    std::fprintf(stderr,
+                 "usage: %s FILE... [--junit FILE] [--out DIR] [--device NAME] [--worst N]\n",
+                 argv[0]);
     return kUsage;
   }
   return run_frame_tests(options, hooks);

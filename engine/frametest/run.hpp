@@ -15,7 +15,8 @@
 
 namespace psygen::frametest {
 
-// What a game adds to each test; both may be empty.
+// What a game adds to each test; both may be empty. Called for every flight: after a missed budget
+// a test flies again for its pictures (failure.hpp).
 struct Hooks {
   // Before the session is made: plugins, for example. World, size and the like are the file's.
   std::function<core::Result<void>(app::SessionOptions&)> prepare = {};
@@ -23,11 +24,14 @@ struct Hooks {
   std::function<core::Result<void>(app::Session&)> start = {};
 };
 
+inline constexpr int kMostWorstFrames = 100;
+
 struct RunOptions {
   std::vector<std::filesystem::path> files;
   std::filesystem::path out;                // a folder in it for each test; empty: nothing is kept
   std::filesystem::path junit;              // file; empty: none
   std::string device;                       // part of a name; empty: the best
+  int worst_frames = 3;                     // pictures of a failed test; they need `out`
   const std::atomic<bool>* stop = nullptr;  // set from anywhere to end early
 };
 
@@ -45,6 +49,7 @@ struct TestResult {
   std::vector<BudgetResult> budgets;
   std::optional<core::Error> error;  // it could not be run; kNoDevice: nothing can be
   double seconds = 0;                // that it took
+  std::filesystem::path page;        // failed.html, of a failed test; empty: there is none
 
   bool holds() const;
 };
@@ -55,6 +60,10 @@ int exit_code_of(std::span<const TestResult> results);
 
 // Judges a summary: one result for each budget. A figure that was not measured is a miss.
 std::vector<BudgetResult> judge(std::span<const Budget> budgets, const telemetry::Summary& summary);
+
+// How a limit is written: "<=" and "25".
+std::string_view sign_of(Relation relation);
+std::string limit_of(const Budget& budget);
 
 // Runs one file.
 TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& options,
@@ -67,7 +76,8 @@ std::string to_junit(std::span<const TestResult> results);
 // Runs all files, prints their lines to stdout and what could not be run to stderr, and writes the
 // JUnit file. Returns the exit code.
 int run_frame_tests(const RunOptions& options, const Hooks& hooks = {});
-// The whole main() of a game's frame tests: FILE... [--junit FILE] [--out DIR] [--device NAME].
+// The whole main() of a game's frame tests:
+// FILE... [--junit FILE] [--out DIR] [--device NAME] [--worst N].
 int frame_test_main(int argc, char** argv, const Hooks& hooks);
 
 }  // namespace psygen::frametest

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "engine/core/error.hpp"
 #include "engine/image/image.hpp"
 
 namespace psygen::image {
@@ -30,5 +31,11 @@ ImageDifference compare(const Image& a, const Image& b, std::uint8_t threshold =
 
 // True for two pictures of the same size with at most 0.1 % of the pixels over the threshold.
 bool matches_golden(const ImageDifference& difference);
+
+// Where two valid pictures of one size differ, for people: `expected` dark and grey, and over it in
+// yellow to red what differs by more than `threshold`; red from 64 on. Fails with kInvalidArgument
+// for other sizes.
+core::Result<Image> picture_of_difference(const Image& expected, const Image& seen,
+                                          std::uint8_t threshold = kGoldenThreshold);
 
 }  // namespace psygen::image

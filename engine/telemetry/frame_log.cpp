@@ -53,8 +53,8 @@ std::string row(const FrameRecord& r, std::span<const float> system_ms) {
 }  // namespace
 
 std::string_view name_of(Apart apart) {
-  constexpr std::array<std::string_view, kApartKinds> kNames = {"", "picture", "after_idle",
-                                                                "resized", "not_drawn"};
+  constexpr std::array<std::string_view, kApartKinds> kNames = {
+      "", "picture", "after_idle", "resized", "not_drawn", "gap"};
   return kNames[static_cast<std::size_t>(apart)];
 }
 

@@ -25,10 +25,11 @@ enum class Apart : std::uint8_t {
   kAfterIdle,  // the device had been waited for (after a picture): a shorter wait
   kResized,    // the window changed its size
   kNotDrawn,   // the window did not take the picture
+  kGap,        // the machine was suspended or stood still, or its clock went back
 };
 // The number of Apart values.
-inline constexpr std::size_t kApartKinds = 5;
-// "", "picture", "after_idle", "resized", "not_drawn".
+inline constexpr std::size_t kApartKinds = 6;
+// "", "picture", "after_idle", "resized", "not_drawn", "gap".
 std::string_view name_of(Apart apart);
 
 // The file that a flight writes the picture of frame `index` to: "frame_00040.png".

@@ -266,6 +266,7 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   s.draw.floor_ratio = facts.floor_ratio;
   s.memory.peak_rss_bytes = facts.peak_rss_bytes;
   s.hash.world = facts.world_hash;
+  s.hash.path = facts.path_hash;
   s.hash.images = facts.images_hash;
   return s;
 }

@@ -49,6 +49,7 @@ struct DeviceFacts {
 
 // What the run was started with.
 struct RunSettings {
+  std::string path;      // name of the camera path; empty: there was none
   std::string paradigm;  // "pla", "amplify", "lazy"
   std::string policy;    // of the schedule: "deadline", "plp", …
   std::uint32_t modelers = 0;
@@ -76,6 +77,7 @@ struct RunFacts {
   Figure floor_ratio;           // median frame ÷ the same draw lists replayed with nothing else
   Count peak_rss_bytes;
   Count world_hash;
+  Count path_hash;
   Count images_hash;
 };
 
@@ -172,7 +174,7 @@ struct Summary {
     Count peak_rss_bytes;
   } memory;
   struct {
-    Count world, images;
+    Count world, path, images;
   } hash;
 };
 

@@ -26,6 +26,9 @@ class Writer {
   Json hash(const std::string& path, const Count& hash) {
     return hash.has_value() ? Json(fmt::format("{:016x}", *hash)) : missing(path, hash.reason);
   }
+  Json text(const std::string& path, const std::string& text, const char* reason) {
+    return text.empty() ? missing(path, reason) : Json(text);
+  }
   Json number(const std::string& path, double value) { return figure(path, Figure(value)); }
   const Json& reasons() const { return reasons_; }
 
@@ -72,7 +75,8 @@ Json picture_json(const Summary& s) {
 }
 
 Json run_json(const Summary& s, Writer& w) {
-  return {{"paradigm", s.run.paradigm},
+  return {{"path", w.text("run.path", s.run.path, "there was no path")},
+          {"paradigm", s.run.paradigm},
           {"policy", s.run.policy},
           {"modelers", s.run.modelers},
           {"width", s.run.width},
@@ -205,6 +209,7 @@ std::string to_json(const Summary& s) {
                   {"floor_ratio", w.figure("draw.floor_ratio", s.draw.floor_ratio)}};
   json["memory"] = {{"peak_rss_bytes", w.count("memory.peak_rss_bytes", s.memory.peak_rss_bytes)}};
   json["hash"] = {{"world", w.hash("hash.world", s.hash.world)},
+                  {"path", w.hash("hash.path", s.hash.path)},
                   {"images", w.hash("hash.images", s.hash.images)}};
   json["reasons"] = w.reasons();
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

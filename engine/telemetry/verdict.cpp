@@ -168,8 +168,12 @@ std::string_view name_of(Grade grade) {
 
 std::string left_out_text(const Summary& summary) {
   constexpr std::array<std::string_view, kApartKinds> kWhat = {
-      "", "written as pictures", "after the device had been waited for",
-      "while the window changed its size", "while the window took no picture"};
+      "",
+      "written as pictures",
+      "after the device had been waited for",
+      "while the window changed its size",
+      "while the window took no picture",
+      "while the machine stood still"};
   std::string text;
   for (std::size_t kind = 1; kind < kApartKinds; ++kind) {
     const std::uint64_t count = summary.run.apart_frames[kind];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -9,6 +10,7 @@
 #include <numbers>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/hash.hpp"
 #include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::world {
@@ -127,6 +129,30 @@ double CameraPath::smooth_ground_m(double t, const Run& run, const World& world,
     weights += weight;
   }
   return sum / weights;
+}
+
+std::uint64_t CameraPath::hash() const {
+  std::uint64_t hash = 0;
+  const auto add = [&hash](double value) {
+    hash = core::combine(hash, std::bit_cast<std::uint64_t>(value));
+  };
+  add(settings_.origin_block.x);
+  add(settings_.origin_block.z);
+  add(settings_.smoothing_s);
+  for (const PathPoint& point : points_) {
+    for (const double value : {point.time_s, point.at_m.x, point.at_m.y, point.height_m,
+                               point.pitch_deg, point.jump ? 1.0 : 0.0,
+                               point.heading_deg ? 1.0
+                               : point.look_at_m ? 2.0
+                                                 : 0.0})
+      add(value);
+    if (point.heading_deg) add(*point.heading_deg);
+    if (!point.heading_deg && point.look_at_m) {
+      add(point.look_at_m->x);
+      add(point.look_at_m->y);
+    }
+  }
+  return hash;
 }
 
 core::CameraPose CameraPath::pose_at(double t, const World& world) const {

@@ -56,6 +56,9 @@ class CameraPath {
   // The time of the last point.
   double duration_seconds() const { return points_.back().time_s; }
 
+  // A hash of all that decides on the poses, without the name; the same on every machine.
+  std::uint64_t hash() const;
+
   // The pose at time `t` in seconds. Before the first and after the last point it is that of the
   // end; for NaN that of the beginning. Normalised and valid. About 50 µs.
   core::CameraPose pose_at(double t, const World& world) const;

@@ -20,15 +20,19 @@ using Change = std::function<void(RecordedRun&, Random&)>;
 constexpr std::size_t kPairs = 8;
 
 void scale(RecordedRun& run, double factor) {
-  for (double& ms : run.frame_ms)
-    ms *= factor;
+  for (std::vector<double>* times : {&run.frame_ms, &run.cpu_ms})
+    for (double& ms : *times)
+      ms *= factor;
 }
 
 // Three frames in 200, always the same ones or others in each run.
 void double_frames(RecordedRun& run, Random random) {
   const std::size_t count = 3 * run.frame_ms.size() / 200;
-  for (std::size_t i = 0; i < count; ++i)
-    run.frame_ms[random() % run.frame_ms.size()] *= 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t k = random() % run.frame_ms.size();
+    run.frame_ms[k] *= 2;
+    if (!run.cpu_ms.empty()) run.cpu_ms[k] *= 2;
+  }
 }
 
 const std::pair<const char*, Change> kChanges[] = {

@@ -46,6 +46,23 @@ TEST(Compare, FasterWithMoreMissingOrALargerErrorIsNotBetter) {
   EXPECT_EQ(judged(make_sets(16, coarser, 0.8)).verdict, Verdict::kWorse);
 }
 
+TEST(Compare, FindsMoreProcessorTimeOfTheMainThreadWhereFramesAreTooNoisy) {
+  const auto costs = [](double factor) {
+    return [factor](RecordedRun& run, std::mt19937&) {
+      for (double& ms : run.cpu_ms)
+        ms *= factor;
+    };
+  };
+  const Comparison worse = judged(make_sets(16, costs(1.1), 1, 40));
+  EXPECT_EQ(worse.verdict, Verdict::kWorse);
+  EXPECT_THAT(worse.reasons, testing::ElementsAre(HasSubstr("10.0 % more processor time")));
+  EXPECT_THAT(to_text(worse, nullptr), HasSubstr("processor time of the main thread 1.1"));
+  EXPECT_EQ(judged(make_sets(16, costs(0.9))).verdict, Verdict::kBetter);
+  EXPECT_EQ(judged(make_sets(16, costs(0.9), 1.1)).verdict, Verdict::kWorse) << "but slower";
+  const auto unknown = [](RecordedRun& run, std::mt19937&) { run.cpu_ms.clear(); };
+  EXPECT_EQ(judged(make_sets(16, unknown)).verdict, Verdict::kSame) << "frame time alone";
+}
+
 TEST(Compare, ADifferenceWithoutASecondBatchIsNotAVerdict) {
   const Comparison once = judged(make_sets(8, kNothing, 1.1));
   EXPECT_EQ(once.verdict, Verdict::kInconclusive);
@@ -81,6 +98,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
               HasSubstr("world hashes"));
   EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.width = 320; })),
               HasSubstr("sizes: 640x360 and 320x360"));
+  EXPECT_EQ(refusal(changed([](RecordedRun& r) { r.path_hash = "01"; })), "taken") << "older A";
   EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.fixed_step = 60; })),
               HasSubstr("steps: 30 and 60"));
   EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.time_s[5] += 0.001; })),
@@ -96,6 +114,12 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
       run.time_s.resize(40);
     }
   EXPECT_THAT(refusal(sets), HasSubstr("40 frames after the warm-up; a comparison needs 50"));
+  sets = make_sets(8, kNothing);
+  for (RecordedRun& run : sets.a)
+    run.path_hash = "01";
+  for (RecordedRun& run : sets.b)
+    run.path_hash = "02";
+  EXPECT_THAT(refusal(sets), HasSubstr("paths: 01 and 02"));
   sets = make_sets(8, kNothing);
   for (Runs* runs : {&sets.a, &sets.b})
     for (RecordedRun& run : *runs)

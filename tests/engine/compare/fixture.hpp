@@ -25,6 +25,7 @@ inline RecordedRun make_run(std::mt19937& random, double factor = 1, double nois
     const double share = static_cast<double>(random() % 1000) / 1000;
     run.time_s.push_back(k / 30.0);
     run.frame_ms.push_back(factor * (10 + k % 5) * (1 + noise * share * share));
+    run.cpu_ms.push_back(0.7 * factor * (10 + k % 5) * (1 + 0.02 * share));
     run.lacking.push_back(0);
     run.error.push_back(4);
     run.left_out.push_back(false);

@@ -28,6 +28,7 @@ TEST(RecordedRun, HoldsTheFramesAfterTheWarmUp) {
   EXPECT_DOUBLE_EQ(run->missing_percent, 1);
   EXPECT_DOUBLE_EQ(run->error_pixels, 5);
   EXPECT_EQ(run->holes, 1u);
+  EXPECT_THAT(run->cpu_ms, testing::ElementsAre(1, 1, 1));
   EXPECT_EQ(run->world_hash, "00ab");
   EXPECT_EQ(run->fixed_step, 30);
   EXPECT_FALSE(run->virtual_clock);
@@ -52,6 +53,10 @@ TEST(RecordedRun, SaysWhatIsWrongWithAFileAndWhere) {
             "dir/frames.csv:2: frame_ms: 'nan' is not a number from 0 on");
   EXPECT_EQ(refusal(kHeader + "0,0.2,1,1,,4,0,0,0\n1,0.1,1,1,,4,0,0,0\n"),
             "dir/frames.csv:3: time_s: the clock goes backwards, from 0.2 to 0.1");
+  EXPECT_EQ(refusal(kHeader + "0,0.1,10,x,,4,0,0,0\n"),
+            "dir/frames.csv:2: main_cpu_ms: 'x' is not a number from 0 on");
+  EXPECT_EQ(refusal(kHeader + "0,0.1,10,1,,4,0,0,0\n1,0.2,10,,,4,0,0,0\n"),
+            "dir/frames.csv: main_cpu_ms: some frames have it and some have not");
   EXPECT_EQ(refusal(kHeader), "dir/frames.csv: no frame is left after the warm-up");
   EXPECT_EQ(refusal(kHeader + kRows, "{\"schema\": "),
             "dir/summary.json: it is not JSON, or is cut");

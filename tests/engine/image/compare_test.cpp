@@ -57,5 +57,22 @@ TEST(Compare, TwoPicturesWithoutPixelsAreEqual) {
   EXPECT_TRUE(matches_golden(compare(Image{}, Image{})));
 }
 
+TEST(Compare, ShowsWhereTwoPicturesDifferOverADarkGreyPicture) {
+  const Image expected = make_image(3, 1, 90, 60, 30, 255);
+  Image seen = expected;
+  seen.pixel(1, 0)[2] = 36;   // 6 more
+  seen.pixel(2, 0)[0] = 255;  // 165 more
+  const auto picture = picture_of_difference(expected, seen);
+  ASSERT_TRUE(picture);
+  const auto colour = [&](std::uint32_t x) {
+    const auto p = picture->pixel(x, 0);
+    return std::vector<int>(p.begin(), p.end());
+  };
+  EXPECT_EQ(colour(0), (std::vector{12, 12, 12, 255}));
+  EXPECT_EQ(colour(1), (std::vector{255, 209, 0, 255})) << "yellow";
+  EXPECT_EQ(colour(2), (std::vector{255, 0, 0, 255})) << "red";
+  EXPECT_FALSE(picture_of_difference(expected, make_image(1, 3)));
+}
+
 }  // namespace
 }  // namespace psygen::image

@@ -170,6 +170,28 @@ TEST(CameraPath, LooksAlongTheFlightAtPlacesAndAtHeadings) {
   EXPECT_NEAR(pose.pitch, glm::radians(-12.0), 1e-6);
 }
 
+TEST(CameraPath, HasAHashOfAllThatDecidesOnThePoses) {
+  const auto hash_of = [](auto change) {
+    std::vector<PathPoint> points(2);
+    points[0].heading_deg = 90;
+    points[1].time_s = 1;
+    CameraPath::Settings settings;
+    change(settings, points);
+    return CameraPath(settings, points).hash();
+  };
+  using Settings = CameraPath::Settings;
+  using Points = std::vector<PathPoint>;
+  const std::uint64_t hash = hash_of([](Settings&, Points&) {});
+  EXPECT_EQ(hash_of([](Settings& s, Points&) { s.name = "another name"; }), hash);
+  EXPECT_NE(hash_of([](Settings& s, Points&) { s.origin_block.z = 1; }), hash);
+  EXPECT_NE(hash_of([](Settings& s, Points&) { s.smoothing_s = 1; }), hash);
+  EXPECT_NE(hash_of([](Settings&, Points& p) { p[1].at_m.y = 1; }), hash);
+  EXPECT_NE(hash_of([](Settings&, Points& p) { p[1].height_m = 3; }), hash);
+  EXPECT_NE(hash_of([](Settings&, Points& p) { p[1].jump = true; }), hash);
+  EXPECT_NE(hash_of([](Settings&, Points& p) { p[0].heading_deg = 91; }), hash);
+  EXPECT_NE(hash_of([](Settings&, Points& p) { p[1].look_at_m = glm::dvec2(1, 2); }), hash);
+}
+
 TEST(CameraPath, TurnsTheShortWayAcrossTheBack) {
   const World world = parsed(kSmallWorld);
   // South-east, then south-west: through the south.

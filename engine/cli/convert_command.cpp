@@ -1,0 +1,35 @@
+#include "engine/cli/convert_command.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/cli/commands.hpp"
+#include "engine/cli/option_checks.hpp"
+#include "engine/compare/viewer_csv.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/replace_file.hpp"
+
+namespace psygen::cli {
+
+ConvertCommand::ConvertCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("convert", "Write a run's frames for other programs' viewers")) {
+  CLI::App& c = *command_;
+  c.add_option("RUN", run_, "Folder of a run, with frames.csv and summary.json")->required();
+  c.add_option("--to", viewer_, "Format: mangohud, or capframex (PresentMon 1.x)")
+      ->required()
+      ->check(one_of({"mangohud", "capframex"}));
+  c.add_option("--out", out_, "File to write: .csv")->required();
+}
+
+int ConvertCommand::run() {
+  const auto written =
+      compare::viewer_csv(*compare::viewer_from(viewer_), std::filesystem::path(run_))
+          .and_then([this](const std::string& text) { return core::replace_file(out_, text); });
+  if (!written) {
+    core::log_error(written.error().message);
+    return exit_code_of(written.error());
+  }
+  core::log_info(fmt::format("wrote {}", out_));
+  return kOk;
+}
+
+}  // namespace psygen::cli

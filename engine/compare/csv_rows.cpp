@@ -1,0 +1,74 @@
+#include "engine/compare/csv_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "engine/core/utf8.hpp"
+
+namespace psygen::compare {
+namespace {
+
+constexpr std::size_t kMostShownBytes = 40;
+
+void split(std::string_view line, std::vector<std::string_view>& cells) {
+  cells.clear();
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    cells.push_back(line.substr(0, comma));
+    if (comma == std::string_view::npos) return;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace
+
+tl::unexpected<core::Error> refuse_file(const std::string& where, std::string_view sentence) {
+  return core::fail(core::ErrorCode::kParse, core::shown(fmt::format("{}: {}", where, sentence)));
+}
+
+core::Result<void> read_csv(std::string_view text, const std::string& file, const OnCsvLine& header,
+                            const OnCsvLine& row) {
+  if (!text.ends_with('\n')) return refuse_file(file, "the file is cut: its last line has no end");
+  std::vector<std::string_view> cells;
+  std::size_t cells_in_header = 0;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(line.size() + 1);
+    const std::string where = fmt::format("{}:{}", file, number);
+    split(line, cells);
+    if (number == 1) cells_in_header = cells.size();
+    if (cells.size() != cells_in_header)
+      return refuse_file(where, fmt::format("the line has {} cells, and the header {}",
+                                            cells.size(), cells_in_header));
+    if (auto ok = (number == 1 ? header : row)(cells, where); !ok) return ok;
+  }
+  return {};
+}
+
+core::Result<std::vector<std::size_t>> find_columns(CsvCells header,
+                                                    std::span<const std::string_view> names,
+                                                    const std::string& where) {
+  std::vector<std::size_t> columns;
+  for (const std::string_view name : names) {
+    const auto found = std::ranges::find(header, name);
+    if (found == header.end())
+      return refuse_file(where, fmt::format("the column {} is missing", name));
+    columns.push_back(static_cast<std::size_t>(found - header.begin()));
+  }
+  return columns;
+}
+
+core::Result<double> number_in(std::string_view cell, const std::string& where,
+                               std::string_view name) {
+  double value = 0;
+  const auto parsed = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (parsed.ec == std::errc() && parsed.ptr == cell.data() + cell.size() && value >= 0 &&
+      value < 1e15)
+    return value;
+  return refuse_file(where, fmt::format("{}: '{}' is not a number from 0 on", name,
+                                        core::shown(cell, kMostShownBytes)));
+}
+
+}  // namespace psygen::compare

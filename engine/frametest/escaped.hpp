@@ -1,0 +1,17 @@
+// Texts of tests, in HTML and XML. Any thread.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/core/utf8.hpp"
+#include "engine/telemetry/report_plot.hpp"
+
+namespace psygen::frametest {
+
+// shown() leaves no control characters, which XML has no way to write.
+inline std::string escaped(std::string_view text) {
+  return telemetry::escaped(core::shown(text));
+}
+
+}  // namespace psygen::frametest

@@ -1,0 +1,177 @@
+#include "engine/frametest/failure.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "engine/core/replace_file.hpp"
+#include "engine/frametest/escaped.hpp"
+#include "engine/frametest/start_flight.hpp"
+#include "engine/image/compare.hpp"
+#include "engine/image/image_io.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/telemetry/report_style.hpp"
+
+namespace psygen::frametest {
+namespace {
+
+constexpr const char* kPage = "failed.html";
+constexpr std::string_view kPicturePrefix = "worst_";
+
+// Frame k is the same place in every flight.
+bool is_numbered(const app::FlightOptions& flight) {
+  return flight.session.scene.virtual_time || flight.fixed_step_hz > 0;
+}
+
+struct Seen {
+  core::CameraPose pose;
+  double time_s = 0;
+  std::optional<core::Result<image::Image>> picture;
+};
+
+// Takes the picture of the frame. After the game's plugins, so that theirs has been drawn.
+app::Plugin photographer(const WorstFrame& frame, bool numbered, Seen& seen) {
+  app::Plugin plugin;
+  plugin.name = "pictures of the worst frames";
+  plugin.on_frame = [&frame, &seen, numbered, count = std::uint64_t{0}](app::Session& session,
+                                                                        double dt_s) mutable {
+    const double end_s = session.now_s();  // of the frame
+    const bool is_it = numbered ? count++ == frame.index : end_s > frame.time_s;
+    if (!is_it || seen.picture) return;
+    seen.pose = session.scene().state().input.pose;
+    seen.time_s = end_s - dt_s;
+    seen.picture = session.picture();
+  };
+  return plugin;
+}
+
+// The same place and time with everything ready that the budget has room for.
+core::Result<image::Image> expected_picture(app::Session& session, const Seen& seen) {
+  constexpr int kTicks = 2;  // in the first what was drawn before may still hand over
+  scene::State& state = session.scene().state();
+  session.set_now(seen.time_s);
+  session.set_paused(true);
+  state.settings.fade_seconds = 0;
+  state.quality.governor = scene::Governor();  // the error that the test asks for
+  session.scene().settle(seen.pose);
+  for (int i = 0; i < kTicks; ++i)
+    if (auto ok = session.tick(seen.pose, 0); !ok) return tl::unexpected(ok.error());
+  return session.picture();
+}
+
+std::string picture_name(const WorstFrame& frame, std::string_view kind) {
+  return fmt::format("{}{:05}_{}.png", kPicturePrefix, frame.index, kind);
+}
+
+core::Result<image::ImageDifference> write_pictures(const WorstFrame& frame,
+                                                    const image::Image& seen,
+                                                    const image::Image& expected,
+                                                    const std::filesystem::path& folder) {
+  const auto difference = image::picture_of_difference(expected, seen);
+  if (!difference) return tl::unexpected(difference.error());
+  const std::pair<const char*, const image::Image*> pictures[] = {
+      {"seen", &seen}, {"expected", &expected}, {"difference", &*difference}};
+  for (const auto& [kind, picture] : pictures) {
+    const auto written = image::write_png(folder / picture_name(frame, kind), *picture);
+    if (!written) return tl::unexpected(written.error());
+  }
+  return image::compare(seen, expected);
+}
+
+// Flies again up to the frame, and writes its three pictures.
+core::Result<image::ImageDifference> fly_to(const WorstFrame& frame, const FrameTest& test,
+                                            const RunOptions& options, const Hooks& hooks) {
+  app::FlightOptions flight = test.flight;
+  flight.images_every = 0;
+  flight.hash_world = false;
+  const bool numbered = is_numbered(flight);
+  flight.frames = numbered ? frame.index + 1 : 0;
+  if (!numbered) flight.seconds = frame.time_s + 1e-9;
+  Seen seen;
+  auto flown = start_flight(flight, options, hooks, photographer(frame, numbered, seen));
+  if (!flown) return tl::unexpected(flown.error());
+  const auto report = (*flown)->run();
+  if (!report) return tl::unexpected(report.error());
+  app::Session& session = (*flown)->session();
+  if (session.stopped() || !seen.picture)
+    return core::fail(core::ErrorCode::kInterrupted, "the flight ended before this frame");
+  if (!*seen.picture) return tl::unexpected(seen.picture->error());
+  const auto expected = expected_picture(session, seen);
+  if (!expected) return tl::unexpected(expected.error());
+  return write_pictures(frame, **seen.picture, *expected, options.out / test.name);
+}
+
+std::string frame_html(const WorstFrame& frame,
+                       const core::Result<image::ImageDifference>& difference) {
+  std::string html = fmt::format("<h2>Frame {} at {:.2f} s</h2>\n<p>{}. ", frame.index,
+                                 frame.time_s, escaped(frame.why));
+  if (!difference)
+    return html +
+           fmt::format("There are no pictures: {}</p>\n", escaped(difference.error().message));
+  html += fmt::format("{:.2f} % of the pixels differ by more than {} of 255.</p>\n<div class=row>",
+                      100 * difference->share_over, image::kGoldenThreshold);
+  for (const char* kind : {"seen", "expected", "difference"}) {
+    const std::string file = picture_name(frame, kind);
+    html += fmt::format(
+        "<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\"></a>"
+        "<figcaption>{1}</figcaption></figure>",
+        file, kind);
+  }
+  return html + "</div>\n";
+}
+
+std::string budgets_html(const TestResult& result) {
+  std::string html = "<table><tr><th>budget</th><th>limit</th><th>this run</th></tr>\n";
+  for (const BudgetResult& r : result.budgets) {
+    if (r.holds) continue;
+    html += fmt::format("<tr><td>{}</td><td>{} {}</td><td>{}</td></tr>\n", escaped(r.budget.field),
+                        escaped(sign_of(r.budget.relation)), escaped(limit_of(r.budget)),
+                        escaped(r.value));
+  }
+  return html + "</table>\n";
+}
+
+std::string head_html(const FrameTest& test) {
+  constexpr const char* kStyle =
+      ".row{display:flex;flex-wrap:wrap;gap:12px}.row figure{margin:0;flex:1 1 300px}"
+      "img{width:100%;image-rendering:pixelated}td,th{text-align:left;padding:2px 16px 2px 0}";
+  const bool exact = test.flight.session.scene.virtual_time;
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: budgets "
+      "missed</title><style>{1}{2}</style></head><body><main>\n<h1>{0}: budgets missed</h1>\n"
+      "<p class=\"lead\">The worst frames as they were, the same with everything ready, and where "
+      "they differ (yellow to red). {3} <a href=\"report.html\">The whole flight</a></p>\n",
+      escaped(test.name), telemetry::report_style(), kStyle,
+      exact ? "The pictures are those of the judged flight, to the bit."
+            : "The pictures are of another flight to the same places: on the wall clock what is "
+              "missing differs from flight to flight.");
+}
+
+}  // namespace
+
+void remove_failure(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::remove(folder / kPage, error);
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    std::error_code ignored;
+    if (name.starts_with(kPicturePrefix) && name.ends_with(".png"))
+      std::filesystem::remove(it->path(), ignored);
+  }
+}
+
+core::Result<std::filesystem::path> write_failure(const FrameTest& test, const TestResult& result,
+                                                  std::span<const WorstFrame> frames,
+                                                  const RunOptions& options, const Hooks& hooks) {
+  const std::filesystem::path page = options.out / test.name / kPage;
+  std::string html = head_html(test) + budgets_html(result);
+  for (const WorstFrame& frame : frames)
+    html += frame_html(frame, fly_to(frame, test, options, hooks));
+  if (frames.empty()) html += "<p>No single frame has the figures that were missed.</p>\n";
+  if (auto ok = core::replace_file(page, html + "</main></body></html>\n"); !ok)
+    return tl::unexpected(ok.error());
+  return page;
+}
+
+}  // namespace psygen::frametest

@@ -1,0 +1,166 @@
+#include "engine/frametest/worst_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string_view>
+
+namespace psygen::frametest {
+namespace {
+
+using telemetry::FrameLog;
+using telemetry::FrameRecord;
+
+constexpr double kApartSeconds = 0.5;
+constexpr std::string_view kSystemPrefix = "system_ms.";
+
+// What a frame has of the figures whose names begin with `prefix`. The first that fits counts.
+using Of = double (*)(const FrameRecord&);
+struct Measure {
+  std::string_view prefix, unit;
+  Of of;
+  bool time = false;  // frames that are set apart do not count
+};
+
+template <auto Field>
+double its(const FrameRecord& record) {
+  return static_cast<double>(record.*Field);
+}
+template <auto Field>
+double if_known(const FrameRecord& record) {
+  return (record.*Field).value_or(std::numeric_limits<double>::quiet_NaN());
+}
+double waiting(const FrameRecord& record) {
+  return record.wait_ms();
+}
+double rate(const FrameRecord& record) {
+  return 1000 / record.frame_ms;
+}
+double holes_and_coarse(const FrameRecord& record) {
+  return static_cast<double>(record.holes) + record.coarse_nodes;
+}
+double missing_or_coarse(const FrameRecord& record) {
+  return std::max(record.missing_pixels_percent, record.too_coarse_percent);
+}
+
+using R = FrameRecord;
+constexpr std::array kMeasures = std::to_array<Measure>({
+    {"frame_ms.", "ms", its<&R::frame_ms>, true},
+    {"hitches", "ms", its<&R::frame_ms>, true},
+    {"stutter_percent", "ms", its<&R::frame_ms>, true},
+    {"low1_fps", "frames/s", rate, true},
+    {"wait_ms.device", "ms", its<&R::device_wait_ms>, true},
+    {"wait_ms.acquire", "ms", its<&R::acquire_ms>, true},
+    {"wait_ms.present", "ms", its<&R::present_ms>, true},
+    {"wait_ms.", "ms", waiting, true},
+    {"record_ms.", "ms", its<&R::record_ms>, true},
+    {"gpu_ms.shadows", "ms", if_known<&R::gpu_shadows_ms>, true},
+    {"gpu_ms.", "ms", if_known<&R::gpu_ms>, true},
+    {"missing.frames", "holes", its<&R::holes>},
+    {"missing.nodes", "holes and coarse nodes", holes_and_coarse},
+    {"missing.pixels", "% of the picture missing", its<&R::missing_pixels_percent>},
+    {"missing.", "% of the picture missing or too coarse", missing_or_coarse},
+    {"picture.", "% of the picture missing or too coarse", missing_or_coarse},
+    {"detail.refused", "requests refused", its<&R::requests_refused>},
+    {"detail.raised_by_memory", "times the error", its<&R::memory_factor>},
+    {"detail.", "pixels of error", its<&R::error_pixels>},
+    {"cache.peak_bytes", "bytes", its<&R::cache_bytes>},
+    {"cache.hits", "hits", its<&R::cache_hits>},
+    {"cache.misses", "misses", its<&R::cache_misses>},
+    {"cache.evictions", "evictions", its<&R::cache_evictions>},
+    {"cache.regenerations", "regenerations", its<&R::cache_regenerations>},
+    {"synthesis.failed", "models failed", its<&R::models_failed>},
+    {"synthesis.triangles", "triangles synthesised", its<&R::triangles_synthesised>},
+    {"synthesis.models", "models synthesised", its<&R::models_synthesised>},
+    {"synthesis.bytes", "bytes synthesised", its<&R::bytes_synthesised>},
+    {"synthesis.seconds", "s of synthesis", its<&R::synthesis_seconds>},
+    {"draw.triangles", "triangles", its<&R::triangles>},
+    {"draw.draws", "draws", its<&R::draws>},
+});
+
+// The rows that count for a budget, the worst one first, with what they have.
+struct Row {
+  std::size_t at = 0;  // in FrameLog::frames()
+  double value = 0;
+};
+struct Ranked {
+  std::string field;
+  std::string_view unit;
+  std::vector<Row> rows;
+  std::size_t next = 0;
+};
+
+// `of` tells what row i has.
+Ranked ranked(const Budget& budget, std::string_view unit, bool time, const FrameLog& log,
+              double warmup_s, const std::function<double(std::size_t)>& of) {
+  Ranked result{budget.field, unit, {}};
+  const bool small_is_bad = budget.relation == Relation::kAtLeast;
+  for (std::size_t i = 0; i < log.frames().size(); ++i) {
+    const FrameRecord& frame = log.frames()[i];
+    const double value = of(i);
+    if (frame.time_s < warmup_s || std::isnan(value)) continue;
+    if (time && frame.apart != telemetry::Apart::kNo) continue;
+    if (value == 0 && !small_is_bad) continue;  // nothing bad is in it
+    result.rows.push_back({i, value});
+  }
+  std::ranges::stable_sort(result.rows, [&](const Row& a, const Row& b) {
+    return small_is_bad ? a.value < b.value : a.value > b.value;
+  });
+  return result;
+}
+
+Ranked ranked(const Budget& budget, const FrameLog& log, double warmup_s) {
+  const std::string_view field = budget.field;
+  const auto measure = std::ranges::find_if(
+      kMeasures, [&](const Measure& m) { return field.starts_with(m.prefix); });
+  if (measure != kMeasures.end())
+    return ranked(budget, measure->unit, measure->time, log, warmup_s,
+                  [&](std::size_t i) { return measure->of(log.frames()[i]); });
+  for (std::size_t s = 0; s < log.systems().size(); ++s)
+    if (field.starts_with(std::string(kSystemPrefix) + log.systems()[s] + "."))
+      return ranked(budget, "ms", true, log, warmup_s,
+                    [&](std::size_t i) { return double{log.system_ms(i)[s]}; });
+  return {budget.field, {}, {}};
+}
+
+// The next row that is far enough from the frames that were chosen.
+const Row* next_of(Ranked& ranked, const FrameLog& log, std::span<const WorstFrame> chosen) {
+  while (ranked.next < ranked.rows.size()) {
+    const Row& row = ranked.rows[ranked.next++];
+    const double time_s = log.frames()[row.at].time_s;
+    const auto near = [&](const WorstFrame& f) {
+      return std::abs(f.time_s - time_s) < kApartSeconds;
+    };
+    if (std::ranges::none_of(chosen, near)) return &row;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<WorstFrame> worst_frames(std::span<const BudgetResult> budgets, const FrameLog& log,
+                                     double warmup_s, std::size_t count) {
+  std::vector<Ranked> all;
+  for (const BudgetResult& result : budgets)
+    if (!result.holds) all.push_back(ranked(result.budget, log, warmup_s));
+  std::vector<WorstFrame> chosen;
+  for (bool any = true; any && chosen.size() < count;) {
+    any = false;
+    for (Ranked& each : all) {
+      const Row* row = chosen.size() < count ? next_of(each, log, chosen) : nullptr;
+      if (row == nullptr) continue;
+      const FrameRecord& frame = log.frames()[row->at];
+      chosen.push_back({frame.index, frame.time_s,
+                        fmt::format("{}: {:.5g} {}", each.field, row->value, each.unit)});
+      any = true;
+    }
+  }
+  std::ranges::sort(chosen, {}, &WorstFrame::index);
+  return chosen;
+}
+
+}  // namespace psygen::frametest

@@ -1,0 +1,55 @@
+// What logging itself costs in a frame of a flight: its row, the times of its systems, their spans
+// and two counters of the trace, samples of a busy frame, and reading the clocks. Bounded logs are
+// full, as after a long flight.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/core/clock.hpp"
+#include "engine/telemetry/frame_log.hpp"
+#include "engine/telemetry/trace_log.hpp"
+
+namespace psygen::telemetry {
+namespace {
+
+constexpr std::size_t kSystems = 20, kLandings = 8;  // of a frame
+
+void a_frame_is_logged(benchmark::State& state) {
+  std::vector<std::string> systems;
+  for (std::size_t i = 0; i < kSystems; ++i)
+    systems.push_back("system " + std::to_string(i));
+  FrameLog log(systems, std::size_t{1} << 22);
+  TraceLog trace;
+  const TraceLog::Track main = trace.add_track("main"), bytes = trace.add_counter("cache"),
+                        requests = trace.add_counter("requests");
+  std::vector<TraceLog::Name> names;
+  for (const std::string& system : systems)
+    names.push_back(trace.intern(system));
+  std::vector<float> system_ms(kSystems, 0.2F);
+  FrameRecord record;
+  for (auto _ : state) {
+    const double start_s = core::monotonic_seconds(), cpu_s = core::thread_cpu_seconds();
+    const double asleep_s = core::suspended_seconds();
+    for (std::size_t i = 0; i < kSystems; ++i)
+      trace.add_span(main, names[i], start_s, start_s + 1e-4, record.index);
+    trace.add_value(bytes, start_s, 1e8);
+    trace.add_value(requests, start_s, 40);
+    for (std::size_t i = 0; i < kLandings; ++i) {
+      log.add_time_to_visible(record.time_s, 12);
+      log.add_cost_error(record.time_s, 1e-4, 1.1e-4);
+    }
+    record.frame_ms = (core::monotonic_seconds() - start_s) * 1000;
+    record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_s) * 1000;
+    benchmark::DoNotOptimize(core::suspended_seconds() - asleep_s);
+    log.add(record, system_ms);
+    record.time_s += 1.0 / 60;
+    ++record.index;
+  }
+}
+BENCHMARK(a_frame_is_logged)->Iterations(100'000)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace psygen::telemetry
+
+BENCHMARK_MAIN();

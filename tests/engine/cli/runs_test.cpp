@@ -1,0 +1,91 @@
+// `psygen convert` and `psygen compare` on files and programs that take no device.
+#include <fstream>
+
+#include "tests/engine/cli/psygen_process.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace psygen::cli {
+namespace {
+
+void write_run(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "frames.csv")
+      << "frame_ms,present_ms,gpu_ms,cache_bytes,apart\n10,0,0,0,\n";
+  std::ofstream(folder / "summary.json") << R"({"device": {"name": "paper and pencil"}})";
+}
+
+TEST(Convert, WritesTheFramesOfARunForAViewer) {
+  const TemporaryFolder folder;
+  write_run(folder / "run");
+  const std::string run = (folder / "run").string(), out = (folder / "log.csv").string();
+  const Outcome done = run_psygen("convert " + run + " --to mangohud --out " + out);
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_TRUE(mentions(read(out), "paper and pencil")) << read(out);
+  EXPECT_TRUE(mentions(read(out), "\n100.0000,10.0000,")) << read(out);
+  EXPECT_EQ(run_psygen("convert " + run + " --to capframex --out " + out).code, 0);
+  EXPECT_TRUE(read(out).starts_with("Application,"));
+}
+
+TEST(Convert, SaysWhatItCannotReadWriteOrKnow) {
+  const TemporaryFolder folder;
+  write_run(folder / "run");
+  const std::string run = (folder / "run").string();
+  const Outcome none = run_psygen("convert /nowhere --to mangohud --out log.csv");
+  EXPECT_EQ(none.code, 1);
+  EXPECT_TRUE(mentions(none.err, "/nowhere/frames.csv: cannot be read")) << none.err;
+  const Outcome unwritable = run_psygen("convert " + run + " --to mangohud --out /nowhere/log.csv");
+  EXPECT_EQ(unwritable.code, 1);
+  EXPECT_TRUE(mentions(unwritable.err, "/nowhere/log.csv")) << unwritable.err;
+  EXPECT_EQ(run_psygen("convert " + run + " --to excel --out log.csv").code, 2);
+}
+
+// Stands in for valgrind: writes the last word as the number of instructions.
+std::string path_with(const TemporaryFolder& folder, const std::string& script) {
+  std::filesystem::create_directories(folder / "bin");
+  std::ofstream(folder / "bin/valgrind") << "#!/bin/sh\n" << script;
+  std::filesystem::permissions(folder / "bin/valgrind", std::filesystem::perms::owner_all);
+  return "PATH=" + (folder / "bin").string() + ":$PATH";
+}
+constexpr const char* kCounts =
+    "for word; do case $word in --callgrind-out-file=*) file=${word#*=};; esac; done\n"
+    "echo \"totals: $word\" > $file\n[ $word = 7 ] && echo hash 0007\nexit 0\n";
+
+Outcome compare(const TemporaryFolder& folder, const std::string& script, const std::string& a,
+                const std::string& b) {
+  return run_psygen(
+      "compare --instructions '" + a + "' '" + b + "' --out " + (folder / "out").string(),
+      path_with(folder, script));
+}
+
+TEST(Instructions, OfTwoCommandsAreAVerdictAndAnExitCode) {
+  const TemporaryFolder folder;
+  const Outcome same = compare(folder, kCounts, "a 1000", "b 1009");
+  EXPECT_EQ(same.code, 0) << same.err;
+  EXPECT_TRUE(mentions(same.out, "verdict: same")) << same.out;
+  EXPECT_TRUE(mentions(read(folder / "out/compare.json"), "\"b\": 1009"));
+  const Outcome worse = compare(folder, kCounts, "a 1000", "b 1011");
+  EXPECT_EQ(worse.code, 3);
+  EXPECT_TRUE(mentions(worse.out, "+1.10 %")) << worse.out;
+}
+
+TEST(Instructions, OfDifferentThingsAreNotCompared) {
+  const TemporaryFolder folder;
+  const Outcome other = compare(folder, kCounts, "a 7", "b 8");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_TRUE(mentions(other.err, "hashes '0007' and ''")) << other.err;
+  EXPECT_EQ(compare(folder, "exit 5", "a 7", "b 7").code, 1) << "a command that fails";
+}
+
+TEST(Instructions, AreSkippedWithASentenceWhereValgrindCannotCount) {
+  const TemporaryFolder folder;
+  const Outcome unknown = compare(folder, "kill -ILL $$", "a 1000", "b 1000");
+  EXPECT_EQ(unknown.code, 77);
+  EXPECT_TRUE(mentions(unknown.err, "does not know an instruction")) << unknown.err;
+  const Outcome none = run_psygen(
+      "compare --instructions 'a 1' 'b 1' --out " + (folder / "out").string(), "PATH=/nowhere");
+  EXPECT_EQ(none.code, 77);
+  EXPECT_TRUE(mentions(none.err, "valgrind: cannot be run")) << none.err;
+}
+
+}  // namespace
+}  // namespace psygen::cli

@@ -1,0 +1,86 @@
+#include "engine/compare/viewer_csv.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+#include "engine/compare/csv_rows.hpp"
+
+namespace psygen::compare {
+namespace {
+
+const std::string kFrames =
+    "frame,time_s,frame_ms,present_ms,gpu_ms,apart,cache_bytes\n0,0.0,10.0000,1.5,5.0,,1073741824\n"
+    "1,0.1,20.0000,,,not_drawn,0\n";
+const std::string kSummary =
+    R"j({"device": {"name": "llvmpipe (LLVM 15.0.6, 256 bits)", "driver": "Mesa 22"},
+        "world": {"name": "a \"wood\""}})j";
+
+std::string converted(Viewer viewer, const std::string& frames = kFrames) {
+  const auto text = viewer_csv(viewer, frames, kSummary, "dir");
+  return text ? *text : text.error().message;
+}
+
+// Columns by name, as viewers look them up. `lines` are left out before the header.
+std::map<std::string, std::vector<std::string>> columns_of(std::string text, int lines) {
+  for (; lines > 0; --lines)
+    text.erase(0, text.find('\n') + 1);
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<std::string>> columns;
+  const auto read = read_csv(
+      text, "file",
+      [&](CsvCells cells, const std::string&) -> core::Result<void> {
+        return names.assign(cells.begin(), cells.end()), core::Result<void>{};
+      },
+      [&](CsvCells cells, const std::string&) -> core::Result<void> {
+        for (std::size_t i = 0; i < cells.size(); ++i)
+          columns[names[i]].emplace_back(cells[i]);
+        return {};
+      });
+  EXPECT_TRUE(read) << read.error().message;
+  return columns;
+}
+
+TEST(ViewerCsv, OfMangoHudHasItsColumnsInItsUnits) {
+  const std::string text = converted(Viewer::kMangoHud);
+  auto system = columns_of(text.substr(0, text.find("\nfps,") + 1), 0);
+  EXPECT_THAT(system["gpu"], testing::ElementsAre("llvmpipe (LLVM 15.0.6  256 bits)"));
+  EXPECT_THAT(system["driver"], testing::ElementsAre("Mesa 22"));
+  auto columns = columns_of(text, 2);
+  EXPECT_EQ(columns.size(), 16u);
+  EXPECT_THAT(columns["fps"], testing::ElementsAre("100.0000", "50.0000"));
+  EXPECT_THAT(columns["frametime"], testing::ElementsAre("10.0000", "20.0000")) << "ms";
+  EXPECT_THAT(columns["gpu_load"], testing::ElementsAre("50", "0")) << "percent";
+  EXPECT_THAT(columns["gpu_vram_used"], testing::ElementsAre("1.0000", "0.0000")) << "GiB";
+  EXPECT_THAT(columns["elapsed"], testing::ElementsAre("10000000", "30000000")) << "ns";
+}
+
+TEST(ViewerCsv, OfCapFrameXIsACaptureOfPresentMon) {
+  const std::string text = converted(Viewer::kCapFrameX);
+  EXPECT_THAT(text, testing::StartsWith("Application,")) << "by which it is known";
+  auto columns = columns_of(text, 0);
+  EXPECT_THAT(columns["TimeInSeconds"], testing::ElementsAre("0.010000", "0.030000"));
+  EXPECT_THAT(columns["MsBetweenPresents"], testing::ElementsAre("10.0000", "20.0000"));
+  EXPECT_THAT(columns["MsBetweenDisplayChange"], testing::ElementsAre("10.0000", "0.0000"));
+  EXPECT_THAT(columns["MsInPresentAPI"], testing::ElementsAre("1.5000", "0.0000"));
+  EXPECT_THAT(columns["Dropped"], testing::ElementsAre("0", "1"));
+  EXPECT_THAT(columns["Comment"], testing::ElementsAre("a  wood ", "a  wood "));
+}
+
+TEST(ViewerCsv, RefusesFilesThatARunNeverWrites) {
+  EXPECT_EQ(converted(Viewer::kMangoHud, "frame_ms,apart\n"),
+            "dir/frames.csv:1: the column present_ms is missing");
+  EXPECT_EQ(converted(Viewer::kMangoHud, kFrames + "2,0.2,x,,,,0\n"),
+            "dir/frames.csv:4: frame_ms: 'x' is not a number from 0 on");
+  EXPECT_EQ(converted(Viewer::kCapFrameX, kFrames.substr(0, kFrames.size() - 1)),
+            "dir/frames.csv: the file is cut: its last line has no end");
+  EXPECT_EQ(viewer_csv(Viewer::kMangoHud, kFrames, "{", "dir").error().message,
+            "dir/summary.json: it is not JSON, or is cut");
+  EXPECT_EQ(viewer_csv(Viewer::kMangoHud, "no such folder").error().code, core::ErrorCode::kIo);
+  EXPECT_FALSE(viewer_from("excel"));
+}
+
+}  // namespace
+}  // namespace psygen::compare
