@@ -35,12 +35,12 @@ void Colliders::follow(ecs::Entity entity, const Transform& transform, ObjectCol
   const query::ObjectPose pose{transform.position, glm::dquat(transform.rotation), transform.scale};
   const query::PlacedObject* object = objects_.find(collider.object);
   // A copy of the component, or one that was loaded, has the object of another entity.
-  const bool is_own = object != nullptr && object->name == object_name(entity);
+  const bool is_own = object != nullptr && object->name == owner_of(entity);
   if (is_own && collider.object_shape == collider.shape) {
     if (objects_.move(collider.object, pose)) return;
   } else if (collider.shape.index < shapes_.size()) {
     if (is_own) objects_.remove(collider.object);
-    const auto added = objects_.add(object_name(entity), shapes_[collider.shape.index], pose);
+    const auto added = objects_.add(owner_of(entity), shapes_[collider.shape.index], pose);
     collider.object = added.value_or(query::ObjectId());
     collider.object_shape = collider.shape;
     if (added) return;

@@ -56,7 +56,8 @@ class Colliders {
   void update(const WorldFacts& facts, Entities entities);
   void update(State& state) { update(state.facts, Entities(state.entities)); }
 
-  // For query::World::meet().
+  // For query::World::meet(). Objects have the names owner_of(entity): entity_of(query::Hit::object)
+  // is what a ray has hit. Look-ups recognise one that was destroyed since the last update().
   const query::Objects& objects() const { return objects_; }
   // Entities that the last update() could not make solid: without such a collider, with a Transform
   // that is none, outside a bounded world, or scaled to a size out of range.
@@ -71,15 +72,5 @@ class Colliders {
   std::unordered_map<std::uint32_t, ColliderId> boxes_;  // by mesh
   std::uint32_t invalid_ = 0;
 };
-
-// The entity that a ray has hit (query::Hit::object). It may have been destroyed since the last
-// update of the colliders: then look-ups recognise it.
-constexpr ecs::Entity entity_of(query::ObjectName name) {
-  return {static_cast<std::uint32_t>(name), static_cast<std::uint32_t>(name >> 32)};
-}
-// The inverse.
-constexpr query::ObjectName object_name(ecs::Entity entity) {
-  return (query::ObjectName{entity.generation} << 32) | entity.index;
-}
 
 }  // namespace psygen::scene

@@ -48,6 +48,12 @@ struct Platforms : Scene {
   }
 };
 
+// Some metres east of a place on a platform, and a little above it.
+core::WorldPosition beside(core::WorldPosition top, double metres) {
+  top.local += glm::dvec3(metres, 0.3, 0);
+  return top;
+}
+
 TEST(ObjectBodies, ACharacterStandsOnThemUntilTheyDisappear) {
   Platforms s;
   const auto top = s.place(20);
@@ -66,7 +72,7 @@ TEST(ObjectBodies, ACharacterStandsOnThemUntilTheyDisappear) {
 
 TEST(ObjectBodies, StopACharacterLikeAWallAndLetItClimbALowStep) {
   Platforms s;
-  const auto floor = s.place(20);
+  const auto floor = s.place(60);
   s.slab(floor, 20);
   auto wall = floor, step = floor;
   wall.local += glm::dvec3(5, 1, 0);
@@ -91,7 +97,7 @@ TEST(ObjectBodies, CarryACharacterUpDownAsideAndAround) {
   Platforms s;
   auto top = s.place(20);
   const query::ObjectId slab = s.slab(top);
-  const CharacterId id = s.character(s.place(20.1, 32, 30));
+  const CharacterId id = s.character(beside(top, 2));
   s.steps(60);
   for (const glm::dvec3 speed :
        {glm::dvec3(0, 2, 0), glm::dvec3(3, 0, 1), glm::dvec3(0, -3, 0), glm::dvec3(-3, 0.5, -1)}) {
@@ -136,7 +142,7 @@ TEST(ObjectBodies, ACharacterThatJumpsOffKeepsTheSpeedOfWhatItStoodOn) {
 
 TEST(ObjectBodies, PushACharacterThatStandsInTheirWay) {
   Platforms s;
-  const auto floor = s.place(20);
+  const auto floor = s.place(60);
   s.slab(floor, 20);
   auto wall = floor;
   wall.local += glm::dvec3(-3, 1, 0);
@@ -175,7 +181,7 @@ TEST(ObjectBodies, BodiesRestOnThemRideOnThemAndFallWhenTheyGo) {
 
 TEST(ObjectBodies, OneThatAppearsWhereACharacterIsPushesItOut) {
   Platforms s;
-  const auto floor = s.place(20);
+  const auto floor = s.place(60);
   s.slab(floor, 20);
   const CharacterId id = s.character(floor);
   s.steps(30);
@@ -190,9 +196,10 @@ TEST(ObjectBodies, OneThatAppearsWhereACharacterIsPushesItOut) {
 
 TEST(ObjectBodies, ThatJumpFarCarryNobodyAndThrowNothing) {
   Platforms s;
-  const query::ObjectId slab = s.slab(s.place(20));
-  const CharacterId id = s.character(s.place(20.1));
-  const BodyId crate = s.crate(s.place(20.5, 32, 30));
+  const auto top = s.place(20);
+  const query::ObjectId slab = s.slab(top);
+  const CharacterId id = s.character(top);
+  const BodyId crate = s.crate(beside(top, 2));
   s.steps(60);
   const double x = s.at(id).feet.local.x;
   s.move(slab, {500, 0, 0});
