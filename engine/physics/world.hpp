@@ -1,8 +1,8 @@
-// Rigid bodies and walking characters on the ground of a world, by Bullet. Ground, trunks, rocks and
-// solid objects around everything that moves are made from queries before a step can reach them,
-// whatever is drawn, and removed behind. Nothing falls through the ground: after each step, what crossed it is
-// put back. Steps are fixed and deterministic: the same calls give the same bits in the same build.
-// One thread. docs/physics.md.
+// Rigid bodies and walking characters on the ground of a world, by Bullet. Ground, trunks, rocks
+// and solid objects around everything that moves are made from queries before a step can reach
+// them, whatever is drawn, and removed behind. Nothing falls through the ground: after each step,
+// what crossed it is put back. Steps are fixed and deterministic: the same calls give the same bits
+// in the same build. One thread. docs/physics.md.
 #pragma once
 
 #include <memory>

@@ -56,8 +56,9 @@ class Colliders {
   void update(const WorldFacts& facts, Entities entities);
   void update(State& state) { update(state.facts, Entities(state.entities)); }
 
-  // For query::World::meet(). Objects have the names owner_of(entity): entity_of(query::Hit::object)
-  // is what a ray has hit. Look-ups recognise one that was destroyed since the last update().
+  // For query::World::meet(). Objects have the names owner_of(entity):
+  // entity_of(query::Hit::object) is what a ray has hit. Look-ups recognise one that was destroyed
+  // since the last update().
   const query::Objects& objects() const { return objects_; }
   // Entities that the last update() could not make solid: without such a collider, with a Transform
   // that is none, outside a bounded world, or scaled to a size out of range.
