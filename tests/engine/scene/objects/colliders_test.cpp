@@ -169,7 +169,7 @@ TEST_F(SolidObjects, TakeTheBoxOfTheirMeshInOneCallThoughItIsFlat) {
   ASSERT_EQ(hit->kind, query::HitKind::kObject);
   EXPECT_EQ(entity_of(hit->object), entity);
   EXPECT_NEAR(hit->distance_m, 10, 0.006);
-  EXPECT_EQ(colliders_.box_of(state().assets, *mesh), colliders_.box_of(state().assets, *mesh));
+  EXPECT_EQ(*colliders_.box_of(state().assets, *mesh), *colliders_.box_of(state().assets, *mesh));
   EXPECT_FALSE(colliders_.make_solid(state(), put(sky())));
   EXPECT_FALSE(colliders_.make_solid(state(), {}));
   EXPECT_FALSE(colliders_.box_of(state().assets, {999}));
