@@ -5,7 +5,7 @@
 namespace psygen::physics {
 namespace {
 
-constexpr int kObstacles = kModels | kBodies | kCharacters;
+constexpr int kObstacles = kModels | kObjects | kBodies | kCharacters;
 
 btTransform at(const btVector3& place) {
   return btTransform(btQuaternion::getIdentity(), place);
@@ -29,7 +29,7 @@ struct SweepCallback : btCollisionWorld::ConvexResultCallback {
             : result.m_hitCollisionObject->getWorldTransform().getBasis() * result.m_hitNormalLocal;
     if (n.dot(direction) >= -1e-9) return m_closestHitFraction;
     m_closestHitFraction = result.m_hitFraction;
-    found = {result.m_hitFraction, n, true};
+    found = {result.m_hitFraction, n, true, result.m_hitCollisionObject};
     return result.m_hitFraction;
   }
   const CapsuleMover& mover;

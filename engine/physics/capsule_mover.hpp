@@ -1,5 +1,5 @@
-// Moves an upright capsule among models, bodies and other characters by sweeping it. Knows nothing
-// of the ground, of speeds and of steps (character.hpp). Internal to physics. One thread.
+// Moves an upright capsule among models, objects, bodies and other characters by sweeping it. Knows
+// nothing of the ground, of speeds and of steps (character.hpp). Internal to physics. One thread.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -11,6 +11,7 @@ struct Sweep {
   double fraction = 1;        // of the way
   btVector3 normal{0, 1, 0};  // of what was hit
   bool hit = false;
+  const btCollisionObject* object = nullptr;  // that was hit
 };
 
 class CapsuleMover {

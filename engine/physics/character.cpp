@@ -166,19 +166,25 @@ void Character::move_down(double drop) {
   const Sweep sweep = mover_.sweep(from, from - btVector3(0, depth + CapsuleMover::kSkinM, 0));
   const models::GroundPoint ground = terrain_.ground(feet_);
   Support support{ground.height_m, to_bt(ground.normal)};
+  query::ObjectId floor;
   if (sweep.hit) {
     const double height =
         feet_.y() - sweep.fraction * (depth + CapsuleMover::kSkinM) + CapsuleMover::kSkinM;
-    if (height > support.height) support = {height, sweep.normal};
+    if (height > support.height) {
+      support = {height, sweep.normal};
+      floor = object_of(*sweep.object);
+    }
   }
   const double lowest = feet_.y() - depth;
   if (support.height < lowest) {
     on_ground = false;
+    if (stood) leave_floor();
     if (!stood) feet_.setY(lowest);
     return;
   }
   const double fall_speed = -velocity.y();
   feet_.setY(support.height);
+  floor_ = floor;
   on_ground = is_walkable(support.normal);
   velocity.setY(0);
   if (on_ground) return;
@@ -194,7 +200,24 @@ void Character::follow_ground() {
   if (feet_.y() < height) feet_.setY(height);
 }
 
-void Character::step(double dt, double gravity) {
+// Moves with the object that it stands on, unless something is in the way.
+void Character::ride(const btVector3& carried) {
+  if (carried.length2() == 0) return;
+  const Sweep sweep = mover_.sweep(centre(feet_), centre(feet_) + carried);
+  const double share = sweep.hit ? sweep.fraction - CapsuleMover::kSkinM / carried.length() : 1;
+  feet_ = terrain_.inside(feet_ + carried * std::max(share, 0.0), settings_.radius_m);
+}
+
+// What it stood on moves no more with it, but has given it its speed.
+void Character::leave_floor() {
+  velocity += floor_velocity_;
+  floor_velocity_ = {0, 0, 0};
+  floor_ = {};
+}
+
+void Character::step(double dt, double gravity, const btVector3& carried) {
+  ride(carried);
+  floor_velocity_ = carried / dt;
   feet_ += mover_.pushed_out(centre(feet_)) - centre(feet_);
   feet_ = terrain_.inside(feet_, settings_.radius_m);
   follow_ground();
@@ -210,6 +233,7 @@ void Character::step(double dt, double gravity) {
   rising_ = false;
   if (on_ground && input.jump) {
     velocity.setY(settings_.jump_speed);
+    leave_floor();
     rising_ = true;
     input.jump = false;
   } else {

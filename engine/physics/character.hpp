@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "engine/physics/capsule_mover.hpp"
+#include "engine/physics/object_bodies.hpp"
 #include "engine/physics/terrain.hpp"
 #include "engine/physics/types.hpp"
 
@@ -22,14 +23,16 @@ class Character {
   Character(const Character&) = delete;
   Character& operator=(const Character&) = delete;
 
-  // Moves it for `dt` seconds.
-  void step(double dt, double gravity);
+  // Moves it for `dt` seconds. `carried` is the way of what it stands on in this time.
+  void step(double dt, double gravity, const btVector3& carried);
   // Puts it somewhere, but not below the ground and not beyond the walls of a bounded world.
   void teleport(const btVector3& feet);
   // Bullet's coordinates have moved by −`by`.
   void shift(const btVector3& by);
 
   const btVector3& feet() const { return feet_; }
+  // The object that it stands on, or none.
+  query::ObjectId floor() const { return on_ground ? floor_ : query::ObjectId(); }
   double reach_m() const { return settings_.height_m + settings_.step_height_m; }
 
   CharacterInput input;
@@ -51,6 +54,8 @@ class Character {
   void move_up(double rise);
   void move_down(double drop);
   void follow_ground();
+  void ride(const btVector3& carried);
+  void leave_floor();
   bool is_walkable(const btVector3& normal) const { return normal.y() >= least_up_; }
   void publish(bool jumped_there);
 
@@ -59,7 +64,9 @@ class Character {
   CharacterSettings settings_;
   double least_up_;  // y of the normal of the steepest walkable ground
   btVector3 feet_;
-  bool rising_ = false;   // has jumped in this step
+  bool rising_ = false;  // has jumped in this step
+  query::ObjectId floor_;
+  btVector3 floor_velocity_{0, 0, 0};
   bool on_edge_ = false;  // stands on the edge of a step that it climbs
   btCapsuleShape capsule_;
   btDefaultMotionState motion_;

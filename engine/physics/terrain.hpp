@@ -16,7 +16,7 @@
 namespace psygen::physics {
 
 // Groups of Bullet's collision filter.
-enum Group : int { kGround = 1, kModels = 2, kBodies = 4, kCharacters = 8 };
+enum Group : int { kGround = 1, kModels = 2, kBodies = 4, kCharacters = 8, kObjects = 16 };
 
 class Terrain {
  public:

@@ -1,8 +1,8 @@
-// Rigid bodies and walking characters on the ground of a world, by Bullet. Ground, trunks and rocks
-// around everything that moves are made from queries before a step can reach them, whatever is
-// drawn, and removed behind. Nothing falls through the ground: after each step, what crossed it is
-// put back. Steps are fixed and deterministic: the same calls give the same bits in the same build.
-// One thread. docs/physics.md.
+// Rigid bodies and walking characters on the ground of a world, by Bullet. Ground, trunks, rocks
+// and solid objects around everything that moves are made from queries before a step can reach
+// them, whatever is drawn, and removed behind. Nothing falls through the ground: after each step,
+// what crossed it is put back. Steps are fixed and deterministic: the same calls give the same bits
+// in the same build. One thread. docs/physics.md.
 #pragma once
 
 #include <memory>
@@ -59,7 +59,8 @@ class World {
   // One step of `dt` seconds, in [0.001, 0.1]. Use the same `dt` always, 1 / 60 for example.
   core::Result<void> step(double dt);
 
-  // The first body or character on a ray. Ground and models are found by query::World::cast().
+  // The first body or character on a ray. Ground, models and objects are found by
+  // query::World::cast().
   core::Result<std::optional<BodyHit>> cast(const core::WorldPosition& origin,
                                             const glm::dvec3& direction, double longest_m) const;
 

@@ -81,7 +81,7 @@ core::Result<BodyId> World::add(const BodySettings& s) {
     rigid.setCollisionFlags(rigid.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
     body.is_moved = true;
   }
-  impl_->bullet.addRigidBody(&rigid, kBodies, kGround | kModels | kBodies | kCharacters);
+  impl_->bullet.addRigidBody(&rigid, kBodies, kGround | kModels | kBodies | kCharacters | kObjects);
   return BodyId{number};
 }
 

@@ -80,6 +80,7 @@ void World::Impl::move_origin(core::BlockCoord to) {
   terrain.set_origin(to);
   for (auto& [number, character] : characters)
     character.shift(by);
+  objects.shift(by);
   for (auto& [number, body] : bodies) {
     btTransform transform = body.rigid->getWorldTransform();
     transform.setOrigin(transform.getOrigin() - by);
@@ -94,12 +95,17 @@ void World::Impl::move_origin(core::BlockCoord to) {
   broadphase.m_deferedcollide = false;
 }
 
-void World::Impl::make_terrain(double dt) {
+void World::Impl::make_surroundings(double dt) {
   const auto need = [&](const btVector3& at, const btVector3& velocity, double reach_m) {
     const btVector3 to = at + velocity * dt;
     const double around = reach_m + kMarginM;
-    terrain.need({std::min(at.x(), to.x()) - around, std::min(at.z(), to.z()) - around},
-                 {std::max(at.x(), to.x()) + around, std::max(at.z(), to.z()) + around}, steps);
+    btVector3 low = at, high = at;
+    low.setMin(to);
+    high.setMax(to);
+    low -= btVector3(around, around, around);
+    high += btVector3(around, around, around);
+    terrain.need({low.x(), low.z()}, {high.x(), high.z()}, steps);
+    objects.need(low, high, steps);
   };
   for (const auto& [number, character] : characters)
     need(character.feet(), character.velocity, character.reach_m());
@@ -111,9 +117,10 @@ void World::Impl::step(double dt) {
   ++steps;
   shift_origin();
   follow_edits();
-  make_terrain(dt);
+  objects.follow(dt);
+  make_surroundings(dt);
   for (auto& [number, character] : characters)
-    character.step(dt, settings.gravity);
+    character.step(dt, settings.gravity, objects.way_of(character.floor(), character.feet()));
   for (auto& [number, body] : bodies) {
     body.before = body.rigid->getCenterOfMassPosition();
     if (body.kind != Motion::kKinematic) continue;
@@ -129,6 +136,7 @@ void World::Impl::step(double dt) {
   for (auto& [number, body] : bodies)
     if (body.kind == Motion::kDynamic) put_back(body);
   terrain.drop_idle(steps, settings.keep_steps, settings.most_idle_blocks);
+  objects.drop_idle(steps, settings.keep_steps);
 }
 
 core::Result<void> World::Impl::check_room() const {
@@ -145,9 +153,9 @@ void World::Impl::wake_touching(const btCollisionObject& object) {
     const btPersistentManifold& contact = *dispatcher.getManifoldByIndexInternal(i);
     const bool first = contact.getBody0() == &object;
     if (!first && contact.getBody1() != &object) continue;
-    const auto number = static_cast<std::uint32_t>(
-        (first ? contact.getBody1() : contact.getBody0())->getUserIndex());
-    Body* other = find(BodyId{number});
+    const btCollisionObject& touching = first ? *contact.getBody1() : *contact.getBody0();
+    if (touching.getUserIndex2() != kBodies) continue;
+    Body* other = find(BodyId{static_cast<std::uint32_t>(touching.getUserIndex())});
     if (other != nullptr && other->kind == Motion::kDynamic) other->rigid->activate(true);
   }
 }
@@ -189,7 +197,8 @@ void World::Impl::put_back(Body& body) {
     const auto hit = query.cast({.origin = terrain.position(body.before),
                                  .direction = to_glm(way),
                                  .longest_m = way.length(),
-                                 .models = false});
+                                 .models = false,
+                                 .objects = false});
     if (hit && hit->kind == query::HitKind::kGround && !hit->from_inside) {
       const btVector3 normal = to_bt(hit->normal);
       at = body.before + way.normalized() * hit->distance_m + normal * inner;

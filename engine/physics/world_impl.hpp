@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "engine/physics/character.hpp"
+#include "engine/physics/object_bodies.hpp"
 #include "engine/physics/shapes.hpp"
 #include "engine/physics/terrain.hpp"
 #include "engine/physics/world.hpp"
@@ -39,7 +40,8 @@ struct World::Impl {
   void step(double dt);
   void shift_origin();
   void move_origin(core::BlockCoord to);
-  void make_terrain(double dt);
+  // Ground, models and objects, wherever something can get in this step.
+  void make_surroundings(double dt);
   // Fails with kOverBudget if there are as many bodies and characters as the settings allow.
   core::Result<void> check_room() const;
   void put_back(Body& body);
@@ -56,6 +58,8 @@ struct World::Impl {
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld bullet{&dispatcher, &broadphase, &solver, &configuration};
   Terrain terrain{bullet, query};
+  ObjectBodies objects{bullet, query, terrain,
+                       [this](const btCollisionObject& object) { wake_touching(object); }};
   std::map<std::uint32_t, Body> bodies;  // in order of number, for determinism
   std::map<std::uint32_t, Character> characters;
   std::uint32_t last_number = 0;

@@ -99,6 +99,7 @@ core::Result<Hit> World::cast(const Ray& ray) {
   hit.distance_m = course.longest_m;
   if (ray.ground) cast_ground(course, hit);
   if (ray.models) cast_models(course, hit);
+  if (ray.objects) cast_objects(course, hit);
   hit.position = core::normalised(
       {origin->block, origin->local + hit.distance_m * course.direction}, block_m_);
   return hit;
@@ -205,6 +206,18 @@ void World::cast_models(const Course& course, Hit& hit) {
     }
     return true;
   });
+}
+
+void World::cast_objects(const Course& course, Hit& hit) const {
+  if (objects_ == nullptr) return;
+  const auto found = objects_->cast(course.origin, course.direction, hit.distance_m);
+  if (!found || (found->hit.t >= hit.distance_m && hit.kind != HitKind::kNothing)) return;
+  hit = Hit();
+  hit.kind = HitKind::kObject;
+  hit.distance_m = found->hit.t;
+  hit.normal = found->hit.normal;
+  hit.from_inside = found->hit.from_inside;
+  hit.object = found->name;
 }
 
 core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::WorldPosition& at,

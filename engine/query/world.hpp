@@ -1,8 +1,8 @@
-// Questions about a world that need no mesh: the ground under a point, rays against ground and
-// models, models near a place, colliders. Answers are exact: the ground is the two triangles a cell
-// of the finest mesh, whatever is drawn. Positions are blocks and metres, so precision is the same
-// at any distance from the origin. Blocks are made when first asked about and cached under a byte
-// bound; answers do not depend on what is cached. One thread. docs/queries.md.
+// Questions about a world that need no mesh: the ground under a point, rays against ground, models
+// and objects, models near a place, colliders. Answers are exact: the ground is the two triangles a
+// cell of the finest mesh, whatever is drawn. Positions are blocks and metres, so precision is the
+// same at any distance from the origin. Blocks are made when first asked about and cached under a
+// byte bound; answers do not depend on what is cached. One thread. docs/queries.md.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/query/block_cache.hpp"
+#include "engine/query/objects.hpp"
 #include "engine/world/ground_blends.hpp"
 #include "engine/world/models_reach.hpp"
 
@@ -30,12 +31,13 @@ struct Ray {
   core::WorldPosition origin;
   glm::dvec3 direction{0, -1, 0};  // any length above 0
   double longest_m = 1000;         // above 0; may be infinite
-  bool ground = true;              // what it can hit: the ground, and models with a collider
+  bool ground = true;              // what it can hit: the ground, models with a collider,
   bool models = true;
+  bool objects = true;  // and objects, of World::meet()
 };
 
 // What a ray met.
-enum class HitKind : std::uint8_t { kNothing, kGround, kModel };
+enum class HitKind : std::uint8_t { kNothing, kGround, kModel, kObject };
 
 // The end of a ray.
 struct Hit {
@@ -43,12 +45,13 @@ struct Hit {
   double distance_m = 0;         // from the origin; for kNothing, how far the ray was followed
   core::WorldPosition position;  // normalised
   glm::vec3 normal{0, 1, 0};     // of the surface, unit length; the ground's points upwards
-  // The ray came out of the ground, or began inside the model's collider (then distance_m is 0 and
-  // the normal points against the ray).
+  // The ray came out of the ground, or began inside a collider (then distance_m is 0 and the normal
+  // points against the ray).
   bool from_inside = false;
   core::BlockCoord block;                      // of the ground or the model
   std::uint32_t index = world::kTerrainIndex;  // of the model within the block
   models::ModelIndex model = 0;                // its type, or that of the terrain
+  ObjectName object = 0;                       // of kObject (scene::entity_of() in a scene)
 };
 
 // A model at its place.
@@ -77,6 +80,11 @@ class World {
   // none yet.
   World(const world::World& world, const models::Registry& registry,
         std::size_t cache_bytes = kUsualBytes);
+
+  // Rays, and bodies of physics on these queries, meet these objects too, as they are at each call.
+  // They must be of the same world, and outlive this or the next meet(); null: none any more.
+  void meet(const Objects* objects) { objects_ = objects; }
+  const Objects* objects() const { return objects_; }
 
   // The ground under (or above) a position; its height is ignored. Fails with kInvalidArgument for
   // positions that are not finite or too far from their block, and outside a bounded world, where
@@ -127,6 +135,7 @@ class World {
   glm::vec2 most_reach_m() const { return world::with_placed_models(scattered_reach_m_, *world_); }
   void cast_ground(const Course& course, Hit& hit);
   void cast_models(const Course& course, Hit& hit);
+  void cast_objects(const Course& course, Hit& hit) const;
   void cast_block(const Course& course, glm::dvec3 corner_m, core::BlockCoord block, Hit& hit);
   core::Result<std::vector<BlockAround>> blocks_within(const core::WorldPosition& at,
                                                        double radius_m) const;
@@ -141,6 +150,7 @@ class World {
   glm::vec2 scattered_reach_m_;  // of the models that the world's function places
   world::Palette palette_;
   BlockCache cache_;
+  const Objects* objects_ = nullptr;
 };
 
 // The position with local x and z in [0, block size). Fails with kInvalidArgument for values that

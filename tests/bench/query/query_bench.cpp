@@ -107,6 +107,72 @@ void nearest_tree(benchmark::State& state) {
 }
 BENCHMARK(nearest_tree)->ArgName("world")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
+// 10,000 boxes within a kilometre, or (argument `crowded`) within a block, just above the ground.
+struct Crowd {
+  static constexpr int kCount = 10'000;
+  Loaded loaded{0};
+  World query{loaded.world, loaded.registry, std::size_t{256} << 20};
+  Objects objects{loaded.world};
+  std::vector<ObjectId> ids;
+  std::vector<ObjectPose> poses;
+
+  explicit Crowd(bool crowded) {
+    models::Collider box;
+    box.shapes.emplace_back(core::Bounds{glm::vec3(-0.5F), glm::vec3(0.5F)});
+    const ObjectShape shape = *Objects::make_shape(box);
+    const double side_m = crowded ? 64 : 1000;
+    for (int i = 0; i < kCount; ++i) {
+      ObjectPose pose{.position = {{200, 200},
+                                   {std::fmod(i * 0.618034, 1.0) * side_m, 0,
+                                    std::fmod(i * 0.754878, 1.0) * side_m}}};
+      pose.position.local.y = query.ground(pose.position)->height_m + 1 + i % 3;
+      poses.push_back(pose);
+      ids.push_back(*objects.add(static_cast<ObjectName>(i + 1), shape, pose));
+    }
+    query.meet(&objects);
+  }
+};
+
+// Rays of 1 km through them, which miss: with the ground, models and objects, or objects alone.
+void ray_among_objects(benchmark::State& state) {
+  Crowd crowd(state.range(0) != 0);
+  std::vector<Ray> rays;
+  for (std::int64_t i = 0; i < kPlaces; ++i) {
+    const double turn = static_cast<double>(i) * 0.6;
+    Ray ray{.origin = {{200, 200}, {500 + 3.0 * static_cast<double>(i % 8), 0, 500}},
+            .direction = {std::cos(turn), 0, std::sin(turn)}};
+    if (state.range(0) != 0) ray.origin.local -= glm::dvec3(470, 0, 470);
+    ray.origin.local.y = crowd.query.ground(ray.origin)->height_m + 30;
+    ray.ground = ray.models = state.range(1) != 0;
+    rays.push_back(ray);
+  }
+  std::size_t i = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(crowd.query.cast(rays[i++ % kPlaces]));
+}
+BENCHMARK(ray_among_objects)
+    ->ArgNames({"crowded", "all"})
+    ->ArgsProduct({{0, 1}, {0, 1}})
+    ->Unit(benchmark::kMicrosecond);
+
+// A step in which all of them move at 6 m/s and turn; or none does.
+void objects_move(benchmark::State& state) {
+  Crowd crowd(false);
+  double way_m = state.range(0) != 0 ? 0.1 : 0;
+  int steps = 0;
+  for (auto _ : state) {
+    if (++steps % 600 == 0) way_m = -way_m;
+    for (std::size_t i = 0; i < crowd.ids.size(); ++i) {
+      ObjectPose& pose = crowd.poses[i];
+      pose.position.local += glm::dvec3(way_m, 0, i % 2 == 0 ? way_m : -way_m);
+      if (way_m != 0) pose.rotation.y += 0.01;
+      benchmark::DoNotOptimize(crowd.objects.move(crowd.ids[i], pose));
+    }
+    crowd.objects.remove_untold();
+  }
+}
+BENCHMARK(objects_move)->ArgName("moving")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
 // The first query of a block: ground, and then models, and then colliders.
 enum class Part { kGround, kModels, kSolids };
 template <Part kPart>

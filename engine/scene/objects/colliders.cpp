@@ -1,0 +1,82 @@
+#include "engine/scene/objects/colliders.hpp"
+
+#include <fmt/format.h>
+
+#include <glm/common.hpp>
+#include <utility>
+
+namespace psygen::scene {
+
+core::Result<ColliderId> Colliders::add(models::Collider collider, std::string_view name) {
+  auto shape = query::Objects::make_shape(std::move(collider));
+  if (!shape)
+    return core::fail(shape.error().code, fmt::format("{}: {}", name, shape.error().message));
+  shapes_.push_back(std::move(*shape));
+  return ColliderId{static_cast<std::uint32_t>(shapes_.size() - 1)};
+}
+
+core::Result<ColliderId> Colliders::box_of(const Assets& assets, MeshId mesh) {
+  if (!assets.exists(mesh))
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("there is no mesh {} to take a box of", mesh.index));
+  if (const auto known = boxes_.find(mesh.index); known != boxes_.end()) return known->second;
+  const core::Bounds& box = assets.box(mesh);
+  // A little more than the least, as floats round.
+  constexpr auto kLeastHalf = static_cast<float>(0.501 * query::Objects::kLeastSizeM);
+  models::Collider collider;
+  collider.shapes.emplace_back(
+      core::Bounds::around(box.center(), glm::max(box.half_extent(), glm::vec3(kLeastHalf))));
+  const auto added = add(std::move(collider), fmt::format("the box of mesh {}", mesh.index));
+  if (added) boxes_.emplace(mesh.index, *added);
+  return added;
+}
+
+void Colliders::follow(ecs::Entity entity, const Transform& transform, ObjectCollider& collider) {
+  const query::ObjectPose pose{transform.position, glm::dquat(transform.rotation), transform.scale};
+  const query::PlacedObject* object = objects_.find(collider.object);
+  // A copy of the component, or one that was loaded, has the object of another entity.
+  const bool is_own = object != nullptr && object->name == owner_of(entity);
+  if (is_own && collider.object_shape == collider.shape) {
+    if (objects_.move(collider.object, pose)) return;
+  } else if (collider.shape.index < shapes_.size()) {
+    if (is_own) objects_.remove(collider.object);
+    const auto added = objects_.add(owner_of(entity), shapes_[collider.shape.index], pose);
+    collider.object = added.value_or(query::ObjectId());
+    collider.object_shape = collider.shape;
+    if (added) return;
+  }
+  // Untold, so it is removed.
+  ++invalid_;
+}
+
+void Colliders::update(const WorldFacts& facts, Entities entities) {
+  if (!std::exchange(opened_, true)) objects_ = query::Objects(facts.world);
+  invalid_ = 0;
+  entities.each([&](std::span<const ecs::Entity> rows, std::span<const Transform> transforms,
+                    std::span<ObjectCollider> colliders) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      follow(rows[i], transforms[i], colliders[i]);
+  });
+  objects_.remove_untold();
+}
+
+core::Result<void> Colliders::add_systems(Systems& systems) {
+  systems.step.add("colliders",
+                   [this](const WorldFacts& facts, Entities entities) { update(facts, entities); });
+  return {};
+}
+
+core::Result<void> Colliders::make_solid(State& state, ecs::Entity entity) {
+  const Object* object = state.entities.get<Object>(entity);
+  if (object == nullptr || state.entities.get<Transform>(entity) == nullptr)
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "an entity needs an Object and a Transform to become solid");
+  const auto box = box_of(state.assets, object->mesh);
+  if (!box) return tl::unexpected(box.error());
+  if (state.entities.get<ObjectCollider>(entity) == nullptr)
+    state.entities.add<ObjectCollider>(std::span(&entity, 1));
+  state.entities.get<ObjectCollider>(entity)->shape = *box;
+  return {};
+}
+
+}  // namespace psygen::scene
