@@ -5,32 +5,14 @@
 
 #include "engine/core/utf8.hpp"
 #include "engine/frametest/run.hpp"
+#include "engine/telemetry/report_plot.hpp"
 
 namespace psygen::frametest {
 namespace {
 
 // shown() leaves no control characters, which XML has no way to write.
 std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : core::shown(text)) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
+  return telemetry::escaped(core::shown(text));
 }
 
 std::string limit_of(const Budget& budget) {

@@ -19,7 +19,7 @@ struct SummaryField {
 };
 
 // All of a summary, in the order of summary.json. Those of a Summary{} have the names that every
-// run has; a run has system_ms.<system>.p50 and .p99 besides.
+// run has; a run has system_ms.NAME.p50 and .p99 besides.
 std::vector<SummaryField> summary_fields(const Summary& summary);
 
 }  // namespace psygen::telemetry
