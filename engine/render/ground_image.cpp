@@ -58,7 +58,8 @@ Result<void> upload_array(const Device& device, const Image& image, const Ground
 
 }  // namespace
 
-Result<void> GroundImage::create(const Device& device, const PresetTraits& traits) {
+Result<void> GroundImage::create(const Device& device, const PresetTraits& traits,
+                                 std::span<const GroundPicture> pictures) {
   VkSamplerCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.magFilter = VK_FILTER_LINEAR;
@@ -72,7 +73,8 @@ Result<void> GroundImage::create(const Device& device, const PresetTraits& trait
   if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
   sampler_ = UniqueSampler(device.vk, device.handle, sampler);
 
-  const GroundLevels levels = traits.pixel_light ? make_ground_layers() : make_ground_detail();
+  const GroundLevels levels =
+      traits.pixel_light ? make_ground_layers(pictures) : make_ground_detail(pictures);
   const std::uint32_t layers = traits.pixel_light ? kGroundLayers : 1;
   Result<Image> image = make_image(
       device, {kPatternSide, kPatternSide}, VK_FORMAT_R8G8B8A8_UNORM,

@@ -3,6 +3,9 @@
 // engine/render.
 #pragma once
 
+#include <span>
+
+#include "engine/render/ground_picture.hpp"
 #include "engine/render/memory.hpp"
 #include "engine/render/preset.hpp"
 
@@ -12,7 +15,9 @@ namespace psygen::render {
 class GroundImage {
  public:
   // Computes and uploads the textures that the preset needs. Once; waits for the device.
-  core::Result<void> create(const Device& device, const PresetTraits& traits);
+  // `pictures`: RendererOptions::ground.
+  core::Result<void> create(const Device& device, const PresetTraits& traits,
+                            std::span<const GroundPicture> pictures);
   VkImageView view() const { return image_.view.get(); }
   const VkSampler* sampler() const { return sampler_.address(); }
 

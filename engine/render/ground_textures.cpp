@@ -13,12 +13,13 @@ constexpr std::size_t kTexels = std::size_t{kPatternSide} * kPatternSide;
 
 // A kind of ground before it is packed.
 struct Ground {
-  Field height = {};        // in about [0, 1]
-  Field light = {};         // factor of the albedo, of any mean
-  Field warm = {};          // from bluish (−1) to yellowish (1)
-  float relief_texels = 1;  // how high a height of 1 is
-  float rough = 1;          // where the height is 0 …
-  float rough_top = 1;      // … and where it is 1
+  Field height = {};            // in about [0, 1]
+  Field light = {};             // factor of the albedo, of any mean
+  Field warm = {};              // from bluish (−1) to yellowish (1)
+  float relief_texels = 1;      // how high a height of 1 is
+  float rough = 1;              // where the height is 0 …
+  float rough_top = 1;          // … and where it is 1
+  std::vector<float> rgb = {};  // in place of `light` and `warm`, if it is not empty
 };
 
 // f(texel number) for all texels.
@@ -229,6 +230,18 @@ Ground patches() {
   return out;
 }
 
+// A picture has its own colours; what is brighter is higher.
+Ground pictured(const GroundPicture& picture) {
+  Ground out{.relief_texels = 8, .rough = 1, .rough_top = 0.7F, .rgb = picture.rgb};
+  fill(out.light, [&](std::size_t i) {
+    return 0.2F * picture.rgb[i * 3] + 0.7F * picture.rgb[i * 3 + 1] +
+           0.1F * picture.rgb[i * 3 + 2];
+  });
+  out.height = out.light;
+  to_unit(out.height);
+  return out;
+}
+
 std::uint8_t unorm8(float unit) {
   return static_cast<std::uint8_t>(std::clamp(unit, 0.0F, 1.0F) * 255.0F + 0.5F);
 }
@@ -252,7 +265,9 @@ void pack_colour(const Ground& ground, std::uint8_t* out) {
   std::vector<float> channel(kTexels);
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t i = 0; i < kTexels; ++i)
-      channel[i] = 0.5F * ground.light.values[i] * (1 + kTint[c] * ground.warm.values[i]);
+      channel[i] = ground.rgb.empty()
+                       ? 0.5F * ground.light.values[i] * (1 + kTint[c] * ground.warm.values[i])
+                       : ground.rgb[i * 3 + c];
     set_mean(channel, 0.5F);
     for (std::size_t i = 0; i < kTexels; ++i)
       out[i * 4 + c] = unorm8(channel[i]);
@@ -292,6 +307,12 @@ LevelBytes next_level(const LevelBytes& from, std::size_t side) {
   return out;
 }
 
+// The texture of a number: from its picture, if there is one.
+Ground ground_of(std::size_t number, Ground (*make)(), std::span<const GroundPicture> pictures) {
+  const bool has_picture = number < pictures.size() && !pictures[number].rgb.empty();
+  return has_picture ? pictured(pictures[number]) : make();
+}
+
 GroundLevels with_mips(LevelBytes first) {
   GroundLevels levels;
   levels.push_back(std::move(first));
@@ -302,19 +323,23 @@ GroundLevels with_mips(LevelBytes first) {
 
 }  // namespace
 
-GroundLevels make_ground_layers() {
-  const std::array<Ground, kGroundTextures> all{grass(), forest_floor(), dry_grass(), sand(),
-                                                rock(),  snow(),         scree(),     patches()};
+GroundLevels make_ground_layers(std::span<const GroundPicture> pictures) {
+  constexpr std::array kMade{grass, forest_floor, dry_grass, sand, rock, snow, scree, patches};
+  static_assert(kMade.size() == kGroundTextures);
   LevelBytes layers(kGroundLayers * kTexels * 4);
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    pack_colour(all[k], layers.data() + k * kTexels * 4);
-    pack_normal(all[k], layers.data() + (kGroundTextures + k) * kTexels * 4);
+  for (std::size_t k = 0; k < kMade.size(); ++k) {
+    const Ground ground = ground_of(k, kMade[k], pictures);
+    pack_colour(ground, layers.data() + k * kTexels * 4);
+    pack_normal(ground, layers.data() + (kGroundTextures + k) * kTexels * 4);
   }
   return with_mips(std::move(layers));
 }
 
-GroundLevels make_ground_detail() {
-  std::array<Field, 4> light{grass().light, forest_floor().light, scree().light, sand().light};
+GroundLevels make_ground_detail(std::span<const GroundPicture> pictures) {
+  constexpr std::size_t kGrass = 0, kForest = 1, kSand = 3, kRock = 4;  // of the pictures
+  std::array<Field, 4> light{
+      ground_of(kGrass, grass, pictures).light, ground_of(kForest, forest_floor, pictures).light,
+      ground_of(kRock, scree, pictures).light, ground_of(kSand, sand, pictures).light};
   LevelBytes detail(kTexels * 4);
   for (std::size_t c = 0; c < light.size(); ++c) {
     for (float& v : light[c].values)

@@ -6,9 +6,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/render/ground_patterns.hpp"
+#include "engine/render/ground_picture.hpp"
 
 namespace psygen::render {
 
@@ -24,10 +26,11 @@ using GroundLevels = std::vector<std::vector<std::uint8_t>>;
 
 // The array. Colours are factors of the albedo over 2 with a mean of 1/2, so what is far away keeps
 // the colour that it has without textures; alpha is the height, 0 to 1. Normals: x and z (0 to 1
-// for −1 to 1), roughness, and the share of the sky that reaches the texel.
-GroundLevels make_ground_layers();
+// for −1 to 1), roughness, and the share of the sky that reaches the texel. `pictures` take the
+// place of textures of the same number; those without texels do not.
+GroundLevels make_ground_layers(std::span<const GroundPicture> pictures = {});
 // One texture for light per vertex. Its four bytes are the brightness of grass, of forest floor, of
 // scree and of sand, as factors over 2 with a mean of 1/2.
-GroundLevels make_ground_detail();
+GroundLevels make_ground_detail(std::span<const GroundPicture> pictures = {});
 
 }  // namespace psygen::render

@@ -52,12 +52,13 @@ Result<Image> make_texture(const Device& device, core::Extent size, VkFormat for
 
 Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
                                const PresetTraits& traits, const Overlay& overlay,
-                               std::uint32_t sets, const MaterialTable& materials) {
+                               std::uint32_t sets, const MaterialTable& materials,
+                               std::span<const GroundPicture> ground) {
   materials_ = &materials;
   traits_ = traits;
   samples_ = device.samples_for(traits.samples);
   colour_format_ = colour_format;
-  return create_textures(device, overlay)
+  return create_textures(device, overlay, ground)
       .and_then([&] { return shadows_.create(device, traits); })
       .and_then([&] { return create_layouts(device, sets); })
       .and_then([&] { return create_sets(device, sets); })
@@ -72,7 +73,8 @@ Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
       });
 }
 
-Result<void> Pipelines::create_textures(const Device& device, const Overlay& overlay) {
+Result<void> Pipelines::create_textures(const Device& device, const Overlay& overlay,
+                                        std::span<const GroundPicture> ground) {
   Result<UniqueSampler> clouds = make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT);
   if (!clouds) return tl::unexpected(clouds.error());
   cloud_sampler_ = std::move(*clouds);
@@ -89,7 +91,7 @@ Result<void> Pipelines::create_textures(const Device& device, const Overlay& ove
       make_texture(device, overlay.atlas_size(), VK_FORMAT_R8_UNORM, overlay.atlas());
   if (!font_image) return tl::unexpected(font_image.error());
   font_ = std::move(*font_image);
-  return ground_.create(device, traits_);
+  return ground_.create(device, traits_, ground);
 }
 
 Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets) {

@@ -20,7 +20,7 @@ class Pipelines {
   // Creates the textures, `sets` descriptor sets, and the pipeline for text.
   core::Result<void> create(const Device& device, VkFormat colour_format,
                             const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets,
-                            const MaterialTable& materials);
+                            const MaterialTable& materials, std::span<const GroundPicture> ground);
   // Creates all other pipelines; call it once, after create(). `progress` is called after each
   // pipeline and can end it with kInterrupted.
   core::Result<void> create_others(const Device& device, const Progress& progress);
@@ -76,7 +76,8 @@ class Pipelines {
  private:
   core::Result<void> create_layouts(const Device& device, std::uint32_t sets);
   core::Result<void> create_sets(const Device& device, std::uint32_t count);
-  core::Result<void> create_textures(const Device& device, const Overlay& overlay);
+  core::Result<void> create_textures(const Device& device, const Overlay& overlay,
+                                     std::span<const GroundPicture> ground);
   struct MeshPipelines {
     // Indexed by layout (terrain, model) and by whether the data is pushed.
     std::array<std::array<UniquePipeline, 2>, 2> whole;

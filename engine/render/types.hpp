@@ -16,6 +16,7 @@
 #include "engine/core/camera.hpp"
 #include "engine/core/geometry_memory.hpp"
 #include "engine/core/surface_provider.hpp"
+#include "engine/render/ground_picture.hpp"
 #include "engine/render/hud_drawing.hpp"
 #include "engine/render/text_panel.hpp"
 
@@ -76,6 +77,7 @@ struct RendererOptions {
   double device_timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
   bool timestamps = true;              // FrameResult::gpu, if the device supports it
   std::uint64_t texture_budget_bytes = 256ull << 20;  // hard limit of all textures of materials
+  std::array<GroundPicture, kGroundPictures> ground;  // in place of textures of the ground
 };
 
 // A device and its abilities.

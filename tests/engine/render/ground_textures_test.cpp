@@ -86,6 +86,24 @@ TEST(GroundTextures, NormalsPointUpOnAverageAndHaveRelief) {
   }
 }
 
+TEST(GroundTextures, APictureTakesThePlaceOfItsKindAndOfNoOther) {
+  std::vector<GroundPicture> pictures(kGroundPictures);
+  pictures[2].rgb.resize(kTexels * 3, 0.1F);
+  for (std::size_t i = 0; i < kTexels; i += 2)
+    pictures[2].rgb[i * 3] = 0.3F;
+  const GroundLevels with = make_ground_layers(pictures), without = make_ground_layers();
+  for (std::size_t layer = 0; layer < kGroundLayers; ++layer) {
+    bool same = true;
+    for (std::size_t i = layer * kTexels * 4; i < (layer + 1) * kTexels * 4; ++i)
+      same = same && with[0][i] == without[0][i];
+    EXPECT_EQ(same, layer % kGroundTextures != 2) << layer;
+  }
+  EXPECT_EQ(channel(with, 2, 0, 0, 0), 191) << "3 of 2 in the mean";
+  EXPECT_EQ(channel(with, 2, 1, 0, 0), 64);
+  EXPECT_EQ(channel(with, 2, 0, 0, 1), 128) << "even in green";
+  EXPECT_EQ(make_ground_detail(pictures), make_ground_detail()) << "which has no dry grass";
+}
+
 TEST(GroundTextures, AreTheSameEachTime) {
   EXPECT_EQ(make_ground_detail(), make_ground_detail());
 }
