@@ -9,10 +9,13 @@ namespace {
 
 constexpr int kShadeSide = PSYGEN_SHADE_SIDE;  // cells of 1 m
 
-// What is missing of `left` in a byte, after more is missing.
-std::uint32_t with_more(std::uint32_t missing, float share) {
+// Most of the sun and of the sky that all spots together take, of 255: ground is never black.
+constexpr std::uint32_t kMostSun = 210, kMostSky = 170;
+
+// What is missing, of 255, after a share of the rest is missing too.
+std::uint32_t with_more(std::uint32_t missing, float share, std::uint32_t most) {
   const auto left = static_cast<float>(255 - missing);
-  return 255 - static_cast<std::uint32_t>(left * (1 - share) + 0.5F);
+  return std::min(255 - static_cast<std::uint32_t>(left * (1 - share) + 0.5F), most);
 }
 
 }  // namespace
@@ -44,8 +47,8 @@ void GroundShade::add(const GroundSpot& spot) {
       const float soft = inside * (2 - inside);
       std::uint32_t& word = words_[static_cast<std::size_t>(z * kShadeSide + x) / 2];
       const unsigned shift = (x & 1) * 16;
-      const std::uint32_t sun = with_more(word >> shift & 0xFF, soft * spot.sun);
-      const std::uint32_t sky = with_more(word >> (shift + 8) & 0xFF, soft * spot.sky);
+      const std::uint32_t sun = with_more(word >> shift & 0xFF, soft * spot.sun, kMostSun);
+      const std::uint32_t sky = with_more(word >> (shift + 8) & 0xFF, soft * spot.sky, kMostSky);
       word = (word & ~(0xFFFFU << shift)) | (sun | sky << 8) << shift;
     }
   }

@@ -13,8 +13,8 @@ namespace psygen::scene {
 
 // Adds the spots of a model: `tight` is the box of its mesh from the foot, which is at `foot`
 // relative to the camera; `sun` points towards the sun. Without `shadow`, only the one around the
-// foot.
-void add_spots(const core::Bounds& tight, glm::vec3 foot, glm::vec3 sun, bool shadow,
+// foot. Of grass (`grass`) there is a faint one.
+void add_spots(const core::Bounds& tight, bool grass, glm::vec3 foot, glm::vec3 sun, bool shadow,
                std::vector<render::GroundSpot>& spots);
 
 // Those of all single models of the nodes of the cut. `entities_of_cut`: DrawLists::entities.

@@ -10,9 +10,9 @@ namespace {
 const glm::vec3 kSun = glm::normalize(glm::vec3(1, 1, 0));
 
 std::vector<render::GroundSpot> spots_of(glm::vec3 least, glm::vec3 greatest, bool shadow,
-                                         glm::vec3 sun = kSun) {
+                                         glm::vec3 sun = kSun, bool grass = false) {
   std::vector<render::GroundSpot> spots;
-  add_spots({least, greatest}, {10, -2, -20}, sun, shadow, spots);
+  add_spots({least, greatest}, grass, {10, -2, -20}, sun, shadow, spots);
   return spots;
 }
 
@@ -36,9 +36,10 @@ TEST(GroundSpots, ARocksSpotReachesBeyondItAndTuftsOfGrassTakeLittleLight) {
   const auto rock = spots_of({-1, -0.2F, -1}, {1, 1, 1}, true);
   ASSERT_EQ(rock.size(), 2U);
   EXPECT_GT(rock[0].radius_m, 1.2F);
-  const auto grass = spots_of({-1, 0, -1}, {1, 0.3F, 1}, true);
+  const auto grass = spots_of({-1, 0, -1}, {1, 0.3F, 1}, true, kSun, true);
   ASSERT_EQ(grass.size(), 1U);
   EXPECT_LT(grass[0].sky, rock[0].sky);
+  EXPECT_EQ(spots_of({-0.5F, -0.2F, -0.5F}, {0.5F, 0.4F, 0.5F}, true).size(), 2U) << "a low rock";
 }
 
 TEST(GroundSpots, AMeshWithoutVerticesLeavesNone) {
