@@ -134,7 +134,9 @@ TEST_P(LooksOfPresets, spots_darken_near_ground_and_nothing_else) {
   const GroundSpot under_far_ground{{0, -20}, 30, 0.9F, 0.9F};
   const image::Image high_up = draw();
   input_.spots = {&under_far_ground, 1};
-  EXPECT_EQ(draw().rgba, high_up.rgba) << "no ground is near";
+  if (!traits_of(GetParam()).fine_grain) {  // with it all ground in reach has spots
+    EXPECT_EQ(draw().rgba, high_up.rgba) << "no ground is near";
+  }
   input_.water.reset();
   terrain_.origin.y = -52.0F;
   terrain_.near = true;
