@@ -19,27 +19,48 @@ float slow_noise(vec2 p) {
   return mix(a, b, f.y);
 }
 
-// Albedo of the ground. `height` is that in the world, `plane` the place in the pattern, `grain`
-// random in [0, 1]. `cover`: share of the ground that far forests hide where they can grow.
-vec3 ground_albedo(float height, vec3 n, vec2 plane, float grain, float cover) {
-  float pattern = 0.5;
-  if (frame.ground_colour.w > 0.0)
-    pattern = 0.65 * slow_noise(plane * (1.0 / 32.0)) + 0.35 * slow_noise(plane * (1.0 / 8.0));
+// The slow pattern over the plane, 0 to 1.
+float ground_pattern(vec2 plane) {
+  if (frame.ground_colour.w <= 0.0) return 0.5;
+  return 0.65 * slow_noise(plane * (1.0 / 32.0)) + 0.35 * slow_noise(plane * (1.0 / 8.0));
+}
+
+// How much each kind of ground covers of those before it, from grass on, 0 to 1.
+struct Blends {
+  float forest, dry, sand, rock, canopy, snow;
+};
+
+// The blends of a place. `height` is that in the world. `cover`: share of the ground that far
+// forests hide where they can grow.
+Blends blends_of(float height, vec3 n, float pattern, float cover) {
   float slope = 1.0 - n.y;
   float uneven = (pattern - 0.5) * 2.0;
-  vec3 c = mix(frame.grass.rgb, frame.forest.rgb, smoothstep(0.35, 0.62, pattern + slope * 0.5));
-  float dry = smoothstep(0.0, 1.0, (height - frame.forest.w) / frame.dry.w + uneven);
-  c = mix(c, frame.dry.rgb, dry);
-  float sand = smoothstep(0.0, 1.0, (frame.grass.w - height) / frame.sand.w + 0.5 * uneven);
-  c = mix(c, frame.sand.rgb, sand);
-  float rock = smoothstep(frame.rock.w, frame.snow.w, slope + 0.06 * uneven);
-  c = mix(c, frame.rock.rgb, rock);
   float bears = clamp((height - frame.canopy_place.x) * frame.canopy_place.z + 0.5, 0.0, 1.0) *
                 clamp((frame.canopy_place.y - height) * frame.canopy_place.z + 0.5, 0.0, 1.0) *
                 clamp((frame.canopy.w - slope) * 12.0 + 0.5, 0.0, 1.0);
-  c = mix(c, frame.canopy.rgb * (0.55 + 0.9 * grain),
-          bears * clamp(cover * (1.0 + 0.8 * uneven), 0.0, 1.0));
-  float snow = smoothstep(0.0, 1.0, (height - frame.snow_line.x) / frame.snow_line.y + uneven);
-  c = mix(c, frame.snow.rgb, snow * (1.0 - smoothstep(0.7 * frame.snow_line.z, frame.snow_line.z, slope)));
+  Blends b;
+  b.forest = smoothstep(0.35, 0.62, pattern + slope * 0.5);
+  b.dry = smoothstep(0.0, 1.0, (height - frame.forest.w) / frame.dry.w + uneven);
+  b.sand = smoothstep(0.0, 1.0, (frame.grass.w - height) / frame.sand.w + 0.5 * uneven);
+  b.rock = smoothstep(frame.rock.w, frame.snow.w, slope + 0.06 * uneven);
+  b.canopy = bears * clamp(cover * (1.0 + 0.8 * uneven), 0.0, 1.0);
+  b.snow = smoothstep(0.0, 1.0, (height - frame.snow_line.x) / frame.snow_line.y + uneven) *
+           (1.0 - smoothstep(0.7 * frame.snow_line.z, frame.snow_line.z, slope));
+  return b;
+}
+
+// Albedo of the ground. `grain` is random in [0, 1].
+vec3 blended_albedo(Blends b, float grain) {
+  vec3 c = mix(frame.grass.rgb, frame.forest.rgb, b.forest);
+  c = mix(c, frame.dry.rgb, b.dry);
+  c = mix(c, frame.sand.rgb, b.sand);
+  c = mix(c, frame.rock.rgb, b.rock);
+  c = mix(c, frame.canopy.rgb * (0.55 + 0.9 * grain), b.canopy);
+  c = mix(c, frame.snow.rgb, b.snow);
   return c * (0.9 + 0.2 * grain);
+}
+
+// The same at `plane` in the pattern.
+vec3 ground_albedo(float height, vec3 n, vec2 plane, float grain, float cover) {
+  return blended_albedo(blends_of(height, n, ground_pattern(plane), cover), grain);
 }

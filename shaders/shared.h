@@ -22,6 +22,8 @@ using glm::vec4;
 #define PSYGEN_BINDING_SHADOWS 5
 #define PSYGEN_BINDING_MATERIALS 6
 #define PSYGEN_BINDING_EMITTER 7
+#define PSYGEN_BINDING_GROUND 8
+#define PSYGEN_BINDING_SHADE 9
 
 // Bindings of the second descriptor set: the textures of a material.
 #define PSYGEN_TEXTURE_BASE 0
@@ -31,6 +33,14 @@ using glm::vec4;
 // Bits of MaterialData::options.x.
 #define PSYGEN_MATERIAL_NORMAL_MAP 1u
 #define PSYGEN_MATERIAL_TWO_SIDED 2u
+
+// The textures of the ground (ground_textures.hpp): texels per side, periods of the pattern of 2048
+// m that one covers, and the distance up to which presets without fine grain draw them, in metres.
+#define PSYGEN_GROUND_SIDE 256
+#define PSYGEN_GROUND_REPEATS 976
+#define PSYGEN_GROUND_REACH_M 64
+// Cells of one metre along each side of the map of dark spots on near ground (ground_shade.hpp).
+#define PSYGEN_SHADE_SIDE 128
 
 // Materials of objects, and a factor by which DrawData carries their number beside the wind.
 #define PSYGEN_MAX_MATERIALS 4096
@@ -97,6 +107,7 @@ struct FrameData {
   vec4 edge;   // of the world: least x, least z, greatest x, greatest z
   vec4 shadow;        // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
   vec4 shadow_reach;  // largest distance from the camera of each cascade, m
+  vec4 shade;         // x, y: corner of the map of dark spots in x and z, m
   mat4 shadow_from_camera[PSYGEN_MAX_CASCADES];  // to texture and depth, nearest cascade first
   vec4 lamp_count;                               // x: lamps
   vec4 lamps[2 * PSYGEN_MAX_LAMPS];  // place, 1 / range² in 1/m²; light on what faces it at 1 m
@@ -155,7 +166,7 @@ struct OverlayVertex {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 64 + 28 * 16 + 3 * 64 + 16 + PSYGEN_MAX_LAMPS * 32);
+static_assert(sizeof(FrameData) == 64 + 29 * 16 + 3 * 64 + 16 + PSYGEN_MAX_LAMPS * 32);
 static_assert(sizeof(DrawData) == 64);
 static_assert(sizeof(MaterialData) == 48);
 static_assert(sizeof(EmitterData) == 256);

@@ -1,6 +1,7 @@
 // The outputs of a mesh's vertex shader, one of four sets:
 //   nothing defined         the final colour: one varying, which is fast on software devices
-//   PSYGEN_PIXEL_LIGHT      the inputs of surface_lit.frag, which lights each pixel
+//   PSYGEN_PIXEL_LIGHT      the inputs of surface_lit.frag, or for terrain of ground_lit.frag,
+//                           which light each pixel
 //   PSYGEN_DRAW_COLOUR      the debug colour of the draw, slightly shaded (views for debugging)
 //   PSYGEN_SHADOW           only the position in a cascade
 #if defined(PSYGEN_PIXEL_LIGHT)
@@ -10,6 +11,11 @@ layout(location = 2) out vec4 albedo_ambient;
 layout(location = 3) out vec3 sun_leaf_ground;
 #elif !defined(PSYGEN_SHADOW)
 layout(location = 0) out vec3 colour;
+#endif
+// Also of near terrain whose light is per vertex: the inputs of ground_detail.frag.
+#ifdef PSYGEN_GROUND_DETAIL
+layout(location = 1) out vec2 detail_place;
+layout(location = 2) out vec4 detail_shares;
 #endif
 // Also with PSYGEN_FADING: the share of the draw's pixels (fading.glsl).
 #if defined(PSYGEN_FADING) || defined(PSYGEN_OBJECT)

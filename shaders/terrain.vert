@@ -10,6 +10,9 @@
 #include "lamps.glsl"
 #include "ground.glsl"
 #include "surface_out.glsl"
+#ifdef PSYGEN_GROUND_DETAIL
+#include "ground_shade.glsl"
+#endif
 
 // x: grid x, grid z, height; y: coarse height, normal; z: sun, ambient, spare
 layout(location = 0) in uvec3 packed;
@@ -35,14 +38,32 @@ void main() {
 #if defined(PSYGEN_DRAW_COLOUR)
   colour = colour_of_draw(draw.scale.w, n);
 #elif !defined(PSYGEN_SHADOW)
-  vec3 albedo = ground_albedo(p.y + frame.horizon_colour.w, n, p.xz + frame.ground_anchor.xy, grain,
-                              draw.scale.w);
+  vec2 plane = p.xz + frame.ground_anchor.xy;
+  float pattern = ground_pattern(plane);
+#if !defined(PSYGEN_PIXEL_LIGHT)
+  Blends blends = blends_of(p.y + frame.horizon_colour.w, n, pattern, draw.scale.w);
+  vec3 albedo = blended_albedo(blends, grain);
+#endif
+#endif
+#if defined(PSYGEN_GROUND_DETAIL)
+  visible *= left_by_spots(p);
+  float near = (1.0 - smoothstep(0.3, 1.0, length(p) * (1.0 / float(PSYGEN_GROUND_REACH_M)))) *
+               frame.ground_colour.w;
+  vec4 share = vec4(near * (1.0 - blends.snow));
+  share.z *= blends.rock;
+  share.xyw *= 1.0 - blends.rock;
+  share.w *= blends.sand;
+  share.xy *= 1.0 - blends.sand;
+  float floor_ = blends.forest * (1.0 - blends.dry);
+  detail_shares = share * vec4(1.0 - floor_, floor_, 1.0, 1.0) +
+                  vec4(0.0, 0.0, 0.0, 0.4 * near * blends.snow);
+  detail_place = plane * (float(PSYGEN_GROUND_REPEATS) / 2048.0);
 #endif
   p.y -= skirt * draw.scale.y;
 #if defined(PSYGEN_PIXEL_LIGHT)
   place = p;
   normal = n;
-  albedo_ambient = vec4(albedo, visible.y);
+  albedo_ambient = vec4(pattern, grain, draw.scale.w, visible.y);
   sun_leaf_ground = vec3(visible.x, 0.0, 1.0);
 #elif !defined(PSYGEN_DRAW_COLOUR) && !defined(PSYGEN_SHADOW)
   vec3 light = ground_light(albedo, n, visible.x, visible.y);

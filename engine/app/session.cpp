@@ -78,10 +78,13 @@ core::Result<void> Session::open() {
   auto world = world::load_world(options_.world_file, *registry);
   if (!world) return tl::unexpected(world.error());
   if (auto ok = set_hour(options_, *world); !ok) return ok;
+  auto ground = read_ground_pictures(*world, options_.world_file);
+  if (!ground) return tl::unexpected(ground.error());
   const std::string title = "psygen: " + world->name;
   if (auto ok = open_window(title); !ok) return ok;
   Loading loading(world->name, window_.get(), options_.stop);
-  if (auto ok = open_renderer(loading); !ok) return loading.closed() ? closed_early() : ok;
+  if (auto ok = open_renderer(std::move(*ground), loading); !ok)
+    return loading.closed() ? closed_early() : ok;
   return open_scene(std::move(*world), std::move(*registry), loading);
 }
 
@@ -99,8 +102,9 @@ core::Result<void> Session::open_window(const std::string& title) {
   return {};
 }
 
-core::Result<void> Session::open_renderer(Loading& loading) {
+core::Result<void> Session::open_renderer(GroundPictures ground, Loading& loading) {
   render::RendererOptions render_options;
+  render_options.ground = std::move(ground);
   render_options.device_name = options_.device_name;
   render_options.validation = options_.validation;
   render_options.size = options_.size;

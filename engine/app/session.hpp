@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/app/ground_pictures.hpp"
 #include "engine/app/options.hpp"
 #include "engine/image/image.hpp"
 #include "engine/input/recording.hpp"
@@ -120,7 +121,7 @@ class Session {
   explicit Session(SessionOptions options);
   core::Result<void> open();
   core::Result<void> open_window(const std::string& title);
-  core::Result<void> open_renderer(Loading& loading);
+  core::Result<void> open_renderer(GroundPictures ground, Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
   core::Result<void> draw_gui(double dt_s);

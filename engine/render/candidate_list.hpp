@@ -18,7 +18,7 @@ namespace psygen::render {
 struct DrawGroup {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
-  bool fading = false;  // models that fade in or out, objects with holes
+  bool fading = false;  // models that fade in or out, objects with holes, near terrain
   std::uint32_t pool_block = 0;
   std::uint32_t first_command = 0;
   std::uint32_t capacity = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "engine/core/assert.hpp"
 #include "engine/render/view_volume.hpp"
@@ -106,8 +107,9 @@ void DrawList::add(std::span<const Draw> input) {
   // The properties that separate runs, as a sort key.
   const auto key = [&](const Draw& draw) {
     const DrawRun run = run_of(draw);
+    const bool last = run.fading != std::is_same_v<Draw, TerrainDraw>;  // near terrain comes first
     return (run.lamps ? 0ULL : 1ULL) << 46 | std::uint64_t{run.textures} << 34 |
-           (run.fading ? 1ULL : 0ULL) << 33 | (run.pushed ? 0ULL : 2ULL) << 31 |
+           (last ? 1ULL : 0ULL) << 33 | (run.pushed ? 0ULL : 2ULL) << 31 |
            std::uint64_t{run.pool_block} * 2 | (run.shared ? 1u : 0u);
   };
   for (std::size_t first = 0; first < input.size(); first += kWindow) {

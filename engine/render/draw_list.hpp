@@ -30,9 +30,10 @@ IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indi
 shaders::DrawData data_of(const TerrainDraw& draw);
 shaders::DrawData data_of(const MeshDraw& draw);
 shaders::DrawData data_of(const ObjectDraw& draw);
-// Whether a draw covers only some of its pixels.
-constexpr bool is_fading(const TerrainDraw&) {
-  return false;
+// Whether a draw covers only some of its pixels; of terrain, whether it is near. Such draws have a
+// pipeline of their own.
+constexpr bool is_fading(const TerrainDraw& draw) {
+  return draw.near;
 }
 constexpr bool is_fading(const MeshDraw& draw) {
   return draw.fade < 1.0F;
@@ -65,7 +66,7 @@ struct DrawRun {
   core::VertexLayout layout = core::VertexLayout::kModel;
   bool shared = false;  // indices from the shared lists, else from the pool block
   bool pushed = false;  // one call per draw with its data pushed, else one call for all
-  bool fading = false;  // models that fade in or out, objects with holes
+  bool fading = false;  // models that fade in or out, objects with holes, near terrain
   bool lamps = false;   // point lights may reach it
   std::uint32_t pool_block = 0;
   std::uint32_t first = 0;

@@ -52,6 +52,11 @@ Result<void> FrameSlot::create(const Device& device) {
                                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::kWrite);
   if (!emitters) return tl::unexpected(emitters.error());
   emitters_ = std::move(*emitters);
+  constexpr std::size_t kShadeBytes = std::size_t{PSYGEN_SHADE_SIDE} * PSYGEN_SHADE_SIDE * 2;
+  Result<Buffer> shade = storage_buffer(device, kShadeBytes);
+  if (!shade) return tl::unexpected(shade.error());
+  shade_ = std::move(*shade);
+  std::memset(shade_.mapped, 0, kShadeBytes);
   frame_ = std::move(*frame);
   draws_ = std::move(*draws);
   glyphs_ = std::move(*glyphs);
@@ -60,7 +65,7 @@ Result<void> FrameSlot::create(const Device& device) {
 
 void FrameSlot::use(const Device& device, const Pipelines& pipelines, std::size_t number) {
   set_ = pipelines.set(number);
-  pipelines.write_set(device, set_, frame_, draws_, glyphs_, emitters_);
+  pipelines.write_set(device, set_, frame_, draws_, glyphs_, emitters_, shade_);
 }
 
 Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,
@@ -73,7 +78,7 @@ Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,
     Result<Buffer> larger = storage_buffer(device, std::bit_ceil(bytes));
     if (!larger) return tl::unexpected(larger.error());
     buffer = std::move(*larger);
-    pipelines.write_set(device, set_, frame_, draws_, glyphs_, emitters_);
+    pipelines.write_set(device, set_, frame_, draws_, glyphs_, emitters_, shade_);
     return {};
   };
   if (Result<void> grown = grow(draws_, draws.size_bytes()); !grown) return grown;
@@ -83,6 +88,10 @@ Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,
   if (!draws.empty()) std::memcpy(draws_.mapped, draws.data(), draws.size_bytes());
   if (!glyphs.empty()) std::memcpy(glyphs_.mapped, glyphs.data(), glyphs.size_bytes());
   return {};
+}
+
+void FrameSlot::write_shade(std::span<const std::uint32_t> words) {
+  std::memcpy(shade_.mapped, words.data(), words.size_bytes());
 }
 
 Result<void> FrameSlot::begin(const Device& device) {

@@ -29,6 +29,9 @@ class FrameSlot {
                            std::span<const shaders::OverlayVertex> glyphs,
                            std::span<const shaders::EmitterData> emitters = {});
 
+  // The same for the map of dark spots (GroundShade::words()).
+  void write_shade(std::span<const std::uint32_t> words);
+
   // begin() resets the command buffer and starts recording; end() makes it ready to submit.
   core::Result<void> begin(const Device& device);
   core::Result<void> end(const Device& device);
@@ -38,7 +41,7 @@ class FrameSlot {
   // Binds `draws`, which the device writes, instead of the slot's own data of draws.
   void read_draws_from(const Device& device, const Pipelines& pipelines,
                        const Buffer& draws) const {
-    pipelines.write_set(device, set_, frame_, draws, glyphs_, emitters_);
+    pipelines.write_set(device, set_, frame_, draws, glyphs_, emitters_, shade_);
   }
   // The semaphore for the acquired image of the window, and the frame's timestamps.
   VkSemaphore acquired() const { return acquired_.get(); }
@@ -50,7 +53,7 @@ class FrameSlot {
  private:
   UniqueCommandPool pool_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  Buffer frame_, draws_, glyphs_, emitters_;
+  Buffer frame_, draws_, glyphs_, emitters_, shade_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
   UniqueSemaphore acquired_;
   GpuTimer timer_;

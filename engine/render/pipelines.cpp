@@ -16,7 +16,7 @@ using core::Result;
 namespace {
 
 // Largest number of pipelines of a preset, for the progress.
-constexpr double kMostPipelines = 25;
+constexpr double kMostPipelines = 27;
 
 constexpr VkBool32 on(bool yes) {
   return yes ? VK_TRUE : VK_FALSE;
@@ -52,12 +52,13 @@ Result<Image> make_texture(const Device& device, core::Extent size, VkFormat for
 
 Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
                                const PresetTraits& traits, const Overlay& overlay,
-                               std::uint32_t sets, const MaterialTable& materials) {
+                               std::uint32_t sets, const MaterialTable& materials,
+                               std::span<const GroundPicture> ground) {
   materials_ = &materials;
   traits_ = traits;
   samples_ = device.samples_for(traits.samples);
   colour_format_ = colour_format;
-  return create_textures(device, overlay)
+  return create_textures(device, overlay, ground)
       .and_then([&] { return shadows_.create(device, traits); })
       .and_then([&] { return create_layouts(device, sets); })
       .and_then([&] { return create_sets(device, sets); })
@@ -72,7 +73,8 @@ Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
       });
 }
 
-Result<void> Pipelines::create_textures(const Device& device, const Overlay& overlay) {
+Result<void> Pipelines::create_textures(const Device& device, const Overlay& overlay,
+                                        std::span<const GroundPicture> ground) {
   Result<UniqueSampler> clouds = make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT);
   if (!clouds) return tl::unexpected(clouds.error());
   cloud_sampler_ = std::move(*clouds);
@@ -89,7 +91,7 @@ Result<void> Pipelines::create_textures(const Device& device, const Overlay& ove
       make_texture(device, overlay.atlas_size(), VK_FORMAT_R8_UNORM, overlay.atlas());
   if (!font_image) return tl::unexpected(font_image.error());
   font_ = std::move(*font_image);
-  return {};
+  return ground_.create(device, traits_, ground);
 }
 
 Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets) {
@@ -110,6 +112,10 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
                                    VK_SHADER_STAGE_FRAGMENT_BIT, shadows_.sampler()},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
                                    both, nullptr},
+      VkDescriptorSetLayoutBinding{PSYGEN_BINDING_GROUND, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                   1, VK_SHADER_STAGE_FRAGMENT_BIT, ground_.sampler()},
+      VkDescriptorSetLayoutBinding{PSYGEN_BINDING_SHADE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, both,
+                                   nullptr},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_EMITTER,
                                    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1,
                                    VK_SHADER_STAGE_VERTEX_BIT, nullptr}};
@@ -125,8 +131,8 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
 
   const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, sets},
-                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 * sets},
-                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 3 * sets}};
+                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 4 * sets},
+                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4 * sets}};
   VkDescriptorPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   pool_info.maxSets = sets;
@@ -173,6 +179,7 @@ Result<void> Pipelines::create_meshes(Making& making, PipelineShape shape, MeshL
   for (const auto layout : {core::VertexLayout::kTerrain, core::VertexLayout::kModel}) {
     const bool terrain = layout == core::VertexLayout::kTerrain;
     shape.kind = terrain ? PipelineKind::kTerrain : PipelineKind::kModel;
+    if (look == MeshLook::kLit) shape.frag = lit_frag(terrain);
     for (const bool pushed : {false, true}) {
       shape.vert = mesh_vertex_code(layout, look, pushed);
       const Result<void> made = make(making, shape, out.whole[terrain ? 0 : 1][pushed ? 1 : 0]);
@@ -180,6 +187,32 @@ Result<void> Pipelines::create_meshes(Making& making, PipelineShape shape, MeshL
     }
   }
   return {};
+}
+
+// Where light is per vertex, near ground has a texture. Where it is per pixel and not rich, only
+// near ground has the textures of its kinds.
+Result<void> Pipelines::create_near_ground(Making& making, PipelineShape shape,
+                                           MeshPipelines& out) {
+  if (traits_.fine_grain) return {};
+  const OtherCode& code = other_code();
+  const bool lit = traits_.pixel_light;
+  shape.kind = PipelineKind::kTerrain;
+  shape.frag = lit ? code.ground_lit_near_frag : code.ground_detail_frag;
+  for (const bool pushed : {false, true}) {
+    shape.vert = lit      ? mesh_vertex_code(core::VertexLayout::kTerrain, MeshLook::kLit, pushed)
+                 : pushed ? code.terrain_detail_pushed_vert
+                          : code.terrain_detail_vert;
+    const Result<void> made = make(making, shape, out.near_ground[pushed ? 1 : 0]);
+    if (!made) return made;
+  }
+  return {};
+}
+
+// The fragment shader of meshes whose light is per pixel.
+ShaderCode Pipelines::lit_frag(bool terrain) const {
+  const OtherCode& code = other_code();
+  if (!terrain) return code.surface_lit_frag;
+  return traits_.fine_grain ? code.ground_lit_near_frag : code.ground_lit_frag;
 }
 
 // Pipelines for fading models. `shape` is that of the same models without fading.
@@ -227,6 +260,7 @@ Result<void> Pipelines::create_landscape(Making& making, bool lamps, MeshPipelin
   water.frag = lit ? code.water_frag : code.surface_frag;
   water.constants = {on(traits_.waves), VK_FALSE, on(lamps)};
   return create_meshes(making, meshes, look, out)
+      .and_then([&] { return create_near_ground(making, meshes, out); })
       .and_then([&] { return create_fading(making, meshes, look, out); })
       .and_then([&] { return make(making, water, water_out); });
 }
@@ -393,17 +427,21 @@ Result<void> Pipelines::create_sets(const Device& device, std::uint32_t count) {
 }
 
 void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,
-                          const Buffer& draws, const Buffer& glyphs, const Buffer& emitters) const {
+                          const Buffer& draws, const Buffer& glyphs, const Buffer& emitters,
+                          const Buffer& shade) const {
   const VkDescriptorBufferInfo frame_info{frame.buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorBufferInfo draws_info{draws.buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorBufferInfo glyphs_info{glyphs.buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorBufferInfo emitters_info{emitters.buffer.get(), 0,
                                              sizeof(shaders::EmitterData)};
+  const VkDescriptorBufferInfo shade_info{shade.buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorBufferInfo materials_info{materials_->buffer().buffer.get(), 0, VK_WHOLE_SIZE};
   const VkDescriptorImageInfo clouds_info{VK_NULL_HANDLE, clouds_.view.get(),
                                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   const VkDescriptorImageInfo font_info{VK_NULL_HANDLE, font_.view.get(),
                                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const VkDescriptorImageInfo ground_info{VK_NULL_HANDLE, ground_.view(),
+                                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   const VkDescriptorImageInfo shadows_info{VK_NULL_HANDLE, shadows_.all_layers(),
                                            VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL};
   const auto write = [&](std::uint32_t binding, VkDescriptorType type,
@@ -428,6 +466,8 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
       write(PSYGEN_BINDING_GLYPHS, storage, &glyphs_info, nullptr),
       write(PSYGEN_BINDING_SHADOWS, texture, nullptr, &shadows_info),
       write(PSYGEN_BINDING_MATERIALS, storage, &materials_info, nullptr),
+      write(PSYGEN_BINDING_GROUND, texture, nullptr, &ground_info),
+      write(PSYGEN_BINDING_SHADE, storage, &shade_info, nullptr),
       write(PSYGEN_BINDING_EMITTER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, &emitters_info,
             nullptr)};
   device.vk.vkUpdateDescriptorSets(device.handle, static_cast<std::uint32_t>(writes.size()),

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/render/ground_image.hpp"
 #include "engine/render/materials.hpp"
 #include "engine/render/overlay.hpp"
 #include "engine/render/pipeline_build.hpp"
@@ -19,7 +20,7 @@ class Pipelines {
   // Creates the textures, `sets` descriptor sets, and the pipeline for text.
   core::Result<void> create(const Device& device, VkFormat colour_format,
                             const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets,
-                            const MaterialTable& materials);
+                            const MaterialTable& materials, std::span<const GroundPicture> ground);
   // Creates all other pipelines; call it once, after create(). `progress` is called after each
   // pipeline and can end it with kInterrupted.
   core::Result<void> create_others(const Device& device, const Progress& progress);
@@ -39,8 +40,8 @@ class Pipelines {
   VkSampleCountFlagBits samples() const { return samples_; }
   VkPipelineLayout layout() const { return layout_.get(); }
   // The pipeline for meshes. `pushed`: the data of a draw is in push constants, else in the buffer
-  // of draws. `fading`: for models that fade in or out. `lamps`, after create_lamps(): with point
-  // lights.
+  // of draws. `fading`: for models that fade in or out, and for near terrain. `lamps`, after
+  // create_lamps(): with point lights.
   VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, bool lamps, View view) const;
   // The same for drawing into a cascade, if the preset has cascades.
   VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, bool fading) const {
@@ -69,21 +70,27 @@ class Pipelines {
   VkDescriptorSet set(std::size_t number) const { return sets_[number]; }
   // Binds these buffers and the textures to a set that no unfinished commands use.
   void write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,
-                 const Buffer& draws, const Buffer& glyphs, const Buffer& emitters) const;
+                 const Buffer& draws, const Buffer& glyphs, const Buffer& emitters,
+                 const Buffer& shade) const;
 
  private:
   core::Result<void> create_layouts(const Device& device, std::uint32_t sets);
   core::Result<void> create_sets(const Device& device, std::uint32_t count);
-  core::Result<void> create_textures(const Device& device, const Overlay& overlay);
+  core::Result<void> create_textures(const Device& device, const Overlay& overlay,
+                                     std::span<const GroundPicture> ground);
   struct MeshPipelines {
     // Indexed by layout (terrain, model) and by whether the data is pushed.
     std::array<std::array<UniquePipeline, 2>, 2> whole;
-    std::array<UniquePipeline, 2> fading;  // models, indexed by whether the data is pushed
+    std::array<UniquePipeline, 2> fading;       // models, indexed by whether the data is pushed
+    std::array<UniquePipeline, 2> near_ground;  // the same; null if it is drawn like all terrain
 
     VkPipeline of(core::VertexLayout layout, bool is_pushed, bool is_fading) const {
       const std::size_t pushed = is_pushed ? 1 : 0;
-      if (is_fading) return fading[pushed].get();
-      return whole[layout == core::VertexLayout::kTerrain ? 0 : 1][pushed].get();
+      if (layout == core::VertexLayout::kTerrain) {
+        const VkPipeline near = is_fading ? near_ground[pushed].get() : VK_NULL_HANDLE;
+        return near != VK_NULL_HANDLE ? near : whole[0][pushed].get();
+      }
+      return is_fading ? fading[pushed].get() : whole[1][pushed].get();
     }
   };
   static std::size_t index_of_object(bool pushed, bool textured, bool fading) {
@@ -100,9 +107,11 @@ class Pipelines {
     int count = 0;
   };
   PipelineShape usual_shape() const;
+  ShaderCode lit_frag(bool terrain) const;
   core::Result<void> make(Making& making, const PipelineShape& shape, UniquePipeline& out);
   core::Result<void> create_landscape(Making& making, bool lamps, MeshPipelines& out,
                                       UniquePipeline& water);
+  core::Result<void> create_near_ground(Making& making, PipelineShape shape, MeshPipelines& out);
   core::Result<void> create_sky(Making& making);
   core::Result<void> create_views(Making& making);
   core::Result<void> create_meshes(Making& making, PipelineShape shape, MeshLook look,
@@ -119,6 +128,7 @@ class Pipelines {
   UniqueSampler cloud_sampler_, font_sampler_;
   ShadowMaps shadows_;
   Image clouds_, font_;
+  GroundImage ground_;
   UniqueSetLayout set_layout_;
   UniqueDescriptorPool descriptor_pool_;
   std::vector<VkDescriptorSet> sets_;

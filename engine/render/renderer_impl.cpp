@@ -360,6 +360,7 @@ void RendererImpl::list_particles(const FrameInput& input) {
 
 Result<void> RendererImpl::write_frame(FrameSlot& slot) {
   Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_, emitters_);
+  if (written) slot.write_shade(shade_.words());
   if (!written || !culling_) return written;
   written = culling_->write(*device_, index_of(slot));
   if (written) slot.read_draws_from(*device_, pipelines_, culling_->draw_data(index_of(slot)));
@@ -404,6 +405,9 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   view_ = input.view;
   water_ = input.water.has_value();
   frame_ = frame_data(input, size(), pipelines_.traits());
+  const glm::dvec3& at = input.pose.position.local;
+  shade_.build(input.spots, {at.x, at.z});
+  frame_.shade = {shade_.corner(), 0.0F, 0.0F};
   const GpuCulling::Counts counted =
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
   list_draws(input);

@@ -11,6 +11,7 @@
 #include "engine/render/device.hpp"
 #include "engine/render/frame_slot.hpp"
 #include "engine/render/geometry_pool.hpp"
+#include "engine/render/ground_shade.hpp"
 #include "engine/render/overlay.hpp"
 #include "engine/render/pipelines.hpp"
 #include "engine/render/scene_recorder.hpp"
@@ -149,6 +150,7 @@ class RendererImpl {
   shaders::FrameData frame_{};
   std::vector<shaders::EmitterData> emitters_;
   std::vector<EmitterRun> emitter_runs_;
+  GroundShade shade_;
   std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines, then ImGui's
   std::uint32_t text_vertices_ = 0, line_vertices_ = 0;
   std::vector<GuiRun> gui_runs_;

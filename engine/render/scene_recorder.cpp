@@ -414,7 +414,10 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
       device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
     }
   };
-  if (step == 0) draw_twice(core::VertexLayout::kTerrain, false);
+  if (step == 0) {
+    draw_twice(core::VertexLayout::kTerrain, false);
+    draw_twice(core::VertexLayout::kTerrain, true);
+  }
   if (step == 1) draw_twice(core::VertexLayout::kModel, false);
   if (step == 2) draw_twice(core::VertexLayout::kModel, true);
   if (step == 3) draw_water_and_sky(device, pipelines, commands, true, lamps);

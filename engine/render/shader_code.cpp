@@ -91,6 +91,21 @@ constexpr std::uint32_t kSurfaceFadingFrag[] =
 constexpr std::uint32_t kSurfaceLitFadingFrag[] =
 #include "surface_lit_fading_frag_spv.h"
     ;
+constexpr std::uint32_t kTerrainDetailVert[] =
+#include "terrain_detail_vert_spv.h"
+    ;
+constexpr std::uint32_t kTerrainDetailPushedVert[] =
+#include "terrain_detail_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kGroundDetailFrag[] =
+#include "ground_detail_frag_spv.h"
+    ;
+constexpr std::uint32_t kGroundLitFrag[] =
+#include "ground_lit_frag_spv.h"
+    ;
+constexpr std::uint32_t kGroundLitNearFrag[] =
+#include "ground_lit_near_frag_spv.h"
+    ;
 constexpr std::uint32_t kWaterVert[] =
 #include "water_vert_spv.h"
     ;
@@ -229,7 +244,12 @@ constexpr OtherCode kOthers{kSurfaceFrag,
                             kObjectShadowFrag,
                             kParticleVert,
                             kParticleFrag,
-                            kParticleTexturedFrag};
+                            kParticleTexturedFrag,
+                            kTerrainDetailVert,
+                            kTerrainDetailPushedVert,
+                            kGroundDetailFrag,
+                            kGroundLitFrag,
+                            kGroundLitNearFrag};
 
 }  // namespace
 

@@ -16,6 +16,7 @@
 #include "engine/core/camera.hpp"
 #include "engine/core/geometry_memory.hpp"
 #include "engine/core/surface_provider.hpp"
+#include "engine/render/ground_picture.hpp"
 #include "engine/render/hud_drawing.hpp"
 #include "engine/render/text_panel.hpp"
 
@@ -76,6 +77,7 @@ struct RendererOptions {
   double device_timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
   bool timestamps = true;              // FrameResult::gpu, if the device supports it
   std::uint64_t texture_budget_bytes = 256ull << 20;  // hard limit of all textures of materials
+  std::array<GroundPicture, kGroundPictures> ground;  // in place of textures of the ground
 };
 
 // A device and its abilities.
@@ -144,6 +146,9 @@ struct TerrainPalette {
 // The id for "no shared list": the mesh has its own indices.
 inline constexpr std::uint32_t kNoSharedIndices = 0;
 
+// Presets without fine grain draw detail on the ground up to this distance from the camera.
+inline constexpr float kNearGroundM = 64.0F;
+
 // Largest displacement of a vertex by the wind in metres, in both directions (shaders/model.vert).
 inline constexpr glm::vec3 kSwayM{0.12F, 0.0F, 0.09F};
 
@@ -174,6 +179,7 @@ struct TerrainDraw {
   core::IndexPart part;  // of the shared list; empty: all of it
   float side_m = 0.0F;   // of the square that the grid covers; 0: the largest possible grid
   float cover = 0.0F;    // share of the ground that far forests hide (Canopy)
+  bool near = false;     // some of it is nearer than kNearGroundM: drawn with more detail
   std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };
 
@@ -240,6 +246,14 @@ struct Line {
   glm::vec3 colour{1.0F};  // as on screen
 };
 
+// A soft dark spot on the ground: a disc seen from above, darkest in its middle. It is drawn up to
+// kNearGroundM.
+struct GroundSpot {
+  glm::vec2 middle{0.0F};  // x and z, relative to the camera
+  float radius_m = 0;      // of its end
+  float sun = 0, sky = 0;  // shares of the light that are missing in the middle, 0 to 1
+};
+
 inline constexpr float kMorphByDistance = -1.0F;  // TerrainDraw::morph
 inline constexpr std::size_t kMaxLines = 1 << 16;
 
@@ -265,6 +279,7 @@ struct FrameInput {
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
   std::span<const MeshDraw> models;      // nearest first, committed ranges only
   std::span<const ObjectDraw> objects;   // nearest first, committed ranges only
+  std::span<const GroundSpot> spots;     // under what stands near the camera, in any order
   std::span<const PointLight> point_lights;  // the first kMostPointLights are used
   // Back to front; drawn over everything else of the landscape. At most kMostEmitters are drawn.
   std::span<const ParticleDraw> particles;

@@ -205,6 +205,7 @@ struct DrawLists {
   std::vector<render::TerrainDraw> terrain;
   std::vector<render::MeshDraw> models;
   std::vector<synthesis::MeshHandle> meshes;  // of both
+  std::vector<render::GroundSpot> spots;      // under models near the camera
   std::vector<render::Line> lines;            // boxes of what is drawn, in the view of bounds
   NodeHandover handover;
   std::uint32_t tick = 0;  // of these lists

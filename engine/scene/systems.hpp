@@ -98,8 +98,8 @@ void particles_system(const Settings& settings, const Clock& clock, const Camera
 
 // Builds the draw lists, counts what is missing, and draws (nothing is drawn without a renderer).
 using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility, const Placed,
-                               const Demand, const Mesh, const MeshParts, const OldParts,
-                               const GroundRelief, const GroundSun, Fading>;
+                               const Demand, const Source, const Mesh, const MeshParts,
+                               const OldParts, const GroundRelief, const GroundSun, Fading>;
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
                    const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
                    const View& view, const ObjectDraws& objects, const LightDraws& lights,

@@ -4,11 +4,13 @@
 // read.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
@@ -96,6 +98,10 @@ struct Water {
   friend bool operator==(const Water&, const Water&) = default;
 };
 
+// The keys of Palette::images in world files, in the order of GroundKind.
+inline constexpr std::array<std::string_view, 6> kPaletteImages{
+    "grass_image", "forest_image", "dry_image", "sand_image", "rock_image", "snow_image"};
+
 // Linear albedos of the ground, and the extent of each kind of ground. Heights are in metres of the
 // world; slopes are 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
 struct Palette {
@@ -110,6 +116,8 @@ struct Palette {
   double snow_start_m = 1e6, snow_blend_m = 15;  // snow above this height, except where steep
   double rock_slope_start = 0.16, rock_slope_full = 0.34;
   double snow_slope_max = 0.40;  // no snow on steeper ground
+  // Pictures in place of textures: names relative to the folder of the world's file, or empty.
+  std::array<std::string, kPaletteImages.size()> images;
   friend bool operator==(const Palette&, const Palette&) = default;
 };
 

@@ -51,6 +51,10 @@ float distance_m(const core::Bounds& box) {
   return glm::length(glm::vec2(nearest.x, nearest.z));
 }
 
+bool is_near(const core::Bounds& box) {
+  return glm::length(glm::clamp(glm::vec3(0.0F), box.min, box.max)) < render::kNearGroundM;
+}
+
 std::uint32_t bit(int tile) {
   return 1U << static_cast<unsigned>(tile);
 }
@@ -82,6 +86,7 @@ std::uint8_t sides_with_skirts(const NodeTiles& tiles, std::uint32_t in_view) {
 
 template <class Grid>
 void add_skirts(const Grid& grid, std::uint8_t sides, Parts& parts) {
+  parts.set_near(false);
   for (int i = 0; i < 4; ++i)
     if ((sides >> i & 1) != 0) parts.add(grid.skirt(i));
 }
@@ -115,26 +120,37 @@ void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::Terr
   const std::uint8_t skirts = sides_with_skirts(tiles, in_view);
   if (fine == nullptr) {
     Parts parts(draw, draws);
-    for (int i = 0; i < count; ++i)
-      if ((in_view & bit(i)) != 0) parts.add(tiles.grid.tile(i % side, i / side));
+    for (int i = 0; i < count; ++i) {
+      if ((in_view & bit(i)) == 0) continue;
+      parts.set_near(is_near(tiles.box(i % side, i / side)));
+      parts.add(tiles.grid.tile(i % side, i / side));
+    }
     return add_skirts(tiles.grid, skirts, parts);
   }
   draw.morph = render::kMorphByDistance;
   FineTiles near(side, skirts);
   for (int i = 0; i < count; ++i)
     near.set(i % side, i / side, distance_m(tiles.box(i % side, i / side)) < fine_m);
-  std::array<core::IndexPart, models::kMostTilesPerSide * models::kMostTilesPerSide> chosen;
+  struct Chosen {
+    core::IndexPart part;
+    bool near = false;
+  };
+  std::array<Chosen, models::kMostTilesPerSide * models::kMostTilesPerSide> chosen;
   auto end = chosen.begin();
   for (int i = 0; i < count; ++i) {
     const int column = i % side, row = i / side;
     if ((in_view & bit(i)) == 0) continue;
-    *end++ = near.fine(column, row) ? fine->fine(column, row)
-                                    : fine->coarse(column, row, near.fine_sides(column, row));
+    *end++ = {near.fine(column, row) ? fine->fine(column, row)
+                                     : fine->coarse(column, row, near.fine_sides(column, row)),
+              is_near(tiles.box(column, row))};
   }
-  std::sort(chosen.begin(), end, [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(chosen.begin(), end,
+            [](const Chosen& a, const Chosen& b) { return a.part.first < b.part.first; });
   Parts parts(draw, draws);
-  for (auto part = chosen.begin(); part != end; ++part)
-    parts.add(*part);
+  for (auto tile = chosen.begin(); tile != end; ++tile) {
+    parts.set_near(tile->near);
+    parts.add(tile->part);
+  }
   add_skirts(*fine, skirts, parts);
 }
 

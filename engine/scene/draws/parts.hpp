@@ -35,6 +35,13 @@ class DrawParts {
     draw_.part = {};
     draw_.sun = sun;
   }
+  // Of render::TerrainDraw: whether what comes from here on is near.
+  void set_near(bool near) {
+    if (near == draw_.near) return;
+    flush();
+    draw_.part = {};
+    draw_.near = near;
+  }
 
  private:
   void flush() {

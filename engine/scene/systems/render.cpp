@@ -7,6 +7,7 @@
 
 #include "engine/render/particles.hpp"
 #include "engine/scene/draws/ground.hpp"
+#include "engine/scene/draws/ground_spots.hpp"
 #include "engine/scene/draws/lighting.hpp"
 #include "engine/scene/draws/missing.hpp"
 #include "engine/scene/draws/models.hpp"
@@ -216,6 +217,10 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   frame.objects = objects.objects;
   frame.point_lights = lights.lights;
   frame.particles = particles.emitters;
+  draws.spots.clear();
+  add_spots_near(camera, facts, view, draws.entities, entities,
+                 glm::normalize(frame.light.sun_direction), draws.spots);
+  frame.spots = draws.spots;
   frame.lines = draws.lines;
   frame.canopy = facts.canopy;
   frame.morph = morph;

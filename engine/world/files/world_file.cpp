@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "engine/core/utf8.hpp"
@@ -98,6 +99,26 @@ void read_fields(TableReader& root, std::string_view name, Problems& problems,
   reader.finish();
 }
 
+// The palette with the names of its pictures, which may not lead out of the world's folder.
+void read_palette(TableReader& root, Palette& palette, Problems& problems) {
+  constexpr std::size_t kLongestName = 200;  // bytes
+  const Member* member = root.table("palette");
+  if (member == nullptr) return;
+  TableReader reader(member->value, "palette", member->line, problems);
+  visit_palette(palette, [&reader](std::string_view key, auto& field, Limits limits) {
+    reader.read(key, field, limits);
+  });
+  for (std::size_t i = 0; i < kPaletteImages.size(); ++i) {
+    const std::string_view key = kPaletteImages[i];
+    if (!reader.read(key, palette.images[i], kLongestName)) continue;
+    const std::filesystem::path path(palette.images[i]);
+    if (path.has_root_path() || std::find(path.begin(), path.end(), "..") != path.end())
+      reader.problem(reader.find(key)->line, key,
+                     "it must be a name relative to the folder of the world's file, without ..");
+  }
+  reader.finish();
+}
+
 // The default sky: its colours are computed for the sun's elevation in the file. Wrong values are
 // reported later, when the table is read.
 Sky usual_sky(TableReader& root) {
@@ -164,8 +185,7 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
   world.sky = usual_sky(root);
   read_fields(root, "sky", problems, [&](const auto& visit) { visit_sky(world.sky, visit); });
   read_fields(root, "water", problems, [&](const auto& visit) { visit_water(world.water, visit); });
-  read_fields(root, "palette", problems,
-              [&](const auto& visit) { visit_palette(world.palette, visit); });
+  read_palette(root, world.palette, problems);
   root.finish();
   if (problems.any()) return tl::unexpected(problems.first());
   world.terrain = terrain_parameters(world, {0, 0});

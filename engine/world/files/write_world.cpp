@@ -99,6 +99,10 @@ std::string write_world(const World& world, const models::Registry& registry) {
   visit_water(world.water, FieldWriter{out});
   fmt::format_to(out, "\n[palette]\n");
   visit_palette(world.palette, FieldWriter{out});
+  for (std::size_t i = 0; i < kPaletteImages.size(); ++i) {
+    const std::string& name = world.palette.images[i];
+    if (!name.empty()) fmt::format_to(out, "{} = {}\n", kPaletteImages[i], toml_string(name));
+  }
   return text;
 }
 

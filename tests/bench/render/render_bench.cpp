@@ -173,6 +173,35 @@ void BM_terrain(benchmark::State& state) {
   state.counters["triangles"] = triangles;
 }
 
+// Ground that fills the picture, all of it within some 40 m: what its near pipeline adds, of preset
+// low or medium (range(1)). `times` as of BM_lights.
+void BM_near_ground(benchmark::State& state) {
+  RendererOptions options;
+  options.size = kSize;
+  options.submission = submission_of(state);
+  options.preset = static_cast<Preset>(state.range(1));
+  const auto renderer = Renderer::create(options);
+  if (!renderer) return state.SkipWithError(renderer.error().message.c_str());
+  const auto grid = (*renderer)->upload_shared_indices(synthetic::grid_indices(64));
+  const auto mesh =
+      synthetic::make_terrain((*renderer)->geometry(), 64, [](int, int) { return 0.5F; });
+  if (!grid || !mesh) return state.SkipWithError("no memory for the mesh");
+  TerrainDraw far;
+  far.range = *mesh;
+  far.shared_indices = *grid;
+  far.origin = {-60.0F, -20.0F, -60.0F};
+  far.cell_m = 120.0F / 63.0F;
+  TerrainDraw near = far;
+  near.near = true;
+  FrameInput without = synthetic::look(20, -1.2, kSize);
+  without.block_size_m = 120;
+  without.terrain = {&far, 1};
+  FrameInput with = without;
+  with.terrain = {&near, 1};
+  const double added_ms = compare(state, **renderer, without, with);
+  state.counters["ns_per_pixel"] = added_ms * 1e6 / (double{kSize.width} * kSize.height);
+}
+
 // A landscape of 4² blocks with range(1) point lights of 15 m on it. `times` is the CPU time over
 // that of the same frame without lights, the median over pairs of frames.
 void BM_lights(benchmark::State& state) {
@@ -310,6 +339,11 @@ BENCHMARK(BM_particles)
     ->Unit(benchmark::kMillisecond)
     ->Iterations(9)
     ->ArgsProduct({{0}, {1000, 10000}});
+BENCHMARK(BM_near_ground)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(9)
+    ->ArgsProduct({{0}, {0, 1}});
 BENCHMARK(BM_sky)->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3)->Arg(0);
 BENCHMARK(BM_sheets)
     ->UseManualTime()

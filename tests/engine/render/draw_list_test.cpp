@@ -77,6 +77,22 @@ TEST(DrawList, puts_terrain_first_and_folds_its_least_height_into_the_origin) {
   EXPECT_EQ(list.data()[0].scale.x, 50.0F);
 }
 
+TEST(DrawList, draws_near_terrain_apart_and_before_the_rest_of_its_window) {
+  std::vector<TerrainDraw> terrain(4);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    terrain[i].range.layout = core::VertexLayout::kTerrain;
+    terrain[i].range.first_vertex = i;
+    terrain[i].near = i == 0 || i == 2;
+  }
+  DrawList list;
+  list.build(terrain, {}, {});
+  ASSERT_EQ(list.runs().size(), 2u);
+  EXPECT_TRUE(list.runs()[0].fading);
+  EXPECT_FALSE(list.runs()[1].fading);
+  EXPECT_EQ(list.draws()[1].vertex_offset, 2);
+  EXPECT_EQ(list.draws()[2].vertex_offset, 1);
+}
+
 TEST(DrawList, draws_what_comes_and_goes_apart_and_after_the_rest_of_its_window) {
   std::vector<MeshDraw> draws(5, model(0, 0, 0));
   draws[0].fade = 0.5F;

@@ -107,6 +107,44 @@ TEST_P(LooksOfPresets, survive_a_camera_under_water_and_a_sun_below_the_horizon)
   draw();
 }
 
+// Red, green and blue of all pixels below the middle.
+double light_below(const image::Image& image) {
+  double sum = 0;
+  for (std::size_t i = image.rgba.size() / 2; i < image.rgba.size(); ++i)
+    sum += i % 4 < 3 ? image.rgba[i] : 0;
+  return sum;
+}
+
+TEST_P(LooksOfPresets, near_ground_has_detail_around_the_colour_that_it_has_without) {
+  open(GetParam());
+  input_.water.reset();
+  input_.models = {};
+  terrain_.origin.y = -52.0F;  // 4 to 44 m below the camera
+  const image::Image far = draw();
+  terrain_.near = true;
+  const image::Image near = draw();
+  EXPECT_NEAR(light_below(near), light_below(far), 0.04 * light_below(far));
+  EXPECT_EQ(near.rgba == far.rgba, traits_of(GetParam()).fine_grain) << "which has it anywhere";
+  expect_golden(near, std::string("near_ground_") + std::string(to_string(GetParam())));
+}
+
+TEST_P(LooksOfPresets, spots_darken_near_ground_and_nothing_else) {
+  open(GetParam());
+  input_.models = {};
+  const GroundSpot under_far_ground{{0, -20}, 30, 0.9F, 0.9F};
+  const image::Image high_up = draw();
+  input_.spots = {&under_far_ground, 1};
+  if (!traits_of(GetParam()).fine_grain) {  // with it all ground in reach has spots
+    EXPECT_EQ(draw().rgba, high_up.rgba) << "no ground is near";
+  }
+  input_.water.reset();
+  terrain_.origin.y = -52.0F;
+  terrain_.near = true;
+  const image::Image spotted = draw();
+  input_.spots = {};
+  EXPECT_LT(light_below(spotted), 0.97 * light_below(draw()));
+}
+
 INSTANTIATE_TEST_SUITE_P(Presets, LooksOfPresets,
                          testing::Values(Preset::kLow, Preset::kMedium, Preset::kHigh,
                                          Preset::kUltra),

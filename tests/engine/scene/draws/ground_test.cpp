@@ -113,6 +113,23 @@ TEST(GroundDraws, OfSomeTilesOnlyTheseAreDrawnAndNoSkirtAwayFromThem) {
   }
 }
 
+TEST(GroundDraws, TilesOfWhichSomeIsNearHaveDrawsOfTheirOwn) {
+  // Its rows begin 20, 41 and 62 m away, and 10 m below: the last one has 1.2 m that are near.
+  const Fixture node({-31, -10, -83});
+  for (const render::TerrainDraw& draw : node.draws(kAll & ~7U))
+    EXPECT_EQ(draw.near, draw.part.first < node.grid.skirt(0).first) << draw.part.first;
+  for (const render::TerrainDraw& draw : Fixture({-31, -10, -200}).draws(kAll))
+    EXPECT_FALSE(draw.near);
+  const Fixture across({-31, -10, -100});  // its rows begin 37, 58 and 79 m away
+  std::set<std::uint32_t> near, expected;
+  for (const render::TerrainDraw& draw : across.draws(kAll)) {
+    if (draw.near) insert(draw.part, near);
+  }
+  for (int tile = 3; tile < 9; ++tile)
+    insert(across.grid.tile(tile % 3, tile / 3), expected);
+  EXPECT_EQ(near, expected);
+}
+
 TEST(GroundDraws, OfABlocksFinestGroundTheNearTilesAreFine) {
   const Fixture node({-31, -10, -120});
   std::vector<render::TerrainDraw> draws;

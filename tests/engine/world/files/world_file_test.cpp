@@ -283,6 +283,21 @@ TEST(WorldFile, WithRandomBytesChangedItIsAWorldOrAnError) {
   }
 }
 
+TEST(WorldFile, NamesOfPicturesStayInTheFolderOfTheWorld) {
+  const auto with = [](std::string_view name) {
+    return std::string(kSmallWorld) + "\n[palette]\nsand_image = \"" + std::string(name) + "\"\n";
+  };
+  EXPECT_EQ(parsed(with("ground/beach.png")).palette.images[3], "ground/beach.png");
+  EXPECT_EQ(parsed(with("beach..png")).palette.images[3], "beach..png");
+  for (const std::string_view name : {"/beach.png", "../beach.png", "ground/../../beach.png"})
+    EXPECT_THAT(error_of(with(name)).message,
+                AllOf(StartsWith("w.toml:"), HasSubstr("palette.sand_image"),
+                      HasSubstr("relative to the folder of the world's file")))
+        << name;
+  EXPECT_THAT(error_of(with("")).message, HasSubstr("palette.sand_image"));
+  EXPECT_THAT(error_of(with(std::string(201, 'a'))).message, HasSubstr("palette.sand_image"));
+}
+
 TEST(WorldFile, MissingFilesFoldersAndHugeFilesAreRefused) {
   EXPECT_EQ(load_world("no/such.toml", registry()).error().code, core::ErrorCode::kIo);
   EXPECT_EQ(load_world(game_file("worlds"), registry()).error().code, core::ErrorCode::kIo);

@@ -45,6 +45,7 @@ TEST(WriteWorld, OddNamesNumbersAndColoursReadBackEqual) {
   world.sky.sun_azimuth_deg = 0.1 + 0.2;
   world.sky.haze_colour = {1.0F / 3, 1e-9F, 0.7F};
   world.palette.sand_end_m = -1.0 / 3;
+  world.palette.images[1] = "wet \"moss\"/ü.png";
   world.scatter[0].ranges[4] = {1.0 / 7, 1.0 / 3};
   world.scatter[0].max_height_m = 1e-5;
   world.scatter[1].max_slope_deg = 33.3;

@@ -1,0 +1,25 @@
+// The pictures that a world has in place of textures of the ground, read from the folder of its
+// file. It makes no textures (render/ground_picture.hpp). Any thread; too slow for the tick.
+#pragma once
+
+#include <array>
+#include <filesystem>
+
+#include "engine/core/error.hpp"
+#include "engine/render/types.hpp"
+
+namespace psygen::world {
+struct World;
+}
+
+namespace psygen::app {
+
+using GroundPictures = std::array<render::GroundPicture, render::kGroundPictures>;
+
+// The pictures of world::Palette::images. Errors begin with the world's file and the field, and
+// have the code of image::read_image() or render::ground_picture(); kInvalidArgument also where a
+// link leads out of the folder.
+core::Result<GroundPictures> read_ground_pictures(const world::World& world,
+                                                  const std::filesystem::path& world_file);
+
+}  // namespace psygen::app

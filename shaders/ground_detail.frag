@@ -1,0 +1,17 @@
+// Near ground whose light is per vertex: the colour from the vertex shader, times the brightness of
+// what grows or lies there. One texture look-up per pixel.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame.glsl"
+
+layout(set = 0, binding = PSYGEN_BINDING_GROUND) uniform sampler2DArray detail;
+layout(location = 0) in vec3 colour;
+layout(location = 1) in vec2 detail_place;
+layout(location = 2) in vec4 detail_shares;  // of the texture's four channels
+layout(location = 0) out vec4 pixel;
+
+void main() {
+  vec4 brightness = texture(detail, vec3(detail_place, 0.0)) * 2.0 - 1.0;
+  // Display values change half as much as light.
+  pixel = vec4(colour * (1.0 + 0.5 * dot(brightness, detail_shares)), 1.0);
+}
