@@ -19,15 +19,15 @@ struct RecordedRun {
   std::string folder;
   // Of every frame after the warm-up.
   std::vector<double> time_s, frame_ms;
-  std::vector<double> cpu_ms;  // of the main thread; empty on the virtual clock
+  std::vector<double> cpu_ms;          // of the main thread; empty on the virtual clock
   std::vector<double> lacking, error;  // percent of the picture missing or too coarse; pixels
-  std::vector<bool> left_out;  // set apart in frames.csv, or suspended
-  std::size_t suspended = 0;   // how many frames
-  double missing_percent = 0;  // mean over the frames, of the picture
-  double coarse_percent = 0;   // likewise: drawn with over twice the requested error
-  double error_pixels = 0;     // mean error of levels of detail
-  std::uint64_t holes = 0;     // sum over the frames
-  bool virtual_clock = false;  // times are prices (docs/frame-tests.md)
+  std::vector<bool> left_out;          // set apart in frames.csv, or suspended
+  std::size_t suspended = 0;           // how many frames
+  double missing_percent = 0;          // mean over the frames, of the picture
+  double coarse_percent = 0;           // likewise: drawn with over twice the requested error
+  double error_pixels = 0;             // mean error of levels of detail
+  std::uint64_t holes = 0;             // sum over the frames
+  bool virtual_clock = false;          // times are prices (docs/frame-tests.md)
   std::string world_hash, path_hash, images_hash;  // empty: there is none
   std::uint64_t width = 0, height = 0;             // pixels
   std::optional<double> fixed_step;                // Hz

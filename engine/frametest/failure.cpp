@@ -10,7 +10,7 @@
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/telemetry/report_style.hpp"
+#include "engine/telemetry/page_style.hpp"
 
 namespace psygen::frametest {
 namespace {
@@ -141,7 +141,7 @@ std::string head_html(const FrameTest& test) {
       "missed</title><style>{1}{2}</style></head><body><main>\n<h1>{0}: budgets missed</h1>\n"
       "<p class=\"lead\">The worst frames as they were, the same with everything ready, and where "
       "they differ (yellow to red). {3} <a href=\"report.html\">The whole flight</a></p>\n",
-      escaped(test.name), telemetry::report_style(), kStyle,
+      escaped(test.name), telemetry::page_style(), kStyle,
       exact ? "The pictures are those of the judged flight, to the bit."
             : "The pictures are of another flight to the same places: on the wall clock what is "
               "missing differs from flight to flight.");
