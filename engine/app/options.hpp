@@ -59,7 +59,7 @@ struct SessionOptions {
   render::View view = render::View::kNormal;
   std::optional<double> start_hour;  // of the day, 0 to 24; the world must have one
   // Frames a second that are held by a larger error of levels of detail; 0: the error is fixed.
-  // Not set: 60 in a window, 0 headless. At most 1000.
+  // Not set: 60 in a window, 0 headless. At most 10^6.
   std::optional<double> target_hz;
   bool prefill = true;  // fill the cache for the first pose before the first tick
   bool trace = false;   // record spans of systems and modelers (Session::trace())

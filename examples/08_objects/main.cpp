@@ -130,7 +130,6 @@ core::Result<void> run(const char* picture) {
   pose.position.local.y -= 14;
   if (auto ok = build(**session, pose); !ok) return ok;
   if (auto ok = (*session)->prepare(pose); !ok) return ok;
-
   double dt_s = 1.0 / 60;
   for (int frame = 0; (*session)->poll() && (picture == nullptr || frame < 30); ++frame) {
     const auto start = std::chrono::steady_clock::now();
@@ -145,7 +144,6 @@ core::Result<void> run(const char* picture) {
 
 int main(int argc, char** argv) {
   const auto done = run(argc > 1 ? argv[1] : nullptr);
-  // Closing the window while the world loads is not an error.
   if (done || done.error().code == core::ErrorCode::kInterrupted) return 0;
   std::fprintf(stderr, "%s\n", done.error().message.c_str());
   return 1;

@@ -81,11 +81,15 @@ TEST_F(GroundPicturesTest, OneThatIsOnePixelWideTransparentOrNotTileableIsRefuse
 }
 
 TEST_F(GroundPicturesTest, ALinkOutOfTheFolderIsRefused) {
-  const TemporaryFolder elsewhere;
-  ASSERT_TRUE(
-      image::write_png(elsewhere.path() / "a.png", image::make_image(64, 64, 9, 9, 9, 255)));
-  std::filesystem::create_symlink(elsewhere.path() / "a.png", place("link.png"));
-  EXPECT_THAT(error_of("link.png"), HasSubstr("leads out of the folder"));
+  write("a.png", image::make_image(64, 64, 9, 9, 9, 255));
+  std::filesystem::create_directory(place("worlds"));
+  std::filesystem::create_symlink(place("a.png"), place("worlds/link.png"));
+  world::World world;
+  world.palette.images[2] = "link.png";
+  const auto pictures = read_ground_pictures(world, place("worlds/w.toml"));
+  ASSERT_FALSE(pictures);
+  EXPECT_THAT(pictures.error().message, HasSubstr("leads out of the folder"));
+  EXPECT_TRUE(read_ground_pictures(world, place("w.toml")).error().code == core::ErrorCode::kIo);
 }
 
 TEST_F(GroundPicturesTest, ASessionWithABadOneDoesNotStartAndSaysWhy) {

@@ -102,7 +102,7 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
 
 TEST(Session, RefusesPosesTargetsAndNamesThatAreNone) {
   SessionOptions options = short_session();
-  for (const double hz : {-1.0, std::nan(""), 1e9}) {
+  for (const double hz : {-1.0, std::nan(""), 1e9, 1e300}) {
     options.target_hz = hz;
     const auto none = Session::create(options);
     ASSERT_FALSE(none);

@@ -21,7 +21,7 @@ def check_first_sight(page):
         seen = look(page, """
 result.plots = all("figure.plot").map(f => [f.querySelector("figcaption").textContent,
   all("svg", f).length, all("path", f).filter(p => p.getAttribute("d")).length]);
-result.nan = document.body.innerHTML.includes("NaN");
+result.nan = document.body.innerHTML.match(/.{0,80}N[a]N.{0,40}/g);
 result.bins = all("#distribution rect").length;
 result.percentiles = all("#distribution th").map(t => t.textContent);
 result.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
@@ -37,7 +37,7 @@ result.facts = all(".facts th").map(t => t.textContent + "=" + t.nextElementSibl
             assert drawings == 1, f"{title} is not drawn"
             if not title.startswith("Where the frame goes"):  # the virtual clock has no such times
                 assert paths > 0, f"{title} is empty"
-        assert not seen["nan"]
+        assert not seen["nan"], seen["nan"]
         assert seen["bins"] > 3 and "p50" in seen["percentiles"], seen["percentiles"]
         assert seen["overflow"] <= 0, f"the page is {seen['overflow']} pixels wider than {width}"
         assert seen["slowest"] == 5 and seen["panel"] and seen["marks"] == 1, seen
