@@ -88,10 +88,6 @@ core::Result<void> CompareCommand::collect() {
     runs_b_ = std::move(*b);
     return {};
   }
-  if (test_.empty() || out_.empty()) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "two commands need --test and --out; two recorded sets are two folders");
-  }
   if (auto ok = record_batch(1); !ok) return ok;
   const auto first = compare::compare(runs_a_, runs_b_);
   if (!first) return tl::unexpected(first.error());
@@ -99,8 +95,26 @@ core::Result<void> CompareCommand::collect() {
   return sure ? core::Result<void>{} : record_batch(2);
 }
 
+// Two folders with runs, or two commands with a test and a folder for what they write. Otherwise a
+// sentence.
+std::string CompareCommand::misuse() const {
+  if (is_folder(a_) && is_folder(b_)) return {};
+  if (!test_.empty() && !out_.empty()) return {};
+  std::error_code ignored;
+  for (const std::string& side : {a_, b_}) {
+    const bool is_path = side.find('/') != std::string::npos && side.find(' ') == std::string::npos;
+    if (is_path && !std::filesystem::exists(side, ignored))
+      return side + ": there is no such folder or program";
+  }
+  return "two commands need --test and --out; two recorded sets are two folders";
+}
+
 int CompareCommand::run() {
   if (instructions_) return compare_instructions({a_, b_, out_, json_});
+  if (const std::string sentence = misuse(); !sentence.empty()) {
+    core::log_error(sentence);
+    return kUsage;
+  }
   const auto result = collect().and_then([this] { return compare::compare(runs_a_, runs_b_); });
   core::Result<compare::FalseAlarms> alarms = compare::FalseAlarms{};
   if (result && aa_ > 0) alarms = compare::measure_false_alarms(runs_a_, aa_, 1);

@@ -17,6 +17,7 @@ class CompareCommand {
   int run();
 
  private:
+  std::string misuse() const;
   core::Result<void> collect();
   core::Result<void> record_batch(int batch);
   core::Result<compare::RecordedRun> record(const std::string& command,

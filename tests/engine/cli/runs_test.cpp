@@ -87,5 +87,14 @@ TEST(Instructions, AreSkippedWithASentenceWhereValgrindCannotCount) {
   EXPECT_TRUE(mentions(none.err, "valgrind: cannot be run")) << none.err;
 }
 
+TEST(Compare, WithoutATestOrWithAFolderThatIsMissingIsMisused) {
+  const Outcome options = run_psygen("compare 'a 1' 'b 1'");
+  EXPECT_EQ(options.code, 2);
+  EXPECT_TRUE(mentions(options.err, "two commands need --test and --out")) << options.err;
+  const Outcome folder = run_psygen("compare /nowhere/a /nowhere/b");
+  EXPECT_EQ(folder.code, 2);
+  EXPECT_TRUE(mentions(folder.err, "/nowhere/a: there is no such folder or program")) << folder.err;
+}
+
 }  // namespace
 }  // namespace psygen::cli
