@@ -58,13 +58,13 @@ double tail_of(const Minima& minima) {
   return sum(ratios) / static_cast<double>(count);
 }
 
-struct Sides {
+struct Tails {
   double p_larger = 0, p_smaller = 0;
 };
 
 // How often labellings give at least, and at most, what labelling 0 gives.
 template <class Statistic>
-Sides over_labellings(std::size_t pairs, const Statistic& statistic) {
+Tails over_labellings(std::size_t pairs, const Statistic& statistic) {
   const std::uint32_t count = 1U << pairs;
   const double seen = statistic(0U);
   std::uint32_t larger = 0, smaller = 0;
@@ -77,7 +77,7 @@ Sides over_labellings(std::size_t pairs, const Statistic& statistic) {
 }
 
 // As if B took 1/scale of its time.
-Sides ratio_sides(const Times& a, const Times& b, double scale) {
+Tails ratio_tails(const Times& a, const Times& b, double scale) {
   Times scaled = b;
   for (Frames& run : scaled)
     for (double& ms : run)
@@ -90,10 +90,10 @@ Sides ratio_sides(const Times& a, const Times& b, double scale) {
 void find_interval(const Times& a, const Times& b, MinimaTest& test) {
   test.low = test.high = test.ratio;
   double step = 0;
-  for (; step < kFarthest && ratio_sides(a, b, test.low).p_larger > kRefused; step += kStep)
+  for (; step < kFarthest && ratio_tails(a, b, test.low).p_larger > kRefused; step += kStep)
     test.low = test.ratio / (1 + step);
   if (step >= kFarthest) test.low = 0;
-  for (step = 0; step < kFarthest && ratio_sides(a, b, test.high).p_smaller > kRefused;
+  for (step = 0; step < kFarthest && ratio_tails(a, b, test.high).p_smaller > kRefused;
        step += kStep)
     test.high = test.ratio * (1 + step);
   if (step >= kFarthest) test.high = std::numeric_limits<double>::infinity();
@@ -126,9 +126,9 @@ MinimaTest minima_test(const Times& a, const Times& b) {
   const Minima seen = minima_of(a, b, 0);
   test.ratio = ratio_of(seen);
   test.tail_ratio = tail_of(seen);
-  const Sides sides = ratio_sides(a, b, 1);
-  test.p_slower = sides.p_larger;
-  test.p_faster = sides.p_smaller;
+  const Tails tails = ratio_tails(a, b, 1);
+  test.p_slower = tails.p_larger;
+  test.p_faster = tails.p_smaller;
   test.p_tail = over_labellings(a.size(), [&](std::uint32_t labelling) {
                   return tail_of(minima_of(a, b, labelling));
                 }).p_larger;

@@ -2,6 +2,7 @@
 // looking at them: PSYGEN_GOLDEN_UPDATE=1
 #include <array>
 #include <fstream>
+#include <ostream>
 
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/preset.hpp"
@@ -107,6 +108,11 @@ struct Case {
   double hour;
   void (*furnish)(Session&, const core::CameraPose&);
 };
+
+// The name of a test, which would hold addresses otherwise.
+void PrintTo(const Case& test_case, std::ostream* out) {
+  *out << test_case.name << ' ' << render::to_string(test_case.preset);
+}
 
 class EffectPictures : public testing::TestWithParam<Case> {};
 
