@@ -1,5 +1,6 @@
 // psygen export: one model or one block as glTF or OBJ.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <charconv>
@@ -11,6 +12,7 @@
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/text_values.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/exchange/unpack.hpp"
 #include "engine/synthesis/synthesize.hpp"
@@ -32,18 +34,17 @@ core::Result<exchange::Format> format_of(const std::string& file) {
   return *format;
 }
 
-std::string model_names(const models::Registry& registry) {
-  std::string names;
+std::vector<std::string_view> model_names(const models::Registry& registry) {
+  std::vector<std::string_view> names;
   for (std::size_t i = 0; i < registry.size(); ++i)
-    names += fmt::format("{}{}", i == 0 ? "" : ", ",
-                         registry[static_cast<models::ModelIndex>(i)].name());
+    names.push_back(registry[static_cast<models::ModelIndex>(i)].name());
   return names;
 }
 
-std::string parameter_names(const models::ModelType& type) {
-  std::string names;
+std::vector<std::string_view> parameter_names(const models::ModelType& type) {
+  std::vector<std::string_view> names;
   for (const models::ParameterSpec& spec : type.parameters())
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", spec.name);
+    names.push_back(spec.name);
   return names;
 }
 
@@ -94,8 +95,9 @@ core::Result<void> set(const models::ModelType& type, models::Parameters& p,
   const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
   const int index = models::parameter_index(type, name);
   if (index < 0) {
-    return refuse(fmt::format("{} has no parameter '{}'; it has {}", type.name(), shown(name),
-                              parameter_names(type)));
+    const std::vector<std::string_view> names = parameter_names(type);
+    return refuse(fmt::format("{} has no parameter '{}'; it has {}{}", type.name(), shown(name),
+                              fmt::join(names, ", "), core::suggestion(name, names)));
   }
   const auto i = static_cast<std::size_t>(index);
   const models::ParameterSpec& spec = type.parameters()[i];
@@ -168,8 +170,9 @@ int ExportCommand::run() const {
     core::log_error(ok.error().message);
     return exit_code_of(ok.error());
   }
-  core::log_info(fmt::format("wrote {}: {} objects, {} vertices, {} triangles", out_,
-                             document->objects.size(), document->vertex_count(),
+  const std::size_t objects = document->objects.size();
+  core::log_info(fmt::format("wrote {}: {} object{}, {} vertices, {} triangles", out_, objects,
+                             objects == 1 ? "" : "s", document->vertex_count(),
                              document->triangle_count()));
   return kOk;
 }
@@ -178,8 +181,10 @@ core::Result<exchange::Document> ExportCommand::model_document(
     const models::Registry& registry, const world::Palette& palette) const {
   const int found = registry.find(model_);
   if (found < 0) {
-    return refuse(fmt::format("there is no model '{}'; there are {}",
-                              core::shown(model_, kMostShownBytes), model_names(registry)));
+    const std::vector<std::string_view> names = model_names(registry);
+    return refuse(fmt::format("there is no model '{}'; there are {}{}",
+                              core::shown(model_, kMostShownBytes), fmt::join(names, ", "),
+                              core::suggestion(model_, names)));
   }
   const models::ModelType& type = registry[static_cast<models::ModelIndex>(found)];
   models::Parameters p = models::default_parameters(type);

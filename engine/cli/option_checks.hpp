@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "engine/cli/text_values.hpp"
+#include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"
 
 namespace psygen::cli {
@@ -73,8 +75,8 @@ inline CLI::Validator one_of(std::vector<std::string_view> words) {
       [words = std::move(words)](std::string& text) {
         if (std::ranges::find(words, text) != words.end()) return std::string();
         constexpr std::size_t kMostShownBytes = 60;
-        return fmt::format("'{}' is unknown; allowed are {}", core::shown(text, kMostShownBytes),
-                           fmt::join(words, ", "));
+        return fmt::format("'{}' is unknown; allowed are {}{}", core::shown(text, kMostShownBytes),
+                           fmt::join(words, ", "), core::suggestion(text, words));
       },
       shown);
 }

@@ -53,7 +53,7 @@ bool has_folder(const std::string& name) {
 // The error for a name without a file.
 std::string missing(Shipped kind, const std::string& name, std::vector<fs::path> folders) {
   const std::vector<std::string> names = names_in(folders);
-  const std::string_view nearest = core::nearest_word(fs::path(name).stem().string(), names);
+  const std::string suggested = core::suggestion(fs::path(name).stem().string(), names);
   if (has_folder(name)) folders.clear();
   std::error_code error;
   if (fs::path(name).is_relative()) folders.insert(folders.begin(), fs::current_path(error));
@@ -63,9 +63,8 @@ std::string missing(Shipped kind, const std::string& name, std::vector<fs::path>
                         folder.string(), &folder == &folders.back() ? "; " : "");
   if (names.empty())
     return text + fmt::format("no {} that comes with psygen is there", word_of(kind));
-  text +=
-      fmt::format("the {}s that come with psygen are {}", word_of(kind), fmt::join(names, ", "));
-  return nearest.empty() ? text : text + fmt::format("; did you mean {}?", nearest);
+  return text + fmt::format("the {}s that come with psygen are {}{}", word_of(kind),
+                            fmt::join(names, ", "), suggested);
 }
 
 }  // namespace

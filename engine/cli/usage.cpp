@@ -54,8 +54,19 @@ void refuse_missing_values(CLI::App& cli) {
   }
 }
 
+// "help" and "help fly" for "--help" and "fly --help".
+void read_help(CLI::App& cli, std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments.front() != "help") return;
+  arguments.erase(arguments.begin());
+  const auto is_next = [&](const CLI::App* app) { return app->get_name() == arguments.front(); };
+  if (arguments.empty())
+    arguments = {"--help"};
+  else if (std::ranges::any_of(commands_of(cli), is_next))
+    arguments = {arguments.front(), "--help"};
+}
+
 // Last first, as CLI11 wants them.
-std::vector<std::string> reversed_arguments(int argc, char** argv) {
+std::vector<std::string> reversed_arguments(CLI::App& cli, int argc, char** argv) {
   std::vector<std::string> arguments;
   for (int i = 1; i < argc; ++i) {
     arguments.emplace_back(argv[i]);
@@ -65,20 +76,16 @@ std::vector<std::string> reversed_arguments(int argc, char** argv) {
       arguments.emplace_back();
     }
   }
+  read_help(cli, arguments);
   std::ranges::reverse(arguments);
   return arguments;
-}
-
-std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
-  const std::string_view nearest = core::nearest_word(word, known);
-  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
 }
 
 std::string about_command(CLI::App& cli, const std::string& word) {
   std::vector<std::string> names;
   for (const CLI::App* command : commands_of(cli))
     names.push_back(command->get_name());
-  return fmt::format("there is no command {}{}", in_quotes(word), suggestion(word, names));
+  return fmt::format("there is no command {}{}", in_quotes(word), core::suggestion(word, names));
 }
 
 std::string about_option(CLI::App& command, const std::string& argument) {
@@ -87,14 +94,17 @@ std::string about_option(CLI::App& command, const std::string& argument) {
   for (const CLI::Option* option : options_of(command))
     names.push_back(option->get_name());
   return fmt::format("psygen {} has no option {}{}", command.get_name(), in_quotes(word),
-                     suggestion(word, names));
+                     core::suggestion(word, names));
 }
 
 // What CLI11 could not place behind the program's name.
 std::string about_extra(CLI::App& cli) {
   const std::string first = cli.remaining().front();
-  if (first.starts_with('-'))
-    return fmt::format("{} stands before the command; options come after it", in_quotes(first));
+  if (first.starts_with('-')) {
+    const std::string near = core::suggestion(first, std::vector<std::string>{"--version", "--help"});
+    return near.empty() ? in_quotes(first) + " stands before the command; options come after it"
+                        : fmt::format("psygen has no option {}{}", in_quotes(first), near);
+  }
   if (cli.get_subcommands().empty()) return about_command(cli, first);
   return fmt::format("{} is not expected", in_quotes(first));
 }
@@ -149,7 +159,7 @@ int refuse(CLI::App& cli, const CLI::ParseError& error) {
 
 std::optional<int> read_command_line(CLI::App& cli, int argc, char** argv) {
   refuse_missing_values(cli);
-  std::vector<std::string> arguments = reversed_arguments(argc, argv);
+  std::vector<std::string> arguments = reversed_arguments(cli, argc, argv);
   try {
     cli.parse(arguments);
   } catch (const CLI::ParseError& error) {

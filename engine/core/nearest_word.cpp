@@ -1,43 +1,73 @@
 #include "engine/core/nearest_word.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <numeric>
+#include <array>
 #include <vector>
 
 namespace psygen::core {
 namespace {
 
-// Levenshtein distance in bytes.
+constexpr std::size_t kMostBytes = 64;
+
+std::string_view letters_of(std::string_view word) {
+  return word.substr(std::min(word.find_first_not_of('-'), word.size()));
+}
+
+// Optimal string alignment in bytes: Levenshtein's distance where a swap of neighbours is one edit.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+  using Row = std::array<std::size_t, kMostBytes + 1>;
+  Row two_above{}, above{}, row{};
+  for (std::size_t j = 0; j <= b.size(); ++j)
+    row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    two_above = above;
+    above = row;
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1), row[j - 1] + 1, above[j] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], two_above[j - 2] + 1);
     }
   }
-  return row.back();
+  return row[b.size()];
+}
+
+std::vector<std::string_view> views_of(std::span<const std::string> words) {
+  return {words.begin(), words.end()};
 }
 
 }  // namespace
 
-std::string_view nearest_word(std::string_view word, std::span<const std::string> known) {
-  // A word far longer than every known one is near to none; this also bounds the time.
-  if (word.size() > 64) return {};
+std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known) {
+  word = letters_of(word);
+  if (word.size() > kMostBytes) return {};
   std::string_view nearest;
-  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
+  std::size_t fewest = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string_view candidate : known) {
+    const std::string_view letters = letters_of(candidate);
+    if (letters.size() > kMostBytes) continue;
+    const std::size_t distance = edit_distance(word, letters);
     if (distance < fewest) {
       fewest = distance;
       nearest = candidate;
     }
   }
   return nearest;
+}
+
+std::string_view nearest_word(std::string_view word, std::span<const std::string> known) {
+  return nearest_word(word, views_of(known));
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
+  const std::string_view nearest = nearest_word(word, known);
+  return nearest.empty() ? std::string() : fmt::format("; did you mean {}?", nearest);
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string> known) {
+  return suggestion(word, views_of(known));
 }
 
 }  // namespace psygen::core

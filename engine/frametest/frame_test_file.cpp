@@ -122,10 +122,7 @@ class KnownFields {
       return ends ? "" : "times of systems have the figures p50 and p99";
     }
     if (!has(names_)) {
-      const std::string_view nearest = core::nearest_word(budget.field, names_);
-      return nearest.empty()
-                 ? "summary.json has no such field"
-                 : fmt::format("summary.json has no such field; did you mean {}?", nearest);
+      return "summary.json has no such field" + core::suggestion(budget.field, names_);
     }
     if (budget.relation != Relation::kEqual && (has(texts_) || budget.field.starts_with("hash.")))
       return "it is a text, which can only be equal";

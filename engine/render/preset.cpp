@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/core/nearest_word.hpp"
+
 namespace psygen::render {
 
 namespace {
@@ -19,7 +21,8 @@ core::Result<Value> named(const std::array<std::string_view, kCount>& names, std
   }
   return core::fail(
       core::ErrorCode::kInvalidArgument,
-      fmt::format("{} '{}' is unknown; allowed are {}", what, name, fmt::join(names, ", ")));
+      fmt::format("{} '{}' is unknown; allowed are {}{}", what, name, fmt::join(names, ", "),
+                  core::suggestion(name, names)));
 }
 
 }  // namespace

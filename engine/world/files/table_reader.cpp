@@ -230,14 +230,9 @@ std::vector<const Node*> TableReader::tables(std::string_view key, std::size_t m
 void TableReader::finish() {
   for (const Member& member : table_.members) {
     if (std::ranges::find(known_, member.key) != known_.end()) continue;
-    const std::string_view nearest = core::nearest_word(member.key, known_);
-    std::string sentence = "this key is unknown";
-    if (!nearest.empty()) {
-      sentence += fmt::format("; did you mean {}?", nearest);
-    } else {
-      sentence += fmt::format("; known here: {}", fmt::join(known_, ", "));
-    }
-    problem(member.line, core::shown(member.key, kMostShownBytes), sentence);
+    std::string more = core::suggestion(member.key, known_);
+    if (more.empty()) more = fmt::format("; known here: {}", fmt::join(known_, ", "));
+    problem(member.line, core::shown(member.key, kMostShownBytes), "this key is unknown" + more);
   }
 }
 

@@ -29,7 +29,11 @@ TEST(CommandLine, HelpAndVersionGoToStdoutAndAreNoFailure) {
   const Outcome version = run_psygen("--version");
   EXPECT_EQ(version.code, 0);
   EXPECT_TRUE(mentions(version.out, "psygen "));
-  EXPECT_EQ(run_psygen("fly --help").code, 0);
+  const Outcome fly = run_psygen("fly --help");
+  EXPECT_EQ(fly.code, 0);
+  EXPECT_EQ(run_psygen("help").out, help.out);
+  EXPECT_EQ(run_psygen("help fly").out, fly.out);
+  EXPECT_EQ(run_psygen("help flie").code, 2);
   const Outcome picture = run_psygen("picture --help");
   EXPECT_EQ(picture.code, 0);
   EXPECT_TRUE(mentions(picture.out, "=1.7")) << "defaults are named";

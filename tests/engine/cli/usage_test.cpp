@@ -100,6 +100,11 @@ TEST(Usage, AMisspeltOptionSuggestsTheNearestOfItsCommand) {
       {{"export", "--modle", "rock"}, "did you mean --model?"},
       {{"calibrate", "--sample", "4"}, "did you mean --samples?"},
       {{"schedule", "--modeler", "3"}, "did you mean --modelers?"},
+      {{"fly", "--set", "seed=3"}, "psygen fly has no option '--set'\n"},
+      {{"fly", "--preset", "hihg"}, "allowed are low, medium, high, ultra; did you mean high?\n"},
+      {{"fly", "--view", "levls"}, "did you mean levels?\n"},
+      {{"fly", "--policy", "deadlien"}, "did you mean deadline?\n"},
+      {{"--versoin"}, "psygen has no option '--versoin'; did you mean --version?\n"},
       {{"fly", "--frobnicate"}, "psygen fly has no option '--frobnicate'\n"}};
   for (const auto& [arguments, words] : cases)
     expect_refused(arguments, words);

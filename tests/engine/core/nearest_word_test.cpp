@@ -15,6 +15,22 @@ TEST(NearestWord, FindsTyposAndNothingForOtherWords) {
   EXPECT_EQ(nearest_word("zebra", known), "");
 }
 
+TEST(NearestWord, AShortWordIsNearToFewAndASwapIsOneEdit) {
+  const std::vector<std::string> options{"--out", "--help", "--set-it", "tree"};
+  EXPECT_EQ(nearest_word("--set", options), "");
+  EXPECT_EQ(nearest_word("--hepl", options), "--help");
+  EXPECT_EQ(nearest_word("-help", options), "--help");
+  EXPECT_EQ(nearest_word("tre", options), "tree");
+  EXPECT_EQ(nearest_word("", options), "");
+  EXPECT_EQ(nearest_word("--", options), "");
+}
+
+TEST(NearestWord, ASuggestionEndsAMessage) {
+  const std::vector<std::string_view> presets{"low", "high"};
+  EXPECT_EQ(suggestion("hihg", presets), "; did you mean high?");
+  EXPECT_EQ(suggestion("zebra", presets), "");
+}
+
 TEST(NearestWord, NothingIsNearToAVeryLongWordOrAmongNoWords) {
   EXPECT_EQ(nearest_word(std::string(100'000, 'x'), std::vector<std::string>{"x"}), "");
   EXPECT_EQ(nearest_word("count", {}), "");
