@@ -13,7 +13,11 @@ foreach(component IN LISTS components)
 endforeach()
 
 set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/reference)
-set(DOXYGEN_INPUT_FILTER ${PROJECT_SOURCE_DIR}/tools/reference_filter.py)
+# Runs once a header: the interpreter itself, not a launcher that looks for one each time.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+execute_process(COMMAND ${Python3_EXECUTABLE} -c "import sys; print(sys.executable)"
+                OUTPUT_VARIABLE python OUTPUT_STRIP_TRAILING_WHITESPACE)
+set(DOXYGEN_INPUT_FILTER "\"${python}\" \"${PROJECT_SOURCE_DIR}/tools/reference_filter.py\"")
 set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR})
 set(DOXYGEN_STRIP_FROM_INC_PATH ${PROJECT_SOURCE_DIR})
 set(DOXYGEN_JAVADOC_AUTOBRIEF YES)

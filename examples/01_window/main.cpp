@@ -3,6 +3,7 @@
 //   example_window [picture.png]
 #include <chrono>
 #include <cstdio>
+#include <utility>
 
 #include "engine/app/session.hpp"
 #include "engine/core/data_file.hpp"

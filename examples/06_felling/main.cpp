@@ -30,11 +30,10 @@ core::Result<world::Edits> load_edits(const save::SaveGame& save, const scene::W
 core::Result<void> store(save::SaveGame& save, const scene::WorldFacts& facts,
                          const world::Edits& before, const world::Edits& now) {
   for (const core::BlockCoord block : world::changed_blocks(before, now)) {
-    constexpr std::uint32_t kVersion = 1;  // of the bytes; they also say it themselves
     const auto bytes = world::encode_block(now, facts.registry, block);
     if (bytes.empty()) {
       save.erase_edits(block);
-    } else if (auto ok = save.put_edits(block, kVersion, bytes); !ok) {
+    } else if (auto ok = save.put_edits(block, world::kEditFormat, bytes); !ok) {
       return ok;
     }
   }

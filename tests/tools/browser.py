@@ -1,20 +1,16 @@
-"""Looks at a page in headless Chromium, without network. For tests of pages; not a test itself."""
-import html
+"""Looks at pages in headless Chromium, without network. For tests of pages; not a test itself.
+
+Speaks Chromium's DevTools protocol over two pipes. Waits for events and never for a time.
+"""
+import atexit
+import fcntl
 import json
-import re
+import os
 import subprocess
 import tempfile
 
-# Nothing may be loaded but pictures beside the page.
-POLICY = ("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-          "'unsafe-inline'; script-src 'unsafe-inline'; img-src file:\">")
-# Before the page's own scripts: errors are kept.
-ERRORS = """<script>window.errors = [];
-addEventListener("error", event => errors.push(String(event.message ?? "a file does not load")), true);
-addEventListener("securitypolicyviolation", event => errors.push("loads " + event.blockedURI));
-</script>"""
-# What the scripts below stand on. Events are those of a mouse.
-TOOLS = """<script>
+# What scripts below stand on. Events are those of a mouse.
+TOOLS = """
 const all = (what, from = document) => [...from.querySelectorAll(what)];
 const point = (plot, type, share) => {
   const place = all(".drawing", plot)[0], box = place.getBoundingClientRect();
@@ -29,35 +25,94 @@ const panel = () => document.getElementById("row");
 const press = text => all("button").find(b => b.textContent.startsWith(text)).click();
 const result = {};
 """
-FINISH = """
-result.errors = errors;
-parent.postMessage(JSON.stringify(result), "*");
-"""
-# Around the page, because a window of the browser is never narrower than 500 pixels.
-FRAME = """<!DOCTYPE html><body><script>
-addEventListener("message", event => document.body.append(
-  Object.assign(document.createElement("pre"), {{id: "result", textContent: event.data}})));
-</script><iframe src="{page}" width="{width}" height="900" style="border:0"></iframe></body>"""
 
 
-def look(page, script, width=1280, delay_ms=0):
-    """Runs a script after those of the page, and returns what it leaves in `result`."""
-    text = page.read_text(encoding="utf-8")
-    end = f"setTimeout(() => {{ {FINISH} }}, {delay_ms})</script>"
-    text = text.replace("<head>", "<head>" + POLICY + ERRORS, 1)
-    text = text.replace("</body>", TOOLS + script + end + "</body>", 1)
-    copy = page.with_name("page_with_test.html")
-    copy.write_text(text, encoding="utf-8")
-    frame = page.with_name("frame_with_test.html")
-    frame.write_text(FRAME.format(page=copy.name, width=width), encoding="utf-8")
-    with tempfile.TemporaryDirectory() as profile:
-        done = subprocess.run(
-            ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
-             f"--user-data-dir={profile}", "--window-size=1400,1000", "--virtual-time-budget=20000",
-             "--host-resolver-rules=MAP * ~NOTFOUND", "--dump-dom", frame.as_uri()],
-            capture_output=True, text=True, check=False)
-    found = re.search(r'<pre id="result">(.*?)</pre>', done.stdout, re.S)
-    assert found, f"the page did not come to its end\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}"
-    result = json.loads(html.unescape(found.group(1)))
-    assert result["errors"] == [], result["errors"]
-    return result
+class Browser:
+    """A running Chromium; ends with the program."""
+
+    def __init__(self):
+        self.profile = tempfile.TemporaryDirectory()
+        (reads, to_browser), (from_browser, writes) = os.pipe(), os.pipe()
+        # It reads from file 3 and writes to file 4, which may be among these.
+        low, high = (reads, writes), [fcntl.fcntl(fd, fcntl.F_DUPFD, 10) for fd in (reads, writes)]
+        self.process = subprocess.Popen(
+            ["bash", "-c", f'exec "$@" 3<&{high[0]} 4>&{high[1]}',
+             "chromium", "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
+             "--remote-debugging-pipe", f"--user-data-dir={self.profile.name}",
+             "--host-resolver-rules=MAP * ~NOTFOUND"],
+            pass_fds=high, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for fd in (*low, *high):
+            os.close(fd)
+        self.out, self.into = os.fdopen(to_browser, "wb", 0), os.fdopen(from_browser, "rb")
+        self.calls, self.events = 0, []
+        atexit.register(self.close)
+
+    def close(self):
+        self.call("Browser.close")
+        self.process.wait()
+        self.profile.cleanup()
+
+    def receive(self):
+        message = bytearray()
+        while not message.endswith(b"\0"):
+            byte = self.into.read(1)
+            assert byte, "Chromium has ended"
+            message += byte
+        return json.loads(message[:-1])
+
+    def call(self, method, session=None, **params):
+        """The result of a method. Events that arrive before it are kept."""
+        self.calls += 1
+        message = {"id": self.calls, "method": method, "params": params}
+        if session:
+            message["sessionId"] = session
+        self.out.write(json.dumps(message).encode() + b"\0")
+        while (answer := self.receive()).get("id") != self.calls:
+            self.events.append(answer)
+        assert "error" not in answer, f"{method}: {answer['error']}"
+        return answer["result"]
+
+    def wait_for(self, method):
+        while not any(event.get("method") == method for event in self.events):
+            self.events.append(self.receive())
+
+    def take(self, method):
+        return [event["params"] for event in self.events if event.get("method") == method]
+
+
+_browser = None
+
+
+def look(page, script, width=1280):
+    """Runs a script, which may await, after a page has loaded, and returns what it leaves in `result`.
+
+    Fails on any error of the page's scripts or this one, and when the page wants anything but itself
+    and pictures beside it.
+    """
+    global _browser
+    _browser = _browser or Browser()
+    b = _browser
+    b.events = []
+    target = b.call("Target.createTarget", url="about:blank")["targetId"]
+    session = b.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+    for domain in ("Page", "Runtime", "Network", "Log"):
+        b.call(f"{domain}.enable", session)
+    b.call("Emulation.setDeviceMetricsOverride", session, width=width, height=900, deviceScaleFactor=1,
+           mobile=False)
+    address = page.resolve().as_uri()
+    b.call("Page.navigate", session, url=address)
+    b.wait_for("Page.loadEventFired")
+    answer = b.call("Runtime.evaluate", session, returnByValue=True, awaitPromise=True,
+                    expression="(async () => {" + TOOLS + script + "return result; })()")
+    errors = [e["exceptionDetails"] for e in b.take("Runtime.exceptionThrown")]
+    errors += [e["entry"]["text"] for e in b.take("Log.entryAdded") if e["entry"]["level"] == "error"]
+    errors += [f"loads {e['request']['url']}" for e in b.take("Network.requestWillBeSent")
+               if not is_beside(address, e["request"]["url"])]
+    b.call("Target.closeTarget", targetId=target)
+    assert "exceptionDetails" not in answer, answer["exceptionDetails"]
+    assert errors == [], errors
+    return answer["result"]["value"]
+
+
+def is_beside(page, url):
+    return url.startswith(("data:", "about:", page.rsplit("/", 1)[0] + "/"))

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds the lists of public headers together: every header under HEADERS of a folder's CMakeLists.txt is
-there, and includes only public headers. Otherwise the installed package would not compile.
+there, and includes only public headers; otherwise the installed package would not compile. And each of
+its functions has a comment: above it, behind it, or above the group of lines that it stands in.
 
 usage: public_headers_test.py SOURCE_DIR
        public_headers_test.py --self-test
@@ -10,6 +11,17 @@ import re
 import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
+
+PRIVATE = re.compile(r"^ *private:.*?^(?=\};)", re.S | re.M)
+GROUPS = re.compile(r"\n[ \t]*\n")
+FUNCTION = re.compile(r"^\s*[\w:<>,&*\[\] ]+\s\W?\w+\([^;{]*\)[^;{()]*[;{][^\n]*$", re.M)
+
+
+def without_comment(text):
+    """The first lines of the groups of lines that declare a function and have no comment."""
+    for group in GROUPS.split(PRIVATE.sub("", text)):
+        if FUNCTION.search(group) and "//" not in group:
+            yield group.strip().split("\n")[0]
 
 
 def listed(folder, cmake):
@@ -28,6 +40,8 @@ def violations(public, text_of):
         for name in INCLUDE.findall(text):
             if name not in public and not name.startswith("../"):
                 yield f"{header} is public and includes {name}, which is not under HEADERS"
+        for line in without_comment(text):
+            yield f"{header} has functions without a comment: {line}"
 
 
 def self_test():
@@ -37,6 +51,9 @@ def self_test():
     assert not list(violations({"a/b.hpp", "a/c.hpp"}, texts.get))
     assert len(list(violations({"a/b.hpp"}, texts.get))) == 1
     assert len(list(violations({"a/gone.hpp"}, texts.get))) == 1
+    assert list(without_comment("// File.\n\nint f(int a);\n")) == ["int f(int a);"]
+    assert list(without_comment("class A {\n  bool g() const {\n    return 1;\n  }\n};\n")) == ["class A {"]
+    assert not list(without_comment("// Of f.\nint f(int a);\n\nclass A {\n private:\n  int g();\n};\n"))
 
 
 def main():

@@ -14,6 +14,7 @@
 
 namespace psygen::world {
 
+// The version of the bytes, for whoever stores them (save::SaveGame::put_edits); they have it too.
 inline constexpr std::uint16_t kEditFormat = 1;
 
 // All edits of a block; no bytes where there are none, which is what to delete from a store.

@@ -89,9 +89,11 @@ press("The nearest is that of frame");
 result.picture = all("header b", panel())[0].textContent;
 result.apart = panel().textContent.includes("in no figure of times");
 const image = all("img", panel())[0];
-image.decode().then(() => { result.size = [image.naturalWidth, image.naturalHeight];
-  key("Escape"); result.closed = panel().hidden; }).catch(error => errors.push(String(error)));
-""", delay_ms=5000)
+await image.decode();
+result.size = [image.naturalWidth, image.naturalHeight];
+key("Escape");
+result.closed = panel().hidden;
+""")
     assert re.match(r"Frame \d+ at \d\.\d\d s", seen["readout"]) and "ms" in seen["readout"], seen
     assert seen["cursors"] == 8 and seen["pins"] == 8, seen
     number = int(re.match(r"Frame (\d+)", seen["frame"]).group(1))
