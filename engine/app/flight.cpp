@@ -146,6 +146,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   const auto saved = session_->take_saved();  // by plugins
   files_.insert(files_.end(), saved.begin(), saved.end());
   if (!saved.empty() || saves_picture()) record.apart = telemetry::Apart::kPicture;
+  record.has_picture = saves_picture();
   record.index = frames_;
   record.time_s = now_s;
   record.frame_ms = std::max(frame_ms, kLeastFrameMs);

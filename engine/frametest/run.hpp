@@ -51,7 +51,7 @@ struct TestResult {
   double seconds = 0;                // that it took
   std::filesystem::path page;        // failed.html, of a failed test; empty: there is none
 
-  bool holds() const;
+  bool holds() const;  // it could be run, and each budget holds
 };
 
 // Exit codes of a run of tests. 77 is what CTest and Automake take for skipped.

@@ -70,6 +70,7 @@ class Actions {
   // Puts states in the place of those of step(), for replaying. As many as there are actions.
   void step_to(std::span<const ActionState> states);
 
+  // The states of this step; `action` is one that add() returned.
   const ActionState& state(ActionId action) const { return states_[action]; }
   std::span<const ActionState> states() const { return states_; }
 

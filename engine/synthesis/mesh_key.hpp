@@ -61,6 +61,7 @@ inline constexpr MeshHandle kNoMesh{};
 
 }  // namespace psygen::synthesis
 
+// For std::unordered_map and its like.
 template <>
 struct std::hash<psygen::synthesis::MeshKey> {
   std::size_t operator()(const psygen::synthesis::MeshKey& key) const noexcept {

@@ -50,6 +50,7 @@ struct FrameRecord {
   std::optional<double> gpu_shadows_ms;  // part of gpu_ms: shadow maps
   std::uint64_t device_frame = 0;        // the renderer's number of this frame; 0: none
   Apart apart = Apart::kNo;
+  bool has_picture = false;  // picture_name(index) is beside the log; not a column
 
   double error_pixels = 0;      // that levels of detail may have
   double memory_factor = 1;     // factor by which the geometry budget raised it

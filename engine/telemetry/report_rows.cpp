@@ -100,9 +100,8 @@ PageRows page_rows(const FrameLog& log, const Summary& summary, const ShownFrame
   rows.parts = parts(log, shown);
   for (std::size_t row = 0; row < shown.frames.size(); ++row) {
     const FrameRecord& record = log.frames()[shown.frames[row]];
-    if (record.apart == Apart::kNo) continue;
-    rows.apart[row] = name_of(record.apart);
-    if (record.apart == Apart::kPicture) rows.pictures[row] = picture_name(record.index);
+    if (record.apart != Apart::kNo) rows.apart[row] = name_of(record.apart);
+    if (record.has_picture) rows.pictures[row] = picture_name(record.index);
   }
   return rows;
 }

@@ -40,8 +40,9 @@ def violations(public, text_of):
         for name in INCLUDE.findall(text):
             if name not in public and not name.startswith("../"):
                 yield f"{header} is public and includes {name}, which is not under HEADERS"
-        for line in without_comment(text):
-            yield f"{header} has functions without a comment: {line}"
+        if header.startswith("engine/"):  # the rooms of ecs/ are templates with their bodies
+            for line in without_comment(text):
+                yield f"{header} has functions without a comment: {line}"
 
 
 def self_test():

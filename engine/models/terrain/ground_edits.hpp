@@ -94,6 +94,7 @@ class GroundEdits {
   // Largest number of edits that begin in one square of the quadtree.
   static constexpr std::size_t kMostTogether = 1024;
 
+  // Whether there is no edit.
   bool empty() const { return cells_.empty(); }
 
   // Adds a sealed edit, or takes the one with this id and block away, in O(log n + kMostTogether).

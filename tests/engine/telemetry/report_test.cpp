@@ -95,6 +95,7 @@ TEST(Report, FramesThatWerePicturesAreMarkedAndNotInTheCurve) {
   picture.time_s += 0.02;
   picture.frame_ms = 4321;
   picture.apart = Apart::kPicture;
+  picture.has_picture = true;
   log.add(picture);
   const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
   EXPECT_EQ(html.find("4321"), std::string::npos);
@@ -102,6 +103,19 @@ TEST(Report, FramesThatWerePicturesAreMarkedAndNotInTheCurve) {
   EXPECT_EQ(rows["apart"], nlohmann::json({{"1500", "picture"}}));
   EXPECT_EQ(rows["pictures"], nlohmann::json({{"1500", "frame_01499.png"}}));
   EXPECT_NE(html.find("1 written as pictures. They are marked."), std::string::npos);
+}
+
+TEST(Report, PicturesBesideThePageAreNamedWhateverTheClock) {
+  FrameLog log = synthetic_flight();
+  FrameRecord record = log.frames().back();
+  record.has_picture = true;  // the virtual clock sets no frame apart
+  log.add(record);
+  record.has_picture = false;
+  record.apart = Apart::kPicture;  // a plugin wrote it somewhere
+  log.add(record);
+  const nlohmann::json rows = rows_of(report_html(log, summarise(log, synthetic_facts(), 1.0)));
+  EXPECT_EQ(rows["apart"], nlohmann::json({{"1501", "picture"}}));
+  EXPECT_EQ(rows["pictures"], nlohmann::json({{"1500", "frame_01499.png"}}));
 }
 
 TEST(Report, AnEndlessWorldHasTheFiguresOfAnAreaInsteadOfDashes) {
