@@ -133,11 +133,4 @@ void OffsetAllocator::free(std::uint32_t node) {
   insert_free(node);
 }
 
-std::uint32_t OffsetAllocator::largest_certain() const {
-  if (tops_ == 0) return 0;
-  const auto top = static_cast<std::uint32_t>(std::bit_width(tops_)) - 1;
-  const auto leaf = static_cast<std::uint32_t>(std::bit_width(std::uint32_t{leaves_[top]})) - 1;
-  return floor_of((top << kLeafBits) | leaf);
-}
-
 }  // namespace psygen::render

@@ -31,8 +31,6 @@ class OffsetAllocator {
   // Units of the line, and free units.
   std::uint32_t size() const { return size_; }
   std::uint32_t free_units() const { return free_units_; }
-  // An allocation of up to this size would succeed now. 0: none.
-  std::uint32_t largest_certain() const;
 
  private:
   static constexpr std::uint32_t kNone = UINT32_MAX;

@@ -22,11 +22,7 @@ inline std::int32_t round_to_int(float v) {
   return std::bit_cast<std::int32_t>(v + 12582912.0F) - std::bit_cast<std::int32_t>(12582912.0F);
 }
 
-// Pack [-1, 1] as snorm8 (±127) or snorm16 (±32767), or [0, 1] as unorm8. Values outside the range
-// are clamped.
-inline std::int8_t pack_snorm8(float v) {
-  return static_cast<std::int8_t>(round_to_int(std::clamp(v, -1.0F, 1.0F) * 127.0F));
-}
+// Pack [-1, 1] as snorm16 (±32767), or [0, 1] as unorm8. Values outside the range are clamped.
 inline std::int16_t pack_snorm16(float v) {
   return static_cast<std::int16_t>(round_to_int(std::clamp(v, -1.0F, 1.0F) * 32767.0F));
 }

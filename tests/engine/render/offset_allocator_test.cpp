@@ -32,21 +32,6 @@ TEST(OffsetAllocator, merges_neighbours_in_any_order_of_freeing) {
   }
 }
 
-TEST(OffsetAllocator, keeps_its_word_about_the_largest_certain_size) {
-  OffsetAllocator allocator(1u << 16);
-  std::mt19937 random(7);
-  const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
-  for (int i = 0; i < 500; ++i) {
-    const std::uint32_t certain = allocator.largest_certain();
-    if (certain == 0) break;
-    EXPECT_GE(certain * 8ull, allocator.free_units() == (1u << 16) ? 7ull << 16 : 1ull);
-    const auto probe = allocator.allocate(certain);
-    ASSERT_TRUE(probe) << certain;
-    allocator.free(probe->node);
-    (void)allocator.allocate(1 + below(300));
-  }
-}
-
 // Against a map of what is allocated: no overlap, nothing outside, exact counts, all comes back.
 TEST(OffsetAllocator, behaves_like_a_simple_model_under_random_operations) {
   constexpr std::uint32_t kSize = 100'000;
