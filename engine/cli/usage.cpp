@@ -101,7 +101,8 @@ std::string about_option(CLI::App& command, const std::string& argument) {
 std::string about_extra(CLI::App& cli) {
   const std::string first = cli.remaining().front();
   if (first.starts_with('-')) {
-    const std::string near = core::suggestion(first, std::vector<std::string>{"--version", "--help"});
+    const std::string near =
+        core::suggestion(first, std::vector<std::string>{"--version", "--help"});
     return near.empty() ? in_quotes(first) + " stands before the command; options come after it"
                         : fmt::format("psygen has no option {}{}", in_quotes(first), near);
   }

@@ -19,10 +19,9 @@ core::Result<Value> named(const std::array<std::string_view, kCount>& names, std
   for (std::size_t i = 0; i < kCount; ++i) {
     if (names[i] == name) return static_cast<Value>(i);
   }
-  return core::fail(
-      core::ErrorCode::kInvalidArgument,
-      fmt::format("{} '{}' is unknown; allowed are {}{}", what, name, fmt::join(names, ", "),
-                  core::suggestion(name, names)));
+  return core::fail(core::ErrorCode::kInvalidArgument,
+                    fmt::format("{} '{}' is unknown; allowed are {}{}", what, name,
+                                fmt::join(names, ", "), core::suggestion(name, names)));
 }
 
 }  // namespace
