@@ -33,7 +33,7 @@ TEST(NearestWord, ASuggestionEndsAMessage) {
 
 TEST(NearestWord, NothingIsNearToAVeryLongWordOrAmongNoWords) {
   EXPECT_EQ(nearest_word(std::string(100'000, 'x'), std::vector<std::string>{"x"}), "");
-  EXPECT_EQ(nearest_word("count", {}), "");
+  EXPECT_EQ(nearest_word("count", std::vector<std::string>{}), "");
 }
 
 }  // namespace
