@@ -51,7 +51,8 @@ TEST(ShippedFiles, WhereThereIsNoSuchFileItIsToldWhereWasLookedAndWhatThereIs) {
     for (const std::string& words :
          {std::string("papre: there is no such file; looked in ") + folder.path().string(),
           std::string("/share/psygen/worlds"),
-          std::string("endless, five_species, lakes, paper, silver_combe"),
+          std::string("ember_pass, endless, five_species, frost_isle, lakes, paper, silver_combe, "
+                      "thorn_country"),
           std::string("did you mean paper?")})
       EXPECT_TRUE(mentions(world.err, words)) << command << "\n" << world.err;
   }

@@ -34,8 +34,9 @@ struct Loaded {
   }
 };
 
-inline constexpr const char* kWorldNames[] = {"paper", "endless", "lakes", "silver_combe",
-                                              "five_species"};
+inline constexpr const char* kWorldNames[] = {"paper",         "endless",      "lakes",
+                                              "silver_combe",  "five_species", "ember_pass",
+                                              "thorn_country", "frost_isle"};
 
 inline constexpr const char* kBounded = world::testing::kSmallWorld;
 

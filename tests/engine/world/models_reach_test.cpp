@@ -9,7 +9,8 @@ namespace psygen::world {
 namespace {
 
 TEST(ModelsReach, HoldsTheBoxesOfAllModels) {
-  for (const char* name : {"paper", "silver_combe", "five_species"}) {
+  for (const char* name :
+       {"paper", "silver_combe", "five_species", "ember_pass", "thorn_country", "frost_isle"}) {
     models::Registry models = models::make_standard_registry();
     const auto world =
         load_world(testing::game_file("worlds/" + std::string(name) + ".toml"), models);

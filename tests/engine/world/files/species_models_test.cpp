@@ -85,7 +85,9 @@ TEST_P(SpeciesModels, MeetTheOracleOnEveryInstructionSetAtEveryLevel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, SpeciesModels,
-                         ::testing::Values("five_species.toml", "silver_combe.toml"),
+                         ::testing::Values("five_species.toml", "silver_combe.toml",
+                                           "ember_pass.toml", "thorn_country.toml",
+                                           "frost_isle.toml"),
                          [](const auto& world) {
                            const std::string name = world.param;
                            return name.substr(0, name.find('.'));
