@@ -10,6 +10,7 @@ namespace psygen::core {
 namespace {
 
 constexpr std::size_t kMostBytes = 64;
+constexpr std::size_t kLeastBeginning = 3;
 
 std::string_view letters_of(std::string_view word) {
   return word.substr(std::min(word.find_first_not_of('-'), word.size()));
@@ -49,7 +50,8 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
   for (const std::string_view candidate : known) {
     const std::string_view letters = letters_of(candidate);
     if (letters.size() > kMostBytes) continue;
-    const std::size_t distance = edit_distance(word, letters);
+    const bool begun = word.size() >= kLeastBeginning && letters.starts_with(word);
+    const std::size_t distance = begun ? 1 : edit_distance(word, letters);
     if (distance < fewest) {
       fewest = distance;
       nearest = candidate;

@@ -385,7 +385,7 @@ TEST(CommandLine, ExportWritesASpeciesOfAWorld) {
   const std::string command = "export --world game/worlds/five_species.toml --model ";
   const Outcome oak = run_psygen(command + "oak --set seed=7 --set season=2 --out " + file);
   EXPECT_EQ(oak.code, 0) << oak.err;
-  EXPECT_TRUE(mentions(oak.err, "1 objects")) << oak.err;
+  EXPECT_TRUE(mentions(oak.err, "1 object,")) << oak.err;
   EXPECT_GT(std::filesystem::file_size(file), 10'000u);
   const Outcome elm = run_psygen(command + "elm --out " + file);
   EXPECT_EQ(elm.code, 2);

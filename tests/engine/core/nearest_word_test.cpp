@@ -16,11 +16,14 @@ TEST(NearestWord, FindsTyposAndNothingForOtherWords) {
 }
 
 TEST(NearestWord, AShortWordIsNearToFewAndASwapIsOneEdit) {
-  const std::vector<std::string> options{"--out", "--help", "--set-it", "tree"};
+  const std::vector<std::string> options{"--out", "--help", "--seed", "tree"};
   EXPECT_EQ(nearest_word("--set", options), "");
   EXPECT_EQ(nearest_word("--hepl", options), "--help");
   EXPECT_EQ(nearest_word("-help", options), "--help");
   EXPECT_EQ(nearest_word("tre", options), "tree");
+  EXPECT_EQ(nearest_word("walk", std::vector<std::string>{"wall", "walk27"}), "wall");
+  EXPECT_EQ(nearest_word("walk", std::vector<std::string>{"dash", "walk27"}), "walk27");
+  EXPECT_EQ(nearest_word("wa", std::vector<std::string>{"dash", "walk27"}), "");
   EXPECT_EQ(nearest_word("", options), "");
   EXPECT_EQ(nearest_word("--", options), "");
 }
