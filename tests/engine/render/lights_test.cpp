@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/render/on_a_path.hpp"
+#include "tests/engine/render/ways.hpp"
 
 namespace psygen::render {
 namespace {
@@ -113,10 +114,10 @@ TEST_P(PointLights, survive_a_change_of_preset) {
 
 INSTANTIATE_TEST_SUITE_P(
     OnEveryPath, PointLights,
-    testing::Values(How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                    How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kMedium},
-                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}));
+    in_ways<How>({How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                  How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kMedium},
+                  How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                  How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}}));
 
 }  // namespace
 }  // namespace psygen::render

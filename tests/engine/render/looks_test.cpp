@@ -10,6 +10,7 @@
 #include "engine/image/image_io.hpp"
 #include "engine/render/preset.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
+#include "tests/engine/render/ways.hpp"
 #include "tests/source_file.hpp"
 
 namespace psygen::render {
@@ -146,8 +147,8 @@ TEST_P(LooksOfPresets, spots_darken_near_ground_and_nothing_else) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, LooksOfPresets,
-                         testing::Values(Preset::kLow, Preset::kMedium, Preset::kHigh,
-                                         Preset::kUltra),
+                         in_ways<Preset>({Preset::kLow, Preset::kMedium, Preset::kHigh,
+                                          Preset::kUltra}),
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
 class LooksOfViews : public Looks, public testing::WithParamInterface<View> {};

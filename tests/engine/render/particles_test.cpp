@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/engine/render/on_a_path.hpp"
+#include "tests/engine/render/ways.hpp"
 
 namespace psygen::render {
 namespace {
@@ -209,11 +210,11 @@ TEST_P(Particles, of_many_emitters_are_bounded_and_survive_views_and_presets) {
   EXPECT_GT(changed(with_one(), with({})), 1000);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    OnEveryPath, Particles,
-    testing::Values(How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                    How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}));
+INSTANTIATE_TEST_SUITE_P(OnEveryPath, Particles,
+                         in_ways<How>({How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                                       How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                                       How{RenderPath::kGpu, Submission::kMultiDraw,
+                                           Preset::kHigh}}));
 
 }  // namespace
 }  // namespace psygen::render

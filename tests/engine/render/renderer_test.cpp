@@ -6,6 +6,7 @@
 
 #include "engine/core/clock.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
+#include "tests/engine/render/ways.hpp"
 
 namespace psygen::render {
 namespace {
@@ -315,8 +316,8 @@ TEST_P(RendererTest, waiting_is_not_among_the_time_of_recording) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Submissions, RendererTest,
-                         testing::Values(Submission::kAuto, Submission::kPushed,
-                                         Submission::kMultiDraw),
+                         in_ways<Submission>({Submission::kAuto, Submission::kPushed,
+                                              Submission::kMultiDraw}),
                          [](const testing::TestParamInfo<Submission>& suite) {
                            switch (suite.param) {
                              case Submission::kPushed:

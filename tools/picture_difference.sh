@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# How far pictures of the walk at sixty frames a second are from those at an error of half a pixel
+# with everything there, 1 - SSIM of 27 frames. Build release first; takes some minutes.
+#   tools/picture_difference.sh [PRESET [WORLD PATH]]     default: low paper walk27
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+preset="${1:-low}" world="${2:-paper}" path="${3:-walk27}"
+out="out/picture_difference"
+rm -rf "$out"
+fly() { # FOLDER OPTIONS…
+  local folder="$1"
+  shift
+  build/release/bin/psygen fly --headless --world "$world" --path "$path" --preset "$preset" --size 1280x720 \
+    --seconds 27 --fixed-step 60 --images 60 --out "$out/$folder" "$@" >/dev/null
+}
+fly seen --target-fps 60
+fly reference --paradigm lazy --error 0.5 --budget 2G
+build/release/bin/psygen_bench_pictures "$out/seen" "$out/reference"
