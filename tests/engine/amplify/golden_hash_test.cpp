@@ -52,6 +52,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Golden{"paper.toml", {511, 300}, 0x8a96fb08e69b1686},
                     Golden{"five_species.toml", {3, 5}, 0x580996f2d5081950},
                     Golden{"silver_combe.toml", {40, 41}, 0xbec40f1fac3851c3},
+                    Golden{"ember_pass.toml", {-9, 4}, 0x8fec569d442501b3},
+                    Golden{"thorn_country.toml", {2, -3}, 0x79a08cf8b65beb8b},
+                    Golden{"frost_isle.toml", {-11, 0}, 0x5f1856f4750cf847},
                     Golden{"endless.toml", {-7, 9}, 0x4c98949d3adb142e},
                     Golden{"endless.toml", {INT32_MAX, INT32_MIN}, 0xd9d578c3b3ad6ba1}));
 

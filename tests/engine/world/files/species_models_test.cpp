@@ -26,7 +26,7 @@ class SpeciesModels : public ::testing::TestWithParam<const char*> {
     ASSERT_TRUE(world) << world.error().message;
     for (const models::Species& s : world->species)
       names_.push_back(s.name);
-    ASSERT_GE(names_.size(), 4U);
+    ASSERT_FALSE(names_.empty());
   }
   void TearDown() override { models::unpin_simd_target(); }
 
