@@ -11,8 +11,8 @@ fly() { # FOLDER OPTIONS…
   local folder="$1"
   shift
   build/release/bin/psygen fly --headless --world "$world" --path "$path" --preset "$preset" --size 1280x720 \
-    --seconds 27 --fixed-step 60 --images 60 --out "$out/$folder" "$@" >/dev/null
+    --seconds 27 --out "$out/$folder" "$@" >/dev/null
 }
-fly seen --target-fps 60
-fly reference --paradigm lazy --error 0.5 --budget 2G
+fly seen --target-fps 60 --fixed-step 60 --images 60
+fly reference --paradigm lazy --error 0.5 --budget 2G --fixed-step 1 --images 1
 build/release/bin/psygen_bench_pictures "$out/seen" "$out/reference"

@@ -51,7 +51,8 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
     const std::string_view letters = letters_of(candidate);
     if (letters.size() > kMostBytes) continue;
     const bool begun = word.size() >= kLeastBeginning && letters.starts_with(word);
-    const std::size_t distance = begun ? 1 : edit_distance(word, letters);
+    const std::size_t edits = edit_distance(word, letters);
+    const std::size_t distance = begun ? std::min<std::size_t>(edits, 1) : edits;
     if (distance < fewest) {
       fewest = distance;
       nearest = candidate;

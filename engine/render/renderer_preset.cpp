@@ -5,6 +5,7 @@
 #include "engine/render/frame_data.hpp"
 #include "engine/render/progress.hpp"
 #include "engine/render/renderer_impl.hpp"
+#include "engine/render/warm_up.hpp"
 
 namespace psygen::render {
 

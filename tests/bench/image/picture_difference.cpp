@@ -1,6 +1,7 @@
 // How far the pictures of two flights differ to the eye, 1 - SSIM of each pair and their mean:
 //   psygen_bench_pictures FOLDER REFERENCE
-// Both folders have the pictures of psygen fly --images. tools/picture_difference.sh makes them.
+// Both folders have as many pictures of psygen fly --images, of the same places in the order of
+// their names. tools/picture_difference.sh makes them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,33 +23,33 @@ int fail(const std::string& why) {
 }
 
 std::vector<fs::path> pictures_in(const fs::path& folder) {
-  std::vector<fs::path> names;
+  std::vector<fs::path> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".png") names.push_back(entry.path().filename());
-  std::ranges::sort(names);
-  return names;
+    if (entry.path().extension() == ".png") files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 3) return fail("usage: psygen_bench_pictures FOLDER REFERENCE");
-  const fs::path seen = argv[1], reference = argv[2];
-  const std::vector<fs::path> names = pictures_in(seen);
-  if (names.empty() || names != pictures_in(reference))
-    return fail("both folders must have pictures of the same frames");
+  const std::vector<fs::path> seen = pictures_in(argv[1]), reference = pictures_in(argv[2]);
+  if (seen.empty() || seen.size() != reference.size())
+    return fail(fmt::format("{} and {} pictures: there must be as many of both, one at least",
+                            seen.size(), reference.size()));
   double sum = 0;
-  for (const fs::path& name : names) {
-    const auto a = image::read_image(seen / name), b = image::read_image(reference / name);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto a = image::read_image(seen[i]), b = image::read_image(reference[i]);
     if (!a || !b) return fail(!a ? a.error().message : b.error().message);
     if (a->width != b->width || a->height != b->height ||
         std::min(a->width, a->height) < image::kSimilarityWindow)
-      return fail(name.string() + ": the two pictures must have one size, 8 pixels at least");
+      return fail(seen[i].string() + ": the two pictures must have one size, 8 pixels at least");
     const double difference = 1 - image::structural_similarity(*a, *b);
-    fmt::print("{}  {:.4f}\n", name.string(), difference);
+    fmt::print("{}  {:.4f}\n", seen[i].filename().string(), difference);
     sum += difference;
   }
-  fmt::print("mean of {}  {:.4f}\n", names.size(), sum / static_cast<double>(names.size()));
+  fmt::print("mean of {}  {:.4f}\n", seen.size(), sum / static_cast<double>(seen.size()));
   return 0;
 }

@@ -23,6 +23,7 @@ TEST(NearestWord, AShortWordIsNearToFewAndASwapIsOneEdit) {
   EXPECT_EQ(nearest_word("tre", options), "tree");
   EXPECT_EQ(nearest_word("walk", std::vector<std::string>{"wall", "walk27"}), "wall");
   EXPECT_EQ(nearest_word("walk", std::vector<std::string>{"dash", "walk27"}), "walk27");
+  EXPECT_EQ(nearest_word("-world", std::vector<std::string>{"--worlds", "--world"}), "--world");
   EXPECT_EQ(nearest_word("wa", std::vector<std::string>{"dash", "walk27"}), "");
   EXPECT_EQ(nearest_word("", options), "");
   EXPECT_EQ(nearest_word("--", options), "");

@@ -15,7 +15,8 @@ using testing::Scene;
 class Walk : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(, Walk,
                          ::testing::Values("paper", "endless", "lakes", "silver_combe",
-                                           "five_species", "ember_pass", "thorn_country"),
+                                           "five_species", "ember_pass", "thorn_country",
+                                           "frost_isle"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_P(Walk, OfKilometresNeitherFallsThroughTheGroundNorGetsStuck) {

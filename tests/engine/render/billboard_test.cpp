@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "tests/engine/render/on_a_path.hpp"
-#include "tests/engine/render/ways.hpp"
 
 namespace psygen::render {
 namespace {
@@ -108,13 +107,7 @@ TEST_P(Billboard, LeansAwayFromWhoLooksFromAbove) {
   EXPECT_GT(row(above.bottom - 2), 2 * row(above.top + 2));
 }
 
-INSTANTIATE_TEST_SUITE_P(OnEveryPath, Billboard,
-                         in_ways<How>({How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                                       How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kLow},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                                       How{RenderPath::kCpu, Submission::kPushed, Preset::kHigh},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw,
-                                           Preset::kUltra}}));
+INSTANTIATE_TEST_SUITE_P(OnEveryPath, Billboard, in_every_way());
 
 }  // namespace
 }  // namespace psygen::render

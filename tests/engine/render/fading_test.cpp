@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "tests/engine/render/on_a_path.hpp"
-#include "tests/engine/render/ways.hpp"
 
 namespace psygen::render {
 namespace {
@@ -101,14 +100,7 @@ std::string name_of(const testing::TestParamInfo<How>& info) {
   return std::string(to_string(preset)) + (path == RenderPath::kGpu ? "_gpu_path" : "_cpu_path") +
          (submission == Submission::kPushed ? "_pushed" : "_multi_draw");
 }
-INSTANTIATE_TEST_SUITE_P(Ways, Fading,
-                         in_ways<How>({How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                                       How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kLow},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                                       How{RenderPath::kCpu, Submission::kPushed, Preset::kHigh},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw,
-                                           Preset::kUltra}}),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Ways, Fading, in_every_way(), name_of);
 
 }  // namespace
 }  // namespace psygen::render

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/render/on_a_path.hpp"
-#include "tests/engine/render/ways.hpp"
 
 namespace psygen::render {
 namespace {
@@ -112,12 +111,11 @@ TEST_P(PointLights, survive_a_change_of_preset) {
   EXPECT_GT(object_of(lit_by({{{0, 1, -8}, 30, glm::vec3(20.0F)}})), object_of(dark) + 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    OnEveryPath, PointLights,
-    in_ways<How>({How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                  How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kMedium},
-                  How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                  How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}}));
+INSTANTIATE_TEST_SUITE_P(OnEveryPath, PointLights,
+                         in_ways<How>({{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                                       {RenderPath::kCpu, Submission::kMultiDraw, Preset::kMedium},
+                                       {RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                                       {RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}}));
 
 }  // namespace
 }  // namespace psygen::render

@@ -10,7 +10,6 @@
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "tests/engine/render/on_a_path.hpp"
-#include "tests/engine/render/ways.hpp"
 #include "tests/source_file.hpp"
 
 namespace psygen::render {
@@ -219,14 +218,7 @@ TEST_P(Objects, of_all_kinds_look_as_they_did) {
   EXPECT_TRUE(image::matches_golden(compared)) << name << ": " << compared.share_over;
 }
 
-INSTANTIATE_TEST_SUITE_P(OnEveryPath, Objects,
-                         in_ways<How>({How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                                       How{RenderPath::kCpu, Submission::kMultiDraw, Preset::kLow},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                                       How{RenderPath::kCpu, Submission::kPushed, Preset::kHigh},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw,
-                                           Preset::kUltra}}));
+INSTANTIATE_TEST_SUITE_P(OnEveryPath, Objects, in_every_way());
 
 }  // namespace
 }  // namespace psygen::render

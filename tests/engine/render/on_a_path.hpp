@@ -10,10 +10,9 @@
 #include "engine/render/preset.hpp"
 #include "engine/render/render_path.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
+#include "tests/engine/render/ways.hpp"
 
 namespace psygen::render {
-
-using How = std::tuple<RenderPath, Submission, Preset>;
 
 class OnAPath : public testing::TestWithParam<How> {
  protected:

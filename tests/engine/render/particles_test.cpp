@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "tests/engine/render/on_a_path.hpp"
-#include "tests/engine/render/ways.hpp"
 
 namespace psygen::render {
 namespace {
@@ -211,10 +210,9 @@ TEST_P(Particles, of_many_emitters_are_bounded_and_survive_views_and_presets) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OnEveryPath, Particles,
-                         in_ways<How>({How{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                                       How{RenderPath::kGpu, Submission::kMultiDraw,
-                                           Preset::kHigh}}));
+                         in_ways<How>({{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                                       {RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                                       {RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}}));
 
 }  // namespace
 }  // namespace psygen::render

@@ -1,0 +1,187 @@
+#include "engine/render/targets.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/render/pipeline_build.hpp"
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+
+bool has_samples(const Targets& targets) {
+  return targets.samples.image.get() != VK_NULL_HANDLE;
+}
+
+// Moves the targets to the layouts of attachments, after all previous uses.
+void to_attachments(const Device& device, VkCommandBuffer commands, Targets& targets,
+                    PassPart part) {
+  if (part == PassPart::kWhole && targets.host_ordered &&
+      targets.colour_layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)
+    return;
+  VkImageMemoryBarrier2 colour = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  colour.srcStageMask =
+      VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
+  colour.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  colour.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  colour.dstAccessMask =
+      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
+  colour.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  VkImageMemoryBarrier2 depth = barrier_of(targets.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT);
+  depth.srcStageMask = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+  depth.srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+  depth.dstStageMask =
+      VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+  depth.dstAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+                        VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+  depth.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  if (part == PassPart::kSecond) {
+    colour.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
+    depth.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    depth.srcAccessMask = VK_ACCESS_2_NONE;
+  }
+  VkImageMemoryBarrier2 samples = colour;
+  samples.image = targets.samples.image.get();
+  const std::array barriers{colour, depth, samples};
+  VkDependencyInfo dependency{};
+  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  dependency.imageMemoryBarrierCount = has_samples(targets) ? 3 : 2;
+  dependency.pImageMemoryBarriers = barriers.data();
+  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+  targets.colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+}
+
+void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& targets) {
+  if (targets.colour_layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL) return;
+  VkImageMemoryBarrier2 barrier = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  barrier.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT;
+  barrier.oldLayout = targets.colour_layout;
+  barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+  image_barrier(device, commands, barrier);
+  targets.colour_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+}
+
+constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+
+// The depth pyramid reads depth, if the device supports it.
+VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits samples) {
+  const bool readable = (device.sampled_depth_counts & samples) != 0;
+  VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if (readable) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+  return usage;
+}
+
+}  // namespace
+
+Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
+                             VkSampleCountFlagBits samples) {
+  Targets targets;
+  targets.extent = extent;
+  Result<Image> colour = make_image(
+      device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+      VK_IMAGE_ASPECT_COLOR_BIT);
+  if (!colour) return tl::unexpected(colour.error());
+  targets.colour = std::move(*colour);
+  Result<Image> depth = make_image(device, extent, kDepthFormat, depth_usage(device, samples),
+                                   VK_IMAGE_ASPECT_DEPTH_BIT, {.samples = samples});
+  if (!depth) return tl::unexpected(depth.error());
+  targets.depth = std::move(*depth);
+  if (samples == VK_SAMPLE_COUNT_1_BIT) return targets;
+  Result<Image> drawn = make_image(device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+                                   VK_IMAGE_ASPECT_COLOR_BIT, {.samples = samples});
+  if (!drawn) return tl::unexpected(drawn.error());
+  targets.samples = std::move(*drawn);
+  return targets;
+}
+
+void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets, PassPart part) {
+  to_attachments(device, commands, targets, part);
+  VkRenderingAttachmentInfo colour_info{};
+  colour_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  colour_info.imageView = targets.colour.view.get();
+  colour_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  colour_info.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  // the sky covers all other pixels
+  colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  if (has_samples(targets)) {
+    colour_info.imageView = targets.samples.view.get();
+    colour_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    colour_info.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+    colour_info.resolveImageView = targets.colour.view.get();
+    colour_info.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  }
+  if (part == PassPart::kFirst) {
+    colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    colour_info.resolveMode = VK_RESOLVE_MODE_NONE;
+  }
+  VkRenderingAttachmentInfo depth_info{};
+  depth_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  depth_info.imageView = targets.depth.view.get();
+  depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;  // to 0, infinitely far
+  depth_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  if (part == PassPart::kFirst) depth_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  if (part == PassPart::kSecond)
+    colour_info.loadOp = depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+  const VkRect2D area{{0, 0}, {targets.extent.width, targets.extent.height}};
+  VkRenderingInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  info.renderArea = area;
+  info.layerCount = 1;
+  info.colorAttachmentCount = 1;
+  info.pColorAttachments = &colour_info;
+  info.pDepthAttachment = &depth_info;
+  device.vk.vkCmdBeginRendering(commands, &info);
+  const VkViewport viewport{0.0F,
+                            0.0F,
+                            static_cast<float>(targets.extent.width),
+                            static_cast<float>(targets.extent.height),
+                            0.0F,
+                            1.0F};
+  device.vk.vkCmdSetViewport(commands, 0, 1, &viewport);
+  device.vk.vkCmdSetScissor(commands, 0, 1, &area);
+}
+
+void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,
+                           VkImage window, core::Extent window_extent) {
+  to_copy_source(device, commands, targets);
+  VkImageMemoryBarrier2 barrier = barrier_of(window, VK_IMAGE_ASPECT_COLOR_BIT);
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;  // the stage that waits for the image
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  image_barrier(device, commands, barrier);
+  VkImageCopy copy{};
+  copy.srcSubresource = kColourLayer;
+  copy.dstSubresource = kColourLayer;
+  copy.extent = {std::min(targets.extent.width, window_extent.width),
+                 std::min(targets.extent.height, window_extent.height), 1};
+  device.vk.vkCmdCopyImage(commands, targets.colour.image.get(),
+                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, window,
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+  barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_NONE;
+  barrier.dstAccessMask = VK_ACCESS_2_NONE;
+  barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  barrier.newLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
+  image_barrier(device, commands, barrier);
+}
+
+void record_copy_to_buffer(const Device& device, VkCommandBuffer commands, Targets& targets,
+                           VkBuffer buffer) {
+  to_copy_source(device, commands, targets);
+  VkBufferImageCopy copy{};
+  copy.imageSubresource = kColourLayer;
+  copy.imageExtent = {targets.extent.width, targets.extent.height, 1};
+  device.vk.vkCmdCopyImageToBuffer(commands, targets.colour.image.get(),
+                                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &copy);
+  memory_barrier(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,40 @@
+// The images that a frame is drawn to: making them, beginning a pass on them, and copying the
+// picture out. Knows nothing of what is drawn. Main thread. Private to engine/render.
+#pragma once
+
+#include "engine/render/device.hpp"
+#include "engine/render/memory.hpp"
+
+namespace psygen::render {
+
+// The images of a picture: colour, which can be copied out, and depth, which is discarded after the
+// last pass. With several samples per pixel, `samples` is drawn to and `colour` gets their mean.
+struct Targets {
+  Image colour, depth;
+  Image samples;  // empty with one sample per pixel
+  core::Extent extent;
+  VkImageLayout colour_layout = VK_IMAGE_LAYOUT_UNDEFINED;  // after the last recorded frame
+  // The host waits for the last frame in these targets before it submits the next one, so no
+  // barrier is needed between them. On lavapipe a barrier waits for everything. Without it, the
+  // triangles of one frame are set up while the pixels of the last one are filled.
+  bool host_ordered = false;
+};
+// Creates targets of `extent` pixels. Fails with kOutOfMemory.
+core::Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
+                                   VkSampleCountFlagBits samples);
+
+// A frame has one pass, or two with a read of depth in between.
+enum class PassPart : std::uint8_t { kWhole, kFirst, kSecond };
+// Moves the targets to the layouts of attachments, after all previous uses, and begins a pass on
+// all of them. Depth is cleared; whatever draws must cover every pixel.
+void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets,
+                PassPart part = PassPart::kWhole);
+
+// Copies the colour target to a swapchain image and makes that ready to be presented.
+void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,
+                           VkImage window, core::Extent window_extent);
+// Copies the colour target into a buffer of width · height · 4 bytes.
+void record_copy_to_buffer(const Device& device, VkCommandBuffer commands, Targets& targets,
+                           VkBuffer buffer);
+
+}  // namespace psygen::render
