@@ -20,8 +20,8 @@ export TSAN_OPTIONS="suppressions=$PWD/tools/tsan.supp:halt_on_error=1:second_de
 export UBSAN_OPTIONS="print_stacktrace=1"
 
 # The presets leave out tests that run for an hour (label long). Under sanitizers they leave out
-# those of pictures, because other tests run the same code; under tsan also those where neither the
-# code nor the test knows threads.
+# those of pictures, because other tests run the same code; under tsan also those of the renderer
+# alone, where only the driver has threads, and those where neither the code nor the test knows any.
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"
 ctest --preset "$preset" --parallel 2 "$@"

@@ -2,9 +2,10 @@
 // flight several times, of each tick the median of the times, so that what other programs do to one
 // tick does not count. After each tick the modelers finish what they were given, as they do during
 // a frame that is drawn. Prints a table. With EDITS, every flight is also flown with so many edits
-// all over the world (removed, moved and raised), in turns, and a second table follows.
+// all over the world (removed, moved and raised), in turns, and a second table follows. With the
+// word "draw" pictures of 1280 × 720 are drawn, and `render` and the last row include that.
 //
-//   psygen_bench_scene [PATH [WORLD [HZ [FLIGHTS [EDITS]]]]]
+//   psygen_bench_scene [PATH [WORLD [HZ [FLIGHTS [EDITS [draw]]]]]]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
@@ -57,13 +59,13 @@ world::Edits edits_of(const world::World& world, const models::Registry& registr
   return edits;
 }
 
-// By system, by tick. The path leads over the ground without edits.
+// By system, by tick. The path leads over the ground without edits. `renderer` may be null.
 std::vector<std::vector<double>> fly(const world::World& world, const world::Edits& edits,
                                      const world::CameraPath& path, double hz,
-                                     std::vector<std::string>& names) {
+                                     render::Renderer* renderer, std::vector<std::string>& names) {
   Settings settings;
   settings.modelers = 1;
-  auto made = Scene::create(world, models::make_standard_registry(), settings, nullptr);
+  auto made = Scene::create(world, models::make_standard_registry(), settings, renderer);
   if (!made) return {};
   Scene& scene = **made;
   scene.edit(edits);
@@ -103,33 +105,34 @@ void print(const std::string& name, const std::vector<double>& ms) {
 // What the flights with some edits took.
 struct Flights {
   std::vector<std::vector<std::vector<double>>> systems;  // by system, by flight, by tick
-  std::vector<std::vector<double>> sums;                  // of all systems but render
+  std::vector<std::vector<double>> sums;                  // of all systems, render if it draws
 
   bool fly(const world::World& world, const world::Edits& edits, const world::CameraPath& path,
-           double hz, std::vector<std::string>& names) {
-    auto times = scene::fly(world, edits, path, hz, names);
+           double hz, render::Renderer* renderer, std::vector<std::string>& names) {
+    auto times = scene::fly(world, edits, path, hz, renderer, names);
     if (times.empty()) return false;
     systems.resize(names.size());
     std::vector<double> sum(times.front().size(), 0.0);
     for (std::size_t k = 0; k < names.size(); ++k) {
       for (std::size_t i = 0; i < sum.size(); ++i)
-        sum[i] += names[k] == "render" ? 0.0 : times[k][i];
+        sum[i] += names[k] == "render" && renderer == nullptr ? 0.0 : times[k][i];
       systems[k].push_back(std::move(times[k]));
     }
     sums.push_back(std::move(sum));
     return true;
   }
 
-  void print(const std::vector<std::string>& names, const std::string& title) const {
+  void print(const std::vector<std::string>& names, const std::string& title,
+             const std::string& sum) const {
     fmt::print("{:<16} {:>9} {:>9} {:>9} {:>9}\n", title, "p50", "p95", "p99", "max");
     for (std::size_t k = 0; k < names.size(); ++k)
       scene::print(names[k], typical(systems[k]));
-    scene::print("all but render", typical(sums));
+    scene::print(sum, typical(sums));
   }
 };
 
 int run(const std::string& path_file, const std::string& world_file, double hz, int flights,
-        long edit_count) {
+        long edit_count, bool draws) {
   const models::Registry registry = models::make_standard_registry();
   const auto world = world::load_world(world_file, registry);
   const auto path = world::load_camera_path(path_file);
@@ -140,17 +143,27 @@ int run(const std::string& path_file, const std::string& world_file, double hz, 
                        : "HZ and FLIGHTS must be above 0");
     return 2;
   }
+  std::unique_ptr<render::Renderer> renderer;
+  if (draws) {
+    auto made = render::Renderer::create({});
+    if (!made) {
+      fmt::print(stderr, "{}\n", made.error().message);
+      return 1;
+    }
+    renderer = std::move(*made);
+  }
   std::vector<std::string> names;
   Flights plain, edited;
   const core::Stopwatch making(false);
   const world::Edits edits = edits_of(*world, registry, edit_count);
   if (edit_count > 0) fmt::print("{} edits in {:.1f} s\n", edit_count, making.seconds());
   for (int flight = 0; flight < flights; ++flight) {
-    if (!plain.fly(*world, {}, *path, hz, names)) return 1;
-    if (edit_count > 0 && !edited.fly(*world, edits, *path, hz, names)) return 1;
+    if (!plain.fly(*world, {}, *path, hz, renderer.get(), names)) return 1;
+    if (edit_count > 0 && !edited.fly(*world, edits, *path, hz, renderer.get(), names)) return 1;
   }
-  plain.print(names, "system, ms");
-  if (edit_count > 0) edited.print(names, "edited, ms");
+  const std::string sum = draws ? "all" : "all but render";
+  plain.print(names, "system, ms", sum);
+  if (edit_count > 0) edited.print(names, "edited, ms", sum);
   return 0;
 }
 
@@ -165,5 +178,5 @@ int main(int argc, char** argv) {
   return psygen::scene::run(
       argument(1, kGame + "paths/walk27.toml"), argument(2, kGame + "worlds/paper.toml"),
       std::atof(argument(3, "30").c_str()), std::atoi(argument(4, "5").c_str()),
-      std::atol(argument(5, "0").c_str()));
+      std::atol(argument(5, "0").c_str()), argument(6, "") == "draw");
 }
