@@ -15,7 +15,11 @@
 #include <ctime>
 #include <string>
 
+#include "tests/next_function.hpp"
+
 namespace {
+
+using psygen::next;
 
 constexpr long kUnlimited = LONG_MAX;
 
@@ -24,12 +28,6 @@ std::atomic<long> calls_left{kUnlimited};
 std::atomic<long> threads_left{kUnlimited};
 std::atomic<const char*> threads_of{"libstdc++"};
 std::atomic<double> monotonic_off_s{0}, boot_off_s{0};
-
-// The function of this name that would have been called: the C library's, or a sanitizer's.
-template <class Function>
-Function* next(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
 
 // Whether this call is one too many for what is left.
 bool runs_out(std::atomic<long>& left) {

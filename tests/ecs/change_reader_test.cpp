@@ -12,10 +12,6 @@ namespace {
 
 using namespace test;
 
-std::vector<Entity> copy(std::span<const Entity> entities) {
-  return {entities.begin(), entities.end()};
-}
-
 std::vector<Entity> drained(ChangeReader<Mesh>& reader) {
   std::vector<Entity> all;
   reader.drain([&](std::span<const Entity> entities, std::span<const Mesh> meshes) {

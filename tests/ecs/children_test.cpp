@@ -8,10 +8,6 @@
 namespace psygen::ecs::test {
 namespace {
 
-std::vector<Entity> copy(std::span<const Entity> entities) {
-  return {entities.begin(), entities.end()};
-}
-
 TEST(Children, a_thousand_parents_make_two_tables) {
   World world;
   const std::vector<Entity> parents = copy(world.create<Children, Position>(1000).entities);

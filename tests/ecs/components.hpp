@@ -1,10 +1,13 @@
 // Component types that the tests of ecs share: plain, tracked, sparse, empty, over-aligned,
-// move-only and throwing ones. Not thread-safe: Throwing counts in plain static members.
+// move-only and throwing ones; and copies of entities. Not thread-safe: Throwing counts in plain
+// static members.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "ecs/ecs.hpp"
 
@@ -65,6 +68,11 @@ struct Fused : Throwing {};
 // Two types with the same name.
 struct Twin {};
 struct OtherTwin {};
+
+// Entities for as long as a test needs them: spans of the world's own end with its next change.
+inline std::vector<Entity> copy(std::span<const Entity> entities) {
+  return {entities.begin(), entities.end()};
+}
 
 }  // namespace psygen::ecs::test
 

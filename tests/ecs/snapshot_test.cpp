@@ -16,10 +16,6 @@
 namespace psygen::ecs::test {
 namespace {
 
-std::vector<Entity> copy(std::span<const Entity> entities) {
-  return {entities.begin(), entities.end()};
-}
-
 void declare_all(World& world) {
   world.declare<Creature, Position, Mesh, Hidden, Selected, Edited, Children>();
 }

@@ -9,10 +9,6 @@
 namespace psygen::ecs::test {
 namespace {
 
-std::vector<Entity> copy(std::span<const Entity> entities) {
-  return {entities.begin(), entities.end()};
-}
-
 TEST(SparseSet, toggling_moves_no_row_and_makes_no_table) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(100).entities);

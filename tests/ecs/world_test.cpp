@@ -12,10 +12,6 @@ namespace {
 
 using namespace test;
 
-std::vector<Entity> copy(std::span<const Entity> entities) {
-  return {entities.begin(), entities.end()};
-}
-
 TEST(World, created_columns_are_contiguous_aligned_and_value_initialised) {
   World world;
   for (int round = 0; round < 3; ++round) {

@@ -21,13 +21,13 @@ using platform::InputState;
 using platform::Key;
 using platform::MouseButton;
 
-constexpr core::Extent kPicture{640, 360};
+constexpr core::Extent kGuiSize{640, 360};
 
 class GuiOfAPerson : public testing::Test {
  protected:
   // Draws a window at 100, 50 of 200 × 150 pixels, with a button and a text field.
   const ImDrawData* frame() {
-    gui_.begin(input_, kPicture, 1, 1.0 / 60);
+    gui_.begin(input_, kGuiSize, 1, 1.0 / 60);
     ImGui::SetNextWindowPos({100, 50});
     ImGui::SetNextWindowSize({200, 150});
     ImGui::Begin("window");
@@ -112,14 +112,14 @@ TEST_F(GuiOfAPerson, IsDrawnAsTrianglesInsideThePicture) {
   const ImDrawData* drawn = frame();
   std::vector<shaders::OverlayVertex> out(6);
   std::vector<render::GuiRun> runs;
-  overlay_.lay_out(*drawn, kPicture, out, runs);
+  overlay_.lay_out(*drawn, kGuiSize, out, runs);
   ASSERT_FALSE(runs.empty());
   std::size_t next = 6, letters = 0;
   for (const render::GuiRun& run : runs) {
     EXPECT_EQ(run.first_vertex, next) << "after what was there";
     next += run.vertex_count;
-    EXPECT_LE(run.x + run.width, kPicture.width);
-    EXPECT_LE(run.y + run.height, kPicture.height);
+    EXPECT_LE(run.x + run.width, kGuiSize.width);
+    EXPECT_LE(run.y + run.height, kGuiSize.height);
   }
   EXPECT_EQ(next, out.size());
   for (std::size_t i = 6; i < out.size(); ++i)

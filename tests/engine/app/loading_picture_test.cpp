@@ -10,7 +10,7 @@
 namespace psygen::app {
 namespace {
 
-constexpr core::Extent kPicture{1280, 720};
+constexpr core::Extent kLoadingSize{1280, 720};
 
 const render::HudText* find(const render::HudDrawing& drawing, std::string_view text) {
   const auto found = std::ranges::find(drawing.texts, text, &render::HudText::text);
@@ -18,7 +18,8 @@ const render::HudText* find(const render::HudDrawing& drawing, std::string_view 
 }
 
 TEST(LoadingPicture, SaysWhichWorldWhatGoesOnAndHowFar) {
-  const render::HudDrawing drawing = loading_picture("silver combe", "growing", 0.424, kPicture);
+  const render::HudDrawing drawing =
+      loading_picture("silver combe", "growing", 0.424, kLoadingSize);
   ASSERT_NE(find(drawing, "silver combe"), nullptr);
   ASSERT_NE(find(drawing, "growing"), nullptr);
   EXPECT_NE(find(drawing, "42 %"), nullptr);
@@ -27,7 +28,7 @@ TEST(LoadingPicture, SaysWhichWorldWhatGoesOnAndHowFar) {
 
 TEST(LoadingPicture, HasABarAsLongAsWhatIsDone) {
   const auto bar = [](double fraction) {
-    return loading_picture("w", "l", fraction, kPicture).areas.back().size.share.x;
+    return loading_picture("w", "l", fraction, kLoadingSize).areas.back().size.share.x;
   };
   EXPECT_EQ(bar(0), 0);
   EXPECT_NEAR(bar(0.5), bar(1) / 2, 1e-6);
@@ -50,7 +51,7 @@ TEST(LoadingPicture, KeepsALongNameInThePictureAndFollowsItsHeight) {
 
 TEST(LoadingPicture, WritesANameSmallerBeforeItIsShortened) {
   const std::string name(30, 'W');
-  const render::HudDrawing drawing = loading_picture(name, "l", 0, kPicture);
+  const render::HudDrawing drawing = loading_picture(name, "l", 0, kLoadingSize);
   ASSERT_NE(find(drawing, name), nullptr);
   EXPECT_LT(find(drawing, name)->size_px, 60);
 }
@@ -58,7 +59,7 @@ TEST(LoadingPicture, WritesANameSmallerBeforeItIsShortened) {
 TEST(LoadingPicture, HasHillsOfItsOwnForEachWorld) {
   const auto tops = [](std::string_view world) {
     std::vector<float> all;
-    for (const render::HudArea& area : loading_picture(world, "l", 0, kPicture).areas)
+    for (const render::HudArea& area : loading_picture(world, "l", 0, kLoadingSize).areas)
       all.push_back(area.at.share.y);
     return all;
   };

@@ -7,7 +7,7 @@ namespace psygen::app {
 namespace {
 
 // Coarse ground hides as much as fine.
-SessionOptions coarse_view() {
+SessionOptions occlusion_view() {
   SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 5000;
@@ -40,7 +40,7 @@ std::uint64_t differing(Studio& studio, const core::CameraPose& pose, std::uint3
 TEST(Occlusion, MakesNoDifferenceOnTheWalk) {
   const auto path = world::load_camera_path(kWalk);
   ASSERT_TRUE(path);
-  Studio studio("paper.toml", coarse_view());
+  Studio studio("paper.toml", occlusion_view());
   std::uint32_t hidden = 0;
   for (const double seconds : {1.0, 3.0, 5.0, 9.0, 11.0, 13.5, 16.0, 18.0, 20.0, 22.0, 25.0}) {
     const core::CameraPose pose = path->pose_at(seconds, studio.state().facts.world);
@@ -52,7 +52,7 @@ TEST(Occlusion, MakesNoDifferenceOnTheWalk) {
 class OcclusionOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(OcclusionOf, MakesNoDifferenceToAnyPicture) {
-  Studio studio(GetParam(), coarse_view());
+  Studio studio(GetParam(), occlusion_view());
   std::uint32_t hidden = 0;
   int turn = 0;
   for (const core::BlockCoord block :

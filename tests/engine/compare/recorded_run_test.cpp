@@ -6,7 +6,7 @@
 namespace psygen::compare {
 namespace {
 
-const std::string kSummary =
+const std::string kRunSummary =
     R"({"schema": "psygen.summary/1", "run": {"width": 640, "height": 360, "fixed_step": 30,
         "warmup_seconds": 0.05}, "hash": {"world": "00ab", "images": null}})";
 const std::string kHeader =
@@ -16,13 +16,13 @@ const std::string kRows =
     "0,0.000,90,1,,4,9,9,9\n1,0.033,10,1,picture,4,0,0,0\n2,0.067,10,1,,4,1,2,1\n"
     "3,0.100,11,1,,6,0,0,0\n4,0.133,6000,1,,5,0,1,0\n";
 
-std::string refusal(const std::string& csv, const std::string& summary = kSummary) {
+std::string refusal(const std::string& csv, const std::string& summary = kRunSummary) {
   const auto run = parse_run(csv, summary, "dir");
   return run ? "taken" : run.error().message;
 }
 
 TEST(RecordedRun, HoldsTheFramesAfterTheWarmUp) {
-  const auto run = parse_run(kHeader + kRows, kSummary, "dir");
+  const auto run = parse_run(kHeader + kRows, kRunSummary, "dir");
   ASSERT_TRUE(run) << run.error().message;
   EXPECT_THAT(run->frame_ms, testing::ElementsAre(10, 11, 6000));
   EXPECT_DOUBLE_EQ(run->missing_percent, 1);
@@ -35,7 +35,7 @@ TEST(RecordedRun, HoldsTheFramesAfterTheWarmUp) {
 }
 
 TEST(RecordedRun, LeavesOutFramesInWhichTheMachineWasSuspended) {
-  const auto run = parse_run(kHeader + kRows, kSummary, "dir");
+  const auto run = parse_run(kHeader + kRows, kRunSummary, "dir");
   ASSERT_TRUE(run);
   EXPECT_EQ(run->suspended, 1u);
   EXPECT_THAT(run->left_out, testing::ElementsAre(false, false, true));
@@ -72,7 +72,7 @@ TEST(RecordedRun, SurvivesChangedBytesAndCuts) {
   const auto next = [&random] { return random = random * 1664525U + 1013904223U, random >> 8; };
   int taken = 0;
   for (int round = 0; round < 3000; ++round) {
-    std::string csv = kHeader + kRows, summary = kSummary;
+    std::string csv = kHeader + kRows, summary = kRunSummary;
     std::string& text = round % 2 == 0 ? csv : summary;
     for (unsigned changes = 1 + next() % 3; changes > 0; --changes)
       text[next() % text.size()] = static_cast<char>(next());

@@ -14,12 +14,12 @@ namespace {
 const std::string kFrames =
     "frame,time_s,frame_ms,present_ms,gpu_ms,apart,cache_bytes\n0,0.0,10.0000,1.5,5.0,,1073741824\n"
     "1,0.1,20.0000,,,not_drawn,0\n";
-const std::string kSummary =
+const std::string kViewerSummary =
     R"j({"device": {"name": "llvmpipe (LLVM 15.0.6, 256 bits)", "driver": "Mesa 22"},
         "world": {"name": "a \"wood\""}})j";
 
 std::string converted(Viewer viewer, const std::string& frames = kFrames) {
-  const auto text = viewer_csv(viewer, frames, kSummary, "dir");
+  const auto text = viewer_csv(viewer, frames, kViewerSummary, "dir");
   return text ? *text : text.error().message;
 }
 

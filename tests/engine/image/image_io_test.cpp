@@ -14,7 +14,7 @@ namespace {
 
 using core::ErrorCode;
 
-const std::filesystem::path kJpeg = source_file("tests/engine/image/data/two_halves.jpg");
+const std::filesystem::path kJpegFile = source_file("tests/engine/image/data/two_halves.jpg");
 
 void put_big_endian(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i)
@@ -55,7 +55,7 @@ TEST(ImageIo, APngComesBackBitForBitWithItsAlpha) {
 
 TEST(ImageIo, ReadsAJpegWhateverItIsCalled) {
   const TemporaryFolder folder;
-  std::filesystem::copy_file(kJpeg, folder / "picture.png");
+  std::filesystem::copy_file(kJpegFile, folder / "picture.png");
   const auto read = read_image(folder / "picture.png");
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->width, 24U);
@@ -78,7 +78,7 @@ TEST(ImageIo, RefusesAHugeHeaderInASmallFileBeforeAllocating) {
 
 TEST(ImageIo, RefusesAHugeJpegHeaderBeforeTheDecoderSeesIt) {
   const TemporaryFolder folder;
-  std::vector<std::uint8_t> bytes = bytes_of(kJpeg);
+  std::vector<std::uint8_t> bytes = bytes_of(kJpegFile);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::size_t frame = text.find("\xFF\xC0");
   ASSERT_NE(frame, std::string_view::npos);
@@ -123,7 +123,7 @@ TEST(ImageIo, AnyDamagedByteGivesAPictureOfTheSameSizeOrAnError) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", noise_image(5, 5)));
   // Every byte of the PNG; every fifth of the JPEG, whose decoder goes on after damage.
-  for (const std::vector<std::uint8_t>& bytes : {bytes_of(folder / "a.png"), bytes_of(kJpeg)}) {
+  for (const std::vector<std::uint8_t>& bytes : {bytes_of(folder / "a.png"), bytes_of(kJpegFile)}) {
     for (std::size_t i = 0; i < bytes.size(); i += bytes[0] == 0xFF ? 5 : 1) {
       std::vector<std::uint8_t> damaged = bytes;
       damaged[i] ^= static_cast<std::uint8_t>(1U << (i % 8));

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 constexpr double kStepS = 1.0 / 60;
 
-Actions game() {
+Actions recording_actions() {
   Actions actions;
   EXPECT_TRUE(actions.add("jump", {{Key::kSpace}}));
   EXPECT_TRUE(actions.add("move_x", {{Key::kD}, {PadWay::kLeftStickLeft, -1}}));
@@ -35,7 +35,7 @@ struct Played {
 
 // A person who does something every now and then.
 Played play(int steps) {
-  Actions actions = game();
+  Actions actions = recording_actions();
   Person person;
   std::mt19937 random(3);
   Played played{Recording(actions, kStepS), {}};
@@ -70,7 +70,7 @@ TEST(Recording, ReplaysTheVerySameStatesFromItsFile) {
   auto loaded = Recording::load(file);
   ASSERT_TRUE(loaded) << loaded.error().message;
   EXPECT_EQ(loaded->steps(), played.states.size());
-  Actions actions = game();
+  Actions actions = recording_actions();
   auto replay = Replay::create(std::move(*loaded), actions, kStepS);
   ASSERT_TRUE(replay) << replay.error().message;
   for (const auto& states : played.states) {
@@ -98,7 +98,7 @@ TEST(Recording, AppliesToActionsInAnotherOrderAndWithMoreOfThem) {
 }
 
 TEST(Recording, TakesNoSpaceWhereNothingHappens) {
-  Actions actions = game();
+  Actions actions = recording_actions();
   Recording recording(actions, kStepS);
   const std::size_t empty = recording.bytes().size();
   for (int i = 0; i < 100'000; ++i)
@@ -116,7 +116,7 @@ TEST(Recording, RefusesActionsAndStepsThatTheGameHasNot) {
   ASSERT_TRUE(other.add("jump"));
   EXPECT_THAT(Replay::create(played.recording, other, kStepS).error().message,
               HasSubstr("\"move_x\""));
-  EXPECT_THAT(Replay::create(played.recording, game(), 1.0 / 30).error().message,
+  EXPECT_THAT(Replay::create(played.recording, recording_actions(), 1.0 / 30).error().message,
               HasSubstr("60 steps a second"));
 }
 
@@ -161,7 +161,7 @@ TEST(Recording, RefusesWhatContradictsItselfAlthoughItsHashIsRight) {
       ++refused;
       continue;
     }
-    Actions actions = game();
+    Actions actions = recording_actions();
     auto replay = Replay::create(*parsed, actions, parsed->step_s());
     for (int step = 0; replay && step < 100 && replay->step(actions); ++step)
       EXPECT_TRUE(std::isfinite(actions.state(0).value));

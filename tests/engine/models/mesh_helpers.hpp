@@ -1,12 +1,15 @@
 // Meshes for tests: synthesised between canary bytes that show any write beyond the destination,
-// with their shared indices, and legal random parameters. Knows no particular model.
+// with their shared indices, legal random parameters, and the last block. Knows no particular
+// model.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -14,6 +17,9 @@
 #include "engine/models/model_type.hpp"
 
 namespace psygen::models::test {
+
+// The index of the last block along either axis.
+inline constexpr std::int64_t kFar = std::numeric_limits<std::int32_t>::max();
 
 struct Mesh {
   MeshSize size;

@@ -1,6 +1,8 @@
 // A shipped world with its queries and physics, for tests.
 #pragma once
 
+#include <limits>
+
 #include "engine/physics/world.hpp"
 #include "tests/engine/query/worlds.hpp"
 
@@ -11,6 +13,7 @@ using query::testing::kWorldNames;
 using query::testing::Loaded;
 
 inline constexpr double kStep = 1.0 / 60;
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Loaded first, as queries and physics refer to it.
 struct Scene {

@@ -11,10 +11,9 @@ namespace {
 using testing::ball;
 using testing::box;
 using testing::kBounded;
+using testing::kNan;
 using testing::Loaded;
 using testing::Scene;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(PhysicsBodies, FallByGravityAndComeToRestOnTheGround) {
   Scene scene(Loaded::shipped("silver_combe"));

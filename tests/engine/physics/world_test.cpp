@@ -14,11 +14,10 @@ namespace {
 
 using testing::ball;
 using testing::box;
+using testing::kNan;
 using testing::kStep;
 using testing::Loaded;
 using testing::Scene;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // All bits of a simulation of some seconds: bodies that meet each other and models, and characters
 // among them.

@@ -10,15 +10,16 @@
 #include <numbers>
 #include <random>
 
+#include "tests/engine/query/triangles.hpp"
 #include "tests/engine/query/worlds.hpp"
 
 namespace psygen::query {
 namespace {
 
 using models::Collider;
+using testing::kNan;
 using testing::Loaded;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 Collider of(Collider::Shape shape) {

@@ -8,12 +8,13 @@
 #include <limits>
 
 #include "engine/core/hash.hpp"
+#include "tests/engine/query/triangles.hpp"
 
 namespace psygen::query {
 namespace {
 
 using models::Collider;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+using testing::kNan;
 
 Solid solid_of(Collider::Shape shape) {
   Collider collider;

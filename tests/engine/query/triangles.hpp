@@ -1,11 +1,14 @@
-// Lines and triangles, for tests of rays.
+// Lines, triangles and what is no number, for tests of rays.
 #pragma once
 
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 
 namespace psygen::query::testing {
+
+inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Where a line crosses a triangle's plane inside it (Möller and Trumbore), or a negative value.
 // `slack` widens the triangle, relative to its size.

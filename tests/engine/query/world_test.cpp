@@ -21,7 +21,7 @@ using testing::kWorldNames;
 using testing::Loaded;
 using testing::some_block;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The triangles of the finest mesh of a block's ground, in metres from its corner.
@@ -137,7 +137,7 @@ TEST(QueryWorld, RefusesPositionsDirectionsAndSizesThatAreNotNumbers) {
   World query(loaded.world, loaded.registry);
   const core::WorldPosition sound{{1, 1}, {5, 80, 5}};
   std::vector<NearModel> out;
-  for (const double bad : {kNan, kInfinity, -kInfinity, 1e300}) {
+  for (const double bad : {kNoNumber, kInfinity, -kInfinity, 1e300}) {
     for (int axis = 0; axis < 3; ++axis) {
       core::WorldPosition at = sound;
       at.local[axis] = bad;
@@ -148,11 +148,11 @@ TEST(QueryWorld, RefusesPositionsDirectionsAndSizesThatAreNotNumbers) {
     }
   }
   for (const glm::dvec3& direction :
-       {glm::dvec3(0), glm::dvec3(0, kNan, 0), glm::dvec3(kInfinity, 0, 0)})
+       {glm::dvec3(0), glm::dvec3(0, kNoNumber, 0), glm::dvec3(kInfinity, 0, 0)})
     EXPECT_FALSE(query.cast({.origin = sound, .direction = direction}));
-  for (const double length : {0.0, -1.0, kNan})
+  for (const double length : {0.0, -1.0, kNoNumber})
     EXPECT_FALSE(query.cast({.origin = sound, .longest_m = length}));
-  for (const double radius : {-1.0, kNan, kInfinity}) {
+  for (const double radius : {-1.0, kNoNumber, kInfinity}) {
     const auto result = query.models_within(sound, radius, out);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, core::ErrorCode::kInvalidArgument);

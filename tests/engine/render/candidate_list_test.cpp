@@ -5,7 +5,7 @@
 namespace psygen::render {
 namespace {
 
-MeshDraw model(std::uint32_t id, std::uint32_t block, std::uint32_t shared) {
+MeshDraw candidate(std::uint32_t id, std::uint32_t block, std::uint32_t shared) {
   MeshDraw draw;
   draw.range.id = id;
   draw.range.pool_block = block;
@@ -18,7 +18,8 @@ MeshDraw model(std::uint32_t id, std::uint32_t block, std::uint32_t shared) {
 
 TEST(CandidateList, gathers_draws_of_the_same_buffers_in_groups_with_room_for_all) {
   const std::vector<IndexList> lists{{7, 9}};
-  std::vector<MeshDraw> models{model(1, 0, 0), model(2, 1, 0), model(3, 0, 1), model(4, 0, 0)};
+  std::vector<MeshDraw> models{candidate(1, 0, 0), candidate(2, 1, 0), candidate(3, 0, 1),
+                               candidate(4, 0, 0)};
   std::vector<TerrainDraw> terrain(1);
   terrain[0].range.layout = core::VertexLayout::kTerrain;
   terrain[0].shared_indices = 1;
@@ -41,7 +42,7 @@ TEST(CandidateList, gathers_draws_of_the_same_buffers_in_groups_with_room_for_al
 }
 
 TEST(CandidateList, takes_parts_of_a_mesh_as_candidates_of_one_name) {
-  std::vector<MeshDraw> models{model(4, 0, 0), model(4, 0, 0)};
+  std::vector<MeshDraw> models{candidate(4, 0, 0), candidate(4, 0, 0)};
   models[0].range.index_count = models[1].range.index_count = 30;
   models[0].part = {0, 6};
   models[1].part = {12, 9};
@@ -54,7 +55,7 @@ TEST(CandidateList, takes_parts_of_a_mesh_as_candidates_of_one_name) {
 }
 
 TEST(CandidateList, starts_a_new_group_where_one_call_can_take_no_more) {
-  const std::vector<MeshDraw> models(CandidateList::kGroupCapacity + 5, model(1, 0, 0));
+  const std::vector<MeshDraw> models(CandidateList::kGroupCapacity + 5, candidate(1, 0, 0));
   CandidateList list;
   list.build({}, models, {});
   ASSERT_EQ(list.groups().size(), 2u);

@@ -15,8 +15,8 @@
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{203, 117};  // halves that do not come out even
-constexpr int kSide = 33;
+constexpr core::Extent kOddSize{203, 117};  // halves that do not come out even
+constexpr int kHillSide = 33;
 
 auto key(const DrawnMesh& m) {
   return std::tuple(m.layout, m.pool_block, m.shared, m.first_index, m.index_count, m.vertex_offset,
@@ -35,12 +35,12 @@ std::vector<Draw> in_view_of(const FrameInput& input, const std::vector<Draw>& d
 }
 
 // A renderer with a landscape of its own: hills, and sheets of many cells.
-class Side {
+class Landscape {
  public:
   void create(RenderPath path, bool occlusion, Preset preset = Preset::kLow) {
     RendererOptions options;
     options.validation = true;
-    options.size = kSize;
+    options.size = kOddSize;
     options.geometry_budget_bytes = 8 << 20;
     options.path = path;
     options.occlusion = occlusion;
@@ -49,7 +49,7 @@ class Side {
     ASSERT_TRUE(made) << made.error().message;
     renderer = std::move(*made);
     ASSERT_EQ(renderer->path(), path);
-    const auto grid = renderer->upload_shared_indices(synthetic::grid_indices(kSide));
+    const auto grid = renderer->upload_shared_indices(synthetic::grid_indices(kHillSide));
     ASSERT_TRUE(grid);
     grid_ = *grid;
   }
@@ -67,7 +67,7 @@ class Side {
           const float px = static_cast<float>(i + 32 * x), pz = static_cast<float>(k + 32 * z);
           return 0.5F + 0.25F * (std::sin(px * 0.11F) + std::sin(pz * 0.13F));
         };
-        const auto range = synthetic::make_terrain(renderer->geometry(), kSide, hill);
+        const auto range = synthetic::make_terrain(renderer->geometry(), kHillSide, hill);
         ASSERT_TRUE(range);
         TerrainDraw draw;
         draw.range = *range;
@@ -145,7 +145,7 @@ class Side {
 };
 
 FrameInput look(double yaw, double pitch) {
-  FrameInput input = synthetic::look(12.0, pitch, kSize);
+  FrameInput input = synthetic::look(12.0, pitch, kOddSize);
   input.pose.yaw = yaw;
   input.light.haze_density = 0.0004F;
   return input;
@@ -179,13 +179,13 @@ class GpuCullingTest : public testing::Test {
   void landscape(bool occlusion) {
     cpu_.create(RenderPath::kCpu, occlusion);
     gpu_.create(RenderPath::kGpu, occlusion);
-    for (Side* side : {&cpu_, &gpu_}) {
+    for (Landscape* side : {&cpu_, &gpu_}) {
       side->add_hills(3);
       side->add_boxes(1500);
     }
   }
 
-  Side cpu_, gpu_;
+  Landscape cpu_, gpu_;
 };
 
 TEST_F(GpuCullingTest, draws_the_same_list_as_the_cpu_path_from_any_place) {
@@ -245,14 +245,15 @@ TEST_F(GpuCullingTest, leaves_out_what_a_wall_hides_from_the_third_frame_on) {
   gpu_.draw(ahead);
   EXPECT_TRUE(gpu_.draws_box(1));
   const Picture seen = gpu_.picture();
-  const std::size_t middle = (std::size_t{kSize.height / 2} * kSize.width + kSize.width / 2) * 4;
+  const std::size_t middle =
+      (std::size_t{kOddSize.height / 2} * kOddSize.width + kOddSize.width / 2) * 4;
   EXPECT_GT(seen.rgba[middle + 1], seen.rgba[middle]);
 }
 
 TEST_F(GpuCullingTest, does_not_hide_what_looks_out_over_a_wall_by_a_pixel) {
   gpu_.create(RenderPath::kGpu, true);
   cpu_.create(RenderPath::kCpu, true);
-  for (Side* side : {&cpu_, &gpu_}) {
+  for (Landscape* side : {&cpu_, &gpu_}) {
     side->add_box({0, -2, -20}, {40, 2, 1}, {0.5F, 0.1F, 0.1F});
     for (int i = 0; i < 200; ++i) {
       const float x = 0.3F * static_cast<float>(i - 100);
@@ -273,7 +274,7 @@ TEST_F(GpuCullingTest, does_not_hide_what_looks_out_over_a_wall_by_a_pixel) {
 TEST_F(GpuCullingTest, shows_the_pictures_of_the_cpu_path_in_the_high_preset_and_in_views) {
   cpu_.create(RenderPath::kCpu, true, Preset::kHigh);
   gpu_.create(RenderPath::kGpu, true, Preset::kHigh);
-  for (Side* side : {&cpu_, &gpu_}) {
+  for (Landscape* side : {&cpu_, &gpu_}) {
     side->add_hills(2);
     side->add_boxes(200);
   }
@@ -308,7 +309,7 @@ TEST_F(GpuCullingTest, follows_changes_of_size_and_replays_its_frame) {
   landscape(true);
   for (const core::Extent size :
        {core::Extent{1, 1}, core::Extent{64, 512}, core::Extent{97, 61}}) {
-    for (Side* side : {&cpu_, &gpu_}) {
+    for (Landscape* side : {&cpu_, &gpu_}) {
       ASSERT_TRUE(side->renderer->resize(size));
       for (int frame = 0; frame < 3; ++frame)
         side->draw(look(0.3, 0));

@@ -27,10 +27,10 @@ std::unique_ptr<Renderer> make(Preset preset, RenderPath path, bool timestamps =
 // Ground with a box on it.
 struct Scene {
   explicit Scene(Renderer& renderer) : renderer_(renderer) {
-    constexpr int kSide = 65;
-    const auto grid = renderer.upload_shared_indices(synthetic::grid_indices(kSide));
+    using synthetic::kGroundSide;
+    const auto grid = renderer.upload_shared_indices(synthetic::grid_indices(kGroundSide));
     const auto ground =
-        synthetic::make_terrain(renderer.geometry(), kSide, [](int, int) { return 0.0F; });
+        synthetic::make_terrain(renderer.geometry(), kGroundSide, [](int, int) { return 0.0F; });
     const auto box = synthetic::make_box(renderer.geometry(), glm::vec3(0.5F));
     EXPECT_TRUE(grid && ground && box);
     terrain_.range = *ground;

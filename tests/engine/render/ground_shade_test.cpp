@@ -8,13 +8,13 @@
 namespace psygen::render {
 namespace {
 
-constexpr int kSide = PSYGEN_SHADE_SIDE;
+constexpr int kShadeSide = PSYGEN_SHADE_SIDE;
 
 // The missing share of the sun, of 255, in the cell at a place relative to the camera.
 std::uint32_t sun_at(const GroundShade& shade, glm::vec2 place) {
   const glm::vec2 cell = place - shade.corner();
   const int x = static_cast<int>(cell.x), z = static_cast<int>(cell.y);
-  return shade.words()[static_cast<std::size_t>(z * kSide + x) / 2] >> ((x & 1) * 16) & 0xFF;
+  return shade.words()[static_cast<std::size_t>(z * kShadeSide + x) / 2] >> ((x & 1) * 16) & 0xFF;
 }
 
 TEST(GroundShade, ASpotIsDarkestInItsMiddleAndEndsAtItsRadius) {

@@ -11,11 +11,10 @@
 namespace psygen::render {
 namespace {
 
-constexpr int kSide = kPatternSide;
-constexpr std::size_t kTexels = std::size_t{kSide} * kSide;
+constexpr std::size_t kTexels = std::size_t{kPatternSide} * kPatternSide;
 
 int channel(const GroundLevels& levels, std::size_t layer, int x, int y, std::size_t c) {
-  return levels[0][(layer * kTexels + static_cast<std::size_t>(y * kSide + x)) * 4 + c];
+  return levels[0][(layer * kTexels + static_cast<std::size_t>(y * kPatternSide + x)) * 4 + c];
 }
 
 double mean(const GroundLevels& levels, std::size_t level, std::size_t layer, std::size_t c) {
@@ -43,10 +42,10 @@ TEST(GroundTextures, ColoursHaveAMeanOfOneAtEveryLevelSoThatDistanceChangesNoCol
 TEST(GroundTextures, RepeatWithoutASeam) {
   const GroundLevels layers = make_ground_layers();
   for (std::size_t layer = 0; layer < kGroundLayers; ++layer) {
-    std::array<int, kSide> across{}, down{};  // differences from the texels before
-    for (int at = 0; at < kSide; ++at) {
-      const int before = (at + kSide - 1) % kSide;
-      for (int i = 0; i < kSide; ++i) {
+    std::array<int, kPatternSide> across{}, down{};  // differences from the texels before
+    for (int at = 0; at < kPatternSide; ++at) {
+      const int before = (at + kPatternSide - 1) % kPatternSide;
+      for (int i = 0; i < kPatternSide; ++i) {
         const auto k = static_cast<std::size_t>(at);
         across[k] +=
             std::abs(channel(layers, layer, at, i, 0) - channel(layers, layer, before, i, 0));
@@ -55,7 +54,8 @@ TEST(GroundTextures, RepeatWithoutASeam) {
       }
     }
     for (const auto& steps : {across, down})
-      EXPECT_LE(steps[0], *std::max_element(steps.begin() + 1, steps.end()) + kSide) << layer;
+      EXPECT_LE(steps[0], *std::max_element(steps.begin() + 1, steps.end()) + kPatternSide)
+          << layer;
   }
 }
 
@@ -63,8 +63,8 @@ TEST(GroundTextures, KindsDifferInContrastAndSnowHasTheLeast) {
   const GroundLevels layers = make_ground_layers();
   const auto contrast = [&](std::size_t layer) {
     double sum = 0;
-    for (int y = 0; y < kSide; ++y) {
-      for (int x = 0; x < kSide; ++x)
+    for (int y = 0; y < kPatternSide; ++y) {
+      for (int x = 0; x < kPatternSide; ++x)
         sum += std::abs(channel(layers, layer, x, y, 1) - 127.5);
     }
     return sum / static_cast<double>(kTexels);
@@ -79,8 +79,8 @@ TEST(GroundTextures, NormalsPointUpOnAverageAndHaveRelief) {
   const GroundLevels layers = make_ground_layers();
   for (std::size_t layer = kGroundTextures; layer < kGroundLayers; ++layer) {
     int steep = 0;
-    for (int y = 0; y < kSide; ++y) {
-      for (int x = 0; x < kSide; ++x)
+    for (int y = 0; y < kPatternSide; ++y) {
+      for (int x = 0; x < kPatternSide; ++x)
         steep += std::abs(channel(layers, layer, x, y, 0) - 127) > 12 ? 1 : 0;
     }
     EXPECT_NEAR(mean(layers, 0, layer, 0), 127.5, 3.0) << layer;

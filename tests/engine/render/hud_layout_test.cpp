@@ -11,7 +11,7 @@
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kPicture{640, 360};
+constexpr core::Extent kHudPicture{640, 360};
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 using Vertices = std::vector<shaders::OverlayVertex>;
 
@@ -20,17 +20,17 @@ const HudAtlas& atlas() {
   return made;
 }
 
-Vertices lay_out(const HudText& text) {
+Vertices lay_out_text(const HudText& text) {
   Vertices out;
-  lay_out_hud({{}, {text}}, kPicture, atlas(), out);
+  lay_out_hud({{}, {text}}, kHudPicture, atlas(), out);
   return out;
 }
 
-struct Area {
+struct TextArea {
   float x0 = 1e9F, y0 = 1e9F, x1 = -1e9F, y1 = -1e9F;
 };
-Area area(const Vertices& vertices) {
-  Area all;
+TextArea text_area(const Vertices& vertices) {
+  TextArea all;
   for (const auto& v : vertices) {
     all.x0 = std::min(all.x0, v.place.x);
     all.x1 = std::max(all.x1, v.place.x);
@@ -72,13 +72,14 @@ TEST(HudFont, HasDistancesThatAreDeepestInsideOfLetters) {
 }
 
 TEST(Hud, MakesOneQuadALetterOfTheSizeAskedFor) {
-  const Vertices once = lay_out(words(20)), twice = lay_out(words(40));
+  const Vertices once = lay_out_text(words(20)), twice = lay_out_text(words(40));
   ASSERT_EQ(once.size(), 5u * 6);
   ASSERT_EQ(twice.size(), 5u * 6);
-  const Area small = area(once), large = area(twice);
+  const TextArea small = text_area(once), large = text_area(twice);
   EXPECT_NEAR(large.x1 - large.x0, 2 * (small.x1 - small.x0), 2);
   EXPECT_NEAR(large.y1 - large.y0, 2 * (small.y1 - small.y0), 2);
-  EXPECT_GT(area(lay_out(words(20.5F))).x1, area(once).x1) << "sizes may be fractions";
+  EXPECT_GT(text_area(lay_out_text(words(20.5F))).x1, text_area(once).x1)
+      << "sizes may be fractions";
   EXPECT_EQ(measure(words(40)).y, 40);
 }
 
@@ -90,12 +91,12 @@ TEST(Hud, AlignsLinesAtTheirPlace) {
   const auto placed = [&](HudAlign align, HudVertical vertical) {
     text.align = align;
     text.vertical = vertical;
-    return area(lay_out(text));
+    return text_area(lay_out_text(text));
   };
   const float around = hud_font().spread * 40 / hud_font().em + 2;  // of letters' pictures
   EXPECT_NEAR(placed(HudAlign::kLeft, HudVertical::kTop).x0, 320, around + 4);
   EXPECT_NEAR(placed(HudAlign::kRight, HudVertical::kTop).x1, 320, around + 4);
-  const Area middle = placed(HudAlign::kCentre, HudVertical::kMiddle);
+  const TextArea middle = placed(HudAlign::kCentre, HudVertical::kMiddle);
   EXPECT_NEAR((middle.x0 + middle.x1) / 2, 320, 4);
   EXPECT_GT(placed(HudAlign::kLeft, HudVertical::kTop).y0, 175);
   EXPECT_LT(placed(HudAlign::kLeft, HudVertical::kBottom).y1, 185);
@@ -108,7 +109,7 @@ TEST(Hud, DrawsShadowAndOutlineBelowTheLetters) {
   text.outline_colour = {0, 1, 0, 1};
   text.shadow_px = {3, 4};
   text.shadow_colour = {0, 0, 1, 1};
-  const Vertices out = lay_out(text);
+  const Vertices out = lay_out_text(text);
   ASSERT_EQ(out.size(), 3u * 5 * 6);
   EXPECT_EQ(out[0].colour, text.shadow_colour);
   EXPECT_GT(out[0].look.z, 1) << "soft";
@@ -124,9 +125,9 @@ TEST(Hud, DrawsAreasInWholePixelsBelowAllText) {
   drawing.texts.push_back(words());
   drawing.areas.push_back({{{0.25F, 0}, {0.4F, 10}}, {{0.5F, 0}, {0, 7.6F}}, {0, 0, 0, 1}});
   Vertices out;
-  lay_out_hud(drawing, kPicture, atlas(), out);
+  lay_out_hud(drawing, kHudPicture, atlas(), out);
   ASSERT_EQ(out.size(), 6u * 6);
-  const Area first = area(Vertices(out.begin(), out.begin() + 6));
+  const TextArea first = text_area(Vertices(out.begin(), out.begin() + 6));
   EXPECT_EQ(first.x0, 160);
   EXPECT_EQ(first.x1, 480);
   EXPECT_EQ(first.y0, 10);
@@ -137,20 +138,20 @@ TEST(Hud, DrawsAreasInWholePixelsBelowAllText) {
 TEST(Hud, TakesNumbersAndTextsThatMakeNoSenseWithoutHarm) {
   HudText text = words();
   text.text = "\xFF\xC3\x28\x01 ok\xE2\x82";
-  EXPECT_GE(lay_out(text).size(), 3u * 6);
+  EXPECT_GE(lay_out_text(text).size(), 3u * 6);
   for (const float bad : {kNaN, INFINITY, -INFINITY}) {
     HudText moved = words();
     moved.at.px.x = bad;
-    EXPECT_TRUE(lay_out(moved).empty());
+    EXPECT_TRUE(lay_out_text(moved).empty());
     HudText sized = words(bad);
-    EXPECT_TRUE(lay_out(sized).empty());
+    EXPECT_TRUE(lay_out_text(sized).empty());
     EXPECT_EQ(measure(sized), glm::vec2(0.0F));
     HudText strange = words();
     strange.outline_px = strange.bolder_px = strange.shadow_px.y = bad;
-    for (const auto& v : lay_out(strange))
+    for (const auto& v : lay_out_text(strange))
       EXPECT_TRUE(std::isfinite(v.place.x + v.place.y + v.look.y + v.look.z));
     Vertices out;
-    lay_out_hud({{{{{0, 0}, {bad, 0}}, {}, {}}}, {}}, kPicture, atlas(), out);
+    lay_out_hud({{{{{0, 0}, {bad, 0}}, {}, {}}}, {}}, kHudPicture, atlas(), out);
     EXPECT_TRUE(out.empty());
   }
   EXPECT_EQ(measure(words(1e9F)).y, 2000);
@@ -160,7 +161,7 @@ TEST(Hud, TakesNumbersAndTextsThatMakeNoSenseWithoutHarm) {
 TEST(Hud, CutsTextOffInsteadOfGrowingWithoutEnd) {
   HudText text = words();
   text.text = std::string(300'000, 'W');
-  EXPECT_EQ(lay_out(text).size(), kMaxHudQuads * 6);
+  EXPECT_EQ(lay_out_text(text).size(), kMaxHudQuads * 6);
 }
 
 }  // namespace

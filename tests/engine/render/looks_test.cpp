@@ -16,25 +16,26 @@
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{160, 120};
-constexpr int kSide = 65;
+using synthetic::kGroundSide;
+using synthetic::kPictureSize;
 
 class Looks : public testing::Test {
  protected:
   void open(Preset preset) {
     RendererOptions options;
     options.validation = true;
-    options.size = kSize;
+    options.size = kPictureSize;
     options.geometry_budget_bytes = 8 << 20;
     options.preset = preset;
     auto made = Renderer::create(options);
     ASSERT_TRUE(made) << made.error().message;
     renderer_ = std::move(*made);
-    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(kSide));
-    const auto hills = synthetic::make_terrain(renderer_->geometry(), kSide, [](int x, int z) {
-      return 0.5F + 0.25F * std::sin(0.35F * static_cast<float>(x)) *
-                        std::cos(0.28F * static_cast<float>(z));
-    });
+    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(kGroundSide));
+    const auto hills =
+        synthetic::make_terrain(renderer_->geometry(), kGroundSide, [](int x, int z) {
+          return 0.5F + 0.25F * std::sin(0.35F * static_cast<float>(x)) *
+                            std::cos(0.28F * static_cast<float>(z));
+        });
     const auto box = synthetic::make_box(renderer_->geometry(), {0.4F, 0.1F, 0.05F});
     ASSERT_TRUE(grid && hills && box);
     terrain_.range = *hills;
@@ -48,7 +49,7 @@ class Looks : public testing::Test {
     box_.box_center = {0, 12, 0};
     box_.box_half_extent = {6, 12, 6};
     box_.debug_colour = 0xE03020;
-    input_ = synthetic::look(60.0, -0.3, kSize);
+    input_ = synthetic::look(60.0, -0.3, kPictureSize);
     input_.terrain = {&terrain_, 1};
     input_.models = {&box_, 1};
     input_.light.haze_density = 0.0004F;
@@ -195,7 +196,7 @@ TEST_F(Looks, far_forests_darken_the_ground_that_can_bear_them) {
   input_.water.reset();
   input_.models = {};
   const auto green = [](const image::Image& image) {
-    const std::size_t last_row = image.rgba.size() - 4 * kSize.width;
+    const std::size_t last_row = image.rgba.size() - 4 * kPictureSize.width;
     int sum = 0;
     for (std::size_t i = last_row; i < image.rgba.size(); i += 4)
       sum += image.rgba[i + 1];

@@ -16,7 +16,7 @@ namespace psygen::render {
 
 class OnAPath : public testing::TestWithParam<How> {
  protected:
-  static constexpr core::Extent kSize{160, 120};
+  static constexpr core::Extent kSize = synthetic::kPictureSize;
 
   void SetUp() override {
     RendererOptions options;

@@ -10,14 +10,14 @@
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{160, 120};
-constexpr int kSide = 65;
+using synthetic::kGroundSide;
+using synthetic::kPictureSize;
 constexpr std::array kPresets{Preset::kLow, Preset::kMedium, Preset::kHigh, Preset::kUltra};
 
 RendererOptions small(RenderPath path) {
   RendererOptions options;
   options.validation = true;
-  options.size = kSize;
+  options.size = kPictureSize;
   options.geometry_budget_bytes = 8 << 20;
   options.path = path;
   return options;
@@ -36,10 +36,10 @@ class RendererPreset : public testing::TestWithParam<RenderPath> {
       EXPECT_TRUE(made) << made.error().message;
       if (!made) return;
       renderer = std::move(*made);
-      const auto grid = renderer->upload_shared_indices(synthetic::grid_indices(kSide));
-      const auto ground = synthetic::make_terrain(renderer->geometry(), kSide, [](int x, int z) {
-        return 0.5F + 0.25F * std::sin(0.1F * static_cast<float>(x * z));
-      });
+      const auto grid = renderer->upload_shared_indices(synthetic::grid_indices(kGroundSide));
+      const auto ground = synthetic::make_terrain(
+          renderer->geometry(), kGroundSide,
+          [](int x, int z) { return 0.5F + 0.25F * std::sin(0.1F * static_cast<float>(x * z)); });
       const auto cube = synthetic::make_box(renderer->geometry(), {0.4F, 0.1F, 0.05F});
       EXPECT_TRUE(grid && ground && cube);
       hills.range = *ground;
@@ -61,7 +61,7 @@ class RendererPreset : public testing::TestWithParam<RenderPath> {
 
     // Twice, so that the device knows what was seen in the frame before.
     std::vector<std::uint8_t> draw() {
-      FrameInput input = synthetic::look(60.0, -0.3, kSize);
+      FrameInput input = synthetic::look(60.0, -0.3, kPictureSize);
       input.terrain = {&hills, 1};
       input.models = {&box, 1};
       input.block_size_m = 64;

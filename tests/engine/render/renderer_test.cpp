@@ -11,8 +11,8 @@
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{160, 120};
-constexpr int kSide = 65;
+using synthetic::kGroundSide;
+using synthetic::kPictureSize;
 
 struct Pixel {
   int r, g, b;
@@ -30,13 +30,13 @@ class RendererTest : public testing::TestWithParam<Submission> {
   void SetUp() override {
     RendererOptions options;
     options.validation = true;
-    options.size = kSize;
+    options.size = kPictureSize;
     options.geometry_budget_bytes = 8 << 20;
     options.submission = GetParam();
     auto made = Renderer::create(options);
     ASSERT_TRUE(made) << made.error().message;
     renderer_ = std::move(*made);
-    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(kSide));
+    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(kGroundSide));
     ASSERT_TRUE(grid);
     grid_ = *grid;
   }
@@ -52,8 +52,8 @@ class RendererTest : public testing::TestWithParam<Submission> {
 
   // Flat ground of 640 m around the camera, which stands 10 m above it.
   void add_ground(float level = 0.0F) {
-    const auto range =
-        synthetic::make_terrain(renderer_->geometry(), kSide, [=](int, int) { return level; });
+    const auto range = synthetic::make_terrain(renderer_->geometry(), kGroundSide,
+                                               [=](int, int) { return level; });
     ASSERT_TRUE(range);
     TerrainDraw draw;
     draw.range = *range;
@@ -97,11 +97,11 @@ class RendererTest : public testing::TestWithParam<Submission> {
 TEST_P(RendererTest, shows_sky_above_the_horizon_and_ground_below_it) {
   add_ground();
   const Picture picture = draw(input());
-  ASSERT_EQ(picture.width, kSize.width);
-  ASSERT_EQ(picture.rgba.size(), std::size_t{kSize.width} * kSize.height * 4);
+  ASSERT_EQ(picture.width, kPictureSize.width);
+  ASSERT_EQ(picture.rgba.size(), std::size_t{kPictureSize.width} * kPictureSize.height * 4);
   for (const std::uint32_t x : {10u, 80u, 150u}) {
     const Pixel sky = at(picture, x, 8);
-    const Pixel ground = at(picture, x, kSize.height - 8);
+    const Pixel ground = at(picture, x, kPictureSize.height - 8);
     EXPECT_GT(sky.b, sky.r) << "the sky is blue";
     EXPECT_GT(ground.g, ground.b) << "the ground is green";
     EXPECT_GT(sky.sum(), ground.sum());
@@ -126,15 +126,16 @@ TEST_P(RendererTest, puts_a_box_where_it_stands_and_hides_what_is_behind_it) {
   add_box({0, -10, -60}, 12, {0.02F, 0.02F, 0.6F});  // behind it, given later
   add_box({-300, -10, 50}, 12, {0.9F, 0.9F, 0.9F});  // behind the camera
   const Picture after = draw(input());
-  const Pixel middle = at(after, kSize.width / 2, kSize.height / 2 + 20);
+  const Pixel middle = at(after, kPictureSize.width / 2, kPictureSize.height / 2 + 20);
   EXPECT_GT(middle.r, 2 * middle.b);
   EXPECT_GT(middle.r, 2 * middle.g);
   EXPECT_EQ(at(after, 5, 5).sum(), at(before, 5, 5).sum());
   // The near face is 12 m at 24 m: 2 · 6 / 24 / tan(0.45) of half the height.
   int red = 0;
-  for (std::uint32_t x = 0; x < kSize.width; ++x)
-    red += at(after, x, kSize.height / 2 + 20).r > 2 * at(after, x, kSize.height / 2 + 20).g;
-  const double expected = 6.0 / 24.0 / std::tan(0.45) * kSize.height;
+  for (std::uint32_t x = 0; x < kPictureSize.width; ++x)
+    red += at(after, x, kPictureSize.height / 2 + 20).r >
+           2 * at(after, x, kPictureSize.height / 2 + 20).g;
+  const double expected = 6.0 / 24.0 / std::tan(0.45) * kPictureSize.height;
   EXPECT_NEAR(red, expected, 2.0);
 }
 
@@ -165,9 +166,9 @@ TEST_P(RendererTest, melts_far_ground_into_the_sky_at_the_horizon) {
   hazy.light.haze_density = 0.08F;
   hazy.light.haze_height_falloff = 0.0F;
   const Picture picture = draw(hazy);
-  for (std::uint32_t x = 4; x < kSize.width; x += 12) {
-    const Pixel above = at(picture, x, kSize.height / 2 - 2);
-    const Pixel below = at(picture, x, kSize.height / 2 + 2);
+  for (std::uint32_t x = 4; x < kPictureSize.width; x += 12) {
+    const Pixel above = at(picture, x, kPictureSize.height / 2 - 2);
+    const Pixel below = at(picture, x, kPictureSize.height / 2 + 2);
     EXPECT_LE(std::abs(above.r - below.r), 3);
     EXPECT_LE(std::abs(above.g - below.g), 3);
     EXPECT_LE(std::abs(above.b - below.b), 3);
@@ -180,14 +181,14 @@ TEST_P(RendererTest, colours_the_ground_by_height_and_slope) {
   frame = input(-0.6);
   frame.palette.snow_start_m = 50;
   frame.palette.snow_blend_m = 1;
-  const Pixel meadow = at(draw(frame), kSize.width / 2, kSize.height / 2);
+  const Pixel meadow = at(draw(frame), kPictureSize.width / 2, kPictureSize.height / 2);
   terrain_.front().height_min_m = 100;
   terrain_.front().origin.y -= 100;
   frame = input(-0.6);
   frame.pose.position.local.y = 110;
   frame.palette.snow_start_m = 50;
   frame.palette.snow_blend_m = 1;
-  const Pixel snow = at(draw(frame), kSize.width / 2, kSize.height / 2);
+  const Pixel snow = at(draw(frame), kPictureSize.width / 2, kPictureSize.height / 2);
   EXPECT_GT(meadow.g, meadow.b + 20);
   EXPECT_GT(snow.b, 150);
   EXPECT_GT(snow.sum(), meadow.sum() + 150);
@@ -215,8 +216,8 @@ TEST_P(RendererTest, writes_a_panel_into_its_corner_only) {
   frame.panels = {&panel, 1};
   const Picture written = draw(frame);
   int changed_left = 0, changed_right = 0;
-  for (std::uint32_t y = 0; y < kSize.height; ++y) {
-    for (std::uint32_t x = 0; x < kSize.width; ++x) {
+  for (std::uint32_t y = 0; y < kPictureSize.height; ++y) {
+    for (std::uint32_t x = 0; x < kPictureSize.width; ++x) {
       if (at(plain, x, y).sum() == at(written, x, y).sum()) continue;
       (x < 100 && y < 60 ? changed_left : changed_right)++;
     }
@@ -266,8 +267,8 @@ TEST_P(RendererTest, holds_more_draws_than_its_first_buffers) {
   const auto picture = renderer_->capture();
   ASSERT_TRUE(picture);
   // The last draw found its own data: there is a box at 6 m to the right of the middle.
-  const double x = kSize.width / 2.0 + 6.0 / 28.0 / std::tan(0.45) * kSize.height / 2;
-  const Pixel box = at(*picture, static_cast<std::uint32_t>(x), kSize.height / 2 + 30);
+  const double x = kPictureSize.width / 2.0 + 6.0 / 28.0 / std::tan(0.45) * kPictureSize.height / 2;
+  const Pixel box = at(*picture, static_cast<std::uint32_t>(x), kPictureSize.height / 2 + 30);
   EXPECT_LT(std::abs(box.g - box.r), 40);
   EXPECT_GT(box.sum(), 100);
 }

@@ -10,13 +10,13 @@
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{160, 120};
+using synthetic::kPictureSize;
 
 using How = std::tuple<RenderPath, Submission, Preset>;
 
 // The brightness of a box in the middle of the picture, red + green + blue.
 int brightness(Renderer& renderer, MeshDraw box, float sun, glm::vec3 sun_colour) {
-  FrameInput input = synthetic::look(60, 0, kSize);
+  FrameInput input = synthetic::look(60, 0, kPictureSize);
   input.light.cloud_cover = 0;
   input.light.sun_colour = sun_colour;
   box.sun = sun;
@@ -27,7 +27,7 @@ int brightness(Renderer& renderer, MeshDraw box, float sun, glm::vec3 sun_colour
   const auto picture = renderer.capture();
   if (!picture) return -1;
   const std::uint8_t* const pixel =
-      &picture->rgba[4 * (kSize.width * (kSize.height / 2) + kSize.width / 2)];
+      &picture->rgba[4 * (kPictureSize.width * (kPictureSize.height / 2) + kPictureSize.width / 2)];
   return pixel[0] + pixel[1] + pixel[2];
 }
 
@@ -39,7 +39,7 @@ TEST(Shade, HoldsUpTheSunAndNothingElse) {
                          How{RenderPath::kGpu, Submission::kMultiDraw, Preset::kUltra}}) {
     RendererOptions options;
     options.validation = true;
-    options.size = kSize;
+    options.size = kPictureSize;
     options.geometry_budget_bytes = 8 << 20;
     std::tie(options.path, options.submission, options.preset) = how;
     auto made = Renderer::create(options);
@@ -51,7 +51,7 @@ TEST(Shade, HoldsUpTheSunAndNothingElse) {
     box.range = *range;
     box.origin = {0, -1, -10};
     box.box_half_extent = {3, 4, 3};
-    const glm::vec3 colour = synthetic::look(60, 0, kSize).light.sun_colour;
+    const glm::vec3 colour = synthetic::look(60, 0, kPictureSize).light.sun_colour;
     const int lit = brightness(renderer, box, 1.0F, colour);
     const int half = brightness(renderer, box, 0.5F, colour);
     const int shaded = brightness(renderer, box, 0.0F, colour);

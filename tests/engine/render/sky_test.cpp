@@ -12,7 +12,7 @@
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{320, 180};
+constexpr core::Extent kSkySize{320, 180};
 
 // A sun so high over the horizon, with the colours of about that hour.
 Light light_at(double elevation_deg) {
@@ -40,7 +40,7 @@ class Sky : public testing::Test {
     for (const Preset preset : {Preset::kLow, Preset::kMedium}) {
       RendererOptions options;
       options.validation = true;
-      options.size = kSize;
+      options.size = kSkySize;
       options.geometry_budget_bytes = 1 << 20;
       options.preset = preset;
       auto made = Renderer::create(options);
@@ -79,7 +79,7 @@ TEST_F(Sky, of_few_corners_looks_like_that_of_each_pixel) {
   for (const double elevation_deg : {60.0, 44.0, 12.0, 2.0, -4.0}) {
     for (const double pitch : {-0.2, 0.1, 0.5, 1.2}) {
       for (const double yaw : {0.0, 0.64, 1.6, 3.5}) {
-        FrameInput input = synthetic::look(10, pitch, kSize);
+        FrameInput input = synthetic::look(10, pitch, kSkySize);
         input.pose.yaw = yaw;
         input.light = light_at(elevation_deg);
         input.light.cloud_cover = -1;

@@ -8,17 +8,17 @@
 namespace psygen::render {
 namespace {
 
-constexpr core::Extent kSize{120, 90};
+constexpr core::Extent kStagedSize{120, 90};
 
 // A renderer that writes meshes in one way or the other, and boxes before its camera.
-struct Side {
+struct Writer {
   std::unique_ptr<Renderer> renderer;
   std::vector<MeshDraw> models;
 
   void create(Upload upload) {
     RendererOptions options;
     options.validation = true;
-    options.size = kSize;
+    options.size = kStagedSize;
     options.geometry_budget_bytes = 64 << 20;
     options.upload = upload;
     auto made = Renderer::create(options);
@@ -35,7 +35,7 @@ struct Side {
     models.push_back(draw);
   }
   std::vector<std::uint8_t> picture() {
-    FrameInput input = synthetic::look(10.0, 0.0, kSize);
+    FrameInput input = synthetic::look(10.0, 0.0, kStagedSize);
     input.models = models;
     EXPECT_TRUE(renderer->render(input));
     auto made = renderer->capture();
@@ -59,7 +59,7 @@ class StagedGeometryTest : public testing::Test {
     direct_.end();
     staged_.end();
   }
-  Side direct_, staged_;
+  Writer direct_, staged_;
 };
 
 TEST_F(StagedGeometryTest, shows_meshes_in_the_first_frame_after_they_were_committed) {
@@ -67,7 +67,7 @@ TEST_F(StagedGeometryTest, shows_meshes_in_the_first_frame_after_they_were_commi
   EXPECT_TRUE(direct_.renderer->geometry().zero_copy());
   const auto empty = staged_.picture();
   for (int i = 0; i < 5; ++i) {
-    for (Side* side : {&direct_, &staged_})
+    for (Writer* side : {&direct_, &staged_})
       side->add(5.0F * static_cast<float>(i - 2), {0.1F * static_cast<float>(i), 0.3F, 0.1F});
     EXPECT_EQ(staged_.picture(), direct_.picture()) << i;
   }
@@ -76,7 +76,7 @@ TEST_F(StagedGeometryTest, shows_meshes_in_the_first_frame_after_they_were_commi
 
 TEST_F(StagedGeometryTest, copies_more_in_one_frame_than_its_ring_holds) {
   std::uint64_t bytes = 0;
-  for (Side* side : {&direct_, &staged_}) {
+  for (Writer* side : {&direct_, &staged_}) {
     bytes = 0;
     while (bytes < 2 * StagedGeometry::kParts * StagedGeometry::kPartBytes) {
       const auto range = synthetic::make_sheet(side->renderer->geometry(), 200);
@@ -98,7 +98,7 @@ TEST_F(StagedGeometryTest, forgets_what_is_released_before_it_was_copied) {
   const auto first = synthetic::make_box(staged_.renderer->geometry(), {0.9F, 0.0F, 0.0F});
   ASSERT_TRUE(first);
   staged_.renderer->geometry().release(*first);
-  for (Side* side : {&direct_, &staged_})
+  for (Writer* side : {&direct_, &staged_})
     side->add(0, {0.0F, 0.0F, 0.9F});  // takes its place
   EXPECT_EQ(staged_.models[0].range.first_vertex, first->first_vertex);
   EXPECT_EQ(staged_.picture(), direct_.picture());
@@ -106,7 +106,7 @@ TEST_F(StagedGeometryTest, forgets_what_is_released_before_it_was_copied) {
 
 TEST_F(StagedGeometryTest, reuses_places_from_frame_to_frame) {
   for (int frame = 0; frame < 30; ++frame) {
-    for (Side* side : {&direct_, &staged_}) {
+    for (Writer* side : {&direct_, &staged_}) {
       if (side->models.size() == 3) {
         side->renderer->geometry().release(side->models.front().range);
         side->models.erase(side->models.begin());

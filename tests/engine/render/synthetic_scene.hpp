@@ -11,6 +11,10 @@
 
 namespace psygen::render::synthetic {
 
+// What most tests draw: a small picture, and ground of so many vertices along a side.
+inline constexpr core::Extent kPictureSize{160, 120};
+inline constexpr int kGroundSide = 65;
+
 // Height in [0, 1] at grid line (x, z).
 using HeightFunction = std::function<float(int x, int z)>;
 

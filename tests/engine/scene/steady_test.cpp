@@ -100,7 +100,7 @@ std::size_t vanished(const State& s, const std::vector<Square>& before,
   return count;
 }
 
-Settings far_settings() {
+Settings steady_settings() {
   Settings settings = small_settings();
   settings.view_distance_m = 1000;
   settings.max_error_pixels = 12;
@@ -112,7 +112,7 @@ Settings far_settings() {
 template <class Pose, class Passes>
 void fly_starved(const Pose& pose_of, const Passes& passes) {
   Gate gate;
-  Settings settings = far_settings();
+  Settings settings = steady_settings();
   settings.virtual_time = false;  // modelers are real, and wait at the gate
   settings.main_thread_budget_ms = 0;
   settings.watchdog_seconds = 1e6;
@@ -209,12 +209,12 @@ void fly_a_second(const Settings& settings, const Pose& pose_of) {
 }
 
 TEST(Steady, AfterASpinAt720DegreesASecondNothingIsMissing) {
-  fly_a_second(far_settings(),
+  fly_a_second(steady_settings(),
                [](int i) { return pose_at(256, 256, 4 * std::numbers::pi * i / 60.0); });
 }
 
 TEST(Steady, AfterAFlightAt500MetresASecondNothingIsMissing) {
-  fly_a_second(far_settings(), [](int i) {
+  fly_a_second(steady_settings(), [](int i) {
     core::CameraPose pose = pose_at(200, 200, 2.0);
     pose.position.local.x += 500.0 / 60.0 * i;
     return pose;
@@ -222,7 +222,7 @@ TEST(Steady, AfterAFlightAt500MetresASecondNothingIsMissing) {
 }
 
 TEST(Steady, AfterTeleportsNothingIsMissing) {
-  fly_a_second(far_settings(), [](int i) {
+  fly_a_second(steady_settings(), [](int i) {
     const int jump = i / 15;
     return pose_at(100 + 77 * jump, 400 - 61 * jump, 1.3 * jump);
   });
@@ -231,7 +231,7 @@ TEST(Steady, AfterTeleportsNothingIsMissing) {
 // Coarse views have few nodes; those that stand for all others are there at once, although new
 // nodes are spread over ticks and the main thread has time for nothing else.
 TEST(Steady, AJumpShowsNoHoleWhereverItLeads) {
-  Settings settings = far_settings();
+  Settings settings = steady_settings();
   settings.view_distance_m = 16'000;
   settings.max_error_pixels = 16;
   settings.streaming_ticks = Settings{}.streaming_ticks;
@@ -253,7 +253,7 @@ TEST(Steady, AJumpShowsNoHoleWhereverItLeads) {
 // Nodes whose ground is there while their models are not wait for these: what stands for them has
 // landed in the tick before.
 TEST(Steady, AfterAJumpNoNodeIsDrawnWithoutItsModels) {
-  Settings settings = far_settings();
+  Settings settings = steady_settings();
   settings.view_distance_m = 16'000;
   const auto scene = make_scene(settings);
   State& s = scene->state();
@@ -278,7 +278,7 @@ TEST(Steady, AfterAJumpNoNodeIsDrawnWithoutItsModels) {
 }
 
 TEST(Steady, AfterAFallFrom2000MetresNothingIsMissing) {
-  fly_a_second(far_settings(), [](int i) {
+  fly_a_second(steady_settings(), [](int i) {
     core::CameraPose pose = pose_at(256, 256, 0.6);
     pose.position.local.y = 2000.0 - 32.3 * i;
     pose.pitch = -0.6;
@@ -287,7 +287,7 @@ TEST(Steady, AfterAFallFrom2000MetresNothingIsMissing) {
 }
 
 TEST(Steady, TooLittleMemoryMakesNoHolesInTheGround) {
-  Settings settings = far_settings();
+  Settings settings = steady_settings();
   settings.budget_bytes = 6ull << 20;
   const auto scene = make_scene(settings);
   std::vector<Square> before;

@@ -136,17 +136,17 @@ TEST(Extent, WhenTheCameraMovesByAMillimetreNothingMovesFarther) {
 }
 
 TEST(Extent, AWorldOfAMillionBlocksASideTakesNoMoreThanOneOf512) {
-  struct Size {
+  struct Taken {
     std::size_t entities, nodes, draws, models, meshes;
     std::uint64_t bytes;
-    bool operator==(const Size&) const = default;
+    bool operator==(const Taken&) const = default;
   };
   // Nothing that depends on the time that a mesh takes: the cache keeps what was drawn for a
   // moment.
   Settings settings = far_settings();
   settings.main_thread_budget_ms = 0;
   settings.plan_seconds_ahead = 1e6;
-  std::vector<Size> sizes;
+  std::vector<Taken> sizes;
   for (const std::int64_t blocks : {std::int64_t{512}, std::int64_t{1} << 20}) {
     const auto scene = make_scene_of(
         settings, [&](world::World& world) { world.blocks_x = world.blocks_z = blocks; });

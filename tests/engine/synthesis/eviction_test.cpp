@@ -13,7 +13,9 @@ namespace {
 using testing::FakeMemory;
 using testing::FakeModel;
 using testing::key_of;
+using testing::kMeshBytes;
 using testing::parameters_of;
+using testing::prefetch;
 using testing::registry_of;
 
 Rank random_rank(core::RandomStream& random) {
@@ -135,12 +137,6 @@ TEST(Eviction, RandomLoadsNeverExceedTheBudgetAndAlwaysTakeTheWorst) {
 TEST(Eviction, RandomLoadsNeverExceedTheBudgetWhenMemoryReturnsFramesLater) {
   for (std::uint64_t seed = 4; seed <= 6; ++seed)
     ASSERT_NO_FATAL_FAILURE(run_random_load(seed, 3)) << seed;
-}
-
-// 80 vertices: 1,760 bytes.
-constexpr std::uint64_t kMeshBytes = 1760;
-Rank prefetch(float distance) {
-  return Rank::by_layer(RankGroup::kPrefetch, 0, distance);
 }
 
 class PressureTest : public ::testing::Test {

@@ -1,4 +1,5 @@
-// Model types for tests: cheap, deterministic, and some that misbehave. Not models of anything.
+// Model types for tests: cheap, deterministic, and some that misbehave. Not models of anything. And
+// the ranks that their meshes are asked for with.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include "engine/core/hash.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/synthesis/mesh_key.hpp"
+#include "engine/synthesis/rank.hpp"
 
 namespace psygen::synthesis::testing {
 
@@ -63,6 +65,9 @@ class FakeModel : public models::ModelType {
   std::string name_;
   int levels_;
 };
+
+// Of 80 vertices of 16 bytes, with 3 indices of 2 bytes each: a multiple of 16.
+inline constexpr std::uint64_t kMeshBytes = 80 * 22;
 
 // Does what a function says before it synthesises.
 class ScriptedModel : public FakeModel {
@@ -146,6 +151,16 @@ inline models::Parameters parameters_of(std::int64_t seed, std::int64_t vertices
 inline MeshKey key_of(std::uint32_t index, const models::Parameters& p,
                       models::ModelIndex model = 0, std::uint16_t level = 0) {
   return {{7, -3}, index, model, level, p.hash()};
+}
+
+inline Rank hole(float distance) {
+  return Rank::by_layer(RankGroup::kVisibleHole, 0, distance);
+}
+inline Rank drawn(float distance) {
+  return Rank::by_layer(RankGroup::kDrawn, 0, distance);
+}
+inline Rank prefetch(float distance) {
+  return Rank::by_layer(RankGroup::kPrefetch, 0, distance);
 }
 
 inline models::Registry registry_of(std::unique_ptr<models::ModelType> type) {

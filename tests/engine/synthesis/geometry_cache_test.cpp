@@ -7,25 +7,16 @@
 
 namespace psygen::synthesis {
 namespace {
+using testing::drawn;
 using testing::FakeModel;
+using testing::hole;
 using testing::key_of;
+using testing::kMeshBytes;
 using testing::parameters_of;
+using testing::prefetch;
 using testing::registry_of;
 
-// 16-byte vertices and 3 indices of 2 bytes each.
-constexpr std::uint64_t kVertexBytes = 22;
-constexpr std::int64_t kVertices = 80;                          // a mesh of 1,760 bytes
-constexpr std::uint64_t kMeshBytes = kVertices * kVertexBytes;  // a multiple of 16
-
-Rank prefetch(float distance) {
-  return Rank::by_layer(RankGroup::kPrefetch, 0, distance);
-}
-Rank drawn(float distance) {
-  return Rank::by_layer(RankGroup::kDrawn, 0, distance);
-}
-Rank hole(float distance) {
-  return Rank::by_layer(RankGroup::kVisibleHole, 0, distance);
-}
+constexpr std::int64_t kVertices = 80;  // of a mesh of kMeshBytes
 
 class GeometryCacheTest : public ::testing::Test {
  protected:

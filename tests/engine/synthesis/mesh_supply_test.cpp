@@ -10,10 +10,9 @@ namespace {
 
 using testing::FakeModel;
 using testing::key_of;
+using testing::kMeshBytes;
 using testing::parameters_of;
 using testing::registry_of;
-
-constexpr std::uint64_t kMeshBytes = 1760;  // 80 vertices
 
 class MeshSupplyTest : public ::testing::Test {
  protected:

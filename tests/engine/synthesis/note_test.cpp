@@ -14,17 +14,14 @@ namespace psygen::synthesis {
 namespace {
 using testing::FakeModel;
 using testing::Gate;
+using testing::hole;
 using testing::key_of;
+using testing::kMeshBytes;
 using testing::LyingModel;
 using testing::parameters_of;
 using testing::ScriptedModel;
 
-constexpr std::uint64_t kMeshBytes = 1760;  // 80 vertices
 constexpr models::ModelIndex kNoted = 0, kPlain = 1, kLying = 2;
-
-Rank hole(float distance) {
-  return Rank::by_layer(RankGroup::kVisibleHole, 0, distance);
-}
 
 // What the hook of these tests notes. Shared, so that a test sees when its end has come.
 struct Seen {

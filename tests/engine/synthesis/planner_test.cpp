@@ -12,20 +12,15 @@
 namespace psygen::synthesis {
 namespace {
 using testing::Gate;
+using testing::hole;
 using testing::key_of;
+using testing::kMeshBytes;
 using testing::parameters_of;
+using testing::prefetch;
 using testing::registry_of;
 using testing::ScriptedModel;
 
-constexpr std::uint64_t kMeshBytes = 1760;  // 80 vertices
 constexpr models::ModelIndex kWild = 1;
-
-Rank hole(float distance) {
-  return Rank::by_layer(RankGroup::kVisibleHole, 0, distance);
-}
-Rank prefetch(float distance) {
-  return Rank::by_layer(RankGroup::kPrefetch, 0, distance);
-}
 
 // One modeler that works only while the gate is open. This thread always does.
 class PlannerTest : public ::testing::Test {

@@ -1,6 +1,5 @@
 #include "tests/engine/synthesis/waits.hpp"
 
-#include <dlfcn.h>
 #include <pthread.h>
 #include <sched.h>
 #include <semaphore.h>
@@ -9,15 +8,13 @@
 
 #include <cstdarg>
 
+#include "tests/next_function.hpp"
+
 namespace {
 
-thread_local std::uint64_t waits = 0;
+using psygen::next;
 
-// The function of this name that would have been called: the C library's, or a sanitizer's.
-template <class Function>
-Function* next(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
+thread_local std::uint64_t waits = 0;
 
 }  // namespace
 

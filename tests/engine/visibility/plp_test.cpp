@@ -18,10 +18,7 @@ namespace {
 
 using testing::GridScene;
 using testing::random_pose;
-
-core::RandomStream stream(std::uint32_t index) {
-  return {23, 0, 0, index, core::Purpose::kPosition};
-}
+using testing::stream;
 
 PlpInput input_of(const GridScene& scene, std::uint32_t max_visits = UINT32_MAX) {
   const GridCell start = nearest_cell({0, 0}, scene.width, scene.depth, scene.pose.position.block);
@@ -140,7 +137,7 @@ void expect_equal_to_definition(const GridScene& scene, const PlpInput& input) {
 }
 
 TEST(Plp, EqualsItsDefinitionOnRandomScenesAndBudgetsInBothModes) {
-  core::RandomStream random = stream(0);
+  core::RandomStream random = stream(23, 0);
   for (int i = 0; i < 80; ++i) {
     const auto width = static_cast<std::uint32_t>(random.next_integer(1, 24));
     const auto depth = static_cast<std::uint32_t>(random.next_integer(1, 24));
@@ -170,7 +167,7 @@ TEST(Plp, EqualsItsDefinitionWhereMostCellsAreEquallyFar) {
 }
 
 TEST(Plp, WithEqualSolidityEverywhereIsThatOfLayersWithAnyBudget) {
-  core::RandomStream random = stream(6);
+  core::RandomStream random = stream(23, 6);
   for (int i = 0; i < 30; ++i) {
     const GridScene scene(40, 33, random_pose(random, 40, 33));
     const std::vector<float> solidity(scene.bounds.size(),
@@ -192,7 +189,7 @@ TEST(Plp, WithEqualSolidityEverywhereIsThatOfLayersWithAnyBudget) {
 }
 
 TEST(Plp, MoreSolidCellsLowerNoKeyAndRaiseOnlyThoseBehindThem) {
-  core::RandomStream random = stream(7);
+  core::RandomStream random = stream(23, 7);
   const GridScene scene(31, 31, {{{15, 15}, {30, 30, 30}}, 0, 0});
   std::vector<float> solidity = random_solidity(scene, random);
   PlpInput input = input_of(scene);
@@ -244,7 +241,7 @@ TEST(Plp, SolidityThatIsNotANumberOrBelowZeroCountsAsNone) {
 }
 
 TEST(Plp, LayersAreBreadthFirst) {
-  core::RandomStream random = stream(1);
+  core::RandomStream random = stream(23, 1);
   for (int i = 0; i < 10; ++i) {
     const GridScene scene(19, 12, random_pose(random, 19, 12));
     const PlpInput input = input_of(scene);
@@ -265,7 +262,7 @@ TEST(Plp, LayersAreBreadthFirst) {
 }
 
 TEST(Plp, FindsExactlyTheCellsThatBruteForceFindsAndEachOnce) {
-  core::RandomStream random = stream(2);
+  core::RandomStream random = stream(23, 2);
   std::size_t seen = 0;
   for (int i = 0; i < 60; ++i) {
     const GridScene scene(21, 17, random_pose(random, 21, 17));
@@ -295,7 +292,7 @@ TEST(Plp, FromAboveTheGroundTheHorizonIsFoundThoughNoNeighbourIsInView) {
 }
 
 TEST(Plp, KeysNeverDecreaseWithinTheVisibleAndThePrefetchedCells) {
-  core::RandomStream random = stream(3);
+  core::RandomStream random = stream(23, 3);
   for (int i = 0; i < 10; ++i) {
     const GridScene scene(30, 30, random_pose(random, 30, 30));
     const PlpResult result = run(scene);
@@ -308,7 +305,7 @@ TEST(Plp, KeysNeverDecreaseWithinTheVisibleAndThePrefetchedCells) {
 }
 
 TEST(Plp, WhenTheBudgetEndsEveryCleanNeighbourOfAVisitedCellIsInTheFront) {
-  core::RandomStream random = stream(4);
+  core::RandomStream random = stream(23, 4);
   for (const std::uint32_t budget : {0U, 1U, 2U, 10U, 57U, 120U, 399U}) {
     const GridScene scene(20, 20, random_pose(random, 20, 20));
     const PlpResult result = run(scene, budget);
@@ -362,7 +359,7 @@ TEST(Plp, AnEmptyGridHasNothingToVisit) {
 }
 
 TEST(Plp, AResultThatIsUsedAgainIsNotChangedByItsPast) {
-  core::RandomStream random = stream(5);
+  core::RandomStream random = stream(23, 5);
   PlpResult reused;
   for (const std::uint32_t side : {30U, 7U, 30U, 12U}) {
     const GridScene scene(side, side, random_pose(random, side, side));

@@ -7,16 +7,13 @@
 #include <map>
 #include <set>
 
-#include "engine/core/hash.hpp"
+#include "tests/engine/visibility/scenes.hpp"
 
 namespace psygen::visibility {
 namespace {
 
-constexpr double kBlock_m = 64;
-
-core::RandomStream stream(std::uint32_t index) {
-  return {41, 0, 0, index, core::Purpose::kPosition};
-}
+using testing::kBlock_m;
+using testing::stream;
 
 std::int64_t steps(std::int32_t to, std::int32_t from) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) -
@@ -88,7 +85,7 @@ core::WorldPosition random_camera(core::RandomStream& random, std::int64_t reach
 }
 
 TEST(NodeCoord, ChildrenKnowTheirParentAndTileIt) {
-  core::RandomStream random = stream(0);
+  core::RandomStream random = stream(41, 0);
   for (int i = 0; i < 200; ++i) {
     const core::BlockCoord block{static_cast<std::int32_t>(random.next_u64()),
                                  static_cast<std::int32_t>(random.next_u64())};
@@ -154,7 +151,7 @@ TEST(SplitDistances, ReachBeyondWhatTouchesNodesTwoLevelsBelow) {
 }
 
 TEST(Roots, OfAFiniteWorldAreThoseThatReachIntoIt) {
-  core::RandomStream random = stream(7);
+  core::RandomStream random = stream(41, 7);
   std::size_t some = 0, none = 0, all = 0;
   for (int i = 0; i < 2000; ++i) {
     const auto level = static_cast<std::uint8_t>(random.next_integer(0, 12));
@@ -199,7 +196,7 @@ TEST(Roots, OfATinyWorldAreFewHoweverFarTheViewReaches) {
 }
 
 TEST(Cut, LeavesTileTheRootsExactlyAndDifferByTwoLevelsAtMost) {
-  core::RandomStream random = stream(1);
+  core::RandomStream random = stream(41, 1);
   std::set<int> levels_seen;
   for (int i = 0; i < 12; ++i) {
     const double growth = random.next_real(1, 3);
@@ -222,7 +219,7 @@ TEST(Cut, LeavesTileTheRootsExactlyAndDifferByTwoLevelsAtMost) {
 }
 
 TEST(Cut, StaysRestrictedWithHysteresisAndClearancesWhereverTheCameraMoves) {
-  core::RandomStream random = stream(2);
+  core::RandomStream random = stream(41, 2);
   Cut cut;
   core::WorldPosition camera{{5, -7}, {1, 2, 3}};
   for (int i = 0; i < 40; ++i) {
@@ -305,7 +302,7 @@ double entry(const CutNode& node, double dx, double dz) {
 }
 
 TEST(Cut, LeavesAreInFrontToBackOrderAlongEveryHalfLine) {
-  core::RandomStream random = stream(3);
+  core::RandomStream random = stream(41, 3);
   for (int i = 0; i < 5; ++i) {
     const Scene scene(random_camera(random, 100), 5, 9000, distances(6));
     Cut cut;
@@ -452,7 +449,7 @@ TEST(DrawnNodes, WithEverythingReadyAreTheLeaves) {
 }
 
 TEST(DrawnNodes, CoverAllGroundOfReadyNodesAndNeverTwice) {
-  core::RandomStream random = stream(4);
+  core::RandomStream random = stream(41, 4);
   const Scene scene({{3, 4}, {10, 20, 30}}, 5, 3000, distances(6));
   Cut cut;
   select_cut(scene.input, cut);

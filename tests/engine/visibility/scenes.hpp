@@ -12,6 +12,11 @@ namespace psygen::visibility::testing {
 // Side of a block in metres.
 inline constexpr double kBlock_m = 64;
 
+// Random numbers of a test. Each file has a seed of its own.
+inline core::RandomStream stream(std::uint64_t seed, std::uint32_t index) {
+  return {seed, 0, 0, index, core::Purpose::kPosition};
+}
+
 // A camera over a grid whose cell (0, 0) is block (0, 0), and the boxes of its cells.
 struct GridScene {
   std::uint32_t width, depth;

@@ -8,14 +8,12 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "engine/core/hash.hpp"
+#include "tests/engine/visibility/scenes.hpp"
 
 namespace psygen::visibility {
 namespace {
 
-core::RandomStream stream(std::uint32_t index) {
-  return {67, 0, 0, index, core::Purpose::kPosition};
-}
+using testing::stream;
 
 TEST(EstimateSolidity, NothingStopsNoLight) {
   EXPECT_EQ(estimate_solidity(64, 0, {}, 10), 0);
@@ -58,7 +56,7 @@ double share_met(int count, double width, double side, core::RandomStream& rando
 }
 
 TEST(EstimateSolidity, OfThingsInACellIsTheShareOfRandomRaysThatMeetOne) {
-  core::RandomStream random = stream(0);
+  core::RandomStream random = stream(67, 0);
   for (const auto& [count, width] : {std::pair{10, 1.0}, {10, 4.0}, {40, 2.0}, {80, 3.0}}) {
     const std::vector<Standing> things{
         {static_cast<float>(count), static_cast<float>(width), 8, 1}};
@@ -72,7 +70,7 @@ TEST(EstimateSolidity, OfThingsInACellIsTheShareOfRandomRaysThatMeetOne) {
 }
 
 TEST(EstimateSolidity, StaysInRangeAndNeverShrinksAsTheCellFills) {
-  core::RandomStream random = stream(1);
+  core::RandomStream random = stream(67, 1);
   const auto value = [&random](double high) {
     return static_cast<float>(random.next_real(0, high));
   };

@@ -55,14 +55,14 @@ TEST(WorldSize, AgreesWithTheMeshesOfManyBlocks) {
   const WorldSize size = world_size(world, registry());
   std::vector<Placement> placements;
   double triangles = 0;
-  constexpr int kBlocks = 60;
-  for (std::int32_t i = 0; i < kBlocks; ++i) {
+  constexpr int kManyBlocks = 60;
+  for (std::int32_t i = 0; i < kManyBlocks; ++i) {
     triangles += models::terrain_surface_triangles(world.terrain, 0);
     place_models(world, registry(), {100 + i, 300}, placements);
     for (const Placement& p : placements)
       triangles += registry()[p.model].mesh_size(p.parameters, 0).triangle_count();
   }
-  EXPECT_NEAR(triangles / kBlocks, size.block_triangles, size.block_triangles * 0.08);
+  EXPECT_NEAR(triangles / kManyBlocks, size.block_triangles, size.block_triangles * 0.08);
 }
 
 TEST(WorldSize, AnEndlessWorldHasTheSizeOfABlockOnly) {

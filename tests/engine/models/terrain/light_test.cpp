@@ -17,8 +17,7 @@ namespace psygen::models {
 namespace {
 
 using core::TerrainVertex;
-
-constexpr std::int64_t kFar = std::numeric_limits<std::int32_t>::max();
+using test::kFar;
 
 class Light : public ::testing::Test {
  protected:

@@ -16,10 +16,9 @@ namespace psygen::models {
 namespace {
 
 using core::TerrainVertex;
+using test::kFar;
 using test::Mesh;
 using test::synthesize;
-
-constexpr std::int64_t kFar = std::numeric_limits<std::int32_t>::max();
 
 class Terrain : public ::testing::Test {
  protected:

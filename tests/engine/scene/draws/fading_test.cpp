@@ -103,23 +103,24 @@ std::vector<NodeCoord> draw(NodeHandover& handover, const std::vector<NodeCoord>
   return going;
 }
 
-using Nodes = std::vector<NodeCoord>;
+using NodeCoords = std::vector<NodeCoord>;
 
 TEST(NodeHandover, NodesThatAreSplitOrMergedTakeEachOthersPlace) {
   const NodeCoord parent{{-2, 3}, 4}, other{{5, 5}, 4};
   const NodeCoord child = child_of(parent, 2), grandchild = child_of(child, 1);
   NodeHandover handover;
-  EXPECT_EQ(draw(handover, {parent, other}), Nodes{});
+  EXPECT_EQ(draw(handover, {parent, other}), NodeCoords{});
   EXPECT_TRUE(handover.is_fresh(parent));
   EXPECT_FALSE(handover.replaces(parent)) << "there was nothing before it";
-  EXPECT_EQ(draw(handover, {other, grandchild}), Nodes{parent});
+  EXPECT_EQ(draw(handover, {other, grandchild}), NodeCoords{parent});
   EXPECT_TRUE(handover.replaces(grandchild)) << "two levels below";
   EXPECT_FALSE(handover.is_fresh(other));
-  EXPECT_EQ(draw(handover, {parent, other}), Nodes{grandchild});
+  EXPECT_EQ(draw(handover, {parent, other}), NodeCoords{grandchild});
   EXPECT_TRUE(handover.replaces(parent)) << "back again";
-  EXPECT_EQ(draw(handover, {parent, other}, false), Nodes{grandchild}) << "kept until it is gone";
+  EXPECT_EQ(draw(handover, {parent, other}, false), NodeCoords{grandchild})
+      << "kept until it is gone";
   EXPECT_FALSE(handover.is_fresh(parent));
-  EXPECT_EQ(draw(handover, {parent, other}), Nodes{});
+  EXPECT_EQ(draw(handover, {parent, other}), NodeCoords{});
 }
 
 TEST(NodeHandover, WhatEntersTheViewReplacesNothing) {
@@ -135,7 +136,7 @@ TEST(NodeHandover, NothingIsReplacedOfWhichNothingIsLeft) {
   const NodeCoord parent{{1, 1}, 2}, child = child_of(parent, 0);
   NodeHandover handover;
   draw(handover, {parent});
-  EXPECT_EQ(draw(handover, {child}, false), Nodes{parent});
+  EXPECT_EQ(draw(handover, {child}, false), NodeCoords{parent});
   EXPECT_FALSE(handover.replaces(child));
 }
 
@@ -143,7 +144,7 @@ TEST(NodeHandover, ATickThatDrewNothingEndsAllThatWasGoing) {
   const NodeCoord parent{{1, 1}, 2}, child = child_of(parent, 0);
   NodeHandover handover;
   draw(handover, {parent});
-  EXPECT_EQ(draw(handover, {child}, true, false), Nodes{});
+  EXPECT_EQ(draw(handover, {child}, true, false), NodeCoords{});
   EXPECT_TRUE(handover.is_fresh(child));
   EXPECT_FALSE(handover.replaces(child));
 }

@@ -38,7 +38,7 @@ struct Entities {
   void draw(std::size_t node) { world.get<Demand>(draws.entities[node])->drawn_level = 0; }
 };
 
-using Nodes = std::vector<std::uint32_t>;
+using NodeIndices = std::vector<std::uint32_t>;
 using Flags = std::vector<std::uint8_t>;
 
 TEST(ShownNodes, ReadyIsWhatHasAMeshAndWasSeenToBeReadyOrHasNothingAbove) {
@@ -71,14 +71,14 @@ TEST(ShownNodes, AreTheDrawnOnesAndLeavesThatNothingStandsFor) {
   DrawLists draws;
   draws.nodes = {0};
   list_shown(view, draws);
-  EXPECT_EQ(draws.shown, (Nodes{0}));
+  EXPECT_EQ(draws.shown, (NodeIndices{0}));
   draws.nodes = {3};
   list_shown(view, draws);
-  EXPECT_EQ(draws.shown, (Nodes{1, 3, 4}));
+  EXPECT_EQ(draws.shown, (NodeIndices{1, 3, 4}));
   EXPECT_EQ(draws.shown_nodes.size(), 3u);
   view.in_view[1] = 0;
   list_shown(view, draws);
-  EXPECT_EQ(draws.shown, (Nodes{3, 4}));
+  EXPECT_EQ(draws.shown, (NodeIndices{3, 4}));
 }
 
 TEST(ShownNodes, AreCoarserByTheLevelsOfTheFinestNodeInView) {

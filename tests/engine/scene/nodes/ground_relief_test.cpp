@@ -16,7 +16,7 @@ constexpr float kLowM = -20, kRangeM = 200;
 
 // A mesh of n × n vertices and its skirt with these heights, 0 … 65535.
 template <class Height>
-std::vector<core::TerrainVertex> mesh(std::size_t n, const Height& height) {
+std::vector<core::TerrainVertex> mesh_of_heights(std::size_t n, const Height& height) {
   std::vector<core::TerrainVertex> vertices(n * n + 4 * (n - 1));
   for (std::size_t z = 0; z < n; ++z) {
     for (std::size_t x = 0; x < n; ++x)
@@ -56,7 +56,7 @@ constexpr std::size_t kSides[] = {4u, 8u, 9u, 20u, 21u, 22u, 59u, 64u};
 
 TEST(GroundRelief, OfFlatGroundLiesOnIt) {
   for (const std::size_t n : kSides) {
-    const GroundRelief relief = relief_of(mesh(n, [](auto, auto) { return 30000; }), n);
+    const GroundRelief relief = relief_of(mesh_of_heights(n, [](auto, auto) { return 30000; }), n);
     ASSERT_EQ(relief.points, std::min<std::size_t>(n, 22));
     EXPECT_EQ(relief.place.front(), 0.0F);
     EXPECT_EQ(relief.place[relief.points - 1], 1.0F);
@@ -101,7 +101,7 @@ TEST(GroundRelief, HasLinesThatAreNowhereAboveTheGround) {
   for (const std::size_t n : kSides) {
     SCOPED_TRACE(testing::Message() << n << " vertices a side");
     core::RandomStream random(7, static_cast<std::uint32_t>(n), 0, 0, core::Purpose::kStructure);
-    auto vertices = mesh(n, [&](auto, auto) { return random.next_real(0, 65535); });
+    auto vertices = mesh_of_heights(n, [&](auto, auto) { return random.next_real(0, 65535); });
     for (core::TerrainVertex& vertex : vertices)
       vertex.coarse_height = static_cast<std::uint16_t>(random.next_real(0, 65535));
     const Clearance clear = clearance_of(relief_of(vertices, n), vertices, n);
@@ -113,14 +113,14 @@ TEST(GroundRelief, HasLinesThatAreNowhereAboveTheGround) {
 
 TEST(GroundRelief, OfAsManyPointsAsVerticesIsTheGroundItself) {
   core::RandomStream random(7, 0, 0, 0, core::Purpose::kStructure);
-  const auto vertices = mesh(22, [&](auto, auto) { return random.next_real(0, 65535); });
+  const auto vertices = mesh_of_heights(22, [&](auto, auto) { return random.next_real(0, 65535); });
   const GroundRelief relief = relief_of(vertices, 22);
   for (std::size_t i = 0; i < 22 * 22; ++i)
     EXPECT_FLOAT_EQ(relief.height_m[i], metres(vertices[i].height));
 }
 
 TEST(GroundRelief, OfARidgeHidesWhatLiesBehindItAndNothingBesides) {
-  const auto vertices = mesh(22, [](auto, auto z) { return z == 6 ? 60000 : 20000; });
+  const auto vertices = mesh_of_heights(22, [](auto, auto z) { return z == 6 ? 60000 : 20000; });
   const GroundRelief relief = ground_relief(vertices, grid_of(22), 0, kRangeM, 0.0F);
   visibility::Horizon horizon;
   // North of the camera, which is 80 m up; the ridge is 183 m high and 343 m away.
@@ -132,7 +132,7 @@ TEST(GroundRelief, OfARidgeHidesWhatLiesBehindItAndNothingBesides) {
 }
 
 TEST(GroundRelief, HoldsForBothShapesOfGroundThatMorphs) {
-  auto vertices = mesh(22, [](auto, auto) { return 40000; });
+  auto vertices = mesh_of_heights(22, [](auto, auto) { return 40000; });
   for (core::TerrainVertex& vertex : vertices)
     vertex.coarse_height = 30000;
   const GroundRelief falls = relief_of(vertices, 22);
@@ -151,7 +151,7 @@ TEST(GroundRelief, KnowsHowHighEachTileReaches) {
     const int side = grid.tiles_per_side();
     for (int tile = 0; tile < side * side; ++tile) {
       const int column = tile % side, row = tile / side;
-      const auto vertices = mesh(n, [&](std::size_t x, std::size_t z) {
+      const auto vertices = mesh_of_heights(n, [&](std::size_t x, std::size_t z) {
         return static_cast<int>(x) == grid.tile_line(column) + 1 &&
                        static_cast<int>(z) == grid.tile_line(row) + 1
                    ? 60000

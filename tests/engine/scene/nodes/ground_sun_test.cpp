@@ -10,7 +10,7 @@ namespace {
 
 // A mesh of n × n vertices with its skirt, whose own light is of no account.
 template <class Share>
-std::vector<core::TerrainVertex> mesh(std::size_t n, const Share& share) {
+std::vector<core::TerrainVertex> lit_mesh(std::size_t n, const Share& share) {
   std::vector<core::TerrainVertex> vertices(n * n + 4 * (n - 1));
   for (core::TerrainVertex& v : vertices)
     v.sun = 77;
@@ -22,7 +22,7 @@ std::vector<core::TerrainVertex> mesh(std::size_t n, const Share& share) {
 TEST(GroundSun, OfEvenLightIsThatLightEverywhere) {
   EXPECT_EQ(sun_at({}, {0.3F, 0.9F}), 1.0F);
   for (const std::size_t n : {2, 5, 16, 17, 64, 128}) {
-    const GroundSun sun = ground_sun(mesh(n, [](auto, auto) { return 51; }), n);
+    const GroundSun sun = ground_sun(lit_mesh(n, [](auto, auto) { return 51; }), n);
     for (const float x : {-1.0F, 0.0F, 0.01F, 0.5F, 0.99F, 1.0F, 2.0F}) {
       EXPECT_FLOAT_EQ(sun_at(sun, {x, 0.3F}), 0.2F) << n << " " << x;
       EXPECT_FLOAT_EQ(sun_at(sun, {0.3F, x}), 0.2F) << n << " " << x;
@@ -35,8 +35,8 @@ TEST(GroundSun, FollowsTheVerticesAlongEitherSide) {
   for (const std::size_t n : {16, 22, 64, 128}) {
     const float last = static_cast<float>(n - 1);
     const auto ramp = [&](std::size_t at) { return 255.0F * static_cast<float>(at) / last; };
-    const GroundSun along_x = ground_sun(mesh(n, [&](auto x, auto) { return ramp(x); }), n);
-    const GroundSun along_z = ground_sun(mesh(n, [&](auto, auto z) { return ramp(z); }), n);
+    const GroundSun along_x = ground_sun(lit_mesh(n, [&](auto x, auto) { return ramp(x); }), n);
+    const GroundSun along_z = ground_sun(lit_mesh(n, [&](auto, auto z) { return ramp(z); }), n);
     for (float place = 0.1F; place < 0.9F; place += 0.037F) {
       // A cell may have no vertex in its middle.
       EXPECT_NEAR(sun_at(along_x, {place, 0.2F}), place, 0.55F / last + 0.002F) << n;
@@ -50,7 +50,7 @@ TEST(GroundSun, FollowsTheVerticesAlongEitherSide) {
 }
 
 TEST(GroundSun, OfAShadowsEdgeIsDarkOnOneSide) {
-  const GroundSun sun = ground_sun(mesh(64, [](auto x, auto) { return x < 32 ? 0 : 255; }), 64);
+  const GroundSun sun = ground_sun(lit_mesh(64, [](auto x, auto) { return x < 32 ? 0 : 255; }), 64);
   EXPECT_EQ(sun_at(sun, {0.4F, 0.5F}), 0.0F);
   EXPECT_EQ(sun_at(sun, {0.6F, 0.5F}), 1.0F);
   EXPECT_FLOAT_EQ(sun_at(sun, {0.5F, 0.5F}), 0.5F);

@@ -13,7 +13,7 @@
 namespace psygen::scene {
 namespace {
 
-const core::BlockCoord kHere{256, 256};
+const core::BlockCoord kEditedBlock{256, 256};
 
 // Of every mesh entity by its place: key, entity and what it draws.
 struct Shown {
@@ -83,13 +83,13 @@ TEST(Edits, AFelledTreeIsGoneInTheNextTickAndNothingElseOfTheBlockChanges) {
   const auto scene = settled_scene();
   const auto before = shown_in(*scene);
   world::Edits edits = scene->edits();
-  expect_ok(edits.remove(scene->state().facts.world, {kHere, 3}));
+  expect_ok(edits.remove(scene->state().facts.world, {kEditedBlock, 3}));
   scene->edit(edits);
   tick_at(*scene, pose_at(256, 256));
   EXPECT_EQ(scene->state().counters.holes, 0u);
   const auto after = shown_in(*scene);
   EXPECT_EQ(after.size() + 1, before.size());
-  EXPECT_FALSE(after.contains({kHere.x, kHere.z, 0, 3}));
+  EXPECT_FALSE(after.contains({kEditedBlock.x, kEditedBlock.z, 0, 3}));
   std::size_t changed = 0;
   for (const auto& [name, shown] : after) {
     const Shown& old = before.at(name);
@@ -103,8 +103,8 @@ TEST(Edits, AFelledTreeIsGoneInTheNextTickAndNothingElseOfTheBlockChanges) {
   // The meshes for all models of the nodes above the block, up to the last level that has them.
   const auto merged_above = std::ranges::count_if(before, [](const auto& named) {
     const auto& [x, z, level, index] = named.first;
-    return index == kMergedIndex && x == (kHere.x >> level) << level &&
-           z == (kHere.z >> level) << level;
+    return index == kMergedIndex && x == (kEditedBlock.x >> level) << level &&
+           z == (kEditedBlock.z >> level) << level;
   });
   EXPECT_EQ(changed, static_cast<std::size_t>(merged_above));
   EXPECT_GT(changed, 0u);
@@ -116,8 +116,8 @@ TEST(Edits, TakenBackTheVerySameMeshesAreDrawn) {
   const auto before = shown_in(*scene);
   const world::World& world = scene->state().facts.world;
   world::Edits edits = scene->edits();
-  expect_ok(edits.remove(world, {kHere, 3}));
-  expect_ok(edits.raise(world, {kHere, {31, 0, 31}}, 40, 10));
+  expect_ok(edits.remove(world, {kEditedBlock, 3}));
+  expect_ok(edits.raise(world, {kEditedBlock, {31, 0, 31}}, 40, 10));
   expect_ok(edits.flatten(world, {{257, 255}, {3, 0, 60}}, 25, 30));
   scene->edit(edits);
   tick_until_fresh(*scene, pose_at(256, 256));
@@ -140,7 +140,7 @@ TEST(Edits, TakenBackBeforeTheyAreDrawnNothingHasHappened) {
   const auto scene = settled_scene();
   const auto before = shown_in(*scene);
   world::Edits edits;
-  expect_ok(edits.raise(scene->state().facts.world, {kHere, {31, 0, 31}}, 40, 10));
+  expect_ok(edits.raise(scene->state().facts.world, {kEditedBlock, {31, 0, 31}}, 40, 10));
   scene->edit(edits);
   tick_at(*scene, pose_at(256, 256));
   EXPECT_GT(count_stale(*scene), 0u);
@@ -171,9 +171,9 @@ TEST(Edits, ASceneThatStartsWithEditsShowsWhatOneThatGotThemShows) {
   models::Registry registry = models::make_standard_registry();
   world::World world = paper_world(registry);
   world::Edits edits;
-  expect_ok(edits.remove(world, {kHere, 3}));
-  expect_ok(edits.raise(world, {kHere, {31, 0, 31}}, 40, 10));
-  expect_ok(edits.move(world, registry, {kHere, 5}, {{257, 256}, {1, 0, 1}}));
+  expect_ok(edits.remove(world, {kEditedBlock, 3}));
+  expect_ok(edits.raise(world, {kEditedBlock, {31, 0, 31}}, 40, 10));
+  expect_ok(edits.move(world, registry, {kEditedBlock, 5}, {{257, 256}, {1, 0, 1}}));
   const auto later = settled_scene();
   later->edit(edits);
   tick_until_fresh(*later, pose_at(256, 256));
@@ -206,15 +206,15 @@ TEST(Edits, ASceneThatStartsWithEditsShowsWhatOneThatGotThemShows) {
 TEST(Edits, AFelledTreeStaysFelledAfterReturn) {
   const auto scene = settled_scene();
   world::Edits edits;
-  expect_ok(edits.remove(scene->state().facts.world, {kHere, 3}));
+  expect_ok(edits.remove(scene->state().facts.world, {kEditedBlock, 3}));
   scene->edit(edits);
   for (const std::int32_t x : {256, 200, 256}) {
     scene->settle(pose_at(x, 256));
     tick_at(*scene, pose_at(x, 256));
   }
   const auto shown = shown_in(*scene);
-  EXPECT_TRUE(shown.contains({kHere.x, kHere.z, 0, 4}));
-  EXPECT_FALSE(shown.contains({kHere.x, kHere.z, 0, 3}));
+  EXPECT_TRUE(shown.contains({kEditedBlock.x, kEditedBlock.z, 0, 4}));
+  EXPECT_FALSE(shown.contains({kEditedBlock.x, kEditedBlock.z, 0, 3}));
 }
 
 TEST(Edits, APlacedModelAppearsAndNoCoarserNodeTakesThePlaceOfItsBlock) {
@@ -224,8 +224,8 @@ TEST(Edits, APlacedModelAppearsAndNoCoarserNodeTakesThePlaceOfItsBlock) {
   world::Edits edits;
   models::Parameters rock = world::scatter_parameters(facts.registry, rocks);
   rock.set_integer(0, 99);
-  const auto placed = expect_ok(
-      edits.place(facts.world, facts.registry, {rocks.model, rock, {kHere, {30, 0, 20}}, 0}));
+  const auto placed = expect_ok(edits.place(facts.world, facts.registry,
+                                            {rocks.model, rock, {kEditedBlock, {30, 0, 20}}, 0}));
   scene->edit(edits);
   const std::vector<visibility::NodeCoord> before = scene->state().draws.shown_nodes;
   for (int i = 0; i < 5; ++i) {
@@ -234,7 +234,7 @@ TEST(Edits, APlacedModelAppearsAndNoCoarserNodeTakesThePlaceOfItsBlock) {
     EXPECT_TRUE(scene->state().draws.shown_nodes == before) << "tick " << i;
   }
   const Shown rock_shown =
-      shown_in(*scene).at({kHere.x, kHere.z, 0, world::kPlacedIndex + placed.id});
+      shown_in(*scene).at({kEditedBlock.x, kEditedBlock.z, 0, world::kPlacedIndex + placed.id});
   EXPECT_TRUE(rock_shown.there);
   EXPECT_EQ(rock_shown.position.x, 30);
 }
@@ -250,7 +250,7 @@ TEST(Edits, ARaisedRidgeHidesWhatLiesBehindIt) {
   models::GroundEdit flat;  // so that nothing else hides anything
   flat.change = models::GroundChange::kFlatten;
   flat.square = true;
-  flat.centre = {kHere, {31, 0, 31}};
+  flat.centre = {kEditedBlock, {31, 0, 31}};
   flat.radius_m = 1500;
   flat.height_m = 20;
   expect_ok(edits.edit_ground(world, flat));

@@ -11,7 +11,7 @@ namespace psygen::scene {
 namespace {
 
 // What follows from the events alone.
-struct Seen {
+struct Watched {
   const ecs::World* entities = nullptr;
   std::set<visibility::NodeCoord> shown;
   std::set<std::uint64_t> models;                      // entities
@@ -21,7 +21,7 @@ struct Seen {
 };
 
 template <class Event, class F>
-void drain(ecs::EventReader<Event>& reader, Seen& seen, const F& f) {
+void drain(ecs::EventReader<Event>& reader, Watched& seen, const F& f) {
   reader.drain([&](std::span<const Event> events) {
     seen.events += events.size();
     for (const Event& event : events)
@@ -29,22 +29,22 @@ void drain(ecs::EventReader<Event>& reader, Seen& seen, const F& f) {
   });
 }
 
-Seen& add_watchers(Systems systems) {
-  Seen& all = systems.resource<Seen>();
+Watched& add_watchers(Systems systems) {
+  Watched& all = systems.resource<Watched>();
   all.entities = &systems.entities;
-  systems.frame.add("watch nodes", [](Seen& seen, ecs::EventReader<NodeHidden>& hidden,
+  systems.frame.add("watch nodes", [](Watched& seen, ecs::EventReader<NodeHidden>& hidden,
                                       ecs::EventReader<NodeShown>& shown) {
     drain(hidden, seen, [&](const NodeHidden& e) { return seen.shown.erase(e.at) == 1; });
     drain(shown, seen, [&](const NodeShown& e) { return seen.shown.insert(e.at).second; });
   });
-  systems.frame.add("watch models", [](Seen& seen, ecs::EventReader<ModelCreated>& created,
+  systems.frame.add("watch models", [](Watched& seen, ecs::EventReader<ModelCreated>& created,
                                        ecs::EventReader<ModelRemoved>& removed) {
     drain(created, seen,
           [&](const ModelCreated& e) { return seen.models.insert(owner_of(e.entity)).second; });
     drain(removed, seen,
           [&](const ModelRemoved& e) { return seen.models.erase(owner_of(e.entity)) == 1; });
   });
-  systems.frame.add("watch meshes", [](Seen& seen, ecs::EventReader<MeshEvicted>& evicted,
+  systems.frame.add("watch meshes", [](Watched& seen, ecs::EventReader<MeshEvicted>& evicted,
                                        ecs::EventReader<MeshLanded>& landed) {
     drain(evicted, seen, [&](const MeshEvicted& e) {
       const auto known = seen.meshes.find(owner_of(e.entity));
@@ -67,7 +67,7 @@ TEST(Events, TellTheStateOfTheScene) {
   Settings settings = small_settings();
   settings.budget_bytes = 6ull << 20;
   auto scene = make_scene(settings);
-  const Seen& seen = add_watchers(scene->systems());
+  const Watched& seen = add_watchers(scene->systems());
   State& state = scene->state();
   state.input.pose = pose_at(256, 256);
   for (int i = 0; i < 120; ++i) {

@@ -16,7 +16,7 @@ std::string repeated(std::string_view text, int count) {
   return all;
 }
 
-std::string error_of(std::string_view text) {
+std::string document_error(std::string_view text) {
   const auto document = parse_document(text, "f.toml");
   EXPECT_FALSE(document.has_value());
   if (document) return "accepted";
@@ -51,32 +51,33 @@ TEST(Document, AnEmptyTextIsAnEmptyTable) {
 }
 
 TEST(Document, ErrorsNameFileAndLine) {
-  EXPECT_THAT(error_of("a = 1\nb =\n"), StartsWith("f.toml:2: this is not valid TOML"));
-  EXPECT_THAT(error_of("a = 1\n\na = 2\n"), StartsWith("f.toml:3:"));
+  EXPECT_THAT(document_error("a = 1\nb =\n"), StartsWith("f.toml:2: this is not valid TOML"));
+  EXPECT_THAT(document_error("a = 1\n\na = 2\n"), StartsWith("f.toml:3:"));
 }
 
 TEST(Document, ABracketWithoutAKeyIsAnError) {
   for (const char* text :
        {"[", "[[", "[\n", "[[\n", "[#", "[.", "[a.", "[a.]", "[]", "[[a", "[[a]\n"})
-    EXPECT_THAT(error_of(text), StartsWith("f.toml:1:")) << text;
+    EXPECT_THAT(document_error(text), StartsWith("f.toml:1:")) << text;
 }
 
 TEST(Document, HundredThousandNestedArraysAreRefused) {
-  EXPECT_THAT(error_of("a = " + repeated("[", 100'000)), StartsWith("f.toml:1:"));
-  EXPECT_THAT(error_of("a = " + repeated("[", 100'000) + repeated("]", 100'000)),
+  EXPECT_THAT(document_error("a = " + repeated("[", 100'000)), StartsWith("f.toml:1:"));
+  EXPECT_THAT(document_error("a = " + repeated("[", 100'000) + repeated("]", 100'000)),
               StartsWith("f.toml:1:"));
-  EXPECT_THAT(error_of("a = " + repeated("{b = ", 100'000)), StartsWith("f.toml:1:"));
+  EXPECT_THAT(document_error("a = " + repeated("{b = ", 100'000)), StartsWith("f.toml:1:"));
 }
 
 TEST(Document, HundredThousandDottedPartsOfAKeyAreRefused) {
   const std::string deep = repeated("a.", 100'000) + "a";
   const std::string quoted_deep = repeated("\"=\" . ", 100'000) + "a";
   for (const std::string& key : {deep, quoted_deep, repeated("1.", 100'000) + "1"}) {
-    EXPECT_THAT(error_of(key + " = 1"), HasSubstr("dotted parts"));
-    EXPECT_THAT(error_of("[" + key + "]"), HasSubstr("dotted parts"));
-    EXPECT_THAT(error_of("[[" + key + "]]"), HasSubstr("dotted parts"));
-    EXPECT_THAT(error_of("x = 1\ny = {" + key + " = 1}"), StartsWith("f.toml:2:"));
-    EXPECT_THAT(error_of("y = [1.5, {z = 'it''s', " + key + " = 1}]"), StartsWith("f.toml:1:"));
+    EXPECT_THAT(document_error(key + " = 1"), HasSubstr("dotted parts"));
+    EXPECT_THAT(document_error("[" + key + "]"), HasSubstr("dotted parts"));
+    EXPECT_THAT(document_error("[[" + key + "]]"), HasSubstr("dotted parts"));
+    EXPECT_THAT(document_error("x = 1\ny = {" + key + " = 1}"), StartsWith("f.toml:2:"));
+    EXPECT_THAT(document_error("y = [1.5, {z = 'it''s', " + key + " = 1}]"),
+                StartsWith("f.toml:1:"));
   }
 }
 
@@ -89,15 +90,15 @@ TEST(Document, DotsInStringsCommentsAndNumbersAreNotKeys) {
 }
 
 TEST(Document, StringsOverSeveralLinesAreRefused) {
-  EXPECT_THAT(error_of("a = \"\"\"x\ny\"\"\"\n"), HasSubstr("several lines"));
-  EXPECT_THAT(error_of("a = '''x'''\n"), HasSubstr("several lines"));
+  EXPECT_THAT(document_error("a = \"\"\"x\ny\"\"\"\n"), HasSubstr("several lines"));
+  EXPECT_THAT(document_error("a = '''x'''\n"), HasSubstr("several lines"));
   EXPECT_TRUE(parse_document("a = \"\"\nb = ''\n", "f.toml").has_value());
 }
 
 TEST(Document, InvalidUtf8IsRefused) {
-  EXPECT_THAT(error_of("a = \"\xff\xfe\"\n"), StartsWith("f.toml:1:"));
-  EXPECT_THAT(error_of("a = 1\n# \xc3\x28\n"), StartsWith("f.toml:2:"));
-  EXPECT_THAT(error_of("\xed\xa0\x80 = 1\n"), StartsWith("f.toml:1:"));
+  EXPECT_THAT(document_error("a = \"\xff\xfe\"\n"), StartsWith("f.toml:1:"));
+  EXPECT_THAT(document_error("a = 1\n# \xc3\x28\n"), StartsWith("f.toml:2:"));
+  EXPECT_THAT(document_error("\xed\xa0\x80 = 1\n"), StartsWith("f.toml:1:"));
 }
 
 TEST(Document, BinaryFilesAreRefusedWithAPrintableMessage) {
@@ -106,9 +107,9 @@ TEST(Document, BinaryFilesAreRefusedWithAPrintableMessage) {
       "ELF";
   for (int i = 0; i < 4096; ++i)
     binary += static_cast<char>(i * 37 % 256);
-  for (const char c : error_of(binary))
+  for (const char c : document_error(binary))
     EXPECT_TRUE(c >= ' ' && c <= '~');
-  EXPECT_THAT(error_of(std::string(64, '\0')), StartsWith("f.toml:1:"));
+  EXPECT_THAT(document_error(std::string(64, '\0')), StartsWith("f.toml:1:"));
 }
 
 TEST(Document, DatesAreAKindOfTheirOwn) {

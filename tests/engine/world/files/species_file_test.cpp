@@ -46,7 +46,7 @@ season = 2
 )";
 
 // The message for the file with a change; what was registered before stays, nothing else.
-std::string error_with(std::string_view from, std::string_view to) {
+std::string species_error_with(std::string_view from, std::string_view to) {
   models::Registry registry = models::make_standard_registry();
   const auto world = parse_world(replaced(kFile, from, to), "w.toml", registry);
   EXPECT_EQ(registry.size(), 4U);
@@ -90,34 +90,38 @@ TEST(SpeciesFile, KeepsOneModelForEqualSpeciesAndRefusesOthersOfTheName) {
 
 TEST(SpeciesFile, RefusesWithFileLineAndField) {
   EXPECT_THAT(
-      error_with("to = \"S2\"", "to = \"Q2\""),
+      species_error_with("to = \"S2\"", "to = \"Q2\""),
       AllOf(StartsWith("w.toml:40: species[0].rule[1].to: "), HasSubstr("symbol Q is unknown")));
-  EXPECT_THAT(error_with("to = \"S2\"", "to = \"ö2\""), HasSubstr("symbol ö is unknown"));
-  EXPECT_THAT(error_with("axiom = \"T\"", "axiom = \"X\""),
+  EXPECT_THAT(species_error_with("to = \"S2\"", "to = \"ö2\""), HasSubstr("symbol ö is unknown"));
+  EXPECT_THAT(species_error_with("axiom = \"T\"", "axiom = \"X\""),
               AllOf(StartsWith("w.toml:27: species[0].axiom: "), HasSubstr("unknown")));
-  EXPECT_THAT(error_with("probability = 0.5", "probability = 0.4"),
+  EXPECT_THAT(species_error_with("probability = 0.5", "probability = 0.4"),
               AllOf(HasSubstr("species[0].rule[2].probability: "), HasSubstr("sum up to 0.9")));
-  EXPECT_THAT(error_with("length = 0.7", "length = nan"),
+  EXPECT_THAT(species_error_with("length = 0.7", "length = nan"),
               AllOf(StartsWith("w.toml:34: species[0].kind[1].length: "), HasSubstr("nan")));
-  EXPECT_THAT(error_with("length = 0.7", "length = -inf"), HasSubstr("must be a number from"));
-  EXPECT_THAT(error_with("length = 0.7", "lenght = 0.7"), HasSubstr("did you mean length"));
-  EXPECT_THAT(error_with("length = 0.7", "length = \"long\""), HasSubstr("must be a number"));
-  EXPECT_THAT(error_with("form = \"leaflets\"", "form = \"spikes\""),
+  EXPECT_THAT(species_error_with("length = 0.7", "length = -inf"),
+              HasSubstr("must be a number from"));
+  EXPECT_THAT(species_error_with("length = 0.7", "lenght = 0.7"), HasSubstr("did you mean length"));
+  EXPECT_THAT(species_error_with("length = 0.7", "length = \"long\""),
+              HasSubstr("must be a number"));
+  EXPECT_THAT(species_error_with("form = \"leaflets\"", "form = \"spikes\""),
               HasSubstr("species[0].foliage.form"));
-  EXPECT_THAT(error_with("name = \"ash\"", "name = \"tree\""), HasSubstr("species[0].name"));
-  EXPECT_THAT(error_with("name = \"ash\"", "name = \"Ash Tree\""), HasSubstr("snake_case"));
+  EXPECT_THAT(species_error_with("name = \"ash\"", "name = \"tree\""),
+              HasSubstr("species[0].name"));
+  EXPECT_THAT(species_error_with("name = \"ash\"", "name = \"Ash Tree\""), HasSubstr("snake_case"));
 }
 
 TEST(SpeciesFile, RefusesGrammarsThatGrowTooFastWithTheirCost) {
-  EXPECT_THAT(error_with("to = \"S3\"", "to = \"S99999999999999999999\""),
+  EXPECT_THAT(species_error_with("to = \"S3\"", "to = \"S99999999999999999999\""),
               AllOf(HasSubstr("species[0].rule[2].to"), HasSubstr("predicted cost")));
-  EXPECT_THAT(error_with("iterations = 3\n", "iterations = 1000000000\n"),
+  EXPECT_THAT(species_error_with("iterations = 3\n", "iterations = 1000000000\n"),
               AllOf(HasSubstr("species[0].iterations"), HasSubstr("predicted cost: 2^")));
-  EXPECT_THAT(error_with("branches = 3\n", "branches = 9223372036854775807\n"),
+  EXPECT_THAT(species_error_with("branches = 3\n", "branches = 9223372036854775807\n"),
               AllOf(HasSubstr("species[0].branches"), HasSubstr("predicted cost")));
-  EXPECT_THAT(error_with("iterations = 3\nbranches = 3\n", "iterations = 12\nbranches = 8\n"),
-              AllOf(HasSubstr("grows too fast"), HasSubstr("predicted cost")));
-  EXPECT_THAT(error_with("iterations = [2, 3]\nseason", "iterations = 1000000000\nseason"),
+  EXPECT_THAT(
+      species_error_with("iterations = 3\nbranches = 3\n", "iterations = 12\nbranches = 8\n"),
+      AllOf(HasSubstr("grows too fast"), HasSubstr("predicted cost")));
+  EXPECT_THAT(species_error_with("iterations = [2, 3]\nseason", "iterations = 1000000000\nseason"),
               AllOf(HasSubstr("scatter[2].iterations"), HasSubstr("predicted cost: 2^")));
 }
 

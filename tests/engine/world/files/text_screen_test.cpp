@@ -12,7 +12,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-std::string error_of(std::string_view text) {
+std::string screen_error(std::string_view text) {
   const auto screened = screen_text(text, "f.toml", kMaxNesting);
   EXPECT_FALSE(screened.has_value()) << text;
   if (screened) return "accepted";
@@ -34,22 +34,22 @@ std::string utf8(char32_t c) {
 }
 
 TEST(TextScreen, ACharacterBeyondAsciiIsNamedWithItsPlaceAndWhatIsAllowed) {
-  EXPECT_EQ(error_of("größe = 1\n"),
+  EXPECT_EQ(screen_error("größe = 1\n"),
             "f.toml:1:3: 'ö' (U+00F6) is not allowed here; outside of strings and comments only "
             "ASCII characters are");
-  EXPECT_EQ(error_of("# größe\nsize = 3 × 4\n"),
+  EXPECT_EQ(screen_error("# größe\nsize = 3 × 4\n"),
             "f.toml:2:10: '×' (U+00D7) is not allowed here; outside of strings and comments only "
             "ASCII characters are");
-  EXPECT_THAT(error_of("a = \"ä\"\nname = “x”\n"),
+  EXPECT_THAT(screen_error("a = \"ä\"\nname = “x”\n"),
               StartsWith("f.toml:2:8: '“' (U+201C, a typographic quotation mark) is not allowed "
                          "here: write \"; outside"));
 }
 
 TEST(TextScreen, ColumnsCountCharactersAndNoByteOrderMark) {
-  EXPECT_THAT(error_of("\"äöü\" ß"), StartsWith("f.toml:1:7: 'ß'"));
-  EXPECT_THAT(error_of("\xEF\xBB\xBFö"), StartsWith("f.toml:1:1: 'ö'"));
-  EXPECT_THAT(error_of("\t\tö"), StartsWith("f.toml:1:3: 'ö'"));
-  EXPECT_THAT(error_of("a = '\xC3\xB6'\r\n\n  \xC3\xB6"), StartsWith("f.toml:3:3: 'ö'"));
+  EXPECT_THAT(screen_error("\"äöü\" ß"), StartsWith("f.toml:1:7: 'ß'"));
+  EXPECT_THAT(screen_error("\xEF\xBB\xBFö"), StartsWith("f.toml:1:1: 'ö'"));
+  EXPECT_THAT(screen_error("\t\tö"), StartsWith("f.toml:1:3: 'ö'"));
+  EXPECT_THAT(screen_error("a = '\xC3\xB6'\r\n\n  \xC3\xB6"), StartsWith("f.toml:3:3: 'ö'"));
 }
 
 // Every plane, and all that the parser's function has no answer for.
@@ -89,7 +89,7 @@ TEST(TextScreen, EveryCharacterBeyondAsciiIsRefusedWhereverItIsNoStringOrComment
                              "a = 1979-05-27 1",
                              "a = 0x",
                              "a = 1e"})
-    EXPECT_THAT(error_of(std::string(before) + "ö = 1\n"), HasSubstr("'ö' (U+00F6)")) << before;
+    EXPECT_THAT(screen_error(std::string(before) + "ö = 1\n"), HasSubstr("'ö' (U+00F6)")) << before;
 }
 
 TEST(TextScreen, StringsAndCommentsMayHaveAnyCharacter) {
@@ -113,19 +113,19 @@ TEST(TextScreen, AQuoteRightAfterANumberIsAnErrorOfTheParser) {
 }
 
 TEST(TextScreen, BytesThatAreNotUtf8AreRefusedEvenInStringsAndComments) {
-  EXPECT_EQ(error_of("a = 1\nname = \"Gr\xF6\xDF"
-                     "e\"\n"),
+  EXPECT_EQ(screen_error("a = 1\nname = \"Gr\xF6\xDF"
+                         "e\"\n"),
             "f.toml:2:11: the byte 0xF6 is not UTF-8; save the file as UTF-8");
-  EXPECT_THAT(error_of("# \xED\xA0\x80\n"), StartsWith("f.toml:1:3: the byte 0xED"));
-  EXPECT_THAT(error_of("a = '\xF0\x9F\x98"), StartsWith("f.toml:1:6: the byte 0xF0"));
-  EXPECT_THAT(error_of("a = \"\\\xFF\"\n"), StartsWith("f.toml:1:7: the byte 0xFF"));
-  EXPECT_THAT(error_of(std::string("\xFF\xFE"
-                                   "a\0",
-                                   4)),
+  EXPECT_THAT(screen_error("# \xED\xA0\x80\n"), StartsWith("f.toml:1:3: the byte 0xED"));
+  EXPECT_THAT(screen_error("a = '\xF0\x9F\x98"), StartsWith("f.toml:1:6: the byte 0xF0"));
+  EXPECT_THAT(screen_error("a = \"\\\xFF\"\n"), StartsWith("f.toml:1:7: the byte 0xFF"));
+  EXPECT_THAT(screen_error(std::string("\xFF\xFE"
+                                       "a\0",
+                                       4)),
               HasSubstr("UTF-16"));
-  EXPECT_THAT(error_of(std::string("\xFE\xFF"
-                                   "\0a",
-                                   4)),
+  EXPECT_THAT(screen_error(std::string("\xFE\xFF"
+                                       "\0a",
+                                       4)),
               HasSubstr("UTF-16"));
 }
 
