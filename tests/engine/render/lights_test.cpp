@@ -112,10 +112,11 @@ TEST_P(PointLights, survive_a_change_of_preset) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OnEveryPath, PointLights,
-                         in_ways<How>({{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                                       {RenderPath::kCpu, Submission::kMultiDraw, Preset::kMedium},
-                                       {RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                                       {RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}}));
+                         testing::ValuesIn(std::vector<How>{
+                             {RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                             {RenderPath::kCpu, Submission::kMultiDraw, Preset::kMedium},
+                             {RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                             {RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}}));
 
 }  // namespace
 }  // namespace psygen::render

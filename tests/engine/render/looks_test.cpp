@@ -148,8 +148,8 @@ TEST_P(LooksOfPresets, spots_darken_near_ground_and_nothing_else) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, LooksOfPresets,
-                         in_ways<Preset>({Preset::kLow, Preset::kMedium, Preset::kHigh,
-                                          Preset::kUltra}),
+                         testing::ValuesIn(std::vector<Preset>{Preset::kLow, Preset::kMedium,
+                                                               Preset::kHigh, Preset::kUltra}),
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
 class LooksOfViews : public Looks, public testing::WithParamInterface<View> {};

@@ -210,9 +210,10 @@ TEST_P(Particles, of_many_emitters_are_bounded_and_survive_views_and_presets) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OnEveryPath, Particles,
-                         in_ways<How>({{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
-                                       {RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
-                                       {RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}}));
+                         testing::ValuesIn(std::vector<How>{
+                             {RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+                             {RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
+                             {RenderPath::kGpu, Submission::kMultiDraw, Preset::kHigh}}));
 
 }  // namespace
 }  // namespace psygen::render

@@ -317,8 +317,8 @@ TEST_P(RendererTest, waiting_is_not_among_the_time_of_recording) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Submissions, RendererTest,
-                         in_ways<Submission>({Submission::kAuto, Submission::kPushed,
-                                              Submission::kMultiDraw}),
+                         testing::ValuesIn(std::vector<Submission>{
+                             Submission::kAuto, Submission::kPushed, Submission::kMultiDraw}),
                          [](const testing::TestParamInfo<Submission>& suite) {
                            switch (suite.param) {
                              case Submission::kPushed:

@@ -1,5 +1,4 @@
-// The ways of drawing that tests of the renderer are run for. Under the thread sanitizer the first
-// and the last are enough: what the others have of their own knows no threads.
+// The ways of drawing that tests of the renderer are run for.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,17 +14,10 @@ namespace psygen::render {
 
 using How = std::tuple<RenderPath, Submission, Preset>;
 
-template <class Way>
-auto in_ways(std::vector<Way> ways) {
-#ifdef __SANITIZE_THREAD__
-  if (ways.size() > 2) ways.erase(ways.begin() + 1, ways.end() - 1);
-#endif
-  return testing::ValuesIn(ways);
-}
-
 // Every path and submission, with light per vertex and per pixel.
 inline auto in_every_way() {
-  return in_ways<How>({{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
+  return testing::ValuesIn(
+      std::vector<How>{{RenderPath::kCpu, Submission::kPushed, Preset::kLow},
                        {RenderPath::kCpu, Submission::kMultiDraw, Preset::kLow},
                        {RenderPath::kGpu, Submission::kMultiDraw, Preset::kLow},
                        {RenderPath::kCpu, Submission::kPushed, Preset::kHigh},
