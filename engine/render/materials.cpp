@@ -18,8 +18,8 @@ namespace {
 constexpr std::uint32_t kSetsInPool = 64;
 constexpr std::uint32_t kMapsOfMaterial = 3;
 
-core::Extent extent_at(core::Extent size, std::size_t level) {
-  return {std::max(size.width >> level, 1u), std::max(size.height >> level, 1u)};
+core::Extent half_of(core::Extent size) {
+  return {std::max(size.width / 2, 1u), std::max(size.height / 2, 1u)};
 }
 
 // The mean of four texels in one channel.
@@ -31,7 +31,7 @@ std::uint8_t mean(std::array<std::uint32_t, 4> v, bool squared) {
 
 std::vector<std::uint8_t> half(std::span<const std::uint8_t> from, core::Extent size,
                                bool colours) {
-  const core::Extent to = extent_at(size, 1);
+  const core::Extent to = half_of(size);
   std::vector<std::uint8_t> out(std::size_t{to.width} * to.height * 4);
   for (std::uint32_t y = 0; y < to.height; ++y) {
     for (std::uint32_t x = 0; x < to.width; ++x) {
@@ -62,47 +62,6 @@ Result<UniqueSampler> make_sampler(const Device& device) {
   return UniqueSampler(device.vk, device.handle, sampler);
 }
 
-// Fills the levels of an image, one after the other, and makes it readable.
-Result<void> upload_levels(const Device& device, const Image& image, core::Extent size,
-                           std::span<const std::span<const std::uint8_t>> levels) {
-  std::size_t bytes = 0;
-  for (const auto& level : levels)
-    bytes += level.size();
-  Result<Buffer> staging =
-      make_buffer(device, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::kWrite);
-  if (!staging) return tl::unexpected(staging.error());
-  std::vector<VkBufferImageCopy> copies;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    std::memcpy(staging->mapped + at, levels[i].data(), levels[i].size());
-    VkBufferImageCopy copy{};
-    copy.bufferOffset = at;
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, static_cast<std::uint32_t>(i), 0, 1};
-    const core::Extent extent = extent_at(size, i);
-    copy.imageExtent = {extent.width, extent.height, 1};
-    copies.push_back(copy);
-    at += levels[i].size();
-  }
-  return run_once(device, [&](VkCommandBuffer commands) {
-    VkImageMemoryBarrier2 barrier = barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
-    barrier.subresourceRange.levelCount = static_cast<std::uint32_t>(levels.size());
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-    barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    image_barrier(device, commands, barrier);
-    device.vk.vkCmdCopyBufferToImage(commands, staging->buffer.get(), image.image.get(),
-                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                     static_cast<std::uint32_t>(copies.size()), copies.data());
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-    barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-    barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    image_barrier(device, commands, barrier);
-  });
-}
-
 shaders::MaterialData data_of(const Material& m) {
   std::uint32_t bits = 0;
   if (m.normal_texture != kNoTexture) bits |= PSYGEN_MATERIAL_NORMAL_MAP;
@@ -130,7 +89,7 @@ std::vector<std::vector<std::uint8_t>> mip_levels(const TexturePixels& pixels) {
   while (size.width > 1 || size.height > 1) {
     levels.push_back(half(above, size, pixels.colours));
     above = levels.back();
-    size = extent_at(size, 1);
+    size = half_of(size);
   }
   return levels;
 }
@@ -203,15 +162,16 @@ Result<VkDescriptorSet> MaterialTable::blank_set(const Device& device) {
 
 Result<TextureId> MaterialTable::store(const Device& device, const TexturePixels& pixels) {
   const std::vector<std::vector<std::uint8_t>> smaller = mip_levels(pixels);
-  std::vector<std::span<const std::uint8_t>> levels{pixels.rgba};
-  levels.insert(levels.end(), smaller.begin(), smaller.end());
+  std::vector<std::span<const std::byte>> levels{std::as_bytes(std::span(pixels.rgba))};
+  for (const auto& level : smaller)
+    levels.push_back(std::as_bytes(std::span(level)));
   const core::Extent size{pixels.width, pixels.height};
   Result<Image> image =
       make_image(device, size, pixels.colours ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
                  VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                  VK_IMAGE_ASPECT_COLOR_BIT, {.mips = static_cast<std::uint32_t>(levels.size())});
   if (!image) return tl::unexpected(image.error());
-  if (Result<void> filled = upload_levels(device, *image, size, levels); !filled)
+  if (Result<void> filled = upload_image(device, *image, size, levels); !filled)
     return tl::unexpected(filled.error());
   for (const auto& level : levels)
     texture_bytes_ += level.size();

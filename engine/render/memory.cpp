@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <initializer_list>
+#include <vector>
 
 namespace psygen::render {
 
@@ -238,22 +240,36 @@ Result<void> finish_once(const Device& device, OneTimeCommands& once) {
 }
 
 Result<void> upload_image(const Device& device, const Image& image, core::Extent size,
-                          std::span<const std::byte> pixels) {
-  Result<Buffer> staging =
-      make_buffer(device, pixels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::kWrite);
+                          std::span<const std::span<const std::byte>> levels,
+                          std::uint32_t layers) {
+  std::size_t bytes = 0;
+  for (const std::span<const std::byte> level : levels)
+    bytes += level.size();
+  const Result<Buffer> staging =
+      make_buffer(device, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::kWrite);
   if (!staging) return tl::unexpected(staging.error());
-  std::memcpy(staging->mapped, pixels.data(), pixels.size());
+  std::vector<VkBufferImageCopy> copies;
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < levels.size(); ++i) {
+    std::memcpy(staging->mapped + at, levels[i].data(), levels[i].size());
+    VkBufferImageCopy copy{};
+    copy.bufferOffset = at;
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, i, 0, layers};
+    copy.imageExtent = {std::max(size.width >> i, 1U), std::max(size.height >> i, 1U), 1};
+    copies.push_back(copy);
+    at += levels[i].size();
+  }
   return run_once(device, [&](VkCommandBuffer commands) {
     VkImageMemoryBarrier2 barrier = barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+    barrier.subresourceRange.levelCount = static_cast<std::uint32_t>(levels.size());
+    barrier.subresourceRange.layerCount = layers;
     barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
     barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
     barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     image_barrier(device, commands, barrier);
-    VkBufferImageCopy copy{};
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    copy.imageExtent = {size.width, size.height, 1};
     device.vk.vkCmdCopyBufferToImage(commands, staging->buffer.get(), image.image.get(),
-                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                     static_cast<std::uint32_t>(copies.size()), copies.data());
     barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
     barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
     barrier.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;

@@ -42,7 +42,7 @@ Result<Image> make_texture(const Device& device, core::Extent size, VkFormat for
       make_image(device, size, format, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                  VK_IMAGE_ASPECT_COLOR_BIT);
   if (!image) return image;
-  if (Result<void> filled = upload_image(device, *image, size, texels); !filled) {
+  if (Result<void> filled = upload_image(device, *image, size, {&texels, 1}); !filled) {
     return tl::unexpected(filled.error());
   }
   return image;
