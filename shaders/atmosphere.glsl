@@ -16,16 +16,24 @@ vec3 sky_light(vec3 d) {
   return c + frame.glow_colour.rgb * (0.03 * t4 + 0.10 * t8 * t8 * t8);
 }
 
-// `light` from a surface at `p`, relative to the camera, after the air in between. The air
-// extinguishes more blue than red, so far ridges turn blue and far snow yellow. Its density falls
-// exponentially with height, so the integral along the ray has a closed form.
-vec3 through_haze(vec3 light, vec3 p) {
+// The air between the camera and `p`, relative to it: the light that it adds, and the share of other
+// light that it keeps. It extinguishes more blue than red, so far ridges turn blue and far snow
+// yellow. Its density falls exponentially with height, so the integral along the ray has a closed
+// form.
+vec3 haze(vec3 p, out vec3 kept) {
   float distance2 = max(dot(p, p), 1e-6);
   float inverse = inversesqrt(distance2);
   float x = clamp(frame.zenith_colour.w * p.y, -20.0, 20.0);
   float mean = abs(x) < 1e-3 ? 1.0 - 0.5 * x : (1.0 - exp2(-1.442695 * x)) / x;
-  vec3 kept = exp2(frame.haze_extinction.rgb * (-1.442695 * mean * distance2 * inverse));
-  return mix(sky_light(p * inverse), light, kept);
+  kept = exp2(frame.haze_extinction.rgb * (-1.442695 * mean * distance2 * inverse));
+  return sky_light(p * inverse) * (1.0 - kept);
+}
+
+// `light` from a surface at `p` after the air in between.
+vec3 through_haze(vec3 light, vec3 p) {
+  vec3 kept;
+  vec3 air = haze(p, kept);
+  return air + light * kept;
 }
 
 // Scene light to display values: a filmic curve that includes the display's gamma. It is a rational

@@ -1,5 +1,5 @@
 // Trees, rocks and all other models: unpacks core::ModelVertex, turns billboards, applies wind,
-// light and haze. With PSYGEN_OBJECT: a game's own objects (core::ObjectVertex), which are turned
+// light and haze. With PSYGEN_PICTURE some vertices may be those of pictures (pictures.glsl). With PSYGEN_OBJECT: a game's own objects (core::ObjectVertex), which are turned
 // and scaled, and have a material. On software devices all of this is per vertex, and the fragment shader only
 // writes the colour.
 #version 460
@@ -41,6 +41,15 @@ vec2 ahead_of_viewer(vec3 p) {
   return ahead * inversesqrt(dot(ahead, ahead));
 }
 
+#ifdef PSYGEN_PICTURE
+// The direction `d` as the number of a view, 0 to below PSYGEN_PICTURE_VIEWS: 0 along +x, a quarter
+// of all along +z. Exact at multiples of 45 degrees, without trigonometric functions.
+float view_along(vec2 d) {
+  float across = d.x / (abs(d.x) + abs(d.y) + 1e-9);
+  return (d.y >= 0.0 ? 1.0 - across : 3.0 + across) * (PSYGEN_PICTURE_VIEWS / 4.0);
+}
+#endif
+
 // `v` turned by the unit quaternion `q`.
 vec3 turned(vec4 q, vec3 v) {
   vec3 t = 2.0 * cross(q.xyz, v);
@@ -59,6 +68,10 @@ void main() {
   uint material = packed.w >> 24;
   float leaf = float(material & 1u);
 
+#ifdef PSYGEN_PICTURE
+  uv = vec2(0.0);
+  layers = vec2(0.0);
+#endif
 #ifdef PSYGEN_OBJECT
   float number = floor(draw.origin.w);
   vec3 p = draw.origin.xyz + turned(draw.turn, draw.scale.xyz * vec3(xy, z));
@@ -74,6 +87,14 @@ void main() {
     p.xz += aside.x * right + aside.y * ahead;
     vec2 flat_n = 0.7 * (sign(aside.x) * right - ahead);  // as of a round crown
     n = normalize(vec3(flat_n.x, 0.35 + 0.7 * sign(aside.y), flat_n.y));
+#ifdef PSYGEN_PICTURE
+    if ((material & PSYGEN_PICTURE_BIT) != 0u) {
+      float view = view_along(ahead) + float(packed.w & 7u);
+      layers = vec2(1.0 + float(packed.w & 0xF8u), view);
+      uv = c.yz;
+      albedo = vec3(1.0);
+    }
+#endif
   }
 #ifdef PSYGEN_OBJECT
   float time = frame.sun_direction.w * 0.31 + draw.origin.w - number;
@@ -83,6 +104,9 @@ void main() {
   p.x += sway * 0.12 * wave(time + xy.y * 0.3);
   p.z += sway * 0.09 * wave(time * 1.37 + xy.x * 0.4);
 
+#if defined(PSYGEN_PICTURE) && !defined(PSYGEN_PIXEL_LIGHT) && !defined(PSYGEN_SHADOW)
+  air = vec3(0.0);
+#endif
 #if defined(PSYGEN_FADING)
   fade = draw.scale.w;
 #elif defined(PSYGEN_OBJECT)
@@ -107,7 +131,13 @@ void main() {
 #elif !defined(PSYGEN_SHADOW)
   vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x);
   if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
+#ifdef PSYGEN_PICTURE
+  vec3 kept;
+  air = haze(p, kept);
+  colour = light * kept;
+#else
   colour = shown(through_haze(light, p));
+#endif
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);
 }

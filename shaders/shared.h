@@ -24,6 +24,7 @@ using glm::vec4;
 #define PSYGEN_BINDING_EMITTER 7
 #define PSYGEN_BINDING_GROUND 8
 #define PSYGEN_BINDING_SHADE 9
+#define PSYGEN_BINDING_PICTURES 10
 
 // Bindings of the second descriptor set: the textures of a material.
 #define PSYGEN_TEXTURE_BASE 0
@@ -57,6 +58,11 @@ using glm::vec4;
 // Vertices that turn towards the camera: core::kBillboardBit and kBillboardReachM.
 #define PSYGEN_BILLBOARD_BIT 2u
 #define PSYGEN_BILLBOARD_REACH_M 256.0
+
+// Vertices of pictures (core::kPictureBit), and the views around a model that a picture has. Layer
+// 0 of the texture is white; from there on, the views follow each other.
+#define PSYGEN_PICTURE_BIT 4u
+#define PSYGEN_PICTURE_VIEWS 8
 
 // The plane of water (water.vert): corners of a ring, rings, vertices of a ring, radius in metres.
 #define PSYGEN_WATER_SIDES 64

@@ -1,4 +1,5 @@
-// Light and haze for each pixel of a model, with the sun's shadows if the preset has them.
+// Light and haze for each pixel of a model, with the sun's shadows if the preset has them. With
+// PSYGEN_PICTURE some of it may have pictures.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -7,6 +8,7 @@
 #include "lamps.glsl"
 #include "fading.glsl"
 #include "shadows.glsl"
+#include "pictures.glsl"
 
 layout(constant_id = 1) const bool shadows = false;
 layout(location = 0) in vec3 place;
@@ -18,11 +20,15 @@ layout(location = 0) out vec4 pixel;
 
 void main() {
   leave_out_faded();
+  vec3 albedo = albedo_ambient.rgb;
+#ifdef PSYGEN_PICTURE
+  vec4 texel = picture();
+  if (texel.a < 0.5) discard;
+  albedo *= texel.rgb;
+#endif
   vec3 n = normalize(normal);
   float sun = sun_leaf_ground.x * (shadows ? sun_at(place, n) : 1.0);
-  vec3 light =
-      model_light(albedo_ambient.rgb, n, place, albedo_ambient.a, sun_leaf_ground.y, sun);
-  if (lamps)
-    light += albedo_ambient.rgb * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_ground.y);
+  vec3 light = model_light(albedo, n, place, albedo_ambient.a, sun_leaf_ground.y, sun);
+  if (lamps) light += albedo * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_ground.y);
   pixel = vec4(shown(through_haze(light, place)), 1.0);
 }

@@ -21,6 +21,15 @@ layout(location = 2) out vec4 detail_shares;
 #if defined(PSYGEN_FADING) || defined(PSYGEN_OBJECT)
 layout(location = 4) flat out float fade;
 #endif
+// Of models with pictures (pictures.glsl): the place in the picture, its first layer and the view;
+// and where the colour is final otherwise, the light of the air, which is added to each pixel.
+#ifdef PSYGEN_PICTURE
+layout(location = 5) out vec2 uv;
+layout(location = 6) flat out vec2 layers;
+#if !defined(PSYGEN_PIXEL_LIGHT) && !defined(PSYGEN_SHADOW)
+layout(location = 7) out vec3 air;
+#endif
+#endif
 // Of objects: the place in textures, and the number of the material.
 #ifdef PSYGEN_OBJECT
 layout(location = 5) out vec2 uv;

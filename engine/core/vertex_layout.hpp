@@ -45,7 +45,7 @@ struct ModelVertex {
   std::uint8_t sway;       // unorm8: how much the wind moves it, 0 = not at all
   std::int16_t normal[2];  // octahedral, snorm16; see kBillboardBit
   std::uint8_t colour[3];  // linear-light albedo, stored with sqrt: albedo = (c/255)^2
-  std::uint8_t material;   // 0 solid (bark, stone), 1 leaf (lit from both sides); kBillboardBit
+  std::uint8_t material;   // 0 solid (bark, stone), 1 leaf (lit from both sides); bits below
 };
 static_assert(sizeof(ModelVertex) == 16);
 
@@ -63,6 +63,10 @@ static_assert(sizeof(ObjectVertex) == 24);
 // the vertex is behind the line.
 inline constexpr std::uint8_t kBillboardBit = 2;
 inline constexpr float kBillboardReachM = 256;
+// A bit beside kBillboardBit: the vertex is a corner of a picture (model_picture.hpp). `colour`
+// then holds kPictureViews · number of the picture + views by which the model is turned, and the
+// place in the picture, u and v.
+inline constexpr std::uint8_t kPictureBit = 4;
 // An upper bound of how far turning moves the vertex from `position`, in metres.
 constexpr float billboard_reach_m(const ModelVertex& v) {
   if ((v.material & kBillboardBit) == 0) return 0;

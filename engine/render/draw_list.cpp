@@ -83,6 +83,7 @@ DrawRun DrawList::run_of(const Draw& draw) const {
     run.textures = kind.textured ? draw.material : kPlainMaterial;
   } else {
     run.fading = is_fading(draw);
+    run.pictured = is_pictured(draw);
     run.shared = draw.shared_indices != kNoSharedIndices;
   }
   return run;
@@ -108,9 +109,10 @@ void DrawList::add(std::span<const Draw> input) {
   const auto key = [&](const Draw& draw) {
     const DrawRun run = run_of(draw);
     const bool last = run.fading != std::is_same_v<Draw, TerrainDraw>;  // near terrain comes first
-    return (run.lamps ? 0ULL : 1ULL) << 46 | std::uint64_t{run.textures} << 34 |
-           (last ? 1ULL : 0ULL) << 33 | (run.pushed ? 0ULL : 2ULL) << 31 |
-           std::uint64_t{run.pool_block} * 2 | (run.shared ? 1u : 0u);
+    return (run.pictured ? 1ULL : 0ULL) << 47 | (run.lamps ? 0ULL : 1ULL) << 46 |
+           std::uint64_t{run.textures} << 34 | (last ? 1ULL : 0ULL) << 33 |
+           (run.pushed ? 0ULL : 2ULL) << 31 | std::uint64_t{run.pool_block} * 2 |
+           (run.shared ? 1u : 0u);
   };
   for (std::size_t first = 0; first < input.size(); first += kWindow) {
     const std::span<const Draw> window =

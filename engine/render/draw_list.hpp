@@ -36,7 +36,13 @@ constexpr bool is_fading(const TerrainDraw& draw) {
   return draw.near;
 }
 constexpr bool is_fading(const MeshDraw& draw) {
-  return draw.fade < 1.0F;
+  return draw.pictured || draw.fade < 1.0F;
+}
+constexpr bool is_pictured(const TerrainDraw&) {
+  return false;
+}
+constexpr bool is_pictured(const MeshDraw& draw) {
+  return draw.pictured;
 }
 // Puts the debug colour of a draw into its data, for the views that show it.
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw);
@@ -64,10 +70,11 @@ struct IndexedDraw {
 // Draws [first, first + count) with the same vertex layout and buffers.
 struct DrawRun {
   core::VertexLayout layout = core::VertexLayout::kModel;
-  bool shared = false;  // indices from the shared lists, else from the pool block
-  bool pushed = false;  // one call per draw with its data pushed, else one call for all
-  bool fading = false;  // models that fade in or out, objects with holes, near terrain
-  bool lamps = false;   // point lights may reach it
+  bool shared = false;    // indices from the shared lists, else from the pool block
+  bool pushed = false;    // one call per draw with its data pushed, else one call for all
+  bool fading = false;    // models that fade in or out, objects with holes, near terrain
+  bool pictured = false;  // models with pictures; all of them are `fading` too
+  bool lamps = false;     // point lights may reach it
   std::uint32_t pool_block = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
@@ -76,7 +83,8 @@ struct DrawRun {
   // Whether this draw can be appended to the run `r`.
   bool continues(const DrawRun& r) const {
     return layout == r.layout && shared == r.shared && pushed == r.pushed && fading == r.fading &&
-           lamps == r.lamps && pool_block == r.pool_block && textures == r.textures;
+           pictured == r.pictured && lamps == r.lamps && pool_block == r.pool_block &&
+           textures == r.textures;
   }
 };
 

@@ -240,8 +240,8 @@ Result<void> finish_once(const Device& device, OneTimeCommands& once) {
 }
 
 Result<void> upload_image(const Device& device, const Image& image, core::Extent size,
-                          std::span<const std::span<const std::byte>> levels,
-                          std::uint32_t layers) {
+                          std::span<const std::span<const std::byte>> levels, std::uint32_t layers,
+                          std::uint32_t first_layer) {
   std::size_t bytes = 0;
   for (const std::span<const std::byte> level : levels)
     bytes += level.size();
@@ -254,7 +254,7 @@ Result<void> upload_image(const Device& device, const Image& image, core::Extent
     std::memcpy(staging->mapped + at, levels[i].data(), levels[i].size());
     VkBufferImageCopy copy{};
     copy.bufferOffset = at;
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, i, 0, layers};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, i, first_layer, layers};
     copy.imageExtent = {std::max(size.width >> i, 1U), std::max(size.height >> i, 1U), 1};
     copies.push_back(copy);
     at += levels[i].size();
@@ -262,6 +262,7 @@ Result<void> upload_image(const Device& device, const Image& image, core::Extent
   return run_once(device, [&](VkCommandBuffer commands) {
     VkImageMemoryBarrier2 barrier = barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
     barrier.subresourceRange.levelCount = static_cast<std::uint32_t>(levels.size());
+    barrier.subresourceRange.baseArrayLayer = first_layer;
     barrier.subresourceRange.layerCount = layers;
     barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
     barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;

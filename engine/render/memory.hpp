@@ -58,11 +58,11 @@ core::Result<UniqueImageView> make_layer_view(const Device& device, const Image&
                                               std::uint32_t layer);
 
 // Fills an image with usage TRANSFER_DST and SAMPLED, and makes it readable by fragment shaders.
-// `levels` are its mip levels, the first of `size`: layer by layer, rows without padding. Waits for
-// the device.
+// `levels` are its mip levels, the first of `size`: layer by layer, rows without padding. Fills
+// `layers` layers from `first_layer` on, which no unfinished commands read. Waits for the device.
 core::Result<void> upload_image(const Device& device, const Image& image, core::Extent size,
                                 std::span<const std::span<const std::byte>> levels,
-                                std::uint32_t layers = 1);
+                                std::uint32_t layers = 1, std::uint32_t first_layer = 0);
 
 // Calls `record(commands)`, submits the commands and waits for them.
 template <class Record>

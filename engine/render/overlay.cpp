@@ -82,8 +82,8 @@ std::vector<ImWchar> characters_of(const std::string& text) {
   for (const char* at = text.data(); at < end;) {
     unsigned character = 0;
     at += std::max(ImTextCharFromUtf8(&character, at, end), 1);
-    constexpr unsigned kReplacement = 0xFFFD;
-    characters.push_back(static_cast<ImWchar>(character <= 0xFFFF ? character : kReplacement));
+    characters.push_back(
+        static_cast<ImWchar>(character <= 0xFFFF ? character : 0xFFFDU));  // else U+FFFD
   }
   return characters;
 }

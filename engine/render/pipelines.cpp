@@ -16,7 +16,7 @@ using core::Result;
 namespace {
 
 // Largest number of pipelines of a preset, for the progress.
-constexpr double kMostPipelines = 27;
+constexpr double kMostPipelines = 33;
 
 constexpr VkBool32 on(bool yes) {
   return yes ? VK_TRUE : VK_FALSE;
@@ -53,8 +53,10 @@ Result<Image> make_texture(const Device& device, core::Extent size, VkFormat for
 Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
                                const PresetTraits& traits, const Overlay& overlay,
                                std::uint32_t sets, const MaterialTable& materials,
+                               const ModelPictures& pictures,
                                std::span<const GroundPicture> ground) {
   materials_ = &materials;
+  pictures_ = &pictures;
   traits_ = traits;
   samples_ = device.samples_for(traits.samples);
   colour_format_ = colour_format;
@@ -114,6 +116,9 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
                                    both, nullptr},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_GROUND, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                    1, VK_SHADER_STAGE_FRAGMENT_BIT, ground_.sampler()},
+      VkDescriptorSetLayoutBinding{PSYGEN_BINDING_PICTURES,
+                                   VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+                                   VK_SHADER_STAGE_FRAGMENT_BIT, pictures_->sampler()},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_SHADE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, both,
                                    nullptr},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_EMITTER,
@@ -132,7 +137,7 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
   const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 4 * sets},
-                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4 * sets}};
+                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 5 * sets}};
   VkDescriptorPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   pool_info.maxSets = sets;
@@ -215,7 +220,8 @@ ShaderCode Pipelines::lit_frag(bool terrain) const {
   return traits_.fine_grain ? code.ground_lit_near_frag : code.ground_lit_frag;
 }
 
-// Pipelines for fading models. `shape` is that of the same models without fading.
+// Pipelines for models that cover only some of their pixels: that fade, or that have pictures.
+// `shape` is that of the same models without either.
 Result<void> Pipelines::create_fading(Making& making, PipelineShape shape, MeshLook look,
                                       MeshPipelines& out) {
   const OtherCode& code = other_code();
@@ -226,6 +232,14 @@ Result<void> Pipelines::create_fading(Making& making, PipelineShape shape, MeshL
   for (const bool pushed : {false, true}) {
     shape.vert = fading_vertex_code(look, pushed);
     if (Result<void> made = make(making, shape, out.fading[pushed ? 1 : 0]); !made) return made;
+  }
+  shape.frag = look == MeshLook::kLit          ? code.surface_lit_picture_frag
+               : look == MeshLook::kDrawColour ? code.surface_coloured_picture_frag
+               : look == MeshLook::kShadow     ? code.shadow_picture_frag
+                                               : code.surface_picture_frag;
+  for (const bool pushed : {false, true}) {
+    shape.vert = picture_vertex_code(look, pushed);
+    if (Result<void> made = make(making, shape, out.pictured[pushed ? 1 : 0]); !made) return made;
   }
   return {};
 }
@@ -301,14 +315,14 @@ Result<void> Pipelines::create_views(Making& making) {
       });
 }
 
-VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, bool lamps,
-                           View view) const {
+VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, bool pictured,
+                           bool lamps, View view) const {
   const bool edges = view == View::kWireframe && wireframe_.whole[0][0].get() != VK_NULL_HANDLE;
   const MeshPipelines& all = edges                 ? wireframe_
                              : colours_draws(view) ? coloured_
                              : lamps               ? lamplit_
                                                    : landscape_;
-  return all.of(layout, pushed, fading && !edges);
+  return all.of(layout, pushed, fading && !edges, pictured && !edges);
 }
 
 // The eight pipelines of a look. Those of kColour light textured objects per pixel.
@@ -442,6 +456,8 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
                                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   const VkDescriptorImageInfo ground_info{VK_NULL_HANDLE, ground_.view(),
                                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const VkDescriptorImageInfo pictures_info{VK_NULL_HANDLE, pictures_->view(),
+                                            VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   const VkDescriptorImageInfo shadows_info{VK_NULL_HANDLE, shadows_.all_layers(),
                                            VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL};
   const auto write = [&](std::uint32_t binding, VkDescriptorType type,
@@ -468,6 +484,7 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
       write(PSYGEN_BINDING_MATERIALS, storage, &materials_info, nullptr),
       write(PSYGEN_BINDING_GROUND, texture, nullptr, &ground_info),
       write(PSYGEN_BINDING_SHADE, storage, &shade_info, nullptr),
+      write(PSYGEN_BINDING_PICTURES, texture, nullptr, &pictures_info),
       write(PSYGEN_BINDING_EMITTER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, &emitters_info,
             nullptr)};
   device.vk.vkUpdateDescriptorSets(device.handle, static_cast<std::uint32_t>(writes.size()),

@@ -7,6 +7,7 @@
 
 #include "engine/render/ground_image.hpp"
 #include "engine/render/materials.hpp"
+#include "engine/render/model_pictures.hpp"
 #include "engine/render/overlay.hpp"
 #include "engine/render/pipeline_build.hpp"
 #include "engine/render/preset.hpp"
@@ -20,7 +21,8 @@ class Pipelines {
   // Creates the textures, `sets` descriptor sets, and the pipeline for text.
   core::Result<void> create(const Device& device, VkFormat colour_format,
                             const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets,
-                            const MaterialTable& materials, std::span<const GroundPicture> ground);
+                            const MaterialTable& materials, const ModelPictures& pictures,
+                            std::span<const GroundPicture> ground);
   // Creates all other pipelines; call it once, after create(). `progress` is called after each
   // pipeline and can end it with kInterrupted.
   core::Result<void> create_others(const Device& device, const Progress& progress);
@@ -40,12 +42,13 @@ class Pipelines {
   VkSampleCountFlagBits samples() const { return samples_; }
   VkPipelineLayout layout() const { return layout_.get(); }
   // The pipeline for meshes. `pushed`: the data of a draw is in push constants, else in the buffer
-  // of draws. `fading`: for models that fade in or out, and for near terrain. `lamps`, after
-  // create_lamps(): with point lights.
-  VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, bool lamps, View view) const;
+  // of draws. `fading`: for models that fade in or out, and for near terrain. `pictured`: for
+  // models with pictures. `lamps`, after create_lamps(): with point lights.
+  VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, bool pictured, bool lamps,
+                  View view) const;
   // The same for drawing into a cascade, if the preset has cascades.
-  VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, bool fading) const {
-    return shadow_.of(layout, pushed, fading);
+  VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, bool fading, bool pictured) const {
+    return shadow_.of(layout, pushed, fading, pictured);
   }
   // The pipeline for objects, after create_objects(). `textured`: the material's set is bound;
   // `fading`: those that fade or have holes.
@@ -82,14 +85,17 @@ class Pipelines {
     // Indexed by layout (terrain, model) and by whether the data is pushed.
     std::array<std::array<UniquePipeline, 2>, 2> whole;
     std::array<UniquePipeline, 2> fading;       // models, indexed by whether the data is pushed
+    std::array<UniquePipeline, 2> pictured;     // the same
     std::array<UniquePipeline, 2> near_ground;  // the same; null if it is drawn like all terrain
 
-    VkPipeline of(core::VertexLayout layout, bool is_pushed, bool is_fading) const {
+    VkPipeline of(core::VertexLayout layout, bool is_pushed, bool is_fading,
+                  bool is_pictured) const {
       const std::size_t pushed = is_pushed ? 1 : 0;
       if (layout == core::VertexLayout::kTerrain) {
         const VkPipeline near = is_fading ? near_ground[pushed].get() : VK_NULL_HANDLE;
         return near != VK_NULL_HANDLE ? near : whole[0][pushed].get();
       }
+      if (is_pictured) return pictured[pushed].get();
       return is_fading ? fading[pushed].get() : whole[1][pushed].get();
     }
   };
@@ -136,6 +142,7 @@ class Pipelines {
   MeshPipelines landscape_, lamplit_, coloured_, wireframe_, shadow_;
   ObjectPipelines objects_;
   const MaterialTable* materials_ = nullptr;
+  const ModelPictures* pictures_ = nullptr;
   std::array<UniquePipeline, 2> particles_;  // indexed by whether they have a texture
   UniquePipeline water_, lamplit_water_, sky_, sky_below_, sun_, lines_, overlay_;
 };

@@ -12,6 +12,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/geometry_memory.hpp"
+#include "engine/core/model_picture.hpp"
 #include "engine/render/types.hpp"
 
 struct ImFontAtlas;
@@ -53,7 +54,13 @@ class Renderer {
   // The same for what point lights reach, and for particles.
   core::Result<void> prepare_lights();
   core::Result<void> prepare_particles();
-  // Bytes of all textures of materials.
+  // The pictures of models (MeshDraw::pictured), by number. Replaces all. Waits for the device.
+  // Fails with kOverBudget for more than core::kMostPictures or beyond the budget of textures;
+  // kOutOfMemory, kDeviceLost.
+  core::Result<void> set_model_pictures(std::span<const core::ModelPicture> pictures);
+  // Replaces one of them. kInvalidArgument for one that does not exist.
+  core::Result<void> set_model_picture(std::size_t number, const core::ModelPicture& picture);
+  // Bytes of all textures of materials and pictures.
   std::uint64_t texture_bytes() const;
 
   // Draws and submits one frame. Waits at most for the frame before the last. While the window is

@@ -135,6 +135,7 @@ Result<void> RendererImpl::create(const Progress& progress) {
   if (Result<void> made = shared_.create(*device_); !made) return made;
   if (Result<void> made = materials_.create(*device_, options_.texture_budget_bytes); !made)
     return made;
+  if (Result<void> made = pictures_.create(*device_, {}); !made) return made;
   for (FrameSlot& slot : slots_) {
     if (Result<void> made = slot.create(*device_); !made) return made;
   }
@@ -305,6 +306,32 @@ Result<void> RendererImpl::prepare(const FrameInput& input) {
     if (Result<void> made = prepare_lights(); !made) return made;
   }
   return input.particles.empty() ? Result<void>{} : prepare_particles();
+}
+
+Result<void> RendererImpl::set_pictures(std::span<const core::ModelPicture> pictures) {
+  if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
+  if (pictures.size() > core::kMostPictures ||
+      materials_.texture_bytes() + pictures.size() * core::picture_bytes() >
+          options_.texture_budget_bytes) {
+    return core::fail(
+        ErrorCode::kOverBudget,
+        fmt::format("{} pictures of models do not fit: at most {}, and {} bytes of all "
+                    "textures",
+                    pictures.size(), core::kMostPictures, options_.texture_budget_bytes));
+  }
+  wait_idle();
+  materials_.set_budget(options_.texture_budget_bytes - pictures.size() * core::picture_bytes());
+  Result<void> made = noted(pictures_.create(*device_, pictures));
+  use_pipelines();
+  return made;
+}
+
+Result<void> RendererImpl::set_picture(std::size_t number, const core::ModelPicture& picture) {
+  if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
+  if (number >= pictures_.count() || picture.size() != core::picture_bytes())
+    return core::fail(ErrorCode::kInvalidArgument, "a picture of a model that does not exist");
+  wait_idle();
+  return noted(pictures_.set(*device_, number, picture));
 }
 
 Result<FrameResult> RendererImpl::render(const FrameInput& input) {

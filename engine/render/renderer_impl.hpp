@@ -12,6 +12,7 @@
 #include "engine/render/frame_slot.hpp"
 #include "engine/render/geometry_pool.hpp"
 #include "engine/render/ground_shade.hpp"
+#include "engine/render/model_pictures.hpp"
 #include "engine/render/overlay.hpp"
 #include "engine/render/pipelines.hpp"
 #include "engine/render/scene_recorder.hpp"
@@ -54,7 +55,9 @@ class RendererImpl {
   core::Result<void> prepare_objects();
   core::Result<void> prepare_lights();
   core::Result<void> prepare_particles();
-  std::uint64_t texture_bytes() const { return materials_.texture_bytes(); }
+  core::Result<void> set_pictures(std::span<const core::ModelPicture> pictures);
+  core::Result<void> set_picture(std::size_t number, const core::ModelPicture& picture);
+  std::uint64_t texture_bytes() const { return materials_.texture_bytes() + pictures_.bytes(); }
   core::Result<FrameResult> render(const FrameInput& input);
   core::Result<void> show(std::span<const TextPanel> panels, float text_scale,
                           const HudDrawing& hud);
@@ -129,6 +132,7 @@ class RendererImpl {
   std::unique_ptr<StagedGeometry> staged_;  // null if the CPU writes the blocks directly
   SharedIndexLists shared_;
   MaterialTable materials_;
+  ModelPictures pictures_;
   Preset preset_ = Preset::kLow;
   Pipelines pipelines_;
   std::array<FrameSlot, kFramesInFlight> slots_;

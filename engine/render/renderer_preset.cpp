@@ -27,7 +27,7 @@ Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress)
   preset_ = preset;
   return pipelines_
       .create(*device_, colour_format_, traits_of(preset), overlay_,
-              static_cast<std::uint32_t>(kFramesInFlight), materials_, options_.ground)
+              static_cast<std::uint32_t>(kFramesInFlight), materials_, pictures_, options_.ground)
       .and_then([&] {
         use_pipelines();
         return create_culling();

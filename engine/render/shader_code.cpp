@@ -76,6 +76,42 @@ constexpr std::uint32_t kModelFadingShadowVert[] =
 constexpr std::uint32_t kModelFadingShadowPushedVert[] =
 #include "model_fading_shadow_pushed_vert_spv.h"
     ;
+constexpr std::uint32_t kModelPictureVert[] =
+#include "model_picture_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelPicturePushedVert[] =
+#include "model_picture_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelPictureLitVert[] =
+#include "model_picture_lit_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelPictureLitPushedVert[] =
+#include "model_picture_lit_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelPictureColouredVert[] =
+#include "model_picture_coloured_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelPictureColouredPushedVert[] =
+#include "model_picture_coloured_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelPictureShadowVert[] =
+#include "model_picture_shadow_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelPictureShadowPushedVert[] =
+#include "model_picture_shadow_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kSurfacePictureFrag[] =
+#include "surface_picture_frag_spv.h"
+    ;
+constexpr std::uint32_t kSurfaceLitPictureFrag[] =
+#include "surface_lit_picture_frag_spv.h"
+    ;
+constexpr std::uint32_t kSurfaceColouredPictureFrag[] =
+#include "surface_coloured_picture_frag_spv.h"
+    ;
+constexpr std::uint32_t kShadowPictureFrag[] =
+#include "shadow_picture_frag_spv.h"
+    ;
 constexpr std::uint32_t kShadowFadingFrag[] =
 #include "shadow_fading_frag_spv.h"
     ;
@@ -212,6 +248,14 @@ constexpr ShaderCode kFadingModels[4][2] = {
     {kModelFadingShadowVert, kModelFadingShadowPushedVert},
 };
 
+// Models with pictures, indexed by look and whether the data is pushed.
+constexpr ShaderCode kPicturedModels[4][2] = {
+    {kModelPictureVert, kModelPicturePushedVert},
+    {kModelPictureLitVert, kModelPictureLitPushedVert},
+    {kModelPictureColouredVert, kModelPictureColouredPushedVert},
+    {kModelPictureShadowVert, kModelPictureShadowPushedVert},
+};
+
 // Objects, indexed by look and whether the data is pushed.
 constexpr ShaderCode kObjects[4][2] = {
     {kObjectVert, kObjectPushedVert},
@@ -249,7 +293,11 @@ constexpr OtherCode kOthers{kSurfaceFrag,
                             kTerrainDetailPushedVert,
                             kGroundDetailFrag,
                             kGroundLitFrag,
-                            kGroundLitNearFrag};
+                            kGroundLitNearFrag,
+                            kSurfacePictureFrag,
+                            kSurfaceLitPictureFrag,
+                            kSurfaceColouredPictureFrag,
+                            kShadowPictureFrag};
 
 }  // namespace
 
@@ -260,6 +308,10 @@ ShaderCode mesh_vertex_code(core::VertexLayout layout, MeshLook look, bool pushe
 
 ShaderCode fading_vertex_code(MeshLook look, bool pushed) {
   return kFadingModels[static_cast<std::size_t>(look)][pushed ? 1 : 0];
+}
+
+ShaderCode picture_vertex_code(MeshLook look, bool pushed) {
+  return kPicturedModels[static_cast<std::size_t>(look)][pushed ? 1 : 0];
 }
 
 ShaderCode object_vertex_code(MeshLook look, bool pushed) {

@@ -22,6 +22,9 @@ ShaderCode mesh_vertex_code(core::VertexLayout layout, MeshLook look, bool pushe
 // The vertex shader of models that fade in or out (shaders/fading.glsl).
 ShaderCode fading_vertex_code(MeshLook look, bool pushed);
 
+// The same of models with pictures (shaders/pictures.glsl).
+ShaderCode picture_vertex_code(MeshLook look, bool pushed);
+
 // The vertex shader of objects.
 ShaderCode object_vertex_code(MeshLook look, bool pushed);
 
@@ -32,7 +35,9 @@ struct OtherCode {
       sky_dome_vert, sky_dome_frag, sky_below_vert, sun_vert, overlay_vert, overlay_frag,
       object_frag, object_fading_frag, object_textured_frag, object_textured_fading_frag,
       object_shadow_frag, particle_vert, particle_frag, particle_textured_frag, terrain_detail_vert,
-      terrain_detail_pushed_vert, ground_detail_frag, ground_lit_frag, ground_lit_near_frag;
+      terrain_detail_pushed_vert, ground_detail_frag, ground_lit_frag, ground_lit_near_frag,
+      surface_picture_frag, surface_lit_picture_frag, surface_coloured_picture_frag,
+      shadow_picture_frag;
 };
 // The other shaders; static data.
 const OtherCode& other_code();

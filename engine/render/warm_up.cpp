@@ -36,10 +36,10 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
                     Targets& targets, VkBuffer blank, int step, bool lamps) {
   warm_up_pass(device, pipelines, slot, targets, [&](VkCommandBuffer commands) {
     bind_blank(device, pipelines, commands, blank);
-    const auto draw_twice = [&](core::VertexLayout layout, bool fading) {
+    const auto draw_twice = [&](core::VertexLayout layout, bool fading, bool pictured = false) {
       for (const bool pushed : {false, true}) {
         bind_pipeline(device, commands,
-                      pipelines.mesh(layout, pushed, fading, lamps, View::kNormal));
+                      pipelines.mesh(layout, pushed, fading, pictured, lamps, View::kNormal));
         device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
       }
     };
@@ -48,7 +48,10 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
       draw_twice(core::VertexLayout::kTerrain, true);
     }
     if (step == 1) draw_twice(core::VertexLayout::kModel, false);
-    if (step == 2) draw_twice(core::VertexLayout::kModel, true);
+    if (step == 2) {
+      draw_twice(core::VertexLayout::kModel, true);
+      draw_twice(core::VertexLayout::kModel, true, true);
+    }
     if (step == 3) draw_water_and_sky(device, pipelines, commands, true, lamps);
     if (step == 4) draw_lines_and_text(device, pipelines, commands, 3, 0);
   });

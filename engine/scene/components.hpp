@@ -73,6 +73,9 @@ struct Source {
   std::uint32_t index = 0;  // within the node; world::Placement::index, or one of those below
   models::ModelIndex model = 0;
   std::uint16_t first_level = 0;  // of the model type: what level 0 of Detail and Demand is
+  // The last level of Detail and Demand where that is a picture, and the type of its mesh.
+  models::ModelIndex picture_model = 0;
+  std::uint8_t picture_level = kNoLevel;  // kNoLevel: it is a mesh like the others
 };
 using world::kTerrainIndex;
 inline constexpr std::uint32_t kMergedIndex = kTerrainIndex - 1;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/scene/draws/mesh_parts.hpp"
+#include "engine/world/far/tree_pictures.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -59,13 +61,20 @@ float possible_error_m(const WorldFacts& facts, int node_level, int mesh_level) 
 
 std::vector<synthesis::Annotate> mesh_notes(const WorldFacts& facts) {
   const models::ModelIndex terrain = facts.world.terrain_model, merged = facts.merged_model;
-  std::vector<synthesis::Annotate> notes(std::max(terrain, merged) + std::size_t{1});
+  const models::ModelIndex picture = facts.picture_model;
+  std::vector<synthesis::Annotate> notes(std::max({terrain, merged, picture}) + std::size_t{1});
   notes[terrain] = [&facts](const synthesis::Request& request, const models::MeshView& mesh) {
     return std::any(ground_of(facts, request, mesh));
   };
   if (merged != 0) {
     notes[merged] = [&facts](const synthesis::Request& request, const models::MeshView& mesh) {
       return std::any(parts_of(facts, request, mesh));
+    };
+  }
+  if (picture != 0) {
+    notes[picture] = [&facts](const synthesis::Request& request, const models::MeshView&) {
+      const std::size_t number = world::picture_number(request.parameters);
+      return std::any(std::make_shared<const core::ModelPicture>(facts.pictures->bake(number)));
     };
   }
   return notes;

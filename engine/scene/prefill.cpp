@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/render/renderer.hpp"
+#include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/systems.hpp"
 
@@ -60,9 +61,8 @@ std::vector<synthesis::Want> want_everything(const State& s) {
           std::span<const Source> sources, std::span<const Detail> details) {
         for (std::size_t i = 0; i < entities.size(); ++i) {
           for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
-            const synthesis::MeshKey key{placed[i].block, sources[i].index, sources[i].model,
-                                         static_cast<std::uint16_t>(sources[i].first_level + level),
-                                         sources[i].parameters_hash};
+            const synthesis::MeshKey key =
+                key_of(placed[i], sources[i], static_cast<std::uint8_t>(level));
             wants.push_back({key, &sources[i].parameters, owner_of(entities[i]),
                              synthesis::Rank(synthesis::RankGroup::kDrawn, 0, 0.0F), 0.0F});
           }
@@ -109,8 +109,8 @@ void Scene::tick_without_drawing(const core::CameraPose& pose, const std::functi
   visibility_system(s.settings, s.rules, s.camera, s.facts, s.streaming,
                     VisibilityQuery(s.entities), s.view, s.counters);
   cache_system(s.settings, s.rules, s.clock, s.camera, s.quality, s.facts, s.daylight, s.streaming,
-               s.view, CacheQuery(s.entities), s.assets, s.meshes, s.found, s.foresight, s.pressure,
-               s.events.evicted, s.events.places_ready, s.counters);
+               s.view, CacheQuery(s.entities), s.assets, s.output, s.meshes, s.found, s.foresight,
+               s.pressure, s.events.evicted, s.events.places_ready, s.counters);
   s.meshes.wait(go_on);
   synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
   upload_system(s.settings, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,

@@ -38,7 +38,7 @@ struct Settings {
   double target_frame_ms = 0;                 // held by a larger error; 0: the error is fixed
   double max_error_factor = 4;                // so much larger at most
   double min_size_pixels = 1.5;               // models smaller on screen are not drawn
-  double fade_seconds = 0.2;                  // in which models come and go; 0: at once
+  double fade_seconds = 0.25;                 // in which models come and go; 0: at once
   bool levels_of_detail = true;               // false: full detail everywhere, as in the paper
   bool occlusion = true;                      // leave out what lies behind ridges
   double watchdog_seconds = 10;               // a model that takes longer is given up

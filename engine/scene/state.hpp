@@ -40,6 +40,10 @@
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 
+namespace psygen::world {
+class PictureSet;
+}
+
 namespace psygen::scene {
 
 // What the outside asks for in the next tick.
@@ -120,6 +124,12 @@ struct WorldFacts {
   // Of each model type: where in its box, of −1 … 1 along each axis, meshes of the type usually
   // lie. Boxes hold all that parameters could lead to, which may be far more.
   std::vector<core::Bounds> usual_boxes;
+  // Pictures of trees: null where there are none; the type that bakes them, with the parameters of
+  // each; and of each model type the one of its quads, 0 where it has no pictures.
+  std::shared_ptr<const world::PictureSet> pictures;
+  models::ModelIndex picture_model = 0;
+  std::vector<models::Parameters> picture_parameters;
+  std::vector<models::ModelIndex> quad_models;
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};     // from their foot: sideways, up
@@ -290,6 +300,7 @@ using SharedIndices = std::unordered_map<std::uint64_t, std::uint32_t>;
 struct Output {
   render::Renderer* renderer = nullptr;  // null: everything but drawing
   SharedIndices shared_indices;
+  std::uint32_t pictures_lacking = 0;  // bit i: the renderer has not got picture i yet
   std::optional<core::Error> error;
 };
 

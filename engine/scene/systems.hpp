@@ -58,10 +58,10 @@ using CacheQuery = ecs::Query<const Node, const ecs::Children, const Visibility,
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Daylight& daylight, const Streaming& streaming, const View& view,
-                  CacheQuery entities, const Assets& assets, synthesis::MeshSupply& meshes,
-                  Found& found, Foresight& foresight, Pressure& pressure,
-                  ecs::EventQueue<MeshEvicted>& evicted, ecs::EventQueue<PlaceReady>& places_ready,
-                  Counters& counters);
+                  CacheQuery entities, const Assets& assets, const Output& output,
+                  synthesis::MeshSupply& meshes, Found& found, Foresight& foresight,
+                  Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
+                  ecs::EventQueue<PlaceReady>& places_ready, Counters& counters);
 
 // Collects what the modelers have finished since the last tick.
 void synthesis_system(const Settings& settings, const Rules& rules, synthesis::MeshSupply& meshes,

@@ -18,7 +18,8 @@ struct ModelGround {
   DrawFacts node;                  // what the views for understanding say about it
   render::View shown = render::View::kNormal;
   FadeStep step;
-  bool shadows = false;  // WorldFacts::shadows
+  bool shadows = false;   // WorldFacts::shadows
+  bool pictures = false;  // its merged mesh may have pictures
 };
 
 // How a node came to be drawn in this tick.

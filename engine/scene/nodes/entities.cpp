@@ -7,6 +7,7 @@
 #include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/nodes/solidity.hpp"
 #include "engine/world/far/merged_models.hpp"
+#include "engine/world/far/tree_pictures.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -17,15 +18,31 @@ struct MeshColumns {
   Detail detail;
   Source source;
 };
+// The first level that a picture stands for, and the last one then; 0: none does.
+int picture_level_of(const WorldFacts& facts, const world::Placement& placement) {
+  const models::ModelIndex model = placement.model;
+  if (model >= facts.quad_models.size() || facts.quad_models[model] == 0) return 0;
+  const int level = facts.pictures->first_level(model, placement.parameters);
+  const int count = facts.registry[model].level_count_of(placement.parameters);
+  return level < std::min(count, static_cast<int>(kMaxLevels)) ? level : 0;
+}
+
 MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
                        const world::Placement& placement, int first_level = 0,
                        int last_level = INT_MAX) {
   const models::ModelType& type = facts.registry[placement.model];
-  return {placed_at(block, placement.position, type.bounds(placement.parameters),
-                    facts.usual_boxes[placement.model]),
-          detail_of(type, placement.parameters, first_level, last_level),
-          {placement.parameters, models::parameters_hash(type, placement.parameters),
-           placement.index, placement.model, static_cast<std::uint16_t>(first_level)}};
+  const int picture_level = picture_level_of(facts, placement);
+  if (picture_level > 0) last_level = picture_level;
+  MeshColumns columns{placed_at(block, placement.position, type.bounds(placement.parameters),
+                                facts.usual_boxes[placement.model]),
+                      detail_of(type, placement.parameters, first_level, last_level),
+                      {placement.parameters, models::parameters_hash(type, placement.parameters),
+                       placement.index, placement.model, static_cast<std::uint16_t>(first_level)}};
+  if (picture_level > 0) {
+    columns.source.picture_model = facts.quad_models[placement.model];
+    columns.source.picture_level = static_cast<std::uint8_t>(picture_level);
+  }
+  return columns;
 }
 
 template <class Created>
@@ -116,6 +133,7 @@ void place_anew(const WorldFacts& facts, core::BlockCoord block, const world::Pl
   const MeshColumns columns = columns_of(facts, block, placement);
   *entities.get<Placed>(entity) = columns.placed;
   *entities.get<Detail>(entity) = columns.detail;
+  entities.get<Source>(entity)->picture_level = columns.source.picture_level;
 }
 
 void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& meshes,

@@ -29,6 +29,18 @@ Detail detail_of(const models::ModelType& type, const models::Parameters& parame
   return detail;
 }
 
+synthesis::MeshKey key_of(const Placed& placed, const Source& source, std::uint8_t level) {
+  const bool picture = level == source.picture_level;
+  return {placed.block, source.index, picture ? source.picture_model : source.model,
+          static_cast<std::uint16_t>(picture ? 0 : source.first_level + level),
+          source.parameters_hash};
+}
+
+std::uint8_t level_of(const Source& source, const synthesis::MeshKey& key) {
+  const bool picture = source.picture_level != kNoLevel && key.model == source.picture_model;
+  return picture ? source.picture_level : static_cast<std::uint8_t>(key.level - source.first_level);
+}
+
 float distance_to(const Placed& placed, const glm::vec3& foot, float least_m) {
   return std::max(glm::length(foot + placed.middle) - placed.radius_m, least_m);
 }

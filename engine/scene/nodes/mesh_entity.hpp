@@ -1,5 +1,5 @@
-// What is known of a mesh entity before it has a mesh: where it stands, and which levels of detail
-// it has. Pure functions.
+// What is known of a mesh entity before it has a mesh: where it stands, which levels of detail it
+// has, and how the cache names them. Pure functions.
 #pragma once
 
 #include <climits>
@@ -15,6 +15,11 @@ Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds&
 // Levels `first` … `last` of a model type, at most as many as differ.
 Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first = 0,
                  int last = INT_MAX);
+
+// The mesh of a level of an entity, as the cache names it.
+synthesis::MeshKey key_of(const Placed& placed, const Source& source, std::uint8_t level);
+// The level of an entity that a mesh of it is.
+std::uint8_t level_of(const Source& source, const synthesis::MeshKey& key);
 
 // Metres from a point to the nearest of what is usually drawn of an entity, at least `least_m`.
 // `foot` is the entity's, relative to the point.

@@ -13,6 +13,8 @@ using synthesis::RankGroup;
 
 // How long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
+// A picture is kept up to so much more than kMostPicturePixels.
+constexpr float kKept = 1.1F;
 
 // The wanted level; for a hole in view whose wanted level is not cached, the coarsest one first;
 // the nearest one to it where it cannot be synthesised. kNoLevel if nothing is better than what is
@@ -47,15 +49,20 @@ std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8
 }
 
 std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                         float size_pixels, float distance_m, std::uint8_t drawn_level) {
+                         std::uint8_t picture_level, float size_pixels, float distance_m,
+                         std::uint8_t drawn_level) {
   if (node.level == 0 && size_pixels < rules.min_size_pixels) return kNoLevel;
   if (!rules.levels_of_detail) return 0;
   const std::span<const float> errors(detail.error_m.data(), detail.level_count);
   const bool keep = drawn_level != kNoLevel && !rules.settle;
   const float error_pixels = node.level == 0 ? rules.model_error_pixels : rules.error_pixels;
-  return static_cast<std::uint8_t>(
+  const auto level = static_cast<std::uint8_t>(
       visibility::choose_level(errors, distance_m, rules.pixels_per_radian,
                                node.error_factor * error_pixels, keep ? drawn_level : -1));
+  const float most = kMostPicturePixels * (keep && drawn_level == picture_level ? kKept : 1.0F);
+  return level == picture_level && level > 0 && size_pixels > most
+             ? static_cast<std::uint8_t>(level - 1)
+             : level;
 }
 
 bool is_hole(const NodeView& node, const Demand& demand, bool in_view) {

@@ -25,6 +25,9 @@ struct ChoiceRules {
   bool awaits_memory = false;    // requests wait for memory that is about to be free
 };
 
+// Models that are larger on screen have no picture: its texels would be seen.
+inline constexpr float kMostPicturePixels = 128;
+
 // A node in this tick, as far as it matters to the meshes on it.
 struct NodeView {
   glm::vec3 corner{0.0F};  // relative to the camera
@@ -44,9 +47,10 @@ std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8
 
 // The level that a model of this size on screen should show at this distance from the camera;
 // kNoLevel if it is too small to be drawn. Its drawn level is kept within the hysteresis of
-// visibility::choose_level().
+// visibility::choose_level(), and so is that of pictures by size. `picture_level`: of Source.
 std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                         float size_pixels, float distance_m, std::uint8_t drawn_level);
+                         std::uint8_t picture_level, float size_pixels, float distance_m,
+                         std::uint8_t drawn_level);
 
 // What to do about the mesh of an entity whose wanted level is known.
 struct MeshChoice {

@@ -12,6 +12,7 @@
 namespace psygen::scene {
 namespace {
 
+using synthesis::Rank;
 using synthesis::RankGroup;
 
 // Nodes out of view are revisited every 8th tick, and their models may have twice the error.
@@ -107,19 +108,13 @@ void keep(const CacheTick& tick, const NodeView& node, const MeshEntity& row, Ra
   meshes.rank(row.mesh.handle, rank_on(node, group, distance_m));
 }
 
-synthesis::MeshKey key_of(const MeshEntity& row, std::uint8_t level) {
-  const Source& source = row.source;
-  return {row.placed.block, source.index, source.model,
-          static_cast<std::uint16_t>(source.first_level + level), source.parameters_hash};
-}
-
 // Takes the chosen mesh from the cache, or asks for it.
 void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
              const MeshChoice& choice, float distance_m, synthesis::MeshSupply& meshes,
              Found& found) {
   const Source& source = row.source;
   Demand& demand = row.demand;
-  const synthesis::MeshKey key = key_of(row, choice.request);
+  const synthesis::MeshKey key = key_of(row.placed, row.source, choice.request);
   const bool first_time = demand.requested_level != choice.request;
   demand.requested_level = choice.request;
   const synthesis::MeshHandle handle = first_time ? meshes.look_up(key) : meshes.find(key);
@@ -158,8 +153,8 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
   } else {
     const float pixels =
         size_pixels(placed, row.detail, distance_m, tick.choice.pixels_per_radian, tick.near_m);
-    demand.wanted_level =
-        model_level(tick.choice, node, row.detail, pixels, distance_m, demand.drawn_level);
+    demand.wanted_level = model_level(tick.choice, node, row.detail, row.source.picture_level,
+                                      pixels, distance_m, demand.drawn_level);
   }
   if (in_view) {
     note_in_view(tick, node.leaf, demand, counters);
@@ -173,8 +168,9 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
     return true;
   }
   // Only holes ask: looking a mesh up takes time.
-  const bool cached = tick.choice.coarse_first && is_hole(node, demand, in_view) &&
-                      meshes.ready(meshes.find(key_of(row, demand.wanted_level))) != nullptr;
+  const bool cached =
+      tick.choice.coarse_first && is_hole(node, demand, in_view) &&
+      meshes.ready(meshes.find(key_of(row.placed, row.source, demand.wanted_level))) != nullptr;
   const MeshChoice choice =
       choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground, cached);
   if (drawn) keep(tick, node, row, choice.drawn, distance_m, meshes);
@@ -223,6 +219,18 @@ void visit_nodes(const CacheQuery& entities, std::span<const ecs::Entity> nodes,
                               count_false(entities, entities.children(models[i]), model);
         }
       });
+}
+
+// The pictures that the renderer lacks.
+void want_pictures(const WorldFacts& facts, const Output& output, synthesis::MeshSupply& meshes) {
+  for (std::size_t i = 0; output.pictures_lacking >> i != 0; ++i) {
+    if ((output.pictures_lacking >> i & 1) == 0) continue;
+    const models::Parameters& p = facts.picture_parameters[i];
+    const synthesis::MeshKey key{
+        {}, static_cast<std::uint32_t>(i), facts.picture_model, 0, p.hash()};
+    meshes.want(
+        {key, &p, owner_of(ecs::kNullEntity), Rank::by_layer(RankGroup::kVisibleCoarse, 0, 0.0F)});
+  }
 }
 
 // Lazy evaluation keeps nothing: what the last frame drew is given back.
@@ -280,13 +288,14 @@ synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, 
 void cache_system(const Settings& settings, const Rules& rules, const Clock& clock,
                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
                   const Daylight& daylight, const Streaming& streaming, const View& view,
-                  CacheQuery entities, const Assets& assets, synthesis::MeshSupply& meshes,
-                  Found& found, Foresight& foresight, Pressure& pressure,
-                  ecs::EventQueue<MeshEvicted>& evicted, ecs::EventQueue<PlaceReady>& places_ready,
-                  Counters& counters) {
+                  CacheQuery entities, const Assets& assets, const Output& output,
+                  synthesis::MeshSupply& meshes, Found& found, Foresight& foresight,
+                  Pressure& pressure, ecs::EventQueue<MeshEvicted>& evicted,
+                  ecs::EventQueue<PlaceReady>& places_ready, Counters& counters) {
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
   assets.want_all(meshes);
+  want_pictures(facts, output, meshes);
   found.meshes.clear();
   // Before the picture's wants: where both want a mesh, it is the picture's.
   if (rules.request && !rules.settle)

@@ -15,6 +15,7 @@
 #include "engine/scene/draws/shown_nodes.hpp"
 #include "engine/scene/draws/views.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -53,8 +54,14 @@ ModelGround ground_of(const DrawTick& tick, const WorldFacts& facts, const Rende
   DrawFacts said{level, entities.get<Visibility>(entity)->layer, 0, coarser};
   if (tick.shown == render::View::kCache)
     said.bytes_per_m2 = bytes_per_m2(entities, entity, side_m);
-  return {corner,    side_m,       entities.get<GroundSun>(entity), said, tick.shown,
-          tick.step, facts.shadows};
+  return {corner,
+          side_m,
+          entities.get<GroundSun>(entity),
+          said,
+          tick.shown,
+          tick.step,
+          facts.shadows,
+          facts.pictures && level <= world::kMaxPicturedLevel};
 }
 
 // The models of a node that is drawn no more; false once they are gone, or out of view.

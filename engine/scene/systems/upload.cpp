@@ -9,7 +9,9 @@
 #include "engine/core/log.hpp"
 #include "engine/scene/draws/fading.hpp"
 #include "engine/scene/mesh_notes.hpp"
+#include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/world/far/tree_pictures.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -68,20 +70,13 @@ bool accept(Demand& demand, std::uint8_t level, bool fresh, double now_s, Counte
   return true;
 }
 
-// The level of the terrain type that is level 0 of a node's ground.
-int first_ground_level(const WorldFacts& facts, const Node& node) {
-  return node.at.level == 0 ? 0 : facts.levels[node.at.level].mesh_level;
-}
-
-void give_up(const synthesis::Completion& job, const WorldFacts& facts, const UploadQuery& entities,
-             Totals& totals) {
+void give_up(const synthesis::Completion& job, const UploadQuery& entities, Totals& totals) {
   if (job.late) return;  // it was given up before
   if (totals.failed++ == 0) {
     core::log_warning(fmt::format("a model could not be synthesised: {}", job.error));
   }
   if (Demand* demand = entities.get<Demand>(entity_of(job.owner))) {
-    const Node* node = entities.get<Node>(entity_of(job.owner));
-    const int level = job.key.level - (node != nullptr ? first_ground_level(facts, *node) : 0);
+    const std::uint8_t level = level_of(*entities.get<Source>(entity_of(job.owner)), job.key);
     demand->failed_levels |= static_cast<std::uint8_t>(1u << level);
     demand->requested_level = kNoLevel;
   }
@@ -109,6 +104,18 @@ void note_ground(ecs::Entity owner, Node& node, const synthesis::MeshRecord& rec
   *entities.get<GroundSun>(owner) = note.sun;
 }
 
+// Gives a picture to the renderer. What cannot be made keeps its stand-in.
+void take_picture(const synthesis::Completion& job, synthesis::MeshSupply& meshes, Output& output) {
+  const std::size_t number = job.key.index;
+  output.pictures_lacking &= ~(1U << number);
+  const synthesis::MeshRecord* record = meshes.ready(job.handle);
+  if (!job.ok || record == nullptr) return core::log_warning("a picture of a tree was not made");
+  const auto& picture = *note_of<std::shared_ptr<const core::ModelPicture>>(*record);
+  if (const auto set = output.renderer->set_model_picture(number, picture); !set)
+    output.error = set.error();
+  meshes.forget(job.handle);
+}
+
 // What an entity draws so far. What landed in this tick is not in its component yet, where a mesh
 // may be that was evicted. `ranked`: not since the cache system ranked it.
 const Mesh& mesh_before(ecs::Entity owner, bool ranked, const UploadQuery& entities,
@@ -132,9 +139,9 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
   const std::uint8_t level_before = demand->drawn_level;
   const bool ranked = demand->ranked != kNotRanked;
   Node* node = entities.get<Node>(owner);
-  const int first_level = node != nullptr ? first_ground_level(facts, *node) : 0;
-  const auto level = static_cast<std::uint8_t>(record.key.level - first_level);
-  const bool fresh = record.key.parameters_hash == entities.get<Source>(owner)->parameters_hash;
+  const Source& source = *entities.get<Source>(owner);
+  const std::uint8_t level = level_of(source, record.key);
+  const bool fresh = record.key.parameters_hash == source.parameters_hash;
   if (!accept(*demand, level, fresh, now_s, counters)) {
     meshes.rank(handle, synthesis::Rank::unwanted());
     return;
@@ -180,7 +187,11 @@ void upload_system(const Settings& settings, const Rules& rules, const Clock& cl
       meshes.land(rules.wait ? UINT64_MAX : settings.upload_budget_bytes);
   counters.bytes_synthesised = landed.bytes;
   for (const synthesis::Completion& job : landed.completions) {
-    if (!job.ok) give_up(job, facts, entities, totals);
+    if (facts.pictures && job.key.model == facts.picture_model) {
+      take_picture(job, meshes, output);
+      continue;
+    }
+    if (!job.ok) give_up(job, entities, totals);
     const synthesis::MeshRecord* record = meshes.ready(job.handle);
     if (record == nullptr) continue;
     ++counters.models_synthesised;

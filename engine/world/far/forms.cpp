@@ -163,7 +163,7 @@ Billboard billboard_of(Form form, const Outline& outline, const Silhouette& silh
 }
 
 void make_billboard(Form form, const Outline& outline, const Billboard& billboard, FormMesh& out) {
-  PSYGEN_CHECK(is_billboard(form), "a form that does not turn");
+  PSYGEN_CHECK(is_billboard(form) && form != Form::kPicture, "a form that is made to measure");
   if (form == Form::kTent) return make_tent(outline, billboard, out);
   make_kite(outline, billboard, out);
   if (form == Form::kKiteTrunk) add_trunk(outline, 4, 6, out);

@@ -19,15 +19,16 @@ enum class Form : std::uint8_t {
   kKiteTrunk,     // a kite, and the same trunk
   kKite,          // the crown as a billboard of two triangles, widest in the middle
   kTent,          // a billboard of one triangle, widest at its foot, for one or several models
+  kPicture,       // a billboard of two triangles with a picture (tree_pictures.hpp)
 };
-inline constexpr std::size_t kFormCount = 6;
+inline constexpr std::size_t kFormCount = 7;
 // Sizes of a form. The first `solid_vertices` belong to a solid, the others to billboards, which
 // turn about their vertical axes towards the camera.
 struct FormSize {
   std::uint32_t vertices, triangles, solid_vertices;
 };
 inline constexpr std::array<FormSize, kFormCount> kFormSizes{
-    {{9, 9, 6}, {6, 8, 6}, {4, 4, 4}, {7, 3, 0}, {4, 2, 0}, {3, 1, 0}}};
+    {{9, 9, 6}, {6, 8, 6}, {4, 4, 4}, {7, 3, 0}, {4, 2, 0}, {3, 1, 0}, {4, 2, 0}}};
 // The sizes of a form, and whether it has no solid part.
 constexpr FormSize size_of(Form form) {
   return kFormSizes[static_cast<std::size_t>(form)];
@@ -59,7 +60,7 @@ struct Billboard {
 // The dimensions for `models` models with this outline and silhouette.
 Billboard billboard_of(Form form, const Outline& outline, const Silhouette& silhouette,
                        float models);
-// Makes a form that is a billboard, with these dimensions.
+// Makes a form that is a billboard, except kPicture, with these dimensions.
 void make_billboard(Form form, const Outline& outline, const Billboard& billboard, FormMesh& out);
 
 }  // namespace psygen::world

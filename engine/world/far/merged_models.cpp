@@ -36,8 +36,12 @@ int level_of(const Parameters& p) {
 
 class MergedType final : public models::ModelType {
  public:
-  MergedType(std::shared_ptr<const World> world, const models::Registry& registry)
-      : world_(without_edits(std::move(world))), identity_(merged_identity(*world_, registry)) {
+  MergedType(std::shared_ptr<const World> world, const models::Registry& registry,
+             std::shared_ptr<const PictureSet> pictures)
+      : world_(without_edits(std::move(world))),
+        pictures_(std::move(pictures)),
+        identity_(merged_identity(*world_, registry)) {
+    if (pictures_) identity_ = core::combine(identity_, pictures_->identity());
     for (models::ModelIndex i = 0; i < registry.size(); ++i)
       types_.push_back(&registry[i]);
     std::uint32_t first = 0;
@@ -97,8 +101,8 @@ class MergedType final : public models::ModelType {
 
   void make_plans(int level) {
     auto& [own, next] = plans_[static_cast<std::size_t>(level)];
-    own = plan_level(*world_, scatters_, level, level);
-    next = plan_level(*world_, scatters_, level, level + 1);
+    own = plan_level(*world_, scatters_, pictures_.get(), level, level);
+    next = plan_level(*world_, scatters_, pictures_.get(), level, level + 1);
     if (next.vertices == 0) next = own;  // all too small: keep the finer forms
     own.box = next.box = core::united(own.box, next.box);
   }
@@ -123,6 +127,7 @@ class MergedType final : public models::ModelType {
   void add_instance(Instance& instance, const Scattering& scattering, Making& making) const;
 
   std::shared_ptr<const World> world_;
+  std::shared_ptr<const PictureSet> pictures_;  // null: none
   std::uint64_t identity_;
   std::vector<const models::ModelType*> types_;  // of the registry, for what is placed by hand
   std::vector<FarScatter> scatters_;
@@ -177,6 +182,10 @@ void MergedType::make_from_like(const Instance& instance, const Parameters& p,
                                 Making& making) const {
   const FarScatter& far = scatters_[instance.scatter];
   const Form form = making.plan.scatters[instance.scatter].form;
+  if (form == Form::kPicture) {
+    CoarsestMesh* const scratch = making.plan.form_level == 1 ? &making.mesh : nullptr;
+    return pictures_->make_quad(far.scatter().model, p, scratch, making.form);
+  }
   const core::Bounds box = far.type().bounds(p);
   const Likeness like = far.like(box.max.x - box.min.x, box.max.y - box.min.y, instance.hash >> 8);
   const Outline outline = like.model->outline.scaled(like.across, like.up);
@@ -292,8 +301,9 @@ core::Bounds MergedType::synthesize(const Parameters& p, int level, const MeshVi
 }  // namespace
 
 std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
-                                                    const models::Registry& registry) {
-  return std::make_unique<MergedType>(std::move(world), registry);
+                                                    const models::Registry& registry,
+                                                    std::shared_ptr<const PictureSet> pictures) {
+  return std::make_unique<MergedType>(std::move(world), registry, std::move(pictures));
 }
 
 models::Parameters merged_parameters(core::BlockCoord node, int node_level) {

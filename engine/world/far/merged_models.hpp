@@ -22,8 +22,11 @@ enum MergedParameter : std::size_t {
   kMergedParameterCount
 };
 
-// Highest level of a node with a merged mesh; the lowest is 1.
-inline constexpr int kMaxMergedLevel = 5;
+// Highest level of a node with a merged mesh; the lowest is 1. Up to the second of these levels,
+// trees are pictures if there are any.
+inline constexpr int kMaxMergedLevel = 5, kMaxPicturedLevel = 3;
+
+class PictureSet;
 
 // The model type of a world. It has two levels of detail: the forms of the node level, and those of
 // the next node level, which are coarser than all single models except the smallest stones.
@@ -32,9 +35,10 @@ inline constexpr int kMaxMergedLevel = 5;
 // few instances of every scatter (about 0.1 ms a scatter). The model types of `registry` must
 // outlive the result, which may be added to it; `world` must belong to this registry. Edits of
 // `world` are ignored: a mesh shows those that its parameters name. Placed models of types that may
-// not run on the main thread are left out.
-std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
-                                                    const models::Registry& registry);
+// not run on the main thread are left out. `pictures`: those of this world; null for none.
+std::unique_ptr<models::ModelType> make_merged_type(
+    std::shared_ptr<const World> world, const models::Registry& registry,
+    std::shared_ptr<const PictureSet> pictures = nullptr);
 
 // The parameters of one node without edits, which is counted in nodes of its level,
 // 1 … kMaxMergedLevel.

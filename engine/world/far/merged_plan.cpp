@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/node_walk.hpp"
 
 namespace psygen::world {
@@ -23,8 +24,8 @@ std::uint32_t least_together(double pixels) {
   return static_cast<std::uint32_t>(std::ceil(std::min(ratio * ratio, 1e6)));
 }
 
-void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint32_t thinning,
-                   LevelPlan& plan) {
+void plan_scatters(std::span<const FarScatter> scatters, const PictureSet* pictures, double side,
+                   std::uint32_t thinning, LevelPlan& plan) {
   plan.scatters.clear();
   plan.vertices = plan.triangles = 0;
   const double pixels_per_m = kPixelsPerRadian / (kNearestSides * side);
@@ -35,7 +36,11 @@ void plan_scatters(std::span<const FarScatter> scatters, double side, std::uint3
     how.together = std::max(thinning, far.is_leafy() ? least : 1);
     const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMostTogether) : thinning;
     if (!far.empty() && least <= most) {
-      how.form = how.together > 1 ? Form::kTent : far.form_at(plan.form_level, pixels_per_m);
+      const bool pictured = pictures != nullptr && plan.form_level <= kMaxPicturedLevel &&
+                            pictures->has(far.scatter().model);
+      how.form = how.together > 1 ? Form::kTent
+                 : pictured       ? Form::kPicture
+                                  : far.form_at(plan.form_level, pixels_per_m);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * plan.level);
       how.forms = (instances + how.together - 1) / how.together;
       how.each_is_synthesised = plan.form_level == 1 && !is_billboard(how.form) && far.is_cheap();
@@ -69,16 +74,16 @@ core::Bounds box_of(const World& world, std::span<const FarScatter> scatters, do
 
 }  // namespace
 
-LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters, int level,
-                     int form_level) {
+LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
+                     const PictureSet* pictures, int level, int form_level) {
   const double side = std::ldexp(world.block_size_m(), form_level);
   LevelPlan plan;
   plan.level = level;
   plan.form_level = form_level;
   std::uint32_t thinning = form_level <= 3 ? 1 : 3U << (2 * (form_level - 4));
-  plan_scatters(scatters, side, thinning, plan);
+  plan_scatters(scatters, pictures, side, thinning, plan);
   while (plan.vertices > kMostVertices)
-    plan_scatters(scatters, side, thinning *= 2, plan);
+    plan_scatters(scatters, pictures, side, thinning *= 2, plan);
   plan.box = box_of(world, scatters, std::ldexp(world.block_size_m(), level), plan);
   return plan;
 }
@@ -93,7 +98,8 @@ double work_of(const World& world, std::span<const FarScatter> scatters, const L
     const ScatterPlan& how = plan.scatters[s];
     const FarScatter& far = scatters[s];
     if (how.forms == 0) continue;
-    const double make = !how.each_is_synthesised ? 500 : far.is_leafy() ? 3000 : 400;
+    const bool measured = how.form == Form::kPicture && plan.form_level == 1;
+    const double make = !how.each_is_synthesised && !measured ? 500 : far.is_leafy() ? 3000 : 400;
     const double search = far.scatter().has_filter() ? 200 : 0;
     sum += (make + search) * static_cast<double>(how.forms) + std::ldexp(80, 2 * plan.level);
   }

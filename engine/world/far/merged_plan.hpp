@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/world/far/scatter.hpp"
+#include "engine/world/far/tree_pictures.hpp"
 
 namespace psygen::world {
 
@@ -29,9 +30,9 @@ struct LevelPlan {
 };
 
 // The plan for nodes of `level` with the forms of `form_level`. At most 65,536 vertices: if needed,
-// more models share a form.
-LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters, int level,
-                     int form_level);
+// more models share a form. Up to kMaxPicturedLevel, models that `pictures` has are pictures.
+LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
+                     const PictureSet* pictures, int level, int form_level);
 
 // Relative time of making the mesh. The unit is close to a nanosecond; only ratios are meant to be
 // used.

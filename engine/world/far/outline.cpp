@@ -9,16 +9,6 @@
 namespace psygen::world {
 namespace {
 
-Corner corner_of(const core::ModelVertex& v, const core::Bounds& box) {
-  const glm::vec3 colour = glm::vec3(v.colour[0], v.colour[1], v.colour[2]) * (1.0F / 255.0F);
-  return {models::unpack_position(v, box),
-          models::decode_octahedral(glm::vec2(v.normal[0], v.normal[1]) * (1.0F / 32767.0F)),
-          colour,
-          static_cast<float>(v.ambient) * (1.0F / 255.0F),
-          static_cast<float>(v.sway) * (1.0F / 255.0F),
-          static_cast<std::uint8_t>(v.material & kLeaf)};
-}
-
 core::ModelVertex vertex_at(std::span<const std::byte> vertices, std::size_t i) {
   core::ModelVertex v;
   std::memcpy(&v, vertices.data() + i * sizeof v, sizeof v);
@@ -80,6 +70,16 @@ void measure_trunk(std::span<const std::byte> vertices, const core::Bounds& box,
 }
 
 }  // namespace
+
+Corner corner_of(const core::ModelVertex& v, const core::Bounds& box) {
+  const glm::vec3 colour = glm::vec3(v.colour[0], v.colour[1], v.colour[2]) * (1.0F / 255.0F);
+  return {models::unpack_position(v, box),
+          models::decode_octahedral(glm::vec2(v.normal[0], v.normal[1]) * (1.0F / 32767.0F)),
+          colour,
+          static_cast<float>(v.ambient) * (1.0F / 255.0F),
+          static_cast<float>(v.sway) * (1.0F / 255.0F),
+          static_cast<std::uint8_t>(v.material & kLeaf)};
+}
 
 Corner mixed(const Corner& a, const Corner& b, float t) {
   const float s = 1 - t;

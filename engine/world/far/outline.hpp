@@ -29,6 +29,9 @@ struct Corner {
   std::uint8_t material = 0;
 };
 
+// A vertex packed in `box`. Of its material, only whether it is a leaf.
+Corner corner_of(const core::ModelVertex& v, const core::Bounds& box);
+
 // Linear interpolation from `a` (t = 0) to `b` (t = 1). The material is that of `a`; the normal is
 // not normalised.
 Corner mixed(const Corner& a, const Corner& b, float t);

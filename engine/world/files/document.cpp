@@ -80,9 +80,14 @@ Node convert(const toml::node& from) {
   return to;
 }
 
-// The parser's message, with a hint about large integers.
+// The parser's message ("Error while parsing WHAT: WHY") as a part of a sentence, with a hint about
+// large integers.
 std::string sentence_of(const toml::parse_error& error) {
-  const std::string said = core::shown(error.description());
+  constexpr std::string_view kBegin = "Error while parsing ";
+  std::string said = core::shown(error.description());
+  if (said.starts_with(kBegin)) said.replace(0, kBegin.size(), "in a ");
+  if (said.starts_with("in a array") || said.starts_with("in a inline"))
+    said.replace(0, 4, "in an");
   const bool too_large = said.ends_with("is not representable in 64 bits");
   return fmt::format("this is not valid TOML: {}{}", said,
                      too_large ? " with a sign (a larger seed is written in quotes)" : "");

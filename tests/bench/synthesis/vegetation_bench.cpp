@@ -1,4 +1,5 @@
-// Time of the merged mesh of all models of a node, by world and node level.
+// Time of the merged mesh of all models of a node, by world and node level, with pictures of trees;
+// and of all pictures of a world.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -6,6 +7,7 @@
 
 #include "engine/models/model_type.hpp"
 #include "engine/world/far/merged_models.hpp"
+#include "engine/world/far/tree_pictures.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
 #include "tests/source_file.hpp"
@@ -21,7 +23,9 @@ void vegetation(benchmark::State& state) {
   const std::string file = source_file("game/worlds/") + kFiles[state.range(0)] + ".toml";
   auto loaded = load_world(file, registry);
   if (!loaded) return state.SkipWithError(loaded.error().message.c_str());
-  const auto type = make_merged_type(std::make_shared<const World>(*std::move(loaded)), registry);
+  const auto world = std::make_shared<const World>(*std::move(loaded));
+  const auto type =
+      make_merged_type(world, registry, std::make_shared<const PictureSet>(*world, registry));
   const int level = static_cast<int>(state.range(1));
   const int detail = static_cast<int>(state.range(2));
   const models::MeshSize size = type->mesh_size(merged_parameters({0, 0}, level), detail);
@@ -45,6 +49,26 @@ BENCHMARK(vegetation)
     ->ArgsProduct({{0, 1, 2}, {1, 2, 3, 4, 5}, {0, 1}})
     ->ArgNames({"world", "level", "detail"})
     ->Unit(benchmark::kMicrosecond);
+
+// Argument: world. An iteration bakes all pictures, and all stand-ins if the second is 1.
+void pictures(benchmark::State& state) {
+  models::Registry registry = models::make_standard_registry();
+  const std::string file = source_file("game/worlds/") + kFiles[state.range(0)] + ".toml";
+  const auto world = load_world(file, registry);
+  if (!world) return state.SkipWithError(world.error().message.c_str());
+  const PictureSet set(*world, registry);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < set.count(); ++i)
+      benchmark::DoNotOptimize(state.range(1) == 0 ? set.bake(i) : set.stand_in(i));
+  }
+  state.SetLabel(kFiles[state.range(0)]);
+  state.counters["pictures"] = static_cast<double>(set.count());
+  state.counters["MiB"] = static_cast<double>(set.count() * core::picture_bytes()) / (1 << 20);
+}
+BENCHMARK(pictures)
+    ->ArgsProduct({{0, 1, 2}, {0, 1}})
+    ->ArgNames({"world", "stand-ins"})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace psygen::world

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/core/clock.hpp"
+#include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/source_file.hpp"
@@ -105,7 +106,7 @@ inline void expect_consistent(Scene& scene) {
               const synthesis::MeshRecord* record = supply.get(meshes[i].handle);
               wrong += record == nullptr || record->state != synthesis::MeshState::kReady ||
                        record->range != meshes[i].range ||
-                       record->key.level != sources[i].first_level + demands[i].drawn_level;
+                       level_of(sources[i], record->key) != demands[i].drawn_level;
             }
           });
   EXPECT_EQ(wrong, 0u);

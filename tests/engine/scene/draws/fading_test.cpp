@@ -277,9 +277,8 @@ TEST(FadingScene, WhatWasEvictedIsNotReplacedByWhatLands) {
   const auto [model, level] = changing_model(s);
   ASSERT_GE(level, 0);
   const Source& source = *s.entities.get<Source>(model);
-  const synthesis::MeshKey key{s.entities.get<Placed>(model)->block, source.index, source.model,
-                               static_cast<std::uint16_t>(source.first_level + level),
-                               source.parameters_hash};
+  const synthesis::MeshKey key =
+      key_of(*s.entities.get<Placed>(model), source, static_cast<std::uint8_t>(level));
   const auto rank = synthesis::Rank::by_layer(synthesis::RankGroup::kVisibleCoarse, 0, 1);
   const synthesis::Want want{key, &source.parameters, owner_of(model), rank, 0};
   ASSERT_EQ(s.meshes.plan(std::span(&want, 1), {}, s.settings.policy).published, 1u);

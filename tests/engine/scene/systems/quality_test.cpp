@@ -38,32 +38,35 @@ double after_frames(Scene& scene, double frame_ms, double triangles, int ticks, 
   return error;
 }
 
-// Of the models that are drawn once everything has come.
-std::size_t drawn_vertices(Scene& scene) {
+// Of the models and the ground that are drawn once everything has come.
+std::size_t drawn_indices(Scene& scene) {
   scene.settle(pose_at(256, 256));
   tick_at(scene, pose_at(256, 256));
-  const auto& models = scene.state().draws.models;
-  return std::accumulate(
-      models.begin(), models.end(), std::size_t{0},
-      [](std::size_t sum, const render::MeshDraw& draw) { return sum + draw.range.vertex_count; });
+  const State& s = scene.state();
+  std::size_t sum = 0;
+  for (const render::MeshDraw& draw : s.draws.models)
+    sum += draw.part.count > 0 ? draw.part.count : draw.range.index_count;
+  for (const render::TerrainDraw& draw : s.draws.terrain)
+    sum += draw.part.count;
+  return sum;
 }
 
 TEST(QualityOfTime, SlowFramesMakeThePictureCoarserAndFastOnesFinerWithinBounds) {
   const auto scene = steered_scene();
   EXPECT_EQ(after_frames(*scene, 5, 0, 200, true), kError);
   scene->state().input.frame_ms = 0;  // unknown: settling changes nothing
-  const std::size_t fine = drawn_vertices(*scene);
+  const std::size_t fine = drawn_indices(*scene);
   const double soon = after_frames(*scene, 40, 0, 12, false);
   EXPECT_GT(soon, kError * 1.05);
   EXPECT_LT(soon, kError * kFactor);
   EXPECT_EQ(after_frames(*scene, 40, 0, 200, false), kError * kFactor);
   scene->state().input.frame_ms = 0;
-  const std::size_t coarse = drawn_vertices(*scene);
+  const std::size_t coarse = drawn_indices(*scene);
   EXPECT_LT(static_cast<double>(coarse), 0.8 * static_cast<double>(fine));
   EXPECT_LT(after_frames(*scene, 5, 0, 100, true), kError * kFactor);
   EXPECT_EQ(after_frames(*scene, 5, 0, 500, true), kError);
   scene->state().input.frame_ms = 0;
-  EXPECT_EQ(drawn_vertices(*scene), fine);
+  EXPECT_EQ(drawn_indices(*scene), fine);
 }
 
 // Where a wide view opens the error rises before frames have been slow for a while.

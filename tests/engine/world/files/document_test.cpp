@@ -55,6 +55,14 @@ TEST(Document, ErrorsNameFileAndLine) {
   EXPECT_THAT(document_error("a = 1\n\na = 2\n"), StartsWith("f.toml:3:"));
 }
 
+TEST(Document, ErrorsOfTheSyntaxAreSentences) {
+  EXPECT_EQ(document_error("b =\n"),
+            "f.toml:1: this is not valid TOML: in a key-value pair: expected value, saw '\\n'");
+  EXPECT_EQ(
+      document_error("x = [1 2]\n"),
+      "f.toml:1: this is not valid TOML: in an array: expected comma or closing ']', saw '2'");
+}
+
 TEST(Document, ABracketWithoutAKeyIsAnError) {
   for (const char* text :
        {"[", "[[", "[\n", "[[\n", "[#", "[.", "[a.", "[a.]", "[]", "[[a", "[[a]\n"})

@@ -1,0 +1,121 @@
+// The two model types of pictures: the request that bakes one, and the quads that show them.
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "engine/core/assert.hpp"
+#include "engine/world/far/form_writer.hpp"
+#include "engine/world/far/tree_pictures.hpp"
+
+namespace psygen::world {
+namespace {
+
+using models::MeshSize;
+using models::MeshView;
+using models::ModelType;
+using models::Parameters;
+using models::ParameterSpec;
+
+constexpr ParameterSpec kPictureSchema[] = {
+    {"number", models::ParameterType::kInteger, "", 0, 0, core::kMostPictures - 1, 0,
+     core::kMostPictures - 1, "which of the world's pictures", models::ParameterSource::kPlaced}};
+
+class PictureType final : public ModelType {
+ public:
+  std::string_view name() const override { return "tree_picture"; }
+  std::string_view doc() const override { return "a tree seen from around, as a texture"; }
+  std::span<const ParameterSpec> parameters() const override { return kPictureSchema; }
+  int level_count() const override { return 1; }
+  double level_error_m(const Parameters&, int) const override { return 0; }
+  core::Bounds bounds(const Parameters&) const override { return {glm::vec3(0), glm::vec3(1)}; }
+  MeshSize mesh_size(const Parameters&, int) const override {
+    return {3, 3, 0, core::VertexLayout::kModel};
+  }
+  double complexity(const Parameters&, int) const override { return 1; }
+  double steps(const Parameters&, int) const override { return 1; }
+  double step_seconds() const override { return 10e-3; }
+  double log2_cost(const Parameters&) const override { return 0; }
+  core::Bounds synthesize(const Parameters&, int, const MeshView& out) const override {
+    std::ranges::fill(out.vertices, std::byte{0});
+    std::ranges::fill(out.indices, std::uint16_t{0});
+    return {glm::vec3(0.5F), glm::vec3(0.5F)};
+  }
+  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
+    PSYGEN_CHECK(false, "pictures share no indices");
+  }
+};
+
+class QuadType final : public ModelType {
+ public:
+  QuadType(std::shared_ptr<const PictureSet> pictures, const models::Registry& registry,
+           models::ModelIndex model)
+      : pictures_(std::move(pictures)),
+        type_(&registry[model]),
+        model_(model),
+        name_("picture_of_" + std::string(type_->name())) {}
+
+  std::string_view name() const override { return name_; }
+  std::string_view doc() const override { return "a quad that shows a picture of a model"; }
+  std::span<const ParameterSpec> parameters() const override { return type_->parameters(); }
+  int level_count() const override { return 1; }
+  double level_error_m(const Parameters&, int) const override { return 0; }
+  core::Bounds bounds(const Parameters& p) const override { return type_->bounds(p); }
+  MeshSize mesh_size(const Parameters&, int) const override {
+    const FormSize size = size_of(Form::kPicture);
+    return {size.vertices, 3 * size.triangles, 0, core::VertexLayout::kModel};
+  }
+  // What the coarsest mesh takes, which is measured.
+  double complexity(const Parameters& p, int) const override {
+    return type_->complexity(p, type_->level_count() - 1);
+  }
+  double steps(const Parameters& p, int) const override {
+    return type_->steps(p, type_->level_count() - 1);
+  }
+  double step_seconds() const override { return type_->step_seconds(); }
+  double log2_cost(const Parameters& p) const override { return type_->log2_cost(p); }
+  std::uint64_t identity() const override {
+    return core::combine(pictures_->identity(), type_->identity());
+  }
+  bool may_run_on_main_thread() const override { return true; }
+  core::Bounds synthesize(const Parameters& p, int, const MeshView& out) const override {
+    FormMesh quad;
+    CoarsestMesh scratch;
+    pictures_->make_quad(model_, p, &scratch, quad);
+    FormWriter writer(bounds(p), out);
+    writer.add(Form::kPicture, quad, glm::vec3(0.0F), true);
+    return writer.finish();
+  }
+  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
+    PSYGEN_CHECK(false, "pictures share no indices");
+  }
+
+ private:
+  std::shared_ptr<const PictureSet> pictures_;
+  const ModelType* type_;
+  models::ModelIndex model_;
+  std::string name_;
+};
+
+}  // namespace
+
+std::unique_ptr<ModelType> make_picture_type() {
+  return std::make_unique<PictureType>();
+}
+
+Parameters picture_parameters(std::size_t number) {
+  Parameters p;
+  p.set_integer(0, static_cast<std::int64_t>(number));
+  return p;
+}
+
+std::size_t picture_number(const Parameters& p) {
+  return static_cast<std::size_t>(p.integer(0));
+}
+
+std::unique_ptr<ModelType> make_quad_type(std::shared_ptr<const PictureSet> pictures,
+                                          const models::Registry& registry,
+                                          models::ModelIndex model) {
+  return std::make_unique<QuadType>(std::move(pictures), registry, model);
+}
+
+}  // namespace psygen::world

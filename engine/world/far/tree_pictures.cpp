@@ -1,0 +1,234 @@
+#include "engine/world/far/tree_pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <optional>
+
+#include "engine/models/kit/packing.hpp"
+#include "engine/world/far/picture_raster.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::world {
+namespace {
+
+using models::ModelType;
+using models::Parameters;
+
+// A tree of fewer triangles no longer looks like one, and needs no picture where it has only these.
+constexpr std::uint32_t kMostTriangles = 320;
+constexpr std::uint32_t kMostBaked = 200'000;  // triangles: larger trees keep their hulls
+// Instances that pictures are chosen from, by their heights.
+constexpr std::uint32_t kCandidates = 32;
+// The part of a picture's half width and height that is left free around the model.
+constexpr float kMargin = 0.03F;
+// How far the top of a quad leans away from the viewer, as a part of its half width. So the crown
+// can be seen from above too.
+constexpr float kLean = 0.5F;
+constexpr float kTopSway = 0.5F;
+constexpr std::uint64_t kEdition = 1;
+
+// The mesh of a model, unpacked.
+struct Model {
+  std::vector<Corner> corners;
+  std::vector<std::uint16_t> indices;
+};
+
+Model make_model(const ModelType& type, const Parameters& p, int level) {
+  const models::MeshSize size = type.mesh_size(p, level);
+  std::vector<std::byte> vertices(size.vertex_count * sizeof(core::ModelVertex));
+  Model model;
+  model.indices.resize(size.index_count);
+  std::vector<std::uint16_t> own(size.shared_indices == 0 ? size.index_count : 0);
+  type.synthesize(p, level, {vertices, own});
+  if (size.shared_indices == 0) {
+    model.indices = std::move(own);
+  } else {
+    type.write_shared_indices(size.shared_indices, model.indices);
+  }
+  const core::Bounds box = type.bounds(p);
+  for (const core::ModelVertex& v : core::vertices_of<core::ModelVertex>(vertices))
+    model.corners.push_back(corner_of(v, box));
+  return model;
+}
+
+// Whether pictures are of use for this type, and can be made of it.
+bool suits(const ModelType& type, const Parameters& p) {
+  if (type.level_count_of(p) < 2) return false;
+  const models::MeshSize finest = type.mesh_size(p, 0);
+  return finest.layout == core::VertexLayout::kModel && finest.triangle_count() > kMostTriangles &&
+         finest.triangle_count() <= kMostBaked;
+}
+
+glm::vec2 size_of_bounds(const core::Bounds& box) {
+  return {box.max.x - box.min.x, box.max.y - box.min.y};
+}
+
+// How far the coarsest mesh reaches to any side, and up.
+glm::vec2 coarse_size(const ModelType& type, const Parameters& p, CoarsestMesh& mesh) {
+  mesh.make(type, p);
+  const std::optional<Outline> outline = mesh.outline();
+  if (!outline) return {0, 0};
+  float radius_m = 0;
+  for (const Corner& c : outline->ring)
+    radius_m = std::max(radius_m, std::hypot(c.position.x, c.position.z));
+  return {radius_m, outline->top.position.y};
+}
+
+// Nothing for a mesh without leaves or without any extent.
+std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType& type,
+                                      const Parameters& p) {
+  const Model model = make_model(type, p, 0);
+  const core::Bounds box = type.bounds(p);
+  CoarsestMesh coarsest;
+  const glm::vec2 coarse_m = coarse_size(type, p, coarsest);
+  PicturedModel m{index, p, size_of_bounds(box), coarse_m, {0, 1e30F, -1e30F, 0}};
+  PictureFrame& frame = m.frame;
+  float leaves = 0;
+  for (const Corner& c : model.corners) {
+    if (c.material == kLeaf) {
+      frame.ambient += c.ambient;
+      ++leaves;
+    }
+    frame.half_width_m = std::max(frame.half_width_m, std::hypot(c.position.x, c.position.z));
+    frame.bottom_m = std::min(frame.bottom_m, c.position.y);
+    frame.top_m = std::max(frame.top_m, c.position.y);
+  }
+  frame.ambient /= std::max(leaves, 1.0F);
+  frame.bottom_m = std::max(frame.bottom_m, 0.0F);  // what is in the ground is not seen
+  frame.half_width_m *= 1 + kMargin;
+  frame.top_m += kMargin * (frame.top_m - frame.bottom_m);
+  const bool flat = !(frame.half_width_m > 1e-3F && frame.top_m - frame.bottom_m > 1e-3F);
+  return leaves > 0 && !flat ? std::optional(m) : std::nullopt;
+}
+
+float difference_of(glm::vec2 a, glm::vec2 b) {
+  const auto ratio = [](float u, float v) {
+    return std::max(u, v) / std::max(std::min(u, v), 1e-6F);
+  };
+  return std::max(ratio(a.x, b.x), ratio(a.y, b.y));
+}
+
+// The factors that make `from` as large as `to`, within reason.
+glm::vec2 stretch(glm::vec2 from, glm::vec2 to) {
+  const auto factor = [](float u, float v) {
+    return u > 1e-6F ? std::clamp(v / u, 0.5F, 2.0F) : 1.0F;
+  };
+  return {factor(from.x, to.x), factor(from.y, to.y)};
+}
+
+}  // namespace
+
+PictureSet::PictureSet(const World& world, const models::Registry& registry)
+    : registry_(&registry), identity_(kEdition) {
+  std::size_t scatters = 0;
+  std::uint32_t first = 0;
+  std::vector<std::uint32_t> firsts;
+  for (const Scatter& scatter : world.scatter) {
+    const ModelType& type = registry[scatter.model];
+    firsts.push_back(first);
+    first += scatter.count;
+    if (scatter.count > 0 && type.is_seen_from_far() && type.may_run_on_main_thread()) ++scatters;
+  }
+  if (scatters == 0) return;
+  const std::size_t most =
+      std::clamp<std::size_t>(core::kMostPictures / scatters, 1, kMostOfScatter);
+  for (std::size_t s = 0; s < world.scatter.size(); ++s) {
+    try {  // user types may throw; our own code throws only when memory is exhausted
+      add_scatter(world, world.scatter[s], firsts[s], most);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (...) {
+    }
+  }
+}
+
+void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::uint32_t first,
+                             std::size_t most) {
+  const ModelType& type = (*registry_)[scatter.model];
+  if (scatter.count == 0 || !type.is_seen_from_far() || !type.may_run_on_main_thread()) return;
+  std::vector<std::pair<float, Parameters>> candidates;
+  for (std::uint32_t k = 0; k < kCandidates; ++k) {
+    const Scattering scattering(world, type, scatter,
+                                {static_cast<std::int32_t>(k / scatter.count), 0});
+    const Parameters p = scattering.parameters(first + k % scatter.count);
+    if (!suits(type, p)) return;
+    const core::Bounds box = type.bounds(p);
+    candidates.emplace_back(box.max.y - box.min.y, p);
+  }
+  std::ranges::stable_sort(candidates, {}, [](const auto& c) { return c.first; });
+  for (std::size_t k = 0; k < most && models_.size() < core::kMostPictures; ++k) {
+    const Parameters& p = candidates[(2 * k + 1) * kCandidates / (2 * most)].second;
+    const std::optional<PicturedModel> model = measured(scatter.model, type, p);
+    if (!model) continue;
+    models_.push_back(*model);
+    identity_ = core::combine(identity_, models::parameters_hash(type, p));
+  }
+}
+
+bool PictureSet::has(models::ModelIndex model) const {
+  return std::ranges::any_of(models_, [&](const PicturedModel& m) { return m.model == model; });
+}
+
+int PictureSet::first_level(models::ModelIndex model, const Parameters& p) const {
+  const ModelType& type = (*registry_)[model];
+  int level = 0;
+  while (level + 1 < type.level_count_of(p) &&
+         type.mesh_size(p, level).triangle_count() > kMostTriangles)
+    ++level;
+  // The last one that still looks like a tree is kept.
+  return std::max(level + 1, 1);
+}
+
+void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, CoarsestMesh* scratch,
+                           FormMesh& out) const {
+  const ModelType& type = (*registry_)[model];
+  const glm::vec2 own_m =
+      scratch != nullptr ? coarse_size(type, p, *scratch) : size_of_bounds(type.bounds(p));
+  const auto size_of = [&](const PicturedModel& m) {
+    return scratch != nullptr ? m.coarse_m : m.bounds_m;
+  };
+  const std::uint64_t hash = core::mix64(p.hash());
+  std::size_t best = 0;
+  float least = 1e30F;
+  for (std::size_t k = 0; k < models_.size(); ++k) {
+    const std::size_t i = (hash + k) % models_.size();
+    const PicturedModel& m = models_[i];
+    if (m.model != model) continue;
+    const float apart = difference_of(own_m, size_of(m));
+    if (apart < least) {
+      least = apart;
+      best = i;
+    }
+  }
+  const PicturedModel& m = models_[best];
+  const glm::vec2 factor = stretch(size_of(m), own_m);
+  const float half_m = factor.x * m.frame.half_width_m;
+  const auto turn = static_cast<std::uint32_t>(hash >> 40) % core::kPictureViews;
+  Corner corner;
+  corner.material = kLeaf | core::kPictureBit;
+  corner.ambient = m.frame.ambient;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool right = i == 1 || i == 2, top = i >= 2;
+    corner.position = {0, factor.y * (top ? m.frame.top_m : m.frame.bottom_m), 0};
+    corner.sway = top ? kTopSway : 0;
+    corner.colour = {static_cast<float>(best * core::kPictureViews + turn) / 255,
+                     right ? 1.0F : 0.0F, top ? 0.0F : 1.0F};
+    out.corners[i] = corner;
+    out.aside[i] = {right ? half_m : -half_m, top ? kLean * half_m : 0.0F};
+  }
+  out.indices = {0, 1, 2, 0, 2, 3};
+}
+
+core::ModelPicture PictureSet::bake(std::size_t number, int level, std::uint32_t views) const {
+  const PicturedModel& m = models_[number];
+  const Model model = make_model((*registry_)[m.model], m.parameters, level);
+  return bake_picture(model.corners, model.indices, m.frame, views);
+}
+
+core::ModelPicture PictureSet::stand_in(std::size_t number) const {
+  const PicturedModel& m = models_[number];
+  return bake(number, (*registry_)[m.model].level_count_of(m.parameters) - 1, 1);
+}
+
+}  // namespace psygen::world

@@ -1,0 +1,18 @@
+// Pictures of models seen from around (engine/core/model_picture.hpp): alpha-tested, with the square
+// root of the albedo. What has no picture of such a mesh is of layer 0, which is white.
+#ifdef PSYGEN_PICTURE
+layout(set = 0, binding = PSYGEN_BINDING_PICTURES) uniform sampler2DArray pictures;
+layout(location = 5) in vec2 uv;
+layout(location = 6) flat in vec2 layers;  // the first of the picture, and the view
+
+// Between two views the pixels of one give way to those of the other, over this part of the way.
+const float kViewBlend = 0.1;
+
+// Albedo, and opacity.
+vec4 picture() {
+  float view = floor(layers.y + 0.5 + kViewBlend * (ordered_noise() - 0.5));
+  view -= PSYGEN_PICTURE_VIEWS * floor(view * (1.0 / PSYGEN_PICTURE_VIEWS));
+  vec4 texel = texture(pictures, vec3(uv, layers.x + view));
+  return vec4(texel.rgb * texel.rgb, texel.a);
+}
+#endif

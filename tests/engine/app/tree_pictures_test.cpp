@@ -1,0 +1,56 @@
+// The renderer gets the pictures of trees before the first frame, and does without where it has no
+// room for them.
+#include "engine/world/far/tree_pictures.hpp"
+
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+std::unique_ptr<render::Renderer> small_renderer(std::uint64_t texture_bytes) {
+  render::RendererOptions options;
+  options.size = {160, 90};
+  options.geometry_budget_bytes = small_settings().budget_bytes;
+  options.texture_budget_bytes = texture_bytes;
+  auto made = render::Renderer::create(options);
+  EXPECT_TRUE(made);
+  return made ? std::move(*made) : nullptr;
+}
+
+std::unique_ptr<Scene> scene_of(render::Renderer& renderer) {
+  models::Registry registry = models::make_standard_registry();
+  const world::World world = paper_world(registry);
+  auto scene = Scene::create(world, std::move(registry), small_settings(), &renderer);
+  EXPECT_TRUE(scene);
+  return scene ? std::move(*scene) : nullptr;
+}
+
+TEST(PicturesOfTrees, GiveTheRendererTheirPicturesBeforeTheFirstFrame) {
+  const auto renderer = small_renderer(64U << 20);
+  ASSERT_TRUE(renderer);
+  const auto scene = scene_of(*renderer);
+  ASSERT_TRUE(scene);
+  const State& s = scene->state();
+  ASSERT_TRUE(s.facts.pictures);
+  EXPECT_EQ(s.output.pictures_lacking, (1U << s.facts.pictures->count()) - 1);
+  EXPECT_EQ(renderer->texture_bytes(), s.facts.pictures->count() * core::picture_bytes());
+  scene->settle(pose_at(256, 256));
+  EXPECT_EQ(s.output.pictures_lacking, 0U);
+  EXPECT_FALSE(s.output.error);
+}
+
+TEST(PicturesOfTrees, AreMeshesWhereTheRendererHasNoRoomForPictures) {
+  const auto renderer = small_renderer(1U << 20);
+  ASSERT_TRUE(renderer);
+  const auto scene = scene_of(*renderer);
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(scene->state().facts.pictures, nullptr);
+  scene->settle(pose_at(256, 256));
+  tick_at(*scene, pose_at(256, 256));
+  EXPECT_GT(scene->state().draws.models.size(), 10U);
+  for (const render::MeshDraw& draw : scene->state().draws.models)
+    EXPECT_FALSE(draw.pictured);
+}
+
+}  // namespace
+}  // namespace psygen::scene

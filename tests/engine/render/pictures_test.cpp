@@ -1,0 +1,192 @@
+// Pictures of models: the view is that of the side from which one looks, turned as the vertices
+// say; what is transparent is left out; meshes without pictures look as always; on every path.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <vector>
+
+#include "tests/engine/render/on_a_path.hpp"
+
+namespace psygen::render {
+namespace {
+
+constexpr float kHalfWidthM = 4, kHalfHeightM = 5;
+constexpr std::array<std::array<std::uint8_t, 3>, 3> kColours{
+    {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}};
+
+// The upper half is transparent. View k has the colour k % 3 of kColours.
+core::ModelPicture striped_picture() {
+  core::ModelPicture picture(core::picture_bytes());
+  std::size_t at = 0;
+  for (std::uint32_t level = 0; level < core::kPictureLevels; ++level) {
+    const std::size_t side = core::kPictureSide >> level;
+    for (std::uint32_t view = 0; view < core::kPictureViews; ++view) {
+      for (std::size_t texel = 0; texel < side * side; ++texel, at += 4) {
+        for (std::size_t c = 0; c < 3; ++c)
+          picture[at + c] = kColours[view % 3][c];
+        picture[at + 3] = texel / side < side / 2 ? 0 : 255;
+      }
+    }
+  }
+  return picture;
+}
+
+// A quad that shows picture `number`, turned by `turn` views.
+core::Result<core::GeometryRange> make_quad(core::GeometryMemory& memory, int number, int turn) {
+  const auto reserved = memory.reserve(core::VertexLayout::kModel, 4, 6);
+  if (!reserved) return tl::unexpected(reserved.error());
+  std::array<core::ModelVertex, 4> vertices{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool right = i == 1 || i == 2, top = i >= 2;
+    core::ModelVertex& v = vertices[i];
+    v.position[1] = top ? 32767 : -32767;
+    const float aside = (right ? kHalfWidthM : -kHalfWidthM) / core::kBillboardReachM;
+    v.normal[0] = static_cast<std::int16_t>(std::lround(aside * 32767));
+    v.ambient = 255;
+    v.colour[0] = static_cast<std::uint8_t>(number * 8 + turn);
+    v.colour[1] = right ? 255 : 0;
+    v.colour[2] = top ? 0 : 255;
+    v.material = core::kBillboardBit | core::kPictureBit | 1;
+  }
+  const std::array<std::uint16_t, 6> indices{0, 1, 2, 0, 2, 3};
+  std::memcpy(reserved->vertices.data(), vertices.data(), sizeof vertices);
+  std::memcpy(reserved->indices.data(), indices.data(), sizeof indices);
+  memory.commit(reserved->range);
+  return reserved->range;
+}
+
+struct Counted {
+  std::array<int, 3> of{};  // pixels of each of kColours
+  int top = INT32_MAX, bottom = -1;
+  int colour() const {
+    return static_cast<int>(std::max_element(of.begin(), of.end()) - of.begin());
+  }
+  int sum() const { return of[0] + of[1] + of[2]; }
+};
+
+class Pictures : public OnAPath {
+ protected:
+  void SetUp() override {
+    OnAPath::SetUp();
+    if (!renderer_) return;
+    const std::array all{core::ModelPicture(core::picture_bytes()), striped_picture()};
+    ASSERT_TRUE(renderer_->set_model_pictures(all));
+  }
+  MeshDraw quad(int number, int turn) {
+    const auto range = make_quad(renderer_->geometry(), number, turn);
+    EXPECT_TRUE(range);
+    MeshDraw draw;
+    draw.range = *range;
+    draw.box_half_extent = {kHalfWidthM, kHalfHeightM, kHalfWidthM};
+    draw.pictured = true;
+    return draw;
+  }
+  Counted seen(const MeshDraw& draw, double yaw) {
+    MeshDraw placed = draw;
+    placed.origin = 25.0F * core::forward_of({{}, yaw, 0});
+    FrameInput input = synthetic::look(60, 0, kSize);
+    input.pose.yaw = yaw;
+    input.light.cloud_cover = 0;
+    input.light.haze_density = 0;
+    const std::array models{placed};
+    input.models = models;
+    const Picture picture = this->draw(input);
+    Counted counted;
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const int own = picture.rgba[i + c];
+        if (own < 100 || own < 3 * picture.rgba[i + (c + 1) % 3] ||
+            own < 3 * picture.rgba[i + (c + 2) % 3])
+          continue;
+        const int y = static_cast<int>(i / 4 / kSize.width);
+        ++counted.of[c];
+        counted.top = std::min(counted.top, y);
+        counted.bottom = std::max(counted.bottom, y);
+      }
+    }
+    return counted;
+  }
+};
+
+// The number of the view of a viewer who looks in this direction.
+int view_of(double yaw) {
+  const glm::vec3 ahead = core::forward_of({{}, yaw, 0});
+  const double turns = std::atan2(ahead.z, ahead.x) / (2 * std::numbers::pi) * 8;
+  return static_cast<int>(std::lround(turns) + 8) % 8;
+}
+
+TEST_P(Pictures, ShowTheViewOfTheSideFromWhichOneLooks) {
+  for (const int turn : {0, 1, 5}) {
+    const MeshDraw draw = quad(1, turn);
+    for (const double yaw : {0.0, 0.25, 0.785, 1.57, 2.4, 3.14, -0.785, -1.7}) {
+      const Counted counted = seen(draw, yaw);
+      EXPECT_GT(counted.sum(), 250) << yaw;
+      EXPECT_EQ(counted.colour(), (view_of(yaw) + turn) % 8 % 3) << yaw << " turned by " << turn;
+      EXPECT_GT(counted.of[static_cast<std::size_t>(counted.colour())], 0.95 * counted.sum())
+          << yaw;
+    }
+  }
+}
+
+TEST_P(Pictures, LeaveOutWhatIsTransparent) {
+  const Counted half = seen(quad(1, 0), 0);
+  EXPECT_NEAR(half.top, kSize.height / 2, 2);  // the camera is as high as the middle
+  EXPECT_GT(half.bottom, half.top + 10);
+  EXPECT_EQ(seen(quad(0, 0), 0).sum(), 0);
+}
+
+TEST_P(Pictures, CanBeReplaced) {
+  core::ModelPicture blue(core::picture_bytes());
+  for (std::size_t i = 0; i < blue.size(); i += 4)
+    blue[i + 2] = blue[i + 3] = 255;
+  ASSERT_TRUE(renderer_->set_model_picture(0, blue));
+  const Counted counted = seen(quad(0, 3), 0);
+  EXPECT_GT(counted.of[2], 500);
+  EXPECT_EQ(counted.of[2], counted.sum());
+}
+
+TEST_P(Pictures, LeaveOtherMeshesAsTheyAre) {
+  const auto box = synthetic::make_box(renderer_->geometry(), {0.8F, 0.1F, 0.1F});
+  ASSERT_TRUE(box);
+  MeshDraw draw;
+  draw.range = *box;
+  draw.origin = {0, 0, -12};
+  FrameInput input = synthetic::look(60, 0, kSize);
+  const std::array whole{draw};
+  input.models = whole;
+  const Picture plain = this->draw(input);
+  std::array pictured{draw};
+  pictured[0].pictured = true;
+  input.models = pictured;
+  const Picture same = this->draw(input);
+  int largest = 0;
+  for (std::size_t i = 0; i < plain.rgba.size(); ++i)
+    largest = std::max(largest, std::abs(int{plain.rgba[i]} - int{same.rgba[i]}));
+  EXPECT_LE(largest, 2);
+}
+
+TEST_P(Pictures, FadeLikeOtherMeshes) {
+  const MeshDraw draw = quad(1, 0);
+  MeshDraw fading = draw;
+  fading.fade = 0.5F;
+  EXPECT_NEAR(seen(fading, 0).sum(), seen(draw, 0).sum() / 2, 0.1 * seen(draw, 0).sum());
+}
+
+TEST_P(Pictures, RefusedOnesLeaveTheOthers) {
+  const std::vector<core::ModelPicture> many(core::kMostPictures + 1,
+                                             core::ModelPicture(core::picture_bytes()));
+  const auto refused = renderer_->set_model_pictures(many);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::ErrorCode::kOverBudget);
+  EXPECT_FALSE(renderer_->set_model_picture(2, striped_picture()));
+  EXPECT_FALSE(renderer_->set_model_picture(0, core::ModelPicture(7)));
+  EXPECT_GT(seen(quad(1, 0), 0).sum(), 250);
+}
+
+INSTANTIATE_TEST_SUITE_P(OnEveryPath, Pictures, in_every_way());
+
+}  // namespace
+}  // namespace psygen::render
