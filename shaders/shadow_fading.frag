@@ -7,8 +7,8 @@
 #include "pictures.glsl"
 
 void main() {
-  leave_out_faded();
 #ifdef PSYGEN_PICTURE
   if (picture().a < 0.5) discard;
 #endif
+  leave_out_faded();
 }

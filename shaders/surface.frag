@@ -14,9 +14,11 @@ layout(location = 0) in vec3 colour;
 layout(location = 0) out vec4 pixel;
 
 void main() {
+#ifdef PSYGEN_PICTURE
+  vec4 texel = picture();  // first: derivatives are undefined after a discard
+#endif
   leave_out_faded();
 #ifdef PSYGEN_PICTURE
-  vec4 texel = picture();
   if (texel.a < 0.5) discard;
 #ifndef PSYGEN_DRAW_COLOUR
   pixel = vec4(shown(colour * texel.rgb + air), 1.0);

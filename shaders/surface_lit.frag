@@ -19,10 +19,12 @@ layout(location = 3) in vec3 sun_leaf_ground;
 layout(location = 0) out vec4 pixel;
 
 void main() {
+#ifdef PSYGEN_PICTURE
+  vec4 texel = picture();  // first: derivatives are undefined after a discard
+#endif
   leave_out_faded();
   vec3 albedo = albedo_ambient.rgb;
 #ifdef PSYGEN_PICTURE
-  vec4 texel = picture();
   if (texel.a < 0.5) discard;
   albedo *= texel.rgb;
 #endif

@@ -52,11 +52,15 @@ Result<void> ModelPictures::create(const Device& device,
                                    {.array = true, .layers = layers, .mips = core::kPictureLevels});
   if (!image) return tl::unexpected(image.error());
   std::swap(image_, *image);
-  count_ = pictures.size();
+  const std::size_t count_before = std::exchange(count_, pictures.size());
   const std::vector<std::uint8_t> white(core::picture_bytes() / core::kPictureViews, 255);
   Result<void> filled = fill(device, 0, 1, white);
   for (std::size_t i = 0; filled && i < pictures.size(); ++i)
     filled = set(device, i, pictures[i]);
+  if (!filled) {  // as it was
+    std::swap(image_, *image);
+    count_ = count_before;
+  }
   return filled;
 }
 

@@ -13,8 +13,8 @@ namespace psygen::render {
 // Empty until create(). The device must outlive it.
 class ModelPictures {
  public:
-  // Makes room for these pictures, of which any number may be none, and stores them. Replaces all
-  // that there were: the view is another one then.
+  // Stores these pictures in place of all that there were. The view is another one then. After a
+  // failure everything is as it was.
   core::Result<void> create(const Device& device, std::span<const core::ModelPicture> pictures);
   // Replaces a picture that no unfinished commands read.
   core::Result<void> set(const Device& device, std::size_t number,

@@ -319,11 +319,15 @@ Result<void> RendererImpl::set_pictures(std::span<const core::ModelPicture> pict
                     "textures",
                     pictures.size(), core::kMostPictures, options_.texture_budget_bytes));
   }
+  const auto whole = [](const core::ModelPicture& p) { return p.size() == core::picture_bytes(); };
+  if (!std::ranges::all_of(pictures, whole))
+    return core::fail(ErrorCode::kInvalidArgument, "a picture of a model is of another size");
   wait_idle();
-  materials_.set_budget(options_.texture_budget_bytes - pictures.size() * core::picture_bytes());
   Result<void> made = noted(pictures_.create(*device_, pictures));
+  if (!made) return made;
+  materials_.set_budget(options_.texture_budget_bytes - pictures_.bytes());
   use_pipelines();
-  return made;
+  return {};
 }
 
 Result<void> RendererImpl::set_picture(std::size_t number, const core::ModelPicture& picture) {

@@ -72,9 +72,10 @@ std::vector<synthesis::Annotate> mesh_notes(const WorldFacts& facts) {
     };
   }
   if (picture != 0) {
-    notes[picture] = [&facts](const synthesis::Request& request, const models::MeshView&) {
+    notes[picture] = [pictures = facts.pictures](const synthesis::Request& request,
+                                                 const models::MeshView&) {
       const std::size_t number = world::picture_number(request.parameters);
-      return std::any(std::make_shared<const core::ModelPicture>(facts.pictures->bake(number)));
+      return std::any(std::make_shared<const core::ModelPicture>(pictures->bake(number)));
     };
   }
   return notes;

@@ -81,6 +81,9 @@ void Modeler::write_noted_mesh(const Workshop& workshop, const Annotate& annotat
   } catch (const std::exception& e) {
     c.ok = false;
     c.error = fmt::format("nothing could be noted of a mesh: {}", e.what());
+  } catch (...) {
+    c.ok = false;
+    c.error = "nothing could be noted of a mesh";
   }
 }
 

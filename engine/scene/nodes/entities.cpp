@@ -18,7 +18,7 @@ struct MeshColumns {
   Detail detail;
   Source source;
 };
-// The first level that a picture stands for, and the last one then; 0: none does.
+// The level that is a picture; coarser ones of the type are not used then. 0: none is.
 int picture_level_of(const WorldFacts& facts, const world::Placement& placement) {
   const models::ModelIndex model = placement.model;
   if (model >= facts.quad_models.size() || facts.quad_models[model] == 0) return 0;
@@ -133,7 +133,9 @@ void place_anew(const WorldFacts& facts, core::BlockCoord block, const world::Pl
   const MeshColumns columns = columns_of(facts, block, placement);
   *entities.get<Placed>(entity) = columns.placed;
   *entities.get<Detail>(entity) = columns.detail;
-  entities.get<Source>(entity)->picture_level = columns.source.picture_level;
+  Source& source = *entities.get<Source>(entity);
+  source.picture_model = columns.source.picture_model;
+  source.picture_level = columns.source.picture_level;
 }
 
 void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& meshes,

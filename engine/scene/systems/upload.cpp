@@ -111,8 +111,10 @@ void take_picture(const synthesis::Completion& job, synthesis::MeshSupply& meshe
   const synthesis::MeshRecord* record = meshes.ready(job.handle);
   if (!job.ok || record == nullptr) return core::log_warning("a picture of a tree was not made");
   const auto& picture = *note_of<std::shared_ptr<const core::ModelPicture>>(*record);
-  if (const auto set = output.renderer->set_model_picture(number, picture); !set)
-    output.error = set.error();
+  if (const auto set = output.renderer->set_model_picture(number, picture); !set) {
+    core::log_warning(fmt::format("a picture of a tree: {}", set.error().message));
+    if (set.error().code == core::ErrorCode::kDeviceLost) output.error = set.error();
+  }
   meshes.forget(job.handle);
 }
 

@@ -185,7 +185,8 @@ float opacity_factor(const std::vector<glm::vec4>& texels, float covered) {
   if (drawn == 0) return 1;
   std::ranges::nth_element(opacities, opacities.begin() + static_cast<std::ptrdiff_t>(drawn - 1),
                            std::ranges::greater());
-  return 0.5F / std::max(opacities[drawn - 1], 0.02F);
+  constexpr float kDrawn = 128.25F / 255;  // a byte of 128, whatever is rounded
+  return kDrawn / std::max(opacities[drawn - 1], 0.02F);
 }
 
 std::uint8_t byte_of(float v) {

@@ -5,7 +5,7 @@
 #include <new>
 #include <optional>
 
-#include "engine/models/kit/packing.hpp"
+#include "engine/core/assert.hpp"
 #include "engine/world/far/picture_raster.hpp"
 #include "engine/world/placement.hpp"
 
@@ -15,7 +15,8 @@ namespace {
 using models::ModelType;
 using models::Parameters;
 
-// A tree of fewer triangles no longer looks like one, and needs no picture where it has only these.
+// The first level with at most this many triangles is the last mesh that looks like a tree. A type
+// whose finest level has no more needs no pictures.
 constexpr std::uint32_t kMostTriangles = 320;
 constexpr std::uint32_t kMostBaked = 200'000;  // triangles: larger trees keep their hulls
 // Instances that pictures are chosen from, by their heights.
@@ -60,6 +61,11 @@ bool suits(const ModelType& type, const Parameters& p) {
          finest.triangle_count() <= kMostBaked;
 }
 
+// Without std::hypot, which may differ between C libraries.
+float distance_from_axis(const glm::vec3& p) {
+  return std::sqrt(p.x * p.x + p.z * p.z);
+}
+
 glm::vec2 size_of_bounds(const core::Bounds& box) {
   return {box.max.x - box.min.x, box.max.y - box.min.y};
 }
@@ -71,7 +77,7 @@ glm::vec2 coarse_size(const ModelType& type, const Parameters& p, CoarsestMesh& 
   if (!outline) return {0, 0};
   float radius_m = 0;
   for (const Corner& c : outline->ring)
-    radius_m = std::max(radius_m, std::hypot(c.position.x, c.position.z));
+    radius_m = std::max(radius_m, distance_from_axis(c.position));
   return {radius_m, outline->top.position.y};
 }
 
@@ -90,7 +96,7 @@ std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType&
       frame.ambient += c.ambient;
       ++leaves;
     }
-    frame.half_width_m = std::max(frame.half_width_m, std::hypot(c.position.x, c.position.z));
+    frame.half_width_m = std::max(frame.half_width_m, distance_from_axis(c.position));
     frame.bottom_m = std::min(frame.bottom_m, c.position.y);
     frame.top_m = std::max(frame.top_m, c.position.y);
   }
@@ -152,13 +158,18 @@ void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::ui
     const Scattering scattering(world, type, scatter,
                                 {static_cast<std::int32_t>(k / scatter.count), 0});
     const Parameters p = scattering.parameters(first + k % scatter.count);
-    if (!suits(type, p)) return;
+    if (!suits(type, p)) continue;
     const core::Bounds box = type.bounds(p);
     candidates.emplace_back(box.max.y - box.min.y, p);
   }
+  if (candidates.empty()) return;
   std::ranges::stable_sort(candidates, {}, [](const auto& c) { return c.first; });
   for (std::size_t k = 0; k < most && models_.size() < core::kMostPictures; ++k) {
-    const Parameters& p = candidates[(2 * k + 1) * kCandidates / (2 * most)].second;
+    const Parameters& p = candidates[(2 * k + 1) * candidates.size() / (2 * most)].second;
+    const bool known = std::ranges::any_of(models_, [&](const PicturedModel& m) {
+      return m.model == scatter.model && m.parameters == p;
+    });
+    if (known) continue;
     const std::optional<PicturedModel> model = measured(scatter.model, type, p);
     if (!model) continue;
     models_.push_back(*model);
@@ -177,11 +188,12 @@ int PictureSet::first_level(models::ModelIndex model, const Parameters& p) const
          type.mesh_size(p, level).triangle_count() > kMostTriangles)
     ++level;
   // The last one that still looks like a tree is kept.
-  return std::max(level + 1, 1);
+  return level + 1;
 }
 
 void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, CoarsestMesh* scratch,
                            FormMesh& out) const {
+  PSYGEN_CHECK(has(model), "a type that has pictures");
   const ModelType& type = (*registry_)[model];
   const glm::vec2 own_m =
       scratch != nullptr ? coarse_size(type, p, *scratch) : size_of_bounds(type.bounds(p));
@@ -189,17 +201,16 @@ void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, Coarse
     return scratch != nullptr ? m.coarse_m : m.bounds_m;
   };
   const std::uint64_t hash = core::mix64(p.hash());
-  std::size_t best = 0;
-  float least = 1e30F;
+  std::size_t best = models_.size();
+  float least = 0;
   for (std::size_t k = 0; k < models_.size(); ++k) {
     const std::size_t i = (hash + k) % models_.size();
     const PicturedModel& m = models_[i];
     if (m.model != model) continue;
     const float apart = difference_of(own_m, size_of(m));
-    if (apart < least) {
-      least = apart;
-      best = i;
-    }
+    if (best < models_.size() && !(apart < least)) continue;
+    least = apart;
+    best = i;
   }
   const PicturedModel& m = models_[best];
   const glm::vec2 factor = stretch(size_of(m), own_m);

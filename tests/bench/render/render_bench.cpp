@@ -125,7 +125,6 @@ void BM_sheets(benchmark::State& state) {
   state.counters["px_per_triangle"] = static_cast<double>(kSize.width) * kSize.height / triangles;
 }
 
-// range(1) draws of one small mesh behind the camera: what a draw costs before a pixel is touched.
 // A crown of leaves: two thirds of a disc over a trunk.
 core::ModelPicture leafy_picture() {
   core::ModelPicture picture(core::picture_bytes());
@@ -201,6 +200,7 @@ void BM_trees(benchmark::State& state) {
   state.counters["ns_per_tree"] = compare(state, *renderer, sky, input) * 1e6 / (kRow * kRows);
 }
 
+// range(1) draws of one small mesh behind the camera: what a draw costs before a pixel is touched.
 void BM_draws(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   const double base_ms = sky_ms(*renderer);

@@ -175,12 +175,30 @@ TEST_P(Pictures, FadeLikeOtherMeshes) {
   EXPECT_NEAR(seen(fading, 0).sum(), seen(draw, 0).sum() / 2, 0.1 * seen(draw, 0).sum());
 }
 
+TEST_P(Pictures, AreAllReplacedByOthersMoreOrFewer) {
+  for (const std::size_t count : {5U, 1U, 0U, 2U}) {
+    const std::vector<core::ModelPicture> all(count, striped_picture());
+    ASSERT_TRUE(renderer_->set_model_pictures(all));
+    EXPECT_EQ(renderer_->texture_bytes(), count * core::picture_bytes());
+    if (count == 0) continue;
+    EXPECT_GT(seen(quad(static_cast<int>(count) - 1, 0), 0).sum(), 250);
+  }
+}
+
+TEST_P(Pictures, StayWithAnotherPreset) {
+  const Preset other = renderer_->preset() == Preset::kLow ? Preset::kHigh : Preset::kLow;
+  ASSERT_TRUE(renderer_->set_preset(other));
+  EXPECT_GT(seen(quad(1, 0), 0).sum(), 250);
+}
+
 TEST_P(Pictures, RefusedOnesLeaveTheOthers) {
   const std::vector<core::ModelPicture> many(core::kMostPictures + 1,
                                              core::ModelPicture(core::picture_bytes()));
   const auto refused = renderer_->set_model_pictures(many);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, core::ErrorCode::kOverBudget);
+  const std::vector<core::ModelPicture> cut(1, core::ModelPicture(7));
+  EXPECT_FALSE(renderer_->set_model_pictures(cut));
   EXPECT_FALSE(renderer_->set_model_picture(2, striped_picture()));
   EXPECT_FALSE(renderer_->set_model_picture(0, core::ModelPicture(7)));
   EXPECT_GT(seen(quad(1, 0), 0).sum(), 250);
