@@ -1,7 +1,8 @@
 // Trees, rocks and all other models: unpacks core::ModelVertex, turns billboards, applies wind,
-// light and haze. With PSYGEN_PICTURE some vertices may be those of pictures (pictures.glsl). With PSYGEN_OBJECT: a game's own objects (core::ObjectVertex), which are turned
-// and scaled, and have a material. On software devices all of this is per vertex, and the fragment shader only
-// writes the colour.
+// light and haze. With PSYGEN_PICTURE some vertices may be those of pictures (pictures.glsl). With
+// PSYGEN_OBJECT: a game's own objects (core::ObjectVertex), which are turned and scaled, and have a
+// material. On software devices all of this is per vertex, and the fragment shader only writes the
+// colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

@@ -13,16 +13,15 @@ constexpr std::uint32_t kMostNames = 1 << 20;
 
 }  // namespace
 
-std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool shared, bool fading,
-                                       bool pictured) {
+std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool shared,
+                                       Coverage coverage) {
   const std::size_t key =
-      std::size_t{range.pool_block} << 4 | (pictured ? 8u : 0u) | (fading ? 4u : 0u) |
+      std::size_t{range.pool_block} << 4 | static_cast<std::size_t>(coverage) << 2 |
       (shared ? 2u : 0u) |
       static_cast<std::size_t>(range.layout == core::VertexLayout::kTerrain ? 1 : 0);
   if (key >= open_.size()) open_.resize(key + 1);
   if (open_[key] == 0 || groups_[open_[key] - 1].capacity == kGroupCapacity) {
-    groups_.push_back(
-        {range.layout, shared, fading, pictured, range.pool_block, 0, 0, kPlainMaterial});
+    groups_.push_back({range.layout, shared, coverage, range.pool_block, 0, 0, kPlainMaterial});
     open_[key] = static_cast<std::uint32_t>(groups_.size());
   }
   ++groups_[open_[key] - 1].capacity;
@@ -33,8 +32,8 @@ template <class Draw>
 void CandidateList::add(const Draw& draw, bool coloured) {
   const core::Bounds box = bounds_of(draw);
   const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
-  const std::uint32_t group = group_for(draw.range, draw.shared_indices != kNoSharedIndices,
-                                        is_fading(draw), is_pictured(draw));
+  const std::uint32_t group =
+      group_for(draw.range, draw.shared_indices != kNoSharedIndices, coverage_of(draw));
   // Meshes without an id share bit 0.
   const std::uint32_t name = draw.range.id == core::kNoGeometry ? 0 : draw.range.id + 1;
   name_count_ = std::max(name_count_, name + 1);
@@ -73,10 +72,10 @@ void CandidateList::place_groups() {
 }
 
 std::uint32_t CandidateList::group_for(const ObjectDraw& draw, MaterialKind kind) {
-  const bool fading = kind.holes || draw.fade < 1.0F;
+  const Coverage coverage = coverage_of(draw, kind);
   const MaterialId textures = kind.textured ? draw.material : kPlainMaterial;
   const auto fits = [&](const DrawGroup& group) {
-    return group.layout == core::VertexLayout::kObject && group.fading == fading &&
+    return group.layout == core::VertexLayout::kObject && group.coverage == coverage &&
            group.pool_block == draw.range.pool_block && group.textures == textures &&
            group.capacity < kGroupCapacity;
   };
@@ -86,12 +85,13 @@ std::uint32_t CandidateList::group_for(const ObjectDraw& draw, MaterialKind kind
     return candidates_.back().draw.w;
   }
   const std::uint64_t key = std::uint64_t{textures} << 33 |
-                            std::uint64_t{draw.range.pool_block} << 1 | (fading ? 1u : 0u);
+                            std::uint64_t{draw.range.pool_block} << 1 |
+                            static_cast<std::uint64_t>(coverage);
   const auto [open, is_new] = open_objects_.try_emplace(key, 0u);
   if (is_new || !fits(groups_[open->second])) {
     open->second = static_cast<std::uint32_t>(groups_.size());
     groups_.push_back(
-        {core::VertexLayout::kObject, false, fading, false, draw.range.pool_block, 0, 0, textures});
+        {core::VertexLayout::kObject, false, coverage, draw.range.pool_block, 0, 0, textures});
   }
   ++groups_[open->second].capacity;
   return open->second;

@@ -17,9 +17,8 @@ namespace psygen::render {
 // among those of a phase. There is room for the commands of all of them.
 struct DrawGroup {
   core::VertexLayout layout = core::VertexLayout::kModel;
-  bool shared = false;    // indices from the shared lists, else from the pool block
-  bool fading = false;    // models that fade in or out, objects with holes, near terrain
-  bool pictured = false;  // models with pictures; all of them are `fading` too
+  bool shared = false;  // indices from the shared lists, else from the pool block
+  Coverage coverage = Coverage::kWhole;
   std::uint32_t pool_block = 0;
   std::uint32_t first_command = 0;
   std::uint32_t capacity = 0;
@@ -51,8 +50,7 @@ class CandidateList {
  private:
   template <class Draw>
   void add(const Draw& draw, bool coloured);
-  std::uint32_t group_for(const core::GeometryRange& range, bool shared, bool fading,
-                          bool pictured);
+  std::uint32_t group_for(const core::GeometryRange& range, bool shared, Coverage coverage);
   std::uint32_t group_for(const ObjectDraw& draw, MaterialKind kind);
   void place_groups();
 

@@ -34,13 +34,9 @@ std::uint32_t levels_for(core::Extent picture) {
 
 Result<UniqueSampler> make_nearest_sampler(const Device& device) {
   VkSamplerCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.maxLod = VK_LOD_CLAMP_NONE;
-  VkSampler sampler = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
-  return UniqueSampler(device.vk, device.handle, sampler);
+  return make_sampler(device, info);
 }
 
 Result<UniqueImageView> make_view(const Device& device, VkImage image, std::uint32_t first_level,

@@ -79,11 +79,10 @@ DrawRun DrawList::run_of(const Draw& draw) const {
   run.lamps = !lights_.empty() && any_reaches(lights_, bounds_of(draw));
   if constexpr (requires { draw.material; }) {
     const MaterialKind kind = kind_of(materials_, draw.material);
-    run.fading = kind.holes || draw.fade < 1.0F;
+    run.coverage = coverage_of(draw, kind);
     run.textures = kind.textured ? draw.material : kPlainMaterial;
   } else {
-    run.fading = is_fading(draw);
-    run.pictured = is_pictured(draw);
+    run.coverage = coverage_of(draw);
     run.shared = draw.shared_indices != kNoSharedIndices;
   }
   return run;
@@ -108,9 +107,10 @@ void DrawList::add(std::span<const Draw> input) {
   // The properties that separate runs, as a sort key.
   const auto key = [&](const Draw& draw) {
     const DrawRun run = run_of(draw);
-    const bool last = run.fading != std::is_same_v<Draw, TerrainDraw>;  // near terrain comes first
-    return (run.pictured ? 1ULL : 0ULL) << 47 | (run.lamps ? 0ULL : 1ULL) << 46 |
-           std::uint64_t{run.textures} << 34 | (last ? 1ULL : 0ULL) << 33 |
+    const bool terrain = std::is_same_v<Draw, TerrainDraw>;
+    const auto order =  // near terrain comes first
+        terrain ? (run.coverage == Coverage::kPart ? 0ULL : 1ULL) : std::uint64_t(run.coverage);
+    return (run.lamps ? 0ULL : 1ULL) << 47 | std::uint64_t{run.textures} << 35 | order << 33 |
            (run.pushed ? 0ULL : 2ULL) << 31 | std::uint64_t{run.pool_block} * 2 |
            (run.shared ? 1u : 0u);
   };

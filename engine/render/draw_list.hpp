@@ -30,19 +30,19 @@ IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indi
 shaders::DrawData data_of(const TerrainDraw& draw);
 shaders::DrawData data_of(const MeshDraw& draw);
 shaders::DrawData data_of(const ObjectDraw& draw);
-// Whether a draw covers only some of its pixels; of terrain, whether it is near. Such draws have a
-// pipeline of their own.
-constexpr bool is_fading(const TerrainDraw& draw) {
-  return draw.near;
+// Which of its pixels a draw covers. Each has a pipeline of its own.
+enum class Coverage : std::uint8_t {
+  kWhole,
+  kPart,      // models that fade in or out, objects with holes; of terrain, what is near
+  kPictured,  // models with pictures, whether they fade or not
+};
+constexpr Coverage coverage_of(const TerrainDraw& draw) {
+  return draw.near ? Coverage::kPart : Coverage::kWhole;
 }
-constexpr bool is_fading(const MeshDraw& draw) {
-  return draw.pictured || draw.fade < 1.0F;
-}
-constexpr bool is_pictured(const TerrainDraw&) {
-  return false;
-}
-constexpr bool is_pictured(const MeshDraw& draw) {
-  return draw.pictured;
+constexpr Coverage coverage_of(const MeshDraw& draw) {
+  return draw.pictured      ? Coverage::kPictured
+         : draw.fade < 1.0F ? Coverage::kPart
+                            : Coverage::kWhole;
 }
 // Puts the debug colour of a draw into its data, for the views that show it.
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw);
@@ -60,6 +60,10 @@ inline MaterialKind kind_of(MaterialKinds kinds, MaterialId material) {
   return material < kinds.size() ? kinds[material] : MaterialKind{};
 }
 
+inline Coverage coverage_of(const ObjectDraw& draw, MaterialKind kind) {
+  return kind.holes || draw.fade < 1.0F ? Coverage::kPart : Coverage::kWhole;
+}
+
 // One draw, in indices and vertices of its buffers. Same layout as VkMultiDrawIndexedInfoEXT.
 struct IndexedDraw {
   std::uint32_t first_index = 0;
@@ -70,11 +74,10 @@ struct IndexedDraw {
 // Draws [first, first + count) with the same vertex layout and buffers.
 struct DrawRun {
   core::VertexLayout layout = core::VertexLayout::kModel;
-  bool shared = false;    // indices from the shared lists, else from the pool block
-  bool pushed = false;    // one call per draw with its data pushed, else one call for all
-  bool fading = false;    // models that fade in or out, objects with holes, near terrain
-  bool pictured = false;  // models with pictures; all of them are `fading` too
-  bool lamps = false;     // point lights may reach it
+  bool shared = false;  // indices from the shared lists, else from the pool block
+  bool pushed = false;  // one call per draw with its data pushed, else one call for all
+  Coverage coverage = Coverage::kWhole;
+  bool lamps = false;  // point lights may reach it
   std::uint32_t pool_block = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
@@ -82,8 +85,8 @@ struct DrawRun {
 
   // Whether this draw can be appended to the run `r`.
   bool continues(const DrawRun& r) const {
-    return layout == r.layout && shared == r.shared && pushed == r.pushed && fading == r.fading &&
-           pictured == r.pictured && lamps == r.lamps && pool_block == r.pool_block &&
+    return layout == r.layout && shared == r.shared && pushed == r.pushed &&
+           coverage == r.coverage && lamps == r.lamps && pool_block == r.pool_block &&
            textures == r.textures;
   }
 };

@@ -1,6 +1,7 @@
 #include "engine/render/ground_image.hpp"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/render/ground_textures.hpp"
@@ -16,17 +17,15 @@ using core::Result;
 Result<void> GroundImage::create(const Device& device, const PresetTraits& traits,
                                  std::span<const GroundPicture> pictures) {
   VkSamplerCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.magFilter = VK_FILTER_LINEAR;
   info.minFilter = VK_FILTER_LINEAR;
   // Two levels at once would cost software devices twice as much.
   info.mipmapMode =
       traits.fine_grain ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
   info.maxLod = VK_LOD_CLAMP_NONE;
-  VkSampler sampler = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
-  sampler_ = UniqueSampler(device.vk, device.handle, sampler);
+  Result<UniqueSampler> sampler = make_sampler(device, info);
+  if (!sampler) return tl::unexpected(sampler.error());
+  sampler_ = std::move(*sampler);
 
   const GroundLevels levels =
       traits.pixel_light ? make_ground_layers(pictures) : make_ground_detail(pictures);

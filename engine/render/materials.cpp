@@ -49,17 +49,13 @@ std::vector<std::uint8_t> half(std::span<const std::uint8_t> from, core::Extent 
   return out;
 }
 
-Result<UniqueSampler> make_sampler(const Device& device) {
+Result<UniqueSampler> make_texture_sampler(const Device& device) {
   VkSamplerCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.magFilter = VK_FILTER_LINEAR;
   info.minFilter = VK_FILTER_LINEAR;
   info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
   info.maxLod = VK_LOD_CLAMP_NONE;
-  VkSampler sampler = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
-  return UniqueSampler(device.vk, device.handle, sampler);
+  return make_sampler(device, info);
 }
 
 shaders::MaterialData data_of(const Material& m) {
@@ -100,7 +96,7 @@ Result<void> MaterialTable::create(const Device& device, std::uint64_t texture_b
                                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite);
   if (!buffer) return tl::unexpected(buffer.error());
   buffer_ = std::move(*buffer);
-  Result<UniqueSampler> sampler = make_sampler(device);
+  Result<UniqueSampler> sampler = make_texture_sampler(device);
   if (!sampler) return tl::unexpected(sampler.error());
   sampler_ = std::move(*sampler);
   std::array<VkDescriptorSetLayoutBinding, kMapsOfMaterial> bindings{};

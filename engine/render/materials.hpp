@@ -40,7 +40,7 @@ class MaterialTable {
   VkDescriptorSetLayout set_layout() const { return set_layout_.get(); }
   const Buffer& buffer() const { return buffer_; }  // of shaders::MaterialData
   std::uint64_t texture_bytes() const { return texture_bytes_; }
-  // What textures may take from now on. Those that there are stay.
+  // What textures may take from now on. Textures that exist stay.
   void set_budget(std::uint64_t bytes) { texture_budget_bytes_ = bytes; }
 
  private:

@@ -239,6 +239,14 @@ Result<void> finish_once(const Device& device, OneTimeCommands& once) {
   return device.wait(semaphore, signal.value, "waiting for the device");
 }
 
+Result<UniqueSampler> make_sampler(const Device& device, VkSamplerCreateInfo info) {
+  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+  VkSampler sampler = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
+  return UniqueSampler(device.vk, device.handle, sampler);
+}
+
 Result<void> upload_image(const Device& device, const Image& image, core::Extent size,
                           std::span<const std::span<const std::byte>> levels, std::uint32_t layers,
                           std::uint32_t first_layer) {

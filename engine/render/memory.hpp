@@ -57,6 +57,9 @@ core::Result<UniqueImageView> make_layer_view(const Device& device, const Image&
                                               VkFormat format, VkImageAspectFlags aspect,
                                               std::uint32_t layer);
 
+// A sampler; `info` without its type. Fails with kOutOfMemory or kDeviceLost.
+core::Result<UniqueSampler> make_sampler(const Device& device, VkSamplerCreateInfo info);
+
 // Fills an image with usage TRANSFER_DST and SAMPLED, and makes it readable by fragment shaders.
 // `levels` are its mip levels, the first of `size`: layer by layer, rows without padding. Fills
 // `layers` layers from `first_layer` on, which no unfinished commands read. Waits for the device.

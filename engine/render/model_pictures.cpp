@@ -21,7 +21,6 @@ constexpr core::Extent kSize{core::kPictureSide, core::kPictureSide};
 
 Result<UniqueSampler> make_picture_sampler(const Device& device) {
   VkSamplerCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.magFilter = VK_FILTER_LINEAR;
   info.minFilter = VK_FILTER_LINEAR;
   // Two levels at once would cost software devices twice as much.
@@ -29,10 +28,7 @@ Result<UniqueSampler> make_picture_sampler(const Device& device) {
       device.info.software ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR;
   info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.maxLod = VK_LOD_CLAMP_NONE;
-  VkSampler sampler = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
-  return UniqueSampler(device.vk, device.handle, sampler);
+  return make_sampler(device, info);
 }
 
 }  // namespace

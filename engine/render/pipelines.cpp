@@ -22,18 +22,14 @@ constexpr VkBool32 on(bool yes) {
   return yes ? VK_TRUE : VK_FALSE;
 }
 
-Result<UniqueSampler> make_sampler(const Device& device, VkSamplerAddressMode mode) {
+Result<UniqueSampler> make_smooth_sampler(const Device& device, VkSamplerAddressMode mode) {
   VkSamplerCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.magFilter = VK_FILTER_LINEAR;
   info.minFilter = VK_FILTER_LINEAR;
   info.addressModeU = mode;
   info.addressModeV = mode;
   info.addressModeW = mode;
-  VkSampler sampler = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
-  return UniqueSampler(device.vk, device.handle, sampler);
+  return make_sampler(device, info);
 }
 
 Result<Image> make_texture(const Device& device, core::Extent size, VkFormat format,
@@ -77,10 +73,10 @@ Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
 
 Result<void> Pipelines::create_textures(const Device& device, const Overlay& overlay,
                                         std::span<const GroundPicture> ground) {
-  Result<UniqueSampler> clouds = make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+  Result<UniqueSampler> clouds = make_smooth_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT);
   if (!clouds) return tl::unexpected(clouds.error());
   cloud_sampler_ = std::move(*clouds);
-  Result<UniqueSampler> font = make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  Result<UniqueSampler> font = make_smooth_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   if (!font) return tl::unexpected(font.error());
   font_sampler_ = std::move(*font);
   const std::vector<std::uint16_t> texels = make_cloud_texture();
@@ -315,14 +311,14 @@ Result<void> Pipelines::create_views(Making& making) {
       });
 }
 
-VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, bool fading, bool pictured,
-                           bool lamps, View view) const {
+VkPipeline Pipelines::mesh(core::VertexLayout layout, bool pushed, Coverage coverage, bool lamps,
+                           View view) const {
   const bool edges = view == View::kWireframe && wireframe_.whole[0][0].get() != VK_NULL_HANDLE;
   const MeshPipelines& all = edges                 ? wireframe_
                              : colours_draws(view) ? coloured_
                              : lamps               ? lamplit_
                                                    : landscape_;
-  return all.of(layout, pushed, fading && !edges, pictured && !edges);
+  return all.of(layout, pushed, edges ? Coverage::kWhole : coverage);
 }
 
 // The eight pipelines of a look. Those of kColour light textured objects per pixel.

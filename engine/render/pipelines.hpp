@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/render/draw_list.hpp"
 #include "engine/render/ground_image.hpp"
 #include "engine/render/materials.hpp"
 #include "engine/render/model_pictures.hpp"
@@ -42,13 +43,12 @@ class Pipelines {
   VkSampleCountFlagBits samples() const { return samples_; }
   VkPipelineLayout layout() const { return layout_.get(); }
   // The pipeline for meshes. `pushed`: the data of a draw is in push constants, else in the buffer
-  // of draws. `fading`: for models that fade in or out, and for near terrain. `pictured`: for
-  // models with pictures. `lamps`, after create_lamps(): with point lights.
-  VkPipeline mesh(core::VertexLayout layout, bool pushed, bool fading, bool pictured, bool lamps,
+  // of draws. `lamps`, after create_lamps(): with point lights.
+  VkPipeline mesh(core::VertexLayout layout, bool pushed, Coverage coverage, bool lamps,
                   View view) const;
   // The same for drawing into a cascade, if the preset has cascades.
-  VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, bool fading, bool pictured) const {
-    return shadow_.of(layout, pushed, fading, pictured);
+  VkPipeline mesh_shadow(core::VertexLayout layout, bool pushed, Coverage coverage) const {
+    return shadow_.of(layout, pushed, coverage);
   }
   // The pipeline for objects, after create_objects(). `textured`: the material's set is bound;
   // `fading`: those that fade or have holes.
@@ -88,15 +88,15 @@ class Pipelines {
     std::array<UniquePipeline, 2> pictured;     // the same
     std::array<UniquePipeline, 2> near_ground;  // the same; null if it is drawn like all terrain
 
-    VkPipeline of(core::VertexLayout layout, bool is_pushed, bool is_fading,
-                  bool is_pictured) const {
+    VkPipeline of(core::VertexLayout layout, bool is_pushed, Coverage coverage) const {
       const std::size_t pushed = is_pushed ? 1 : 0;
       if (layout == core::VertexLayout::kTerrain) {
-        const VkPipeline near = is_fading ? near_ground[pushed].get() : VK_NULL_HANDLE;
+        const VkPipeline near =
+            coverage == Coverage::kPart ? near_ground[pushed].get() : VK_NULL_HANDLE;
         return near != VK_NULL_HANDLE ? near : whole[0][pushed].get();
       }
-      if (is_pictured) return pictured[pushed].get();
-      return is_fading ? fading[pushed].get() : whole[1][pushed].get();
+      if (coverage == Coverage::kPictured) return pictured[pushed].get();
+      return coverage == Coverage::kPart ? fading[pushed].get() : whole[1][pushed].get();
     }
   };
   static std::size_t index_of_object(bool pushed, bool textured, bool fading) {

@@ -76,8 +76,9 @@ template <class Draws>
 VkPipeline picture_pipeline(const Pipelines& pipelines, const Draws& draws, bool pushed, bool lamps,
                             View view) {
   if (draws.layout != core::VertexLayout::kObject)
-    return pipelines.mesh(draws.layout, pushed, draws.fading, draws.pictured, lamps, view);
-  return pipelines.object(pushed, draws.textures != kPlainMaterial, draws.fading, lamps, view);
+    return pipelines.mesh(draws.layout, pushed, draws.coverage, lamps, view);
+  return pipelines.object(pushed, draws.textures != kPlainMaterial,
+                          draws.coverage != Coverage::kWhole, lamps, view);
 }
 
 // Draws the runs of the list, each with the pipeline pipeline_of(run).
@@ -157,8 +158,9 @@ void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameS
                                  sizeof(shaders::DrawData), sizeof(cascade), &cascade);
     draw_meshes(device, pipelines, commands, pass, [&](const DrawRun& run) {
       if (run.layout != core::VertexLayout::kObject)
-        return pipelines.mesh_shadow(run.layout, run.pushed, run.fading, run.pictured);
-      return pipelines.object_shadow(run.pushed, run.textures != kPlainMaterial, run.fading);
+        return pipelines.mesh_shadow(run.layout, run.pushed, run.coverage);
+      return pipelines.object_shadow(run.pushed, run.textures != kPlainMaterial,
+                                     run.coverage != Coverage::kWhole);
     });
   });
 }

@@ -19,7 +19,6 @@ constexpr float kLeastElevation = 0.02F;  // of the sun, as a sine
 
 Result<UniqueSampler> make_comparing_sampler(const Device& device) {
   VkSamplerCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
@@ -30,10 +29,7 @@ Result<UniqueSampler> make_comparing_sampler(const Device& device) {
   if ((format.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0) {
     info.magFilter = info.minFilter = VK_FILTER_LINEAR;
   }
-  VkSampler sampler = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
-  return UniqueSampler(device.vk, device.handle, sampler);
+  return make_sampler(device, info);
 }
 
 // The camera's position along `axis` modulo `step` metres.

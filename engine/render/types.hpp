@@ -76,7 +76,8 @@ struct RendererOptions {
   std::function<bool(Renderer&, double)> progress;
   double device_timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
   bool timestamps = true;              // FrameResult::gpu, if the device supports it
-  std::uint64_t texture_budget_bytes = 256ull << 20;  // hard limit of all textures of materials
+  std::uint64_t texture_budget_bytes =
+      256ull << 20;  // hard limit of all textures of materials and pictures
   std::array<GroundPicture, kGroundPictures> ground;  // in place of textures of the ground
 };
 

@@ -36,21 +36,21 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
                     Targets& targets, VkBuffer blank, int step, bool lamps) {
   warm_up_pass(device, pipelines, slot, targets, [&](VkCommandBuffer commands) {
     bind_blank(device, pipelines, commands, blank);
-    const auto draw_twice = [&](core::VertexLayout layout, bool fading, bool pictured = false) {
+    const auto draw_twice = [&](core::VertexLayout layout, Coverage coverage) {
       for (const bool pushed : {false, true}) {
         bind_pipeline(device, commands,
-                      pipelines.mesh(layout, pushed, fading, pictured, lamps, View::kNormal));
+                      pipelines.mesh(layout, pushed, coverage, lamps, View::kNormal));
         device.vk.vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
       }
     };
     if (step == 0) {
-      draw_twice(core::VertexLayout::kTerrain, false);
-      draw_twice(core::VertexLayout::kTerrain, true);
+      draw_twice(core::VertexLayout::kTerrain, Coverage::kWhole);
+      draw_twice(core::VertexLayout::kTerrain, Coverage::kPart);
     }
-    if (step == 1) draw_twice(core::VertexLayout::kModel, false);
+    if (step == 1) draw_twice(core::VertexLayout::kModel, Coverage::kWhole);
     if (step == 2) {
-      draw_twice(core::VertexLayout::kModel, true);
-      draw_twice(core::VertexLayout::kModel, true, true);
+      draw_twice(core::VertexLayout::kModel, Coverage::kPart);
+      draw_twice(core::VertexLayout::kModel, Coverage::kPictured);
     }
     if (step == 3) draw_water_and_sky(device, pipelines, commands, true, lamps);
     if (step == 4) draw_lines_and_text(device, pipelines, commands, 3, 0);

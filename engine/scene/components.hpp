@@ -62,8 +62,9 @@ static_assert(sizeof(Placed) == 60);
 // Geometric error in metres of each level of detail.
 struct Detail {
   std::array<float, kMaxLevels> error_m{};
-  std::uint32_t level_count = 0;
-  float seen_size_m = 0;  // ModelType::seen_size_m
+  std::uint16_t level_count = 0;
+  std::uint16_t picture_level = kNoLevel;  // the last one where that is a picture, else kNoLevel
+  float seen_size_m = 0;                   // ModelType::seen_size_m
 };
 
 // What is synthesised. Cold: read when a request is made.
@@ -72,10 +73,8 @@ struct Source {
   std::uint64_t parameters_hash = 0;
   std::uint32_t index = 0;  // within the node; world::Placement::index, or one of those below
   models::ModelIndex model = 0;
-  std::uint16_t first_level = 0;  // of the model type: what level 0 of Detail and Demand is
-  // The last level of Detail and Demand where that is a picture, and the type of its mesh.
-  models::ModelIndex picture_model = 0;
-  std::uint8_t picture_level = kNoLevel;  // kNoLevel: it is a mesh like the others
+  std::uint16_t first_level = 0;         // of the model type: what level 0 of Detail and Demand is
+  models::ModelIndex picture_model = 0;  // type of quads with pictures of such models; 0: none
 };
 using world::kTerrainIndex;
 inline constexpr std::uint32_t kMergedIndex = kTerrainIndex - 1;
@@ -113,6 +112,7 @@ struct Fading {
   core::GeometryRange old_range;
   std::uint32_t old_shared_indices = 0;
   std::uint8_t old_level = kNoLevel;
+  bool old_pictured = false;  // Demand::pictured of it
 };
 static_assert(sizeof(Fading) == 56);
 
@@ -125,7 +125,8 @@ struct Demand {
   std::uint8_t wanted_level = kNoLevel;     // kNoLevel: too small on screen to be drawn
   std::uint8_t requested_level = kNoLevel;
   std::uint8_t failed_levels =
-      0;               // bit l: level l cannot be synthesised and is not asked for again
+      0;                  // bit l: level l cannot be synthesised and is not asked for again
+  bool pictured = false;  // Mesh is the quad of a picture
   bool stale = false;  // Mesh is of other parameters than Source: drawn until the new one is there
   std::uint8_t ranked = kNotRanked;  // group of the rank that the cache has for Mesh
   bool added = false;  // by an edit, to a node that may be drawn already: it does not wait for it

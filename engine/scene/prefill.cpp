@@ -62,7 +62,7 @@ std::vector<synthesis::Want> want_everything(const State& s) {
         for (std::size_t i = 0; i < entities.size(); ++i) {
           for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
             const synthesis::MeshKey key =
-                key_of(placed[i], sources[i], static_cast<std::uint8_t>(level));
+                key_of(placed[i], details[i], sources[i], static_cast<std::uint8_t>(level));
             wants.push_back({key, &sources[i].parameters, owner_of(entities[i]),
                              synthesis::Rank(synthesis::RankGroup::kDrawn, 0, 0.0F), 0.0F});
           }

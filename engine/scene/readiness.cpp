@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "engine/scene/nodes/columns.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
+#include "engine/scene/quality/mesh_choice.hpp"
 #include "engine/scene/state.hpp"
-#include "engine/visibility/level_choice.hpp"
-#include "engine/world/far/merged_models.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -43,63 +43,60 @@ visibility::Cut cut_at(const PlaceRules& s, const core::WorldPosition& position,
 struct Collector {
   const PlaceRules& s;
   const core::WorldPosition& position;
+  ChoiceRules choice;
   std::vector<Foresight::Mesh>& meshes;
   std::vector<world::Placement> scratch = {};
 
-  void add(core::BlockCoord block, const world::Placement& model, int level, float distance_m) {
-    const models::ModelType& type = s.facts.registry[model.model];
-    meshes.push_back({{block, model.index, model.model, static_cast<std::uint16_t>(level),
-                       models::parameters_hash(type, model.parameters)},
-                      model.parameters,
-                      distance_m});
+  void add(const MeshColumns& mesh, std::uint8_t level, float distance_m) {
+    meshes.push_back(
+        {key_of(mesh.placed, mesh.detail, mesh.source, level), mesh.source.parameters, distance_m});
   }
 
   void add_ground(const visibility::CutNode& node) {
     models::Parameters ground = node_terrain(s.facts.world, node.node);
     world::set_sun(ground, s.daylight.azimuth_deg, s.daylight.elevation_deg);
     const int level = node.fine ? 0 : s.facts.levels[node.node.level].mesh_level;
-    add(visibility::corner_block(node.node),
-        {s.facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground}, level,
-        node.distance_m);
+    add(columns_of(s.facts, visibility::corner_block(node.node),
+                   {s.facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), ground}, level,
+                   level),
+        0, node.distance_m);
   }
 
   void add_models(const visibility::CutNode& node) {
     const core::BlockCoord block = visibility::corner_block(node.node);
-    if (node.node.level > 0) {
-      if (!s.facts.levels[node.node.level].merged) return;
-      const models::Parameters merged =
-          world::merged_parameters(s.facts.world, node.node.coord, node.node.level);
-      add_model(block, {s.facts.merged_model, kMergedIndex, glm::vec3(0.0F), merged},
-                detail_of(s.facts.registry[s.facts.merged_model], merged), node.distance_m,
-                s.quality.error_pixels);
-      return;
+    NodeView view;
+    view.level = node.node.level;
+    if (view.level > 0) {
+      if (!s.facts.levels[view.level].merged) return;
+      const MeshColumns mesh = columns_of(s.facts, block, merged_placement(s.facts, node.node));
+      return add(mesh, model_level(choice, view, mesh.detail, 0, node.distance_m, kNoLevel),
+                 node.distance_m);
     }
     world::place_models(s.facts.world, s.facts.registry, block, scratch);
-    const glm::dvec3 corner = core::offset_m(block, position, s.facts.world.block_size_m());
-    const float near_m = s.camera.projection.near_m, pixels = s.camera.pixels_per_radian;
+    const glm::vec3 corner(core::offset_m(block, position, s.facts.world.block_size_m()));
+    const float near_m = s.camera.projection.near_m;
     for (const world::Placement& model : scratch) {
-      const models::ModelType& type = s.facts.registry[model.model];
-      const Placed placed = placed_at(block, model.position, type.bounds(model.parameters),
-                                      s.facts.usual_boxes[model.model]);
-      const Detail detail = detail_of(type, model.parameters);
-      const float distance_m = distance_to(placed, glm::vec3(corner) + model.position, near_m);
-      if (size_pixels(placed, detail, distance_m, pixels, near_m) <
-          static_cast<float>(s.settings.min_size_pixels))
-        continue;  // too small to be drawn
-      add_model(block, model, detail, distance_m, s.quality.model_error_pixels);
+      const MeshColumns mesh = columns_of(s.facts, block, model);
+      const float distance_m = distance_to(mesh.placed, corner + model.position, near_m);
+      const float pixels =
+          size_pixels(mesh.placed, mesh.detail, distance_m, choice.pixels_per_radian, near_m);
+      const std::uint8_t level =
+          model_level(choice, view, mesh.detail, pixels, distance_m, kNoLevel);
+      if (level != kNoLevel) add(mesh, level, distance_m);  // else it is too small to be drawn
     }
   }
-
-  void add_model(core::BlockCoord block, const world::Placement& model, const Detail& detail,
-                 float distance_m, double error_pixels) {
-    const std::span<const float> errors(detail.error_m.data(), detail.level_count);
-    const int level = s.settings.levels_of_detail
-                          ? visibility::choose_level(errors, distance_m, s.camera.pixels_per_radian,
-                                                     static_cast<float>(error_pixels), -1)
-                          : 0;
-    add(block, model, level, distance_m);
-  }
 };
+
+// How the picture of a camera there would be judged.
+ChoiceRules choice_of(const PlaceRules& s) {
+  ChoiceRules choice;
+  choice.pixels_per_radian = s.camera.pixels_per_radian;
+  choice.min_size_pixels = static_cast<float>(s.settings.min_size_pixels);
+  choice.error_pixels = static_cast<float>(s.quality.error_pixels);
+  choice.model_error_pixels = static_cast<float>(s.quality.model_error_pixels);
+  choice.levels_of_detail = s.settings.levels_of_detail;
+  return choice;
+}
 
 core::Result<void> check(const core::WorldPosition& position, double radius_m) {
   const glm::dvec3& local = position.local;
@@ -125,7 +122,7 @@ void list(const PlaceRules& rules, Foresight::Place& place) {
   place.stale = false;
   const core::WorldPosition normal =
       core::normalised(place.position, rules.facts.world.block_size_m());
-  Collector collector{rules, normal, place.meshes};
+  Collector collector{rules, normal, choice_of(rules), place.meshes};
   for (const visibility::CutNode& node : cut_at(rules, normal, place.radius_m).nodes) {
     if (!node.leaf) continue;
     place.nodes.push_back(node.node);

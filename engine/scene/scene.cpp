@@ -15,8 +15,8 @@
 #include "engine/scene/nodes/solidity.hpp"
 #include "engine/scene/nodes/usual_boxes.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/scene/tree_pictures.hpp"
 #include "engine/world/far/merged_models.hpp"
-#include "engine/world/far/tree_pictures.hpp"
 #include "engine/world/models_reach.hpp"
 
 namespace psygen::scene {
@@ -73,50 +73,12 @@ core::Result<void> check_size(const world::World& world, const models::Registry&
           Scene::kMaxEntities));
 }
 
-// Gives the renderer something to show until the pictures are made. False without room for them.
-bool prepare_pictures(const world::PictureSet& pictures, Output& output) {
-  if (output.renderer == nullptr) return true;
-  std::vector<core::ModelPicture> stand_ins;
-  for (std::size_t i = 0; i < pictures.count(); ++i)
-    stand_ins.push_back(pictures.stand_in(i));
-  if (const auto set = output.renderer->set_model_pictures(stand_ins); !set) {
-    core::log_warning(fmt::format("far trees have no pictures: {}", set.error().message));
-    return false;
-  }
-  output.pictures_lacking = static_cast<std::uint32_t>((std::uint64_t{1} << stand_ins.size()) - 1);
-  return true;
-}
-
-// The pictures of the world's trees, and the types of their meshes. Data amplification makes all
-// levels of all meshes once, and has none.
-core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts, Output& output) {
-  if (settings.paradigm == Paradigm::kDataAmplification) return {};
-  auto pictures = std::make_shared<const world::PictureSet>(facts.world, facts.registry);
-  if (pictures->count() == 0 || !prepare_pictures(*pictures, output)) return {};
-  const std::size_t types = facts.registry.size();
-  const auto baked = facts.registry.add(world::make_picture_type());
-  if (!baked) return tl::unexpected(baked.error());
-  facts.picture_model = *baked;
-  facts.quad_models.assign(types, 0);
-  for (std::size_t i = 0; i < types; ++i) {
-    const auto model = static_cast<models::ModelIndex>(i);
-    if (!pictures->has(model)) continue;
-    const auto quads = facts.registry.add(world::make_quad_type(pictures, facts.registry, model));
-    if (!quads) return tl::unexpected(quads.error());
-    facts.quad_models[i] = *quads;
-  }
-  for (std::size_t i = 0; i < pictures->count(); ++i)
-    facts.picture_parameters.push_back(world::picture_parameters(i));
-  facts.pictures = std::move(pictures);
-  return {};
-}
-
 // The levels of the quadtree, pictures, and the type of the meshes that stand for everything on a
 // node.
 core::Result<void> find_levels(const Settings& settings, WorldFacts& facts, Output& output) {
+  if (auto ok = find_pictures(settings, facts, output); !ok) return ok;
   const models::ModelType* merged = nullptr;
   if (settings.levels_of_detail && world::models_per_block(facts.world) > 0) {
-    if (auto ok = find_pictures(settings, facts, output); !ok) return ok;
     const auto world = std::make_shared<const world::World>(facts.world);
     const auto added =
         facts.registry.add(world::make_merged_type(world, facts.registry, facts.pictures));

@@ -68,8 +68,8 @@ void synthesis_system(const Settings& settings, const Rules& rules, synthesis::M
                       Counters& counters, Tracing& trace);
 
 // Makes finished meshes resident and lands them in their entities, within the upload budget.
-using UploadQuery = ecs::Query<const Source, Mesh, MeshParts, OldParts, Fading, Demand, Node,
-                               Lacking, GroundRelief, GroundSun>;
+using UploadQuery = ecs::Query<const Source, const Detail, Mesh, MeshParts, OldParts, Fading,
+                               Demand, Node, Lacking, GroundRelief, GroundSun>;
 void upload_system(const Settings& settings, const Rules& rules, const Clock& clock,
                    const WorldFacts& facts, const Found& found, UploadQuery entities,
                    synthesis::MeshSupply& meshes, Output& output,

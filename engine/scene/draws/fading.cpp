@@ -5,7 +5,7 @@
 
 namespace psygen::scene {
 
-bool replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level) {
+bool replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level, bool pictured) {
   const bool coming = fading.share < 1.0F;
   const bool mostly_old = fading.old_mesh && fading.share < 0.5F;
   if (coming && (!fading.old_mesh || mostly_old)) return false;
@@ -14,6 +14,7 @@ bool replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level) {
   fading.old_mesh = before.handle;
   fading.old_shared_indices = before.shared_indices;
   fading.old_level = level;
+  fading.old_pictured = pictured;
   return true;
 }
 

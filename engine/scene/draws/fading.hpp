@@ -17,9 +17,10 @@ struct FadeStep {
   float share = 1;  // of a whole fade, in (0, 1]; 1: everything comes and goes at once
 };
 
-// The model draws another mesh from now on than `before`, its level of detail, which is resident.
-// One that was coming itself gives its place to the new one. Returns whether `before` is what goes.
-bool replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level);
+// The model draws another mesh from now on than `before`, which is resident: its level of detail,
+// and whether it is the quad of a picture. One that was coming itself gives its place to the new
+// one. Returns whether `before` is what goes.
+bool replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level, bool pictured);
 
 // A model is drawn in this tick: returns the share of it that is there, in (0, 1]. If it was not
 // drawn in the last tick it begins to come where `fades_in`, else is there as a whole.

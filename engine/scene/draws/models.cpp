@@ -13,7 +13,6 @@ namespace {
 struct ModelRow {
   const Placed& placed;
   const Demand& demand;
-  const Source& source;
   const Mesh& mesh;
   Fading& fading;
   const MeshParts* parts;      // of a merged mesh; null for a single model
@@ -24,12 +23,12 @@ struct ModelRow {
 template <class Visit>
 void each_model(const RenderQuery& entities, const ecs::Children& children, bool merged,
                 const Visit& visit) {
-  entities.each_of<const Placed, const Demand, const Source, const Mesh, Fading>(
+  entities.each_of<const Placed, const Demand, const Mesh, Fading>(
       entities.children(children),
-      [&](auto rows, auto placed, auto demands, auto sources, auto meshes, auto fading) {
+      [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
           const bool replaces = merged && fading[i].old_mesh;
-          visit(ModelRow{placed[i], demands[i], sources[i], meshes[i], fading[i],
+          visit(ModelRow{placed[i], demands[i], meshes[i], fading[i],
                          merged ? entities.get<MeshParts>(rows[i]) : nullptr,
                          replaces ? &entities.get<OldParts>(rows[i])->parts : nullptr});
         }
@@ -52,12 +51,6 @@ bool add_mesh(const ModelGround& ground, const View& view, const Placed& placed,
                    draws);
 }
 
-// Pictures of single models are a level of their own; merged meshes have some among other forms.
-bool is_pictured(const ModelGround& ground, const ModelRow& model, std::uint8_t level) {
-  if (ground.node.level > 0) return ground.pictures;
-  return level == model.source.picture_level;
-}
-
 // Single models have levels of their own.
 std::uint32_t colour_at(const ModelGround& ground, const Demand& demand, std::uint8_t level) {
   DrawFacts facts = ground.node;
@@ -75,7 +68,7 @@ bool add_present(const ModelGround& ground, const View& view, const ModelRow& mo
   draw.range = model.mesh.range;
   draw.shared_indices = model.mesh.shared_indices;
   draw.fade = fade;
-  draw.pictured = is_pictured(ground, model, model.demand.drawn_level);
+  draw.pictured = ground.pictures || model.demand.pictured;
   draw.debug_colour = colour_at(ground, model.demand, model.demand.drawn_level);
   if (!add_mesh(ground, view, model.placed, model.parts, draw, draws.models)) return false;
   draws.meshes.push_back(model.mesh.handle);
@@ -90,7 +83,7 @@ void add_replaced(const ModelGround& ground, const View& view, const ModelRow& m
   draw.range = fading.old_range;
   draw.shared_indices = fading.old_shared_indices;
   draw.fade = -fading.share;
-  draw.pictured = is_pictured(ground, model, fading.old_level);
+  draw.pictured = ground.pictures || fading.old_pictured;
   draw.debug_colour = colour_at(ground, model.demand, fading.old_level);
   if (add_mesh(ground, view, model.placed, model.old_parts, draw, draws.models))
     draws.meshes.push_back(fading.old_mesh);

@@ -19,7 +19,7 @@ struct ModelGround {
   render::View shown = render::View::kNormal;
   FadeStep step;
   bool shadows = false;   // WorldFacts::shadows
-  bool pictures = false;  // its merged mesh may have pictures
+  bool pictures = false;  // it has a merged mesh, which may have pictures
 };
 
 // How a node came to be drawn in this tick.

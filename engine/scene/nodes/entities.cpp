@@ -1,49 +1,14 @@
 #include "engine/scene/nodes/entities.hpp"
 
 #include <algorithm>
-#include <climits>
 
+#include "engine/scene/nodes/columns.hpp"
 #include "engine/scene/nodes/levels.hpp"
-#include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/nodes/solidity.hpp"
 #include "engine/world/far/merged_models.hpp"
-#include "engine/world/far/tree_pictures.hpp"
 
 namespace psygen::scene {
 namespace {
-
-// The values of the columns that nodes and models share; of the type only these levels are used.
-struct MeshColumns {
-  Placed placed;
-  Detail detail;
-  Source source;
-};
-// The level that is a picture; coarser ones of the type are not used then. 0: none is.
-int picture_level_of(const WorldFacts& facts, const world::Placement& placement) {
-  const models::ModelIndex model = placement.model;
-  if (model >= facts.quad_models.size() || facts.quad_models[model] == 0) return 0;
-  const int level = facts.pictures->first_level(model, placement.parameters);
-  const int count = facts.registry[model].level_count_of(placement.parameters);
-  return level < std::min(count, static_cast<int>(kMaxLevels)) ? level : 0;
-}
-
-MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
-                       const world::Placement& placement, int first_level = 0,
-                       int last_level = INT_MAX) {
-  const models::ModelType& type = facts.registry[placement.model];
-  const int picture_level = picture_level_of(facts, placement);
-  if (picture_level > 0) last_level = picture_level;
-  MeshColumns columns{placed_at(block, placement.position, type.bounds(placement.parameters),
-                                facts.usual_boxes[placement.model]),
-                      detail_of(type, placement.parameters, first_level, last_level),
-                      {placement.parameters, models::parameters_hash(type, placement.parameters),
-                       placement.index, placement.model, static_cast<std::uint16_t>(first_level)}};
-  if (picture_level > 0) {
-    columns.source.picture_model = facts.quad_models[placement.model];
-    columns.source.picture_level = static_cast<std::uint8_t>(picture_level);
-  }
-  return columns;
-}
 
 template <class Created>
 void fill(const Created& created, std::size_t i, const MeshColumns& columns) {
@@ -74,11 +39,6 @@ void tell_created(std::span<const ecs::Entity> models, core::BlockCoord block,
   for (std::size_t i = 0; i < models.size(); ++i)
     events.push_back({models[i], block, placements[i].index, placements[i].model});
   created.emit(events);
-}
-
-world::Placement merged_placement(const WorldFacts& facts, const visibility::NodeCoord& at) {
-  return {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
-          world::merged_parameters(facts.world, at.coord, at.level)};
 }
 
 // The models of a block, or the one mesh of all models on a coarser node.
@@ -133,9 +93,6 @@ void place_anew(const WorldFacts& facts, core::BlockCoord block, const world::Pl
   const MeshColumns columns = columns_of(facts, block, placement);
   *entities.get<Placed>(entity) = columns.placed;
   *entities.get<Detail>(entity) = columns.detail;
-  Source& source = *entities.get<Source>(entity);
-  source.picture_model = columns.source.picture_model;
-  source.picture_level = columns.source.picture_level;
 }
 
 void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& meshes,

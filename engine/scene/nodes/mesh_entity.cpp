@@ -29,16 +29,17 @@ Detail detail_of(const models::ModelType& type, const models::Parameters& parame
   return detail;
 }
 
-synthesis::MeshKey key_of(const Placed& placed, const Source& source, std::uint8_t level) {
-  const bool picture = level == source.picture_level;
+synthesis::MeshKey key_of(const Placed& placed, const Detail& detail, const Source& source,
+                          std::uint8_t level) {
+  const bool picture = level == detail.picture_level;
   return {placed.block, source.index, picture ? source.picture_model : source.model,
           static_cast<std::uint16_t>(picture ? 0 : source.first_level + level),
           source.parameters_hash};
 }
 
-std::uint8_t level_of(const Source& source, const synthesis::MeshKey& key) {
-  const bool picture = source.picture_level != kNoLevel && key.model == source.picture_model;
-  return picture ? source.picture_level : static_cast<std::uint8_t>(key.level - source.first_level);
+std::uint8_t level_of(const Detail& detail, const Source& source, const synthesis::MeshKey& key) {
+  const bool picture = source.picture_model != 0 && key.model == source.picture_model;
+  return static_cast<std::uint8_t>(picture ? detail.picture_level : key.level - source.first_level);
 }
 
 float distance_to(const Placed& placed, const glm::vec3& foot, float least_m) {

@@ -17,9 +17,11 @@ Detail detail_of(const models::ModelType& type, const models::Parameters& parame
                  int last = INT_MAX);
 
 // The mesh of a level of an entity, as the cache names it.
-synthesis::MeshKey key_of(const Placed& placed, const Source& source, std::uint8_t level);
-// The level of an entity that a mesh of it is.
-std::uint8_t level_of(const Source& source, const synthesis::MeshKey& key);
+synthesis::MeshKey key_of(const Placed& placed, const Detail& detail, const Source& source,
+                          std::uint8_t level);
+// The level of an entity that a mesh of it is; kNoLevel for a picture that it does not have (any
+// more).
+std::uint8_t level_of(const Detail& detail, const Source& source, const synthesis::MeshKey& key);
 
 // Metres from a point to the nearest of what is usually drawn of an entity, at least `least_m`.
 // `foot` is the entity's, relative to the point.

@@ -49,8 +49,7 @@ std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8
 }
 
 std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                         std::uint8_t picture_level, float size_pixels, float distance_m,
-                         std::uint8_t drawn_level) {
+                         float size_pixels, float distance_m, std::uint8_t drawn_level) {
   if (node.level == 0 && size_pixels < rules.min_size_pixels) return kNoLevel;
   if (!rules.levels_of_detail) return 0;
   const std::span<const float> errors(detail.error_m.data(), detail.level_count);
@@ -59,8 +58,9 @@ std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const D
   const auto level = static_cast<std::uint8_t>(
       visibility::choose_level(errors, distance_m, rules.pixels_per_radian,
                                node.error_factor * error_pixels, keep ? drawn_level : -1));
-  const float most = kMostPicturePixels * (keep && drawn_level == picture_level ? kKept : 1.0F);
-  return level == picture_level && level > 0 && size_pixels > most
+  const float most =
+      kMostPicturePixels * (keep && drawn_level == detail.picture_level ? kKept : 1.0F);
+  return level == detail.picture_level && level > 0 && size_pixels > most
              ? static_cast<std::uint8_t>(level - 1)
              : level;
 }

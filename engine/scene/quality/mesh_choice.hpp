@@ -47,10 +47,9 @@ std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8
 
 // The level that a model of this size on screen should show at this distance from the camera;
 // kNoLevel if it is too small to be drawn. Its drawn level is kept within the hysteresis of
-// visibility::choose_level(), and so is that of pictures by size. `picture_level`: of Source.
+// visibility::choose_level(), and so is that of pictures by size.
 std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
-                         std::uint8_t picture_level, float size_pixels, float distance_m,
-                         std::uint8_t drawn_level);
+                         float size_pixels, float distance_m, std::uint8_t drawn_level);
 
 // What to do about the mesh of an entity whose wanted level is known.
 struct MeshChoice {

@@ -8,11 +8,11 @@
 #include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/quality/mesh_choice.hpp"
 #include "engine/scene/systems.hpp"
+#include "engine/scene/tree_pictures.hpp"
 
 namespace psygen::scene {
 namespace {
 
-using synthesis::Rank;
 using synthesis::RankGroup;
 
 // Nodes out of view are revisited every 8th tick, and their models may have twice the error.
@@ -114,7 +114,7 @@ void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
              Found& found) {
   const Source& source = row.source;
   Demand& demand = row.demand;
-  const synthesis::MeshKey key = key_of(row.placed, row.source, choice.request);
+  const synthesis::MeshKey key = key_of(row.placed, row.detail, row.source, choice.request);
   const bool first_time = demand.requested_level != choice.request;
   demand.requested_level = choice.request;
   const synthesis::MeshHandle handle = first_time ? meshes.look_up(key) : meshes.find(key);
@@ -153,8 +153,8 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
   } else {
     const float pixels =
         size_pixels(placed, row.detail, distance_m, tick.choice.pixels_per_radian, tick.near_m);
-    demand.wanted_level = model_level(tick.choice, node, row.detail, row.source.picture_level,
-                                      pixels, distance_m, demand.drawn_level);
+    demand.wanted_level =
+        model_level(tick.choice, node, row.detail, pixels, distance_m, demand.drawn_level);
   }
   if (in_view) {
     note_in_view(tick, node.leaf, demand, counters);
@@ -170,7 +170,8 @@ bool consider(const CacheTick& tick, const View& view, const NodeView& node, con
   // Only holes ask: looking a mesh up takes time.
   const bool cached =
       tick.choice.coarse_first && is_hole(node, demand, in_view) &&
-      meshes.ready(meshes.find(key_of(row.placed, row.source, demand.wanted_level))) != nullptr;
+      meshes.ready(meshes.find(key_of(row.placed, row.detail, row.source, demand.wanted_level))) !=
+          nullptr;
   const MeshChoice choice =
       choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground, cached);
   if (drawn) keep(tick, node, row, choice.drawn, distance_m, meshes);
@@ -219,18 +220,6 @@ void visit_nodes(const CacheQuery& entities, std::span<const ecs::Entity> nodes,
                               count_false(entities, entities.children(models[i]), model);
         }
       });
-}
-
-// The pictures that the renderer lacks.
-void want_pictures(const WorldFacts& facts, const Output& output, synthesis::MeshSupply& meshes) {
-  for (std::size_t i = 0; output.pictures_lacking >> i != 0; ++i) {
-    if ((output.pictures_lacking >> i & 1) == 0) continue;
-    const models::Parameters& p = facts.picture_parameters[i];
-    const synthesis::MeshKey key{
-        {}, static_cast<std::uint32_t>(i), facts.picture_model, 0, p.hash()};
-    meshes.want(
-        {key, &p, owner_of(ecs::kNullEntity), Rank::by_layer(RankGroup::kVisibleCoarse, 0, 0.0F)});
-  }
 }
 
 // Lazy evaluation keeps nothing: what the last frame drew is given back.

@@ -15,7 +15,7 @@
 #include "engine/scene/draws/shown_nodes.hpp"
 #include "engine/scene/draws/views.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/world/far/merged_models.hpp"
+#include "engine/world/far/tree_pictures.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -61,7 +61,7 @@ ModelGround ground_of(const DrawTick& tick, const WorldFacts& facts, const Rende
           tick.shown,
           tick.step,
           facts.shadows,
-          facts.pictures && level <= world::kMaxPicturedLevel};
+          facts.pictures && level > 0 && level <= world::kMaxPicturedLevel};
 }
 
 // The models of a node that is drawn no more; false once they are gone, or out of view.

@@ -11,7 +11,7 @@
 #include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/scene/tree_pictures.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -76,8 +76,9 @@ void give_up(const synthesis::Completion& job, const UploadQuery& entities, Tota
     core::log_warning(fmt::format("a model could not be synthesised: {}", job.error));
   }
   if (Demand* demand = entities.get<Demand>(entity_of(job.owner))) {
-    const std::uint8_t level = level_of(*entities.get<Source>(entity_of(job.owner)), job.key);
-    demand->failed_levels |= static_cast<std::uint8_t>(1u << level);
+    const std::uint8_t level = level_of(*entities.get<Detail>(entity_of(job.owner)),
+                                        *entities.get<Source>(entity_of(job.owner)), job.key);
+    if (level < kMaxLevels) demand->failed_levels |= static_cast<std::uint8_t>(1u << level);
     demand->requested_level = kNoLevel;
   }
 }
@@ -104,20 +105,6 @@ void note_ground(ecs::Entity owner, Node& node, const synthesis::MeshRecord& rec
   *entities.get<GroundSun>(owner) = note.sun;
 }
 
-// Gives a picture to the renderer. What cannot be made keeps its stand-in.
-void take_picture(const synthesis::Completion& job, synthesis::MeshSupply& meshes, Output& output) {
-  const std::size_t number = job.key.index;
-  output.pictures_lacking &= ~(1U << number);
-  const synthesis::MeshRecord* record = meshes.ready(job.handle);
-  if (!job.ok || record == nullptr) return core::log_warning("a picture of a tree was not made");
-  const auto& picture = *note_of<std::shared_ptr<const core::ModelPicture>>(*record);
-  if (const auto set = output.renderer->set_model_picture(number, picture); !set) {
-    core::log_warning(fmt::format("a picture of a tree: {}", set.error().message));
-    if (set.error().code == core::ErrorCode::kDeviceLost) output.error = set.error();
-  }
-  meshes.forget(job.handle);
-}
-
 // What an entity draws so far. What landed in this tick is not in its component yet, where a mesh
 // may be that was evicted. `ranked`: not since the cache system ranked it.
 const Mesh& mesh_before(ecs::Entity owner, bool ranked, const UploadQuery& entities,
@@ -139,21 +126,24 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
     return;
   }
   const std::uint8_t level_before = demand->drawn_level;
+  const bool pictured_before = demand->pictured;
   const bool ranked = demand->ranked != kNotRanked;
   Node* node = entities.get<Node>(owner);
   const Source& source = *entities.get<Source>(owner);
-  const std::uint8_t level = level_of(source, record.key);
+  const Detail& detail = *entities.get<Detail>(owner);
+  const std::uint8_t level = level_of(detail, source, record.key);
   const bool fresh = record.key.parameters_hash == source.parameters_hash;
-  if (!accept(*demand, level, fresh, now_s, counters)) {
+  if (level == kNoLevel || !accept(*demand, level, fresh, now_s, counters)) {
     meshes.rank(handle, synthesis::Rank::unwanted());
     return;
   }
+  demand->pictured = level == detail.picture_level;
   bool before_goes = false;
   if (level_before != kNoLevel) {
     const Mesh& before = mesh_before(owner, ranked, entities, landings);
     meshes.rank(before.handle, synthesis::Rank::unwanted());
     if (Fading* fading = entities.get<Fading>(owner))
-      before_goes = replace_mesh(*fading, before, level_before);
+      before_goes = replace_mesh(*fading, before, level_before, pictured_before);
   }
   if (node != nullptr) {
     note_ground(owner, *node, record, facts, entities);
@@ -189,10 +179,7 @@ void upload_system(const Settings& settings, const Rules& rules, const Clock& cl
       meshes.land(rules.wait ? UINT64_MAX : settings.upload_budget_bytes);
   counters.bytes_synthesised = landed.bytes;
   for (const synthesis::Completion& job : landed.completions) {
-    if (facts.pictures && job.key.model == facts.picture_model) {
-      take_picture(job, meshes, output);
-      continue;
-    }
+    if (take_picture(job, facts, meshes, output)) continue;
     if (!job.ok) give_up(job, entities, totals);
     const synthesis::MeshRecord* record = meshes.ready(job.handle);
     if (record == nullptr) continue;

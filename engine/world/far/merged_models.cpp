@@ -144,7 +144,7 @@ struct MergedType::Making {
   models::BlockGround node_ground;            // of the whole node
   int drawn_stride;                           // stride at which it is drawn
   std::optional<models::BlockGround> ground;  // of the current tile, for slopes and heights
-  CoarsestMesh mesh;
+  SampleMesh mesh;
   FormMesh form;
   PlacedPlan placed;
   std::uint64_t placed_count = 0;             // so far
@@ -183,7 +183,7 @@ void MergedType::make_from_like(const Instance& instance, const Parameters& p,
   const FarScatter& far = scatters_[instance.scatter];
   const Form form = making.plan.scatters[instance.scatter].form;
   if (form == Form::kPicture) {
-    CoarsestMesh* const scratch = making.plan.form_level == 1 ? &making.mesh : nullptr;
+    SampleMesh* const scratch = making.plan.form_level == 1 ? &making.mesh : nullptr;
     return pictures_->make_quad(far.scatter().model, p, scratch, making.form);
   }
   const core::Bounds box = far.type().bounds(p);

@@ -22,9 +22,8 @@ enum MergedParameter : std::size_t {
   kMergedParameterCount
 };
 
-// Highest level of a node with a merged mesh; the lowest is 1. Up to the second of these levels,
-// trees are pictures if there are any.
-inline constexpr int kMaxMergedLevel = 5, kMaxPicturedLevel = 3;
+// Highest level of a node with a merged mesh; the lowest is 1.
+inline constexpr int kMaxMergedLevel = 5;
 
 class PictureSet;
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/node_walk.hpp"
 
 namespace psygen::world {

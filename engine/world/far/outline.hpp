@@ -69,16 +69,22 @@ struct Silhouette {
 // The silhouette of triangles over `places`, in metres.
 Silhouette silhouette_of(std::span<const glm::vec3> places, std::span<const std::uint16_t> indices);
 
-// Holds the coarsest mesh of one model. The memory is reused from model to model.
-class CoarsestMesh {
+// Holds the mesh of one model, to be measured. The memory is reused from model to model.
+class SampleMesh {
  public:
-  // Synthesises the mesh. User types may throw. The layout must be core::VertexLayout::kModel.
-  void make(const models::ModelType& type, const models::Parameters& p);
+  // Synthesises a level of the mesh, or the coarsest. User types may throw. The layout must be
+  // core::VertexLayout::kModel.
+  void make(const models::ModelType& type, const models::Parameters& p, int level);
+  void make(const models::ModelType& type, const models::Parameters& p) {
+    make(type, p, type.level_count() - 1);
+  }
   // The mesh, its bounds and its outline. The span is valid until the next make().
   std::span<const std::byte> vertices() const { return vertices_; }
   const core::Bounds& box() const { return box_; }
   std::optional<Outline> outline() const { return outline_of(vertices_, box_); }
-  // Its silhouette. `type` is that of make(); its shared indices are read if needed.
+  // Its triangles and its silhouette. `type` is that of make(); its shared indices are read if
+  // needed.
+  std::vector<std::uint16_t> indices(const models::ModelType& type) const;
   Silhouette silhouette(const models::ModelType& type) const;
 
  private:

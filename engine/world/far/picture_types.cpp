@@ -79,7 +79,7 @@ class QuadType final : public ModelType {
   bool may_run_on_main_thread() const override { return true; }
   core::Bounds synthesize(const Parameters& p, int, const MeshView& out) const override {
     FormMesh quad;
-    CoarsestMesh scratch;
+    SampleMesh scratch;
     pictures_->make_quad(model_, p, &scratch, quad);
     FormWriter writer(bounds(p), out);
     writer.add(Form::kPicture, quad, glm::vec3(0.0F), true);

@@ -55,7 +55,7 @@ std::uint64_t PlacedPlan::triangles() const {
 
 std::optional<Form> make_placed_form(const models::ModelType& type,
                                      const models::Parameters& parameters, const PlacedPlan& plan,
-                                     CoarsestMesh& mesh, glm::vec2 turn, FormMesh& out) {
+                                     SampleMesh& mesh, glm::vec2 turn, FormMesh& out) {
   if (plan.forms == 0) return std::nullopt;
   try {  // types of users may throw; our own code throws only when memory is exhausted
     mesh.make(type, parameters);

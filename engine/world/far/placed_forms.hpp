@@ -35,7 +35,7 @@ struct PlacedPlan {
 // type throws. `turn` is a unit vector. `mesh` is scratch memory.
 std::optional<Form> make_placed_form(const models::ModelType& type,
                                      const models::Parameters& parameters, const PlacedPlan& plan,
-                                     CoarsestMesh& mesh, glm::vec2 turn, FormMesh& out);
+                                     SampleMesh& mesh, glm::vec2 turn, FormMesh& out);
 
 // A box with room for feet that lie in it and what reaches this far from them: sideways, up, down.
 core::Bounds with_reach(const core::Bounds& box, const glm::vec3& reach_m);

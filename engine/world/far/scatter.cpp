@@ -18,10 +18,6 @@ constexpr double kSmallPixels = 6;
 // Other instances may be larger than the representatives by this factor; parts beyond are cut.
 constexpr float kRoom = 1.25F;
 
-float ratio(float a, float b) {
-  return std::max(a, b) / std::max(std::min(a, b), 1e-6F);
-}
-
 FarScatter::Reach reach_of(const core::Bounds& box) {
   return {std::max({-box.min.x, -box.min.z, box.max.x, box.max.z, 0.0F}), std::max(box.max.y, 0.0F),
           std::max(-box.min.y, 0.0F)};
@@ -50,6 +46,21 @@ Silhouette silhouette_of_form(Form form, const Outline& outline) {
 
 }  // namespace
 
+float unlikeness(glm::vec2 a, glm::vec2 b) {
+  const auto ratio = [](float u, float v) {
+    return std::max(u, v) / std::max(std::min(u, v), 1e-6F);
+  };
+  return std::max(ratio(a.x, b.x), ratio(a.y, b.y));
+}
+
+models::Parameters sample_parameters(const World& world, const models::ModelType& type,
+                                     const Scatter& scatter, std::uint32_t first,
+                                     std::uint32_t number) {
+  const Scattering scattering(world, type, scatter,
+                              {static_cast<std::int32_t>(number / scatter.count), 0});
+  return scattering.parameters(first + number % scatter.count);
+}
+
 FarScatter::FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,
                        std::uint32_t first)
     : type_(&type), scatter_(&scatter), first_(first) {
@@ -68,13 +79,10 @@ FarScatter::FarScatter(const World& world, const models::ModelType& type, const 
 }
 
 void FarScatter::measure(const World& world) {
-  CoarsestMesh mesh;
+  SampleMesh mesh;
   std::size_t vertices = 0;
   for (std::uint32_t k = 0; k < kRepresentatives; ++k) {
-    // These blocks exist in every world. Instances of one block vary as much as those of many.
-    const Scattering scattering(world, *type_, *scatter_,
-                                {static_cast<std::int32_t>(k / scatter_->count), 0});
-    const models::Parameters p = scattering.parameters(first_ + k % scatter_->count);
+    const models::Parameters p = sample_parameters(world, *type_, *scatter_, first_, k);
     if (type_->mesh_size(p, type_->level_count() - 1).layout != core::VertexLayout::kModel) return;
     mesh.make(*type_, p);
     const auto outline = mesh.outline();
@@ -143,8 +151,7 @@ Likeness FarScatter::like(float width_m, float height_m, std::uint64_t hash) con
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = start + k < count ? start + k : start + k - count;
     const Representative& r = representatives_[i];
-    const float apart =
-        std::max(ratio(width_m, r.bounds_width_m), ratio(height_m, r.bounds_height_m));
+    const float apart = unlikeness({width_m, height_m}, {r.bounds_width_m, r.bounds_height_m});
     if (apart < least) {
       least = apart;
       best = i;

@@ -24,6 +24,16 @@ struct Likeness {
   float across, up;
 };
 
+// The largest factor between two sizes, along either axis; 1: they are equal.
+float unlikeness(glm::vec2 a, glm::vec2 b);
+
+// The parameters of one of the instances that stand for all of a scatter, numbered from 0. The
+// blocks of these exist in every world; instances of one block vary as much as those of many.
+// `first` is the index of the scatter's first instance in a block.
+models::Parameters sample_parameters(const World& world, const models::ModelType& type,
+                                     const Scatter& scatter, std::uint32_t first,
+                                     std::uint32_t number);
+
 // The representatives of one scatter.
 class FarScatter {
  public:

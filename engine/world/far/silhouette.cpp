@@ -87,8 +87,7 @@ Silhouette silhouette_of(std::span<const glm::vec3> places,
   return sum;
 }
 
-void CoarsestMesh::make(const models::ModelType& type, const models::Parameters& p) {
-  const int level = type.level_count() - 1;
+void SampleMesh::make(const models::ModelType& type, const models::Parameters& p, int level) {
   size_ = type.mesh_size(p, level);
   PSYGEN_CHECK(size_.layout == core::VertexLayout::kModel, "models are made of ModelVertex");
   box_ = type.bounds(p);
@@ -97,17 +96,21 @@ void CoarsestMesh::make(const models::ModelType& type, const models::Parameters&
   type.synthesize(p, level, {vertices_, indices_});
 }
 
-Silhouette CoarsestMesh::silhouette(const models::ModelType& type) const {
+std::vector<std::uint16_t> SampleMesh::indices(const models::ModelType& type) const {
+  if (size_.shared_indices == 0) return indices_;
+  std::vector<std::uint16_t> shared(size_.index_count);
+  type.write_shared_indices(size_.shared_indices, shared);
+  return shared;
+}
+
+Silhouette SampleMesh::silhouette(const models::ModelType& type) const {
   std::vector<glm::vec3> places(size_.vertex_count);
   for (std::size_t i = 0; i < places.size(); ++i) {
     core::ModelVertex v;
     std::memcpy(&v, vertices_.data() + i * sizeof v, sizeof v);
     places[i] = models::unpack_position(v, box_);
   }
-  if (size_.shared_indices == 0) return silhouette_of(places, indices_);
-  std::vector<std::uint16_t> shared(size_.index_count);
-  type.write_shared_indices(size_.shared_indices, shared);
-  return silhouette_of(places, shared);
+  return silhouette_of(places, indices(type));
 }
 
 }  // namespace psygen::world

@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "engine/core/assert.hpp"
-#include "engine/world/far/picture_raster.hpp"
-#include "engine/world/placement.hpp"
+#include "engine/world/far/scatter.hpp"
 
 namespace psygen::world {
 namespace {
@@ -20,7 +19,7 @@ using models::Parameters;
 constexpr std::uint32_t kMostTriangles = 320;
 constexpr std::uint32_t kMostBaked = 200'000;  // triangles: larger trees keep their hulls
 // Instances that pictures are chosen from, by their heights.
-constexpr std::uint32_t kCandidates = 32;
+constexpr std::uint32_t kCandidates = FarScatter::kRepresentatives;
 // The part of a picture's half width and height that is left free around the model.
 constexpr float kMargin = 0.03F;
 // How far the top of a quad leans away from the viewer, as a part of its half width. So the crown
@@ -29,28 +28,11 @@ constexpr float kLean = 0.5F;
 constexpr float kTopSway = 0.5F;
 constexpr std::uint64_t kEdition = 1;
 
-// The mesh of a model, unpacked.
-struct Model {
+std::vector<Corner> corners_of(const SampleMesh& mesh) {
   std::vector<Corner> corners;
-  std::vector<std::uint16_t> indices;
-};
-
-Model make_model(const ModelType& type, const Parameters& p, int level) {
-  const models::MeshSize size = type.mesh_size(p, level);
-  std::vector<std::byte> vertices(size.vertex_count * sizeof(core::ModelVertex));
-  Model model;
-  model.indices.resize(size.index_count);
-  std::vector<std::uint16_t> own(size.shared_indices == 0 ? size.index_count : 0);
-  type.synthesize(p, level, {vertices, own});
-  if (size.shared_indices == 0) {
-    model.indices = std::move(own);
-  } else {
-    type.write_shared_indices(size.shared_indices, model.indices);
-  }
-  const core::Bounds box = type.bounds(p);
-  for (const core::ModelVertex& v : core::vertices_of<core::ModelVertex>(vertices))
-    model.corners.push_back(corner_of(v, box));
-  return model;
+  for (const core::ModelVertex& v : core::vertices_of<core::ModelVertex>(mesh.vertices()))
+    corners.push_back(corner_of(v, mesh.box()));
+  return corners;
 }
 
 // Whether pictures are of use for this type, and can be made of it.
@@ -71,7 +53,7 @@ glm::vec2 size_of_bounds(const core::Bounds& box) {
 }
 
 // How far the coarsest mesh reaches to any side, and up.
-glm::vec2 coarse_size(const ModelType& type, const Parameters& p, CoarsestMesh& mesh) {
+glm::vec2 coarse_size(const ModelType& type, const Parameters& p, SampleMesh& mesh) {
   mesh.make(type, p);
   const std::optional<Outline> outline = mesh.outline();
   if (!outline) return {0, 0};
@@ -84,14 +66,13 @@ glm::vec2 coarse_size(const ModelType& type, const Parameters& p, CoarsestMesh& 
 // Nothing for a mesh without leaves or without any extent.
 std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType& type,
                                       const Parameters& p) {
-  const Model model = make_model(type, p, 0);
-  const core::Bounds box = type.bounds(p);
-  CoarsestMesh coarsest;
-  const glm::vec2 coarse_m = coarse_size(type, p, coarsest);
-  PicturedModel m{index, p, size_of_bounds(box), coarse_m, {0, 1e30F, -1e30F, 0}};
+  SampleMesh mesh;
+  const glm::vec2 coarse_m = coarse_size(type, p, mesh);
+  PicturedModel m{index, p, size_of_bounds(type.bounds(p)), coarse_m, {0, 1e30F, -1e30F, 0}};
+  mesh.make(type, p, 0);
   PictureFrame& frame = m.frame;
   float leaves = 0;
-  for (const Corner& c : model.corners) {
+  for (const Corner& c : corners_of(mesh)) {
     if (c.material == kLeaf) {
       frame.ambient += c.ambient;
       ++leaves;
@@ -106,13 +87,6 @@ std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType&
   frame.top_m += kMargin * (frame.top_m - frame.bottom_m);
   const bool flat = !(frame.half_width_m > 1e-3F && frame.top_m - frame.bottom_m > 1e-3F);
   return leaves > 0 && !flat ? std::optional(m) : std::nullopt;
-}
-
-float difference_of(glm::vec2 a, glm::vec2 b) {
-  const auto ratio = [](float u, float v) {
-    return std::max(u, v) / std::max(std::min(u, v), 1e-6F);
-  };
-  return std::max(ratio(a.x, b.x), ratio(a.y, b.y));
 }
 
 // The factors that make `from` as large as `to`, within reason.
@@ -155,9 +129,7 @@ void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::ui
   if (scatter.count == 0 || !type.is_seen_from_far() || !type.may_run_on_main_thread()) return;
   std::vector<std::pair<float, Parameters>> candidates;
   for (std::uint32_t k = 0; k < kCandidates; ++k) {
-    const Scattering scattering(world, type, scatter,
-                                {static_cast<std::int32_t>(k / scatter.count), 0});
-    const Parameters p = scattering.parameters(first + k % scatter.count);
+    const Parameters p = sample_parameters(world, type, scatter, first, k);
     if (!suits(type, p)) continue;
     const core::Bounds box = type.bounds(p);
     candidates.emplace_back(box.max.y - box.min.y, p);
@@ -191,7 +163,7 @@ int PictureSet::first_level(models::ModelIndex model, const Parameters& p) const
   return level + 1;
 }
 
-void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, CoarsestMesh* scratch,
+void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, SampleMesh* scratch,
                            FormMesh& out) const {
   PSYGEN_CHECK(has(model), "a type that has pictures");
   const ModelType& type = (*registry_)[model];
@@ -207,7 +179,7 @@ void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, Coarse
     const std::size_t i = (hash + k) % models_.size();
     const PicturedModel& m = models_[i];
     if (m.model != model) continue;
-    const float apart = difference_of(own_m, size_of(m));
+    const float apart = unlikeness(own_m, size_of(m));
     if (best < models_.size() && !(apart < least)) continue;
     least = apart;
     best = i;
@@ -233,8 +205,10 @@ void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, Coarse
 
 core::ModelPicture PictureSet::bake(std::size_t number, int level, std::uint32_t views) const {
   const PicturedModel& m = models_[number];
-  const Model model = make_model((*registry_)[m.model], m.parameters, level);
-  return bake_picture(model.corners, model.indices, m.frame, views);
+  const ModelType& type = (*registry_)[m.model];
+  SampleMesh mesh;
+  mesh.make(type, m.parameters, level);
+  return bake_picture(corners_of(mesh), mesh.indices(type), m.frame, views);
 }
 
 core::ModelPicture PictureSet::stand_in(std::size_t number) const {

@@ -18,6 +18,9 @@
 
 namespace psygen::world {
 
+// Up to this level of nodes, merged meshes have pictures (merged_plan.hpp).
+inline constexpr int kMaxPicturedLevel = 3;
+
 // A model that has a picture.
 struct PicturedModel {
   models::ModelIndex model = 0;
@@ -49,7 +52,7 @@ class PictureSet {
   // The quad of an instance that has a picture: a billboard as high and wide as the instance.
   // `scratch` measures its coarsest mesh; null: only its bounds are compared, which takes no
   // synthesis. Linear in the pictures.
-  void make_quad(models::ModelIndex model, const models::Parameters& p, CoarsestMesh* scratch,
+  void make_quad(models::ModelIndex model, const models::Parameters& p, SampleMesh* scratch,
                  FormMesh& out) const;
 
   // The texels of a picture; takes some milliseconds. Made from this level of the mesh; `views`

@@ -87,8 +87,8 @@ TEST(DrawList, draws_near_terrain_apart_and_before_the_rest_of_its_window) {
   DrawList list;
   list.build(terrain, {}, {});
   ASSERT_EQ(list.runs().size(), 2u);
-  EXPECT_TRUE(list.runs()[0].fading);
-  EXPECT_FALSE(list.runs()[1].fading);
+  EXPECT_EQ(list.runs()[0].coverage, Coverage::kPart);
+  EXPECT_EQ(list.runs()[1].coverage, Coverage::kWhole);
   EXPECT_EQ(list.draws()[1].vertex_offset, 2);
   EXPECT_EQ(list.draws()[2].vertex_offset, 1);
 }
@@ -101,9 +101,9 @@ TEST(DrawList, draws_what_comes_and_goes_apart_and_after_the_rest_of_its_window)
   DrawList list;
   list.build({}, draws, {});
   ASSERT_EQ(list.runs().size(), 2u);
-  EXPECT_FALSE(list.runs()[0].fading);
+  EXPECT_EQ(list.runs()[0].coverage, Coverage::kWhole);
   EXPECT_EQ(list.runs()[0].count, 2u);
-  EXPECT_TRUE(list.runs()[1].fading);
+  EXPECT_EQ(list.runs()[1].coverage, Coverage::kPart);
   EXPECT_EQ(list.runs()[1].count, 3u);
   EXPECT_EQ(list.data()[0].scale.w, 1.0F);
   EXPECT_EQ(list.data()[2].scale.w, 0.5F);

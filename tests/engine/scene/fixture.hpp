@@ -98,15 +98,16 @@ inline void expect_consistent(Scene& scene) {
   const synthesis::MeshSupply& supply = scene.state().meshes;
   std::size_t wrong = 0;
   std::as_const(scene.state().entities)
-      .each<const Demand, const Mesh, const Source>(
+      .each<const Demand, const Mesh, const Detail, const Source>(
           [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
-              std::span<const Mesh> meshes, std::span<const Source> sources) {
+              std::span<const Mesh> meshes, std::span<const Detail> details,
+              std::span<const Source> sources) {
             for (std::size_t i = 0; i < demands.size(); ++i) {
               if (demands[i].drawn_level == kNoLevel) continue;
               const synthesis::MeshRecord* record = supply.get(meshes[i].handle);
               wrong += record == nullptr || record->state != synthesis::MeshState::kReady ||
                        record->range != meshes[i].range ||
-                       level_of(sources[i], record->key) != demands[i].drawn_level;
+                       level_of(details[i], sources[i], record->key) != demands[i].drawn_level;
             }
           });
   EXPECT_EQ(wrong, 0u);

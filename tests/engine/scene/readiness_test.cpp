@@ -83,6 +83,34 @@ TEST(Readiness, AnAskedForPlaceBecomesReadyAndAJumpThereFindsItAll) {
   expect_within_budget(*scene);
 }
 
+// Far trees are drawn as pictures there, so their quads are what is made ready.
+TEST(Readiness, AJumpToAWidePlaceFindsEveryModelOfItsBlocksAsItIsWanted) {
+  Settings settings = small_settings();
+  settings.view_distance_m = 400;
+  settings.max_error_pixels = 13;
+  auto scene = make_scene(settings);
+  State& state = scene->state();
+  scene->settle(kHere);
+  tick_at(*scene, kHere);
+  const auto id = ask_ready(state, kThere.position, 400);
+  ASSERT_TRUE(id) << id.error().message;
+  EXPECT_LT(ticks_until_ready(*scene, *id, 500), 500);
+  tick_at(*scene, kThere);
+  tick_at(*scene, kThere);
+  std::size_t pictures = 0, other = 0;
+  state.entities.each<const Demand, const Detail>(
+      [&](auto, std::span<const Demand> demands, std::span<const Detail> details) {
+        for (std::size_t i = 0; i < demands.size(); ++i) {
+          if (demands[i].in_view_tick + 1 != state.clock.tick) continue;
+          if (details[i].picture_level == kNoLevel) continue;
+          other += demands[i].drawn_level == demands[i].wanted_level ? 0 : 1;
+          pictures += demands[i].pictured && demands[i].drawn_level != kNoLevel ? 1 : 0;
+        }
+      });
+  EXPECT_GT(pictures, 20U);
+  EXPECT_EQ(other, 0U);
+}
+
 TEST(Readiness, WhatIsAskedForIsKeptAndOtherwiseItMayGo) {
   Settings settings = small_settings();
   settings.budget_bytes = 16ull << 20;

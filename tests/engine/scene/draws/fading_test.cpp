@@ -43,7 +43,7 @@ TEST(Fading, WhatTurnsRoundGoesFromWhereItWas) {
 TEST(Fading, AMeshThatReplacesAnotherTakesItsPixelsOver) {
   Fading fading;
   come(fading, {1, kQuarter}, false);
-  replace_mesh(fading, mesh_of(7), 3);
+  replace_mesh(fading, mesh_of(7), 3, false);
   EXPECT_EQ(come(fading, {2, kQuarter}, false), kQuarter);
   EXPECT_EQ(fading.old_range.id, 7u);
   EXPECT_EQ(fading.old_level, 3);
@@ -58,16 +58,16 @@ TEST(Fading, OfThreeMeshesInTurnTheOneThatIsSeenMostGoes) {
   for (const bool late : {false, true}) {
     Fading fading;
     come(fading, {1, kQuarter}, false);
-    replace_mesh(fading, mesh_of(1), 3);
+    replace_mesh(fading, mesh_of(1), 3, false);
     come(fading, {2, kQuarter}, false);
     if (late) come(fading, {3, 0.5F}, false);
-    replace_mesh(fading, mesh_of(2), 3);
+    replace_mesh(fading, mesh_of(2), 3, false);
     EXPECT_EQ(fading.old_range.id, late ? 2u : 1u);
     EXPECT_EQ(fading.share, late ? 0.0F : kQuarter);
   }
   Fading appearing;  // nothing was there before the first mesh
   come(appearing, {1, kQuarter}, true);
-  replace_mesh(appearing, mesh_of(1), 3);
+  replace_mesh(appearing, mesh_of(1), 3, false);
   EXPECT_FALSE(appearing.old_mesh);
   EXPECT_EQ(come(appearing, {2, kQuarter}, false), 0.5F);
 }
@@ -75,7 +75,7 @@ TEST(Fading, OfThreeMeshesInTurnTheOneThatIsSeenMostGoes) {
 TEST(Fading, WhatGoesWhileItIsReplacedGoesAsAWhole) {
   Fading fading;
   come(fading, {1, kQuarter}, false);
-  replace_mesh(fading, mesh_of(1), 3);
+  replace_mesh(fading, mesh_of(1), 3, false);
   EXPECT_EQ(come(fading, {2, kQuarter}, false), kQuarter);
   EXPECT_EQ(go(fading, {3, kQuarter}), 0.75F) << "the old mesh had the other pixels";
   EXPECT_FALSE(fading.old_mesh);
@@ -84,7 +84,7 @@ TEST(Fading, WhatGoesWhileItIsReplacedGoesAsAWhole) {
 TEST(Fading, WhatIsReplacedOutOfViewLeavesNothingBehind) {
   Fading fading;
   come(fading, {1, kQuarter}, false);
-  replace_mesh(fading, mesh_of(1), 3);
+  replace_mesh(fading, mesh_of(1), 3, false);
   EXPECT_EQ(come(fading, {5, kQuarter}, false), 1.0F);
   EXPECT_FALSE(fading.old_mesh);
 }
@@ -278,7 +278,8 @@ TEST(FadingScene, WhatWasEvictedIsNotReplacedByWhatLands) {
   ASSERT_GE(level, 0);
   const Source& source = *s.entities.get<Source>(model);
   const synthesis::MeshKey key =
-      key_of(*s.entities.get<Placed>(model), source, static_cast<std::uint8_t>(level));
+      key_of(*s.entities.get<Placed>(model), *s.entities.get<Detail>(model), source,
+             static_cast<std::uint8_t>(level));
   const auto rank = synthesis::Rank::by_layer(synthesis::RankGroup::kVisibleCoarse, 0, 1);
   const synthesis::Want want{key, &source.parameters, owner_of(model), rank, 0};
   ASSERT_EQ(s.meshes.plan(std::span(&want, 1), {}, s.settings.policy).published, 1u);

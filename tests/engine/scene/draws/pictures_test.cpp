@@ -74,12 +74,12 @@ TEST(TreesInTheScene, HaveTheNameOfTheirMeshAtEveryLevel) {
           std::span<const Source> sources, std::span<const Detail> details) {
         for (std::size_t i = 0; i < sources.size(); ++i) {
           for (std::uint8_t level = 0; level < details[i].level_count; ++level) {
-            const synthesis::MeshKey key = key_of(placed[i], sources[i], level);
-            EXPECT_EQ(level_of(sources[i], key), level);
+            const synthesis::MeshKey key = key_of(placed[i], details[i], sources[i], level);
+            EXPECT_EQ(level_of(details[i], sources[i], key), level);
           }
-          if (sources[i].picture_level == kNoLevel) continue;
+          if (details[i].picture_level == kNoLevel) continue;
           ++pictured;
-          EXPECT_EQ(sources[i].picture_level + 1U, details[i].level_count);
+          EXPECT_EQ(details[i].picture_level + 1U, details[i].level_count);
         }
       });
   EXPECT_GT(pictured, 100U);

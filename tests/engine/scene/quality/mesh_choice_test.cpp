@@ -49,12 +49,12 @@ TEST(MeshChoice, ModelsGetCoarserWithDistanceUntilTheyAreTooSmall) {
   const NodeView node;
   int last = 0;
   for (const float distance_m : {1.0F, 150.0F, 600.0F, 1700.0F}) {
-    const int level = model_level(rules, node, four_levels(), kNoLevel, 2, distance_m, kNoLevel);
+    const int level = model_level(rules, node, four_levels(), 2, distance_m, kNoLevel);
     EXPECT_EQ(level, last++);
   }
-  EXPECT_EQ(model_level(rules, node, four_levels(), kNoLevel, 1.9F, 1700, kNoLevel), kNoLevel);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 1.9F, 1700, kNoLevel), kNoLevel);
   rules.levels_of_detail = false;
-  EXPECT_EQ(model_level(rules, node, four_levels(), kNoLevel, 2, 1700, kNoLevel), 0);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 2, 1700, kNoLevel), 0);
 }
 
 TEST(MeshChoice, MergedModelsAreNeverTooSmall) {
@@ -63,7 +63,14 @@ TEST(MeshChoice, MergedModelsAreNeverTooSmall) {
   rules.min_size_pixels = 2;
   NodeView node;
   node.level = 1;
-  EXPECT_EQ(model_level(rules, node, four_levels(), kNoLevel, 0.1F, 1e6F, kNoLevel), 3);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 0.1F, 1e6F, kNoLevel), 3);
+}
+
+// The same with a picture as the last one.
+Detail pictured() {
+  Detail detail = four_levels();
+  detail.picture_level = 3;
+  return detail;
 }
 
 TEST(MeshChoice, WhatIsTooLargeForItsPictureIsAMesh) {
@@ -71,22 +78,22 @@ TEST(MeshChoice, WhatIsTooLargeForItsPictureIsAMesh) {
   rules.pixels_per_radian = 1000;
   const NodeView node;
   const float small = kMostPicturePixels - 1, large = kMostPicturePixels + 1;
-  EXPECT_EQ(model_level(rules, node, four_levels(), 3, small, 1700, kNoLevel), 3);
-  EXPECT_EQ(model_level(rules, node, four_levels(), 3, large, 1700, kNoLevel), 2);
+  EXPECT_EQ(model_level(rules, node, pictured(), small, 1700, kNoLevel), 3);
+  EXPECT_EQ(model_level(rules, node, pictured(), large, 1700, kNoLevel), 2);
   // One that is drawn stays for a while, but not beyond.
-  EXPECT_EQ(model_level(rules, node, four_levels(), 3, large, 1700, 3), 3);
-  EXPECT_EQ(model_level(rules, node, four_levels(), 3, 1.2F * large, 1700, 3), 2);
-  EXPECT_EQ(model_level(rules, node, four_levels(), 3, large, 150, kNoLevel), 1);
+  EXPECT_EQ(model_level(rules, node, pictured(), large, 1700, 3), 3);
+  EXPECT_EQ(model_level(rules, node, pictured(), 1.2F * large, 1700, 3), 2);
+  EXPECT_EQ(model_level(rules, node, pictured(), large, 150, kNoLevel), 1);
 }
 
 TEST(MeshChoice, HysteresisHoldsUnlessTheSceneSettles) {
   ChoiceRules rules;
   rules.pixels_per_radian = 1000;
   const NodeView node;
-  EXPECT_EQ(model_level(rules, node, four_levels(), kNoLevel, 50, 110, kNoLevel), 1);
-  EXPECT_EQ(model_level(rules, node, four_levels(), kNoLevel, 50, 110, 0), 0);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 50, 110, kNoLevel), 1);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 50, 110, 0), 0);
   rules.settle = true;
-  EXPECT_EQ(model_level(rules, node, four_levels(), kNoLevel, 50, 110, 0), 1);
+  EXPECT_EQ(model_level(rules, node, four_levels(), 50, 110, 0), 1);
 }
 
 TEST(MeshChoice, AHoleAsksForTheCoarsestLevelUnlessTheWantedOneIsCached) {

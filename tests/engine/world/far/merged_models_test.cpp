@@ -112,7 +112,7 @@ struct CoarsestModel {
 
 std::vector<CoarsestModel> single_models(const Scenery& scenery, core::BlockCoord node, int level) {
   std::vector<CoarsestModel> all;
-  CoarsestMesh mesh;
+  SampleMesh mesh;
   const NodeWalk walk(*scenery.world, node, level);
   const models::BlockGround ground = walk.whole_ground(nullptr);
   for (const core::BlockCoord block : blocks_of(*scenery.world, node, level)) {

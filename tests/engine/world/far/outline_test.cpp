@@ -103,10 +103,10 @@ TEST(Silhouette, CountsOverlappingTrianglesOnce) {
   EXPECT_EQ(silhouette_of(places, one).side_m2, silhouette_of(places, two).side_m2);
 }
 
-TEST(CoarsestMesh, OfATreeHasItsCrownAsOutline) {
+TEST(SampleMesh, OfATreeHasItsCrownAsOutline) {
   const models::Registry registry = models::make_standard_registry();
   const models::ModelType& tree = registry[2];
-  CoarsestMesh mesh;
+  SampleMesh mesh;
   mesh.make(tree, models::default_parameters(tree));
   const auto outline = mesh.outline();
   ASSERT_TRUE(outline);

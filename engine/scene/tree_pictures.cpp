@@ -1,0 +1,89 @@
+#include "engine/scene/tree_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <any>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "engine/core/assert.hpp"
+#include "engine/core/log.hpp"
+#include "engine/world/far/tree_pictures.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// Gives the renderer something to show until the pictures are made. False without room for them.
+bool prepare_pictures(const world::PictureSet& pictures, Output& output) {
+  if (output.renderer == nullptr) return true;
+  std::vector<core::ModelPicture> stand_ins;
+  for (std::size_t i = 0; i < pictures.count(); ++i)
+    stand_ins.push_back(pictures.stand_in(i));
+  if (const auto set = output.renderer->set_model_pictures(stand_ins); !set) {
+    core::log_warning(fmt::format("far trees have no pictures: {}", set.error().message));
+    return false;
+  }
+  output.pictures_lacking = static_cast<std::uint32_t>((std::uint64_t{1} << stand_ins.size()) - 1);
+  return true;
+}
+
+}  // namespace
+
+core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts, Output& output) {
+  if (output.renderer != nullptr) {  // of another scene before
+    if (auto none = output.renderer->set_model_pictures({}); !none) return none;
+  }
+  if (settings.paradigm == Paradigm::kDataAmplification || !settings.levels_of_detail) return {};
+  auto pictures = std::make_shared<const world::PictureSet>(facts.world, facts.registry);
+  if (pictures->count() == 0 || !prepare_pictures(*pictures, output)) return {};
+  const std::size_t types = facts.registry.size();
+  const auto baked = facts.registry.add(world::make_picture_type());
+  if (!baked) return tl::unexpected(baked.error());
+  facts.picture_model = *baked;
+  facts.quad_models.assign(types, 0);
+  for (std::size_t i = 0; i < types; ++i) {
+    const auto model = static_cast<models::ModelIndex>(i);
+    if (!pictures->has(model)) continue;
+    const auto quads = facts.registry.add(world::make_quad_type(pictures, facts.registry, model));
+    if (!quads) return tl::unexpected(quads.error());
+    facts.quad_models[i] = *quads;
+  }
+  for (std::size_t i = 0; i < pictures->count(); ++i)
+    facts.picture_parameters.push_back(world::picture_parameters(i));
+  facts.pictures = std::move(pictures);
+  return {};
+}
+
+void want_pictures(const WorldFacts& facts, const Output& output, synthesis::MeshSupply& meshes) {
+  for (std::size_t i = 0; output.pictures_lacking >> i != 0; ++i) {
+    if ((output.pictures_lacking >> i & 1) == 0) continue;
+    const models::Parameters& p = facts.picture_parameters[i];
+    const synthesis::MeshKey key{
+        {}, static_cast<std::uint32_t>(i), facts.picture_model, 0, p.hash()};
+    meshes.want({key, &p, owner_of(ecs::kNullEntity),
+                 synthesis::Rank::by_layer(synthesis::RankGroup::kVisibleCoarse, 0, 0.0F)});
+  }
+}
+
+bool take_picture(const synthesis::Completion& job, const WorldFacts& facts,
+                  synthesis::MeshSupply& meshes, Output& output) {
+  if (!facts.pictures || job.key.model != facts.picture_model) return false;
+  const std::size_t number = job.key.index;
+  output.pictures_lacking &= ~(1U << number);
+  const synthesis::MeshRecord* record = meshes.ready(job.handle);
+  if (!job.ok || record == nullptr) {
+    core::log_warning(fmt::format("a picture of a tree could not be made: {}", job.error));
+    return true;
+  }
+  const auto* picture = std::any_cast<std::shared_ptr<const core::ModelPicture>>(&record->note);
+  PSYGEN_CHECK(picture != nullptr, "a picture is what is noted of its request");
+  if (const auto set = output.renderer->set_model_picture(number, **picture); !set) {
+    core::log_warning(fmt::format("a picture of a tree: {}", set.error().message));
+    if (set.error().code == core::ErrorCode::kDeviceLost) output.error = set.error();
+  }
+  meshes.forget(job.handle);
+  return true;
+}
+
+}  // namespace psygen::scene
