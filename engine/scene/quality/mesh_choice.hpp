@@ -26,7 +26,7 @@ struct ChoiceRules {
 };
 
 // Models that are larger on screen have no picture: its texels would be seen.
-inline constexpr float kMostPicturePixels = 128;
+inline constexpr float kMostPicturePixels = 160;
 
 // A node in this tick, as far as it matters to the meshes on it.
 struct NodeView {
