@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Fuzzes all readers of user files with libFuzzer, under the address and undefined-behaviour
-# sanitizers. Starts from the shipped worlds and paths. Needs clang (tools/setup.sh --fuzz).
+# sanitizers. Starts from the shipped worlds and paths. Needs clang (tools/setup.sh --clang).
 #   tools/fuzz.sh [SECONDS [SEED]]     default: 60 seconds, another seed each time
 # Prints the number of inputs at the end. Inputs that fail are stored in build/fuzz/failures.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/setup.sh --fuzz
+tools/setup.sh --clang
 cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz --target psygen_fuzz_readers
 mkdir -p build/fuzz/corpus build/fuzz/failures

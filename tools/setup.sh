@@ -2,7 +2,7 @@
 # Installs the packages that psygen needs on Debian 12, if they are missing.
 #   tools/setup.sh          packages to build, run and test
 #   tools/setup.sh --ci     also those of the complete check (clang-format)
-#   tools/setup.sh --fuzz   also those of tools/fuzz.sh (clang with libFuzzer)
+#   tools/setup.sh --clang  also clang and its sanitizers, for tools/fuzz.sh and tools/builds.sh
 set -euo pipefail
 
 packages=(
@@ -16,7 +16,7 @@ packages=(
   xvfb openbox xdotool x11-utils x11-xkb-utils chromium
 )
 [ "${1:-}" = "--ci" ] && packages+=(clang-format)
-[ "${1:-}" = "--fuzz" ] && packages+=(clang libclang-rt-dev)
+[ "${1:-}" = "--clang" ] && packages+=(clang libclang-rt-dev)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -116,13 +116,13 @@ bool Modeler::execute(Workshop& workshop) {
   state_.store(serial_ * 4 + kWorking, std::memory_order_release);
 
   const models::ModelIndex model = current_.key.model;
-  const double cpu_start_s = core::thread_cpu_seconds();
+  const core::CpuTimer timer;
   if (model < workshop.annotate.size() && workshop.annotate[model]) {
     write_noted_mesh(workshop, workshop.annotate[model], c);
   } else {
     write_mesh(workshop, current_.destination, c);
   }
-  c.seconds = core::thread_cpu_seconds() - cpu_start_s;
+  c.seconds = timer.seconds();
   finished_s_ = c.finished_s = workshop.clock();
   if (workshop.hash_content && c.ok)
     c.content_hash = content_hash(current_.key, current_.destination);
