@@ -1,8 +1,8 @@
 # Compiler settings, and the functions that every folder uses:
 #   psygen_library(NAME ...)                        the library of a folder: target, headers, component
 #   psygen_executable(NAME SOURCES ... PRIVATE ...) a program in bin/ of the build folder
-# All presets but dev compile with CMAKE_UNITY_BUILD, several files at a time: libraries take a
-# third of the time. Files whose private names clash with others have SKIP_UNITY_BUILD_INCLUSION.
+# All presets but dev compile with CMAKE_UNITY_BUILD, all files of a target at a time: that takes a
+# third of the time, and one build has all the names together. Files whose private names clash with others have SKIP_UNITY_BUILD_INCLUSION.
 # All settings are of this project's own targets. Projects that use them, or that contain this one,
 # keep theirs.
 include(GNUInstallDirs)

@@ -1,8 +1,6 @@
-// Time. Seconds as doubles: a monotonic clock, the CPU time of the calling thread, a timer of short
-// times over both, and a stopwatch over the latter that tests can make virtual. Not calendar time. POSIX; any thread.
+// Time. Seconds as doubles: a monotonic clock, the CPU time of the calling thread, and a stopwatch
+// over the latter that tests can make virtual. Not calendar time. POSIX; any thread.
 #pragma once
-
-#include <algorithm>
 
 namespace psygen::core {
 
@@ -13,22 +11,6 @@ double monotonic_seconds();
 double suspended_seconds();
 // Seconds of processor time that the calling thread has used.
 double thread_cpu_seconds();
-
-// Seconds of processor time that the calling thread has used since the timer was made, for times of
-// microseconds. Reading thread_cpu_seconds() is a system call of about 1 µs that counts itself;
-// reading monotonic_seconds() takes 40 ns, but counts what other threads take. The less of both is
-// nearer to the truth. Read it on the thread that made it.
-class CpuTimer {
- public:
-  CpuTimer() : cpu_start_s_(thread_cpu_seconds()), start_s_(monotonic_seconds()) {}
-  double seconds() const {
-    const double elapsed_s = monotonic_seconds() - start_s_;
-    return std::min(elapsed_s, thread_cpu_seconds() - cpu_start_s_);
-  }
-
- private:
-  double cpu_start_s_, start_s_;
-};
 
 // Seconds that the calling thread has used since the stopwatch was made. A real stopwatch measures
 // the thread's CPU time, so time that other threads take does not count. A virtual one returns the

@@ -17,7 +17,7 @@ using core::Result;
 
 namespace {
 
-constexpr core::Extent kSize{core::kPictureSide, core::kPictureSide};
+constexpr core::Extent kLayerSize{core::kPictureSide, core::kPictureSide};
 
 Result<UniqueSampler> make_picture_sampler(const Device& device) {
   VkSamplerCreateInfo info{};
@@ -42,7 +42,7 @@ Result<void> ModelPictures::create(const Device& device,
     sampler_ = std::move(*sampler);
   }
   const auto layers = static_cast<std::uint32_t>(1 + pictures.size() * core::kPictureViews);
-  Result<Image> image = make_image(device, kSize, VK_FORMAT_R8G8B8A8_UNORM,
+  Result<Image> image = make_image(device, kLayerSize, VK_FORMAT_R8G8B8A8_UNORM,
                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                                    VK_IMAGE_ASPECT_COLOR_BIT,
                                    {.array = true, .layers = layers, .mips = core::kPictureLevels});
@@ -77,7 +77,7 @@ Result<void> ModelPictures::fill(const Device& device, std::uint32_t layer, std:
     levels[level] = std::as_bytes(texels.subspan(at, bytes));
     at += bytes;
   }
-  return upload_image(device, image_, kSize, levels, layers, layer);
+  return upload_image(device, image_, kLayerSize, levels, layers, layer);
 }
 
 }  // namespace psygen::render

@@ -59,9 +59,9 @@ VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
 // of the driver's libraries.
 constexpr std::uint64_t kStartBytes = std::uint64_t{96} << 20;
 constexpr std::uint64_t kStartAddressBytes = std::uint64_t{512} << 20;
-// Memory that geometry leaves free for everything else: the scene, the modelers, pictures of models,
-// what a software driver compiles, and its bins, which grow with the picture (measured: 80 MiB at
-// 1280 x 720, 190 MiB at 3840 x 2160).
+// Memory that geometry leaves free for everything else: the scene, the modelers, pictures of
+// models, what a software driver compiles, and its bins, which grow with the picture (measured: 80
+// MiB at 1280 x 720, 190 MiB at 3840 x 2160).
 std::uint64_t headroom_bytes(core::Extent size) {
   const std::uint64_t bins = std::uint64_t{size.width} * size.height * 80;
   return (std::uint64_t{64} << 20) + std::min(bins, std::uint64_t{192} << 20);

@@ -26,6 +26,7 @@ void add(std::atomic<T>& counter, T value) {
 void Modeler::run(Workshop& workshop) {
   name_this_thread(fmt::format("modeler-{}", number_));
   bool lowered = false;
+  cpu_s_ = core::thread_cpu_seconds();
   while (!workshop.stop.load(std::memory_order_acquire)) {
     const std::uint32_t epoch = workshop.board.epoch();
     std::uint64_t retries = 0;
@@ -41,6 +42,7 @@ void Modeler::run(Workshop& workshop) {
       wake_waiting(workshop);
       // stop is set before the epoch moves, so that it cannot be missed here.
       if (!workshop.stop.load(std::memory_order_acquire)) workshop.board.wait(epoch);
+      cpu_s_ = core::thread_cpu_seconds();
     }
   }
   exited_.store(true, std::memory_order_release);
@@ -48,6 +50,7 @@ void Modeler::run(Workshop& workshop) {
 
 void Modeler::perform(Workshop& workshop, const Request& request) {
   current_ = request;
+  cpu_s_ = core::thread_cpu_seconds();
   execute(workshop);
 }
 
@@ -116,13 +119,13 @@ bool Modeler::execute(Workshop& workshop) {
   state_.store(serial_ * 4 + kWorking, std::memory_order_release);
 
   const models::ModelIndex model = current_.key.model;
-  const core::CpuTimer timer;
   if (model < workshop.annotate.size() && workshop.annotate[model]) {
     write_noted_mesh(workshop, workshop.annotate[model], c);
   } else {
     write_mesh(workshop, current_.destination, c);
   }
-  c.seconds = timer.seconds();
+  const double cpu_s = core::thread_cpu_seconds();
+  c.seconds = cpu_s - std::exchange(cpu_s_, cpu_s);
   finished_s_ = c.finished_s = workshop.clock();
   if (workshop.hash_content && c.ok)
     c.content_hash = content_hash(current_.key, current_.destination);

@@ -99,6 +99,7 @@ class Modeler {
   std::uint64_t serial_ = 0;
   std::vector<std::size_t> warm_;   // codes that were run since it last did nothing
   double finished_s_ = 0;           // the last request, by the workshop's clock
+  double cpu_s_ = 0;                // the thread's processor time where the present request begins
   std::vector<std::byte> scratch_;  // where meshes are made that are noted
   alignas(64) std::atomic<std::uint64_t> state_{kIdle};  // serial number of the request · 4 + phase
   std::atomic<double> started_s_{0};

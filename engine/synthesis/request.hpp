@@ -45,8 +45,10 @@ struct Completion {
   bool abandoned = false;
   bool late = false;
   std::uint32_t modeler = 0;
-  std::string error;   // if not ok: one sentence that names the model and the level
-  double seconds = 0;  // CPU time of the modeler's thread in the synthesis and its note
+  std::string error;  // if not ok: one sentence that names the model and the level
+  // CPU time of the modeler's thread for it, with claiming and timing: since the last request, or
+  // since it woke.
+  double seconds = 0;
   double started_s = 0, finished_s = 0;  // by the manager's clock, for traces
   Work work;                             // as requested, for CostModel::observe()
   Warmth warmth = Warmth::kWarm;         // of its modeler when it claimed the request

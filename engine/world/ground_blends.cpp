@@ -8,7 +8,7 @@ namespace psygen::world {
 namespace {
 
 // Smallest width of a blend; narrower ones are practically steps.
-constexpr float kLeast = 1e-3F;
+constexpr float kLeastSpan = 1e-3F;
 
 float lattice(std::uint32_t x, std::uint32_t z) {
   std::uint32_t h = ((x & 63u) * 0x9E3779B9u) ^ ((z & 63u) * 0x85EBCA6Bu);
@@ -29,7 +29,7 @@ float slow_noise(glm::vec2 p) {
 }
 
 float blend(double start, double width, float value) {
-  const float w = std::max(static_cast<float>(width), kLeast);
+  const float w = std::max(static_cast<float>(width), kLeastSpan);
   return (value - static_cast<float>(start)) / w;
 }
 
@@ -54,9 +54,9 @@ GroundBlends ground_blends(const Palette& palette, float height_m, const glm::ve
   const auto smooth = [](float t) { return glm::smoothstep(0.0F, 1.0F, t); };
   const auto rock_start = static_cast<float>(palette.rock_slope_start);
   const float rock_full =
-      std::max(static_cast<float>(palette.rock_slope_full), rock_start + kLeast);
+      std::max(static_cast<float>(palette.rock_slope_full), rock_start + kLeastSpan);
   const float snow = smooth(blend(palette.snow_start_m, palette.snow_blend_m, height_m) + uneven);
-  const float steep = std::max(static_cast<float>(palette.snow_slope_max), kLeast);
+  const float steep = std::max(static_cast<float>(palette.snow_slope_max), kLeastSpan);
   return {1.0F,
           glm::smoothstep(0.35F, 0.62F, pattern + slope * 0.5F),
           smooth(blend(palette.dry_start_m, palette.dry_blend_m, height_m) + uneven),

@@ -26,7 +26,7 @@ constexpr float kMargin = 0.03F;
 // can be seen from above too.
 constexpr float kLean = 0.5F;
 constexpr float kTopSway = 0.5F;
-constexpr std::uint64_t kEdition = 1;
+constexpr std::uint64_t kPictureEdition = 1;
 
 std::vector<Corner> corners_of(const SampleMesh& mesh) {
   std::vector<Corner> corners;
@@ -100,7 +100,7 @@ glm::vec2 stretch(glm::vec2 from, glm::vec2 to) {
 }  // namespace
 
 PictureSet::PictureSet(const World& world, const models::Registry& registry)
-    : registry_(&registry), identity_(kEdition) {
+    : registry_(&registry), identity_(kPictureEdition) {
   std::size_t scatters = 0;
   std::uint32_t first = 0;
   std::vector<std::uint32_t> firsts;

@@ -161,7 +161,8 @@ void expect_orderly(const Outcome& outcome, const std::string& what) {
   }
 }
 
-// A software driver may end the program itself, within some MiB of what a flight needs (docs/cli.md).
+// A software driver may end the program itself, within some MiB of what a flight needs
+// (docs/cli.md).
 bool was_ended_by_driver(const Outcome& outcome) {
   return outcome.code == 134 && mentions(outcome.err, "LLVM ERROR: ");
 }

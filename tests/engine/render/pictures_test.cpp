@@ -13,7 +13,7 @@
 namespace psygen::render {
 namespace {
 
-constexpr float kHalfWidthM = 4, kHalfHeightM = 5;
+constexpr float kModelHalfWidthM = 4, kModelHalfHeightM = 5;
 constexpr std::array<std::array<std::uint8_t, 3>, 3> kColours{
     {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}};
 
@@ -43,7 +43,7 @@ core::Result<core::GeometryRange> make_quad(core::GeometryMemory& memory, int nu
     const bool right = i == 1 || i == 2, top = i >= 2;
     core::ModelVertex& v = vertices[i];
     v.position[1] = top ? 32767 : -32767;
-    const float aside = (right ? kHalfWidthM : -kHalfWidthM) / core::kBillboardReachM;
+    const float aside = (right ? kModelHalfWidthM : -kModelHalfWidthM) / core::kBillboardReachM;
     v.normal[0] = static_cast<std::int16_t>(std::lround(aside * 32767));
     v.ambient = 255;
     v.colour[0] = static_cast<std::uint8_t>(number * 8 + turn);
@@ -80,7 +80,7 @@ class Pictures : public OnAPath {
     EXPECT_TRUE(range);
     MeshDraw draw;
     draw.range = *range;
-    draw.box_half_extent = {kHalfWidthM, kHalfHeightM, kHalfWidthM};
+    draw.box_half_extent = {kModelHalfWidthM, kModelHalfHeightM, kModelHalfWidthM};
     draw.pictured = true;
     return draw;
   }

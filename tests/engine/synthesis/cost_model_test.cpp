@@ -206,7 +206,7 @@ TEST(CostModel, ARequestTakesReadingTheClockBesideItsSynthesis) {
   const models::Registry registry = time.registry();
   CostModel cost(registry);
   CalibrationOptions options = time.options();
-  options.wall_clock = [&time] { return time.now += 1e-6; };
+  options.cpu_clock = [&time] { return time.now += 1e-6; };
   cost.calibrate(samples_of({4000, 8000}), options);
   const Work work = cost.work(0, parameters_of(1, 5000), 0);
   EXPECT_NEAR(cost.predict_request(0, 0, work).warm_s() - cost.predict_from(0, 0, work), 1e-6,
