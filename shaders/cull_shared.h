@@ -35,7 +35,7 @@ struct CullFrame {
   mat4 clip_from_camera;
   vec4 near;      // x: near plane of the projection, in metres
   uvec4 counts;   // candidates; groups; commands of a phase; levels of the pyramid
-  uvec4 picture;  // width, height in pixels
+  uvec4 picture;  // width, height of the landscape in pixels
 };
 
 // A draw of the frame's lists.

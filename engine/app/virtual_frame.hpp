@@ -15,14 +15,16 @@ namespace psygen::app {
 inline constexpr double kVirtualFrameMs = 0.5;        // of every frame
 inline constexpr double kVirtualTriangleMs = 100e-6;  // 100 ns
 inline constexpr double kVirtualDrawMs = 2e-3;        // 2 µs
-inline constexpr double kVirtualPixelMs = 8e-6;       // 8 ns, of the picture
+inline constexpr double kVirtualPixelMs = 8e-6;       // 8 ns, of the landscape
 
 // Whether the frames of a session with these options have such times.
 inline bool has_virtual_frames(const SessionOptions& options) {
   return options.scene.virtual_time && options.headless;
 }
 
-// The milliseconds of a frame of this size that submits these triangles in these draws.
-double virtual_frame_ms(std::uint64_t triangles, std::uint32_t draws, core::Extent size);
+// The milliseconds of a frame of this size that submits these triangles in these draws. The
+// landscape has `resolution` of its width and height.
+double virtual_frame_ms(std::uint64_t triangles, std::uint32_t draws, core::Extent size,
+                        double resolution = 1);
 
 }  // namespace psygen::app

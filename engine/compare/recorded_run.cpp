@@ -38,9 +38,22 @@ constexpr std::array<std::string_view, kColumns> kNames = {"time_s",
                                                            "missing_pixels_percent",
                                                            "too_coarse_percent"};
 
+constexpr std::string_view kResolution = "resolution";
+
 struct Sums {
   double missing = 0, coarse = 0, error = 0, holes = 0;
 };
+
+// Its column comes after the others in `columns`. Runs of before it existed have none, and all
+// pixels.
+core::Result<double> resolution_in(CsvCells cells, std::span<const std::size_t> columns,
+                                   const std::string& where) {
+  if (columns.size() == kColumns) return 1.0;
+  const auto value = number_in(cells[columns[kColumns]], where, kResolution);
+  if (value && !(*value > 0 && *value <= 1))
+    return refuse_file(where, "resolution: a share above 0, at most 1");
+  return value;
+}
 
 core::Result<void> add_row(CsvCells cells, std::span<const std::size_t> columns,
                            const std::string& where, double warmup_s, RecordedRun& run,
@@ -53,6 +66,8 @@ core::Result<void> add_row(CsvCells cells, std::span<const std::size_t> columns,
     values[column] = *value;
   }
   if (!(values[kColumnFrame] > 0)) return refuse_file(where, "frame_ms: a frame takes time");
+  const auto resolution = resolution_in(cells, columns, where);
+  if (!resolution) return tl::unexpected(resolution.error());
   if (!run.time_s.empty() && values[kColumnTime] < run.time_s.back())
     return refuse_file(where, fmt::format("time_s: the clock goes backwards, from {} to {}",
                                           run.time_s.back(), values[kColumnTime]));
@@ -68,10 +83,12 @@ core::Result<void> add_row(CsvCells cells, std::span<const std::size_t> columns,
   run.frame_ms.push_back(values[kColumnFrame]);
   run.left_out.push_back(!cells[columns[kColumnApart]].empty());
   run.lacking.push_back(values[kColumnMissing] + values[kColumnCoarse]);
-  run.error.push_back(values[kColumnError]);
+  // Errors are in pixels of the picture; a landscape of fewer pixels has larger ones.
+  const double error = values[kColumnError] / *resolution;
+  run.error.push_back(error);
   sums.missing += values[kColumnMissing];
   sums.coarse += values[kColumnCoarse];
-  sums.error += values[kColumnError];
+  sums.error += error;
   sums.holes += values[kColumnHoles];
   return {};
 }
@@ -97,6 +114,8 @@ core::Result<void> parse_frames(std::string_view text, double warmup_s, Recorded
         auto found = find_columns(header, kNames, where);
         if (!found) return tl::unexpected(found.error());
         columns = std::move(*found);
+        if (const auto at = std::ranges::find(header, kResolution); at != header.end())
+          columns.push_back(static_cast<std::size_t>(at - header.begin()));
         return {};
       },
       [&](CsvCells cells, const std::string& where) {

@@ -25,7 +25,7 @@ struct RecordedRun {
   std::size_t suspended = 0;           // how many frames
   double missing_percent = 0;          // mean over the frames, of the picture
   double coarse_percent = 0;           // likewise: drawn with over twice the requested error
-  double error_pixels = 0;             // mean error of levels of detail
+  double error_pixels = 0;             // mean error of levels of detail ÷ resolution
   std::uint64_t holes = 0;             // sum over the frames
   bool virtual_clock = false;          // times are prices (docs/frame-tests.md)
   std::string world_hash, path_hash, images_hash;  // empty: there is none

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "engine/core/headroom.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/exchange/write_document.hpp"
 
 namespace psygen::exchange {
@@ -14,6 +16,9 @@ namespace {
 
 // The .glb header counts bytes in 32 bits. The rest is reserved for the JSON.
 constexpr std::size_t kMostBytes = (std::size_t{1} << 32) - (std::size_t{1} << 28);
+// The library ends the program where its JSON gets no memory, so there must be enough before: for
+// the JSON, and for copies of the bytes in its buffer, its stream and ours.
+constexpr std::uint64_t kWriterBytes = std::uint64_t{8} << 20, kWriterCopies = 5;
 
 enum View : std::size_t { kPositions, kNormals, kColours, kIndices, kViewCount };
 constexpr std::array<std::size_t, kViewCount> kStrides{12, 12, 8, 0};
@@ -51,6 +56,8 @@ class GlbWriter {
       bytes += view.size();
     if (bytes > kMostBytes)
       return core::fail(core::ErrorCode::kOverBudget, name + " is larger than a .glb file can be");
+    if (!core::memory_left(kWriterBytes + kWriterCopies * bytes))
+      return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory("writing " + name));
     if (bytes > 0) join_views();
     std::ostringstream stream;
     stream.exceptions(std::ios::badbit);  // rethrows std::bad_alloc, which streams swallow

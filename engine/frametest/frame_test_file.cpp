@@ -69,6 +69,7 @@ void read_scene(TableReader& reader, scene::Settings& scene) {
     scene.budget_bytes = static_cast<std::uint64_t>(mib) << 20;
   reader.read("view_distance", scene.view_distance_m, {32, 65536});
   reader.read("error", scene.max_error_pixels, {0.1, 1000});
+  reader.read("min_resolution", scene.min_resolution, {0.25, 1});
   reader.read("fade", scene.fade_seconds, {0, 60});
   reader.read("lod", scene.levels_of_detail);
   reader.read("occlusion", scene.occlusion);

@@ -67,6 +67,7 @@ constexpr std::array kMeasures = std::to_array<Measure>({
     {"picture.", "% of the picture missing or too coarse", missing_or_coarse},
     {"detail.refused", "requests refused", its<&R::requests_refused>},
     {"detail.raised_by_memory", "times the error", its<&R::memory_factor>},
+    {"detail.resolution", "of the resolution", its<&R::resolution>},
     {"detail.", "pixels of error", its<&R::error_pixels>},
     {"cache.peak_bytes", "bytes", its<&R::cache_bytes>},
     {"cache.hits", "hits", its<&R::cache_hits>},

@@ -71,7 +71,6 @@ Result<void> DepthPyramid::create(const Device& device, VkSampleCountFlagBits sa
 
 Result<void> DepthPyramid::resize(const Device& device, core::Extent size, const Image* depth) {
   views_.clear();
-  size_ = size;
   const std::uint32_t levels = levels_for(size);
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
@@ -124,8 +123,8 @@ void DepthPyramid::write_sets(const Device& device, const Image* depth) const {
   }
 }
 
-void DepthPyramid::record(const Device& device, VkCommandBuffer commands,
-                          const Image& depth) const {
+void DepthPyramid::record(const Device& device, VkCommandBuffer commands, const Image& depth,
+                          core::Extent drawn_size) const {
   VkImageMemoryBarrier2 drawn = barrier_of(depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT);
   drawn.srcStageMask =
       VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
@@ -144,7 +143,7 @@ void DepthPyramid::record(const Device& device, VkCommandBuffer commands,
   own.newLayout = VK_IMAGE_LAYOUT_GENERAL;
   image_barrier(device, commands, own);
 
-  core::Extent source = size_;
+  core::Extent source = drawn_size;
   for (std::size_t level = 0; level < views_.size(); ++level) {
     const ComputePipeline& pipeline = level == 0 ? first_ : next_;
     const core::Extent target = half(source);

@@ -26,9 +26,11 @@ class DepthPyramid {
   VkSampler sampler() const { return sampler_.get(); }
   VkImageView view() const { return whole_.get(); }  // read in VK_IMAGE_LAYOUT_GENERAL
 
-  // Records the computation. `depth` is an attachment that was drawn to. Afterwards it and the
-  // pyramid are readable by compute shaders (DEPTH_READ_ONLY_OPTIMAL, GENERAL).
-  void record(const Device& device, VkCommandBuffer commands, const Image& depth) const;
+  // Records the computation. `depth` is an attachment that was drawn to, in its corner of
+  // `drawn_size`, at most the size of the pictures. Afterwards it and the pyramid are readable by
+  // compute shaders (DEPTH_READ_ONLY_OPTIMAL, GENERAL).
+  void record(const Device& device, VkCommandBuffer commands, const Image& depth,
+              core::Extent drawn_size) const;
 
  private:
   void write_sets(const Device& device, const Image* depth) const;
@@ -39,7 +41,6 @@ class DepthPyramid {
   UniqueImage image_;
   UniqueImageView whole_;
   std::vector<UniqueImageView> views_;  // of each level
-  core::Extent size_;                   // of the picture
 };
 
 }  // namespace psygen::render

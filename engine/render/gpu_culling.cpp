@@ -198,7 +198,7 @@ void GpuCulling::record_first(const Device& device, VkCommandBuffer commands, st
 
 void GpuCulling::record_second(const Device& device, VkCommandBuffer commands, std::size_t slot,
                                const Image& depth) const {
-  pyramid_.record(device, commands, depth);
+  pyramid_.record(device, commands, depth, {frame_.picture.x, frame_.picture.y});
   // Both phases write the same buffers.
   memory_barrier(device, commands,
                  VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,

@@ -121,7 +121,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   raster.lineWidth = 1.0F;
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = shape.shadow ? VK_SAMPLE_COUNT_1_BIT : shape.samples;
+  samples.rasterizationSamples = shape.shadow || shape.flat ? VK_SAMPLE_COUNT_1_BIT : shape.samples;
   VkPipelineDepthStencilStateCreateInfo depth{};
   depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
   depth.depthTestEnable = kind != PipelineKind::kOverlay;
@@ -143,7 +143,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
   rendering.colorAttachmentCount = shape.shadow ? 0 : 1;
   rendering.pColorAttachmentFormats = &shape.colour_format;
-  rendering.depthAttachmentFormat = kDepthFormat;
+  rendering.depthAttachmentFormat = shape.flat ? VK_FORMAT_UNDEFINED : kDepthFormat;
 
   VkGraphicsPipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;

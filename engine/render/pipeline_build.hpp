@@ -35,6 +35,7 @@ struct PipelineShape {
   // Of both shaders; those that they lack are ignored: fine grain or waves, shadows, point lights.
   std::array<VkBool32, 3> constants{};
   bool wireframe = false;  // needs DeviceInfo::wireframe
+  bool flat = false;       // in a pass without depth and with one sample per pixel
   bool shadow = false;     // only depth, of a cascade; `frag` may be empty
 };
 

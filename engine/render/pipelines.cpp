@@ -67,7 +67,9 @@ Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
         shape.kind = PipelineKind::kOverlay;
         shape.vert = other_code().overlay_vert;
         shape.frag = other_code().overlay_frag;
-        return make(alone, shape, overlay_);
+        if (Result<void> made = make(alone, shape, overlay_); !made) return made;
+        shape.flat = true;
+        return make(alone, shape, overlay_over_coarse_);
       });
 }
 

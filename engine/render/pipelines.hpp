@@ -67,7 +67,10 @@ class Pipelines {
   VkPipeline sky() const { return sky_.get(); }
   VkPipeline sky_below() const { return sky_below_.get(); }
   VkPipeline sun() const { return sun_.get(); }
-  VkPipeline overlay() const { return overlay_.get(); }  // text
+  // Text, in the pass of the landscape or in that over a coarse one (begin_pass_over_coarse()).
+  VkPipeline overlay(bool over_coarse) const {
+    return (over_coarse ? overlay_over_coarse_ : overlay_).get();
+  }
 
   // The descriptor set of a slot.
   VkDescriptorSet set(std::size_t number) const { return sets_[number]; }
@@ -144,7 +147,8 @@ class Pipelines {
   const MaterialTable* materials_ = nullptr;
   const ModelPictures* pictures_ = nullptr;
   std::array<UniquePipeline, 2> particles_;  // indexed by whether they have a texture
-  UniquePipeline water_, lamplit_water_, sky_, sky_below_, sun_, lines_, overlay_;
+  UniquePipeline water_, lamplit_water_, sky_, sky_below_, sun_, lines_;
+  UniquePipeline overlay_, overlay_over_coarse_;
 };
 
 }  // namespace psygen::render

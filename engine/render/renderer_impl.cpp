@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -112,6 +113,7 @@ Result<void> RendererImpl::create_device() {
     colour_format_ = *format;
   }
   pushed_from_ = first_pushed_index_count(options_.submission, *device_);
+  scales_up_ = can_scale_up(*device_, colour_format_);
   return {};
 }
 
@@ -289,9 +291,11 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
                        .lamps = frame_.lamp_count.x > 0,
                        .emitters = emitter_runs_,
                        .shadows = frame_.shadow.y > 0};
-  record_scene(*device_, pipelines_, slot, targets_of(slot), pass);
+  Targets& targets = targets_of(slot);
+  targets.drawn = drawn_;
+  record_scene(*device_, pipelines_, slot, targets, pass);
   if (windowed) {
-    record_copy_to_window(*device_, slot.commands(), targets_of(slot), swapchain_.image(),
+    record_copy_to_window(*device_, slot.commands(), targets, swapchain_.image(),
                           swapchain_.extent());
   }
   return slot.end(*device_);
@@ -363,7 +367,7 @@ void RendererImpl::list_draws(const FrameInput& input) {
   std::uint32_t pushed_from = pushed_from_;
   const std::size_t lamps = std::min(input.point_lights.size(), kMostPointLights);
   if (culling_) {
-    culling_->set_frame(view_volume(frame_.clip_from_camera), frame_, input, size(),
+    culling_->set_frame(view_volume(frame_.clip_from_camera), frame_, input, drawn_,
                         shared_.lists(), materials_.kinds());
     // Cascades are drawn from a list of the CPU, with pushed data.
     if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
@@ -404,6 +408,22 @@ Apart RendererImpl::apart_now() {
   return frame_value_ - idle_value_ < kFramesInFlight ? Apart::kAfterIdle : Apart::kNo;
 }
 
+// Makes the images that fewer pixels need, when they are needed first.
+core::Extent RendererImpl::landscape_size(float resolution) {
+  const core::Extent whole = size();
+  if (!(resolution < 1) || !scales_up_) return whole;
+  for (Targets& targets : targets_) {
+    if (targets.coarse.image.get() != VK_NULL_HANDLE) continue;
+    scales_up_ = add_coarse(*device_, colour_format_, targets).has_value();
+    if (!scales_up_) return whole;
+  }
+  const auto side = [share = std::max(resolution, kLeastResolution)](std::uint32_t pixels) {
+    return std::max(1U,
+                    static_cast<std::uint32_t>(std::lround(share * static_cast<float>(pixels))));
+  };
+  return {side(whole.width), side(whole.height)};
+}
+
 void RendererImpl::lay_out_overlay(const FrameInput& input) {
   glyphs_.clear();
   if (input.hud != nullptr) overlay_.lay_out(*input.hud, size(), glyphs_);
@@ -439,6 +459,9 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   const glm::dvec3& at = input.pose.position.local;
   shade_.build(input.spots, {at.x, at.z});
   frame_.shade = {shade_.corner(), 0.0F, 0.0F};
+  drawn_ = landscape_size(input.resolution);
+  frame_.morph.z = static_cast<float>(drawn_.height);
+  out.resolution = static_cast<float>(drawn_.height) / static_cast<float>(size().height);
   const GpuCulling::Counts counted =
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
   list_draws(input);

@@ -111,6 +111,7 @@ class RendererImpl {
   core::Result<bool> present();
   core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
   Apart apart_now();
+  core::Extent landscape_size(float resolution);
   void lay_out_overlay(const FrameInput& input);
   void add_lines(std::span<const Line> lines);
   // Stores in lost_ that the device was lost. After that nothing more is submitted.
@@ -147,6 +148,8 @@ class RendererImpl {
   std::uint64_t idle_value_ = 0;     // frame_value_ when the device was last known to be idle
   std::uint64_t warm_up_value_ = 0;  // frame_value_ before the first frame
   bool resized_ = false;             // since the last frame
+  core::Extent drawn_;               // of the landscape, in the last frame
+  bool scales_up_ = true;            // false: the device or its memory does not allow it
   bool has_picture_ = false;
   bool has_list_ = false;
   bool lost_ = false;

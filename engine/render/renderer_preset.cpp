@@ -83,6 +83,9 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
 Result<void> RendererImpl::warm_up(const Progress& progress) {
   Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
   if (!small) return tl::unexpected(small.error());
+  if (scales_up_) {
+    if (Result<void> added = add_coarse(*device_, colour_format_, *small); !added) return added;
+  }
   FrameSlot& slot = slots_[0];
   const FrameInput nothing;
   for (int step = 0; step < kWarmUpSteps; ++step) {
@@ -91,6 +94,8 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
                    std::vector<shaders::DrawData>(1), std::vector<shaders::OverlayVertex>(3))
             .and_then([&] { return slot.begin(*device_); })
             .and_then([&] {
+              const bool coarse = scales_up_ && step == kWarmUpSteps - 1;
+              small->drawn = coarse ? core::Extent{8, 8} : small->extent;
               record_warm_up(*device_, pipelines_, slot, *small, shared_.buffer(), step);
               return slot.end(*device_);
             })
@@ -99,6 +104,7 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
             .and_then([&] { return go_on(progress, (step + 1.0) / kWarmUpSteps); });
     if (!drawn) return drawn;
   }
+  small->drawn = small->extent;
   return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
 }
 
@@ -227,6 +233,7 @@ Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_sc
       noted(slot.write(*device_, pipelines_, frame_data({}, size()), {}, glyphs_)
                 .and_then([&] { return slot.begin(*device_); })
                 .and_then([&] {
+                  targets_of(slot).drawn = size();
                   record_text(*device_, pipelines_, slot, targets_of(slot),
                               static_cast<std::uint32_t>(glyphs_.size()));
                   if (windowed) {

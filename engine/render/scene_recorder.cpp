@@ -181,10 +181,17 @@ void draw_particles(const Device& device, const Pipelines& pipelines, const Fram
   }
 }
 
-void draw_gui(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+void draw_lines(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                const ScenePass& pass) {
+  if (pass.line_vertex_count == 0) return;
+  bind_pipeline(device, commands, pipelines.lines());
+  device.vk.vkCmdDraw(commands, pass.line_vertex_count, 1, pass.glyph_vertex_count, 0);
+}
+
+void draw_gui(const Device& device, VkPipeline overlay, VkCommandBuffer commands,
               std::span<const GuiRun> runs) {
   if (runs.empty()) return;
-  bind_pipeline(device, commands, pipelines.overlay());
+  bind_pipeline(device, commands, overlay);
   for (const GuiRun& run : runs) {
     const VkRect2D clip{{static_cast<std::int32_t>(run.x), static_cast<std::int32_t>(run.y)},
                         {run.width, run.height}};
@@ -213,14 +220,10 @@ void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkComm
   device.vk.vkCmdDraw(commands, 4, 1, 0, 0);
 }
 
-void draw_lines_and_text(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
-                         std::uint32_t glyph_vertex_count, std::uint32_t line_vertex_count) {
-  if (line_vertex_count > 0) {
-    bind_pipeline(device, commands, pipelines.lines());
-    device.vk.vkCmdDraw(commands, line_vertex_count, 1, glyph_vertex_count, 0);
-  }
+void draw_text(const Device& device, VkPipeline overlay, VkCommandBuffer commands,
+               std::uint32_t glyph_vertex_count) {
   if (glyph_vertex_count == 0) return;
-  bind_pipeline(device, commands, pipelines.overlay());
+  bind_pipeline(device, commands, overlay);
   device.vk.vkCmdDraw(commands, glyph_vertex_count, 1, 0, 0);
 }
 
@@ -228,7 +231,7 @@ void record_text(const Device& device, const Pipelines& pipelines, FrameSlot& sl
                  Targets& targets, std::uint32_t glyph_vertex_count) {
   begin_pass(device, slot.commands(), targets);
   bind_set(device, pipelines, slot);
-  draw_lines_and_text(device, pipelines, slot.commands(), glyph_vertex_count, 0);
+  draw_text(device, pipelines.overlay(false), slot.commands(), glyph_vertex_count);
   device.vk.vkCmdEndRendering(slot.commands());
 }
 
@@ -251,8 +254,15 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
   }
   draw_water_and_sky(device, pipelines, commands, pass.water, pass.lamps);
   draw_particles(device, pipelines, slot, pass);
-  draw_lines_and_text(device, pipelines, commands, pass.glyph_vertex_count, pass.line_vertex_count);
-  draw_gui(device, pipelines, commands, pass.gui);
+  draw_lines(device, pipelines, commands, pass);
+  if (targets.is_coarse()) {
+    device.vk.vkCmdEndRendering(commands);
+    begin_pass_over_coarse(device, commands, targets);
+    bind_set(device, pipelines, slot);
+  }
+  const VkPipeline overlay = pipelines.overlay(targets.is_coarse());
+  draw_text(device, overlay, commands, pass.glyph_vertex_count);
+  draw_gui(device, overlay, commands, pass.gui);
   device.vk.vkCmdEndRendering(commands);
   slot.timer().mark(device, commands, GpuTimer::Mark::kEnd);
   if (pass.culled.culling != nullptr) {

@@ -1,6 +1,7 @@
 // Records a frame: the sun's shadows, if the preset has them; one pass, or two with occlusion
 // culling (gpu_culling.hpp). A pass draws meshes, water, the sky behind, then lines and text in
-// front. It submits nothing. Main thread. Private to engine/render.
+// front. Over a landscape of fewer pixels than the picture, text has a pass of its own. It submits
+// nothing. Main thread. Private to engine/render.
 #pragma once
 
 #include <span>
@@ -63,7 +64,7 @@ void bind_set(const Device& device, const Pipelines& pipelines, const FrameSlot&
 void bind_pipeline(const Device& device, VkCommandBuffer commands, VkPipeline pipeline);
 void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
                         bool water, bool lamps);
-void draw_lines_and_text(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
-                         std::uint32_t glyph_vertex_count, std::uint32_t line_vertex_count);
+void draw_text(const Device& device, VkPipeline overlay, VkCommandBuffer commands,
+               std::uint32_t glyph_vertex_count);
 
 }  // namespace psygen::render

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "engine/render/pipeline_build.hpp"
 
@@ -11,17 +12,26 @@ using core::Result;
 
 namespace {
 
+constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+
 bool has_samples(const Targets& targets) {
   return targets.samples.image.get() != VK_NULL_HANDLE;
+}
+
+// The image that the landscape gets its colours in.
+const Image& landscape_of(const Targets& targets) {
+  return targets.is_coarse() ? targets.coarse : targets.colour;
 }
 
 // Moves the targets to the layouts of attachments, after all previous uses.
 void to_attachments(const Device& device, VkCommandBuffer commands, Targets& targets,
                     PassPart part) {
+  VkImageLayout& layout = targets.is_coarse() ? targets.coarse_layout : targets.colour_layout;
   if (part == PassPart::kWhole && targets.host_ordered &&
-      targets.colour_layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)
+      layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)
     return;
-  VkImageMemoryBarrier2 colour = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  VkImageMemoryBarrier2 colour =
+      barrier_of(landscape_of(targets).image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
   colour.srcStageMask =
       VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
   colour.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
@@ -51,7 +61,7 @@ void to_attachments(const Device& device, VkCommandBuffer commands, Targets& tar
   dependency.imageMemoryBarrierCount = has_samples(targets) ? 3 : 2;
   dependency.pImageMemoryBarriers = barriers.data();
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
-  targets.colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 }
 
 void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& targets) {
@@ -67,7 +77,76 @@ void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& tar
   targets.colour_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
 }
 
-constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+// Records both barriers at once.
+void image_barriers(const Device& device, VkCommandBuffer commands,
+                    const std::array<VkImageMemoryBarrier2, 2>& barriers) {
+  VkDependencyInfo dependency{};
+  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  dependency.imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size());
+  dependency.pImageMemoryBarriers = barriers.data();
+  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+// Repeats the last column and row of the landscape beyond it, where scaling up looks too. In
+// VK_IMAGE_LAYOUT_GENERAL.
+void repeat_edges(const Device& device, VkCommandBuffer commands, const Targets& targets) {
+  const auto [width, height] = targets.drawn;
+  const auto right = static_cast<std::int32_t>(width), below = static_cast<std::int32_t>(height);
+  std::array<VkImageCopy, 3> copies;
+  std::uint32_t count = 0;
+  const auto add = [&](VkOffset3D from, VkOffset3D to, VkExtent3D size) {
+    copies[count++] = {kColourLayer, from, kColourLayer, to, size};
+  };
+  const bool wider = width < targets.extent.width, higher = height < targets.extent.height;
+  if (wider) add({right - 1, 0, 0}, {right, 0, 0}, {1, height, 1});
+  if (higher) add({0, below - 1, 0}, {0, below, 0}, {width, 1, 1});
+  if (wider && higher) add({right - 1, below - 1, 0}, {right, below, 0}, {1, 1, 1});
+  const VkImage image = targets.coarse.image.get();
+  device.vk.vkCmdCopyImage(commands, image, VK_IMAGE_LAYOUT_GENERAL, image, VK_IMAGE_LAYOUT_GENERAL,
+                           count, copies.data());
+}
+
+void scale_up(const Device& device, VkCommandBuffer commands, Targets& targets) {
+  VkImageMemoryBarrier2 from = barrier_of(targets.coarse.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  from.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  from.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  from.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+  from.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  from.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  from.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+  VkImageMemoryBarrier2 to = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  to.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
+  to.dstStageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
+  to.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  to.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  image_barriers(device, commands, {from, to});
+  repeat_edges(device, commands, targets);
+  memory_barrier(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+
+  VkImageBlit blit{};
+  blit.srcSubresource = blit.dstSubresource = kColourLayer;
+  blit.srcOffsets[1] = {static_cast<std::int32_t>(targets.drawn.width),
+                        static_cast<std::int32_t>(targets.drawn.height), 1};
+  blit.dstOffsets[1] = {static_cast<std::int32_t>(targets.extent.width),
+                        static_cast<std::int32_t>(targets.extent.height), 1};
+  device.vk.vkCmdBlitImage(commands, targets.coarse.image.get(), VK_IMAGE_LAYOUT_GENERAL,
+                           targets.colour.image.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                           &blit, VK_FILTER_LINEAR);
+
+  // The coarse image too is ready for the next frame, which then needs no barrier.
+  std::swap(from.oldLayout, from.newLayout);
+  from.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_BLIT_BIT;
+  to.srcStageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
+  from.srcAccessMask = to.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  from.dstStageMask = to.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  from.dstAccessMask = to.dstAccessMask =
+      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
+  to.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  to.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  image_barriers(device, commands, {from, to});
+  targets.colour_layout = targets.coarse_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+}
 
 // The depth pyramid reads depth, if the device supports it.
 VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits samples) {
@@ -77,15 +156,56 @@ VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits sample
   return usage;
 }
 
+Result<Image> make_colour(const Device& device, VkFormat format, core::Extent extent) {
+  return make_image(device, extent, format,
+                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                        VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                    VK_IMAGE_ASPECT_COLOR_BIT);
+}
+
+VkRenderingInfo rendering_info(const VkRect2D& area, const VkRenderingAttachmentInfo& colour) {
+  VkRenderingInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  info.renderArea = area;
+  info.layerCount = 1;
+  info.colorAttachmentCount = 1;
+  info.pColorAttachments = &colour;
+  return info;
+}
+
+void begin_rendering(const Device& device, VkCommandBuffer commands, const VkRenderingInfo& info) {
+  device.vk.vkCmdBeginRendering(commands, &info);
+  const VkRect2D& area = info.renderArea;
+  const VkViewport viewport{
+      0.0F, 0.0F, static_cast<float>(area.extent.width), static_cast<float>(area.extent.height),
+      0.0F, 1.0F};
+  device.vk.vkCmdSetViewport(commands, 0, 1, &viewport);
+  device.vk.vkCmdSetScissor(commands, 0, 1, &area);
+}
+
 }  // namespace
+
+bool can_scale_up(const Device& device, VkFormat format) {
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(device.physical, format, &properties);
+  constexpr VkFormatFeatureFlags kNeeded = VK_FORMAT_FEATURE_BLIT_SRC_BIT |
+                                           VK_FORMAT_FEATURE_BLIT_DST_BIT |
+                                           VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  return (properties.optimalTilingFeatures & kNeeded) == kNeeded;
+}
+
+Result<void> add_coarse(const Device& device, VkFormat format, Targets& targets) {
+  Result<Image> made = make_colour(device, format, targets.extent);
+  if (!made) return tl::unexpected(made.error());
+  targets.coarse = std::move(*made);
+  return {};
+}
 
 Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
                              VkSampleCountFlagBits samples) {
   Targets targets;
-  targets.extent = extent;
-  Result<Image> colour = make_image(
-      device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-      VK_IMAGE_ASPECT_COLOR_BIT);
+  targets.extent = targets.drawn = extent;
+  Result<Image> colour = make_colour(device, format, extent);
   if (!colour) return tl::unexpected(colour.error());
   targets.colour = std::move(*colour);
   Result<Image> depth = make_image(device, extent, kDepthFormat, depth_usage(device, samples),
@@ -104,7 +224,7 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
   to_attachments(device, commands, targets, part);
   VkRenderingAttachmentInfo colour_info{};
   colour_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  colour_info.imageView = targets.colour.view.get();
+  colour_info.imageView = landscape_of(targets).view.get();
   colour_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   colour_info.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  // the sky covers all other pixels
   colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
@@ -112,7 +232,7 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
     colour_info.imageView = targets.samples.view.get();
     colour_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     colour_info.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
-    colour_info.resolveImageView = targets.colour.view.get();
+    colour_info.resolveImageView = landscape_of(targets).view.get();
     colour_info.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   }
   if (part == PassPart::kFirst) {
@@ -128,23 +248,22 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
   if (part == PassPart::kFirst) depth_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   if (part == PassPart::kSecond)
     colour_info.loadOp = depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-  const VkRect2D area{{0, 0}, {targets.extent.width, targets.extent.height}};
-  VkRenderingInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-  info.renderArea = area;
-  info.layerCount = 1;
-  info.colorAttachmentCount = 1;
-  info.pColorAttachments = &colour_info;
+  const VkRect2D area{{0, 0}, {targets.drawn.width, targets.drawn.height}};
+  VkRenderingInfo info = rendering_info(area, colour_info);
   info.pDepthAttachment = &depth_info;
-  device.vk.vkCmdBeginRendering(commands, &info);
-  const VkViewport viewport{0.0F,
-                            0.0F,
-                            static_cast<float>(targets.extent.width),
-                            static_cast<float>(targets.extent.height),
-                            0.0F,
-                            1.0F};
-  device.vk.vkCmdSetViewport(commands, 0, 1, &viewport);
-  device.vk.vkCmdSetScissor(commands, 0, 1, &area);
+  begin_rendering(device, commands, info);
+}
+
+void begin_pass_over_coarse(const Device& device, VkCommandBuffer commands, Targets& targets) {
+  scale_up(device, commands, targets);
+  VkRenderingAttachmentInfo colour{};
+  colour.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  colour.imageView = targets.colour.view.get();
+  colour.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  colour.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+  colour.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  const VkRect2D area{{0, 0}, {targets.extent.width, targets.extent.height}};
+  begin_rendering(device, commands, rendering_info(area, colour));
 }
 
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,

@@ -12,16 +12,26 @@ namespace psygen::render {
 struct Targets {
   Image colour, depth;
   Image samples;  // empty with one sample per pixel
+  Image coarse;   // instead of `colour` for a landscape of fewer pixels; empty until add_coarse()
   core::Extent extent;
-  VkImageLayout colour_layout = VK_IMAGE_LAYOUT_UNDEFINED;  // after the last recorded frame
+  core::Extent drawn;  // pixels of the landscape: extent, or fewer, in the corner of the images
+  // After the last recorded frame.
+  VkImageLayout colour_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkImageLayout coarse_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   // The host waits for the last frame in these targets before it submits the next one, so no
   // barrier is needed between them. On lavapipe a barrier waits for everything. Without it, the
   // triangles of one frame are set up while the pixels of the last one are filled.
   bool host_ordered = false;
+
+  bool is_coarse() const { return drawn != extent; }
 };
 // Creates targets of `extent` pixels. Fails with kOutOfMemory.
 core::Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
                                    VkSampleCountFlagBits samples);
+// Whether the device can scale images of this format up, smoothly.
+bool can_scale_up(const Device& device, VkFormat format);
+// Creates Targets::coarse, for frames of fewer pixels. Fails with kOutOfMemory.
+core::Result<void> add_coarse(const Device& device, VkFormat format, Targets& targets);
 
 // A frame has one pass, or two with a read of depth in between.
 enum class PassPart : std::uint8_t { kWhole, kFirst, kSecond };
@@ -29,6 +39,10 @@ enum class PassPart : std::uint8_t { kWhole, kFirst, kSecond };
 // all of them. Depth is cleared; whatever draws must cover every pixel.
 void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets,
                 PassPart part = PassPart::kWhole);
+
+// After the passes of a coarse frame: scales it up to the colour target, and begins a pass on that
+// alone, without depth and with one sample per pixel.
+void begin_pass_over_coarse(const Device& device, VkCommandBuffer commands, Targets& targets);
 
 // Copies the colour target to a swapchain image and makes that ready to be presented.
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,

@@ -264,6 +264,8 @@ struct Morph {
   float from_m = 0, to_m = 0;  // distances at which it begins, and at which heights are coarse
 };
 
+inline constexpr float kLeastResolution = 0.25F;  // FrameInput::resolution
+
 // Everything that a frame shows. Spans must stay valid during render(). The pose is
 // core::is_valid(); the field of view is between 0.001 and 3.13 rad, aspect and near plane between
 // 1e-6 and 1e6.
@@ -276,6 +278,9 @@ struct FrameInput {
   Canopy canopy;
   WorldEdge edge;
   View view = View::kNormal;
+  // Share of the picture's width and height that the landscape has, kLeastResolution … 1; it is
+  // scaled up to the picture. What lies over it always has all pixels.
+  float resolution = 1;
   Morph morph;
   double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
   std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
@@ -328,6 +333,8 @@ struct FrameResult {
   std::optional<GpuTime> gpu;   // of the latest frame with a known time, usually four frames ago
   Apart apart = Apart::kNo;
   bool presented = false;  // windowed: shown; headless: drawn
+  // FrameInput::resolution, or 1 where the device or its memory cannot have less.
+  float resolution = 1;
 
   // Sum of all waits.
   double wait_ms() const { return device.ms + acquire.ms + present.ms; }

@@ -53,8 +53,14 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
       draw_twice(core::VertexLayout::kModel, Coverage::kPictured);
     }
     if (step == 3) draw_water_and_sky(device, pipelines, commands, true, lamps);
-    if (step == 4) draw_lines_and_text(device, pipelines, commands, 3, 0);
+    if (step == 4) draw_text(device, pipelines.overlay(false), commands, 3);
   });
+  if (step == 4 && targets.is_coarse()) {
+    begin_pass_over_coarse(device, slot.commands(), targets);
+    bind_set(device, pipelines, slot);
+    draw_text(device, pipelines.overlay(true), slot.commands(), 3);
+    device.vk.vkCmdEndRendering(slot.commands());
+  }
 }
 
 void record_object_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,

@@ -158,6 +158,10 @@ core::Result<void> Scene::check(const Settings& settings) {
   if (!(settings.target_frame_ms >= 0 && settings.target_frame_ms <= 10'000)) {
     return refuse("the target of the frame time must be between 0 and 10000 ms");
   }
+  if (!(settings.min_resolution >= double{render::kLeastResolution} &&
+        settings.min_resolution <= 1)) {
+    return refuse("the resolution of the landscape may fall to a share between 0.25 and 1");
+  }
   if (!(settings.max_error_factor >= 1 && settings.max_error_factor <= 100)) {
     return refuse("the error may grow by a factor between 1 and 100");
   }
@@ -239,11 +243,13 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   if (settings.virtual_time) options.virtual_clock = [&s] { return s.clock.real_s; };
   if (auto ok = start_modelers(options, s.meshes, s.settings); !ok)
     return tl::unexpected(ok.error());
-  s.quality.governor =
-      Governor({.target_ms = settings.target_frame_ms, .max_factor = settings.max_error_factor});
+  const double pixel_relief = pixel_relief_of(settings);
+  s.quality.governor = Governor({.target_ms = settings.target_frame_ms,
+                                 .max_relief = pixel_relief * settings.max_error_factor,
+                                 .pixel_relief = pixel_relief});
   // Places may be asked for before the first tick (readiness.hpp).
   fit_to_size(s.input.size, s.camera);
-  set_errors(s.settings, s.quality);
+  set_detail(s.settings, s.quality);
   s.simulation.step.step_s = 1 / settings.step_hz;
   build_tick(s);
   s.trace = tracing_of(trace, s.settings.modelers, facts.registry);

@@ -35,15 +35,17 @@ struct Settings {
   std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
   double view_distance_m = 16'000;            // nothing farther away is drawn
   double max_error_pixels = 4.0;              // of the level of detail that is chosen
-  double target_frame_ms = 0;                 // held by a larger error; 0: the error is fixed
-  double max_error_factor = 4;                // so much larger at most
-  double min_size_pixels = 1.5;               // models smaller on screen are not drawn
-  double fade_seconds = 0.25;                 // in which models come and go; 0: at once
-  bool levels_of_detail = true;               // false: full detail everywhere, as in the paper
-  bool occlusion = true;                      // leave out what lies behind ridges
-  double watchdog_seconds = 10;               // a model that takes longer is given up
-  double main_thread_budget_ms = 2.0;         // per tick, for meshes whose absence is seen
-  double plan_seconds_ahead = 0.05;           // synthesis time per modeler in one plan
+  // Held by fewer pixels of the landscape, then by a larger error; 0: both are fixed.
+  double target_frame_ms = 0;
+  double min_resolution = 0.6;         // share of width and height, 0.25 … 1
+  double max_error_factor = 4;         // so much larger at most
+  double min_size_pixels = 1.5;        // models smaller on screen are not drawn
+  double fade_seconds = 0.25;          // in which models come and go; 0: at once
+  bool levels_of_detail = true;        // false: full detail everywhere, as in the paper
+  bool occlusion = true;               // leave out what lies behind ridges
+  double watchdog_seconds = 10;        // a model that takes longer is given up
+  double main_thread_budget_ms = 2.0;  // per tick, for meshes whose absence is seen
+  double plan_seconds_ahead = 0.05;    // synthesis time per modeler in one plan
   std::uint32_t plan_max_requests = 4096;
   std::uint32_t plan_max_new = 256;   // of them, reserved in one tick
   double streaming_budget_ms = 2.0;   // per tick, for creating nodes

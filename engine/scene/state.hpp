@@ -72,6 +72,7 @@ struct Pressure {
 // How fine the picture is in this tick (quality_system).
 struct Quality {
   Governor governor;
+  double resolution = 1;    // render::FrameInput::resolution
   double error_pixels = 0;  // that levels of detail may have
   // The same for single models. They take the square root of what the governor adds: they are near,
   // where one looks, and few of a frame's triangles.

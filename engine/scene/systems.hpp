@@ -23,8 +23,10 @@ void fit_to_size(const core::Extent& size, Camera& camera);
 void quality_system(const Settings& settings, const Rules& rules, const Input& input,
                     const Pressure& pressure, const synthesis::MeshSupply& meshes,
                     Quality& quality);
-// The part of it that follows from its factors: the errors that are allowed.
-void set_errors(const Settings& settings, Quality& quality);
+// The part of it that follows from its factors: the resolution and the errors that are allowed.
+void set_detail(const Settings& settings, Quality& quality);
+// How much frames are relieved of their pixels where the resolution is the least.
+double pixel_relief_of(const Settings& settings);
 
 // Moves the sun of worlds that have a day; the ground whose shadows it changes is made anew.
 using DaylightQuery = ecs::Query<const Node, Source, Demand>;
@@ -101,9 +103,9 @@ using RenderQuery = ecs::Query<const Node, const ecs::Children, const Visibility
                                const Demand, const Source, const Mesh, const MeshParts,
                                const OldParts, const GroundRelief, const GroundSun, Fading>;
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
-                   const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                   const View& view, const ObjectDraws& objects, const LightDraws& lights,
-                   const ParticleDraws& particles, RenderQuery entities,
+                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
+                   const Streaming& streaming, const View& view, const ObjectDraws& objects,
+                   const LightDraws& lights, const ParticleDraws& particles, RenderQuery entities,
                    synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
                    Pressure& pressure, Counters& counters);
 

@@ -19,7 +19,7 @@ constexpr std::string_view kColumnsBeforeSystems =
     "frame,time_s,frame_ms,main_cpu_ms,wait_ms,device_wait_ms,acquire_ms,present_ms,record_ms,"
     "gpu_ms,gpu_shadows_ms,apart";
 constexpr std::string_view kColumnsAfterSystems =
-    "error_pixels,memory_factor,triangles,draws,nodes_in_view,holes,coarse_nodes,"
+    "error_pixels,memory_factor,resolution,triangles,draws,nodes_in_view,holes,coarse_nodes,"
     "missing_pixels_percent,too_coarse_percent,cache_bytes,cache_hits,cache_misses,"
     "cache_evictions,cache_regenerations,requests_queued,requests_refused,requests_completed,"
     "models_failed,models_synthesised,triangles_synthesised,bytes_synthesised,synthesis_seconds";
@@ -39,14 +39,15 @@ std::string row(const FrameRecord& r, std::span<const float> system_ms) {
                  name_of(r.apart));
   for (const float ms : system_ms)
     std::isnan(ms) ? fmt::format_to(to, ",") : fmt::format_to(to, ",{:.4f}", ms);
-  fmt::format_to(
-      to,
-      ",{:.3f},{:.3f},{},{},{},{},{},{:.4f},{:.4f},{},{},{},{},{},{},{},{},{},{},{},{},{:.6f}\n",
-      r.error_pixels, r.memory_factor, r.triangles, r.draws, r.nodes_in_view, r.holes,
-      r.coarse_nodes, r.missing_pixels_percent, r.too_coarse_percent, r.cache_bytes, r.cache_hits,
-      r.cache_misses, r.cache_evictions, r.cache_regenerations, r.requests_queued,
-      r.requests_refused, r.requests_completed, r.models_failed, r.models_synthesised,
-      r.triangles_synthesised, r.bytes_synthesised, r.synthesis_seconds);
+  fmt::format_to(to,
+                 ",{:.3f},{:.3f},{:.3f},{},{},{},{},{},{:.4f},{:.4f},{},{},{},{},{},{},{},{},{},{},"
+                 "{},{},{:.6f}\n",
+                 r.error_pixels, r.memory_factor, r.resolution, r.triangles, r.draws,
+                 r.nodes_in_view, r.holes, r.coarse_nodes, r.missing_pixels_percent,
+                 r.too_coarse_percent, r.cache_bytes, r.cache_hits, r.cache_misses,
+                 r.cache_evictions, r.cache_regenerations, r.requests_queued, r.requests_refused,
+                 r.requests_completed, r.models_failed, r.models_synthesised,
+                 r.triangles_synthesised, r.bytes_synthesised, r.synthesis_seconds);
   return text;
 }
 

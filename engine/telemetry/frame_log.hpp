@@ -54,6 +54,7 @@ struct FrameRecord {
 
   double error_pixels = 0;      // that levels of detail may have
   double memory_factor = 1;     // factor by which the geometry budget raised it
+  double resolution = 1;        // share of the picture's width and height that the landscape has
   std::uint64_t triangles = 0;  // submitted
   std::uint32_t draws = 0;
   std::uint32_t nodes_in_view = 0;

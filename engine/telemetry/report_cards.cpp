@@ -74,6 +74,14 @@ std::string speed_cards(const Summary& s) {
   return html;
 }
 
+std::string resolution_text(const Summary& s) {
+  const Figure& least = s.detail.resolution_min;
+  if (!least.has_value() || *least >= 1) return "";
+  return fmt::format("; resolution {} %, {} % at least",
+                     shown(s.detail.resolution_p50, [](double v) { return three_digits(100 * v); }),
+                     three_digits(100 * *least));
+}
+
 std::string picture_cards(const Summary& s, Grade grade) {
   const bool a_hole = s.missing.frames.value.value_or(0) > 0;
   const bool coarse = s.missing.coarse_frames.value.value_or(0) > 0;
@@ -90,7 +98,7 @@ std::string picture_cards(const Summary& s, Grade grade) {
                    : good,
                "Error of levels of detail", shown(s.detail.p50_pixels, three_digits), "pixels",
                "at most " + shown(s.detail.max_pixels, three_digits) + "; asked for " +
-                   fmt::format("{:g}", s.run.error_pixels));
+                   fmt::format("{:g}", s.run.error_pixels) + resolution_text(s));
   return html;
 }
 

@@ -193,6 +193,17 @@ Plot error_plot(const FrameLog& log, const Summary& s) {
   return plot;
 }
 
+// The share of the picture's resolution that the landscape had.
+Plot resolution_plot(const FrameLog& log) {
+  Plot plot;
+  plot.title = "Resolution of the landscape";
+  plot.unit = "%";
+  plot.small = true;
+  plot.series = {{"resolution", 5, column(log, [](const auto& r) { return 100 * r.resolution; })}};
+  plot.note = "Given up before shapes where frames take too long, and scaled up.";
+  return plot;
+}
+
 Plot cache_plot(const FrameLog& log, const Summary& s) {
   Plot plot;
   plot.title = "Geometry cache";
@@ -287,6 +298,7 @@ std::string report_plots(const FrameLog& log, const Summary& s) {
   };
   add(frame_time_plot(log, s));
   add(error_plot(log, s));
+  if (s.detail.resolution_min.value.value_or(1) < 1) add(resolution_plot(log));
   html += distribution_html();
   add(systems_plot(log, s));
   add(coarse_plot(log, s));

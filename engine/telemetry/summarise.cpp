@@ -161,8 +161,12 @@ void summarise_drawing(Summary& s, Frames frames) {
   s.detail.raised_by_memory =
       total(frames, [](const auto& r) { return r.memory_factor > kRaised ? 1 : 0; });
   s.detail.raised_for_target = total(frames, [asked](const auto& r) {
-    return asked > 0 && r.error_pixels > asked * r.memory_factor ? 1 : 0;
+    const bool coarser = asked > 0 && r.error_pixels > asked * r.memory_factor;
+    return coarser || r.resolution < 1 ? 1 : 0;
   });
+  const auto resolution = column(frames, [](const auto& r) { return r.resolution; });
+  s.detail.resolution_p50 = percentile(resolution, 0.5);
+  s.detail.resolution_min = percentile(resolution, 0.0);
   s.detail.refused_frames =
       total(frames, [](const auto& r) { return r.requests_refused > 0 ? 1 : 0; });
 }

@@ -146,6 +146,7 @@ struct Summary {
   } missing;
   struct {
     Figure p50_pixels, max_pixels;              // error that levels of detail may have
+    Figure resolution_p50, resolution_min;      // FrameRecord::resolution
     Count raised_by_memory, raised_for_target;  // frames in which it was above the requested one
     Count refused_frames;                       // frames in which something in view got no memory
   } detail;

@@ -128,6 +128,8 @@ Json detail_json(const Summary& s, Writer& w) {
       {"asked_pixels", s.run.error_pixels},
       {"p50_pixels", w.figure("detail.p50_pixels", d.p50_pixels)},
       {"max_pixels", w.figure("detail.max_pixels", d.max_pixels)},
+      {"resolution_p50", w.figure("detail.resolution_p50", d.resolution_p50)},
+      {"resolution_min", w.figure("detail.resolution_min", d.resolution_min)},
       {"raised_by_memory_frames", w.count("detail.raised_by_memory_frames", d.raised_by_memory)},
       {"raised_for_target_frames", w.count("detail.raised_for_target_frames", d.raised_for_target)},
       {"refused_frames", w.count("detail.refused_frames", d.refused_frames)}};

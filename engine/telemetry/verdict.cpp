@@ -118,9 +118,17 @@ class Judge {
   }
 
   std::string error_text() const {
-    return fmt::format("the allowed error was {} pixels in the median and {} at most, not {:g}",
-                       or_dash(s_.detail.p50_pixels, three_digits),
-                       or_dash(s_.detail.max_pixels, three_digits), s_.run.error_pixels);
+    std::string text =
+        fmt::format("the allowed error was {} pixels in the median and {} at most, not {:g}",
+                    or_dash(s_.detail.p50_pixels, three_digits),
+                    or_dash(s_.detail.max_pixels, three_digits), s_.run.error_pixels);
+    const Figure& least = s_.detail.resolution_min;
+    if (least.has_value() && *least < 1)
+      text +=
+          fmt::format("; the landscape had {} % of the resolution in the median and {} % at least",
+                      three_digits(100 * s_.detail.resolution_p50.value.value_or(1)),
+                      three_digits(100 * *least));
+    return text;
   }
 
   void judge_memory() {
@@ -138,7 +146,7 @@ class Judge {
   void judge_target() {
     if (!is_often(s_, s_.detail.raised_for_target)) return;
     lower(Grade::kFair, "coarser than asked for",
-          fmt::format("To hold {:g} frames/s the error was raised in {}: {}.",
+          fmt::format("To hold {:g} frames/s the picture was made coarser in {}: {}.",
                       s_.run.target_fps.value.value_or(0),
                       frames_text(s_, s_.detail.raised_for_target), error_text()));
     verdict_.advice.push_back(

@@ -1,8 +1,9 @@
-// Holds a frame time by the error that levels of detail may have: more when frames take too long,
-// less, slowly, when there is time to spare. What it steers acts late (meshes must be synthesised
-// first), so that it takes small steps and rests inside a band. It starts with the largest error,
-// so that the first picture is there soon and is fast, and until frames reach the band it refines
-// in larger steps. Where a wide view opens, as behind a hilltop, it does not wait until frames have
+// Holds a frame time by how much it relieves frames of their work: more when they take too long,
+// less, slowly, when there is time to spare. A little relief is fewer pixels, which acts at once;
+// more is a larger error of levels of detail, which acts late (meshes must be synthesised first),
+// so that it takes small steps and rests inside a band. It starts with the largest relief, so that
+// the first picture is there soon and is fast, and until frames reach the band it refines in larger
+// steps. Where a wide view opens, as behind a hilltop, it does not wait until frames have
 // been too long for a while: from how many triangles there are it knows what they will take
 // (frame_line.hpp). Pure; no clock of its own.
 #pragma once
@@ -16,23 +17,24 @@ namespace psygen::scene {
 
 // What the governor holds, and how far it may go.
 struct GovernorSettings {
-  double target_ms = 0;      // of a frame; 0: the error stays at its lower bound
-  double max_factor = 4;     // upper bound of the error over its lower bound, >= 1
+  double target_ms = 0;      // of a frame; 0: there is never any relief
+  double max_relief = 4;     // >= 1
+  double pixel_relief = 1;   // up to it relief is fewer pixels, beyond it fewer triangles
   double rest_share = 0.85;  // of the target: between it and the target nothing changes
 };
 
-// The factor on the allowed error. Follows every observe().
+// How much frames are relieved. Follows every observe().
 class Governor {
  public:
   explicit Governor(const GovernorSettings& settings = {})
-      : settings_(settings), factor_(settings.target_ms > 0 ? settings.max_factor : 1) {}
+      : settings_(settings), relief_(settings.target_ms > 0 ? settings.max_relief : 1) {}
 
   // What the last frame took, without waiting for a display, and how many triangles it drew (0:
   // unknown). Times that are not positive are ignored, one frame counts for at most three targets.
   void observe(double frame_ms, double triangles = 0);
 
-  // By how much the error exceeds its lower bound, 1 … max_factor.
-  double error_factor() const { return factor_; }
+  // 1 … max_relief: 1 is none, pixels and triangles fall about in proportion to it.
+  double relief() const { return relief_; }
 
  private:
   // Frames until the picture has followed the error: meshes, and fades of a fifth of a second.
@@ -44,9 +46,9 @@ class Governor {
   GovernorSettings settings_;
   bool refining_ = true;  // since the start, and no frames have come to the band yet
   double smoothed_ms_ = 0;
-  double factor_;
+  double relief_;
   FrameLine line_;
-  std::array<double, kLagFrames> factors_{};  // of the last frames, a ring; 0: none yet
+  std::array<double, kLagFrames> reliefs_{};  // of the last frames, a ring; 0: none yet
   std::size_t next_ = 0;                      // of the ring, the oldest
 };
 

@@ -1,6 +1,6 @@
-// The one loop that steers how fine pictures are: coarser where frames take too long (governor) or
-// where what is seen needs more memory than there is (coarsening); and how long pictures have
-// lacked something.
+// The one loop that steers how fine pictures are: fewer pixels of the landscape and then a larger
+// error where frames take too long (governor), a larger error where what is seen needs more memory
+// than there is (coarsening); and how long pictures have lacked something.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,10 +46,26 @@ void adapt_to_memory(const Settings& settings, const Rules& rules, const Pressur
   }
 }
 
+// The share of width and height that leaves 1 / relief of the pixels, in steps: nobody sees one of
+// them, and most frames scale like the one before. Scaling up takes about as long as a fifth of the
+// pixels, so the first step is a large one.
+double resolution_for(double relief, double least) {
+  constexpr double kSteps = 20, kNearlyAll = 0.9, kFirst = 0.8;
+  const double share = 1 / std::sqrt(relief);
+  if (share > kNearlyAll) return 1;
+  return std::max(std::min(std::floor(share * kSteps) / kSteps, kFirst), least);
+}
+
 }  // namespace
 
-void set_errors(const Settings& settings, Quality& quality) {
-  const double factor = quality.governor.error_factor();
+double pixel_relief_of(const Settings& settings) {
+  return 1 / (settings.min_resolution * settings.min_resolution);
+}
+
+void set_detail(const Settings& settings, Quality& quality) {
+  const double relief = quality.governor.relief(), by_pixels = pixel_relief_of(settings);
+  quality.resolution = resolution_for(std::min(relief, by_pixels), settings.min_resolution);
+  const double factor = std::max(relief / by_pixels, 1.0);
   const double unhurried = settings.max_error_pixels * double{quality.coarsening};
   quality.error_pixels = unhurried * factor;
   quality.model_error_pixels = unhurried * std::sqrt(factor);
@@ -63,7 +79,7 @@ void quality_system(const Settings& settings, const Rules& rules, const Input& i
                                  ? std::min(quality.awaiting_since_s, pressure.at_s)
                                  : std::numeric_limits<double>::infinity();
   quality.governor.observe(input.frame_ms, input.frame_triangles);
-  set_errors(settings, quality);
+  set_detail(settings, quality);
 }
 
 }  // namespace psygen::scene

@@ -179,9 +179,9 @@ FadeStep fade_step(const Settings& settings, const Clock& clock, const DrawLists
 }  // namespace
 
 void render_system(const Settings& settings, const Input& input, const Clock& clock,
-                   const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
-                   const View& view, const ObjectDraws& objects, const LightDraws& lights,
-                   const ParticleDraws& particles, RenderQuery entities,
+                   const Camera& camera, const Quality& quality, const WorldFacts& facts,
+                   const Streaming& streaming, const View& view, const ObjectDraws& objects,
+                   const LightDraws& lights, const ParticleDraws& particles, RenderQuery entities,
                    synthesis::MeshSupply& meshes, DrawLists& draws, Output& output,
                    Pressure& pressure, Counters& counters) {
   draws.terrain.clear();
@@ -218,6 +218,7 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   frame.palette = facts.palette;
   frame.water = water_of(facts.world);
   frame.view = input.view;
+  frame.resolution = static_cast<float>(quality.resolution);
   frame.block_size_m = facts.world.block_size_m();
   frame.terrain = draws.terrain;
   frame.models = draws.models;

@@ -36,6 +36,7 @@ std::vector<double> errors_of_flight(double target_hz) {
   options.session.target_hz = target_hz;
   options.session.scene.max_error_pixels = 4;
   options.session.scene.max_error_factor = 3;
+  options.session.scene.min_resolution = 1;
   options.session.plugins.push_back(
       {.name = "watch", .on_frame = [&errors](Session& session, double) {
          errors.push_back(session.scene().state().quality.error_pixels);

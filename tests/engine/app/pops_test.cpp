@@ -172,7 +172,7 @@ void observe_frame(Studio& studio, double triangles) {
 Pops fly_while_coarsening(Studio& studio, const core::CameraPose& pose, glm::dvec3 step) {
   for (int i = 0; i < 2000; ++i)
     observe_frame(studio, 20'000 + 1000 * (i % 7));
-  EXPECT_EQ(studio.state().quality.governor.error_factor(), 1);
+  EXPECT_EQ(studio.state().quality.governor.relief(), 1);
   double before = 2, largest_step = 0;
   int last = 0;  // each step is asked for more than once
   const Pops pops = fly(studio, pose, 18, [&](int i) {
@@ -190,6 +190,7 @@ TEST(Pops, WhileTheGovernorCoarsensNoChangeOfLevelIsSeen) {
   SessionOptions options = coarse_view();
   options.scene.max_error_pixels = 2;
   options.scene.max_error_factor = 4;
+  options.scene.min_resolution = 1;
   options.target_hz = 60;
   for (const auto& [block, height_m, yaw, step] :
        {std::tuple(core::BlockCoord{250, 250}, 40.0, 0.3, glm::dvec3(0.15, 0, -0.5)),

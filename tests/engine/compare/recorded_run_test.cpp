@@ -34,6 +34,16 @@ TEST(RecordedRun, HoldsTheFramesAfterTheWarmUp) {
   EXPECT_FALSE(run->virtual_clock);
 }
 
+TEST(RecordedRun, ALandscapeOfFewerPixelsHasALargerError) {
+  const std::string header = kHeader.substr(0, kHeader.size() - 1) + ",resolution\n";
+  const auto run =
+      parse_run(header + "0,0.1,10,1,,4,0,0,0,0.8\n1,0.2,10,1,,4,0,0,0,1\n", kRunSummary, "dir");
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_DOUBLE_EQ(run->error_pixels, 4.5);
+  EXPECT_EQ(refusal(header + "0,0.1,10,1,,4,0,0,0,0\n"),
+            "dir/frames.csv:2: resolution: a share above 0, at most 1");
+}
+
 TEST(RecordedRun, LeavesOutFramesInWhichTheMachineWasSuspended) {
   const auto run = parse_run(kHeader + kRows, kRunSummary, "dir");
   ASSERT_TRUE(run);

@@ -73,6 +73,7 @@ TEST(VirtualClock, TimesThatOnlyARealClockKnowsAreLeftOut) {
 
 TEST(VirtualClock, PricesAreThePublishedOnes) {
   EXPECT_NEAR(virtual_frame_ms(40'000, 500, {640, 360}), 0.5 + 4 + 1 + 1.8432, 1e-12);
+  EXPECT_NEAR(virtual_frame_ms(40'000, 500, {640, 360}, 0.5), 0.5 + 4 + 1 + 0.4608, 1e-12);
 }
 
 TEST(VirtualClock, TheGpuPathIsRefused) {

@@ -128,6 +128,7 @@ TEST(Summarise, TellsWhyTheErrorOfLevelsOfDetailWasRaised) {
     FrameRecord r;
     r.error_pixels = i < 10 ? 8 : i < 40 ? 6 : 4;  // for time; for memory; as asked for
     r.memory_factor = i >= 10 && i < 40 ? 1.5 : 1;
+    r.resolution = i >= 98 ? 0.75 : 1;
     r.requests_refused = i == 12 ? 3 : 0;
     log.add(r);
   }
@@ -137,7 +138,9 @@ TEST(Summarise, TellsWhyTheErrorOfLevelsOfDetailWasRaised) {
   EXPECT_EQ(*s.detail.p50_pixels, 4);
   EXPECT_EQ(*s.detail.max_pixels, 8);
   EXPECT_EQ(*s.detail.raised_by_memory, 30U);
-  EXPECT_EQ(*s.detail.raised_for_target, 10U);
+  EXPECT_EQ(*s.detail.raised_for_target, 12U);
+  EXPECT_EQ(*s.detail.resolution_p50, 1);
+  EXPECT_EQ(*s.detail.resolution_min, 0.75);
   EXPECT_EQ(*s.detail.refused_frames, 1U);
 }
 

@@ -136,10 +136,18 @@ TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotWhatWasAskedFor) {
   const Verdict target =
       picture_verdict(flight([](FrameRecord& r) { r.error_pixels = 16; }, facts));
   EXPECT_EQ(target.grade, Grade::kFair);
-  EXPECT_NE(
-      text_of(target.reasons).find("To hold 60 frames/s the error was raised in 200 of 200 frames"),
-      std::string::npos)
+  EXPECT_NE(text_of(target.reasons)
+                .find("To hold 60 frames/s the picture was made coarser in 200 of 200 frames"),
+            std::string::npos)
       << text_of(target.reasons);
+  const Verdict pixels = picture_verdict(
+      flight([](FrameRecord& r) { r.resolution = r.index < 50 ? 0.6 : 0.8; }, facts));
+  EXPECT_EQ(pixels.grade, Grade::kFair);
+  EXPECT_NE(
+      text_of(pixels.reasons)
+          .find("the landscape had 80.0 % of the resolution in the median and 60.0 % at least"),
+      std::string::npos)
+      << text_of(pixels.reasons);
   // While it still refines, in the first frames, it is what was asked for.
   EXPECT_EQ(
       picture_verdict(flight([](FrameRecord& r) { r.error_pixels = r.index < 2 ? 16 : 4; }, facts))

@@ -36,7 +36,7 @@ Governor at_the_finest(const GovernorSettings& settings) {
     governor.observe(settings.target_ms / 2);
   for (int i = 0; i < 100; ++i)
     governor.observe(settings.target_ms * 0.9);
-  EXPECT_EQ(governor.error_factor(), 1);
+  EXPECT_EQ(governor.relief(), 1);
   return governor;
 }
 
@@ -44,7 +44,7 @@ TEST(Governor, WithoutATargetTheErrorStays) {
   Governor governor;
   for (int i = 0; i < 100; ++i)
     governor.observe(1000);
-  EXPECT_EQ(governor.error_factor(), 1);
+  EXPECT_EQ(governor.relief(), 1);
 }
 
 TEST(Governor, FramesThatTakeTooLongGetCoarserUntilTheyAreInTheBand) {
@@ -52,35 +52,49 @@ TEST(Governor, FramesThatTakeTooLongGetCoarserUntilTheyAreInTheBand) {
   Load load(4, 25, 30);
   double frame_ms = 0;
   for (int i = 0; i < 600; ++i)
-    governor.observe(frame_ms = load.frame_ms(governor.error_factor()));
+    governor.observe(frame_ms = load.frame_ms(governor.relief()));
   EXPECT_LE(frame_ms, 16.7 * 1.02);
   EXPECT_GE(frame_ms, 16.7 * 0.80);
 }
 
 // How much each of the last `frames` of this length adds to the error, on average.
 double answer_to(Governor& governor, double frame_ms, int frames) {
-  const double before = governor.error_factor();
+  const double before = governor.relief();
   for (int i = 0; i < frames; ++i)
     governor.observe(frame_ms);
-  return std::pow(governor.error_factor() / before, 1.0 / frames) - 1;
+  return std::pow(governor.relief() / before, 1.0 / frames) - 1;
 }
 
 TEST(Governor, FramesThatTakeFarTooLongAreAnsweredFaster) {
   for (const auto& [frame_ms, step] : {std::pair(20.0, 0.012), std::pair(32.0, 3 * 0.012)}) {
-    Governor governor = at_the_finest({.target_ms = 16, .max_factor = 1e9});
+    Governor governor = at_the_finest({.target_ms = 16, .max_relief = 1e9});
     answer_to(governor, frame_ms, 60);
     EXPECT_NEAR(answer_to(governor, frame_ms, 40), step, 1e-4);
   }
 }
 
+// Triangles that fewer pixels do not change: the relief by pixels is used up, and no more than it.
+TEST(Governor, TooManyTrianglesUseUpTheReliefByPixelsAtOnce) {
+  Governor governor = at_the_finest({.target_ms = 16, .max_relief = 8, .pixel_relief = 2});
+  for (int i = 0; i < 200; ++i) {
+    const double triangles = 20'000 + 7000 * (i % 7);
+    governor.observe(5 + triangles * 1.5e-4, triangles);
+  }
+  EXPECT_EQ(governor.relief(), 1);
+  int frames = 0;
+  for (; governor.relief() < 2 && frames < 60; ++frames)
+    governor.observe(15.9, 120'000);
+  EXPECT_LE(frames, 8);
+}
+
 TEST(Governor, StartsWithTheLargestErrorAndRefinesFastUntilFramesReachTheBand) {
-  Governor governor({.target_ms = 16, .max_factor = 100});
-  EXPECT_EQ(governor.error_factor(), 100);
+  Governor governor({.target_ms = 16, .max_relief = 100});
+  EXPECT_EQ(governor.relief(), 100);
   EXPECT_NEAR(answer_to(governor, 5, 60), -0.012, 1e-9);
   answer_to(governor, 14.5, 60);  // within the band
-  const double factor = governor.error_factor();
+  const double factor = governor.relief();
   EXPECT_NEAR(answer_to(governor, 15, 60), 0, 1e-12);
-  EXPECT_EQ(governor.error_factor(), factor);
+  EXPECT_EQ(governor.relief(), factor);
   answer_to(governor, 5, 60);
   EXPECT_NEAR(answer_to(governor, 5, 60), -0.003, 1e-5);
 }
@@ -89,14 +103,14 @@ TEST(Governor, FramesThatAreTooSlowFromTheStartKeepTheLargestError) {
   Governor governor({.target_ms = 16});
   for (int i = 0; i < 100; ++i) {
     governor.observe(40);
-    EXPECT_EQ(governor.error_factor(), 4);
+    EXPECT_EQ(governor.relief(), 4);
   }
 }
 
 TEST(Governor, ASlowFirstFrameDoesNotEndTheStart) {
-  Governor governor({.target_ms = 16, .max_factor = 100});
+  Governor governor({.target_ms = 16, .max_relief = 100});
   governor.observe(60);
-  EXPECT_EQ(governor.error_factor(), 100);
+  EXPECT_EQ(governor.relief(), 100);
   answer_to(governor, 5, 40);
   EXPECT_NEAR(answer_to(governor, 5, 40), -0.012, 1e-9);
 }
@@ -127,11 +141,11 @@ int slow_frames_behind_a_hilltop(bool knows_triangles) {
   int slow = 0;
   for (int i = 0; i < 400; ++i) {
     picture.width = i < 200 ? 1 : 3;
-    const double triangles = picture.triangles(governor.error_factor());
+    const double triangles = picture.triangles(governor.relief());
     slow += i >= 200 && frame_ms_of(triangles) > 20 ? 1 : 0;
     governor.observe(frame_ms_of(triangles), knows_triangles ? triangles : 0);
   }
-  EXPECT_LE(frame_ms_of(picture.triangles(governor.error_factor())), 16.1);
+  EXPECT_LE(frame_ms_of(picture.triangles(governor.relief())), 16.1);
   return slow;
 }
 
@@ -146,9 +160,9 @@ TEST(Governor, AWideViewIsNotAnsweredByMoreThanItNeeds) {
   double most = 0;
   for (int i = 0; i < 1000; ++i) {
     picture.width = i < 200 ? 1 : 3;
-    const double triangles = picture.triangles(governor.error_factor());
+    const double triangles = picture.triangles(governor.relief());
     governor.observe(frame_ms_of(triangles), triangles);
-    most = std::max(most, governor.error_factor());
+    most = std::max(most, governor.relief());
   }
   const double enough = 3 * 40'000 / ((16 - 5) / 1.5e-4);
   EXPECT_GT(most, enough);
@@ -168,7 +182,7 @@ TEST(Governor, TrianglesThatCostNothingChangeNothing) {
       Governor governor = at_the_finest({.target_ms = 16});
       for (int i = 0; i < 2000; ++i) {
         governor.observe(frame_ms, triangles(i));
-        ASSERT_EQ(governor.error_factor(), 1) << frame_ms << " ms, frame " << i;
+        ASSERT_EQ(governor.relief(), 1) << frame_ms << " ms, frame " << i;
       }
     }
   }
@@ -177,12 +191,12 @@ TEST(Governor, TrianglesThatCostNothingChangeNothing) {
 void expect_rest(Governor governor) {
   Load load(4, 40, 40);
   for (int i = 0; i < 3000; ++i)
-    governor.observe(load.frame_ms(governor.error_factor()));
-  const double rest = governor.error_factor();
+    governor.observe(load.frame_ms(governor.relief()));
+  const double rest = governor.relief();
   for (int i = 0; i < 600; ++i) {
     // Noise of a tenth does not stir it.
-    governor.observe(load.frame_ms(governor.error_factor()) * (i % 2 == 0 ? 0.95 : 1.0));
-    EXPECT_NEAR(governor.error_factor(), rest, 0.03 * rest);
+    governor.observe(load.frame_ms(governor.relief()) * (i % 2 == 0 ? 0.95 : 1.0));
+    EXPECT_NEAR(governor.relief(), rest, 0.03 * rest);
   }
 }
 
@@ -195,23 +209,23 @@ TEST(Governor, GoesBackToTheFinestWhenThereIsTime) {
   Governor governor = at_the_finest({.target_ms = 16.7});
   for (int i = 0; i < 300; ++i)
     governor.observe(30);
-  EXPECT_GT(governor.error_factor(), 2);
+  EXPECT_GT(governor.relief(), 2);
   for (int i = 0; i < 1500; ++i)
     governor.observe(5);
-  EXPECT_EQ(governor.error_factor(), 1);
+  EXPECT_EQ(governor.relief(), 1);
 }
 
 TEST(Governor, StaysBelowItsBoundAndASingleHitchHardlyCounts) {
-  Governor governor = at_the_finest({.target_ms = 16.7, .max_factor = 3});
+  Governor governor = at_the_finest({.target_ms = 16.7, .max_relief = 3});
   governor.observe(5000);
-  EXPECT_LT(governor.error_factor(), 1.02);
+  EXPECT_LT(governor.relief(), 1.02);
   for (int i = 0; i < 5000; ++i)
     governor.observe(100);
-  EXPECT_EQ(governor.error_factor(), 3);
+  EXPECT_EQ(governor.relief(), 3);
   governor.observe(std::numeric_limits<double>::quiet_NaN());
   governor.observe(-1);
   governor.observe(0);
-  EXPECT_EQ(governor.error_factor(), 3);
+  EXPECT_EQ(governor.relief(), 3);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ std::unique_ptr<Scene> steered_scene() {
   Settings settings = small_settings();
   settings.max_error_pixels = kError;
   settings.max_error_factor = kFactor;
+  settings.min_resolution = 1;
   settings.target_frame_ms = kTarget_ms;
   return make_scene(settings);
 }
@@ -80,6 +81,37 @@ TEST(QualityOfTime, TheTrianglesOfFramesCountAsWell) {
     return after_frames(*scene, 5 + 120'000 * 1.5e-4, knows_triangles ? 120'000 : 0, 4, false);
   };
   EXPECT_GT(error_behind_a_hilltop(true), 1.2 * error_behind_a_hilltop(false));
+}
+
+TEST(QualityOfTime, PixelsAreGivenUpBeforeShapesAndComeBackAfterThem) {
+  Settings settings = small_settings();
+  settings.max_error_pixels = kError;
+  settings.target_frame_ms = kTarget_ms;
+  settings.min_resolution = 0.6;
+  const auto scene = make_scene(settings);
+  Quality& quality = scene->state().quality;
+  EXPECT_EQ(quality.resolution, 0.6);
+  EXPECT_DOUBLE_EQ(quality.error_pixels, kError * settings.max_error_factor);
+  const auto ticks = [&](double frame_ms, int count) {
+    double least = 1;
+    for (int i = 0; i < count; ++i) {
+      scene->state().input.frame_ms = frame_ms;
+      tick_at(*scene, pose_at(256, 256));
+      const double r = quality.resolution;
+      EXPECT_TRUE(r == 1 || (r >= 0.6 && r <= 0.8)) << r;
+      EXPECT_TRUE(r == 0.6 || quality.error_pixels == kError) << r;
+      least = std::min(least, r);
+    }
+    return least;
+  };
+  ticks(5, 1000);
+  EXPECT_EQ(quality.resolution, 1);
+  EXPECT_EQ(ticks(30, 40), quality.resolution) << "it falls";
+  EXPECT_LT(quality.resolution, 1);
+  EXPECT_EQ(quality.error_pixels, kError);
+  ticks(40, 200);
+  EXPECT_EQ(quality.resolution, 0.6);
+  EXPECT_DOUBLE_EQ(quality.error_pixels, kError * settings.max_error_factor);
 }
 
 TEST(QualityOfTime, WithoutATargetTheErrorIsFixed) {
