@@ -82,6 +82,21 @@ TEST_P(Resolutions, TextHasAllPixels) {
   EXPECT_NEAR(over_coarse, sharp, 0.05 * sharp);
 }
 
+TEST_P(Resolutions, TextAloneAfterThemIsAsBefore) {
+  TextPanel panel;
+  panel.lines = {{"loading"}};
+  const auto shown = [&] {
+    EXPECT_TRUE(renderer_->show(std::span(&panel, 1), 1, {}));
+    const auto picture = renderer_->capture();
+    EXPECT_TRUE(picture);
+    return picture ? picture->rgba : std::vector<std::uint8_t>{};
+  };
+  picture_at(1);  // opaque
+  const auto before = shown();
+  picture_at(0.5F);
+  EXPECT_EQ(shown(), before);
+}
+
 TEST_P(Resolutions, OutOfTheirRangeAreTheNearestOne) {
   const Picture whole = picture_at(1), least = picture_at(kLeastResolution);
   for (const float share : {1.5F, std::numeric_limits<float>::quiet_NaN()})
