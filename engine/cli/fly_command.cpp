@@ -83,9 +83,14 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->default_str("layers");
   c.add_option_function<double>(
        "--target-fps", [this](double hz) { options_.session.target_hz = hz; },
-       "Hold this frame rate with a larger error (up to 4 times); 0: fixed error")
+       "Hold this frame rate with fewer pixels, then a larger error (up to 4 times); 0: fixed "
+       "error")
       ->default_str("60 in a window, 0 headless")
       ->check(zero_or_between(0.1, 1000));
+  c.add_option("--min-resolution", scene.min_resolution,
+               "To hold the rate, the landscape may have this share of width and height; 1: all")
+      ->capture_default_str()
+      ->check(number_between(0.25, 1));
   c.add_option("--fade", scene.fade_seconds, "Seconds in which models come and go; 0: at once")
       ->capture_default_str()
       ->check(number_between(0, 60));

@@ -42,11 +42,6 @@ void add_detail(CLI::App& c, scene::Settings& scene) {
   c.add_option("--error", scene.max_error_pixels, "Allowed error of a level of detail in pixels")
       ->capture_default_str()
       ->check(number_between(0.1, 1000));
-  c.add_option("--min-resolution", scene.min_resolution,
-               "To hold a frame rate, the landscape may fall to this share of width and height; "
-               "1: never")
-      ->capture_default_str()
-      ->check(number_between(0.25, 1));
   c.add_option_function<std::string>(
        "--occlusion", [&scene](const std::string& text) { scene.occlusion = text == "on"; },
        "Leave out what lies behind ridges: on, off")

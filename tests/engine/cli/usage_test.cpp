@@ -185,6 +185,7 @@ TEST(Usage, NumbersAreDecimalAndOthersAreToldWhatIsAllowed) {
       {{"fly", "--seconds", "1e400"}, "'1e400' is not a number"},
       {{"fly", "--seconds", "0x1p3"}, "'0x1p3' is not a number"},
       {{"fly", "--target-fps", "0.05"}, "'0.05' is not a number from 0.1 to 1000"},
+      {{"fly", "--min-resolution", "0.1"}, "'0.1' is not a number from 0.25 to 1"},
       {{"fly", "--budget", "0"}, "'0' is not allowed: it must be between 4M and 1T"},
       {{"fly", "--budget", "1K"}, "it must be between 4M and 1T"},
       {{"fly", "--budget", "4194303"}, "it must be between 4M and 1T"},
