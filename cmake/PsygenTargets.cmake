@@ -2,7 +2,7 @@
 #   psygen_library(NAME ...)                        the library of a folder: target, headers, component
 #   psygen_executable(NAME SOURCES ... PRIVATE ...) a program in bin/ of the build folder
 # All presets but dev compile with CMAKE_UNITY_BUILD, all files of a target at a time: that takes a
-# third of the time, and one build has all the names together. Files whose private names clash with others have SKIP_UNITY_BUILD_INCLUSION.
+# third of the time. Files whose private names clash with others have SKIP_UNITY_BUILD_INCLUSION.
 # All settings are of this project's own targets. Projects that use them, or that contain this one,
 # keep theirs.
 include(GNUInstallDirs)

@@ -153,7 +153,7 @@ void main() {
   float away = length(place);
   vec3 v = place / max(away, 1e-3);
   // The level of mips by the size of a pixel on the ground, the mean of along and across.
-  float pixel_m = away * 2.0 * length(frame.ray_down.xyz) / frame.morph.z;
+  float pixel_m = away * 2.0 * length(frame.ray_down.xyz) / frame.shade.w;
   float lod = log2(max(pixel_m, 1e-4) *
                    (float(PSYGEN_GROUND_SIDE) * float(PSYGEN_GROUND_REPEATS) / kPeriod)) -
               0.5 * log2(max(abs(dot(v, n)), 0.02));

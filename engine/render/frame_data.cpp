@@ -72,7 +72,7 @@ void dive(shaders::FrameData& out) {
   out.haze_colour.w = 0.0F;    // no clouds
 }
 
-void set_water_and_far_things(shaders::FrameData& out, const FrameInput& input, core::Extent size) {
+void set_water_and_far_things(shaders::FrameData& out, const FrameInput& input) {
   const float altitude = static_cast<float>(input.pose.position.local.y);
   const Water water = input.water.value_or(Water{kNoWaterM, glm::vec3(0.0F)});
   out.water = {water.colour, water.level_m - altitude};
@@ -82,7 +82,7 @@ void set_water_and_far_things(shaders::FrameData& out, const FrameInput& input, 
   out.canopy_place = {canopy.lowest_m, canopy.highest_m, 1.0F / std::max(canopy.blend_m, 1e-3F),
                       0.0F};
   out.morph = {input.morph.from_m, 1.0F / std::max(input.morph.to_m - input.morph.from_m, 1e-3F),
-               static_cast<float>(size.height), 0.0F};
+               0.0F, 0.0F};
   out.edge = {input.edge.least, input.edge.greatest};
 }
 
@@ -117,7 +117,7 @@ shaders::FrameData frame_data(const FrameInput& input, core::Extent size,
   set_camera(out, input, size);
   set_light(out, input);
   set_palette(out, input.palette);
-  set_water_and_far_things(out, input, size);
+  set_water_and_far_things(out, input);
   set_shadows(input, traits, out);
   set_lamps(out, input);
   return out;

@@ -144,13 +144,18 @@ VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect) {
   return barrier;
 }
 
-void image_barrier(const Device& device, VkCommandBuffer commands,
-                   const VkImageMemoryBarrier2& barrier) {
+void image_barriers(const Device& device, VkCommandBuffer commands,
+                    std::span<const VkImageMemoryBarrier2> barriers) {
   VkDependencyInfo dependency{};
   dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.imageMemoryBarrierCount = 1;
-  dependency.pImageMemoryBarriers = &barrier;
+  dependency.imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size());
+  dependency.pImageMemoryBarriers = barriers.data();
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+void image_barrier(const Device& device, VkCommandBuffer commands,
+                   const VkImageMemoryBarrier2& barrier) {
+  image_barriers(device, commands, {&barrier, 1});
 }
 
 void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 from,

@@ -80,6 +80,8 @@ core::Result<UniqueSemaphore> make_timeline(const Device& device);
 
 // Records a barrier, which may change an image's layout. barrier_of() is a barrier of the first mip
 // level and layer, to be completed by the caller.
+void image_barriers(const Device& device, VkCommandBuffer commands,
+                    std::span<const VkImageMemoryBarrier2> barriers);
 void image_barrier(const Device& device, VkCommandBuffer commands,
                    const VkImageMemoryBarrier2& barrier);
 VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect);

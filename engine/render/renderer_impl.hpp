@@ -23,8 +23,8 @@
 
 namespace psygen::render {
 
-// Its parts are in renderer_impl.cpp, renderer_preset.cpp, renderer_readback.cpp and
-// renderer_window.cpp.
+// Its parts are in renderer_create.cpp, renderer_impl.cpp (frames), renderer_preset.cpp,
+// renderer_readback.cpp and renderer_window.cpp.
 class RendererImpl {
  public:
   static constexpr std::size_t kFramesInFlight = 2;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "engine/render/pipeline_build.hpp"
@@ -56,11 +57,7 @@ void to_attachments(const Device& device, VkCommandBuffer commands, Targets& tar
   VkImageMemoryBarrier2 samples = colour;
   samples.image = targets.samples.image.get();
   const std::array barriers{colour, depth, samples};
-  VkDependencyInfo dependency{};
-  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.imageMemoryBarrierCount = has_samples(targets) ? 3 : 2;
-  dependency.pImageMemoryBarriers = barriers.data();
-  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+  image_barriers(device, commands, std::span(barriers).first(has_samples(targets) ? 3 : 2));
   layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 }
 
@@ -75,16 +72,6 @@ void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& tar
   barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
   image_barrier(device, commands, barrier);
   targets.colour_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-}
-
-// Records both barriers at once.
-void image_barriers(const Device& device, VkCommandBuffer commands,
-                    const std::array<VkImageMemoryBarrier2, 2>& barriers) {
-  VkDependencyInfo dependency{};
-  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size());
-  dependency.pImageMemoryBarriers = barriers.data();
-  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
 // Repeats the last column and row of the landscape beyond it, where scaling up looks too. In
@@ -119,7 +106,7 @@ void scale_up(const Device& device, VkCommandBuffer commands, Targets& targets) 
   to.dstStageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
   to.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
   to.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-  image_barriers(device, commands, {from, to});
+  image_barriers(device, commands, std::array{from, to});
   repeat_edges(device, commands, targets);
   memory_barrier(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                  VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
@@ -144,7 +131,7 @@ void scale_up(const Device& device, VkCommandBuffer commands, Targets& targets) 
       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
   to.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
   to.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  image_barriers(device, commands, {from, to});
+  image_barriers(device, commands, std::array{from, to});
   targets.colour_layout = targets.coarse_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 }
 

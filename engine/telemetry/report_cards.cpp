@@ -77,7 +77,7 @@ std::string speed_cards(const Summary& s) {
 std::string resolution_text(const Summary& s) {
   const Figure& least = s.detail.resolution_min;
   if (!least.has_value() || *least >= 1) return "";
-  return fmt::format("; resolution {} %, {} % at least",
+  return fmt::format("; resolution {} %, {} % at worst",
                      shown(s.detail.resolution_p50, [](double v) { return three_digits(100 * v); }),
                      three_digits(100 * *least));
 }

@@ -125,7 +125,7 @@ class Judge {
     const Figure& least = s_.detail.resolution_min;
     if (least.has_value() && *least < 1)
       text +=
-          fmt::format("; the landscape had {} % of the resolution in the median and {} % at least",
+          fmt::format("; the landscape had {} % of the resolution in the median and {} % at worst",
                       three_digits(100 * s_.detail.resolution_p50.value.value_or(1)),
                       three_digits(100 * *least));
     return text;

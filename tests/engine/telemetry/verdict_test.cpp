@@ -145,7 +145,7 @@ TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotWhatWasAskedFor) {
   EXPECT_EQ(pixels.grade, Grade::kFair);
   EXPECT_NE(
       text_of(pixels.reasons)
-          .find("the landscape had 80.0 % of the resolution in the median and 60.0 % at least"),
+          .find("the landscape had 80.0 % of the resolution in the median and 60.0 % at worst"),
       std::string::npos)
       << text_of(pixels.reasons);
   // While it still refines, in the first frames, it is what was asked for.

@@ -1,0 +1,205 @@
+// Creates the renderer's objects that outlive a preset: the device, memory for geometry, culling,
+// and the images of a picture. Those of a preset are in renderer_preset.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "engine/core/headroom.hpp"
+#include "engine/core/out_of_memory.hpp"
+#include "engine/render/renderer_impl.hpp"
+#include "engine/render/software_tuning.hpp"
+
+namespace psygen::render {
+
+using core::ErrorCode;
+using core::Result;
+
+namespace {
+
+bool is_empty(core::Extent extent) {
+  return extent.width == 0 || extent.height == 0;
+}
+
+// Memory that a software driver allocates from here to the first frame, besides pictures. Without
+// it, the driver ends the program in many ways, so it is checked first. Address space includes that
+// of the driver's libraries.
+constexpr std::uint64_t kStartBytes = std::uint64_t{96} << 20;
+constexpr std::uint64_t kStartAddressBytes = std::uint64_t{512} << 20;
+// Memory that geometry leaves free for everything else: the scene, the modelers, pictures of
+// models, what a software driver compiles, and its bins, which grow with the picture (measured: 80
+// MiB at 1280 x 720, 190 MiB at 3840 x 2160).
+std::uint64_t headroom_bytes(core::Extent size) {
+  const std::uint64_t bins = std::uint64_t{size.width} * size.height * 80;
+  return (std::uint64_t{64} << 20) + std::min(bins, std::uint64_t{192} << 20);
+}
+
+// On lavapipe a pushed draw costs about 800 ns more than a draw of a multi-draw. A multi-draw costs
+// about 20 ns per triangle more (psygen_bench_render). They are equal at about 40 triangles.
+constexpr std::uint32_t kWorthPushingIndices = 48 * 3;
+
+std::uint32_t first_pushed_index_count(Submission wish, const Device& device) {
+  if (wish == Submission::kPushed || device.max_multi_draw == 0) return 0;
+  const bool by_size = wish == Submission::kAuto && device.info.software;
+  return by_size ? kWorthPushingIndices : UINT32_MAX;
+}
+
+}  // namespace
+
+Result<void> RendererImpl::create_device() {
+  Result<std::unique_ptr<Instance>> instance =
+      Instance::create(options_.application_name, options_.validation, options_.surface);
+  if (!instance) return tl::unexpected(instance.error());
+  instance_ = std::move(*instance);
+  if (options_.surface != nullptr) {
+    Result<UniqueSurface> surface = make_surface(*instance_, *options_.surface);
+    if (!surface) return tl::unexpected(surface.error());
+    surface_ = std::move(*surface);
+  }
+  Result<DeviceCandidate> chosen =
+      choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
+  if (!chosen) return tl::unexpected(chosen.error());
+  Result<std::unique_ptr<Device>> device = Device::create(
+      *chosen, options_.surface != nullptr, options_.timestamps, options_.device_timeout_seconds);
+  if (!device) return tl::unexpected(device.error());
+  device_ = std::move(*device);
+  if (options_.surface != nullptr) {
+    const Result<VkFormat> format = colour_format_for(*device_, surface_);
+    if (!format) return tl::unexpected(format.error());
+    colour_format_ = *format;
+  }
+  pushed_from_ = first_pushed_index_count(options_.submission, *device_);
+  scales_up_ = can_scale_up(*device_, colour_format_);
+  return {};
+}
+
+Result<void> RendererImpl::create(const Progress& progress) {
+  const std::uint64_t largest = std::uint64_t{1} << 40;
+  if (options_.surface == nullptr && is_empty(options_.size)) {
+    return core::fail(ErrorCode::kInvalidArgument, "a picture needs at least one pixel");
+  }
+  if (options_.geometry_budget_bytes == 0 || options_.geometry_budget_bytes > largest) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      "the geometry budget must be between 1 byte and 1 TiB");
+  }
+  if (!core::memory_left(kStartBytes) || !core::addresses_left(kStartAddressBytes)) {
+    return core::fail(ErrorCode::kOutOfMemory, core::out_of_memory("starting the renderer"));
+  }
+  if (Result<void> made = create_device(); !made) return made;
+  if (Result<void> made = create_geometry(); !made) return made;
+  Result<UniqueSemaphore> timeline = make_timeline(*device_);
+  if (!timeline) return tl::unexpected(timeline.error());
+  timeline_ = std::move(*timeline);
+  if (Result<void> made = shared_.create(*device_); !made) return made;
+  if (Result<void> made = materials_.create(*device_, options_.texture_budget_bytes); !made)
+    return made;
+  if (Result<void> made = pictures_.create(*device_, {}); !made) return made;
+  for (FrameSlot& slot : slots_) {
+    if (Result<void> made = slot.create(*device_); !made) return made;
+  }
+  const Preset preset =
+      options_.preset.value_or(device_->info.software ? Preset::kLow : Preset::kHigh);
+  if (Result<void> made = create_looks(preset, progress); !made) return made;
+  idle_value_ = warm_up_value_ = frame_value_;
+  if (options_.surface == nullptr) resized_ = false;
+  return pool_->make_first_block();
+}
+
+Result<void> RendererImpl::create_geometry() {
+  pool_ =
+      std::make_unique<GeometryPool>(options_.geometry_budget_bytes,
+                                     [this](std::uint64_t bytes) { return add_pool_block(bytes); });
+  // A heap below twice the budget is taken for the small mapped window of a device.
+  const bool writable =
+      device_->info.software || device_->writable_bytes() / 2 >= options_.geometry_budget_bytes;
+  if (options_.upload == Upload::kStaged || (options_.upload == Upload::kAuto && !writable)) {
+    staged_ = std::make_unique<StagedGeometry>(*pool_);
+    return staged_->create(*device_);
+  }
+  return {};
+}
+
+Result<void> RendererImpl::create_culling() {
+  const DeviceInfo& info = device_->info;
+  if (options_.path == RenderPath::kGpu && !info.gpu_path) {
+    return core::fail(
+        ErrorCode::kNoDevice,
+        fmt::format("'{}' has no indirect draws with a count, which the GPU path needs",
+                    info.name));
+  }
+  const bool suits = info.gpu_path && !info.software;
+  if (options_.path == RenderPath::kCpu || (options_.path == RenderPath::kAuto && !suits))
+    return {};
+  culling_ = std::make_unique<GpuCulling>();
+  const VkSampleCountFlagBits samples = pipelines_.samples();
+  const bool readable = (device_->sampled_depth_counts & samples) != 0;
+  return culling_->create(*device_, options_.occlusion && readable, samples, kFramesInFlight);
+}
+
+Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
+  // Does not exhaust memory that belongs to the whole process.
+  if ((staged_ || device_->info.software) &&
+      !core::memory_left(bytes + headroom_bytes(options_.size))) {
+    return core::fail(ErrorCode::kOutOfMemory,
+                      core::out_of_memory(fmt::format(
+                          "{} MiB of geometry and what it takes to draw it", bytes >> 20)));
+  }
+  const VkBufferUsageFlags copied = staged_ ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
+  Result<Buffer> block =
+      make_buffer(*device_, bytes,
+                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | copied,
+                  staged_ ? MemoryUse::kDevice : MemoryUse::kWrite);
+  if (!block) return core::fail(ErrorCode::kOutOfMemory, block.error().message);
+  Result<std::byte*> written = block->mapped;
+  if (staged_) written = staged_->add_block(bytes);
+  if (!written) return written;
+  pool_blocks_.push_back(std::move(*block));
+  prefer_huge_pages({*written, bytes});
+  return written;
+}
+
+Result<void> RendererImpl::create_targets(core::Extent extent) {
+  const std::uint32_t side = device_->max_image_side;
+  if (is_empty(extent) || extent.width > side || extent.height > side) {
+    return core::fail(ErrorCode::kInvalidArgument,
+                      fmt::format("a picture has 1 to {} pixels a side on this device, not {} x {}",
+                                  side, extent.width, extent.height));
+  }
+  wait_idle();
+  resized_ = true;
+  targets_.clear();
+  has_picture_ = false;
+  std::vector<Targets> targets;
+  for (std::size_t i = 0; i < (culling_ ? 1 : kFramesInFlight); ++i) {
+    Result<Targets> made = make_targets(*device_, colour_format_, extent, pipelines_.samples());
+    if (!made) return tl::unexpected(made.error());
+    made->host_ordered = !culling_;
+    targets.push_back(std::move(*made));
+  }
+  if (culling_) {
+    const Result<void> fits = culling_->resize(*device_, extent, targets[0].depth);
+    if (!fits) return fits;
+  }
+  targets_ = std::move(targets);
+  return {};
+}
+
+// Makes the images that fewer pixels need, when they are needed first.
+core::Extent RendererImpl::landscape_size(float resolution) {
+  const core::Extent whole = size();
+  if (!(resolution < 1) || !scales_up_) return whole;
+  for (Targets& targets : targets_) {
+    if (targets.coarse.image.get() != VK_NULL_HANDLE) continue;
+    scales_up_ = add_coarse(*device_, colour_format_, targets).has_value();
+    if (!scales_up_) return whole;
+  }
+  const auto side = [share = std::max(resolution, kLeastResolution)](std::uint32_t pixels) {
+    return std::max(1U,
+                    static_cast<std::uint32_t>(std::lround(share * static_cast<float>(pixels))));
+  };
+  return {side(whole.width), side(whole.height)};
+}
+
+}  // namespace psygen::render
