@@ -279,7 +279,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   shade_.build(input.spots, {at.x, at.z});
   drawn_ = landscape_size(input.resolution);
   frame_.shade = {shade_.corner(), 0.0F, static_cast<float>(drawn_.height)};
-  out.resolution = static_cast<float>(drawn_.height) / static_cast<float>(size().height);
+  out.resolution = static_cast<double>(drawn_.height) / size().height;
   const GpuCulling::Counts counted =
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
   list_draws(input);

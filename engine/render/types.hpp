@@ -334,7 +334,7 @@ struct FrameResult {
   Apart apart = Apart::kNo;
   bool presented = false;  // windowed: shown; headless: drawn
   // FrameInput::resolution, or 1 where the device or its memory cannot have less.
-  float resolution = 1;
+  double resolution = 1;
 
   // Sum of all waits.
   double wait_ms() const { return device.ms + acquire.ms + present.ms; }

@@ -27,7 +27,7 @@ void note_drawing(const render::FrameResult& frame, telemetry::FrameRecord& reco
   record.apart = apart_of(frame.apart);
   record.triangles = frame.triangles;
   record.draws = frame.draws;
-  record.resolution = double{frame.resolution};
+  record.resolution = frame.resolution;
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ class Resolutions : public OnAPath {
   }
 
   std::vector<MeshDraw> boxes_;
-  float drawn_ = 0;
+  double drawn_ = 0;
 };
 
 // Mean difference of the channels, of 255.
@@ -67,7 +67,7 @@ TEST_P(Resolutions, FewerPixelsOfALandscapeFillThePicture) {
   EXPECT_EQ(drawn_, 1);
   for (const float share : {0.8F, 0.5F, 0.25F}) {
     const Picture coarse = picture_at(share);
-    EXPECT_FLOAT_EQ(drawn_, share);
+    EXPECT_NEAR(drawn_, double{share}, 1e-6);
     const double off = difference(coarse, whole);
     EXPECT_GT(off, 0.2) << share;
     EXPECT_LT(off, 4) << share;
@@ -109,7 +109,7 @@ TEST_P(Resolutions, FollowTheSizeOfThePictureAndReplays) {
   picture_at(0.5F);
   ASSERT_TRUE(renderer_->resize({64, 48}));
   EXPECT_EQ(picture_at(0.5F).width, 64u);
-  EXPECT_FLOAT_EQ(drawn_, 0.5F);
+  EXPECT_EQ(drawn_, 0.5);
   ASSERT_TRUE(renderer_->resize({1, 1}));
   EXPECT_EQ(picture_at(0.5F).rgba.size(), 4u);
   ASSERT_TRUE(renderer_->resize(kSize));
