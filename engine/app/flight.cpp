@@ -162,20 +162,8 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   const bool like_others = record.apart == telemetry::Apart::kNo;
   if (like_others) usual_ms_ = record.frame_ms;
   if (like_others) hud_.add_frame(record.frame_ms);
-  state.input.frame_ms = like_others ? governed_ms(record.frame_ms) : 0.0;
-  // On a device of its own the time is that of some frames before.
-  state.input.frame_triangles = static_cast<double>(state.counters.frame.triangles);
+  if (!like_others) state.input.frame_ms = 0;  // nor like what the governor may answer
   return {};
-}
-
-// What the error of levels of detail is governed by. The device's time counts where it is the
-// longer one; waiting, for it or a display, does not. A software device's time is this machine's
-// own.
-double Flight::governed_ms(double frame_ms) const {
-  if (has_virtual_frames(options_.session)) return frame_ms;
-  const render::FrameResult& drawn = session_->scene().state().counters.frame;
-  if (session_->renderer().device().software) return frame_ms - drawn.acquire.ms;
-  return std::max(frame_ms - drawn.wait_ms(), drawn.gpu ? drawn.gpu->ms : 0.0);
 }
 
 core::Result<void> Flight::loop() {

@@ -57,7 +57,6 @@ class Flight {
   bool stays_open() const;
   bool saves_picture() const;
   core::Result<void> save_numbered_picture();
-  double governed_ms(double frame_ms) const;
   void log_frame();
   FlightReport land(bool whole);
 

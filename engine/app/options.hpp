@@ -58,7 +58,8 @@ struct SessionOptions {
   render::RenderPath render_path = render::RenderPath::kAuto;
   render::View view = render::View::kNormal;
   std::optional<double> start_hour;  // of the day, 0 to 24; the world must have one
-  // Frames a second that are held by a larger error of levels of detail; 0: the error is fixed.
+  // Frames a second that are held by fewer pixels and a larger error of levels of detail; 0: both
+  // are fixed.
   // Not set: 60 in a window, 0 headless. At most 10^6.
   std::optional<double> target_hz;
   bool prefill = true;  // fill the cache for the first pose before the first tick

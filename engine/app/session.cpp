@@ -8,6 +8,7 @@
 #include "engine/app/gui.hpp"
 #include "engine/app/loading.hpp"
 #include "engine/app/plugin_call.hpp"
+#include "engine/app/virtual_frame.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
@@ -302,7 +303,26 @@ core::Result<void> Session::draw_gui(double dt_s) {
   return drawn;
 }
 
+// What the quality of pictures is governed by. The device's time counts where it is the longer one;
+// waiting, for it or a display, does not. A software device's time is this machine's own.
+void Session::tell_governor(double tick_ms) {
+  scene::State& state = scene_->state();
+  const render::FrameResult& drawn = state.counters.frame;
+  if (has_virtual_frames(options_)) {
+    tick_ms = virtual_frame_ms(state.record.triangles, state.record.draws, state.input.size,
+                               state.record.resolution);
+  } else if (renderer_->device().software) {
+    tick_ms -= drawn.acquire.ms;
+  } else {
+    tick_ms = std::max(tick_ms - drawn.wait_ms(), drawn.gpu ? drawn.gpu->ms : 0.0);
+  }
+  state.input.frame_ms = tick_ms;
+  // On a device of its own the time is that of some frames before.
+  state.input.frame_triangles = static_cast<double>(drawn.triangles);
+}
+
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
+  const double start_s = core::monotonic_seconds();
   if (!(std::isfinite(dt_s) && dt_s >= 0)) {
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("a frame cannot take {} seconds", dt_s));
@@ -322,6 +342,7 @@ core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
     if (auto ok = call_plugin(plugin, "on_frame", [&] { plugin.on_frame(*this, dt_s); }); !ok)
       return ok;
   }
+  tell_governor((core::monotonic_seconds() - start_s) * 1000.0);
   return {};
 }
 

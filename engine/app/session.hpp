@@ -57,8 +57,9 @@ class Session {
   // once the session is over: close(), a closed window, or SessionOptions::stop.
   bool poll();
   // One frame with a pose: runs the systems, draws and presents. Then moves the clock on by `dt_s`
-  // and calls the plugins. Fails with kInvalidArgument for a time that is negative or not finite;
-  // with kDeviceLost and the like the session is over.
+  // and calls the plugins. What it took governs how fine the next pictures are
+  // (SessionOptions::target_hz). Fails with kInvalidArgument for a time that is negative or not
+  // finite; with kDeviceLost and the like the session is over.
   core::Result<void> tick(const core::CameraPose& pose, double dt_s);
   // The next poll() is the last.
   void close() { closed_ = true; }
@@ -125,6 +126,7 @@ class Session {
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
   core::Result<void> draw_gui(double dt_s);
+  void tell_governor(double tick_ms);
   core::Result<void> add_systems();
   void step_actions(input::Actions& actions);
   core::Result<void> start();

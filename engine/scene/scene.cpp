@@ -135,6 +135,11 @@ Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
   return tracing;
 }
 
+// Devices of their own mostly need no relief; others get what acts at once and changes no shape.
+double start_relief(const render::Renderer* renderer, double pixel_relief) {
+  return renderer != nullptr && !renderer->device().software ? 1 : pixel_relief;
+}
+
 }  // namespace
 
 core::Result<void> Scene::arrange() {
@@ -246,7 +251,8 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   const double pixel_relief = pixel_relief_of(settings);
   s.quality.governor = Governor({.target_ms = settings.target_frame_ms,
                                  .max_relief = pixel_relief * settings.max_error_factor,
-                                 .pixel_relief = pixel_relief});
+                                 .pixel_relief = pixel_relief,
+                                 .start_relief = start_relief(renderer, pixel_relief)});
   // Places may be asked for before the first tick (readiness.hpp).
   fit_to_size(s.input.size, s.camera);
   set_detail(s.settings, s.quality);

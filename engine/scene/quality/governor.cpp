@@ -21,6 +21,7 @@ void Governor::observe(double frame_ms, double triangles) {
   const double target_ms = settings_.target_ms;
   if (!(target_ms > 0) || !(frame_ms > 0)) return;
   const double counted_ms = std::min(frame_ms, 3 * target_ms);
+  if (frames_ < kStartFrames) return start(counted_ms);
   smoothed_ms_ += (counted_ms - smoothed_ms_) * (smoothed_ms_ > 0 ? kSmoothing : 1);
   const double before = relief_;
   follow();
@@ -33,13 +34,27 @@ void Governor::observe(double frame_ms, double triangles) {
   next_ = (next_ + 1) % kLagFrames;
 }
 
+// Frame times fall at most in proportion to the relief: part of a frame is always there. So the one
+// step does not refine too far, and steps of follow() do the rest.
+void Governor::start(double frame_ms) {
+  const std::size_t frame = frames_++;
+  if (frame < kColdFrames || frame >= kColdFrames + kMeasuredFrames) return;
+  measured_ms_[frame - kColdFrames] = frame_ms;
+  if (frame + 1 < kColdFrames + kMeasuredFrames) return;
+  const auto middle = measured_ms_.begin() + kMeasuredFrames / 2;
+  std::nth_element(measured_ms_.begin(), middle, measured_ms_.end());
+  const double share = *middle / settings_.target_ms;
+  if (share > 1 || share < settings_.rest_share) relief_ *= share / settings_.rest_share;
+  relief_ = std::clamp(relief_, 1.0, settings_.max_relief);
+  refining_ = share < settings_.rest_share;
+}
+
 // Changes the relief by the times of the last frames.
 void Governor::follow() {
   const double target_ms = settings_.target_ms;
   const double over = smoothed_ms_ / target_ms - 1;
   const double under = settings_.rest_share - smoothed_ms_ / target_ms;
-  // Slow frames before anything is refined, such as the very first, do not end the start.
-  if (under <= 0 && relief_ < settings_.max_relief) refining_ = false;
+  if (under <= 0) refining_ = false;
   if (over > 0) {
     relief_ *= 1 + kStepUp * std::min(over / kFullStepAt, kMostSteps);
   } else if (under > 0) {

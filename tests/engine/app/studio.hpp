@@ -70,6 +70,12 @@ class Studio {
   void draw(const core::CameraPose& pose) {
     const auto drawn = session_->tick(pose, 1.0 / 60.0);
     ASSERT_TRUE(drawn) << drawn.error().message;
+    frame_took(0, 0);
+  }
+  // What the governor sees in the next frame instead of the real time.
+  void frame_took(double ms, double triangles) {
+    state().input.frame_ms = ms;
+    state().input.frame_triangles = triangles;
   }
   // What the last frame drew, with clouds and wind standing still.
   image::Image picture();
