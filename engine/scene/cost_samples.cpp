@@ -12,18 +12,6 @@ namespace {
 constexpr std::size_t kNodesPerLevel = 2, kPerType = 24;
 constexpr int kMostBlocks = 48;
 
-// Anywhere in the world; in an endless one within some thousand blocks of its origin.
-core::BlockCoord any_block(const world::World& world, core::RandomStream& random) {
-  constexpr std::int64_t kEndlessReach = 4096;
-  const auto index = [&](std::int64_t blocks) {
-    return static_cast<std::int32_t>(blocks > 0
-                                         ? random.next_integer(0, blocks - 1)
-                                         : random.next_integer(-kEndlessReach, kEndlessReach));
-  };
-  const std::int32_t x = index(world.blocks_x);
-  return {x, index(world.blocks_z)};
-}
-
 // Takes models of one block after the other until there are enough of each type.
 class ModelSamples {
  public:

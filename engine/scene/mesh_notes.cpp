@@ -12,9 +12,6 @@
 namespace psygen::scene {
 namespace {
 
-// The largest error of a node over the usual one.
-constexpr double kPossibleError = 2.5;
-
 // Edits are not in the usual errors: between two vertices there may be a tower.
 float edits_error_m(const WorldFacts& facts, const synthesis::Request& request) {
   const models::Parameters& p = request.parameters;
@@ -56,7 +53,7 @@ MeshParts parts_of(const WorldFacts& facts, const synthesis::Request& request,
 float possible_error_m(const WorldFacts& facts, int node_level, int mesh_level) {
   if (node_level == 0 && mesh_level == 0) return 0.0F;
   const NodeLevel& level = facts.levels[static_cast<std::size_t>(node_level)];
-  return static_cast<float>(kPossibleError * level.ground_error_m);
+  return static_cast<float>(level.ground_bound_m);
 }
 
 std::vector<synthesis::Annotate> mesh_notes(const WorldFacts& facts) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/scene/nodes/ground_error.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/node_walk.hpp"
 #include "engine/world/placement.hpp"
@@ -19,11 +20,10 @@ constexpr double kMergeFactor = 1.1;
 constexpr double kAheadFactor = 1.1;
 // The error of a level of the terrain type is the sum of what its octaves could lose. The largest
 // error in a block of the paper's world is 0.9 of it and in nodes of level 1 to 7 1.1 to 2.5
-// (medians of 60 each), its root mean square 0.1 and 0.13 to 0.56. Places of the largest error are
-// few: what counts as a node's error lies in between.
-constexpr double kBlockErrorSeen = 0.7, kNodeErrorSeen = 1.05;
-// How far a border hangs down, in metres per metre of the next coarser error, and at least.
-constexpr float kSkirtPerError = 2.0F, kLeastSkirtM = 1.0F;
+// (medians of 60 each).
+constexpr double kBlockBound = 1.75, kNodeBound = 2.6;
+// How far a border hangs down, in metres per metre of the bound, and at least.
+constexpr float kSkirtPerBound = 0.8F, kLeastSkirtM = 1.0F;
 // What a merged mesh of level 1 is off, in parts of the height of what it stands for; with every
 // level twice as much.
 constexpr double kMergedErrorPerHeight = 0.06;
@@ -49,6 +49,17 @@ int count_of_levels(const world::World& world, const Settings& settings) {
 
 models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node) {
   return world::terrain_parameters(world, node.coord, node.level);
+}
+
+core::BlockCoord any_block(const world::World& world, core::RandomStream& random) {
+  constexpr std::int64_t kEndlessReach = 4096;
+  const auto index = [&](std::int64_t blocks) {
+    return static_cast<std::int32_t>(blocks > 0
+                                         ? random.next_integer(0, blocks - 1)
+                                         : random.next_integer(-kEndlessReach, kEndlessReach));
+  };
+  const std::int32_t x = index(world.blocks_x);
+  return {x, index(world.blocks_z)};
 }
 
 core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block) {
@@ -88,10 +99,11 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
     level.size_m = std::ldexp(world.block_size_m(), static_cast<int>(k));
     level.mesh_level = static_cast<std::uint16_t>(mesh_level);
     level.bounds = terrain.bounds(p);
-    level.ground_error_m =
-        (k == 0 ? kBlockErrorSeen : kNodeErrorSeen) * terrain.level_error_m(p, 1);
+    level.ground_bound_m = (k == 0 ? kBlockBound : kNodeBound) * terrain.level_error_m(p, 1);
+    level.ground_error_m = measured_ground_error_m(world, registry, static_cast<int>(k));
+    if (k > 0) level.ground_error_m = std::max(level.ground_error_m, levels[k - 1].ground_error_m);
     level.error_m = level.ground_error_m;
-    level.skirt_m = kLeastSkirtM + kSkirtPerError * static_cast<float>(level.ground_error_m);
+    level.skirt_m = kLeastSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m);
     if (merged == nullptr || k == 0 || k > world::kMaxMergedLevel) continue;
     const models::Parameters all = world::merged_parameters({}, static_cast<int>(k));
     level.merged = merged->mesh_size(all, 0).vertex_count > 0;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/hash.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/scene/settings.hpp"
 #include "engine/visibility/quadtree.hpp"
@@ -15,10 +16,12 @@ namespace psygen::scene {
 
 // What the nodes of one level have in common.
 struct NodeLevel {
-  double size_m = 0;             // side of a node
-  double ground_error_m = 0;     // of the ground that its nodes draw (blocks: when not near)
-  double error_m = 0;            // with what stands on it
-  float skirt_m = 0;             // how far the borders of its ground hang down
+  double size_m = 0;          // side of a node
+  double ground_error_m = 0;  // of the ground that its nodes draw (blocks: when not near), nearly
+                              // everywhere (ground_error.hpp)
+  double ground_bound_m = 0;  // the same at the worst place of any node
+  double error_m = 0;         // with what stands on it
+  float skirt_m = 0;          // how far the borders of its ground hang down
   std::uint16_t mesh_level = 0;  // of the terrain type, that its nodes draw (blocks: when not near)
   bool merged = false;           // its nodes have one mesh for all models on them
   core::Bounds bounds;           // of the ground, from the node's corner
@@ -39,6 +42,9 @@ models::Parameters node_terrain(const world::World& world, const visibility::Nod
 
 // The block of the world that is nearest to `block`: itself, if it exists.
 core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block);
+
+// A block anywhere in the world; in an endless one within some thousand blocks of its origin.
+core::BlockCoord any_block(const world::World& world, core::RandomStream& random);
 
 // Whether any block of the node exists.
 bool contains(const world::World& world, const visibility::NodeCoord& node);

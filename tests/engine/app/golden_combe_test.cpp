@@ -97,7 +97,7 @@ TEST_F(GoldenCombe, HalfwayThroughItsFades) {
   const auto coming = [](const render::MeshDraw& d) { return d.fade > 0.4F && d.fade < 0.6F; };
   const auto going = [](const render::MeshDraw& d) { return d.fade < -0.4F && d.fade > -0.6F; };
   EXPECT_GT(draws(coming), 20);
-  EXPECT_GT(draws(going), 20);
+  EXPECT_GT(draws(going), 10);
   EXPECT_GT(draws(as_before), draws(going) / 2) << "what goes keeps its light";
   expect_golden("combe_fades", captured(*session_));
 }

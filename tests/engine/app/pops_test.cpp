@@ -176,7 +176,7 @@ Pops fly_while_coarsening(Studio& studio, const core::CameraPose& pose, glm::dve
   }
   EXPECT_EQ(studio.state().quality.governor.relief(), 1);
   double before = 2, largest_step = 0;
-  const Pops pops = fly(studio, pose, 18, [&](int) {
+  const Pops pops = fly(studio, pose, 40, [&](int) {
     const double error = studio.state().quality.error_pixels;
     largest_step = std::max(largest_step, error / std::exchange(before, error) - 1);
     studio.frame_took(frame_ms_of(1e6), 1e6);

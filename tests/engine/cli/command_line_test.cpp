@@ -209,7 +209,7 @@ TEST(CommandLine, APictureThatCannotBeTakenSaysWhy) {
         {"--at 1e300,0" + out, "outside the world paper"},
         {"--world missing.toml" + out, "missing.toml"},
         {"--out /proc/nowhere/a.png", "/proc/nowhere"},
-        {"--budget 4M --view-distance 1000" + out, "raise --budget or --error"}}) {
+        {"--budget 4M --view-distance 1000 --error 0.3" + out, "raise --budget or --error"}}) {
     const Outcome outcome = failure(options);
     EXPECT_EQ(outcome.code, 1) << options << "\n" << outcome.err;
     EXPECT_TRUE(mentions(outcome.err, words)) << outcome.err;

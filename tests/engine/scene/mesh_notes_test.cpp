@@ -60,7 +60,7 @@ void check_reliefs(Scene& scene, Noted& noted) {
           const NodeLevel& facts = s.facts.levels[nodes[i].at.level];
           // Ground of a block that its finest may take the place of.
           const bool coarse = nodes[i].at.level == 0 && level > 0;
-          const float lower_by_m = coarse ? static_cast<float>(2.5 * facts.ground_error_m) : 0.0F;
+          const float lower_by_m = coarse ? static_cast<float>(facts.ground_bound_m) : 0.0F;
           const GroundRelief now = ground_relief(
               core::vertices_of<core::TerrainVertex>(s.memory->vertex_bytes(meshes[i].range)),
               s.facts.grids[static_cast<std::size_t>(level)], facts.bounds.min.y,
@@ -77,6 +77,7 @@ void check_reliefs(Scene& scene, Noted& noted) {
 TEST(MeshNotes, AreThoseOfTheMeshesAndThereWhenMeshesAreFoundAgain) {
   Settings settings = small_settings();
   settings.view_distance_m = 1000;
+  settings.max_error_pixels = 2;
   const auto scene = make_scene(settings);
   scene->settle(pose_at(256, 256));
   const std::uint64_t evictions = scene->state().meshes.stats().evictions;

@@ -52,6 +52,7 @@ TEST(NodeLevels, TheirSidesDoubleAndTheirErrorsGrow) {
       EXPECT_EQ(levels[k].size_m, static_cast<double>(vertices - 1) * static_cast<double>(1 << k));
       EXPECT_GT(levels[k].ground_error_m, 0);
       EXPECT_GE(levels[k].error_m, levels[k].ground_error_m);
+      EXPECT_GE(levels[k].ground_bound_m, levels[k].ground_error_m);
       EXPECT_GT(static_cast<double>(levels[k].skirt_m), levels[k].ground_error_m);
       EXPECT_LT(levels[k].bounds.min.y, levels[k].bounds.max.y);
       if (k > 0) {

@@ -9,7 +9,7 @@
 namespace psygen::scene {
 namespace {
 
-constexpr double kError = 5, kFactor = 3, kTarget_ms = 16;
+constexpr double kError = 2, kFactor = 3, kTarget_ms = 16;
 
 std::unique_ptr<Scene> steered_scene() {
   Settings settings = small_settings();
