@@ -20,11 +20,12 @@ layout(set = 0, binding = PSYGEN_BINDING_GROUND) uniform sampler2DArray textures
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 pattern_grain_cover_ambient;
-layout(location = 3) in vec3 sun_leaf_ground;  // x: share of the sun that no terrain hides
+layout(location = 3) in vec3 sun_leaf_surface;  // x: share of the sun that no terrain hides
 layout(location = 0) out vec4 pixel;
 
 // Layers of the textures.
-const float kRock = 4.0, kScree = 6.0, kPatches = 7.0, kNormals = 8.0;
+const float kRock = float(PSYGEN_TEXTURE_ROCK), kScree = float(PSYGEN_TEXTURE_SCREE);
+const float kPatches = float(PSYGEN_TEXTURE_PATCHES), kNormals = float(PSYGEN_GROUND_TEXTURES);
 const float kPeriod = 2048.0;  // of the pattern; all textures repeat a whole number of times in it
 
 // Texture of a kind: factor of the albedo, and height. Seen at a second scale, turned against the
@@ -160,7 +161,7 @@ void main() {
   albedo *= mix(vec3(1.0), patches(at.xz, lod), (1.0 - 0.7 * b.snow) * frame.ground_colour.w);
   float ambient = pattern_grain_cover_ambient.w;
   float rough = 1.0, shine = 0.0;
-  float sun = sun_leaf_ground.x;
+  float sun = sun_leaf_surface.x;
 #ifdef PSYGEN_NEAR_GROUND
   if (away < float(PSYGEN_GROUND_REACH_M)) {
     vec2 left = left_by_spots(place);

@@ -102,6 +102,9 @@ void main() {
 #else
   float time = frame.sun_direction.w * 0.31 + draw.origin.w;
 #endif
+#if defined(PSYGEN_PIXEL_LIGHT)
+  still_place = p;
+#endif
   p.x += sway * 0.12 * wave(time + xy.y * 0.3);
   p.z += sway * 0.09 * wave(time * 1.37 + xy.x * 0.4);
 
@@ -121,7 +124,13 @@ void main() {
   place = p;
   normal = n;
   albedo_ambient = vec4(albedo, ambient);
-  sun_leaf_ground = vec3(draw.light.x, leaf, 0.0);
+#ifdef PSYGEN_OBJECT
+  sun_leaf_surface = vec3(draw.light.x, leaf, 0.0);
+#else
+  float surface = draw.light.y;
+  if (leaf > 0.5 && surface > 0.5) surface = float(PSYGEN_SURFACE_LEAVES);
+  sun_leaf_surface = vec3(draw.light.x, leaf, surface);
+#endif
 #elif !defined(PSYGEN_SHADOW) && defined(PSYGEN_OBJECT)
   MaterialData m = materials[uint(number)];
   albedo *= m.base.rgb;

@@ -14,7 +14,7 @@ layout(constant_id = 1) const bool shadows = false;
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 albedo_ambient;
-layout(location = 3) in vec3 sun_leaf_ground;
+layout(location = 3) in vec3 sun_leaf_surface;
 layout(location = 5) in vec2 uv;
 layout(location = 6) flat in uint material_number;
 layout(location = 0) out vec4 pixel;
@@ -53,8 +53,8 @@ void main() {
   if (base.a < m.emissive.w) discard;
 #endif
   if ((options & PSYGEN_MATERIAL_TWO_SIDED) != 0u && dot(n, place) > 0.0) n = -n;
-  float sun = sun_leaf_ground.x * (shadows ? sun_at(place, n) : 1.0);
-  vec3 light = model_light(base.rgb, n, place, albedo_ambient.a, sun_leaf_ground.y, sun);
-  if (lamps) light += base.rgb * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_ground.y);
+  float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) : 1.0);
+  vec3 light = model_light(base.rgb, n, place, albedo_ambient.a, sun_leaf_surface.y, sun);
+  if (lamps) light += base.rgb * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_surface.y);
   pixel = vec4(shown(through_haze(light + emitted * frame.sun_colour.w, place)), 1.0);
 }

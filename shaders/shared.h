@@ -40,6 +40,18 @@ using glm::vec4;
 #define PSYGEN_GROUND_SIDE 256
 #define PSYGEN_GROUND_REPEATS 976
 #define PSYGEN_GROUND_REACH_M 64
+// Its layers: of each texture the colour, then of each the normal. The first are the kinds of
+// ground (world::GroundKind).
+#define PSYGEN_TEXTURE_LEAVES 1
+#define PSYGEN_TEXTURE_ROCK 4
+#define PSYGEN_TEXTURE_SCREE 6
+#define PSYGEN_TEXTURE_PATCHES 7
+#define PSYGEN_TEXTURE_BARK 8
+#define PSYGEN_GROUND_TEXTURES 9
+// What a model is made of (core::SurfaceKind).
+#define PSYGEN_SURFACE_STONE 1
+#define PSYGEN_SURFACE_BARK 2
+#define PSYGEN_SURFACE_LEAVES 3  // those of bark
 // Cells of one metre along each side of the map of dark spots on near ground (ground_shade.hpp).
 #define PSYGEN_SHADE_SIDE 128
 
@@ -130,7 +142,8 @@ struct DrawData {
                 // object: the same, w number of the material + phase
   vec4 scale;  // terrain: height range, skirt, morph or < 0 (FrameData), cover; model: half extent,
                // w fade (fading.glsl), 1 if it does not fade
-  vec4 light;  // model: x share of the sun that no terrain hides; object: y, z, w 1 / scale
+  vec4 light;  // x: share of the sun that no terrain hides; model: y PSYGEN_SURFACE_…; object: y,
+               // z, w 1 / scale
   vec4 turn;   // object: unit quaternion
 };
 

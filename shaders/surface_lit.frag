@@ -9,13 +9,19 @@
 #include "fading.glsl"
 #include "shadows.glsl"
 #include "pictures.glsl"
+#ifndef PSYGEN_PICTURE
+#include "surface_detail.glsl"
+#endif
 
 layout(constant_id = 1) const bool shadows = false;
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 albedo_ambient;
-// x: share of the sun that no terrain hides; y: leaf; z: unused
-layout(location = 3) in vec3 sun_leaf_ground;
+// x: share of the sun that no terrain hides; y: leaf; z: PSYGEN_SURFACE_…
+layout(location = 3) in vec3 sun_leaf_surface;
+#ifndef PSYGEN_PICTURE
+layout(location = 8) in vec3 still_place;
+#endif
 layout(location = 0) out vec4 pixel;
 
 void main() {
@@ -29,8 +35,12 @@ void main() {
   albedo *= texel.rgb;
 #endif
   vec3 n = normalize(normal);
-  float sun = sun_leaf_ground.x * (shadows ? sun_at(place, n) : 1.0);
-  vec3 light = model_light(albedo, n, place, albedo_ambient.a, sun_leaf_ground.y, sun);
-  if (lamps) light += albedo * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_ground.y);
+  float ambient = albedo_ambient.a;
+  float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) : 1.0);
+#ifndef PSYGEN_PICTURE
+  add_detail(sun_leaf_surface.z, still_place, albedo, n, ambient);
+#endif
+  vec3 light = model_light(albedo, n, place, ambient, sun_leaf_surface.y, sun);
+  if (lamps) light += albedo * ambient * lamp_light(place, n, 0.5 * sun_leaf_surface.y);
   pixel = vec4(shown(through_haze(light, place)), 1.0);
 }

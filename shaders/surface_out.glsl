@@ -8,7 +8,8 @@
 layout(location = 0) out vec3 place;
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec4 albedo_ambient;
-layout(location = 3) out vec3 sun_leaf_ground;
+layout(location = 3) out vec3 sun_leaf_surface;
+layout(location = 8) out vec3 still_place;  // without wind
 #elif !defined(PSYGEN_SHADOW)
 layout(location = 0) out vec3 colour;
 #endif

@@ -62,9 +62,10 @@ void main() {
   p.y -= skirt * draw.scale.y;
 #if defined(PSYGEN_PIXEL_LIGHT)
   place = p;
+  still_place = p;
   normal = n;
   albedo_ambient = vec4(pattern, grain, draw.scale.w, visible.y);
-  sun_leaf_ground = vec3(visible.x, 0.0, 1.0);
+  sun_leaf_surface = vec3(visible.x, 0.0, 0.0);
 #elif !defined(PSYGEN_DRAW_COLOUR) && !defined(PSYGEN_SHADOW)
   vec3 light = ground_light(albedo, n, visible.x, visible.y);
   if (lamps) light += albedo * lamp_light(p, n, 0.0);

@@ -27,10 +27,11 @@ void handle(int signal_number, int flags) {
 }  // namespace
 
 const std::atomic<bool>& stop_at_interrupt() {
+  constexpr auto kOnce = static_cast<int>(SA_RESETHAND);
   // A person who presses Ctrl+C again does not want to wait. The end of a terminal comes twice by
   // itself, from the kernel and from the shell; under nohup it is ignored.
-  handle(SIGINT, SA_RESETHAND);
-  handle(SIGTERM, SA_RESETHAND);
+  handle(SIGINT, kOnce);
+  handle(SIGTERM, kOnce);
   if (!is_ignored(SIGHUP)) handle(SIGHUP, 0);
   return interrupted;
 }

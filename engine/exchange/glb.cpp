@@ -73,7 +73,7 @@ class GlbWriter {
   int accessor(View view, std::span<const T> values, int type, int component, std::size_t count) {
     std::vector<unsigned char>& bytes = views_[view];
     tinygltf::Accessor accessor;
-    accessor.bufferView = view;
+    accessor.bufferView = static_cast<int>(view);
     accessor.byteOffset = bytes.size();
     accessor.componentType = component;
     accessor.count = count;

@@ -15,6 +15,7 @@
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/core/surface_kind.hpp"
 #include "engine/core/vertex_layout.hpp"
 #include "engine/models/collider.hpp"
 
@@ -149,6 +150,8 @@ class ModelType {
   // False for types smaller than a pixel at the distance where single models end. The merged meshes
   // of nodes and the colour of far ground leave them out.
   virtual bool is_seen_from_far() const { return true; }
+  // What all but its leaves is made of.
+  virtual core::SurfaceKind surface() const { return core::SurfaceKind::kPlain; }
   // The size in metres that decides whether a single model is large enough on screen to be drawn.
   // A model of many small things returns the size of one of them. 0: the sphere around its mesh.
   virtual double seen_size_m(const Parameters&) const { return 0; }

@@ -45,9 +45,9 @@ class Adder {
     if (image == gltf::kNone) return render::kNoTexture;
     const auto [at, is_new] = textures_.try_emplace({image, colours}, render::kNoTexture);
     if (!is_new) return at->second;
-    return assets_.add_texture(model_.images[image], colours).map([&](render::TextureId texture) {
-      return at->second = texture;
-    });
+    const auto texture = assets_.add_texture(model_.images[image], colours);
+    if (texture) at->second = *texture;
+    return texture;
   }
 
   core::Result<render::MaterialId> add_material(const gltf::Material& from) {

@@ -21,7 +21,7 @@ shaders::DrawData data_of(const MeshDraw& draw) {
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
   return {.origin = {draw.origin + draw.box_center, phase - std::floor(phase)},
           .scale = {draw.box_half_extent, draw.fade},
-          .light = {draw.sun, 0, 0, 0},
+          .light = {draw.sun, static_cast<float>(draw.surface), 0, 0},
           .turn = {}};
 }
 

@@ -8,6 +8,7 @@
 #include "shaders/shared.h"
 
 static_assert(PSYGEN_GROUND_SIDE == psygen::render::kPatternSide);
+static_assert(PSYGEN_GROUND_TEXTURES == psygen::render::kGroundTextures);
 static_assert(PSYGEN_GROUND_REACH_M == psygen::render::kNearGroundM);
 
 namespace psygen::render {

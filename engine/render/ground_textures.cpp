@@ -218,6 +218,29 @@ Ground snow() {
   return out;
 }
 
+// Furrows along the trunk, and cracks across its ridges.
+Ground bark() {
+  constexpr std::uint32_t kStream = 900;
+  Ground out{.relief_texels = 11, .rough = 1, .rough_top = 0.85F};
+  const Field plates = tiled_noise(16, 4, 4, 0.6F, kStream + 1),
+              cracks = tiled_noise(16, 16, 4, 0.6F, kStream + 2),
+              fibres = tiled_noise(64, 8, 3, 0.7F, kStream + 3);
+  const Field tones = tiled_noise(8, 4, 4, 0.6F, kStream + 4);
+  fill(out.height, [&](std::size_t i) {
+    const float furrow = std::min(std::abs(plates.values[i]), 0.3F) / 0.3F;
+    const float crack = std::min(std::abs(cracks.values[i] - 0.2F), 0.12F) / 0.12F;
+    return furrow * (0.6F + 0.2F * crack) + 0.12F * fibres.values[i] + 0.1F * cracks.values[i];
+  });
+  to_unit(out.height);
+  const Field above = raised(out.height, 8);
+  fill(out.light, [&](std::size_t i) {
+    return (0.95F + 0.15F * tones.values[i] + 0.12F * fibres.values[i]) *
+           std::clamp(1 + 1.6F * above.values[i], 0.4F, 1.4F);
+  });
+  fill(out.warm, [&](std::size_t i) { return 0.4F * tones.values[i] - 0.5F * above.values[i]; });
+  return out;
+}
+
 Ground patches() {
   constexpr std::uint32_t kStream = 800;
   Ground out{.relief_texels = 6, .rough = 1, .rough_top = 1};
@@ -324,7 +347,8 @@ GroundLevels with_mips(LevelBytes first) {
 }  // namespace
 
 GroundLevels make_ground_layers(std::span<const GroundPicture> pictures) {
-  constexpr std::array kMade{grass, forest_floor, dry_grass, sand, rock, snow, scree, patches};
+  constexpr std::array kMade{grass, forest_floor, dry_grass, sand, rock,
+                             snow,  scree,        patches,   bark};
   static_assert(kMade.size() == kGroundTextures);
   LevelBytes layers(kGroundLayers * kTexels * 4);
   for (std::size_t k = 0; k < kMade.size(); ++k) {

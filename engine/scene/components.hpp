@@ -12,6 +12,7 @@
 #include "ecs/ecs.hpp"
 #include "engine/core/coordinates.hpp"
 #include "engine/core/geometry_memory.hpp"
+#include "engine/core/surface_kind.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/synthesis/geometry_cache.hpp"
 #include "engine/visibility/quadtree.hpp"
@@ -56,8 +57,9 @@ struct Placed {
   // The sphere around nearly everything of its mesh, from its foot: how near it is, how large.
   glm::vec3 middle{0.0F};
   float radius_m = 0;
+  core::SurfaceKind surface = core::SurfaceKind::kPlain;
 };
-static_assert(sizeof(Placed) == 60);
+static_assert(sizeof(Placed) == 64);
 
 // Geometric error in metres of each level of detail.
 struct Detail {

@@ -50,11 +50,11 @@ std::vector<Request> VirtualModelers::reclaim(double now_s) {
 
 std::vector<VirtualModelers::Job> VirtualModelers::take_finished(double now_s) {
   claim_until(now_s);
-  const auto still =
-      std::ranges::partition(running_, [now_s](const Job& job) { return job.finished_s > now_s; });
-  std::vector<Job> finished(std::make_move_iterator(still.begin()),
-                            std::make_move_iterator(still.end()));
-  running_.erase(still.begin(), still.end());
+  const auto runs = [now_s](const Job& job) { return job.finished_s > now_s; };
+  const auto first = std::partition(running_.begin(), running_.end(), runs);
+  std::vector<Job> finished(std::make_move_iterator(first),
+                            std::make_move_iterator(running_.end()));
+  running_.erase(first, running_.end());
   sort_by_end(finished);
   return finished;
 }

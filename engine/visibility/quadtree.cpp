@@ -152,7 +152,7 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
                     settings.morph_share > 0 && settings.morph_share <= 1,
                 "settings are in range");
   // Larger than the rounding errors of distances, so the proof holds for computed numbers.
-  constexpr double kSlack = 1 + 1e-9;
+  constexpr double kBeyondRounding = 1 + 1e-9;
   double merge_below = 0;      // splitting here lets morphing begin beyond the level below
   double reach_below = 0;      // farther than all nodes that touch split nodes of that level
   double reach_two_below = 0;  // the same, two levels below
@@ -165,9 +165,9 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
         std::max({by_error, settings.min_ratio * side, merge_below, reach_two_below});
     // When all are 0, the level is never split and never morphs.
     levels[k] = {split, split * settings.merge_factor, split * settings.morph_share};
-    merge_below = levels[k].merge_m / settings.morph_share * kSlack;
+    merge_below = levels[k].merge_m / settings.morph_share * kBeyondRounding;
     reach_two_below = reach_below;
-    reach_below = (levels[k].merge_m + std::numbers::sqrt2 * side) * kSlack;
+    reach_below = (levels[k].merge_m + std::numbers::sqrt2 * side) * kBeyondRounding;
   }
 }
 

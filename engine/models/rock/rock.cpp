@@ -114,6 +114,7 @@ class RockType final : public ModelType {
   double complexity(const Parameters& p, int level) const override;
   double steps(const Parameters& p, int level) const override;
   double step_seconds() const override { return 8e-9; }
+  core::SurfaceKind surface() const override { return core::SurfaceKind::kStone; }
   Collider collider(const Parameters& p) const override;
   double log2_cost(const Parameters& p) const override {
     return 2 + 2 * static_cast<double>(p.integer(kRockSubdivisions));
@@ -210,7 +211,7 @@ std::vector<glm::vec3> farthest(const std::vector<glm::vec3>& points) {
   }
   std::ranges::sort(chosen);
   std::vector<glm::vec3> result;
-  for (const std::size_t i : std::span(chosen.begin(), std::ranges::unique(chosen).begin()))
+  for (const std::size_t i : std::span(chosen.begin(), std::unique(chosen.begin(), chosen.end())))
     result.push_back(points[i]);
   return result;
 }
@@ -229,8 +230,9 @@ Collider RockType::collider(const Parameters& p) const {
   const auto place = [](const core::ModelVertex& v) { return std::to_array(v.position); };
   std::ranges::sort(mesh, {}, place);
   Collider::Hull hull;
+  const auto same = [&](const auto& a, const auto& b) { return place(a) == place(b); };
   for (const core::ModelVertex& v :
-       std::span(mesh.begin(), std::ranges::unique(mesh, {}, place).begin()))
+       std::span(mesh.begin(), std::unique(mesh.begin(), mesh.end(), same)))
     hull.points.push_back(unpack_position(v, box));
   if (n > kAll) hull.points = farthest(hull.points);
   Collider collider;

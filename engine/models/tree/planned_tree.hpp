@@ -31,6 +31,7 @@ class PlannedTree : public ModelType {
   }
   double steps(const Parameters& p, int level) const final { return tree_steps(plan(p), level); }
   double step_seconds() const final { return 18e-9; }
+  core::SurfaceKind surface() const final { return core::SurfaceKind::kBark; }
   Collider collider(const Parameters& p) const final { return trunk_collider(plan(p)); }
   core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const final {
     return synthesize_tree(plan(p), level, out);

@@ -41,6 +41,7 @@ bool add_mesh(const ModelGround& ground, const View& view, const Placed& placed,
   draw.origin = ground.corner + placed.position;
   draw.box_center = placed.box_center;
   draw.box_half_extent = placed.box_half_extent;
+  draw.surface = placed.surface;
   if (parts == nullptr) {
     draw.sun = sun_at(*ground.sun, glm::vec2(placed.position.x, placed.position.z) / ground.side_m);
     draws.push_back(draw);

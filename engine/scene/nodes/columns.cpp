@@ -30,6 +30,7 @@ MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
                       detail_of(type, placement.parameters, first_level, last_level),
                       {placement.parameters, models::parameters_hash(type, placement.parameters),
                        placement.index, placement.model, static_cast<std::uint16_t>(first_level)}};
+  columns.placed.surface = type.surface();
   if (placement.model < facts.quad_models.size())
     columns.source.picture_model = facts.quad_models[placement.model];
   if (picture_level > 0) columns.detail.picture_level = static_cast<std::uint16_t>(picture_level);

@@ -68,9 +68,9 @@ float area_of(std::span<const glm::vec2> points, std::span<const std::uint16_t> 
 Silhouette silhouette_of(std::span<const glm::vec3> places,
                          std::span<const std::uint16_t> indices) {
   if (places.empty()) return {};
-  constexpr float kDiagonal = 0.70710678F;
+  constexpr float kHalfRoot = 0.70710678F;
   constexpr std::array<glm::vec2, 4> kAlong{
-      {{1, 0}, {0, 1}, {kDiagonal, kDiagonal}, {kDiagonal, -kDiagonal}}};
+      {{1, 0}, {0, 1}, {kHalfRoot, kHalfRoot}, {kHalfRoot, -kHalfRoot}}};
   std::vector<glm::vec2> points(places.size());
   Silhouette sum;
   for (const glm::vec2 along : kAlong) {

@@ -48,6 +48,17 @@ std::string refusal(std::vector<ParameterSpec> specs, std::string_view name = "f
   return added ? "" : added.error().message;
 }
 
+TEST(Registry, KnowsWhatModelsAreMadeOf) {
+  const Registry registry = make_standard_registry();
+  for (ModelIndex i = 0; i < registry.size(); ++i) {
+    const std::string_view name = registry[i].name();
+    EXPECT_EQ(registry[i].surface(), name == "rock"   ? core::SurfaceKind::kStone
+                                     : name == "tree" ? core::SurfaceKind::kBark
+                                                      : core::SurfaceKind::kPlain)
+        << name;
+  }
+}
+
 TEST(Registry, StandardOneHoldsTerrainRockTreeAndGrassInThisOrder) {
   const Registry registry = make_standard_registry();
   ASSERT_EQ(registry.size(), 4u);

@@ -130,6 +130,61 @@ TEST_P(LooksOfPresets, near_ground_has_detail_around_the_colour_that_it_has_with
   expect_golden(near, std::string("near_ground_") + std::string(to_string(GetParam())));
 }
 
+// Red, green and blue of all pixels.
+double light_of(const image::Image& image) {
+  double sum = 0;
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    sum += i % 4 < 3 ? image.rgba[i] : 0;
+  return sum;
+}
+
+TEST_P(LooksOfPresets, stone_and_bark_have_detail_around_the_colour_that_they_have_without) {
+  open(GetParam());
+  input_.terrain = {};
+  input_.water.reset();
+  box_.origin = {3.0F, -6.0F, -24.0F};
+  box_.box_half_extent = {9, 12, 2};
+  const image::Image plain = draw();
+  image::Image stone;
+  for (const auto surface : {core::SurfaceKind::kStone, core::SurfaceKind::kBark}) {
+    box_.surface = surface;
+    const image::Image detailed = draw();
+    EXPECT_EQ(detailed.rgba != plain.rgba, traits_of(GetParam()).pixel_light);
+    EXPECT_EQ(detailed.rgba != stone.rgba, stone.rgba.empty() || traits_of(GetParam()).pixel_light);
+    EXPECT_NEAR(light_of(detailed), light_of(plain), 0.05 * light_of(plain));
+    stone = detailed;
+  }
+  box_.origin.z = -400.0F;
+  const image::Image far = draw();
+  box_.surface = core::SurfaceKind::kPlain;
+  EXPECT_EQ(draw().rgba, far.rgba) << "out of reach";
+}
+
+TEST_P(LooksOfPresets, near_leaves_of_trees_have_gaps_where_light_is_per_pixel) {
+  open(GetParam());
+  input_.terrain = {};
+  input_.water.reset();
+  input_.models = {};
+  const image::Image sky = draw();
+  const auto leaf = synthetic::make_box(renderer_->geometry(), {0.1F, 0.4F, 0.05F}, 1);
+  ASSERT_TRUE(leaf);
+  box_.range = *leaf;
+  box_.origin = {0.0F, -2.0F, -8.0F};
+  box_.box_center = {0, 0, 0};
+  box_.box_half_extent = {3, 2, 0.01F};
+  input_.models = {&box_, 1};
+  const std::size_t whole = image::compare(sky, draw(), 0).pixels_over;
+  box_.surface = core::SurfaceKind::kBark;
+  const std::size_t open_ = image::compare(sky, draw(), 0).pixels_over;
+  EXPECT_GT(whole, 1000u);
+  if (traits_of(GetParam()).pixel_light) {
+    EXPECT_LT(static_cast<double>(open_), 0.95 * static_cast<double>(whole));
+    EXPECT_GT(static_cast<double>(open_), 0.4 * static_cast<double>(whole));
+  } else {
+    EXPECT_EQ(open_, whole);
+  }
+}
+
 TEST_P(LooksOfPresets, spots_darken_near_ground_and_nothing_else) {
   open(GetParam());
   input_.models = {};

@@ -61,7 +61,7 @@ Result<GeometryRange> make_terrain(GeometryMemory& memory, int side, const Heigh
   return reserved->range;
 }
 
-Result<GeometryRange> make_box(GeometryMemory& memory, glm::vec3 albedo) {
+Result<GeometryRange> make_box(GeometryMemory& memory, glm::vec3 albedo, std::uint8_t material) {
   const auto reserved = memory.reserve(core::VertexLayout::kModel, 24, 36);
   if (!reserved) return tl::unexpected(reserved.error());
   std::vector<core::ModelVertex> vertices;
@@ -79,6 +79,8 @@ Result<GeometryRange> make_box(GeometryMemory& memory, glm::vec3 albedo) {
         indices.push_back(static_cast<std::uint16_t>(first + i));
     }
   }
+  for (core::ModelVertex& v : vertices)
+    v.material = material;
   std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
   std::copy(indices.begin(), indices.end(), reserved->indices.begin());
   memory.commit(reserved->range);

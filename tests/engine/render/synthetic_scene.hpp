@@ -25,8 +25,10 @@ std::vector<std::uint16_t> grid_indices(int side);
 core::Result<core::GeometryRange> make_terrain(core::GeometryMemory& memory, int side,
                                                const HeightFunction& height);
 
-// A committed box that fills its bounds, 24 vertices and 36 indices, of one linear albedo.
-core::Result<core::GeometryRange> make_box(core::GeometryMemory& memory, glm::vec3 albedo);
+// A committed box that fills its bounds, 24 vertices and 36 indices, of one linear albedo and one
+// ModelVertex::material.
+core::Result<core::GeometryRange> make_box(core::GeometryMemory& memory, glm::vec3 albedo,
+                                           std::uint8_t material = 0);
 
 // The same as an object. Each side shows a whole texture.
 core::Result<core::GeometryRange> make_object_box(core::GeometryMemory& memory, glm::vec3 albedo);
