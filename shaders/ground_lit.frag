@@ -125,13 +125,19 @@ Kinds kinds_of(Blends b) {
   return k;
 }
 
-// Factor of the albedo that varies over tens of metres.
+// The patches' factor of the albedo at `p`, turned and scaled by `step`, minus 1. From where a whole
+// row of them is in view it is weaker, because then they are seen to repeat.
+vec3 patch_at(vec2 p, vec2 step, float lod) {
+  vec2 turned = vec2(step.x * p.x + step.y * p.y, step.x * p.y - step.y * p.x) * (1.0 / kPeriod);
+  float own_lod = lod + log2(length(step) * (1.0 / float(PSYGEN_GROUND_REPEATS)));
+  vec3 t = textureLod(textures, vec3(turned, kPatches), own_lod).rgb * 2.0 - 1.0;
+  return t * mix(1.0, 0.3, smoothstep(1.0, 3.5, own_lod));
+}
+
+// Factor of the albedo that varies over tens and hundreds of metres.
 vec3 patches(vec2 p, float lod) {
-  vec2 turned = vec2(4.0 * p.x + p.y, 4.0 * p.y - p.x) * (3.0 / kPeriod);
-  vec3 far = textureLod(textures, vec3(turned, kPatches), lod - 6.3).rgb * 2.0;
-  if (!fine_grain) return far;
-  turned = vec2(2.0 * p.x - p.y, 2.0 * p.y + p.x) * (36.0 / kPeriod);
-  return far * (textureLod(textures, vec3(turned, kPatches), lod - 3.6).rgb * 2.0);
+  vec3 far = 1.0 + 0.75 * (patch_at(p, vec2(12.0, 3.0), lod) + patch_at(p, vec2(5.0, 3.0), lod));
+  return fine_grain ? far * (1.0 + patch_at(p, vec2(72.0, -36.0), lod)) : far;
 }
 
 // Light of the sun from rough surfaces (Trowbridge and Reitz 1975), for Fresnel's 4 percent.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds psygen with each compiler, static and shared, installs each build, and uses what was
-# installed from other projects. All must make the same meshes. Takes an hour: it is not a part of
+# installed from other projects. All must make the same meshes. Takes half an hour: it is not a part of
 # the complete check, which has g++ and static libraries.
 #   tools/builds.sh
 set -euo pipefail
