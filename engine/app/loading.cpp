@@ -8,7 +8,6 @@
 namespace psygen::app {
 namespace {
 
-constexpr double kPauseSeconds = 0.05;     // between two pictures
 constexpr float kHeightOfScaleOne = 1080;  // pixels of a picture
 
 }  // namespace
@@ -37,11 +36,11 @@ void Loading::watch_window(render::Renderer* renderer) {
   if (window_->should_close() || input.was_pressed(platform::Key::kEscape)) closed_ = true;
   if (input.was_pressed(platform::Key::kF11)) (void)window_->set_fullscreen(!window_->fullscreen());
   const double now_s = core::monotonic_seconds();
-  if (closed_ || renderer == nullptr || (shown_s_ >= 0 && now_s - shown_s_ < kPauseSeconds)) return;
-  shown_s_ = now_s;
+  if (closed_ || renderer == nullptr || !pace_.is_due(now_s)) return;
   // A picture that cannot be drawn is told by the first frame.
   (void)renderer->show({}, 1,
                        loading_picture(title_, label_, fraction_, window_->framebuffer_size()));
+  pace_.drawn(now_s, core::monotonic_seconds());
 }
 
 }  // namespace psygen::app

@@ -3,6 +3,7 @@
 // the window alive and notices when it is closed. Main thread.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -13,6 +14,21 @@
 #include "engine/telemetry/progress_bar.hpp"
 
 namespace psygen::app {
+
+// When the next picture may be drawn: at most twenty a second, and however long they take, at most
+// a fifth of the time.
+class PicturePace {
+ public:
+  bool is_due(double now_s) const { return now_s >= next_s_; }
+  void drawn(double start_s, double end_s) {
+    next_s_ =
+        end_s + std::max(kPauseSeconds - (end_s - start_s), kPausePerPicture * (end_s - start_s));
+  }
+
+ private:
+  static constexpr double kPauseSeconds = 0.05, kPausePerPicture = 4;
+  double next_s_ = 0;
+};
 
 class Loading {
  public:
@@ -38,7 +54,7 @@ class Loading {
   std::string label_;
   double fraction_ = 0;
   std::unique_ptr<telemetry::ProgressBar> bar_;
-  double shown_s_ = -1;  // when the picture was last drawn
+  PicturePace pace_;
   bool closed_ = false;
 };
 

@@ -101,6 +101,18 @@ TEST(Loading, NeverGoesBack) {
   EXPECT_EQ(loading.fraction(), 0.1) << "of something else";
 }
 
+TEST(PicturePace, LeavesMostOfTheTimeToWhatIsLoading) {
+  PicturePace quick;
+  EXPECT_TRUE(quick.is_due(10));
+  quick.drawn(10, 10.001);
+  EXPECT_FALSE(quick.is_due(10.04));
+  EXPECT_TRUE(quick.is_due(10.06)) << "20 pictures a second";
+  PicturePace slow;
+  slow.drawn(10, 12);
+  EXPECT_FALSE(slow.is_due(19.9));
+  EXPECT_TRUE(slow.is_due(20.1)) << "a fifth of the time";
+}
+
 TEST(TextScale, FollowsTheDisplayAndThePicture) {
   EXPECT_LT(text_scale(1, {640, 360}), 1.5F);
   EXPECT_LT(text_scale(1, {1920, 1080}), 1.5F);
