@@ -163,10 +163,10 @@ struct MeshDraw {
   glm::vec3 origin{0.0F};                           // the mesh's foot
   glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
-  core::IndexPart part;   // of its indices; empty: all
-  float fade = 1.0F;      // 1: all of its pixels
-  bool pictured = false;  // vertices may have core::kPictureBit
-  core::SurfaceKind surface = core::SurfaceKind::kPlain;
+  core::IndexPart part;                                   // of its indices; empty: all
+  float fade = 1.0F;                                      // 1: all of its pixels
+  bool pictured = false;                                  // vertices may have core::kPictureBit
+  core::SurfaceKind surface = core::SurfaceKind::kPlain;  // of all but leaves
   float sun = 1.0F;                       // share of the sun that no terrain hides, 0 … 1
   std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };

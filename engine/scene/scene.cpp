@@ -44,9 +44,8 @@ double most_nodes(const world::World& world, double radius, std::size_t level) {
 
 // Nodes and models that exist at once at most, and the windows in which nodes are kept, before
 // anything is allocated for them.
-core::Result<void> check_size(const world::World& world, const models::Registry& registry,
+core::Result<void> check_size(const world::World& world, std::span<const NodeLevel> levels,
                               const Settings& settings) {
-  const std::vector<NodeLevel> levels = node_levels(world, registry, settings, nullptr);
   const double models = static_cast<double>(world::models_per_block(world));
   double entities = 0, places = 0;
   for (std::size_t k = 0; k < levels.size(); ++k) {
@@ -201,7 +200,6 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
                                                    telemetry::TraceLog* trace,
                                                    const Progress& progress) {
   if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_size(world, registry, settings); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<Scene> scene(new Scene);
   State& s = scene->state_;
   s.settings = settings;
@@ -224,6 +222,8 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
 
   s.output.renderer = renderer;
   if (auto ok = find_levels(settings, facts, s.output); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_size(facts.world, facts.levels, settings); !ok)
+    return tl::unexpected(ok.error());
   if (auto ok = s.assets.open(facts.registry, renderer); !ok) return tl::unexpected(ok.error());
   for (std::size_t k = 0; k < facts.levels.size(); ++k) {
     s.streaming.grids.emplace_back(static_cast<std::uint8_t>(k),
