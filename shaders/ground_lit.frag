@@ -10,64 +10,30 @@
 #include "lamps.glsl"
 #include "ground.glsl"
 #include "shadows.glsl"
+#include "texture_look.glsl"
 #ifdef PSYGEN_NEAR_GROUND
 #include "ground_shade.glsl"
 #endif
 
-layout(constant_id = 0) const bool fine_grain = false;
 layout(constant_id = 1) const bool shadows = false;
-layout(set = 0, binding = PSYGEN_BINDING_GROUND) uniform sampler2DArray textures;
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 pattern_grain_cover_ambient;
 layout(location = 3) in vec3 sun_leaf_surface;  // x: share of the sun that no terrain hides
 layout(location = 0) out vec4 pixel;
 
-// Layers of the textures.
+// Numbers of textures.
 const float kRock = float(PSYGEN_TEXTURE_ROCK), kScree = float(PSYGEN_TEXTURE_SCREE);
-const float kPatches = float(PSYGEN_TEXTURE_PATCHES), kNormals = float(PSYGEN_GROUND_TEXTURES);
-const float kPeriod = 2048.0;  // of the pattern; all textures repeat a whole number of times in it
+const float kPatches = float(PSYGEN_TEXTURE_PATCHES);
 
-// Texture of a kind: factor of the albedo, and height. Seen at a second scale, turned against the
-// first, so that repetition does not show.
-vec4 kind_colour(float kind, vec2 p, float lod) {
-  vec4 t = textureLod(textures, vec3(p * (float(PSYGEN_GROUND_REPEATS) / kPeriod), kind), lod);
-  t.rgb *= 2.0;
+// A kind is seen at a second scale, turned against the first, so that repetition does not show.
+Look look_from(float kind, vec2 p, vec3 u, vec3 v, float lod) {
+  Look look = look_at(kind, p, u, v, lod);
   if (fine_grain) {
     vec2 turned = vec2(3.0 * p.x + 4.0 * p.y, 3.0 * p.y - 4.0 * p.x) * (45.0 / kPeriod);
-    t.rgb *= 0.4 + 1.2 * textureLod(textures, vec3(turned, kind), lod - 1.2).rgb;
-  }
-  return t;
-}
-
-// Slope along the two axes of the texture, gloss, and visible sky.
-vec4 kind_normal(float kind, vec2 p, float lod) {
-  vec4 t =
-      textureLod(textures, vec3(p * (float(PSYGEN_GROUND_REPEATS) / kPeriod), kNormals + kind), lod);
-  return vec4(t.xy * 2.0 - 1.0, t.zw);
-}
-
-// What a kind looks like at a place.
-struct Look {
-  vec4 colour;  // factor of the albedo, height
-  vec3 bump;    // added to the normal
-  float rough, open;
-};
-
-Look look_from(float kind, vec2 p, vec3 u, vec3 v, float lod) {
-  Look look = Look(kind_colour(kind, p, lod), vec3(0.0), 1.0, 1.0);
-  if (fine_grain) {
-    vec4 t = kind_normal(kind, p, lod);
-    look.bump = t.x * u + t.y * v;
-    look.rough = t.z;
-    look.open = t.w;
+    look.colour.rgb *= 0.4 + 1.2 * textureLod(textures, vec3(turned, kind), lod - 1.2).rgb;
   }
   return look;
-}
-
-Look mixed(Look a, Look b, float share) {
-  return Look(mix(a.colour, b.colour, share), mix(a.bump, b.bump, share),
-              mix(a.rough, b.rough, share), mix(a.open, b.open, share));
 }
 
 // Rock is seen from the side where it is steep, all else from above. `at`: place in the pattern
@@ -155,15 +121,10 @@ void main() {
   Blends b = blends_of(place.y + frame.horizon_colour.w, n, pattern_grain_cover_ambient.x,
                        pattern_grain_cover_ambient.z);
   vec3 albedo = blended_albedo(b, grain);
-  vec3 at = vec3(place.x + frame.ground_anchor.x, place.y + frame.horizon_colour.w,
-                 place.z + frame.ground_anchor.y);
+  vec3 at = place_of_textures(place);
   float away = length(place);
   vec3 v = place / max(away, 1e-3);
-  // The level of mips by the size of a pixel on the ground, the mean of along and across.
-  float pixel_m = away * 2.0 * length(frame.ray_down.xyz) / frame.shade.w;
-  float lod = log2(max(pixel_m, 1e-4) *
-                   (float(PSYGEN_GROUND_SIDE) * float(PSYGEN_GROUND_REPEATS) / kPeriod)) -
-              0.5 * log2(max(abs(dot(v, n)), 0.02));
+  float lod = lod_of_textures(away, dot(v, n));
   albedo *= mix(vec3(1.0), patches(at.xz, lod), (1.0 - 0.7 * b.snow) * frame.ground_colour.w);
   float ambient = pattern_grain_cover_ambient.w;
   float rough = 1.0, shine = 0.0;

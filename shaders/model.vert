@@ -10,6 +10,9 @@
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "lamps.glsl"
+#if defined(PSYGEN_PIXEL_LIGHT) && !defined(PSYGEN_OBJECT) && !defined(PSYGEN_PICTURE)
+#define PSYGEN_SURFACES
+#endif
 #include "surface_out.glsl"
 #ifdef PSYGEN_OBJECT
 #include "materials.glsl"
@@ -102,7 +105,7 @@ void main() {
 #else
   float time = frame.sun_direction.w * 0.31 + draw.origin.w;
 #endif
-#if defined(PSYGEN_PIXEL_LIGHT)
+#ifdef PSYGEN_SURFACES
   still_place = p;
 #endif
   p.x += sway * 0.12 * wave(time + xy.y * 0.3);
@@ -124,12 +127,10 @@ void main() {
   place = p;
   normal = n;
   albedo_ambient = vec4(albedo, ambient);
-#ifdef PSYGEN_OBJECT
   sun_leaf_surface = vec3(draw.light.x, leaf, 0.0);
-#else
-  float surface = draw.light.y;
-  if (leaf > 0.5 && surface > 0.5) surface = float(PSYGEN_SURFACE_LEAVES);
-  sun_leaf_surface = vec3(draw.light.x, leaf, surface);
+#ifdef PSYGEN_SURFACES
+  bool leaves = leaf > 0.5 && draw.light.y > 0.5;
+  sun_leaf_surface.z = leaves ? float(PSYGEN_SURFACE_LEAVES) : draw.light.y;
 #endif
 #elif !defined(PSYGEN_SHADOW) && defined(PSYGEN_OBJECT)
   MaterialData m = materials[uint(number)];

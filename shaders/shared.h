@@ -42,12 +42,12 @@ using glm::vec4;
 #define PSYGEN_GROUND_REACH_M 64
 // Its layers: of each texture the colour, then of each the normal. The first are the kinds of
 // ground (world::GroundKind).
-#define PSYGEN_TEXTURE_LEAVES 1
 #define PSYGEN_TEXTURE_ROCK 4
 #define PSYGEN_TEXTURE_SCREE 6
 #define PSYGEN_TEXTURE_PATCHES 7
 #define PSYGEN_TEXTURE_BARK 8
-#define PSYGEN_GROUND_TEXTURES 9
+#define PSYGEN_TEXTURE_LEAVES 9
+#define PSYGEN_GROUND_TEXTURES 10
 // What a model is made of (core::SurfaceKind).
 #define PSYGEN_SURFACE_STONE 1
 #define PSYGEN_SURFACE_BARK 2

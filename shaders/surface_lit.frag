@@ -38,7 +38,7 @@ void main() {
   float ambient = albedo_ambient.a;
   float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) : 1.0);
 #ifndef PSYGEN_PICTURE
-  add_detail(sun_leaf_surface.z, still_place, albedo, n, ambient);
+  add_detail(int(sun_leaf_surface.z + 0.5), still_place, albedo, n, ambient);
 #endif
   vec3 light = model_light(albedo, n, place, ambient, sun_leaf_surface.y, sun);
   if (lamps) light += albedo * ambient * lamp_light(place, n, 0.5 * sun_leaf_surface.y);

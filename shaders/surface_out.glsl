@@ -9,7 +9,6 @@ layout(location = 0) out vec3 place;
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec4 albedo_ambient;
 layout(location = 3) out vec3 sun_leaf_surface;
-layout(location = 8) out vec3 still_place;  // without wind
 #elif !defined(PSYGEN_SHADOW)
 layout(location = 0) out vec3 colour;
 #endif
@@ -21,6 +20,10 @@ layout(location = 2) out vec4 detail_shares;
 // Also with PSYGEN_FADING: the share of the draw's pixels (fading.glsl).
 #if defined(PSYGEN_FADING) || defined(PSYGEN_OBJECT)
 layout(location = 4) flat out float fade;
+#endif
+// Of models whose surfaces have textures (surface_detail.glsl): the place without wind.
+#ifdef PSYGEN_SURFACES
+layout(location = 8) out vec3 still_place;
 #endif
 // Of models with pictures (pictures.glsl): the place in the picture, its first layer and the view;
 // and where the colour is final otherwise, the light of the air, which is added to each pixel.

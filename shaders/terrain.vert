@@ -62,7 +62,6 @@ void main() {
   p.y -= skirt * draw.scale.y;
 #if defined(PSYGEN_PIXEL_LIGHT)
   place = p;
-  still_place = p;
   normal = n;
   albedo_ambient = vec4(pattern, grain, draw.scale.w, visible.y);
   sun_leaf_surface = vec3(visible.x, 0.0, 0.0);

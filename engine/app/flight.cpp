@@ -154,8 +154,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
     record.apart = telemetry::Apart::kGap;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
   if (has_virtual_frames(options_.session)) {
-    record.frame_ms =
-        virtual_frame_ms(record.triangles, record.draws, state.input.size, record.resolution);
+    record.frame_ms = state.input.frame_ms;
     forget_real_times(record);
   }
   if (recorded_ && !session_->paused()) log_frame();

@@ -304,13 +304,16 @@ core::Result<void> Session::draw_gui(double dt_s) {
 }
 
 // What the quality of pictures is governed by. The device's time counts where it is the longer one;
-// waiting, for it or a display, does not. A software device's time is this machine's own.
-void Session::tell_governor(double tick_ms) {
+// waiting, for it or a display, does not. A software device's time is this machine's own. Pictures
+// that a plugin takes are no part of what frames take.
+void Session::tell_governor(double tick_ms, bool took_pictures) {
   scene::State& state = scene_->state();
   const render::FrameResult& drawn = state.counters.frame;
   if (has_virtual_frames(options_)) {
     tick_ms = virtual_frame_ms(state.record.triangles, state.record.draws, state.input.size,
                                state.record.resolution);
+  } else if (took_pictures) {
+    tick_ms = 0;  // unknown
   } else if (renderer_->device().software) {
     tick_ms -= drawn.acquire.ms;
   } else {
@@ -323,6 +326,7 @@ void Session::tell_governor(double tick_ms) {
 
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
   const double start_s = core::monotonic_seconds();
+  const std::size_t pictures = saved_.size();
   if (!(std::isfinite(dt_s) && dt_s >= 0)) {
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("a frame cannot take {} seconds", dt_s));
@@ -342,7 +346,7 @@ core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
     if (auto ok = call_plugin(plugin, "on_frame", [&] { plugin.on_frame(*this, dt_s); }); !ok)
       return ok;
   }
-  tell_governor((core::monotonic_seconds() - start_s) * 1000.0);
+  tell_governor((core::monotonic_seconds() - start_s) * 1000.0, saved_.size() > pictures);
   return {};
 }
 

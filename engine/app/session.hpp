@@ -126,7 +126,7 @@ class Session {
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
   core::Result<void> draw_gui(double dt_s);
-  void tell_governor(double tick_ms);
+  void tell_governor(double tick_ms, bool took_pictures);
   core::Result<void> add_systems();
   void step_actions(input::Actions& actions);
   core::Result<void> start();

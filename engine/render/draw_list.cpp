@@ -16,6 +16,9 @@ shaders::DrawData data_of(const TerrainDraw& draw) {
           .turn = {}};
 }
 
+static_assert(static_cast<int>(core::SurfaceKind::kStone) == PSYGEN_SURFACE_STONE);
+static_assert(static_cast<int>(core::SurfaceKind::kBark) == PSYGEN_SURFACE_BARK);
+
 shaders::DrawData data_of(const MeshDraw& draw) {
   // The phase depends on the mesh, not on the camera. Neighbours differ because their boxes do.
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);

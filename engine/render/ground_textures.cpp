@@ -348,7 +348,7 @@ GroundLevels with_mips(LevelBytes first) {
 
 GroundLevels make_ground_layers(std::span<const GroundPicture> pictures) {
   constexpr std::array kMade{grass, forest_floor, dry_grass, sand, rock,
-                             snow,  scree,        patches,   bark};
+                             snow,  scree,        patches,   bark, forest_floor};
   static_assert(kMade.size() == kGroundTextures);
   LevelBytes layers(kGroundLayers * kTexels * 4);
   for (std::size_t k = 0; k < kMade.size(); ++k) {

@@ -15,8 +15,9 @@
 namespace psygen::render {
 
 // The textures: first the kinds in the order of world::GroundKind, then scree, which lies at the
-// foot of rock, then uneven patches of no kind, then the bark of trees.
-inline constexpr std::uint32_t kGroundTextures = 9;
+// foot of rock, then uneven patches of no kind, then the bark and the
+// leaves of trees.
+inline constexpr std::uint32_t kGroundTextures = 10;
 // Layers of the array: of each texture the colour and height, then of each the normal.
 inline constexpr std::uint32_t kGroundLayers = 2 * kGroundTextures;
 

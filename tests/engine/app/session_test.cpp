@@ -100,6 +100,24 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
   EXPECT_EQ((*session)->renderer().preset(), render::Preset::kMedium);
 }
 
+TEST(Session, APictureThatAPluginTakesIsNoPartOfWhatTheGovernorSees) {
+  const TemporaryFolder folder;
+  SessionOptions options = short_session();
+  options.scene.virtual_time = false;
+  bool takes = false;
+  options.plugins.push_back({.name = "camera", .on_frame = [&](Session& session, double) {
+                               if (!takes) return;
+                               EXPECT_TRUE(session.save_picture(folder / "a.png"));
+                             }});
+  const auto session = Session::create(options);
+  ASSERT_TRUE(session) << session.error().message;
+  for (const bool now : {false, true, false}) {
+    takes = now;
+    ASSERT_TRUE((*session)->tick((*session)->home(), 0.01));
+    EXPECT_EQ((*session)->scene().state().input.frame_ms > 0, !takes);
+  }
+}
+
 TEST(Session, RefusesPosesTargetsAndNamesThatAreNone) {
   SessionOptions options = short_session();
   for (const double hz : {-1.0, std::nan(""), 1e9, 1e300}) {

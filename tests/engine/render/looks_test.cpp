@@ -9,6 +9,7 @@
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/render/preset.hpp"
+#include "shaders/shared.h"
 #include "tests/engine/render/synthetic_scene.hpp"
 #include "tests/engine/render/ways.hpp"
 #include "tests/source_file.hpp"
@@ -21,8 +22,9 @@ using synthetic::kPictureSize;
 
 class Looks : public testing::Test {
  protected:
-  void open(Preset preset) {
+  void open(Preset preset, GroundPicture forest_floor = {}) {
     RendererOptions options;
+    options.ground[1] = std::move(forest_floor);
     options.validation = true;
     options.size = kPictureSize;
     options.geometry_budget_bytes = 8 << 20;
@@ -224,6 +226,25 @@ INSTANTIATE_TEST_SUITE_P(Views, LooksOfViews,
                          testing::Values(View::kLevels, View::kLayers, View::kBounds,
                                          View::kWireframe, View::kMissing),
                          [](const auto& test) { return std::string(to_string(test.param)); });
+
+TEST_F(Looks, leaves_of_trees_are_no_picture_of_the_forest_floor) {
+  const auto leaves = [&](GroundPicture forest_floor) {
+    renderer_.reset();
+    open(Preset::kHigh, std::move(forest_floor));
+    input_.terrain = {};
+    const auto leaf = synthetic::make_box(renderer_->geometry(), {0.1F, 0.4F, 0.05F}, 1);
+    EXPECT_TRUE(leaf);
+    if (leaf) box_.range = *leaf;
+    box_.origin.z = -30.0F;
+    box_.surface = core::SurfaceKind::kBark;
+    return draw();
+  };
+  GroundPicture stripes;
+  stripes.rgb.resize(std::size_t{PSYGEN_GROUND_SIDE} * PSYGEN_GROUND_SIDE * 3);
+  for (std::size_t i = 0; i < stripes.rgb.size(); ++i)
+    stripes.rgb[i] = i / 12 % 2 == 0 ? 0.2F : 0.8F;
+  EXPECT_EQ(leaves(stripes).rgba, leaves({}).rgba);
+}
 
 TEST_F(Looks, lines_are_seen_and_do_not_stay) {
   open(Preset::kLow);
