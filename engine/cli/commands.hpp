@@ -34,6 +34,9 @@ class FlyCommand {
   int run();
 
  private:
+  void add_flight_options();
+  void add_synthesis_options();
+  void add_picture_options();
   static int code_of(const core::Error& error);
   core::Result<void> load_what_pictures_take() const;
   int fly();

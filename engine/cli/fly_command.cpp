@@ -18,11 +18,20 @@
 #include "engine/telemetry/output_file.hpp"
 
 namespace psygen::cli {
+
 FlyCommand::FlyCommand(CLI::App& cli)
     : command_(cli.add_subcommand("fly", "Fly through a world, in a window or headless")) {
+  add_scene_options(*command_, options_.session);
+  add_flight_options();
+  add_synthesis_options();
+  add_picture_options();
+  command_->add_option("--record-requests", requests_,
+                       "File that gets every request of the flight; starts with an empty cache");
+  command_->add_flag("--json", json_, "Print the summary as JSON instead of a table");
+}
+
+void FlyCommand::add_flight_options() {
   CLI::App& c = *command_;
-  scene::Settings& scene = options_.session.scene;
-  add_scene_options(c, options_.session);
   c.add_option(
       "--path", options_.path_file,
       "Camera path: a TOML file, or the name of one that comes with psygen; without one the "
@@ -51,19 +60,20 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->check(number_between(0, 3600));
   c.add_option("--images", options_.images_every, "Write every Nth frame as a PNG")
       ->transform(integer_between(0, 1'000'000'000));
+}
+
+void FlyCommand::add_synthesis_options() {
+  CLI::App& c = *command_;
+  scene::Settings& scene = options_.session.scene;
   c.add_option_function<std::string>(
        "--paradigm",
-       [this](const std::string& text) {
-         options_.session.scene.paradigm = *scene::paradigm_from(text);
-       },
+       [&scene](const std::string& text) { scene.paradigm = *scene::paradigm_from(text); },
        "pla: on demand, in parallel; amplify: everything before; lazy: anew in each frame")
       ->check(valid_if(scene::paradigm_from, "pla|amplify|lazy"))
       ->default_str("pla");
   c.add_option_function<std::string>(
        "--policy",
-       [this](const std::string& text) {
-         options_.session.scene.policy = *synthesis::policy_from(text);
-       },
+       [&scene](const std::string& text) { scene.policy = *synthesis::policy_from(text); },
        "Order of synthesis: fifo, plp, shortest, longest, deadline")
       ->check(one_of({"fifo", "plp", "shortest", "longest", "deadline"}))
       ->default_str("deadline");
@@ -74,13 +84,15 @@ FlyCommand::FlyCommand(CLI::App& cli)
       ->check(one_of({"lowest", "normal"}))
       ->default_str("lowest");
   c.add_option_function<std::string>(
-       "--plp",
-       [this](const std::string& text) {
-         options_.session.scene.plp_mode = *scene::plp_mode_from(text);
-       },
+       "--plp", [&scene](const std::string& text) { scene.plp_mode = *scene::plp_mode_from(text); },
        "Order of nodes: layers around the camera, or solidity: least hidden first")
       ->check(valid_if(scene::plp_mode_from, "layers|solidity"))
       ->default_str("layers");
+}
+
+void FlyCommand::add_picture_options() {
+  CLI::App& c = *command_;
+  scene::Settings& scene = options_.session.scene;
   c.add_option_function<double>(
        "--target-fps", [this](double hz) { options_.session.target_hz = hz; },
        "Hold this frame rate with fewer pixels, then a larger error (up to 4 times); 0: fixed "
@@ -97,9 +109,6 @@ FlyCommand::FlyCommand(CLI::App& cli)
   c.add_flag("!--no-vsync", options_.session.vsync, "Do not wait for the display");
   c.add_flag("--fullscreen", options_.session.fullscreen, "Cover the monitor from the start on");
   c.add_flag("!--no-prefill", options_.session.prefill, "Start with an empty cache");
-  c.add_option("--record-requests", requests_,
-               "File that gets every request of the flight; starts with an empty cache");
-  c.add_flag("--json", json_, "Print the summary as JSON instead of a table");
 }
 
 int FlyCommand::run() {

@@ -169,6 +169,40 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
   return candidate;
 }
 
+// What psygen needs of every device, and what it uses where it is there.
+void enable(const DeviceInfo& info, Features& features, std::vector<const char*>& extensions) {
+  features.v11.shaderDrawParameters = VK_TRUE;
+  features.v12.timelineSemaphore = VK_TRUE;
+  const VkBool32 indirect = info.gpu_path ? VK_TRUE : VK_FALSE;
+  features.v12.drawIndirectCount = indirect;
+  features.base.features.multiDrawIndirect = indirect;
+  features.base.features.drawIndirectFirstInstance = indirect;
+  features.v13.dynamicRendering = VK_TRUE;
+  features.v13.synchronization2 = VK_TRUE;
+  features.v13.maintenance4 = VK_TRUE;  // for workgroup sizes; every 1.3 device has it
+  if (info.multi_draw) {
+    extensions.push_back(VK_EXT_MULTI_DRAW_EXTENSION_NAME);
+    features.multi_draw.multiDraw = VK_TRUE;
+    features.v13.pNext = &features.multi_draw;
+  }
+  features.base.features.fillModeNonSolid = info.wireframe ? VK_TRUE : VK_FALSE;
+}
+
+void read_limits(Device& device) {
+  VkPhysicalDeviceMultiDrawPropertiesEXT multi_draw{};
+  multi_draw.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_PROPERTIES_EXT;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = device.info.multi_draw ? &multi_draw : nullptr;
+  vkGetPhysicalDeviceProperties2(device.physical, &properties);
+  const VkPhysicalDeviceLimits& limits = properties.properties.limits;
+  device.max_image_side = limits.maxImageDimension2D;
+  device.sampled_depth_counts = limits.sampledImageDepthSampleCounts;
+  device.sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;
+  device.max_multi_draw = multi_draw.maxMultiDrawCount;
+  device.timestamp_period_ns = static_cast<double>(limits.timestampPeriod);
+}
+
 }  // namespace
 
 std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR surface) {
@@ -210,23 +244,9 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   vkGetPhysicalDeviceMemoryProperties(self->physical, &self->memory);
 
   Features features;
-  features.v11.shaderDrawParameters = VK_TRUE;
-  features.v12.timelineSemaphore = VK_TRUE;
-  const VkBool32 indirect = candidate.info.gpu_path ? VK_TRUE : VK_FALSE;
-  features.v12.drawIndirectCount = indirect;
-  features.base.features.multiDrawIndirect = indirect;
-  features.base.features.drawIndirectFirstInstance = indirect;
-  features.v13.dynamicRendering = VK_TRUE;
-  features.v13.synchronization2 = VK_TRUE;
-  features.v13.maintenance4 = VK_TRUE;  // for workgroup sizes; every 1.3 device has it
   std::vector<const char*> extensions;
   if (windowed) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  if (candidate.info.multi_draw) {
-    extensions.push_back(VK_EXT_MULTI_DRAW_EXTENSION_NAME);
-    features.multi_draw.multiDraw = VK_TRUE;
-    features.v13.pNext = &features.multi_draw;
-  }
-  features.base.features.fillModeNonSolid = candidate.info.wireframe ? VK_TRUE : VK_FALSE;
+  enable(candidate.info, features, extensions);
   const float priority = 1.0F;
   VkDeviceQueueCreateInfo queue{};
   queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -249,18 +269,7 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   self->vk.vkGetDeviceQueue(self->handle, self->queue_family, 0, &self->queue);
   self->vk.vkGetDeviceQueue(self->handle, self->transfer_family, 0, &self->transfer_queue);
 
-  VkPhysicalDeviceMultiDrawPropertiesEXT multi_draw{};
-  multi_draw.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_PROPERTIES_EXT;
-  VkPhysicalDeviceProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-  properties.pNext = candidate.info.multi_draw ? &multi_draw : nullptr;
-  vkGetPhysicalDeviceProperties2(self->physical, &properties);
-  const VkPhysicalDeviceLimits& limits = properties.properties.limits;
-  self->max_image_side = limits.maxImageDimension2D;
-  self->sampled_depth_counts = limits.sampledImageDepthSampleCounts;
-  self->sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;
-  self->max_multi_draw = multi_draw.maxMultiDrawCount;
-  self->timestamp_period_ns = static_cast<double>(limits.timestampPeriod);
+  read_limits(*self);
   if (timestamps) self->timestamp_mask = timestamp_mask_of(self->physical, self->queue_family);
   self->info.timestamps = self->timestamp_mask != 0;
   return self;

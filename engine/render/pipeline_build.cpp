@@ -61,6 +61,63 @@ VkPrimitiveTopology topology_of(PipelineKind kind) {
   }
 }
 
+bool draws_meshes(PipelineKind kind) {
+  return kind == PipelineKind::kTerrain || kind == PipelineKind::kModel ||
+         kind == PipelineKind::kObject;
+}
+
+// What a vertex shader of one kind reads. Stays where it is made: `info` points into it.
+struct VertexInput {
+  explicit VertexInput(PipelineKind kind) {
+    const bool terrain = kind == PipelineKind::kTerrain, object = kind == PipelineKind::kObject;
+    binding = {0,
+               core::vertex_stride_bytes(terrain  ? core::VertexLayout::kTerrain
+                                         : object ? core::VertexLayout::kObject
+                                                  : core::VertexLayout::kModel),
+               VK_VERTEX_INPUT_RATE_VERTEX};
+    // One fetch of whole words, which the shader unpacks, is cheaper than four attributes.
+    attributes = {VkVertexInputAttributeDescription{
+                      0, 0, terrain ? VK_FORMAT_R32G32B32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0},
+                  VkVertexInputAttributeDescription{1, 0, VK_FORMAT_R32G32_SFLOAT,
+                                                    offsetof(core::ObjectVertex, uv)}};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    info.vertexBindingDescriptionCount = draws_meshes(kind) ? 1 : 0;
+    info.pVertexBindingDescriptions = &binding;
+    info.vertexAttributeDescriptionCount = object ? 2 : draws_meshes(kind) ? 1 : 0;
+    info.pVertexAttributeDescriptions = attributes.data();
+  }
+  VertexInput(const VertexInput&) = delete;
+  VertexInput& operator=(const VertexInput&) = delete;
+
+  VkVertexInputBindingDescription binding{};
+  std::array<VkVertexInputAttributeDescription, 2> attributes{};
+  VkPipelineVertexInputStateCreateInfo info{};
+};
+
+VkPipelineRasterizationStateCreateInfo raster_of(const PipelineShape& shape) {
+  VkPipelineRasterizationStateCreateInfo raster{};
+  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+  raster.polygonMode = shape.wireframe ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_FILL;
+  // Leaves are two-sided.
+  raster.cullMode =
+      shape.kind == PipelineKind::kTerrain ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
+  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+  raster.lineWidth = 1.0F;
+  return raster;
+}
+
+VkPipelineDepthStencilStateCreateInfo depth_of(const PipelineShape& shape) {
+  const bool writes = draws_meshes(shape.kind) || shape.kind == PipelineKind::kWater;
+  VkPipelineDepthStencilStateCreateInfo depth{};
+  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+  depth.depthTestEnable = shape.kind != PipelineKind::kOverlay;
+  depth.depthWriteEnable = writes;
+  depth.depthCompareOp = shape.shadow ? VK_COMPARE_OP_LESS
+                         : writes     ? VK_COMPARE_OP_GREATER
+                                      : VK_COMPARE_OP_GREATER_OR_EQUAL;
+  return depth;
+}
+
 // The specialisation constants, by number.
 constexpr std::array kConstants{
     VkSpecializationMapEntry{0, 0, sizeof(VkBool32)},
@@ -82,54 +139,20 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
                                        sizeof(shape.constants), shape.constants.data()};
   stages[0].pSpecializationInfo = stages[1].pSpecializationInfo = &constants;
 
-  const PipelineKind kind = shape.kind;
-  const bool object = kind == PipelineKind::kObject;
-  const bool meshes = kind == PipelineKind::kTerrain || kind == PipelineKind::kModel || object;
-  const bool terrain = kind == PipelineKind::kTerrain;
-  const bool writes_depth = meshes || kind == PipelineKind::kWater;
-  const VkVertexInputBindingDescription binding{
-      0,
-      core::vertex_stride_bytes(terrain  ? core::VertexLayout::kTerrain
-                                : object ? core::VertexLayout::kObject
-                                         : core::VertexLayout::kModel),
-      VK_VERTEX_INPUT_RATE_VERTEX};
-  // One fetch of whole words, which the shader unpacks, is cheaper than four attributes.
-  const std::array attributes{
-      VkVertexInputAttributeDescription{
-          0, 0, terrain ? VK_FORMAT_R32G32B32_UINT : VK_FORMAT_R32G32B32A32_UINT, 0},
-      VkVertexInputAttributeDescription{1, 0, VK_FORMAT_R32G32_SFLOAT,
-                                        offsetof(core::ObjectVertex, uv)}};
-  VkPipelineVertexInputStateCreateInfo input{};
-  input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-  input.vertexBindingDescriptionCount = meshes ? 1 : 0;
-  input.pVertexBindingDescriptions = &binding;
-  input.vertexAttributeDescriptionCount = object ? 2 : meshes ? 1 : 0;
-  input.pVertexAttributeDescriptions = attributes.data();
-
+  const VertexInput vertices(shape.kind);
   VkPipelineInputAssemblyStateCreateInfo assembly{};
   assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-  assembly.topology = topology_of(kind);
+  assembly.topology = topology_of(shape.kind);
   VkPipelineViewportStateCreateInfo viewport{};
   viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
   viewport.viewportCount = 1;
   viewport.scissorCount = 1;
-  VkPipelineRasterizationStateCreateInfo raster{};
-  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-  raster.polygonMode = shape.wireframe ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_FILL;
-  raster.cullMode = terrain ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;  // leaves are two-sided
-  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  raster.lineWidth = 1.0F;
+  const VkPipelineRasterizationStateCreateInfo raster = raster_of(shape);
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   samples.rasterizationSamples = shape.shadow || shape.flat ? VK_SAMPLE_COUNT_1_BIT : shape.samples;
-  VkPipelineDepthStencilStateCreateInfo depth{};
-  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = kind != PipelineKind::kOverlay;
-  depth.depthWriteEnable = writes_depth;
-  depth.depthCompareOp = shape.shadow   ? VK_COMPARE_OP_LESS
-                         : writes_depth ? VK_COMPARE_OP_GREATER
-                                        : VK_COMPARE_OP_GREATER_OR_EQUAL;
-  const VkPipelineColorBlendAttachmentState attachment = blend_of(kind);
+  const VkPipelineDepthStencilStateCreateInfo depth = depth_of(shape);
+  const VkPipelineColorBlendAttachmentState attachment = blend_of(shape.kind);
   VkPipelineColorBlendStateCreateInfo blend{};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
   blend.attachmentCount = shape.shadow ? 0 : 1;
@@ -150,7 +173,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   info.pNext = &rendering;
   info.stageCount = shape.frag.empty() ? 1 : static_cast<std::uint32_t>(stages.size());
   info.pStages = stages.data();
-  info.pVertexInputState = &input;
+  info.pVertexInputState = &vertices.info;
   info.pInputAssemblyState = &assembly;
   info.pViewportState = &viewport;
   info.pRasterizationState = &raster;
