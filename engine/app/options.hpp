@@ -48,8 +48,14 @@ struct Plugin {
 // Options of a session.
 struct SessionOptions {
   std::filesystem::path world_file;
+  // The world in place of what the file has, of which only the name is used then: in messages, and
+  // for the folder of its pictures.
+  std::optional<std::string> world_text;
   core::Extent size{1280, 720};
   bool headless = false;
+  // Draws into a window of the program's own, as of an editor; outlives the session, which opens
+  // none itself and takes no input then. Null: a window, unless headless.
+  core::SurfaceProvider* surface = nullptr;
   bool validation = false;
   bool fullscreen = false;               // windows only: cover the monitor from the start on
   bool vsync = true;                     // windows only

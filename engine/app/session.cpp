@@ -76,9 +76,8 @@ core::Result<void> Session::open() {
   if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
   if (!registry) return tl::unexpected(registry.error());
-  auto world = world::load_world(options_.world_file, *registry);
+  auto world = read_world(options_.world_text, *registry);
   if (!world) return tl::unexpected(world.error());
-  if (auto ok = set_hour(options_, *world); !ok) return ok;
   auto ground = read_ground_pictures(*world, options_.world_file);
   if (!ground) return tl::unexpected(ground.error());
   const std::string title = "psygen: " + world->name;
@@ -89,8 +88,29 @@ core::Result<void> Session::open() {
   return open_scene(std::move(*world), std::move(*registry), loading);
 }
 
+core::Result<world::World> Session::read_world(std::optional<std::string_view> text,
+                                               models::Registry& registry) const {
+  auto world = text ? world::parse_world(*text, options_.world_file.string(), registry)
+                    : world::load_world(options_.world_file, registry);
+  if (!world) return world;
+  if (auto ok = set_hour(options_, *world); !ok) return tl::unexpected(ok.error());
+  return world;
+}
+
+core::Result<void> Session::set_world(std::string_view text) {
+  auto registry = make_registry(options_.plugins);
+  if (!registry) return tl::unexpected(registry.error());
+  auto world = read_world(text, *registry);
+  if (!world) return tl::unexpected(world.error());
+  if (world->palette.images != scene_->state().facts.world.palette.images) {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "other pictures of the ground are shown when the world is opened again");
+  }
+  return scene_->set_world(std::move(*world), std::move(*registry));
+}
+
 core::Result<void> Session::open_window(const std::string& title) {
-  if (options_.headless) return {};
+  if (options_.headless || options_.surface != nullptr) return {};
   auto window = platform::Window::create({title, options_.size, true});
   if (!window) {
     return core::fail(window.error().code,
@@ -110,7 +130,7 @@ core::Result<void> Session::open_renderer(GroundPictures ground, Loading& loadin
   render_options.validation = options_.validation;
   render_options.size = options_.size;
   render_options.geometry_budget_bytes = options_.scene.budget_bytes;
-  render_options.surface = window_.get();
+  render_options.surface = window_ ? window_.get() : options_.surface;
   render_options.vsync = options_.vsync;
   render_options.path = options_.render_path;
   render_options.preset = options_.preset;
@@ -200,7 +220,8 @@ core::Result<void> Session::prepare(const core::CameraPose& first) {
 
 // The renderer knows a window's size only from the first frame on.
 core::Extent Session::picture_size() const {
-  return window_ ? window_->framebuffer_size() : renderer_->size();
+  if (window_) return window_->framebuffer_size();
+  return options_.surface != nullptr ? options_.surface->framebuffer_size() : renderer_->size();
 }
 
 double Session::now_s() const {
@@ -216,7 +237,10 @@ bool Session::has_hung_modelers() const {
 }
 
 bool Session::poll() {
-  if (!window_) return !over();
+  if (!window_) {
+    follow_surface();
+    return !over();
+  }
   take_events();
   while (picture_size() == core::Extent{} && !over()) {
     window_->wait_events(kMinimisedWaitSeconds);
@@ -225,16 +249,24 @@ bool Session::poll() {
   return !over();
 }
 
+void Session::resize(core::Extent size) {
+  if (auto ok = renderer_->resize(size); !ok) {
+    core::log_error(ok.error().message);
+    closed_ = true;
+  }
+}
+
+void Session::follow_surface() {
+  if (options_.surface == nullptr) return;
+  const core::Extent size = options_.surface->framebuffer_size();
+  if (std::exchange(surface_size_, size) != size) resize(size);
+}
+
 void Session::take_events() {
   all_input_ = window_->poll();
   input_ = filter_.apply(all_input_, gui_ && gui_->takes_keyboard(), gui_ && gui_->takes_mouse());
   actions_.feed(input_);
-  if (input_.resized) {
-    if (auto ok = renderer_->resize(window_->framebuffer_size()); !ok) {
-      core::log_error(ok.error().message);
-      closed_ = true;
-    }
-  }
+  if (input_.resized) resize(window_->framebuffer_size());
   if (window_->should_close()) closed_ = true;
 }
 

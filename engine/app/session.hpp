@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -53,8 +55,9 @@ class Session {
   // closed, kInvalidArgument for a pose that is none (core::is_valid).
   core::Result<void> prepare(const core::CameraPose& first);
 
-  // Takes the events of the window: input(), its size, its end. Waits while it is minimised. False
-  // once the session is over: close(), a closed window, or SessionOptions::stop.
+  // Takes the events of the window: input(), its size, its end. Waits while it is minimised. Of a
+  // surface of the program's own (SessionOptions::surface) it takes the size, and never waits.
+  // False once the session is over: close(), a closed window, or SessionOptions::stop.
   bool poll();
   // One frame with a pose: runs the systems, draws and presents. Then moves the clock on by `dt_s`
   // and calls the plugins. What it took governs how fine the next pictures are
@@ -99,6 +102,11 @@ class Session {
   // What save_picture() has written since the last call.
   std::vector<std::filesystem::path> take_saved() { return std::exchange(saved_, {}); }
 
+  // Replaces the world by that of a text, as Scene::set_world(): for editors. Fails as
+  // world::parse_world(), and with kInvalidArgument for other pictures of the ground
+  // (Palette::images), which the renderer takes only at the start; nothing has changed then.
+  core::Result<void> set_world(std::string_view text);
+
   // Draws with another preset from the next tick on. The window stays alive meanwhile. Fails as
   // Renderer::set_preset(), also where the session ended meanwhile; the old one stays then.
   core::Result<void> set_preset(render::Preset preset);
@@ -121,10 +129,14 @@ class Session {
  private:
   explicit Session(SessionOptions options);
   core::Result<void> open();
+  core::Result<world::World> read_world(std::optional<std::string_view> text,
+                                        models::Registry& registry) const;
   core::Result<void> open_window(const std::string& title);
   core::Result<void> open_renderer(GroundPictures ground, Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);
   void take_events();
+  void follow_surface();
+  void resize(core::Extent size);
   core::Result<void> draw_gui(double dt_s);
   void tell_governor(double tick_ms, bool took_pictures);
   core::Result<void> add_systems();
@@ -142,6 +154,7 @@ class Session {
   std::unique_ptr<Gui> gui_;                // null until it is needed
   platform::InputState all_input_, input_;  // the latter without what ImGui takes
   platform::InputFilter filter_;
+  core::Extent surface_size_;  // when it was last looked at
   bool paused_ = false;
   bool closed_ = false;
   bool started_ = false;

@@ -2,99 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/core/log.hpp"
 #include "engine/scene/cost_samples.hpp"
-#include "engine/scene/draws/lighting.hpp"
 #include "engine/scene/mesh_notes.hpp"
-#include "engine/scene/nodes/solidity.hpp"
 #include "engine/scene/nodes/usual_boxes.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/scene/tree_pictures.hpp"
-#include "engine/world/far/merged_models.hpp"
-#include "engine/world/models_reach.hpp"
+#include "engine/scene/world_facts.hpp"
 
 namespace psygen::scene {
 namespace {
-
-// Of the window of a level: a square that holds all nodes of the world within reach.
-std::uint32_t largest_radius(const world::World& world, std::span<const NodeLevel> levels,
-                             const Settings& settings, std::size_t level) {
-  const std::int64_t radius = window_radius(levels, settings, level);
-  if (world.is_endless()) return static_cast<std::uint32_t>(radius);
-  const std::int64_t most =
-      nodes_along(std::max(world.blocks_x, world.blocks_z), level) - 1;  // to the other end
-  return static_cast<std::uint32_t>(std::min(radius, most));
-}
-
-// How many nodes of a level can exist at most: they lie in a disc, and in the world.
-double most_nodes(const world::World& world, double radius, std::size_t level) {
-  const auto along = [&](std::int64_t blocks) {
-    const double window = 2 * radius + 1;
-    return blocks == 0 ? window : std::min(window, static_cast<double>(nodes_along(blocks, level)));
-  };
-  return std::min(std::numbers::pi * radius * radius,
-                  along(world.blocks_x) * along(world.blocks_z));
-}
-
-// Nodes and models that exist at once at most, and the windows in which nodes are kept, before
-// anything is allocated for them.
-core::Result<void> check_size(const world::World& world, std::span<const NodeLevel> levels,
-                              const Settings& settings) {
-  const double models = static_cast<double>(world::models_per_block(world));
-  double entities = 0, places = 0;
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    const double radius = window_radius(levels, settings, k);
-    entities += most_nodes(world, radius, k) * (k == 0 ? 1 + models : 2);
-    const double side = 2.0 * largest_radius(world, levels, settings, k) + 1;
-    places += side * side;
-  }
-  if (places > Scene::kMaxPlaces) {
-    return core::fail(
-        core::ErrorCode::kOverBudget,
-        fmt::format(
-            "a view of {:.0f} m over blocks of {:g} m (block_vertices, cell_m) needs places "
-            "for {:.3g} nodes; at most {:.0f} are allowed",
-            settings.view_distance_m, world.block_size_m(), places, Scene::kMaxPlaces));
-  }
-  if (entities <= Scene::kMaxEntities) return {};
-  return core::fail(
-      core::ErrorCode::kOverBudget,
-      fmt::format(
-          "a view of {:.0f} m over blocks of {:g} m (block_vertices, cell_m) with {} models "
-          "each (count) needs {:.3g} entities; at most {:.0f} are allowed",
-          settings.view_distance_m, world.block_size_m(), world::models_per_block(world), entities,
-          Scene::kMaxEntities));
-}
-
-// The levels of the quadtree, pictures, and the type of the meshes that stand for everything on a
-// node.
-core::Result<void> find_levels(const Settings& settings, WorldFacts& facts, Output& output) {
-  if (auto ok = find_pictures(settings, facts, output); !ok) return ok;
-  const models::ModelType* merged = nullptr;
-  if (settings.levels_of_detail && world::models_per_block(facts.world) > 0) {
-    const auto world = std::make_shared<const world::World>(facts.world);
-    const auto added =
-        facts.registry.add(world::make_merged_type(world, facts.registry, facts.pictures));
-    if (!added) return tl::unexpected(added.error());
-    facts.merged_model = *added;
-    merged = &facts.registry[*added];
-  }
-  facts.levels = node_levels(facts.world, facts.registry, settings, merged);
-  const auto size = static_cast<int>(facts.world.terrain.integer(models::kTerrainSize));
-  for (int level = 0; level < models::kTerrainLevels; ++level)
-    facts.grids.emplace_back(size, level);
-  if (facts.levels[0].mesh_level != 0) facts.tiles.emplace(size);
-  const world::FarCover cover = world::far_cover(facts.world, facts.registry);
-  facts.canopy = canopy_of(facts.world, cover.albedo);
-  facts.cover_share = cover.share;
-  return {};
-}
 
 // Takes over how many modelers started. Fails if there are none: no mesh would ever be made.
 core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
@@ -212,30 +133,20 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   world::set_edits(world, nullptr);
   facts.world = std::move(world);
   facts.registry = std::move(registry);
-  facts.light = light_of(facts.world, settings.view_distance_m);
-  facts.palette = palette_of(facts.world);
-  facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(facts.world));
-  facts.cell_m = static_cast<float>(facts.world.cell_m());
-  facts.scattered_reach_m = world::models_reach_m(facts.world, facts.registry);
-  facts.models_reach_m = facts.scattered_reach_m;
-  facts.standing = standing_on_block(facts.world, facts.registry);
-
   s.output.renderer = renderer;
-  if (auto ok = find_levels(settings, facts, s.output); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_size(facts.world, facts.levels, settings); !ok)
-    return tl::unexpected(ok.error());
-  if (auto ok = s.assets.open(facts.registry, renderer); !ok) return tl::unexpected(ok.error());
-  for (std::size_t k = 0; k < facts.levels.size(); ++k) {
-    s.streaming.grids.emplace_back(static_cast<std::uint8_t>(k),
-                                   largest_radius(facts.world, facts.levels, settings, k));
+  if (auto ok = derive(settings, true, facts); !ok) return tl::unexpected(ok.error());
+  if (!show_stand_ins(facts, nullptr, s.output)) {
+    if (auto ok = derive(settings, false, facts); !ok) return tl::unexpected(ok.error());
   }
+  if (auto ok = s.assets.open(facts.registry, renderer); !ok) return tl::unexpected(ok.error());
+  facts.usual_boxes = usual_boxes(facts.registry, models_on(facts, {}));
+  s.streaming.grids = node_grids(settings, facts);
   scene->take_over_preset();
   if (renderer == nullptr) {
     s.heap = std::make_unique<core::HeapGeometryMemory>(settings.budget_bytes);
   }
   s.memory = renderer != nullptr ? &renderer->geometry() : s.heap.get();
   s.meshes.open(facts.registry, *s.memory, settings.budget_bytes);
-  facts.usual_boxes = usual_boxes(facts.registry, models_on(facts, {}));
   if (!settings.virtual_time) {
     scene->calibration_ = s.meshes.calibrate(cost_samples(facts), [&](double fraction) {
       if (progress) (void)progress("calibrating", fraction);

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "engine/scene/state.hpp"
 #include "engine/scene/tick.hpp"
@@ -75,6 +76,13 @@ class Scene {
   // drawn stays until the new meshes are there. An edit taken back restores the very same meshes.
   void edit(world::Edits edits);
 
+  // Replaces the world and its types, from the next tick on: for editors, and for games whose world
+  // changes. Meshes that are the same stay, others are drawn until the new ones are there; where
+  // blocks have another size or other levels, everything is made anew. The edits are kept. Waits
+  // for requests that modelers work on. Fails as create(); then nothing has changed. Some 10 ms,
+  // and 20 µs for each block near the camera.
+  core::Result<void> set_world(world::World world, models::Registry registry);
+
   // Fails with kInvalidArgument for settings that make no sense, and with kOverBudget for a budget
   // below kMinBudgetBytes or above kMaxBudgetBytes.
   static core::Result<void> check(const Settings& settings);
@@ -94,6 +102,8 @@ class Scene {
 
   State state_;
   synthesis::CalibrationReport calibration_;
+  // Types of worlds before, that objects or modelers that hang still use.
+  std::vector<models::Registry> retired_types_;
 };
 
 }  // namespace psygen::scene

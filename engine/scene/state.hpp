@@ -108,11 +108,13 @@ struct Camera {
   std::vector<Prediction> predictions;
 };
 
-// The unchanging world and what is derived from it once. Only its edits change, and how far models
-// reach because of them (edits_system); everything else was derived without edits.
+// The world and what is derived from it once (world_facts.hpp). Only its edits change, and how far
+// models reach because of them (edits_system); everything else was derived without edits.
+// Scene::set_world() replaces all of it.
 struct WorldFacts {
   world::World world;
   models::Registry registry;
+  std::size_t given_types = 0;  // of the registry, before the scene added its own
   render::Light light;
   render::TerrainPalette palette;
   render::Canopy canopy;                       // of forests too far to be drawn
@@ -301,7 +303,8 @@ using SharedIndices = std::unordered_map<std::uint64_t, std::uint32_t>;
 struct Output {
   render::Renderer* renderer = nullptr;  // null: everything but drawing
   SharedIndices shared_indices;
-  std::uint32_t pictures_lacking = 0;  // bit i: the renderer has not got picture i yet
+  std::uint32_t pictures_lacking = 0;         // bit i: the renderer has not got picture i yet
+  std::optional<std::size_t> pictures_shown;  // that the renderer has room for; of this scene
   std::optional<core::Error> error;
 };
 

@@ -14,29 +14,39 @@
 namespace psygen::scene {
 namespace {
 
-// Gives the renderer something to show until the pictures are made. False without room for them.
-bool prepare_pictures(const world::PictureSet& pictures, Output& output) {
-  if (output.renderer == nullptr) return true;
-  std::vector<core::ModelPicture> stand_ins;
-  for (std::size_t i = 0; i < pictures.count(); ++i)
-    stand_ins.push_back(pictures.stand_in(i));
-  if (const auto set = output.renderer->set_model_pictures(stand_ins); !set) {
-    core::log_warning(fmt::format("far trees have no pictures: {}", set.error().message));
-    return false;
-  }
-  output.pictures_lacking = static_cast<std::uint32_t>((std::uint64_t{1} << stand_ins.size()) - 1);
-  return true;
+std::uint32_t all_of(std::size_t pictures) {
+  return static_cast<std::uint32_t>((std::uint64_t{1} << pictures) - 1);
 }
 
 }  // namespace
 
-core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts, Output& output) {
-  if (output.renderer != nullptr) {  // of another scene before
-    if (auto none = output.renderer->set_model_pictures({}); !none) return none;
+bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, Output& output) {
+  if (output.renderer == nullptr) return true;
+  const std::size_t count = facts.pictures ? facts.pictures->count() : 0;
+  if (output.pictures_shown == count) {
+    const bool other =
+        count > 0 && (before == nullptr || before->identity() != facts.pictures->identity());
+    if (other) output.pictures_lacking = all_of(count);
+    return true;
   }
+  std::vector<core::ModelPicture> stand_ins;
+  for (std::size_t i = 0; i < count; ++i)
+    stand_ins.push_back(facts.pictures->stand_in(i));
+  output.pictures_lacking = 0;
+  output.pictures_shown.reset();
+  if (const auto set = output.renderer->set_model_pictures(stand_ins); !set) {
+    core::log_warning(fmt::format("far trees have no pictures: {}", set.error().message));
+    return false;
+  }
+  output.pictures_shown = count;
+  output.pictures_lacking = all_of(count);
+  return true;
+}
+
+core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts) {
   if (settings.paradigm == Paradigm::kDataAmplification || !settings.levels_of_detail) return {};
   auto pictures = std::make_shared<const world::PictureSet>(facts.world, facts.registry);
-  if (pictures->count() == 0 || !prepare_pictures(*pictures, output)) return {};
+  if (pictures->count() == 0) return {};
   const std::size_t types = facts.registry.size();
   const auto baked = facts.registry.add(world::make_picture_type());
   if (!baked) return tl::unexpected(baked.error());

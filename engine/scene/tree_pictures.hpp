@@ -8,11 +8,15 @@
 
 namespace psygen::scene {
 
-// Finds the pictures of the world's trees, which take the place of another scene's, adds the types
-// of their meshes to the registry, and gives the renderer a rough stand-in for each. There are none
-// without levels of detail, none with data amplification, which makes all levels of all meshes
-// once, and none where the renderer has no room: that is said in the log.
-core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts, Output& output);
+// Finds the pictures of the world's trees and adds the types of their meshes to the registry. There
+// are none without levels of detail, and none with data amplification, which makes all levels of
+// all meshes once.
+core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts);
+
+// Gives the renderer a rough stand-in for each, in place of what it had. Where it has as many of
+// this scene already, they stay until the new ones are made, and for good if they are those of
+// `before` (may be null). False if the renderer has no room: that is said in the log.
+bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, Output& output);
 
 // Wants the pictures that the renderer lacks. Part of the cache system.
 void want_pictures(const WorldFacts& facts, const Output& output, synthesis::MeshSupply& meshes);

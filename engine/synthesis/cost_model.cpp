@@ -5,7 +5,6 @@
 #include <cmath>
 #include <exception>
 #include <limits>
-#include <typeindex>
 
 #include "engine/core/clock.hpp"
 #include "engine/synthesis/synthesize.hpp"
@@ -62,7 +61,6 @@ double quantile(std::span<double> values, double p) {
 }
 
 CostModel::CostModel(const models::Registry& registry) : registry_(registry) {
-  std::vector<std::type_index> codes;
   for (std::size_t m = 0; m < registry.size(); ++m) {
     const models::ModelType& type = registry[static_cast<models::ModelIndex>(m)];
     const auto levels = static_cast<std::size_t>(std::max(type.level_count(), 1));
@@ -73,10 +71,32 @@ CostModel::CostModel(const models::Registry& registry) : registry_(registry) {
     ranges_.emplace_back(levels);
     corrections_.emplace_back(levels);
     const std::type_index code(typeid(type));
-    codes_.push_back(static_cast<std::size_t>(std::ranges::find(codes, code) - codes.begin()));
-    if (codes_.back() == codes.size()) codes.push_back(code);
+    codes_.push_back(static_cast<std::size_t>(std::ranges::find(kinds_, code) - kinds_.begin()));
+    if (codes_.back() == kinds_.size()) kinds_.push_back(code);
+    names_.emplace_back(type.name());
   }
-  cold_by_code_.resize(std::max<std::size_t>(codes.size(), 1));
+  cold_by_code_.resize(std::max<std::size_t>(kinds_.size(), 1));
+}
+
+void CostModel::learn_from(const CostModel& other) {
+  for (std::size_t m = 0; m < names_.size(); ++m) {
+    const auto at =
+        static_cast<std::size_t>(std::ranges::find(other.names_, names_[m]) - other.names_.begin());
+    if (at == other.names_.size() || other.kinds_[other.codes_[at]] != kinds_[codes_[m]] ||
+        other.fits_[at].size() != fits_[m].size())
+      continue;
+    fits_[m] = other.fits_[at];
+    ranges_[m] = other.ranges_[at];
+    corrections_[m] = other.corrections_[at];
+  }
+  for (std::size_t code = 0; code < kinds_.size(); ++code) {
+    const auto at = static_cast<std::size_t>(std::ranges::find(other.kinds_, kinds_[code]) -
+                                             other.kinds_.begin());
+    if (at < other.kinds_.size()) cold_by_code_[code] = other.cold_by_code_[at];
+  }
+  request_s_ = other.request_s_;
+  recent_errors_ = other.recent_errors_;
+  next_error_ = other.next_error_;
 }
 
 const CostFit& CostModel::fit(models::ModelIndex model, int level) const {

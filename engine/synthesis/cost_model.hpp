@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <typeindex>
 #include <vector>
 
 #include "engine/models/registry.hpp"
@@ -80,6 +81,9 @@ class CostModel {
   // Before calibration every step takes what its type says, and a triangle 5 ns.
   explicit CostModel(const models::Registry& registry);
 
+  // Takes over what another model knows of types with the same name, code and levels.
+  void learn_from(const CostModel& other);
+
   // Measures the samples (or, without any, each type's defaults) at every level, coarsest first.
   // `progress`, if given, is called with a fraction in [0, 1] after each type and level.
   CalibrationReport calibrate(std::span<const CostSample> samples = {},
@@ -125,6 +129,8 @@ class CostModel {
   std::vector<std::vector<std::optional<WorkRange>>> ranges_;  // the same; none: not measured
   std::vector<std::vector<CostCorrection>> corrections_;       // the same
   std::vector<std::size_t> codes_;                             // [model]
+  std::vector<std::string> names_;                             // [model]
+  std::vector<std::type_index> kinds_;                         // [code]
   std::vector<ColdSeconds> cold_by_code_;
   double request_s_ = 0;              // that every request takes beside its synthesis
   std::vector<float> recent_errors_;  // ring, in percent

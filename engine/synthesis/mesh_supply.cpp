@@ -61,4 +61,20 @@ MeshSupply::Landed MeshSupply::land(std::uint64_t max_bytes) {
   return landed;
 }
 
+bool MeshSupply::come_to_rest() {
+  begin_wants();
+  plan({}, Policy::kDeadline);
+  manager_->wait_all();
+  collect();
+  land(UINT64_MAX);
+  return manager_->hung().empty();
+}
+
+void MeshSupply::take_over_types(std::vector<Annotate> annotate) {
+  auto cost = std::make_unique<CostModel>(cache_->registry());
+  cost->learn_from(*cost_);
+  cost_ = std::move(cost);
+  manager_->set_notes(std::move(annotate));
+}
+
 }  // namespace psygen::synthesis

@@ -86,6 +86,15 @@ class MeshSupply {
   // Makes the oldest of what was collected ready, until `max_bytes` are reached or exceeded.
   Landed land(std::uint64_t max_bytes);
 
+  // Other types -----------------------------------------------------------------------------------
+  // To be called before types of the registry change. Gives up what no modeler has begun, waits for
+  // the rest and makes it ready. What was requested must be wanted anew. False if a modeler hangs:
+  // then the types that it uses must live on.
+  bool come_to_rest();
+  // To be called once they have changed, and before anything else. What was learnt of types with
+  // the same name is kept. `annotate` as in SynthesisOptions.
+  void take_over_types(std::vector<Annotate> annotate);
+
   // What is kept --------------------------------------------------------------------------------
   // How important a mesh is from now on. Stale handles are ignored here and below.
   void rank(MeshHandle handle, Rank rank) { cache_->set_rank(handle, rank); }

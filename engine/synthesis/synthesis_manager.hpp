@@ -87,6 +87,8 @@ class SynthesisManager {
   // like any other. For the few small meshes whose absence is seen: modelers at the lowest priority
   // may not get a processor for a while.
   void execute_here(const Request& request);
+  // Replaces SynthesisOptions::annotate. Only while nothing is outstanding.
+  void set_notes(std::vector<Annotate> annotate) { workshop_->annotate = std::move(annotate); }
   // From now on modelers take only what other threads leave of the processors: nice 19 per thread,
   // where the system can. For when frames begin; before, the thread that waits for meshes has
   // nothing else to do. With a virtual clock the caller waits for them, and they stay as they are.

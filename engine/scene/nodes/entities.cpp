@@ -65,15 +65,24 @@ models::Parameters lit_ground(const WorldFacts& facts, const Daylight& daylight,
   return ground;
 }
 
+MeshColumns ground_columns(const WorldFacts& facts, const Daylight& daylight,
+                           const visibility::NodeCoord& at) {
+  const int level = facts.levels[at.level].mesh_level;
+  return columns_of(
+      facts, visibility::corner_block(at),
+      {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F), lit_ground(facts, daylight, at)},
+      at.level == 0 ? 0 : level, level);
+}
+
 // Sets what an entity shows from now on. True if that is another mesh.
 bool renew(const models::Parameters& parameters, const WorldFacts& facts, ecs::Entity entity,
            const synthesis::MeshSupply& meshes, ecs::World& entities) {
   Source& source = *entities.get<Source>(entity);
-  const models::ModelType& type = facts.registry[source.model];
-  const bool other = source.parameters != parameters;
+  const std::uint64_t hash = models::parameters_hash(facts.registry[source.model], parameters);
+  const bool other = source.parameters_hash != hash || source.parameters != parameters;
   source.parameters = parameters;  // the layer of edits is another one in any case
   if (!other) return false;
-  source.parameters_hash = models::parameters_hash(type, parameters);
+  source.parameters_hash = hash;
   Demand& demand = *entities.get<Demand>(entity);
   // When an edit is taken back, the old mesh may still be drawn.
   const synthesis::MeshRecord* drawn = meshes.ready(entities.get<Mesh>(entity)->handle);
@@ -85,14 +94,17 @@ bool renew(const models::Parameters& parameters, const WorldFacts& facts, ecs::E
 }
 
 void place_anew(const WorldFacts& facts, core::BlockCoord block, const world::Placement& placement,
-                ecs::Entity entity, const synthesis::MeshSupply& meshes, ecs::World& entities) {
-  if (!renew(placement.parameters, facts, entity, meshes, entities)) {
+                bool world, ecs::Entity entity, const synthesis::MeshSupply& meshes,
+                ecs::World& entities) {
+  if (!renew(placement.parameters, facts, entity, meshes, entities) && !world) {
     entities.get<Placed>(entity)->position = placement.position;
     return;
   }
   const MeshColumns columns = columns_of(facts, block, placement);
   *entities.get<Placed>(entity) = columns.placed;
   *entities.get<Detail>(entity) = columns.detail;
+  entities.get<Source>(entity)->picture_model = columns.source.picture_model;
+  if (world) entities.get<Demand>(entity)->requested_level = kNoLevel;  // dropped meanwhile
 }
 
 void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& meshes,
@@ -108,8 +120,17 @@ void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& 
   entities.destroy(models);
 }
 
+// The boxes and levels of a node's ground in a world that was replaced.
+void fit_ground(const WorldFacts& facts, const Daylight& daylight, ecs::Entity node,
+                ecs::World& entities) {
+  const MeshColumns columns = ground_columns(facts, daylight, entities.get<Node>(node)->at);
+  *entities.get<Placed>(node) = columns.placed;
+  *entities.get<Detail>(node) = columns.detail;
+  entities.get<Demand>(node)->requested_level = kNoLevel;
+}
+
 // Entities of models that stay are kept, with what is drawn of them.
-void update_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity node,
+void update_models(const WorldFacts& facts, core::BlockCoord block, bool world, ecs::Entity node,
                    std::vector<world::Placement>& scratch, synthesis::MeshSupply& meshes,
                    ecs::World& entities, const ModelEvents& events) {
   world::place_models(facts.world, facts.registry, block, scratch);
@@ -125,7 +146,7 @@ void update_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity 
       created.push_back(scratch[next++]);
     const bool stays = next < scratch.size() && scratch[next].index == source->index &&
                        scratch[next].model == source->model;
-    if (stays) place_anew(facts, block, scratch[next++], model, meshes, entities);
+    if (stays) place_anew(facts, block, scratch[next++], world, model, meshes, entities);
     (stays ? kept : gone).push_back(model);
   }
   created.insert(created.end(), scratch.begin() + static_cast<std::ptrdiff_t>(next), scratch.end());
@@ -136,6 +157,24 @@ void update_models(const WorldFacts& facts, core::BlockCoord block, ecs::Entity 
   std::ranges::sort(kept, {},
                     [&](ecs::Entity model) { return entities.get<Source>(model)->index; });
   entities.set_children(node, kept);
+}
+
+// `nodes` are about to be destroyed, and the models on them.
+void tell_removed(std::span<const ecs::Entity> nodes, const ecs::World& entities,
+                  ecs::EventQueue<ModelRemoved>& removed) {
+  if (!removed.has_readers()) return;
+  std::vector<ModelRemoved> events;
+  for (const ecs::Entity node : nodes) {
+    if (entities.get<Node>(node)->at.level != 0) continue;
+    entities.each_of<const Placed, const Source>(
+        entities.children(node),
+        [&events](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
+                  std::span<const Source> sources) {
+          for (std::size_t i = 0; i < rows.size(); ++i)
+            events.push_back({rows[i], placed[i].block, sources[i].index, sources[i].model});
+        });
+  }
+  removed.emit(events);
 }
 
 }  // namespace
@@ -149,14 +188,26 @@ ecs::Entity create_node(const Settings& settings, const WorldFacts& facts, const
   const bool solid = settings.plp_mode == visibility::PlpMode::kSolidity;
   created.column<Node>()[0] = {at, level.bounds.min.y, level.bounds.max.y,
                                solid ? node_solidity(facts.world, facts.standing, at) : 0.0F};
-  fill(created, 0,
-       columns_of(facts, visibility::corner_block(at),
-                  {facts.world.terrain_model, kTerrainIndex, glm::vec3(0.0F),
-                   lit_ground(facts, daylight, at)},
-                  at.level == 0 ? 0 : level.mesh_level, level.mesh_level));
+  fill(created, 0, ground_columns(facts, daylight, at));
   const ecs::Entity node = created.entities[0];
   create_models(facts, at, node, scratch, entities, created_models);
   return node;
+}
+
+void destroy_nodes(std::span<const ecs::Entity> nodes, synthesis::MeshSupply& meshes,
+                   ecs::World& entities, ecs::EventQueue<ModelRemoved>& removed) {
+  const auto give_back = [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
+                             std::span<const Mesh> drawn) {
+    for (std::size_t i = 0; i < demands.size(); ++i) {
+      if (demands[i].drawn_level == kNoLevel) continue;
+      meshes.rank(drawn[i].handle, synthesis::Rank::unwanted());
+    }
+  };
+  entities.each_of<const Demand, const Mesh>(nodes, give_back);
+  for (const ecs::Entity node : nodes)
+    entities.each_of<const Demand, const Mesh>(entities.children(node), give_back);
+  tell_removed(nodes, entities, removed);
+  entities.destroy_with_children(nodes);
 }
 
 void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity node,
@@ -168,15 +219,17 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
   } else if (models::Parameters& p = entities.get<Source>(node)->parameters; p.edits() != nullptr) {
     p.set_edits(facts.world.edits.get(), p.edits_hash());
   }
+  if (change.world) fit_ground(facts, daylight, node, entities);
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
-    if (change.models) update_models(facts, block, node, scratch, meshes, entities, events);
+    if (change.models)
+      update_models(facts, block, change.world, node, scratch, meshes, entities, events);
     return;
   }
   for (const ecs::Entity model : entities.children(node)) {
     models::Parameters& p = entities.get<Source>(model)->parameters;
     if (change.ground || change.models) {
-      place_anew(facts, block, merged_placement(facts, at), model, meshes, entities);
+      place_anew(facts, block, merged_placement(facts, at), change.world, model, meshes, entities);
     } else if (p.edits() != nullptr) {
       p.set_edits(facts.world.edits.get(), p.edits_hash());
     }

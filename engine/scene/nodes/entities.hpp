@@ -3,6 +3,7 @@
 // exist (systems/streaming.cpp). Main thread only.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "ecs/ecs.hpp"
@@ -24,10 +25,11 @@ struct ModelEvents {
   ecs::EventQueue<ModelRemoved>& removed;
 };
 
-// What changed of the edits of a node.
+// What changed of a node: of its edits, or all of the world.
 struct NodeChange {
   bool ground = true;  // heights or light may differ
   bool models = true;  // the edits of its blocks differ, or heights under its models
+  bool world = false;  // anything may differ, also boxes and levels
 };
 
 // Gives a node and its models what they are in the world's present edits. What is drawn of them
@@ -36,5 +38,10 @@ struct NodeChange {
 void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity node,
                  const NodeChange& change, std::vector<world::Placement>& scratch,
                  synthesis::MeshSupply& meshes, ecs::World& entities, const ModelEvents& events);
+
+// Destroys nodes with their models. Their meshes stay in the cache while there is room: the camera
+// may come back.
+void destroy_nodes(std::span<const ecs::Entity> nodes, synthesis::MeshSupply& meshes,
+                   ecs::World& entities, ecs::EventQueue<ModelRemoved>& removed);
 
 }  // namespace psygen::scene

@@ -17,8 +17,26 @@ constexpr std::uint64_t kNoOwner = ecs::kNullEntity.index;
 
 core::Result<void> Assets::open(models::Registry& registry, render::Renderer* renderer) {
   sources_ = std::make_shared<ObjectSources>();
-  registry_ = &registry;
   renderer_ = renderer;
+  return add_types(registry);
+}
+
+core::Result<void> Assets::follow(models::Registry& registry) {
+  const models::ModelIndex copied = copied_, synthesised = synthesised_;
+  if (auto ok = add_types(registry); !ok) return ok;
+  if (copied == copied_ && synthesised == synthesised_) return {};
+  for (ObjectMesh& mesh : meshes_) {
+    for (ObjectMeshLevel& level : mesh.levels) {
+      level.key.model = level.key.model == copied ? copied_ : synthesised_;
+      level.handle = {};
+      level.ready = level.failed = false;
+    }
+  }
+  return {};
+}
+
+core::Result<void> Assets::add_types(models::Registry& registry) {
+  registry_ = &registry;
   const auto copied = registry.add(make_object_type(sources_, true));
   if (!copied) return tl::unexpected(copied.error());
   const auto synthesised = registry.add(make_object_type(sources_, false));

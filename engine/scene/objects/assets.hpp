@@ -47,6 +47,10 @@ class Assets {
   // null. Both outlive it. Once. Fails like Registry::add().
   core::Result<void> open(models::Registry& registry, render::Renderer* renderer);
 
+  // From now on for another registry, to which it adds the same types. Meshes of objects are the
+  // same, under other keys. Those of model types keep their types, which must live on.
+  core::Result<void> follow(models::Registry& registry);
+
   // A mesh of the program's own, or of a file. `name` is for messages. Fails like scene::pack(),
   // and with kOverBudget beyond 65,536 meshes.
   core::Result<MeshId> add_mesh(const core::MeshData& mesh, std::string name = "mesh");
@@ -75,6 +79,7 @@ class Assets {
 
  private:
   core::Result<MeshId> add(ObjectSource source, models::ModelIndex type);
+  core::Result<void> add_types(models::Registry& registry);
 
   std::shared_ptr<ObjectSources> sources_;
   const models::Registry* registry_ = nullptr;

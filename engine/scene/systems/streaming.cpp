@@ -66,25 +66,6 @@ class Window {
   std::vector<double> reach_m_;
 };
 
-// `nodes` are about to be destroyed, and the models on them.
-void tell_removed(std::span<const ecs::Entity> nodes, const ecs::World& entities,
-                  ecs::EventQueue<ModelRemoved>& removed) {
-  if (!removed.has_readers()) return;
-  std::vector<ModelRemoved> events;
-  for (const ecs::Entity node : nodes) {
-    if (entities.get<Node>(node)->at.level != 0) continue;
-    entities.each_of<const Placed, const Source>(
-        entities.children(node),
-        [&events](std::span<const ecs::Entity> rows, std::span<const Placed> placed,
-                  std::span<const Source> sources) {
-          for (std::size_t i = 0; i < rows.size(); ++i)
-            events.push_back({rows[i], placed[i].block, sources[i].index, sources[i].model});
-        });
-  }
-  removed.emit(events);
-}
-
-// Their meshes stay in the cache while there is room: the camera may come back.
 void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs::World& entities,
                            synthesis::MeshSupply& supply, ecs::EventQueue<ModelRemoved>& removed,
                            Counters& counters) {
@@ -97,18 +78,7 @@ void destroy_leaving_nodes(const Window& window, const Streaming& streaming, ecs
     }
   });
   counters.nodes_destroyed += static_cast<std::uint32_t>(leaving.size());
-  const auto give_back = [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
-                             std::span<const Mesh> meshes) {
-    for (std::size_t i = 0; i < demands.size(); ++i) {
-      if (demands[i].drawn_level == kNoLevel) continue;
-      supply.rank(meshes[i].handle, synthesis::Rank::unwanted());
-    }
-  };
-  entities.each_of<const Demand, const Mesh>(leaving, give_back);
-  for (const ecs::Entity node : leaving)
-    entities.each_of<const Demand, const Mesh>(entities.children(node), give_back);
-  tell_removed(leaving, entities, removed);
-  entities.destroy_with_children(leaving);
+  destroy_nodes(leaving, supply, entities, removed);
 }
 
 // Coarse nodes are few and stand for all finer ones: they come first.

@@ -100,7 +100,9 @@ glm::vec2 stretch(glm::vec2 from, glm::vec2 to) {
 }  // namespace
 
 PictureSet::PictureSet(const World& world, const models::Registry& registry)
-    : registry_(&registry), identity_(kPictureEdition) {
+    : identity_(kPictureEdition) {
+  for (std::size_t i = 0; i < registry.size(); ++i)
+    types_.push_back(&registry[static_cast<models::ModelIndex>(i)]);
   std::size_t scatters = 0;
   std::uint32_t first = 0;
   std::vector<std::uint32_t> firsts;
@@ -125,7 +127,7 @@ PictureSet::PictureSet(const World& world, const models::Registry& registry)
 
 void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::uint32_t first,
                              std::size_t most) {
-  const ModelType& type = (*registry_)[scatter.model];
+  const ModelType& type = *types_[scatter.model];
   if (scatter.count == 0 || !type.is_seen_from_far() || !type.may_run_on_main_thread()) return;
   std::vector<std::pair<float, Parameters>> candidates;
   for (std::uint32_t k = 0; k < kCandidates; ++k) {
@@ -154,7 +156,7 @@ bool PictureSet::has(models::ModelIndex model) const {
 }
 
 int PictureSet::first_level(models::ModelIndex model, const Parameters& p) const {
-  const ModelType& type = (*registry_)[model];
+  const ModelType& type = *types_[model];
   int level = 0;
   while (level + 1 < type.level_count_of(p) &&
          type.mesh_size(p, level).triangle_count() > kMostTriangles)
@@ -166,7 +168,7 @@ int PictureSet::first_level(models::ModelIndex model, const Parameters& p) const
 void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, SampleMesh* scratch,
                            FormMesh& out) const {
   PSYGEN_CHECK(has(model), "a type that has pictures");
-  const ModelType& type = (*registry_)[model];
+  const ModelType& type = *types_[model];
   const glm::vec2 own_m =
       scratch != nullptr ? coarse_size(type, p, *scratch) : size_of_bounds(type.bounds(p));
   const auto size_of = [&](const PicturedModel& m) {
@@ -205,7 +207,7 @@ void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, Sample
 
 core::ModelPicture PictureSet::bake(std::size_t number, int level, std::uint32_t views) const {
   const PicturedModel& m = models_[number];
-  const ModelType& type = (*registry_)[m.model];
+  const ModelType& type = *types_[m.model];
   SampleMesh mesh;
   mesh.make(type, m.parameters, level);
   return bake_picture(corners_of(mesh), mesh.indices(type), m.frame, views);
@@ -213,7 +215,7 @@ core::ModelPicture PictureSet::bake(std::size_t number, int level, std::uint32_t
 
 core::ModelPicture PictureSet::stand_in(std::size_t number) const {
   const PicturedModel& m = models_[number];
-  return bake(number, (*registry_)[m.model].level_count_of(m.parameters) - 1, 1);
+  return bake(number, types_[m.model]->level_count_of(m.parameters) - 1, 1);
 }
 
 }  // namespace psygen::world

@@ -39,7 +39,7 @@ class PictureSet {
 
   // Synthesises one instance for each picture (some 100 µs each). There are none for types that are
   // not seen from far, that may not run on the main thread, that throw, or whose finest mesh has no
-  // leaves or too few triangles to need pictures. `registry` must outlive it.
+  // leaves or too few triangles to need pictures. The types of `registry` must outlive it.
   PictureSet(const World& world, const models::Registry& registry);
 
   std::span<const PicturedModel> models() const { return models_; }
@@ -69,7 +69,7 @@ class PictureSet {
   void add_scatter(const World& world, const Scatter& scatter, std::uint32_t first,
                    std::size_t most);
 
-  const models::Registry* registry_;
+  std::vector<const models::ModelType*> types_;  // of the registry
   std::vector<PicturedModel> models_;
   std::uint64_t identity_ = 0;
 };

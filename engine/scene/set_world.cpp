@@ -1,0 +1,108 @@
+// Replaces the world of a running scene: takes over what is derived from the new one, then gives
+// every node and model what it is there. What is drawn stays until the new meshes are there; that
+// is synthesis like any other.
+#include <algorithm>
+#include <utility>
+
+#include "engine/scene/cost_samples.hpp"
+#include "engine/scene/mesh_notes.hpp"
+#include "engine/scene/nodes/entities.hpp"
+#include "engine/scene/nodes/usual_boxes.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/scene/tree_pictures.hpp"
+#include "engine/scene/world_facts.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// Whether nodes of both worlds are the same pieces of ground with meshes of the same layout.
+bool same_nodes(const WorldFacts& a, const WorldFacts& b) {
+  const auto same_level = [](const NodeLevel& x, const NodeLevel& y) {
+    return x.size_m == y.size_m && x.mesh_level == y.mesh_level && x.merged == y.merged;
+  };
+  const auto size_of = [](const WorldFacts& facts) {
+    return facts.world.terrain.integer(models::kTerrainSize);
+  };
+  return a.world.terrain_model == b.world.terrain_model && size_of(a) == size_of(b) &&
+         a.cell_m == b.cell_m && a.world.blocks_x == b.world.blocks_x &&
+         a.world.blocks_z == b.world.blocks_z && a.tiles.has_value() == b.tiles.has_value() &&
+         std::ranges::equal(a.levels, b.levels, same_level);
+}
+
+bool same_windows(std::span<const NodeGrid> a, std::span<const NodeGrid> b) {
+  return std::ranges::equal(a, b, {}, &NodeGrid::max_radius, &NodeGrid::max_radius);
+}
+
+// Types whose shared indices may be those of another type now.
+bool same_types(const models::Registry& a, const models::Registry& b) {
+  const std::size_t count = std::min(a.size(), b.size());
+  for (models::ModelIndex i = 0; i < count; ++i) {
+    if (a[i].name() != b[i].name()) return false;
+  }
+  return true;
+}
+
+std::vector<ecs::Entity> nodes_of(const ecs::World& entities) {
+  std::vector<ecs::Entity> nodes;
+  entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node>) {
+    nodes.insert(nodes.end(), rows.begin(), rows.end());
+  });
+  return nodes;
+}
+
+// They are created anew in the next tick.
+void destroy_all_nodes(const WorldFacts& facts, State& s) {
+  destroy_nodes(nodes_of(s.entities), s.meshes, s.entities, s.events.removed);
+  s.streaming = {};
+  s.streaming.grids = node_grids(s.settings, facts);
+  s.draws.handover = {};
+}
+
+void update_all_nodes(State& s) {
+  std::vector<world::Placement> scratch;
+  for (const ecs::Entity node : nodes_of(s.entities)) {
+    update_node(s.facts, s.daylight, node, {.world = true}, scratch, s.meshes, s.entities,
+                {s.events.created, s.events.removed});
+  }
+}
+
+void name_types(const models::Registry& registry, Tracing& trace) {
+  if (trace.log == nullptr) return;
+  trace.models.clear();
+  for (models::ModelIndex i = 0; i < registry.size(); ++i)
+    trace.models.push_back(trace.log->intern(registry[i].name()));
+}
+
+}  // namespace
+
+core::Result<void> Scene::set_world(world::World world, models::Registry registry) {
+  State& s = state_;
+  world::set_edits(world, nullptr);
+  WorldFacts next;
+  next.world = std::move(world);
+  next.registry = std::move(registry);
+  if (auto ok = derive(s.settings, true, next); !ok) return ok;
+  if (!show_stand_ins(next, s.facts.pictures.get(), s.output)) {
+    if (auto ok = derive(s.settings, false, next); !ok) return ok;
+  }
+  const bool rested = s.meshes.come_to_rest();
+  // Nothing fails from here on: the same types were added before.
+  if (auto ok = s.assets.follow(next.registry); !ok) return ok;
+  next.usual_boxes = usual_boxes(next.registry, models_on(next, {}));
+  const bool same =
+      same_nodes(s.facts, next) && same_windows(s.streaming.grids, node_grids(s.settings, next));
+  if (!same || !same_types(s.facts.registry, next.registry)) s.output.shared_indices.clear();
+  if (!same) destroy_all_nodes(next, s);
+  std::swap(s.facts, next);
+  if (!rested || s.assets.mesh_count() > 0) retired_types_.push_back(std::move(next.registry));
+  s.meshes.take_over_types(mesh_notes(s.facts));
+  take_over_preset();
+  name_types(s.facts.registry, s.trace);
+  edit(std::move(s.editing.edits));
+  if (same) update_all_nodes(s);
+  for (Foresight::Place& place : s.foresight.places)
+    place.stale = true;
+  return {};
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,185 @@
+// A world that is replaced while it is drawn.
+#include <fstream>
+#include <map>
+#include <tuple>
+
+#include "tests/engine/scene/fixture.hpp"
+
+namespace psygen::scene {
+namespace {
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(source_file("game/worlds/" + file));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string replaced(std::string text, const std::string& what, std::string_view by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return at == std::string::npos ? text : text.replace(at, what.size(), by);
+}
+
+struct Parsed {
+  models::Registry registry = models::make_standard_registry();
+  world::World world;
+  explicit Parsed(const std::string& text) {
+    auto read = world::parse_world(text, "test.toml", registry);
+    EXPECT_TRUE(read) << read.error().message;
+    world = std::move(*read);
+  }
+};
+
+std::unique_ptr<Scene> scene_of(const std::string& text, const Settings& settings) {
+  Parsed parsed(text);
+  return make_scene(parsed.world, settings, std::move(parsed.registry));
+}
+
+core::Result<void> set(Scene& scene, const std::string& text) {
+  Parsed parsed(text);
+  return scene.set_world(std::move(parsed.world), std::move(parsed.registry));
+}
+
+// Everything that stands in a scene, by place: what it is, where, and what is drawn of it.
+using What = std::tuple<std::string, std::uint64_t, float, float, float, int, std::uint64_t>;
+std::multimap<std::tuple<int, int, std::uint32_t>, What> contents_of(Scene& scene) {
+  std::multimap<std::tuple<int, int, std::uint32_t>, What> contents;
+  const State& s = scene.state();
+  std::as_const(scene.state().entities)
+      .each<const Placed, const Source, const Demand, const Mesh>(
+          [&](std::span<const ecs::Entity>, std::span<const Placed> placed,
+              std::span<const Source> sources, std::span<const Demand> demands,
+              std::span<const Mesh> meshes) {
+            for (std::size_t i = 0; i < placed.size(); ++i) {
+              const synthesis::MeshRecord* drawn =
+                  demands[i].drawn_level == kNoLevel ? nullptr : s.meshes.ready(meshes[i].handle);
+              const Placed& at = placed[i];
+              contents.emplace(
+                  std::tuple{at.block.x, at.block.z, sources[i].index},
+                  What{s.facts.registry[sources[i].model].name(), sources[i].parameters_hash,
+                       at.position.x, at.position.y, at.box_half_extent.y, demands[i].drawn_level,
+                       drawn != nullptr ? drawn->key.parameters_hash : 0});
+            }
+          });
+  return contents;
+}
+
+std::size_t drawn_in(Scene& scene) {
+  std::size_t drawn = 0;
+  for (const auto& [place, what] : contents_of(scene))
+    drawn += std::get<5>(what) != kNoLevel;
+  return drawn;
+}
+
+class SetWorld : public testing::Test {
+ protected:
+  // In a scene of `before` that is given `after`, everything is as in one of `after`.
+  void expect_like_new(const std::string& before, const std::string& after) {
+    const auto changed = scene_of(before, settings_);
+    changed->settle(pose_);
+    ASSERT_TRUE(set(*changed, after));
+    changed->settle(pose_);
+    expect_consistent(*changed);
+    const auto fresh = scene_of(after, settings_);
+    fresh->settle(pose_);
+    EXPECT_EQ(contents_of(*changed), contents_of(*fresh));
+  }
+
+  const Settings settings_ = small_settings();
+  const core::CameraPose pose_ = pose_at(256, 256);
+  const std::string paper_ = text_of("paper.toml"), species_ = text_of("five_species.toml");
+};
+
+TEST_F(SetWorld, OtherParametersOfTreesLeadToTheSameSceneAsANewOne) {
+  expect_like_new(paper_, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]"));
+}
+
+TEST_F(SetWorld, OtherGroundLeadsToTheSameSceneAsANewOne) {
+  expect_like_new(paper_, replaced(paper_, "octaves = 9", "octaves = 9\nrelief_m = 40"));
+}
+
+TEST_F(SetWorld, MoreModelsLeadToTheSameSceneAsANewOne) {
+  expect_like_new(paper_, replaced(paper_, "count = 23", "count = 31"));
+}
+
+TEST_F(SetWorld, OtherTypesLeadToTheSameSceneAsANewOne) {
+  expect_like_new(paper_, species_);
+  expect_like_new(species_, paper_);
+}
+
+TEST_F(SetWorld, BlocksOfAnotherSizeLeadToTheSameSceneAsANewOne) {
+  expect_like_new(paper_, replaced(paper_, "block_vertices = 64", "block_vertices = 32"));
+}
+
+TEST_F(SetWorld, WhatIsDrawnStaysUntilTheNewMeshesAreThere) {
+  const auto scene = scene_of(paper_, settings_);
+  scene->settle(pose_);
+  const std::size_t drawn = drawn_in(*scene);
+  ASSERT_GT(drawn, 100u);
+  ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]")));
+  EXPECT_EQ(drawn_in(*scene), drawn);
+  tick_at(*scene, pose_);
+  EXPECT_EQ(drawn_in(*scene), drawn);
+  EXPECT_EQ(scene->state().counters.holes, 0u);
+}
+
+TEST_F(SetWorld, WhatIsTakenBackIsStillInTheCache) {
+  const auto scene = scene_of(paper_, settings_);
+  scene->settle(pose_);
+  const auto before = contents_of(*scene);
+  ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]")));
+  scene->settle(pose_);
+  ASSERT_NE(contents_of(*scene), before);
+  ASSERT_TRUE(set(*scene, paper_));
+  EXPECT_EQ(scene->settle(pose_), 0u);
+  EXPECT_EQ(contents_of(*scene), before);
+}
+
+TEST_F(SetWorld, AWorldThatIsRefusedChangesNothing) {
+  const auto scene = scene_of(paper_, settings_);
+  scene->settle(pose_);
+  const auto before = contents_of(*scene);
+  Parsed crowded(replaced(replaced(paper_, "cell_m = 1", "cell_m = 0.1"),
+                          "count = 40\nsubdivisions = 2", "count = 15000\nsubdivisions = 0"));
+  const auto refused = scene->set_world(std::move(crowded.world), std::move(crowded.registry));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::ErrorCode::kOverBudget);
+  EXPECT_EQ(contents_of(*scene), before);
+  tick_at(*scene, pose_);
+  expect_consistent(*scene);
+}
+
+TEST_F(SetWorld, EditsAreKept) {
+  const auto scene = scene_of(paper_, settings_);
+  scene->settle(pose_);
+  Parsed parsed(paper_);
+  world::Edits edits = scene->edits();
+  ASSERT_TRUE(edits.remove(parsed.world, {{256, 256}, 3}));
+  scene->edit(edits);
+  scene->settle(pose_);
+  const std::size_t left = contents_of(*scene).count({256, 256, 3});
+  ASSERT_EQ(left, 0u);
+  ASSERT_TRUE(set(*scene, replaced(paper_, "count = 40", "count = 41")));
+  scene->settle(pose_);
+  EXPECT_EQ(contents_of(*scene).count({256, 256, 3}), 0u);
+}
+
+// The newest wins, however often it changes.
+TEST_F(SetWorld, ChangesInEveryTickEndWhereTheLastOneSays) {
+  const auto scene = scene_of(paper_, settings_);
+  scene->settle(pose_);
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]",
+                                     i % 2 == 0 ? "branches = [2, 2]" : "branches = [2, 3]")));
+    tick_at(*scene, pose_);
+    EXPECT_EQ(scene->state().counters.holes, 0u);
+    expect_consistent(*scene);
+  }
+  ASSERT_TRUE(set(*scene, paper_));
+  scene->settle(pose_);
+  const auto fresh = scene_of(paper_, settings_);
+  fresh->settle(pose_);
+  EXPECT_EQ(contents_of(*scene), contents_of(*fresh));
+}
+
+}  // namespace
+}  // namespace psygen::scene
