@@ -128,13 +128,4 @@ std::string_view kind_name(Node::Kind kind) {
   return "a value";
 }
 
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
-
 }  // namespace psygen::world

@@ -46,7 +46,4 @@ core::Result<Node> parse_document(std::string_view text, std::string_view file_n
 // A kind for messages: "an integer", "a table", …
 std::string_view kind_name(Node::Kind kind);
 
-// A text as TOML writes it, in quotes. The text has no control characters.
-std::string toml_string(std::string_view text);
-
 }  // namespace psygen::world

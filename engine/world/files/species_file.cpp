@@ -4,6 +4,8 @@
 
 #include <iterator>
 
+#include "engine/world/files/toml_values.hpp"
+
 namespace psygen::world {
 namespace {
 

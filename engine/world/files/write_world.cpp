@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "engine/world/files/document.hpp"
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/species_file.hpp"
+#include "engine/world/files/toml_values.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
 
@@ -14,11 +14,6 @@ namespace psygen::world {
 namespace {
 
 using Text = std::back_insert_iterator<std::string>;
-
-// As a string from 2^63 on, because TOML has no larger integers.
-std::string seed_text(std::uint64_t seed) {
-  return seed <= INT64_MAX ? fmt::format("{}", seed) : fmt::format("\"{}\"", seed);
-}
 
 std::string number(double value, models::ParameterType type) {
   return type == models::ParameterType::kInteger ? fmt::format("{}", std::llround(value))
@@ -87,7 +82,7 @@ std::string write_world(const World& world, const models::Registry& registry) {
   std::string text;
   const Text out(text);
   fmt::format_to(out, "format = {}\n\n[world]\nname = {}\nseed = {}\nblocks = [{}, {}]\n",
-                 world.format, toml_string(world.name), seed_text(world.seed), world.blocks_x,
+                 world.format, toml_string(world.name), toml_seed(world.seed), world.blocks_x,
                  world.blocks_z);
   write_terrain(out, world, registry[world.terrain_model]);
   write_species(world.species, text);

@@ -1,8 +1,13 @@
 // Where the project's own world and path files lie, and small ones for tests.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/core/assert.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -13,6 +18,23 @@ namespace psygen::world::testing {
 
 inline std::filesystem::path game_file(const std::string& name) {
   return std::filesystem::path(source_file("game")) / name;
+}
+
+inline std::string shipped_text(const std::string& name) {
+  std::ifstream stream(game_file(name), std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+// Name and text of every world, by name.
+inline std::vector<std::pair<std::string, std::string>> shipped_worlds() {
+  std::vector<std::pair<std::string, std::string>> worlds;
+  for (const auto& entry : std::filesystem::directory_iterator(game_file("worlds"))) {
+    if (entry.path().extension() != ".toml") continue;
+    const std::string name = entry.path().filename().string();
+    worlds.emplace_back(name, shipped_text("worlds/" + name));
+  }
+  std::ranges::sort(worlds);
+  return worlds;
 }
 
 inline const models::Registry& registry() {

@@ -1,0 +1,218 @@
+// Single values. Tables are in text_tables.cpp.
+#include "engine/world/files/text_edit.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/world/files/document.hpp"
+#include "engine/world/files/text_change.hpp"
+#include "engine/world/files/text_layout.hpp"
+
+namespace psygen::world {
+namespace {
+
+// Whether this text is one value and nothing else.
+core::Result<void> check_value(const TextPath& path, std::string_view value) {
+  const std::string line = fmt::format("v = {}", value);
+  const auto layout = lay_out(line, "value");
+  if (layout && layout->places.front().path == TextPath{"v"} &&
+      layout->places.front().value.begin + value.size() == layout->places.front().value.end)
+    return {};
+  return refuse_edit(path, layout ? "what is to be written must be one value, without blanks or "
+                                    "comments around it"
+                                  : layout.error().message);
+}
+
+std::string with_span(std::string_view text, TextSpan span, std::string_view content) {
+  std::string out(text.substr(0, span.begin));
+  out += content;
+  out += text.substr(span.end);
+  return out;
+}
+
+// The text with "key = value" in an inline table, which starts at "{".
+std::string with_member(const TextLayout& layout, const TextPlace& table, std::string_view member) {
+  const std::string_view text = layout.text;
+  std::size_t at = table.value.end - 1;
+  while (text[at - 1] == ' ' || text[at - 1] == '\t')
+    --at;
+  const bool empty = text[at - 1] == '{';
+  return with_span(text, {at, at},
+                   fmt::format("{}{}{}", empty ? " " : ", ", member,
+                               at + 1 == table.value.end && empty ? " " : ""));
+}
+
+// The text with one more item in an array that is not of tables with headers.
+std::string with_item(const TextLayout& layout, const TextPlace& array, std::string_view value) {
+  std::size_t at = array.value.begin + 1;
+  for (const TextPlace& place : layout.places) {
+    if (place.path.size() == array.path.size() + 1 && place.path.starts_with(array.path))
+      at = place.value.end;
+  }
+  const bool empty = at == array.value.begin + 1;
+  return with_span(layout.text, {at, at}, fmt::format("{}{}", empty ? "" : ", ", value));
+}
+
+// The text with a new line behind `lines`, indented like them.
+std::string with_line_behind(const TextLayout& layout, TextSpan lines, std::string_view line) {
+  const std::string_view end = layout.line_break();
+  const bool cut = lines.end > 0 && layout.text[lines.end - 1] != '\n';
+  return with_span(
+      layout.text, {lines.end, lines.end},
+      fmt::format("{}{}{}{}", cut ? end : "", indent_at(layout.text, lines.begin), line, end));
+}
+
+// Adds a key to a table that is there: with a header, or the root.
+std::string with_statement(const TextLayout& layout, int header, std::string_view line) {
+  const std::size_t next = layout.next_header(header);
+  for (std::size_t i = next; i-- > static_cast<std::size_t>(header + 1);) {
+    if (!layout.places[i].nested) return with_line_behind(layout, layout.places[i].lines, line);
+  }
+  if (header >= 0)
+    return with_line_behind(layout, layout.places[static_cast<std::size_t>(header)].lines, line);
+  return with_span(layout.text, {layout.begin(), layout.begin()},
+                   fmt::format("{}{}", line, layout.line_break()));
+}
+
+// Adds a key to a table that exists only by dotted keys ("a.b = 1"). Nothing if there are none.
+std::optional<std::string> with_dotted_key(const TextLayout& layout, const TextPath& path,
+                                           std::string_view value) {
+  const TextPath table = path.parent();
+  for (std::size_t i = layout.places.size(); i-- > 0;) {
+    const TextPlace& place = layout.places[i];
+    const std::size_t base = place.path.size() - place.key_parts;
+    if (place.is_header() || place.key_parts < 2 || !place.path.starts_with(table) ||
+        base >= table.size())
+      continue;
+    std::string key;
+    for (std::size_t k = base; k < path.size(); ++k)
+      key += (k == base ? "" : ".") + toml_key(path.steps[k].key);
+    const std::string member = fmt::format("{} = {}", key, value);
+    if (!place.nested) return with_line_behind(layout, place.lines, member);
+    return with_span(layout.text, {place.lines.end, place.lines.end}, ", " + member);
+  }
+  return {};
+}
+
+core::Result<std::string> with_new_value(const TextLayout& layout, const TextPath& path,
+                                         std::string_view value) {
+  const TextPath parent = path.parent();
+  const int at = layout.find(parent);
+  if (path.back().is_index) {
+    if (at < 0 || layout.text[layout.places[static_cast<std::size_t>(at)].value.begin] != '[' ||
+        layout.places[static_cast<std::size_t>(at)].is_header() ||
+        path.back().index != layout.item_count(parent))
+      return refuse_edit(path, fmt::format("there are only {} of them", layout.item_count(parent)));
+    return with_item(layout, layout.places[static_cast<std::size_t>(at)], value);
+  }
+  const std::string member = fmt::format("{} = {}", toml_key(path.back().key), value);
+  if (parent.empty()) return with_statement(layout, -1, member);
+  if (at >= 0) {
+    const TextPlace& place = layout.places[static_cast<std::size_t>(at)];
+    if (place.is_header()) return with_statement(layout, at, member);
+    if (layout.text[place.value.begin] == '{') return with_member(layout, place, member);
+    return refuse_edit(parent, "this is not a table");
+  }
+  if (auto dotted = with_dotted_key(layout, path, value)) return *std::move(dotted);
+  if (parent.back().is_index)
+    return refuse_edit(
+        parent, fmt::format("there are only {} of them", layout.item_count(parent.parent())));
+  // A table that is missing: within an inline table it becomes one, else it gets a header.
+  if (parent.size() > 1) {
+    const int within = layout.find(parent.parent());
+    if (within >= 0 && !layout.places[static_cast<std::size_t>(within)].is_header())
+      return with_new_value(layout, parent, fmt::format("{{ {} }}", member));
+  }
+  if (layout.item_count(parent) > 0) return refuse_edit(parent, "this is an array");
+  const std::string header = header_line(layout, parent, false);
+  const std::string_view indent = indent_at(header, 0);
+  return with_table_at(layout, place_of_new_table(layout, parent),
+                       fmt::format("{}{}{}{}", header, indent, member, layout.line_break()));
+}
+
+// Without a member of an inline table or an item of an array, and without a comma beside it.
+std::string without_nested(std::string_view text, TextSpan span) {
+  const auto is_blank = [&](std::size_t i) { return text[i] == ' ' || text[i] == '\t'; };
+  std::size_t behind = span.end;
+  while (is_blank(behind))
+    ++behind;
+  std::size_t before = span.begin;
+  while (is_blank(before - 1))
+    --before;
+  if (text[behind] == ',') {
+    ++behind;
+    while (is_blank(behind))
+      ++behind;
+    return with_span(text, {span.begin, behind}, "");
+  }
+  if (text[before - 1] == ',') return with_span(text, {before - 1, span.end}, "");
+  return with_span(text, span, "");
+}
+
+}  // namespace
+
+core::Result<std::string> with_value(std::string_view text, const TextPath& path,
+                                     std::string_view toml_value) {
+  if (path.empty()) return refuse_edit(path, "a value has a key");
+  if (auto checked = check_value(path, toml_value); !checked)
+    return tl::unexpected(std::move(checked.error()));
+  const auto layout = lay_out_edited(text);
+  if (!layout) return tl::unexpected(layout.error());
+  core::Result<std::string> changed;
+  if (const int at = layout->find(path); at >= 0) {
+    const TextPlace& place = layout->places[static_cast<std::size_t>(at)];
+    if (place.is_header()) return refuse_edit(path, "this is a table with a header, not a value");
+    changed = with_span(text, place.value, toml_value);
+  } else {
+    changed = with_new_value(*layout, path, toml_value);
+  }
+  if (!changed) return changed;
+  auto checked = checked_edit(*std::move(changed), path);
+  if (checked && value_text(*checked, path) != toml_value)
+    return refuse_edit(path, "no value can be written here");
+  return checked;
+}
+
+core::Result<std::string> without_value(std::string_view text, const TextPath& path) {
+  const auto layout = lay_out_edited(text);
+  if (!layout) return tl::unexpected(layout.error());
+  const int at = layout->find(path);
+  if (at < 0) return std::string(text);
+  const TextPlace& place = layout->places[static_cast<std::size_t>(at)];
+  if (place.is_header()) return refuse_edit(path, "this is a table with a header, not a value");
+  return checked_edit(
+      place.nested ? without_nested(text, place.lines) : with_span(text, place.lines, ""), path);
+}
+
+std::optional<std::string> value_text(std::string_view text, const TextPath& path) {
+  const auto layout = lay_out_edited(text);
+  const int at = layout ? layout->find(path) : -1;
+  if (at < 0) return {};
+  const TextPlace& place = layout->places[static_cast<std::size_t>(at)];
+  if (place.is_header()) return {};
+  return std::string(text.substr(place.value.begin, place.value.end - place.value.begin));
+}
+
+core::Result<std::string> with_values(std::string_view text, const TextPath& path,
+                                      std::string_view keys) {
+  const auto layout = lay_out(keys, "the keys");
+  if (!layout) return tl::unexpected(layout.error());
+  core::Result<std::string> changed = std::string(text);
+  for (const TextPlace& place : layout->places) {
+    if (place.is_header()) return refuse_edit(place.path, "a part of a table has no headers");
+    if (place.nested) continue;
+    TextPath full = path;
+    for (const TextStep& step : place.path.steps)
+      full.steps.push_back(step);
+    changed = with_value(*changed, full,
+                         keys.substr(place.value.begin, place.value.end - place.value.begin));
+    if (!changed) return changed;
+  }
+  return changed;
+}
+
+std::size_t item_count(std::string_view text, const TextPath& path) {
+  const auto layout = lay_out_edited(text);
+  return layout ? layout->item_count(path) : 0;
+}
+
+}  // namespace psygen::world

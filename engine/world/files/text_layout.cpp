@@ -1,0 +1,298 @@
+#include "engine/world/files/text_layout.hpp"
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "engine/world/files/document.hpp"
+
+namespace psygen::world {
+namespace {
+
+constexpr std::string_view kMark = "\xEF\xBB\xBF";  // byte order mark
+
+// The key that a quoted key with escapes stands for.
+std::string unescaped(std::string_view quoted) {
+  const auto parsed = parse_document("k = " + std::string(quoted), "key");
+  return parsed && !parsed->members.empty() ? parsed->members.front().value.text : std::string();
+}
+
+class LayoutScanner {
+ public:
+  explicit LayoutScanner(TextLayout& layout) : layout_(layout), text_(layout.text) {
+    at_ = layout.begin();
+  }
+
+  // False where the text is not what a parser takes.
+  bool run() {
+    while (ok_ && at_ < text_.size()) {
+      const std::size_t line = at_;
+      skip_blanks();
+      if (now() == '[') {
+        take_header(line);
+      } else if (now() != '#' && now() != '\n' && now() != '\r' && now() != '\0') {
+        take_statement(line);
+      }
+      skip_line();
+    }
+    return ok_;
+  }
+
+ private:
+  char now(std::size_t ahead = 0) const {
+    return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
+  }
+  void skip_blanks() {
+    while (now() == ' ' || now() == '\t')
+      ++at_;
+  }
+  void skip_line() {
+    while (at_ < text_.size() && text_[at_++] != '\n') {
+    }
+  }
+  // Blanks, comments and line breaks between the values of an array.
+  void skip_space() {
+    while (at_ < text_.size()) {
+      if (now() == '#') {
+        skip_line();
+      } else if (now() == ' ' || now() == '\t' || now() == '\n' || now() == '\r') {
+        ++at_;
+      } else {
+        return;
+      }
+    }
+  }
+  // The end of the line with at_, behind its line break.
+  std::size_t line_end() const {
+    const std::size_t end = text_.find('\n', at_);
+    return end == std::string_view::npos ? text_.size() : end + 1;
+  }
+
+  void skip_string() {
+    const char quote = now();
+    for (++at_; at_ < text_.size() && now() != quote && now() != '\n'; ++at_) {
+      if (now() == '\\' && quote == '"') ++at_;
+    }
+    ok_ = ok_ && now() == quote;
+    ++at_;
+  }
+
+  std::string take_key_part() {
+    const std::size_t begin = at_;
+    if (now() == '"' || now() == '\'') {
+      skip_string();
+      if (!ok_) return {};
+      const std::string_view quoted = text_.substr(begin, at_ - begin);
+      if (quoted.front() == '"' && quoted.find('\\') != std::string_view::npos)
+        return unescaped(quoted);
+      return std::string(quoted.substr(1, quoted.size() - 2));
+    }
+    while (at_ < text_.size() &&
+           std::string_view(" \t.=]\r\n#").find(now()) == std::string_view::npos)
+      ++at_;
+    ok_ = ok_ && at_ > begin;
+    return std::string(text_.substr(begin, at_ - begin));
+  }
+
+  std::vector<std::string> take_key() {
+    std::vector<std::string> parts;
+    do {
+      if (!parts.empty()) ++at_;
+      skip_blanks();
+      parts.push_back(take_key_part());
+      skip_blanks();
+    } while (ok_ && now() == '.');
+    return parts;
+  }
+
+  // The path of a header's key: within the newest items of arrays.
+  TextPath path_of(const std::vector<std::string>& parts, bool is_item) {
+    TextPath path;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      path.steps.emplace_back(parts[i]);
+      const std::string name = path.text();
+      const auto known = items_.find(name);
+      if (i + 1 == parts.size() && is_item) {
+        path.steps.emplace_back(items_[name]++);
+      } else if (known != items_.end()) {
+        path.steps.emplace_back(known->second - 1);
+      }
+    }
+    return path;
+  }
+
+  void take_header(std::size_t line) {
+    TextPlace place;
+    place.value.begin = at_;
+    const bool is_item = now(1) == '[';
+    at_ += is_item ? 2 : 1;
+    place.path = table_ = path_of(take_key(), is_item);
+    place.kind = is_item ? TextPlace::Kind::kItem : TextPlace::Kind::kTable;
+    ok_ = ok_ && now() == ']' && (!is_item || now(1) == ']');
+    at_ += is_item ? 2 : 1;
+    place.value.end = std::min(at_, text_.size());
+    place.lines = {line, line_end()};
+    layout_.places.push_back(std::move(place));
+  }
+
+  void take_statement(std::size_t line) {
+    const std::size_t index = take_member(table_, false);
+    if (ok_) layout_.places[index].lines = {line, line_end()};
+  }
+
+  // "key = value" from at_ on, within `table`. Returns the index of its place.
+  std::size_t take_member(const TextPath& table, bool nested) {
+    const std::size_t begin = at_;
+    TextPath path = table;
+    const std::vector<std::string> key = take_key();
+    for (const std::string& part : key)
+      path.steps.emplace_back(part);
+    ok_ = ok_ && now() == '=';
+    ++at_;
+    skip_blanks();
+    return take_value(std::move(path), begin, nested, key.size());
+  }
+
+  std::size_t take_value(TextPath path, std::size_t begin, bool nested, std::size_t key_parts) {
+    const std::size_t index = layout_.places.size();
+    const std::size_t value = at_;
+    layout_.places.push_back({TextPlace::Kind::kValue, path, {}, {}, nested, key_parts});
+    if (++depth_ > kMaxNesting + 1) ok_ = false;
+    if (now() == '"' || now() == '\'') {
+      skip_string();
+    } else if (now() == '[') {
+      take_items(path);
+    } else if (now() == '{') {
+      take_members(path);
+    } else {
+      skip_plain();
+    }
+    --depth_;
+    ok_ = ok_ && at_ > value && at_ <= text_.size();
+    layout_.places[index].value = {value, at_};
+    layout_.places[index].lines = {begin, at_};
+    return index;
+  }
+
+  void take_items(const TextPath& array) {
+    ++at_;
+    skip_space();
+    for (std::size_t i = 0; ok_ && now() != ']'; ++i) {
+      take_value(array.with(i), at_, true, 0);
+      skip_space();
+      if (now() == ',') {
+        ++at_;
+        skip_space();
+      } else {
+        ok_ = ok_ && now() == ']';
+      }
+    }
+    ++at_;
+  }
+
+  void take_members(const TextPath& table) {
+    ++at_;
+    skip_blanks();
+    while (ok_ && now() != '}') {
+      take_member(table, true);
+      skip_blanks();
+      if (now() == ',') {
+        ++at_;
+        skip_blanks();
+      } else {
+        ok_ = ok_ && now() == '}';
+      }
+    }
+    ++at_;
+  }
+
+  // A number, a boolean, or a date, which may have a blank before its time.
+  void skip_plain() {
+    constexpr std::size_t kDate = std::string_view("1979-05-27").size();
+    const std::size_t begin = at_;
+    const auto skip = [this] {
+      while (at_ < text_.size() &&
+             std::string_view(" \t\r\n,]}#").find(now()) == std::string_view::npos)
+        ++at_;
+    };
+    skip();
+    const bool is_date = at_ - begin == kDate && text_[begin + 4] == '-';
+    if (!is_date || now() != ' ' || now(1) < '0' || now(1) > '9') return;
+    ++at_;
+    skip();
+  }
+
+  TextLayout& layout_;
+  std::string_view text_;
+  std::size_t at_ = 0;
+  TextPath table_;                            // of the header above
+  std::map<std::string, std::size_t> items_;  // numbers of [[headers]] so far, by their paths
+  int depth_ = 0;
+  bool ok_ = true;
+};
+
+// The line above `line_begin`, without its line break. Nothing at the begin of the text.
+std::optional<TextSpan> line_above(std::string_view text, std::size_t line_begin) {
+  if (line_begin == 0) return {};
+  const std::size_t end = line_begin - 1;
+  const std::size_t before = end == 0 ? std::string_view::npos : text.rfind('\n', end - 1);
+  return TextSpan{before == std::string_view::npos ? 0 : before + 1, end};
+}
+
+}  // namespace
+
+std::size_t TextLayout::begin() const {
+  return text.starts_with(kMark) ? kMark.size() : 0;
+}
+
+int TextLayout::find(const TextPath& path) const {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].path == path) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::size_t TextLayout::start_of(const TextPlace& header) const {
+  std::size_t start = header.lines.begin;
+  while (const auto above = line_above(text, start)) {
+    const std::string_view line = text.substr(above->begin, above->end - above->begin);
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (above->begin < begin() || first == std::string_view::npos || line[first] != '#') break;
+    start = above->begin;
+  }
+  return start <= begin() ? header.lines.begin : start;
+}
+
+std::size_t TextLayout::next_header(int i) const {
+  auto next = static_cast<std::size_t>(i + 1);
+  while (next < places.size() && !places[next].is_header())
+    ++next;
+  return next;
+}
+
+std::size_t TextLayout::item_count(const TextPath& array) const {
+  std::size_t count = 0;
+  for (const TextPlace& place : places)
+    count += place.path.size() == array.size() + 1 && place.path.back().is_index &&
+                     place.path.starts_with(array)
+                 ? 1
+                 : 0;
+  return count;
+}
+
+std::string_view TextLayout::line_break() const {
+  const std::size_t end = text.find('\n');
+  return end != std::string_view::npos && end > 0 && text[end - 1] == '\r' ? "\r\n" : "\n";
+}
+
+core::Result<TextLayout> lay_out(std::string_view text, std::string_view name) {
+  if (auto parsed = parse_document(text, name); !parsed)
+    return tl::unexpected(std::move(parsed.error()));
+  TextLayout layout{text, {}};
+  if (!LayoutScanner(layout).run())
+    return core::fail(core::ErrorCode::kInternal,
+                      std::string(name) + ": this text cannot be edited piece by piece");
+  return layout;
+}
+
+}  // namespace psygen::world
