@@ -38,9 +38,10 @@ class Facts {
 template <class Visit>
 void add_numbers(Facts& facts, const Visit& visit) {
   std::vector<double> usual;
-  visit(true, [&](std::string_view, double value, double, double) { usual.push_back(value); });
+  visit(true,
+        [&](std::string_view, double value, const models::NumberSpec&) { usual.push_back(value); });
   std::size_t i = 0;
-  visit(false, [&](std::string_view name, double value, double, double) {
+  visit(false, [&](std::string_view name, double value, const models::NumberSpec&) {
     facts.add(name, value, usual[i++]);
   });
 }

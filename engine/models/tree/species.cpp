@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/models/tree/species_grammar.hpp"
@@ -14,7 +15,6 @@ using Fault = std::optional<SpeciesFault>;
 
 // Above kMaxTreeNodes, so only trees with unlucky seeds are cut short.
 constexpr double kMaxLog2Branches = 13;
-constexpr std::int64_t kMaxBranches = 8, kMaxSpread = 8;
 constexpr double kLeastCrownLimit = 0.05;  // smaller crowns hold nothing
 
 Fault fault(std::string part, std::size_t number, std::string_view field, std::string sentence,
@@ -27,11 +27,16 @@ struct NumberCheck {
   std::string part;
   std::size_t number;
   Fault& first;
-  void operator()(std::string_view field, double value, double low, double high) const {
-    if (first || (value >= low && value <= high)) return;  // false for NaN
+  void operator()(std::string_view field, double value, const NumberSpec& spec) const {
+    if (first || (value >= spec.low && value <= spec.high)) return;  // false for NaN
     first = fault(part, number, field,
                   fmt::format("{:g} is not allowed: it must be a number from {:g} to {:g}", value,
-                              low, high));
+                              spec.low, spec.high));
+  }
+  void operator()(std::string_view field, const std::array<double, 3>& colour,
+                  const NumberSpec& spec) const {
+    for (const double c : colour)
+      (*this)(field, c, spec);
   }
 };
 
@@ -45,14 +50,7 @@ Fault check_numbers(const Species& s) {
   for (std::size_t i = 0; i < s.kinds.size(); ++i)
     visit_kind_numbers(s.kinds[i], NumberCheck{"kind", i, first});
   visit_foliage_numbers(s.foliage, NumberCheck{"foliage", 0, first});
-  static constexpr std::string_view kSeasons[] = {"spring", "summer", "autumn", "winter"};
-  const NumberCheck colours{"colours", 0, first};
-  for (std::size_t i = 0; i < 4; ++i)
-    for (const double c : s.colours.season[i])
-      colours(kSeasons[i], c, 0, 1);
-  for (const double c : s.colours.bark)
-    colours("bark", c, 0, 1);
-  colours("bark_contrast", s.colours.bark_contrast, 0, 0.9);
+  visit_colours(s.colours, NumberCheck{"colours", 0, first});
   return first;
 }
 
@@ -66,7 +64,7 @@ Fault check_letters(const Species& s) {
     if (!letter) return fault("kind", i, "symbol", "it must be one letter");
     if (kind_of(s, k.symbol) != i)
       return fault("kind", i, "symbol", fmt::format("another kind is called {}", k.symbol));
-    if (k.leaves != "none" && k.leaves != "tips" && k.leaves != "all")
+    if (std::ranges::find(kLeavesChoices, k.leaves) == kLeavesChoices.end())
       return fault("kind", i, "leaves", "it must be none, tips or all");
     if (k.along_low > k.along_high)
       return fault("kind", i, "along_low", "it must not be above along_high");
@@ -105,6 +103,19 @@ Fault check_rules(const Species& s) {
   return {};
 }
 
+// The allowed range of an integer of a species.
+NumberSpec range_of(const Species& s, std::string_view count) {
+  NumberSpec found;
+  visit_counts(s, [&](std::string_view name, std::int64_t, const NumberSpec& spec) {
+    if (name == count) found = spec;
+  });
+  return found;
+}
+
+bool is_within(const NumberSpec& range, std::int64_t value) {
+  return static_cast<double>(value) >= range.low && static_cast<double>(value) <= range.high;
+}
+
 Fault check_growth(const Species& s) {
   if (!grammar_of(s).grows(kind_of(s, s.axiom)))
     return fault("", 0, "axiom", fmt::format("no rule says what {} becomes", s.axiom));
@@ -112,17 +123,16 @@ Fault check_growth(const Species& s) {
       log2_expected_branches(s, static_cast<double>(s.iterations), static_cast<double>(s.branches));
   const std::string cost =
       log2 < 40 ? fmt::format("{:.0f}", std::exp2(log2)) : fmt::format("2^{:.1f}", log2);
-  const auto refuse = [&](std::string_view field, std::int64_t value, std::int64_t low,
-                          std::int64_t high) {
+  const auto check = [&](std::string_view field, std::int64_t value) -> Fault {
+    const NumberSpec range = range_of(s, field);
+    if (is_within(range, value)) return {};
     return fault("", 0, field,
                  fmt::format("{} is not allowed: it must be an integer from {} to {} (predicted "
                              "cost: {} branches)",
-                             value, low, high, cost));
+                             value, range.low, range.high, cost));
   };
-  if (s.iterations < 1 || s.iterations > kMaxTreeIterations)
-    return refuse("iterations", s.iterations, 1, kMaxTreeIterations);
-  if (s.branches < 1 || s.branches > kMaxBranches)
-    return refuse("branches", s.branches, 1, kMaxBranches);
+  if (Fault found = check("iterations", s.iterations)) return found;
+  if (Fault found = check("branches", s.branches)) return found;
   if (log2 > kMaxLog2Branches)
     return fault("", 0, "iterations",
                  fmt::format("the grammar grows too fast (predicted cost: {} branches after {} "
@@ -138,12 +148,11 @@ std::optional<SpeciesFault> find_fault(const Species& s) {
   if (s.name.empty() || s.name.front() < 'a' || s.name.front() > 'z' || s.name.size() > 64 ||
       s.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
     return fault("", 0, "name", "it must be snake_case, of 1 to 64 letters, digits and _");
-  if (s.spread < 0 || s.spread > kMaxSpread)
-    return fault(
-        "", 0, "spread",
-        fmt::format("{} is not allowed: it must be an integer from 0 to {}", s.spread, kMaxSpread));
-  static constexpr std::string_view kForms[] = {"leaflets", "needles", "fronds", "clump", "none"};
-  if (std::find(std::begin(kForms), std::end(kForms), s.foliage.form) == std::end(kForms))
+  if (const NumberSpec range = range_of(s, "spread"); !is_within(range, s.spread))
+    return fault("", 0, "spread",
+                 fmt::format("{} is not allowed: it must be an integer from {} to {}", s.spread,
+                             range.low, range.high));
+  if (std::ranges::find(kFoliageForms, s.foliage.form) == kFoliageForms.end())
     return fault("foliage", 0, "form", "it must be leaflets, needles, fronds, clump or none");
   if (Fault found = check_numbers(s)) return found;
   if (Fault found = check_letters(s)) return found;

@@ -9,9 +9,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/models/model_type.hpp"
+#include "engine/models/number_spec.hpp"
 #include "engine/models/tree/plan.hpp"
 
 namespace psygen::models {
@@ -83,50 +85,96 @@ struct Species {
   friend bool operator==(const Species&, const Species&) = default;
 };
 
-// Visit the numbers of a species, of a kind and of the foliage in a fixed order, with their allowed
-// ranges: visit(name, value, lowest, highest).
+// What `leaves` of a kind and `form` of the foliage may be, and the keys of the seasons.
+inline constexpr std::array<std::string_view, 3> kLeavesChoices{"none", "tips", "all"};
+inline constexpr std::array<std::string_view, 5> kFoliageForms{"leaflets", "needles", "fronds",
+                                                               "clump", "none"};
+inline constexpr std::array<std::string_view, 4> kSeasonKeys{"spring", "summer", "autumn",
+                                                             "winter"};
+
+// Visit the integers and the numbers of a species, of a kind, of a rule and of the foliage in a
+// fixed order: visit(name, value, NumberSpec).
+template <class S, class Visit>
+void visit_counts(S& s, const Visit& visit) {
+  using Spec = NumberSpec;
+  visit("iterations", s.iterations,
+        Spec{1, kMaxTreeIterations, 1, 6, "", "how often the rules are applied"});
+  visit("branches", s.branches, Spec{1, 8, 1, 6, "", "how many a star fills up to, on average"});
+  visit("spread", s.spread, Spec{0, 8, 0, 4, "", "how much that number varies up and down"});
+}
 template <class S, class Visit>
 void visit_numbers(S& s, const Visit& visit) {
-  visit("size_m", s.size_m, 0.05, 30.0);
-  visit("radius_m", s.radius_m, 0.002, 3.0);
-  visit("flare", s.flare, 0.0, 3.0);
-  visit("taper", s.taper, 0.1, 1.0);
-  visit("trunk_curvature", s.trunk_curvature, 0.0, 2.0);
-  visit("crown_limit", s.crown_limit, 0.0, 4.0);
-  visit("colour_variation", s.colour_variation, 0.0, 1.0);
+  using Spec = NumberSpec;
+  visit("size_m", s.size_m, Spec{0.05, 30, 0.5, 8, "m", "length of the trunk"});
+  visit("radius_m", s.radius_m, Spec{0.002, 3, 0.02, 0.8, "m", "radius of the trunk"});
+  visit("flare", s.flare, Spec{0, 3, 0, 2, "", "widening of the trunk at its foot"});
+  visit("taper", s.taper,
+        Spec{0.1, 1, 0.5, 1, "", "radius of every branch at its end over that at its foot"});
+  visit("trunk_curvature", s.trunk_curvature, Spec{0, 2, 0, 1, "", "crookedness of the trunk"});
+  visit("crown_limit", s.crown_limit,
+        Spec{0, 4, 0, 2, "", "size of the ellipsoid that branches end in; 0: none"});
+  visit("colour_variation", s.colour_variation,
+        Spec{0, 1, 0, 1, "", "how much the colours of two trees differ"});
 }
 template <class K, class Visit>
 void visit_kind_numbers(K& k, const Visit& visit) {
-  visit("angle_deg", k.angle_deg, 0.0, 170.0);
-  visit("angle_low_deg", k.angle_low_deg, 0.0, 170.0);
-  visit("angle_variation", k.angle_variation, 0.0, 1.0);
-  visit("whorl_deg", k.whorl_deg, 0.0, 360.0);
-  visit("along_low", k.along_low, 0.0, 1.0);
-  visit("along_high", k.along_high, 0.0, 1.0);
-  visit("length", k.length, 0.02, 3.0);
-  visit("length_low", k.length_low, 0.02, 3.0);
-  visit("radius", k.radius, 0.02, 1.0);
-  visit("tropism", k.tropism, -2.0, 2.0);
-  visit("curvature", k.curvature, 0.0, 2.0);
+  using Spec = NumberSpec;
+  visit("angle_deg", k.angle_deg,
+        Spec{0, 170, 0, 120, "degrees", "from the parent, at the upper end of its place on it"});
+  visit("angle_low_deg", k.angle_low_deg,
+        Spec{0, 170, 0, 120, "degrees", "from the parent, at the lower end of its place on it"});
+  visit("angle_variation", k.angle_variation,
+        Spec{0, 1, 0, 1, "", "spread of the angles, relative to the angle"});
+  visit("whorl_deg", k.whorl_deg,
+        Spec{0, 360, 0, 360, "degrees", "around the parent from one branch to the next"});
+  visit("along_low", k.along_low,
+        Spec{0, 1, 0, 1, "", "lowest place on the parent; 0 is its foot, 1 its end"});
+  visit("along_high", k.along_high,
+        Spec{0, 1, 0, 1, "", "highest place on the parent; 0 is its foot, 1 its end"});
+  visit("length", k.length,
+        Spec{0.02, 3, 0.2, 1.5, "", "relative to the parent's length, at the parent's end"});
+  visit("length_low", k.length_low,
+        Spec{0.02, 3, 0.2, 1.5, "", "relative to the parent's length, as if grown at its foot"});
+  visit("radius", k.radius,
+        Spec{0.02, 1, 0.2, 1, "", "relative to the parent's radius at that place"});
+  visit("tropism", k.tropism, Spec{-2, 2, -1, 1, "", "bends upwards; negative: downwards"});
+  visit("curvature", k.curvature, Spec{0, 2, 0, 1, "", "crookedness of the branches"});
+}
+template <class R, class Visit>
+void visit_rule_numbers(R& r, const Visit& visit) {
+  visit("probability", r.probability,
+        NumberSpec{0, 1, 0, 1, "", "of this rule, above 0; the rules of a kind add up to 1"});
 }
 template <class F, class Visit>
 void visit_foliage_numbers(F& f, const Visit& visit) {
-  visit("random", f.random, 0.0, 2.0);
-  visit("out", f.out, -2.0, 2.0);
-  visit("branch", f.branch, -2.0, 2.0);
-  visit("up", f.up, -2.0, 2.0);
-  visit("side_random", f.side_random, 0.0, 2.0);
-  visit("side_out", f.side_out, -2.0, 2.0);
-  visit("side_up", f.side_up, -2.0, 2.0);
-  visit("normal_up", f.normal_up, -1.0, 2.0);
-  visit("from", f.from, 0.0, 0.95);
-  visit("cluster", f.cluster, 0.0, 2.0);
-  visit("size", f.size, 0.1, 3.0);
-  visit("density", f.density, 0.1, 64.0);
-  visit("density_spring", f.density_spring, 0.0, 1.0);
-  visit("density_summer", f.density_summer, 0.0, 1.0);
-  visit("density_autumn", f.density_autumn, 0.0, 1.0);
-  visit("density_winter", f.density_winter, 0.0, 1.0);
+  using Spec = NumberSpec;
+  constexpr Spec kShare{0, 1, 0, 1, "", "share of the sprays on the tree in that season"};
+  visit("random", f.random, Spec{0, 2, 0, 1, "", "how randomly sprays point"});
+  visit("out", f.out, Spec{-2, 2, -1, 1, "", "how much sprays point out of the crown"});
+  visit("branch", f.branch, Spec{-2, 2, -1, 1, "", "how much sprays point along the branch"});
+  visit("up", f.up, Spec{-2, 2, -1, 1, "", "how much sprays point upwards; negative: they hang"});
+  visit("side_random", f.side_random, Spec{0, 2, 0, 1, "", "how randomly their width points"});
+  visit("side_out", f.side_out,
+        Spec{-2, 2, -1, 1, "", "how much their width points out of the crown"});
+  visit("side_up", f.side_up, Spec{-2, 2, -1, 1, "", "how much their width points upwards"});
+  visit("normal_up", f.normal_up, Spec{-1, 2, 0, 1, "", "light from above"});
+  visit("from", f.from, Spec{0, 0.95, 0, 0.95, "", "where on a branch sprays begin"});
+  visit("cluster", f.cluster, Spec{0, 2, 0, 2, "", "how far sprays stray from the branch"});
+  visit("size", f.size, Spec{0.1, 3, 0.3, 2, "", "relative to the size that just fills the crown"});
+  visit("density", f.density, Spec{0.1, 64, 0.3, 32, "", "sprays of eight triangles per branch"});
+  visit("density_spring", f.density_spring, kShare);
+  visit("density_summer", f.density_summer, kShare);
+  visit("density_autumn", f.density_autumn, kShare);
+  visit("density_winter", f.density_winter, kShare);
+}
+// Visit the colours, stored as square roots of linear albedo, and their numbers.
+template <class C, class Visit>
+void visit_colours(C& c, const Visit& visit) {
+  using Spec = NumberSpec;
+  for (std::size_t i = 0; i < kSeasonKeys.size(); ++i)
+    visit(kSeasonKeys[i], c.season[i], Spec{0, 1, 0, 1, "", "of the leaves in that season"});
+  visit("bark", c.bark, Spec{0, 1, 0, 1, "", "of trunk and branches"});
+  visit("bark_contrast", c.bark_contrast, Spec{0, 0.9, 0, 0.5, "", "of the bark's pattern"});
 }
 
 // A fault of a species. `part` is "" (the species itself), "kind", "rule", "foliage" or "colours".

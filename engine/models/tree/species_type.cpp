@@ -64,7 +64,7 @@ FoliagePlan foliage_plan(const SpeciesFoliage& s) {
 std::uint64_t identity_of(const Species& s) {
   std::uint64_t h = core::hash_bytes(std::as_bytes(std::span(s.name)));
   const auto add = [&h](double v) { h = core::combine(h, std::bit_cast<std::uint64_t>(v)); };
-  const auto add_number = [&](std::string_view, double v, double, double) { add(v); };
+  const auto add_number = [&](std::string_view, double v, const NumberSpec&) { add(v); };
   const auto add_text = [&h](const std::string& text) {
     h = core::combine(h, core::hash_bytes(std::as_bytes(std::span(text))));
   };

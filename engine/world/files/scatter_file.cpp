@@ -13,7 +13,6 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMaxScatters = 64;
 // log2 of the largest allowed number of triangles of all models of one block.
 constexpr double kMaxLog2BlockCost = 26;
 
@@ -56,9 +55,9 @@ double read_scatter(const Node& node, std::size_t number, const models::Registry
   const std::int64_t count = read_count(reader);
   const bool too_many = count > kMaxModelsPerBlock;
   scatter.count = too_many ? 0 : static_cast<std::uint32_t>(count);
-  reader.read("min_height_m", scatter.min_height_m, kPlaceHeights);
-  reader.read("max_height_m", scatter.max_height_m, kPlaceHeights);
-  reader.read("max_slope_deg", scatter.max_slope_deg, kSlopes);
+  visit_place(scatter, [&reader](std::string_view key, double& field, const FieldSpec& spec) {
+    reader.read(key, field, {spec.low, spec.high});
+  });
   if (scatter.min_height_m > scatter.max_height_m)
     reader.problem(node.line, "min_height_m", "it must not be above max_height_m");
 

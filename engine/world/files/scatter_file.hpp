@@ -7,6 +7,8 @@
 
 namespace psygen::world {
 
+inline constexpr std::size_t kMaxScatters = 64;  // per file
+
 // Reads all tables into world.scatter. Adds problems for unknown models, for parameters that their
 // types refuse, and for too many models or triangles on a block. Requires world.terrain_model.
 void read_scatters(TableReader& root, const models::Registry& registry, World& world,

@@ -35,31 +35,41 @@ void read_kind(TableReader& reader, models::SpeciesKind& kind) {
   reader.read("symbol", kind.symbol, kMaxTextBytes, Presence::kRequired);
   reader.read("leaves", kind.leaves, kMaxTextBytes);
   reader.read("leader", kind.leader);
-  models::visit_kind_numbers(kind, [&](std::string_view key, double& value, double, double) {
-    read_number(reader, key, value);
-  });
+  models::visit_kind_numbers(kind,
+                             [&](std::string_view key, double& value, const models::NumberSpec&) {
+                               read_number(reader, key, value);
+                             });
 }
 
 void read_rule(TableReader& reader, models::SpeciesRule& rule) {
   reader.read("from", rule.from, kMaxTextBytes, Presence::kRequired);
   reader.read("to", rule.to, kMaxTextBytes, Presence::kRequired);
-  read_number(reader, "probability", rule.probability);
+  models::visit_rule_numbers(rule,
+                             [&](std::string_view key, double& value, const models::NumberSpec&) {
+                               read_number(reader, key, value);
+                             });
 }
 
 void read_foliage(TableReader& reader, models::SpeciesFoliage& foliage) {
   reader.read("form", foliage.form, kMaxTextBytes);
-  models::visit_foliage_numbers(foliage, [&](std::string_view key, double& value, double, double) {
-    read_number(reader, key, value);
-  });
+  models::visit_foliage_numbers(
+      foliage, [&](std::string_view key, double& value, const models::NumberSpec&) {
+        read_number(reader, key, value);
+      });
 }
 
-constexpr std::string_view kSeasons[] = {"spring", "summer", "autumn", "winter"};
-
 void read_colours(TableReader& reader, models::SpeciesColours& colours) {
-  for (std::size_t i = 0; i < 4; ++i)
-    read_colour(reader, kSeasons[i], colours.season[i]);
-  read_colour(reader, "bark", colours.bark);
-  read_number(reader, "bark_contrast", colours.bark_contrast);
+  struct Read {
+    TableReader& reader;
+    void operator()(std::string_view key, std::array<double, 3>& value,
+                    const models::NumberSpec&) const {
+      read_colour(reader, key, value);
+    }
+    void operator()(std::string_view key, double& value, const models::NumberSpec&) const {
+      read_number(reader, key, value);
+    }
+  };
+  models::visit_colours(colours, Read{reader});
 }
 
 // The lines of all parts that find_fault() can report.
@@ -129,12 +139,14 @@ models::Species read_one(const Node& node, const std::string& path, Problems& pr
   reader.read("name", species.name, 64, Presence::kRequired);
   reader.read("doc", species.doc, kMaxTextBytes);
   reader.read("axiom", species.axiom, kMaxTextBytes, Presence::kRequired);
-  reader.read("iterations", species.iterations, kAnyInteger);
-  reader.read("branches", species.branches, kAnyInteger);
-  reader.read("spread", species.spread, kAnyInteger);
-  models::visit_numbers(species, [&](std::string_view key, double& value, double, double) {
-    read_number(reader, key, value);
-  });
+  models::visit_counts(species,
+                       [&](std::string_view key, std::int64_t& value, const models::NumberSpec&) {
+                         reader.read(key, value, kAnyInteger);
+                       });
+  models::visit_numbers(species,
+                        [&](std::string_view key, double& value, const models::NumberSpec&) {
+                          read_number(reader, key, value);
+                        });
   read_list(reader, "kind", models::kMaxKinds, problems, lines, species.kinds, read_kind);
   read_list(reader, "rule", models::kMaxRules, problems, lines, species.rules, read_rule);
   read_part(reader, "foliage", problems, lines, species.foliage, read_foliage);
@@ -162,14 +174,14 @@ using Text = std::back_insert_iterator<std::string>;
 // A TOML string. Names and letters of valid species need no escapes, but user texts may.
 struct NumberWriter {
   Text out;
-  void operator()(std::string_view key, double value, double, double) const {
+  void operator()(std::string_view key, double value, const models::NumberSpec&) const {
     fmt::format_to(out, "{} = {}\n", key, value);
   }
+  void operator()(std::string_view key, const std::array<double, 3>& colour,
+                  const models::NumberSpec&) const {
+    fmt::format_to(out, "{} = {}\n", key, toml_vector(colour));
+  }
 };
-
-void write_colour(Text out, std::string_view key, const std::array<double, 3>& c) {
-  fmt::format_to(out, "{} = [{}, {}, {}]\n", key, c[0], c[1], c[2]);
-}
 
 }  // namespace
 
@@ -193,10 +205,7 @@ void write_species(const std::vector<models::Species>& species, std::string& tex
     fmt::format_to(out, "\n[species.foliage]\nform = {}\n", toml_string(s.foliage.form));
     models::visit_foliage_numbers(s.foliage, NumberWriter{out});
     fmt::format_to(out, "\n[species.colours]\n");
-    for (std::size_t i = 0; i < 4; ++i)
-      write_colour(out, kSeasons[i], s.colours.season[i]);
-    write_colour(out, "bark", s.colours.bark);
-    fmt::format_to(out, "bark_contrast = {}\n", s.colours.bark_contrast);
+    models::visit_colours(s.colours, NumberWriter{out});
   }
 }
 

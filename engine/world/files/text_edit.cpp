@@ -29,6 +29,11 @@ std::string with_span(std::string_view text, TextSpan span, std::string_view con
   return out;
 }
 
+std::string_view value_of(const TextLayout& layout, std::size_t at) {
+  const TextSpan span = layout.places[at].value;
+  return layout.text.substr(span.begin, span.end - span.begin);
+}
+
 // The text with "key = value" in an inline table, which starts at "{".
 std::string with_member(const TextLayout& layout, const TextPlace& table, std::string_view member) {
   const std::string_view text = layout.text;
@@ -166,10 +171,12 @@ core::Result<std::string> with_value(std::string_view text, const TextPath& path
     changed = with_new_value(*layout, path, toml_value);
   }
   if (!changed) return changed;
-  auto checked = checked_edit(*std::move(changed), path);
-  if (checked && value_text(*checked, path) != toml_value)
+  const auto after = lay_out_edited(*changed);
+  if (!after) return checked_edit(*std::move(changed), path);
+  const int at = after->find(path);
+  if (at < 0 || value_of(*after, static_cast<std::size_t>(at)) != toml_value)
     return refuse_edit(path, "no value can be written here");
-  return checked;
+  return changed;
 }
 
 core::Result<std::string> without_value(std::string_view text, const TextPath& path) {
@@ -187,9 +194,8 @@ std::optional<std::string> value_text(std::string_view text, const TextPath& pat
   const auto layout = lay_out_edited(text);
   const int at = layout ? layout->find(path) : -1;
   if (at < 0) return {};
-  const TextPlace& place = layout->places[static_cast<std::size_t>(at)];
-  if (place.is_header()) return {};
-  return std::string(text.substr(place.value.begin, place.value.end - place.value.begin));
+  if (layout->places[static_cast<std::size_t>(at)].is_header()) return {};
+  return std::string(value_of(*layout, static_cast<std::size_t>(at)));
 }
 
 core::Result<std::string> with_values(std::string_view text, const TextPath& path,
@@ -197,14 +203,14 @@ core::Result<std::string> with_values(std::string_view text, const TextPath& pat
   const auto layout = lay_out(keys, "the keys");
   if (!layout) return tl::unexpected(layout.error());
   core::Result<std::string> changed = std::string(text);
-  for (const TextPlace& place : layout->places) {
+  for (std::size_t i = 0; i < layout->places.size(); ++i) {
+    const TextPlace& place = layout->places[i];
     if (place.is_header()) return refuse_edit(place.path, "a part of a table has no headers");
     if (place.nested) continue;
     TextPath full = path;
     for (const TextStep& step : place.path.steps)
       full.steps.push_back(step);
-    changed = with_value(*changed, full,
-                         keys.substr(place.value.begin, place.value.end - place.value.begin));
+    changed = with_value(*changed, full, value_of(*layout, i));
     if (!changed) return changed;
   }
   return changed;

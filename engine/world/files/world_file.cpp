@@ -22,7 +22,6 @@ namespace psygen::world {
 namespace {
 
 constexpr std::size_t kMaxNameBytes = 128;
-constexpr double kMaxBlocks = 0x1.0p31;
 
 // Seeds have 64 bits. TOML integers are below 2^63, so larger seeds are strings of digits.
 void read_seed(TableReader& reader, std::uint64_t& seed) {
@@ -56,7 +55,7 @@ void read_world_table(TableReader& root, World& world, ModelFields& terrain, Pro
   reader.read("name", world.name, kMaxNameBytes, Presence::kRequired);
   read_seed(reader, world.seed);
   std::int64_t blocks[2] = {0, 0};
-  if (reader.read_pair("blocks", blocks, {0, kMaxBlocks}, Presence::kRequired)) {
+  if (reader.read_pair("blocks", blocks, {kBlocks.low, kBlocks.high}, Presence::kRequired)) {
     world.blocks_x = blocks[0];
     world.blocks_z = blocks[1];
   }
@@ -93,8 +92,8 @@ void read_fields(TableReader& root, std::string_view name, Problems& problems,
   const Member* member = root.table(name);
   if (member == nullptr) return;
   TableReader reader(member->value, std::string(name), member->line, problems);
-  visit_fields([&reader](std::string_view key, auto& field, Limits limits) {
-    reader.read(key, field, limits);
+  visit_fields([&reader](std::string_view key, auto& field, const FieldSpec& spec) {
+    reader.read(key, field, Limits{spec.low, spec.high});
   });
   reader.finish();
 }
@@ -105,8 +104,8 @@ void read_palette(TableReader& root, Palette& palette, Problems& problems) {
   const Member* member = root.table("palette");
   if (member == nullptr) return;
   TableReader reader(member->value, "palette", member->line, problems);
-  visit_palette(palette, [&reader](std::string_view key, auto& field, Limits limits) {
-    reader.read(key, field, limits);
+  visit_palette(palette, [&reader](std::string_view key, auto& field, const FieldSpec& spec) {
+    reader.read(key, field, Limits{spec.low, spec.high});
   });
   for (std::size_t i = 0; i < kPaletteImages.size(); ++i) {
     const std::string_view key = kPaletteImages[i];

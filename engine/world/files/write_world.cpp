@@ -22,11 +22,11 @@ std::string number(double value, models::ParameterType type) {
 
 struct FieldWriter {
   Text out;
-  void operator()(std::string_view key, double value, Limits) const {
+  void operator()(std::string_view key, double value, const FieldSpec&) const {
     fmt::format_to(out, "{} = {}\n", key, value);
   }
-  void operator()(std::string_view key, const glm::vec3& value, Limits) const {
-    fmt::format_to(out, "{} = [{}, {}, {}]\n", key, value.x, value.y, value.z);
+  void operator()(std::string_view key, const glm::vec3& value, const FieldSpec&) const {
+    fmt::format_to(out, "{} = {}\n", key, toml_vector(value));
   }
 };
 

@@ -69,8 +69,8 @@ Species extreme_species(Random& random, int i) {
   Species s;
   s.name = std::string("any");
   s.doc = std::string("any");
-  const auto draw = [&](std::string_view, double& value, double low, double high) {
-    value = extreme(random, low, high);
+  const auto draw = [&](std::string_view, double& value, const NumberSpec& spec) {
+    value = extreme(random, spec.low, spec.high);
   };
   visit_numbers(s, draw);
   s.crown_limit = i % 2 == 0 ? 0 : extreme(random, 0.05, 4);

@@ -1,0 +1,318 @@
+#include "engine/world/files/world_schema.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "engine/world/files/fields.hpp"
+#include "engine/world/files/scatter_file.hpp"
+#include "engine/world/files/species_file.hpp"
+#include "engine/world/files/text_layout.hpp"
+#include "engine/world/files/toml_values.hpp"
+
+namespace psygen::world {
+namespace {
+
+// Values of all types of fields: how TOML writes them, their numbers and their kind.
+struct FieldValue {
+  FieldKind kind;
+  std::string toml;
+  std::vector<double> numbers;
+  std::string plain = {};
+};
+FieldValue value_of(double v) {
+  if (!std::isfinite(v)) return {FieldKind::kReal, "", {}};  // a limit that is not set
+  return {FieldKind::kReal, toml_number(v), {v}};
+}
+FieldValue value_of(std::int64_t v) {
+  return {FieldKind::kInteger, toml_number(v), {static_cast<double>(v)}};
+}
+FieldValue value_of(const glm::vec3& v) {
+  return {FieldKind::kColour, toml_vector(v), {v.x, v.y, v.z}};
+}
+FieldValue value_of(const std::array<double, 3>& v) {
+  return {FieldKind::kColour, toml_vector(v), {v[0], v[1], v[2]}};
+}
+FieldValue value_of(bool v) {
+  return {FieldKind::kBoolean, v ? "true" : "false", {v ? 1.0 : 0.0}};
+}
+FieldValue text_value(const std::string& v, FieldKind kind = FieldKind::kText) {
+  return {kind, v.empty() ? "" : toml_string(v), {}, v};
+}
+
+constexpr double kDecades = 100;  // highest over lowest value of a logarithmic scale, at least
+
+class SchemaBuilder {
+ public:
+  SchemaBuilder(const TextLayout& layout, const World& world, const models::Registry& registry)
+      : layout_(layout), world_(world), registry_(registry) {}
+
+  std::vector<WorldSection> all() {
+    std::vector<WorldSection> sections;
+    sections.push_back(world_section());
+    sections.push_back(terrain_section());
+    sections.push_back(section(SectionKind::kSky, {"sky"}, "Sky"));
+    const Sky usual = with_sun(Sky{}, {Sky{}.sun_azimuth_deg, world_.sky.sun_elevation_deg});
+    Sky usual_here = usual;
+    usual_here.sun_elevation_deg = Sky{}.sun_elevation_deg;
+    add_all(sections.back(), world_.sky, usual_here,
+            [](auto& o, const auto& v) { visit_sky(o, v); });
+    sections.push_back(section(SectionKind::kWater, {"water"}, "Water"));
+    add_all(sections.back(), world_.water, Water{},
+            [](auto& o, const auto& v) { visit_water(o, v); });
+    sections.push_back(palette_section());
+    for (std::size_t i = 0; i < world_.species.size(); ++i)
+      sections.push_back(species_section(world_.species[i], {"species", i}));
+    for (std::size_t i = 0; i < world_.scatter.size(); ++i)
+      sections.push_back(scatter_section(world_.scatter[i], {"scatter", i}));
+    return sections;
+  }
+
+ private:
+  WorldSection section(SectionKind kind, TextPath path, std::string title) const {
+    WorldSection made;
+    made.kind = kind;
+    made.is_set = false;
+    for (const TextPlace& place : layout_.places)
+      made.is_set = made.is_set || place.path.starts_with(path);
+    made.path = std::move(path);
+    made.title = std::move(title);
+    return made;
+  }
+
+  // Adds a field. `usual` is its default as TOML.
+  WorldField& add(WorldSection& to, std::string_view key, FieldValue now, std::string usual,
+                  const models::NumberSpec& spec) const {
+    WorldField field;
+    field.path = to.path.with(key);
+    field.label = field_label(key, spec.unit);
+    field.kind = now.kind;
+    field.unit = spec.unit == "1" ? "" : spec.unit;
+    field.doc = spec.doc;
+    field.hard_min = spec.low, field.hard_max = spec.high;
+    field.soft_min = spec.soft_low, field.soft_max = spec.soft_high;
+    field.logarithmic = spec.soft_low > 0 && spec.soft_high >= kDecades * spec.soft_low;
+    const int at = layout_.find(field.path);
+    field.is_set = at >= 0;
+    field.value = std::move(now.toml);
+    if (field.is_set) {
+      const TextSpan span = layout_.places[static_cast<std::size_t>(at)].value;
+      field.value = layout_.text.substr(span.begin, span.end - span.begin);
+    }
+    field.numbers = std::move(now.numbers);
+    field.plain = std::move(now.plain);
+    field.usual = std::move(usual);
+    to.fields.push_back(std::move(field));
+    return to.fields.back();
+  }
+  void add_required(WorldSection& to, std::string_view key, FieldValue now,
+                    const models::NumberSpec& spec) const {
+    add(to, key, std::move(now), "", spec).required = true;
+  }
+  template <std::size_t n>
+  void add_choice(WorldSection& to, std::string_view key, const std::string& now,
+                  const std::string& usual, const std::array<std::string_view, n>& choices,
+                  std::string_view doc) const {
+    add(to, key, text_value(now, FieldKind::kChoice), toml_string(usual), {0, 0, 0, 0, "", doc})
+        .choices.assign(choices.begin(), choices.end());
+  }
+  // Adds what `visit_fields` visits.
+  template <class T, class VisitFields>
+  void add_all(WorldSection& to, const T& now, const T& usual,
+               const VisitFields& visit_fields) const {
+    std::vector<std::string> defaults;
+    visit_fields(usual, [&](std::string_view, const auto& value, const models::NumberSpec&) {
+      defaults.push_back(value_of(value).toml);
+    });
+    std::size_t i = 0;
+    visit_fields(now, [&](std::string_view key, const auto& value, const models::NumberSpec& spec) {
+      add(to, key, value_of(value), defaults[i++], spec);
+    });
+  }
+  // Adds a parameter of a model type.
+  void add_parameter(WorldSection& to, std::string_view key, const models::ParameterSpec& spec,
+                     ParameterRange now, bool is_range) const {
+    const bool integer = spec.type == models::ParameterType::kInteger;
+    const FieldKind kind = is_range ? (integer ? FieldKind::kIntegerRange : FieldKind::kRealRange)
+                                    : (integer ? FieldKind::kInteger : FieldKind::kReal);
+    FieldValue value{kind, toml_range(now.low, now.high, integer), {now.low}};
+    if (is_range) value.numbers.push_back(now.high);
+    add(to, key, std::move(value), toml_range(spec.default_value, spec.default_value, integer),
+        {spec.hard_min, spec.hard_max, spec.soft_min, spec.soft_max, spec.unit, spec.doc});
+  }
+  void add_terrain_parameter(WorldSection& to, std::string_view key, std::size_t i) const {
+    const models::ParameterSpec& spec = registry_[world_.terrain_model].parameters()[i];
+    const double value = spec.type == models::ParameterType::kInteger
+                             ? static_cast<double>(world_.terrain.integer(i))
+                             : world_.terrain.real(i);
+    add_parameter(to, key, spec, {value, value}, false);
+  }
+
+  WorldSection world_section() const {
+    WorldSection made = section(SectionKind::kWorld, {"world"}, "World");
+    add_required(made, "name", text_value(world_.name),
+                 {0, 0, 0, 0, "", "what the world is called"});
+    FieldValue seed{FieldKind::kSeed,
+                    toml_seed(world_.seed),
+                    {static_cast<double>(world_.seed)},
+                    fmt::format("{}", world_.seed)};
+    add_required(made, "seed", std::move(seed),
+                 {0, 0x1.0p64, 0, 0x1.0p63, "", "which of all worlds with these numbers"});
+    const double x = static_cast<double>(world_.blocks_x), z = static_cast<double>(world_.blocks_z);
+    FieldValue blocks{
+        FieldKind::kIntegerPair, fmt::format("[{}, {}]", world_.blocks_x, world_.blocks_z), {x, z}};
+    add_required(made, "blocks", std::move(blocks), kBlocks);
+    for (const TerrainAlias& alias : kWorldKeys)
+      add_terrain_parameter(made, alias.key,
+                            static_cast<std::size_t>(models::parameter_index(
+                                registry_[world_.terrain_model], alias.parameter)));
+    return made;
+  }
+
+  WorldSection terrain_section() const {
+    WorldSection made = section(SectionKind::kTerrain, {"terrain"}, "Terrain");
+    const auto specs = registry_[world_.terrain_model].parameters();
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      bool elsewhere = specs[i].source == models::ParameterSource::kPlaced;
+      for (const TerrainAlias& alias : kWorldKeys)
+        elsewhere = elsewhere || alias.parameter == specs[i].name;
+      if (!elsewhere) add_terrain_parameter(made, specs[i].name, i);
+    }
+    return made;
+  }
+
+  WorldSection palette_section() const {
+    WorldSection made = section(SectionKind::kPalette, {"palette"}, "Palette");
+    add_all(made, world_.palette, Palette{}, [](auto& o, const auto& v) { visit_palette(o, v); });
+    for (std::size_t i = 0; i < kPaletteImages.size(); ++i)
+      add(made, kPaletteImages[i], text_value(world_.palette.images[i], FieldKind::kImage), "",
+          {0, 0, 0, 0, "", "a square picture that repeats, in place of the texture"});
+    return made;
+  }
+
+  WorldSection species_section(const models::Species& s, const TextPath& path) const {
+    const models::Species usual;
+    WorldSection made = section(SectionKind::kSpecies, path, s.name);
+    add_required(made, "name", text_value(s.name),
+                 {0, 0, 0, 0, "", "snake_case, unlike any other model"});
+    add(made, "doc", text_value(s.doc), "", {0, 0, 0, 0, "", "what it is, in a sentence"});
+    add_required(made, "axiom", text_value(s.axiom),
+                 {0, 0, 0, 0, "", "the symbol of the kind that is the trunk"});
+    add_all(made, s, usual, [](auto& o, const auto& v) { models::visit_counts(o, v); });
+    add_all(made, s, usual, [](auto& o, const auto& v) { models::visit_numbers(o, v); });
+    for (std::size_t i = 0; i < s.kinds.size(); ++i)
+      made.parts.push_back(kind_section(s.kinds[i], path.with("kind").with(i)));
+    for (std::size_t i = 0; i < s.rules.size(); ++i)
+      made.parts.push_back(rule_section(s.rules[i], path.with("rule").with(i)));
+    made.parts.push_back(section(SectionKind::kSpeciesFoliage, path.with("foliage"), "Foliage"));
+    add_choice(made.parts.back(), "form", s.foliage.form, usual.foliage.form, models::kFoliageForms,
+               "what a spray of leaves is");
+    add_all(made.parts.back(), s.foliage, usual.foliage,
+            [](auto& o, const auto& v) { models::visit_foliage_numbers(o, v); });
+    made.parts.push_back(section(SectionKind::kSpeciesColours, path.with("colours"), "Colours"));
+    add_all(made.parts.back(), s.colours, usual.colours,
+            [](auto& o, const auto& v) { models::visit_colours(o, v); });
+    return made;
+  }
+
+  WorldSection kind_section(const models::SpeciesKind& k, TextPath path) const {
+    const models::SpeciesKind usual;
+    WorldSection made = section(SectionKind::kSpeciesKind, std::move(path), k.symbol);
+    add_required(made, "symbol", text_value(k.symbol),
+                 {0, 0, 0, 0, "", "one letter, by which rules name this kind"});
+    add(made, "leader", value_of(k.leader), "false",
+        {0, 0, 0, 0, "", "continues its parent from the end, in its direction"});
+    add_choice(made, "leaves", k.leaves, usual.leaves, models::kLeavesChoices,
+               "where leaves grow; tips: where nothing grows from the branch");
+    add_all(made, k, usual, [](auto& o, const auto& v) { models::visit_kind_numbers(o, v); });
+    return made;
+  }
+
+  WorldSection rule_section(const models::SpeciesRule& r, TextPath path) const {
+    WorldSection made =
+        section(SectionKind::kSpeciesRule, std::move(path), fmt::format("{} -> {}", r.from, r.to));
+    add_required(made, "from", text_value(r.from), {0, 0, 0, 0, "", "the kind that branches"});
+    add_required(made, "to", text_value(r.to),
+                 {0, 0, 0, 0, "", "its branches: letters, each with a number or, once, a star"});
+    add_all(made, r, models::SpeciesRule{},
+            [](auto& o, const auto& v) { models::visit_rule_numbers(o, v); });
+    return made;
+  }
+
+  WorldSection scatter_section(const Scatter& s, const TextPath& path) const {
+    const models::ModelType& type = registry_[s.model];
+    WorldSection made = section(SectionKind::kScatter, path, std::string(type.name()));
+    WorldField& model = add(made, "model", text_value(std::string(type.name()), FieldKind::kChoice),
+                            "", {0, 0, 0, 0, "", "what stands on every block"});
+    model.required = true;
+    for (models::ModelIndex i = 0; i < registry_.size(); ++i)
+      if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
+    add_required(made, "count", value_of(std::int64_t{s.count}), kCount);
+    add_all(made, s, Scatter{}, [](auto& o, const auto& v) { visit_place(o, v); });
+    for (std::size_t i = 0; i < s.ranges.size(); ++i) {
+      const models::ParameterSpec& spec = type.parameters()[i];
+      if (spec.source == models::ParameterSource::kUser)
+        add_parameter(made, spec.name, spec, s.ranges[i], true);
+    }
+    return made;
+  }
+
+  const TextLayout& layout_;
+  const World& world_;
+  const models::Registry& registry_;
+};
+
+}  // namespace
+
+core::Result<std::vector<WorldSection>> world_schema(std::string_view text, const World& world,
+                                                     const models::Registry& registry) {
+  const auto layout = lay_out(text, "the text");
+  if (!layout) return tl::unexpected(layout.error());
+  if (layout->item_count({"species"}) != world.species.size() ||
+      layout->item_count({"scatter"}) != world.scatter.size())
+    return core::fail(core::ErrorCode::kInvalidArgument, "the world is not that of the text");
+  return SchemaBuilder(*layout, world, registry).all();
+}
+
+const WorldField* find_field(const std::vector<WorldSection>& sections, const TextPath& path) {
+  for (const WorldSection& section : sections) {
+    if (!path.starts_with(section.path)) continue;
+    for (const WorldField& field : section.fields) {
+      if (field.path == path) return &field;
+    }
+    if (const WorldField* found = find_field(section.parts, path)) return found;
+  }
+  return nullptr;
+}
+
+std::string field_label(std::string_view key, std::string_view unit) {
+  const std::string_view suffix = unit == "degrees" ? "_deg"
+                                  : unit == "m"     ? "_m"
+                                  : unit == "s"     ? "_s"
+                                                    : "";
+  if (!suffix.empty() && key.ends_with(suffix)) key.remove_suffix(suffix.size());
+  std::string label(key);
+  for (char& c : label)
+    if (c == '_') c = ' ';
+  if (!label.empty() && label[0] >= 'a' && label[0] <= 'z')
+    label[0] = static_cast<char>(label[0] - 'a' + 'A');
+  return label;
+}
+
+std::size_t most_tables(SectionKind kind) {
+  switch (kind) {
+    case SectionKind::kSpecies:
+      return kMaxSpecies;
+    case SectionKind::kSpeciesKind:
+      return models::kMaxKinds;
+    case SectionKind::kSpeciesRule:
+      return models::kMaxRules;
+    case SectionKind::kScatter:
+      return kMaxScatters;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace psygen::world
