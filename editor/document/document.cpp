@@ -1,0 +1,299 @@
+// The text, its file and its recovery. Edits are in document_edits.cpp.
+#include "editor/document/document.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <utility>
+
+#include "editor/document/line_diff.hpp"
+#include "engine/core/assert.hpp"
+#include "engine/core/replace_file.hpp"
+#include "engine/world/files/text_file.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr const char* kNewWorld = R"(format = 1
+
+[world]
+name = "new world"
+seed = 1
+blocks = [0, 0]            # without an end
+
+[terrain]
+
+[[scatter]]
+model = "tree"
+count = 20
+
+[[scatter]]
+model = "rock"
+count = 20
+)";
+
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return !a.empty() && !b.empty() && file_key(a) == file_key(b);
+}
+
+// Replaces a file as a whole, also behind a symbolic link, and keeps its permissions.
+core::Result<void> write_whole(const std::filesystem::path& file, std::string_view text) {
+  std::error_code error;
+  const std::filesystem::path target = std::filesystem::canonical(file, error);
+  if (error) return core::replace_file(file, text);
+  if (access(target.c_str(), W_OK) != 0)
+    return core::fail(
+        core::ErrorCode::kIo,
+        fmt::format("{}: the file is read-only; save it under another name", file.string()));
+  const auto permissions = std::filesystem::status(target, error).permissions();
+  auto written = core::replace_file(target, text);
+  if (written) std::filesystem::permissions(target, permissions, error);
+  return written;
+}
+
+}  // namespace
+
+Document::Document(DocumentOptions options, QObject* parent)
+    : QObject(parent), options_(std::move(options)) {
+  if (options_.state_folder.empty()) options_.state_folder = default_state_folder();
+  autosave_timer_.setSingleShot(true);
+  autosave_timer_.setInterval(options_.autosave_ms);
+  connect(&autosave_timer_, &QTimer::timeout, this, &Document::autosave);
+  connect(&watch_, &DiskWatch::maybe_changed, this, [this] { check_disk(); });
+  text_ = std::make_shared<const std::string>(kNewWorld);
+  const auto made = make_new();
+  PSYGEN_CHECK(made.has_value(), "a new world is a world");
+}
+
+Document::~Document() {
+  save_locks();
+}
+
+std::string Document::name() const {
+  return file_.empty() ? "the new world" : file_.string();
+}
+
+core::Result<ParsedWorldPtr> Document::parse(const std::string& text) const {
+  if (text.size() > world::kMaxFileBytes)
+    return core::fail(core::ErrorCode::kOverBudget,
+                      fmt::format("{}: the file would be too large (allowed: {} bytes)", name(),
+                                  world::kMaxFileBytes));
+  return parse_world_text(text, name(), options_.register_models);
+}
+
+core::Result<std::unique_ptr<RecoverySession>> Document::session_of(
+    const std::filesystem::path& file, bool share) {
+  if (session_ && same_file(file, file_)) return std::move(session_);
+  return RecoverySession::start(options_.state_folder, file, share);
+}
+
+core::Result<void> Document::open(const std::filesystem::path& file, bool share) {
+  auto text = world::read_text_file(file);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  auto parsed = parse_world_text(*text, file.string(), options_.register_models);
+  if (!parsed) return tl::unexpected(std::move(parsed.error()));
+  auto session = session_of(file, share);
+  if (!session) return tl::unexpected(std::move(session.error()));
+  adopt(file, *std::move(text), *std::move(parsed), *std::move(session));
+  return {};
+}
+
+core::Result<void> Document::make_new(std::string text) {
+  if (text.empty()) text = kNewWorld;
+  auto parsed = parse_world_text(text, "the new world", options_.register_models);
+  if (!parsed) return tl::unexpected(std::move(parsed.error()));
+  auto session = session_of({}, false);
+  if (!session) return tl::unexpected(std::move(session.error()));
+  adopt({}, std::move(text), *std::move(parsed), *std::move(session));
+  return {};
+}
+
+void Document::adopt(const std::filesystem::path& file, std::string text, ParsedWorldPtr parsed,
+                     std::unique_ptr<RecoverySession> session) {
+  save_locks();
+  autosave_timer_.stop();
+  session_ = std::move(session);
+  session_->clear();
+  file_ = file;
+  locks_ = kept_locks_ =
+      file_.empty() ? FieldLocks() : FieldLocks::load(options_.state_folder, file_);
+  drag_ = 0;
+  text_ = std::make_shared<const std::string>(std::move(text));
+  parsed_ = std::move(parsed);
+  sections_.reset();
+  undo_.clear();
+  watch_.watch(file_);
+  note_saved(*text_);
+  Q_EMIT file_changed();
+  Q_EMIT changed(Change::kText | Change::kFile);
+}
+
+void Document::note_saved(std::string text) {
+  saved_ = std::move(text);
+  seen_ = saved_;
+  if (*text_ == saved_) undo_.setClean();
+  note_modified();
+}
+
+void Document::note_modified() {
+  if (is_modified() == was_modified_) return;
+  was_modified_ = is_modified();
+  Q_EMIT modified_changed(was_modified_);
+}
+
+core::Result<void> Document::require_known_disk() const {
+  std::error_code error;
+  if (!std::filesystem::exists(file_, error)) return {};  // nothing is lost
+  const auto text = world::read_text_file(file_);
+  if (text && *text == saved_) return {};
+  return core::fail(core::ErrorCode::kInvalidArgument,
+                    fmt::format("{}: the file was changed by others since it was read; reload it, "
+                                "or keep your text and save again",
+                                name()));
+}
+
+core::Result<void> Document::save() {
+  if (file_.empty())
+    return core::fail(core::ErrorCode::kInvalidArgument, "this world has no file yet");
+  if (auto known = require_known_disk(); !known) return known;
+  if (auto written = write_whole(file_, *text_); !written) return written;
+  note_saved(*text_);
+  autosave();
+  save_locks();
+  watch_.watch(file_);
+  return {};
+}
+
+core::Result<void> Document::save_as(const std::filesystem::path& file, bool share) {
+  if (file.empty())
+    return core::fail(core::ErrorCode::kInvalidArgument, "a file to write must have a name");
+  if (same_file(file, file_)) {
+    if (auto written = write_whole(file_, *text_); !written) return written;
+  } else {
+    auto session = RecoverySession::start(options_.state_folder, file, share);
+    if (!session) return tl::unexpected(std::move(session.error()));
+    if (auto written = write_whole(file, *text_); !written) return written;
+    session_ = *std::move(session);
+    file_ = file;
+    Q_EMIT file_changed();
+  }
+  note_saved(*text_);
+  autosave();
+  save_locks();
+  watch_.watch(file_);
+  return {};
+}
+
+core::Result<void> Document::revert() {
+  return set_text(saved_, tr("Revert"));
+}
+
+bool Document::is_read_only() const {
+  if (file_.empty()) return false;
+  const std::filesystem::path folder = file_.parent_path();
+  return access(file_.c_str(), W_OK) != 0 ||
+         access(folder.empty() ? "." : folder.c_str(), W_OK) != 0;
+}
+
+std::string Document::unsaved_diff() const {
+  return unified_diff(saved_, *text_, name(), name() + " (not saved)");
+}
+
+DiskState Document::check_disk() {
+  if (file_.empty()) return DiskState::kSame;
+  std::optional<std::string> now;
+  std::error_code error;
+  if (std::filesystem::exists(file_, error)) {
+    auto text = world::read_text_file(file_);
+    now = text ? *std::move(text) : text.error().message;
+  }
+  const DiskState state = !now             ? DiskState::kRemoved
+                          : *now == saved_ ? DiskState::kSame
+                                           : DiskState::kChanged;
+  if (now != seen_) {
+    seen_ = std::move(now);
+    Q_EMIT disk_changed(state, is_modified() && state != DiskState::kSame);
+  }
+  return state;
+}
+
+core::Result<void> Document::reload() {
+  auto text = world::read_text_file(file_);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  if (auto set = set_text(*text, tr("Reload")); !set) return set;
+  note_saved(*std::move(text));
+  autosave();
+  return {};
+}
+
+void Document::keep_mine() {
+  check_disk();
+  saved_ = seen_.value_or("");
+  note_modified();
+  autosave_timer_.start();
+}
+
+const std::vector<world::WorldSection>& Document::sections() const {
+  if (!sections_) {
+    auto made = world::world_schema(*text_, parsed_->world, parsed_->registry);
+    PSYGEN_CHECK(made.has_value(), "the world is that of the text");
+    sections_ = *std::move(made);
+  }
+  return *sections_;
+}
+
+const world::WorldField* Document::field(const world::TextPath& path) const {
+  return world::find_field(sections(), path);
+}
+
+void Document::show(const TextPtr& text) {
+  const ParsedWorldPtr before = parsed_;
+  if (next_parsed_) {
+    parsed_ = std::exchange(next_parsed_, nullptr);
+  } else {
+    auto parsed = parse(*text);
+    PSYGEN_CHECK(parsed.has_value(), "a text that was a world is one again");
+    parsed_ = *std::move(parsed);
+  }
+  text_ = text;
+  sections_.reset();
+  Q_EMIT changed(Change::kText | changes_between(*before, *parsed_));
+  note_modified();
+  if (!autosave_timer_.isActive()) autosave_timer_.start();
+}
+
+core::Result<void> Document::write_recovery() {
+  if (!is_modified()) {
+    session_->clear();
+    return {};
+  }
+  return session_->write({file_, *text_, saved_, undo_.index(), {}, {}});
+}
+
+void Document::autosave() {
+  const auto written = write_recovery();
+  if (!written && !autosave_told_)
+    Q_EMIT autosave_failed(QString::fromStdString(written.error().message));
+  autosave_told_ = !written;
+}
+
+void Document::save_locks() const {
+  if (!file_.empty() && locks_ != kept_locks_)
+    (void)locks_.save(options_.state_folder, file_);  // a comfort, not worth a question
+}
+
+core::Result<void> Document::recover(const Recovery& recovery) {
+  if (auto parsed = parse(recovery.text); !parsed) return tl::unexpected(std::move(parsed.error()));
+  if (recovery.world_file.empty() || !open(recovery.world_file)) {
+    if (auto made = make_new(recovery.text); !made) return made;
+    saved_ = recovery.world_file.empty() ? recovery.saved_text : "";
+    note_modified();
+  } else if (auto set = set_text(recovery.text, tr("Recover unsaved changes")); !set) {
+    return set;
+  }
+  if (auto written = write_recovery(); !written) return written;
+  discard_recovery(recovery);
+  return {};
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,201 @@
+// Edits of a document: each is a change of its text (engine/world/files/text_edit.hpp).
+#include <fmt/format.h>
+
+#include "editor/document/document.hpp"
+#include "engine/core/replace_file.hpp"
+#include "engine/world/files/text_edit.hpp"
+#include "engine/world/files/text_file.hpp"
+#include "engine/world/files/text_snippet.hpp"
+#include "engine/world/files/toml_values.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kTries = 8;  // of random values for a field
+
+QString shown(const world::TextPath& path) {
+  return QString::fromStdString(path.text());
+}
+
+using Text = core::Result<std::string>;
+
+}  // namespace
+
+core::Result<void> Document::push(std::string text, const QString& step,
+                                  std::optional<FieldLocks> locks) {
+  if (text == *text_) return {};
+  auto parsed = parse(text);
+  if (!parsed) return tl::unexpected(std::move(parsed.error()));
+  next_parsed_ = *std::move(parsed);
+  const TextPtr before = text_;
+  auto show_text = [this](const TextPtr& shown_text) { show(shown_text); };
+  auto show_both = [this, before, undone = locks_, done = locks](const TextPtr& shown_text) {
+    locks_ = shown_text == before ? undone : *done;
+    show(shown_text);
+  };
+  undo_.push(new TextCommand(step, before, std::make_shared<const std::string>(std::move(text)),
+                             drag_,
+                             locks ? std::function<void(const TextPtr&)>(show_both) : show_text));
+  return {};
+}
+
+core::Result<void> Document::set_text(std::string text, const QString& step) {
+  return push(std::move(text), step);
+}
+
+core::Result<void> Document::edit(const QString& step,
+                                  const std::function<Text(std::string_view)>& change) {
+  auto text = change(*text_);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  return push(*std::move(text), step);
+}
+
+void Document::begin_drag() {
+  drag_ = ++last_drag_;
+}
+
+core::Result<void> Document::set_value(const world::TextPath& path, std::string_view toml_value) {
+  return edit(tr("Set %1").arg(shown(path)),
+              [&](std::string_view text) { return world::with_value(text, path, toml_value); });
+}
+
+core::Result<void> Document::reset_value(const world::TextPath& path) {
+  return edit(tr("Reset %1").arg(shown(path)),
+              [&](std::string_view text) { return world::without_value(text, path); });
+}
+
+core::Result<void> Document::append_table(const world::TextPath& array, std::string_view table) {
+  return edit(tr("Add %1").arg(shown(array)), [&](std::string_view text) {
+    return world::with_table_appended(text, array, table);
+  });
+}
+
+core::Result<void> Document::remove_table(const world::TextPath& path) {
+  auto text = world::without_table(*text_, path);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  FieldLocks locks = locks_;
+  if (!path.empty() && path.back().is_index) locks.note_removed(path);
+  return push(*std::move(text), tr("Remove %1").arg(shown(path)), std::move(locks));
+}
+
+core::Result<void> Document::move_table(const world::TextPath& item, std::size_t to) {
+  auto text = world::with_table_moved(*text_, item, to);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  FieldLocks locks = locks_;
+  locks.note_moved(item, to);
+  return push(*std::move(text), tr("Move %1").arg(shown(item)), std::move(locks));
+}
+
+core::Result<void> Document::duplicate_table(const world::TextPath& item) {
+  auto text = world::with_table_duplicated(*text_, item);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  const world::TextPath copy = item.parent().with(item.back().index + 1);
+  if (item.first(1) == world::TextPath{"species"} && item.size() == 2) {
+    const std::string& name = world().species[item.back().index].name;
+    int number = 2;
+    while (parsed_->registry.find(fmt::format("{}_{}", name, number)) >= 0)
+      ++number;
+    text = world::with_value(*text, copy.with("name"),
+                             world::toml_string(fmt::format("{}_{}", name, number)));
+    if (!text) return tl::unexpected(std::move(text.error()));
+  }
+  FieldLocks locks = locks_;
+  locks.note_inserted(copy);
+  return push(*std::move(text), tr("Duplicate %1").arg(shown(item)), std::move(locks));
+}
+
+core::Result<void> Document::rename_species(std::size_t species, const std::string& name) {
+  return edit(tr("Rename species"), [&](std::string_view before) {
+    const std::string value = world::toml_string(name);
+    Text text = world::with_value(before, {"species", species, "name"}, value);
+    if (species >= world().species.size()) return text;
+    for (std::size_t i = 0; text && i < world().scatter.size(); ++i) {
+      if (parsed_->registry[world().scatter[i].model].name() == world().species[species].name)
+        text = world::with_value(*text, {"scatter", i, "model"}, value);
+    }
+    return text;
+  });
+}
+
+core::Result<void> Document::set_scatter_model(std::size_t scatter, const std::string& model) {
+  return edit(tr("Set model"), [&](std::string_view before) {
+    const world::TextPath path{"scatter", scatter};
+    Text text = world::with_value(before, path.with("model"), world::toml_string(model));
+    const int now = parsed_->registry.find(model);
+    if (now < 0 || scatter >= world().scatter.size()) return text;
+    const auto& type = parsed_->registry[static_cast<models::ModelIndex>(now)];
+    for (const models::ParameterSpec& spec :
+         parsed_->registry[world().scatter[scatter].model].parameters()) {
+      const int i = models::parameter_index(type, spec.name);
+      const bool has = i >= 0 && type.parameters()[static_cast<std::size_t>(i)].source ==
+                                     models::ParameterSource::kUser;
+      if (text && !has) text = world::without_value(*text, path.with(spec.name));
+    }
+    return text;
+  });
+}
+
+core::Result<std::string> Document::copy(const world::TextPath& path) const {
+  return world::copied_snippet(*text_, path);
+}
+
+core::Result<void> Document::paste(const world::TextPath& path, std::string_view snippet) {
+  return edit(tr("Paste into %1").arg(shown(path)),
+              [&](std::string_view text) { return world::with_snippet(text, path, snippet); });
+}
+
+core::Result<void> Document::save_preset(const world::TextPath& path,
+                                         const std::filesystem::path& preset) const {
+  const auto snippet = copy(path);
+  if (!snippet) return tl::unexpected(snippet.error());
+  return core::replace_file(preset, world::preset_text(*snippet));
+}
+
+core::Result<void> Document::apply_preset(const world::TextPath& path,
+                                          const std::filesystem::path& preset) {
+  const auto text = world::read_text_file(preset);
+  if (!text) return tl::unexpected(text.error());
+  const auto snippet = world::read_preset(*text, preset.string());
+  if (!snippet) return tl::unexpected(snippet.error());
+  return edit(tr("Apply %1").arg(QString::fromStdString(preset.stem().string())),
+              [&](std::string_view before) { return world::with_snippet(before, path, *snippet); });
+}
+
+core::Result<void> Document::randomise(const world::TextPath& path, std::mt19937_64& random) {
+  std::vector<const world::WorldField*> fields;
+  const std::function<void(const std::vector<world::WorldSection>&)> collect =
+      [&](const std::vector<world::WorldSection>& sections) {
+        for (const world::WorldSection& section : sections) {
+          for (const world::WorldField& f : section.fields) {
+            const bool names_others = f.required && f.kind == world::FieldKind::kChoice;
+            if (f.path.starts_with(path) && !names_others && !locks_.is_locked(f.path))
+              fields.push_back(&f);
+          }
+          collect(section.parts);
+        }
+      };
+  collect(sections());
+  std::string text = *text_;
+  for (const world::WorldField* field : fields) {
+    for (int i = 0; i < kTries; ++i) {
+      const auto value = random_value(*field, random);
+      if (!value) break;
+      auto next = world::with_value(text, field->path, *value);
+      if (!next || !parse(*next)) continue;
+      text = *std::move(next);
+      break;
+    }
+  }
+  return push(std::move(text), tr("Randomise %1").arg(shown(path)));
+}
+
+core::Result<void> Document::step_value(const world::TextPath& path, int steps) {
+  const world::WorldField* of = field(path);
+  const auto value = of != nullptr ? stepped_value(*of, steps) : std::nullopt;
+  if (!value)
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{}: there is no number to step", path.text()));
+  return set_value(path, *value);
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,143 @@
+#include "editor/document/recovery.hpp"
+
+#include <fmt/format.h>
+
+#include <QCryptographicHash>
+#include <QDir>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QStandardPaths>
+#include <QUuid>
+#include <algorithm>
+#include <cstdlib>
+
+#include "engine/core/read_file.hpp"
+#include "engine/core/replace_file.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kRecoveryFormat = 1;
+constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
+constexpr const char* kEnding = ".recovery";
+
+QString q(const std::filesystem::path& path) {
+  return QString::fromStdString(path.string());
+}
+
+QString lock_name(const std::filesystem::path& recovery_file) {
+  return q(recovery_file) + QStringLiteral(".lock");
+}
+
+std::unique_ptr<QLockFile> locked(const QString& name) {
+  auto lock = std::make_unique<QLockFile>(name);
+  lock->setStaleLockTime(0);  // never by age: only when its process is gone
+  lock->tryLock(0);
+  return lock;
+}
+
+core::Error open_elsewhere(const QLockFile& lock, const std::filesystem::path& world_file) {
+  qint64 process = 0;
+  QString host, program;
+  lock.getLockInfo(&process, &host, &program);
+  return {core::ErrorCode::kInvalidArgument,
+          fmt::format("{}: another editor has this file open (process {} on {})",
+                      world_file.string(), process, host.toStdString())};
+}
+
+// Nothing where the file is damaged or of a newer version.
+std::optional<Recovery> read_recovery(const std::filesystem::path& file) {
+  const auto bytes = core::read_file(file, kMostBytes);
+  if (!bytes) return {};
+  const QJsonObject read =
+      QJsonDocument::fromJson(QByteArray::fromRawData(reinterpret_cast<const char*>(bytes->data()),
+                                                      static_cast<qsizetype>(bytes->size())))
+          .object();
+  if (read[QStringLiteral("format")].toInt() != kRecoveryFormat) return {};
+  Recovery recovery;
+  recovery.world_file = read[QStringLiteral("world_file")].toString().toStdString();
+  recovery.text = read[QStringLiteral("text")].toString().toStdString();
+  recovery.saved_text = read[QStringLiteral("saved_text")].toString().toStdString();
+  recovery.undo_index = read[QStringLiteral("undo_index")].toInt();
+  recovery.time = QDateTime::fromString(read[QStringLiteral("time")].toString(), Qt::ISODateWithMs);
+  recovery.file = file;
+  return recovery;
+}
+
+}  // namespace
+
+std::filesystem::path default_state_folder() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state != nullptr && state[0] == '/') return std::filesystem::path(state) / "psygen-editor";
+  return std::filesystem::path(QDir::homePath().toStdString()) / ".local/state/psygen-editor";
+}
+
+QString file_key(const std::filesystem::path& world_file) {
+  std::error_code error;
+  const auto whole = std::filesystem::weakly_canonical(world_file, error);
+  const std::string name = (error ? std::filesystem::absolute(world_file, error) : whole).string();
+  return QString::fromLatin1(
+      QCryptographicHash::hash(QByteArray::fromStdString(name), QCryptographicHash::Sha1)
+          .toHex()
+          .left(20));
+}
+
+core::Result<std::unique_ptr<RecoverySession>> RecoverySession::start(
+    const std::filesystem::path& state_folder, const std::filesystem::path& world_file,
+    bool share) {
+  std::unique_ptr<RecoverySession> session(new RecoverySession);
+  std::error_code ignored;  // then the locks cannot be taken
+  std::filesystem::create_directories(state_folder, ignored);
+  const QString id = QUuid::createUuid().toString(QUuid::Id128);
+  session->file_ = state_folder / (id.toStdString() + kEnding);
+  session->running_ = locked(lock_name(session->file_));
+  if (world_file.empty()) return session;
+  session->document_ = locked(q(state_folder / (file_key(world_file).toStdString() + ".lock")));
+  if (session->document_->error() == QLockFile::LockFailedError && !share)
+    return tl::unexpected(open_elsewhere(*session->document_, world_file));
+  return session;
+}
+
+RecoverySession::~RecoverySession() {
+  if (!file_.empty()) clear();
+}
+
+core::Result<void> RecoverySession::write(const Recovery& recovery) const {
+  const QJsonObject object{
+      {QStringLiteral("format"), kRecoveryFormat},
+      {QStringLiteral("world_file"), q(recovery.world_file)},
+      {QStringLiteral("text"), QString::fromStdString(recovery.text)},
+      {QStringLiteral("saved_text"), QString::fromStdString(recovery.saved_text)},
+      {QStringLiteral("undo_index"), recovery.undo_index},
+      {QStringLiteral("time"), QDateTime::currentDateTimeUtc().toString(Qt::ISODateWithMs)}};
+  const QByteArray bytes = QJsonDocument(object).toJson(QJsonDocument::Compact);
+  return core::replace_file(
+      file_, std::string_view(bytes.constData(), static_cast<std::size_t>(bytes.size())));
+}
+
+void RecoverySession::clear() const {
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
+}
+
+std::vector<Recovery> left_recoveries(const std::filesystem::path& state_folder) {
+  std::vector<Recovery> found;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(state_folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().extension() != kEnding) continue;
+    const auto lock = locked(lock_name(it->path()));
+    if (lock->error() == QLockFile::LockFailedError) continue;  // its session runs
+    if (auto recovery = read_recovery(it->path())) found.push_back(*std::move(recovery));
+  }
+  std::ranges::sort(found, std::greater(), &Recovery::time);
+  return found;
+}
+
+void discard_recovery(const Recovery& recovery) {
+  std::error_code ignored;
+  std::filesystem::remove(recovery.file, ignored);
+  std::filesystem::remove(lock_name(recovery.file).toStdString(), ignored);
+}
+
+}  // namespace psygen::editor
