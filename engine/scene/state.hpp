@@ -285,6 +285,7 @@ struct Counters {
   std::vector<float> time_to_visible_ms;  // of mesh entities that came into view and are drawn
   struct Cost {
     double predicted_s, actual_s;
+    models::ModelIndex model;
   };
   std::vector<Cost> costs;
   render::FrameResult frame;

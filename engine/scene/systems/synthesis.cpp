@@ -26,7 +26,7 @@ void synthesis_system(const Settings& settings, const Rules& rules, synthesis::M
   for (const synthesis::Completion& job : meshes.collect()) {
     ++(job.ok ? counters.completed : counters.failed);
     counters.synthesis_seconds += job.seconds;
-    if (job.ok) counters.costs.push_back({job.predicted_seconds, job.seconds});
+    if (job.ok) counters.costs.push_back({job.predicted_seconds, job.seconds, job.key.model});
     if (trace.log != nullptr && !job.late && !settings.virtual_time) trace_job(job, trace);
   }
 }

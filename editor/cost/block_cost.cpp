@@ -1,0 +1,134 @@
+#include "editor/cost/block_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/clock.hpp"
+#include "engine/synthesis/synthesize.hpp"
+#include "engine/world/files/text_edit.hpp"
+#include "engine/world/files/toml_values.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::editor {
+namespace {
+
+using world::FieldKind;
+
+constexpr int kBlocks = 4;         // over which means are taken
+constexpr int kPoints = 24;        // of a curve of reals
+constexpr int kMeasuredEvery = 6;  // points
+constexpr double kMostMeasuredS = 0.05;
+
+// Somewhere in the world, always the same places.
+core::BlockCoord block_of(const world::World& world, int number) {
+  const auto place = [number](std::int64_t blocks, std::int64_t prime) {
+    const std::int64_t along = blocks == 0 ? 512 : blocks;
+    return static_cast<std::int32_t>((along / 2 + number * prime) % along);
+  };
+  return {place(world.blocks_x, 37), place(world.blocks_z, 53)};
+}
+
+// Seconds of this thread to make a mesh; nothing if it fails.
+std::optional<double> make_mesh(const models::ModelType& type, const models::Parameters& p) {
+  const auto memory = synthesis::HeapDestination::make(type, p, 0);
+  if (!memory) return std::nullopt;
+  const double start_s = core::thread_cpu_seconds();
+  if (!synthesis::synthesize_guarded(type, p, 0, memory->view()).ok) return std::nullopt;
+  return core::thread_cpu_seconds() - start_s;
+}
+
+// Whether numbers of the field change what is made, and can be varied.
+bool has_curve(const world::WorldField& field) {
+  const bool number = field.kind == FieldKind::kInteger || field.kind == FieldKind::kReal ||
+                      field.kind == FieldKind::kIntegerRange || field.kind == FieldKind::kRealRange;
+  const std::string& table = field.path.empty() ? std::string() : field.path.steps[0].key;
+  return number && !field.numbers.empty() && table != "sky" && table != "palette" &&
+         table != "water";
+}
+
+std::string toml_of(const world::WorldField& field, double value) {
+  const bool integer = field.kind == FieldKind::kInteger || field.kind == FieldKind::kIntegerRange;
+  if (field.kind == FieldKind::kInteger || field.kind == FieldKind::kReal)
+    return integer ? world::toml_number(static_cast<std::int64_t>(std::llround(value)))
+                   : world::toml_number(value);
+  return world::toml_range(std::min(field.numbers[0], value), value, integer);
+}
+
+std::vector<double> values_of(const world::WorldField& field) {
+  const bool integer = field.kind == FieldKind::kInteger || field.kind == FieldKind::kIntegerRange;
+  const double span = field.soft_max - field.soft_min;
+  const int points = integer ? static_cast<int>(std::min<double>(span + 1, kPoints)) : kPoints;
+  std::vector<double> values;
+  for (int i = 0; i < points; ++i) {
+    const double share = points > 1 ? static_cast<double>(i) / (points - 1) : 0;
+    const double v = field.logarithmic
+                         ? field.soft_min * std::pow(field.soft_max / field.soft_min, share)
+                         : field.soft_min + share * span;
+    values.push_back(integer ? std::round(v) : v);
+  }
+  return values;
+}
+
+}  // namespace
+
+BlockCost block_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt, bool measure) {
+  synthesis::CostModel costs(parsed.registry);
+  if (learnt != nullptr) costs.learn_from(*learnt);
+  BlockCost sum;
+  std::vector<world::Placement> placements;
+  std::vector<std::pair<models::ModelIndex, models::Parameters>> meshes;
+  for (int i = 0; i < kBlocks; ++i) {
+    const core::BlockCoord block = block_of(parsed.world, i);
+    world::place_models(parsed.world, parsed.registry, block, placements);
+    sum.models += static_cast<double>(placements.size());
+    meshes.emplace_back(parsed.world.terrain_model, world::terrain_parameters(parsed.world, block));
+    for (const world::Placement& placed : placements)
+      meshes.emplace_back(placed.model, placed.parameters);
+  }
+  double measured_s = 0;
+  for (const auto& [model, p] : meshes) {
+    const models::ModelType& type = parsed.registry[model];
+    if (const auto size = synthesis::mesh_size_guarded(type, p, 0)) {
+      sum.triangles += size->triangle_count();
+      sum.bytes +=
+          static_cast<double>(size->vertex_count) * core::vertex_stride_bytes(size->layout) +
+          (size->shared_indices != 0 ? 0.0 : 2.0 * size->index_count);
+    }
+    sum.seconds += costs.predict(model, p, 0);
+  }
+  if (measure && sum.seconds <= kMostMeasuredS) {
+    for (const auto& [model, p] : meshes)
+      measured_s += make_mesh(parsed.registry[model], p).value_or(0);
+    sum.measured_seconds = measured_s / kBlocks;
+  }
+  for (double BlockCost::*part :
+       {&BlockCost::models, &BlockCost::triangles, &BlockCost::bytes, &BlockCost::seconds})
+    sum.*part /= kBlocks;
+  return sum;
+}
+
+std::vector<CostPoint> cost_curve(const std::string& text, const std::string& file,
+                                  const RegisterModels& register_models,
+                                  const world::WorldField& field,
+                                  const synthesis::CostModel* learnt,
+                                  const std::function<bool()>& go_on) {
+  std::vector<CostPoint> curve;
+  if (!has_curve(field)) return curve;
+  int number = 0;
+  for (const double value : values_of(field)) {
+    if (!go_on()) return {};
+    CostPoint point{value, {}, {}};
+    const auto changed = world::with_value(text, field.path, toml_of(field, value));
+    const auto parsed = changed ? parse_world_text(*changed, file, register_models)
+                                : tl::make_unexpected(changed.error());
+    if (parsed) {
+      point.cost = block_cost(**parsed, learnt, number++ % kMeasuredEvery == 0);
+    } else {
+      point.refusal = parsed.error().message;
+    }
+    curve.push_back(std::move(point));
+  }
+  return curve;
+}
+
+}  // namespace psygen::editor

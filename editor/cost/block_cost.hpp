@@ -1,0 +1,43 @@
+// What a world costs at full detail, per block: predicted without synthesis, and measured by making
+// some blocks. From this comes the cost of a value before anybody commits to it. Pure but for
+// clocks; any thread, with a parsed world and a cost model of its own.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "editor/document/parsed_world.hpp"
+#include "engine/synthesis/cost_model.hpp"
+#include "engine/world/files/world_schema.hpp"
+
+namespace psygen::editor {
+
+// Means over some blocks of the world.
+struct BlockCost {
+  double models = 0, triangles = 0, bytes = 0;
+  double seconds = 0;                      // of one core, predicted
+  std::optional<double> measured_seconds;  // of one core, if blocks were made
+};
+
+// The cost of a world. `learnt`: what a cost model of the same program knows (null: nothing).
+// `measure`: also makes the blocks, unless that is predicted to take over 50 ms.
+BlockCost block_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt, bool measure);
+
+// One value of a field and what the world would cost with it.
+struct CostPoint {
+  double value = 0;
+  std::optional<BlockCost> cost;  // nothing: the value is refused
+  std::string refusal;            // then why
+};
+
+// Costs over the soft range of a field of numbers, evenly on its scale; of ranges the highest end
+// varies. Some values are measured. Empty for other kinds of fields. `go_on` is asked between
+// values. Some milliseconds a value.
+std::vector<CostPoint> cost_curve(const std::string& text, const std::string& file,
+                                  const RegisterModels& register_models,
+                                  const world::WorldField& field,
+                                  const synthesis::CostModel* learnt,
+                                  const std::function<bool()>& go_on);
+
+}  // namespace psygen::editor

@@ -1,0 +1,71 @@
+#include "editor/cost/cost_worker.hpp"
+
+#include <QMetaObject>
+#include <utility>
+
+#include "engine/core/start_thread.hpp"
+#include "engine/synthesis/thread_priority.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr std::uint64_t kEnd = UINT64_MAX;
+
+}  // namespace
+
+CostWorker::CostWorker(RegisterModels register_models, QObject* parent)
+    : QObject(parent), register_models_(std::move(register_models)) {
+  // Without a thread there are no curves; everything else works.
+  if (auto thread = core::start_thread([this] { run(); })) thread_ = std::move(*thread);
+}
+
+CostWorker::~CostWorker() {
+  newest_.store(kEnd);
+  {
+    const std::lock_guard lock(mutex_);
+    next_.reset();
+  }
+  asked_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void CostWorker::ask(std::string text, std::string file, std::vector<world::WorldField> fields,
+                     std::shared_ptr<const synthesis::CostModel> learnt) {
+  {
+    const std::lock_guard lock(mutex_);
+    next_ = Job{std::move(text), std::move(file), std::move(fields), std::move(learnt),
+                newest_.load() + 1};
+    newest_.store(next_->number);
+  }
+  asked_.notify_all();
+}
+
+void CostWorker::run() {
+  synthesis::lower_priority_of_this_thread();
+  while (true) {
+    std::unique_lock lock(mutex_);
+    asked_.wait(lock, [this] { return next_.has_value() || newest_.load() == kEnd; });
+    if (newest_.load() == kEnd) return;
+    const Job job = *std::exchange(next_, std::nullopt);
+    lock.unlock();
+    work(job);
+  }
+}
+
+void CostWorker::work(const Job& job) {
+  const auto wanted = [&] { return newest_.load() == job.number; };
+  if (const auto parsed = parse_world_text(job.text, job.file, register_models_)) {
+    const BlockCost cost = block_cost(**parsed, job.learnt.get(), true);
+    QMetaObject::invokeMethod(this, [this, cost] { Q_EMIT world_cost(cost); });
+  }
+  for (const world::WorldField& field : job.fields) {
+    if (!wanted()) return;
+    auto points = cost_curve(job.text, job.file, register_models_, field, job.learnt.get(), wanted);
+    if (points.empty()) continue;
+    QMetaObject::invokeMethod(this, [this, path = field.path.text(), points = std::move(points)] {
+      Q_EMIT curve(path, points);
+    });
+  }
+}
+
+}  // namespace psygen::editor

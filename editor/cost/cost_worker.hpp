@@ -1,0 +1,51 @@
+// Computes costs of fields in a thread of its own, at the lowest priority: what is asked last comes
+// first, and what is not wanted any more is dropped. Signals arrive in the thread that made it.
+#pragma once
+
+#include <QObject>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "editor/cost/block_cost.hpp"
+
+namespace psygen::editor {
+
+class CostWorker final : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit CostWorker(RegisterModels register_models, QObject* parent = nullptr);
+  ~CostWorker() override;
+
+  // Curves of these fields in this text, and the cost of the text itself. Replaces what was asked
+  // before. `learnt` may be null.
+  void ask(std::string text, std::string file, std::vector<world::WorldField> fields,
+           std::shared_ptr<const synthesis::CostModel> learnt);
+
+ Q_SIGNALS:
+  void world_cost(const psygen::editor::BlockCost& cost);
+  void curve(const std::string& path, const std::vector<psygen::editor::CostPoint>& points);
+
+ private:
+  struct Job {
+    std::string text, file;
+    std::vector<world::WorldField> fields;
+    std::shared_ptr<const synthesis::CostModel> learnt;
+    std::uint64_t number = 0;
+  };
+  void run();
+  void work(const Job& job);
+
+  RegisterModels register_models_;
+  std::mutex mutex_;
+  std::condition_variable asked_;
+  std::optional<Job> next_;
+  std::atomic<std::uint64_t> newest_{0};  // number of the newest job; UINT64_MAX: the end
+  std::thread thread_;
+};
+
+}  // namespace psygen::editor

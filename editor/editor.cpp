@@ -1,0 +1,100 @@
+#include "editor/editor.hpp"
+
+#include <QApplication>
+#include <QCommandLineParser>
+#include <QSettings>
+#include <cstdio>
+#include <cstdlib>
+
+#include "editor/shell/main_window.hpp"
+#include "editor/shell/theme.hpp"
+#include "engine/cli/shipped_files.hpp"
+#include "engine/core/log.hpp"
+#include "engine/render/preset.hpp"
+#include "engine/render/software_tuning.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr const char* kFirstWorld = "silver_combe";
+constexpr double kWatchdogS = 2;  // a model that takes longer hangs: nobody waits for it
+
+struct Arguments {
+  QString file;
+  bool safe = false;
+  app::SessionOptions session;
+};
+
+int usage(const QString& sentence) {
+  std::fprintf(stderr, "psygen-editor: %s\n", qPrintable(sentence));
+  return 2;
+}
+
+// Nothing on success, else the exit code.
+std::optional<int> read_arguments(const QApplication& app, Arguments& arguments) {
+  QCommandLineParser parser;
+  parser.setApplicationDescription("Edits a world of psygen while it is drawn.");
+  parser.addHelpOption();
+  parser.addVersionOption();
+  parser.addPositionalArgument("world", "A world file, or the name of one that comes with psygen.",
+                               "[world]");
+  parser.addOptions({{"safe", "Open with synthesis paused, for a world that hangs."},
+                     {"preset", "Light and detail: low, medium, high, ultra.", "preset"},
+                     {"device", "Part of the name of the Vulkan device.", "name"},
+                     {"validation", "Vulkan validation."}});
+  if (!parser.parse(app.arguments())) return usage(parser.errorText());
+  if (parser.isSet("help")) parser.showHelp(0);
+  if (parser.isSet("version")) parser.showVersion();
+  if (parser.positionalArguments().size() > 1) return usage("one world at a time");
+  if (parser.isSet("preset")) {
+    const auto preset = render::preset_from(parser.value("preset").toStdString());
+    if (!preset) return usage(QString::fromStdString(preset.error().message));
+    arguments.session.preset = *preset;
+  }
+  arguments.file = parser.positionalArguments().value(0);
+  arguments.safe = parser.isSet("safe");
+  arguments.session.device_name = parser.value("device").toStdString();
+  arguments.session.validation = parser.isSet("validation");
+  return std::nullopt;
+}
+
+}  // namespace
+
+int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
+  QApplication app(argc, argv);
+  QApplication::setOrganizationName("psygen");
+  QApplication::setApplicationName("psygen-editor");
+  QApplication::setApplicationVersion(PSYGEN_VERSION);
+  Arguments arguments;
+  if (const auto code = read_arguments(app, arguments)) return *code;
+  if (auto ok = render::fit_software_rendering_to_threads(); !ok)
+    return core::log_error(ok.error().message), 1;
+  apply_theme(QSettings().value("theme", "dark").toString());
+  apply_scale(QSettings().value("scale", 100).toInt());
+
+  MainWindowOptions options;
+  options.session = std::move(arguments.session);
+  options.session.scene.watchdog_seconds = kWatchdogS;
+  options.safe = arguments.safe;
+  options.document.register_models = [plugins](models::Registry& registry) -> core::Result<void> {
+    for (const app::Plugin& plugin : plugins) {
+      if (!plugin.register_models) continue;
+      if (auto ok = plugin.register_models(registry); !ok) return ok;
+    }
+    return {};
+  };
+  options.session.plugins = std::move(plugins);
+  MainWindow window(std::move(options));
+  window.show();
+  const auto file = cli::find_file(
+      cli::Shipped::kWorld, arguments.file.isEmpty() ? kFirstWorld : arguments.file.toStdString());
+  if (!file) return usage(QString::fromStdString(file.error().message));
+  if (!window.open_file(*file) && !arguments.file.isEmpty())
+    std::fprintf(stderr, "psygen-editor: the world could not be opened; the messages say why\n");
+  const int code = QApplication::exec();
+  // The memory of a modeler that hangs must not be torn down.
+  if (window.view().has_hung()) std::_Exit(code);
+  return code;
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,6 @@
+// The editor with the model types that come with psygen.
+#include "editor/editor.hpp"
+
+int main(int argc, char** argv) {
+  return psygen::editor::run(argc, argv);
+}

@@ -1,0 +1,181 @@
+#include "editor/panels/cache_map.hpp"
+
+#include <QHelpEvent>
+#include <QPainter>
+#include <QPainterPath>
+#include <QToolTip>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/state.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr double kLeastRadiusM = 100, kMostRadiusM = 30'000;
+
+// From blue over green and yellow to red, for 0 … 1.
+QColor heat(double share) {
+  return QColor::fromHsvF(static_cast<float>(0.66 * (1 - std::clamp(share, 0.0, 1.0))), 0.75F,
+                          0.85F);
+}
+
+}  // namespace
+
+CacheMap::CacheMap(QWidget* parent) : QWidget(parent) {
+  setMinimumSize(160, 160);
+  setAccessibleName(tr("Map of the cache around the camera"));
+  setToolTip(" ");  // words() says it
+}
+
+void CacheMap::set_colour(MapColour colour) {
+  colour_ = colour;
+  update();
+}
+
+void CacheMap::show(const scene::State& state) {
+  cells_.clear();
+  const core::WorldPosition& camera = state.camera.pose.position;
+  const double block_m = state.facts.world.block_size_m();
+  yaw_ = state.camera.pose.yaw;
+  fov_ = 2 * std::atan(std::tan(double{state.camera.projection.vertical_fov} / 2) *
+                       double{state.camera.projection.aspect});
+  std::vector<bool> chosen;
+  state.entities.each<const scene::Node, const scene::Visibility, const scene::Lacking,
+                      const scene::Source, const scene::Demand>(
+      [&](std::span<const ecs::Entity>, std::span<const scene::Node> nodes,
+          std::span<const scene::Visibility> seen, std::span<const scene::Lacking> lacking,
+          std::span<const scene::Source> sources, std::span<const scene::Demand> demands) {
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+          Cell cell;
+          cell.at = nodes[i].at;
+          cell.size_m = block_m * static_cast<double>(1U << cell.at.level);
+          const glm::dvec3 corner =
+              core::offset_m(visibility::corner_block(cell.at), camera, block_m);
+          cell.x_m = corner.x;
+          cell.z_m = corner.z;
+          const scene::Demand& demand = demands[i];
+          cell.in_view = seen[i].in_view != 0;
+          cell.drawn = demand.drawn_level != scene::kNoLevel;
+          cell.stale = demand.stale;
+          cell.requested = demand.requested_level != scene::kNoLevel;
+          cell.failed = demand.failed_levels != 0;
+          cell.level_drawn = demand.drawn_level;
+          cell.layer = seen[i].layer;
+          cell.deadline_s = double{seen[i].deadline_s};
+          cell.lacking = lacking[i].meshes;
+          cell.cost_s = state.meshes.costs().predict(sources[i].model, sources[i].parameters,
+                                                     sources[i].first_level);
+          cells_.push_back(cell);
+        }
+      });
+  std::ranges::sort(cells_, std::greater{}, [](const Cell& cell) { return cell.at.level; });
+  update();
+}
+
+double CacheMap::pixels_per_m() const {
+  return std::min(width(), height()) / (2 * radius_m_);
+}
+
+QColor CacheMap::colour_of(const Cell& cell) const {
+  switch (colour_) {
+    case MapColour::kLevel:
+      return heat(1 - cell.at.level / 8.0);
+    case MapColour::kLayer:
+      return heat(1 - cell.layer / 24.0);
+    case MapColour::kCost:
+      return heat(std::log10(std::max(cell.cost_s * 1e6, 1.0)) / 3);
+    case MapColour::kState:
+      break;
+  }
+  if (cell.failed) return QColor(190, 60, 190);
+  if (cell.stale) return QColor(230, 150, 40);
+  if (cell.requested || (cell.in_view && cell.lacking > 0)) return QColor(225, 205, 70);
+  if (!cell.drawn) return QColor(90, 90, 96);
+  return cell.in_view ? QColor(86, 176, 92) : QColor(70, 110, 150);
+}
+
+void CacheMap::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.fillRect(rect(), palette().color(QPalette::Base));
+  if (cells_.empty()) {
+    painter.drawText(rect(), Qt::AlignCenter, tr("Nothing is loaded."));
+    return;
+  }
+  const double scale = pixels_per_m();
+  painter.translate(width() / 2.0, height() / 2.0);
+  for (const Cell& cell : cells_) {
+    const QRectF place(cell.x_m * scale, cell.z_m * scale, cell.size_m * scale,
+                       cell.size_m * scale);
+    painter.fillRect(place.adjusted(0.5, 0.5, -0.5, -0.5), colour_of(cell));
+  }
+  // The camera, its view, and a scale.
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(QPen(Qt::white, 1.5));
+  const double length = std::min(width(), height());
+  for (const double side : {-0.5, 0.5}) {
+    const double angle = yaw_ + side * fov_;
+    painter.drawLine(QPointF(0, 0), QPointF(std::sin(angle), -std::cos(angle)) * length);
+  }
+  painter.setBrush(Qt::white);
+  painter.drawEllipse(QPointF(0, 0), 3, 3);
+  const double bar_m = std::pow(10.0, std::floor(std::log10(radius_m_)));
+  const QPointF left(-width() / 2.0 + 8, height() / 2.0 - 8);
+  painter.setPen(QPen(palette().color(QPalette::Text), 2));
+  painter.drawLine(left, left + QPointF(bar_m * scale, 0));
+  painter.drawText(left - QPointF(0, 5), tr("%1 m").arg(bar_m));
+}
+
+const CacheMap::Cell* CacheMap::cell_at(QPointF place) const {
+  const double x = (place.x() - width() / 2.0) / pixels_per_m();
+  const double z = (place.y() - height() / 2.0) / pixels_per_m();
+  const Cell* found = nullptr;  // the finest
+  for (const Cell& cell : cells_) {
+    if (x >= cell.x_m && x < cell.x_m + cell.size_m && z >= cell.z_m && z < cell.z_m + cell.size_m)
+      found = &cell;
+  }
+  return found;
+}
+
+QString CacheMap::words(const Cell& cell) const {
+  QString text = tr("Node of level %1 at (%2, %3), %4 m wide.\n")
+                     .arg(cell.at.level)
+                     .arg(cell.at.coord.x)
+                     .arg(cell.at.coord.z)
+                     .arg(cell.size_m, 0, 'f', 0);
+  if (cell.failed) text += tr("A mesh of it cannot be made.\n");
+  if (!cell.drawn)
+    text += tr("No mesh of its ground is there: nobody has asked for it yet, or it waits.\n");
+  if (cell.drawn && cell.stale) text += tr("Its old mesh is drawn until the new one is there.\n");
+  if (cell.drawn && !cell.stale) text += tr("Its ground is there.\n");
+  if (cell.requested) text += tr("A mesh of it is being made.\n");
+  if (cell.lacking != UINT32_MAX && cell.lacking > 0)
+    text += tr("%1 meshes are missing on it.\n").arg(cell.lacking);
+  text += cell.in_view ? tr("It is in view; PLP layer %1.\n").arg(cell.layer)
+          : std::isfinite(cell.deadline_s)
+              ? tr("It is expected in view in %1 s.\n").arg(cell.deadline_s, 0, 'f', 1)
+              : tr("It is out of view; PLP layer %1.\n").arg(cell.layer);
+  return text + tr("Making its ground takes %1 µs.").arg(cell.cost_s * 1e6, 0, 'f', 0);
+}
+
+bool CacheMap::event(QEvent* event) {
+  if (event->type() != QEvent::ToolTip) return QWidget::event(event);
+  const auto* help = static_cast<QHelpEvent*>(event);
+  const Cell* cell = cell_at(help->pos());
+  QToolTip::showText(help->globalPos(),
+                     cell != nullptr
+                         ? words(*cell)
+                         : tr("No node is here: it is too far away, or the world ends."),
+                     this);
+  return true;
+}
+
+void CacheMap::wheelEvent(QWheelEvent* event) {
+  radius_m_ = std::clamp(radius_m_ * std::pow(0.8, event->angleDelta().y() / 120.0), kLeastRadiusM,
+                         kMostRadiusM);
+  update();
+  event->accept();
+}
+
+}  // namespace psygen::editor

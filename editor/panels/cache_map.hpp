@@ -1,0 +1,57 @@
+// The world around the camera from above: each node of the quadtree that exists, coloured by what
+// is asked for. The mouse says why a node is there or not. Reads the scene, changes nothing. Main
+// thread.
+#pragma once
+
+#include <QWidget>
+#include <vector>
+
+#include "engine/core/coordinates.hpp"
+#include "engine/visibility/quadtree.hpp"
+
+namespace psygen::scene {
+struct State;
+}
+
+namespace psygen::editor {
+
+// What colours mean.
+enum class MapColour { kState, kLevel, kLayer, kCost };
+
+class CacheMap final : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit CacheMap(QWidget* parent = nullptr);
+  // Takes over what there is now; some times a second.
+  void show(const scene::State& state);
+  void set_colour(MapColour colour);
+  QSize sizeHint() const override { return {280, 280}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  bool event(QEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+
+ private:
+  // A node as the map shows it.
+  struct Cell {
+    visibility::NodeCoord at;
+    double x_m = 0, z_m = 0, size_m = 0;  // from the camera: the corner, and the side
+    bool in_view = false, drawn = false, stale = false, requested = false, failed = false;
+    int level_drawn = 0, layer = 0;
+    std::uint32_t lacking = 0;
+    double cost_s = 0, deadline_s = 0;
+    bool chosen = false;  // it is drawn in this picture
+  };
+  QColor colour_of(const Cell& cell) const;
+  QString words(const Cell& cell) const;
+  const Cell* cell_at(QPointF place) const;
+  double pixels_per_m() const;
+
+  std::vector<Cell> cells_;  // coarse ones first
+  double radius_m_ = 1500, yaw_ = 0, fov_ = 0.9;
+  MapColour colour_ = MapColour::kState;
+};
+
+}  // namespace psygen::editor

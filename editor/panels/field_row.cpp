@@ -1,0 +1,289 @@
+#include "editor/panels/field_row.hpp"
+
+#include <QCheckBox>
+#include <QColorDialog>
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QRandomGenerator>
+#include <QSignalBlocker>
+#include <QToolButton>
+#include <algorithm>
+#include <cmath>
+
+#include "editor/panels/cost_strip.hpp"
+#include "editor/panels/number_edit.hpp"
+#include "engine/world/files/toml_values.hpp"
+
+namespace psygen::editor {
+namespace {
+
+using world::FieldKind;
+
+constexpr int kLabelWidth = 150;
+
+bool is_integer(FieldKind kind) {
+  return kind == FieldKind::kInteger || kind == FieldKind::kIntegerRange ||
+         kind == FieldKind::kIntegerPair;
+}
+
+std::size_t count_of(FieldKind kind) {
+  switch (kind) {
+    case FieldKind::kIntegerRange:
+    case FieldKind::kRealRange:
+    case FieldKind::kIntegerPair:
+      return 2;
+    default:
+      return 1;
+  }
+}
+
+// Linear components as the colour that a screen shows, and back. Brighter than white is white.
+QColor shown(const std::vector<double>& linear) {
+  const auto part = [&](std::size_t i) {
+    const double v = std::clamp(i < linear.size() ? linear[i] : 0.0, 0.0, 1.0);
+    return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+  };
+  return QColor::fromRgbF(static_cast<float>(part(0)), static_cast<float>(part(1)),
+                          static_cast<float>(part(2)));
+}
+
+double linear_of(double display) {
+  const double v = display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
+  return std::round(v * 1e4) / 1e4;
+}
+
+QToolButton* small_button(const QString& text, const QString& help) {
+  auto* button = new QToolButton;
+  button->setText(text);
+  button->setToolTip(help);
+  button->setAccessibleName(help);
+  button->setAutoRaise(true);
+  return button;
+}
+
+}  // namespace
+
+FieldRow::FieldRow(const world::WorldField& field, QWidget* parent)
+    : QWidget(parent), field_(field), label_(new QLabel), reset_(nullptr) {
+  const QString name = QString::fromStdString(field.label);
+  setObjectName(QString::fromStdString(field.path.text()));
+  label_->setText(name);
+  label_->setFixedWidth(kLabelWidth);
+  label_->setWordWrap(true);
+  setToolTip(QString::fromStdString(field.doc));
+  reset_ = small_button("↺", tr("Reset %1 to its default").arg(name));
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(2, 1, 2, 1);
+  layout->addWidget(label_);
+  build(*layout);
+  layout->addWidget(reset_);
+  connect(reset_, &QToolButton::clicked, this, [this] { Q_EMIT reset_wanted(field_.path); });
+  show(field);
+}
+
+void FieldRow::build(QHBoxLayout& layout) {
+  switch (field_.kind) {
+    case FieldKind::kColour:
+      return add_colour(layout);
+    case FieldKind::kSeed:
+      return add_seed(layout);
+    case FieldKind::kChoice:
+      return add_choice(layout);
+    case FieldKind::kBoolean:
+      return add_switch(layout);
+    case FieldKind::kText:
+    case FieldKind::kImage:
+      return add_text(layout);
+    default:
+      break;
+  }
+  const QString name = QString::fromStdString(field_.label);
+  column_ = new QVBoxLayout;
+  column_->setSpacing(0);
+  const std::size_t count = count_of(field_.kind);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool pair = field_.kind == FieldKind::kIntegerPair;
+    const QString part =
+        i == 0 ? (pair ? tr("along x") : tr("lowest")) : (pair ? tr("along z") : tr("highest"));
+    auto* line = new QHBoxLayout;
+    add_number(*line, count == 1 ? name : name + ", " + part);
+    column_->addLayout(line);
+  }
+  layout.addLayout(column_, 1);
+}
+
+void FieldRow::add_number(QHBoxLayout& layout, const QString& name) {
+  NumberEdit::Range range{field_.hard_min,
+                          field_.hard_max,
+                          field_.soft_min,
+                          field_.soft_max,
+                          field_.logarithmic,
+                          is_integer(field_.kind),
+                          QString::fromStdString(field_.unit == "1" ? "" : field_.unit)};
+  auto* edit = new NumberEdit(range, name);
+  const std::size_t at = numbers_.size();
+  numbers_.push_back(edit);
+  layout.addWidget(edit, 1);
+  setFocusProxy(numbers_.front());
+  connect(edit, &NumberEdit::wanted, this, [this, at] { want_numbers(at); });
+  connect(edit, &NumberEdit::drag_began, this, &FieldRow::drag_began);
+  connect(edit, &NumberEdit::drag_ended, this, &FieldRow::drag_ended);
+}
+
+// The ends of a range push each other.
+void FieldRow::want_numbers(std::size_t changed) {
+  std::vector<double> values;
+  for (const NumberEdit* edit : numbers_)
+    values.push_back(edit->value());
+  const bool range =
+      field_.kind == FieldKind::kIntegerRange || field_.kind == FieldKind::kRealRange;
+  if (range && values[0] > values[1]) values[1 - changed] = values[changed];
+  const auto whole = [](double v) { return static_cast<std::int64_t>(std::llround(v)); };
+  if (range) return want(world::toml_range(values[0], values[1], is_integer(field_.kind)));
+  if (field_.kind == FieldKind::kIntegerPair) return want(world::toml_vector(values));
+  want(is_integer(field_.kind) ? world::toml_number(whole(values[0]))
+                               : world::toml_number(values[0]));
+}
+
+void FieldRow::add_choice(QHBoxLayout& layout) {
+  auto* box = new QComboBox;
+  for (const std::string& choice : field_.choices)
+    box->addItem(QString::fromStdString(choice));
+  box->setAccessibleName(label_->text());
+  layout.addWidget(box, 1);
+  setFocusProxy(box);
+  connect(box, &QComboBox::textActivated, this,
+          [this](const QString& text) { want(world::toml_string(text.toStdString())); });
+  refresh_ = [this, box] { box->setCurrentText(QString::fromStdString(field_.plain)); };
+}
+
+void FieldRow::add_text(QHBoxLayout& layout) {
+  auto* line = new QLineEdit;
+  line->setAccessibleName(label_->text());
+  layout.addWidget(line, 1);
+  setFocusProxy(line);
+  connect(line, &QLineEdit::editingFinished, this, [this, line] {
+    const std::string text = line->text().toStdString();
+    if (text != field_.plain) want(world::toml_string(text));
+  });
+  refresh_ = [this, line] { line->setText(QString::fromStdString(field_.plain)); };
+}
+
+void FieldRow::add_switch(QHBoxLayout& layout) {
+  auto* box = new QCheckBox;
+  box->setAccessibleName(label_->text());
+  layout.addWidget(box, 1);
+  setFocusProxy(box);
+  connect(box, &QCheckBox::toggled, this, [this](bool on) { want(on ? "true" : "false"); });
+  refresh_ = [this, box] {
+    const QSignalBlocker quiet(box);
+    box->setChecked(field_.value == "true");
+  };
+}
+
+void FieldRow::add_colour(QHBoxLayout& layout) {
+  auto* button = new QPushButton;
+  button->setAccessibleName(label_->text());
+  layout.addWidget(button, 1);
+  setFocusProxy(button);
+  connect(button, &QPushButton::clicked, this, &FieldRow::choose_colour);
+  refresh_ = [this, button] {
+    const QColor colour = shown(field_.numbers);
+    const QColor ink = colour.lightnessF() > 0.5F ? Qt::black : Qt::white;
+    button->setText(QString::fromStdString(field_.value));
+    button->setStyleSheet(QString("QPushButton { background: %1; color: %2; border: 1px solid "
+                                  "palette(mid); padding: 3px; }")
+                              .arg(colour.name(), ink.name()));
+  };
+}
+
+void FieldRow::choose_colour() {
+  QColorDialog dialog(shown(field_.numbers), this);
+  dialog.setWindowTitle(label_->text());
+  // Radiance may be brighter than a screen: the dialog chooses its hue, the strength stays.
+  double strength = 1;
+  for (const double part : field_.numbers)
+    strength = std::max(strength, part);
+  Q_EMIT drag_began();
+  const std::string before = field_.value;
+  connect(&dialog, &QColorDialog::currentColorChanged, this, [&](const QColor& c) {
+    const double parts[] = {linear_of(c.redF()) * strength, linear_of(c.greenF()) * strength,
+                            linear_of(c.blueF()) * strength};
+    want(world::toml_vector(parts));
+  });
+  if (dialog.exec() != QDialog::Accepted) want(before);
+  Q_EMIT drag_ended();
+}
+
+void FieldRow::add_seed(QHBoxLayout& layout) {
+  auto* line = new QLineEdit;
+  line->setAccessibleName(label_->text());
+  lock_ = small_button("🔒", tr("Lock the seed"));
+  lock_->setCheckable(true);
+  auto* less = small_button("−", tr("The seed before"));
+  auto* more = small_button("+", tr("The next seed"));
+  auto* dice = small_button("⚄", tr("Another seed at random"));
+  for (QWidget* widget : std::initializer_list<QWidget*>{line, less, more, dice, lock_})
+    layout.addWidget(widget, widget == line ? 1 : 0);
+  setFocusProxy(line);
+  const auto step = [this](std::uint64_t by) {
+    want(world::toml_seed(QString::fromStdString(field_.plain).toULongLong() + by));
+  };
+  connect(less, &QToolButton::clicked, this, [step] { step(~std::uint64_t{0}); });
+  connect(more, &QToolButton::clicked, this, [step] { step(1); });
+  connect(dice, &QToolButton::clicked, this, [this] {
+    if (!locked()) want(world::toml_seed(QRandomGenerator::global()->generate64() >> 32));
+  });
+  connect(lock_, &QToolButton::toggled, this, [less, more, dice, line](bool on) {
+    for (QWidget* widget : std::initializer_list<QWidget*>{less, more, dice, line})
+      widget->setEnabled(!on);
+  });
+  connect(line, &QLineEdit::editingFinished, this, [this, line] {
+    bool ok = false;
+    const std::uint64_t seed = line->text().toULongLong(&ok);
+    if (!ok) return line->setText(QString::fromStdString(field_.plain));
+    if (line->text().toStdString() != field_.plain) want(world::toml_seed(seed));
+  });
+  refresh_ = [this, line] { line->setText(QString::fromStdString(field_.plain)); };
+}
+
+bool FieldRow::locked() const {
+  return lock_ != nullptr && lock_->isChecked();
+}
+
+void FieldRow::show(const world::WorldField& field) {
+  field_ = field;
+  for (std::size_t i = 0; i < numbers_.size() && !field_.numbers.empty(); ++i)
+    numbers_[i]->set_value(field_.numbers[std::min(i, field_.numbers.size() - 1)]);
+  if (refresh_) refresh_();
+  if (cost_ != nullptr && !field_.numbers.empty()) cost_->set_value(field_.numbers.back());
+  // What the text sets is bold, and can be taken back.
+  QFont font = label_->font();
+  font.setBold(field_.is_set);
+  label_->setFont(font);
+  reset_->setEnabled(field_.is_set && !field_.required);
+}
+
+void FieldRow::show_cost(std::vector<CostPoint> points) {
+  if (column_ == nullptr) return;
+  if (cost_ == nullptr) {
+    // As wide as the slider above it.
+    auto* line = new QHBoxLayout;
+    cost_ = new CostStrip;
+    line->addWidget(cost_, 1);
+    line->addSpacing(numbers_.front()->box_width() + layout()->spacing());
+    column_->addLayout(line);
+  }
+  cost_->set_points(std::move(points));
+  if (!field_.numbers.empty()) cost_->set_value(field_.numbers.back());
+}
+
+void FieldRow::enterEvent(QEnterEvent* event) {
+  Q_EMIT attended(field_.path);
+  QWidget::enterEvent(event);
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,137 @@
+#include "editor/panels/number_edit.hpp"
+
+#include <QDoubleSpinBox>
+#include <QHBoxLayout>
+#include <QKeyEvent>
+#include <QSignalBlocker>
+#include <QSlider>
+#include <algorithm>
+#include <cmath>
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kSteps = 1000;
+
+// A box that shows as many decimals as its value needs, and leaves undo, wheel and the like to
+// the window: only the arrows and typed digits are its own.
+class NumberBox final : public QDoubleSpinBox {
+ public:
+  using QDoubleSpinBox::QDoubleSpinBox;
+
+  QString textFromValue(double value) const override {
+    return QLocale::c().toString(value, 'g', 7);
+  }
+  double valueFromText(const QString& text) const override {
+    QString number = text;
+    number.remove(suffix());
+    return QLocale::c().toDouble(number.trimmed());
+  }
+  QValidator::State validate(QString& text, int&) const override {
+    QString number = text;
+    number.remove(suffix());
+    bool ok = false;
+    const double value = QLocale::c().toDouble(number.trimmed(), &ok);
+    if (!ok) return QValidator::Intermediate;
+    return value >= minimum() && value <= maximum() ? QValidator::Acceptable
+                                                    : QValidator::Intermediate;
+  }
+
+ protected:
+  bool event(QEvent* event) override {
+    if (event->type() == QEvent::ShortcutOverride) {
+      const auto* key = static_cast<QKeyEvent*>(event);
+      if (key->matches(QKeySequence::Undo) || key->matches(QKeySequence::Redo)) {
+        event->ignore();
+        return false;
+      }
+    }
+    return QDoubleSpinBox::event(event);
+  }
+  void wheelEvent(QWheelEvent* event) override {
+    if (hasFocus()) return QDoubleSpinBox::wheelEvent(event);
+    event->ignore();  // the panel scrolls
+  }
+};
+
+// A step of the box: about a hundredth of the soft range, as one digit.
+double step_of(const NumberEdit::Range& range) {
+  if (range.integer) return 1;
+  const double span = std::max(range.soft_max - range.soft_min, 1e-9);
+  return std::pow(10.0, std::floor(std::log10(span / 50)));
+}
+
+}  // namespace
+
+NumberEdit::NumberEdit(const Range& range, const QString& name, QWidget* parent)
+    : QWidget(parent), range_(range), slider_(new QSlider(Qt::Horizontal)), box_(new NumberBox) {
+  const double span = range.soft_max - range.soft_min;
+  slider_->setRange(0, range.integer && span < kSteps ? static_cast<int>(span) : kSteps);
+  slider_->setAccessibleName(name);
+  slider_->setFocusPolicy(Qt::StrongFocus);
+  box_->setDecimals(range.integer ? 0 : 10);
+  box_->setRange(range.hard_min, range.hard_max);
+  box_->setSingleStep(step_of(range));
+  box_->setKeyboardTracking(false);
+  box_->setAccessibleName(name);
+  box_->setFixedWidth(box_->fontMetrics().horizontalAdvance("0000000000000"));
+  if (!range.unit.isEmpty()) box_->setSuffix(" " + range.unit);
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(slider_, 1);
+  layout->addWidget(box_);
+  setFocusProxy(slider_);
+  connect(slider_, &QSlider::valueChanged, this, &NumberEdit::slide);
+  connect(slider_, &QSlider::sliderPressed, this, &NumberEdit::drag_began);
+  connect(slider_, &QSlider::sliderReleased, this, &NumberEdit::drag_ended);
+  connect(box_, &QDoubleSpinBox::valueChanged, this, &NumberEdit::type);
+}
+
+double NumberEdit::value() const {
+  return box_->value();
+}
+
+int NumberEdit::box_width() const {
+  return box_->width();
+}
+
+void NumberEdit::set_value(double value) {
+  const QSignalBlocker quiet_slider(slider_), quiet_box(box_);
+  slider_->setValue(position_of(value));
+  box_->setValue(value);
+}
+
+double NumberEdit::value_at(int position) const {
+  const double share = static_cast<double>(position) / std::max(slider_->maximum(), 1);
+  double value = range_.soft_min + share * (range_.soft_max - range_.soft_min);
+  if (range_.logarithmic)
+    value = range_.soft_min * std::pow(range_.soft_max / range_.soft_min, share);
+  if (range_.integer) return std::round(value);
+  // Three digits of a thousand steps are all that a slider means.
+  const double unit = std::pow(10.0, std::floor(std::log10(std::max(std::abs(value), 1e-9))) - 2);
+  return std::clamp(std::round(value / unit) * unit, range_.soft_min, range_.soft_max);
+}
+
+int NumberEdit::position_of(double value) const {
+  const double v = std::clamp(value, range_.soft_min, range_.soft_max);
+  const double span = range_.soft_max - range_.soft_min;
+  double share = span > 0 ? (v - range_.soft_min) / span : 0;
+  if (range_.logarithmic)
+    share = std::log(v / range_.soft_min) / std::log(range_.soft_max / range_.soft_min);
+  return static_cast<int>(std::lround(share * slider_->maximum()));
+}
+
+void NumberEdit::slide(int position) {
+  const double value = value_at(position);
+  const QSignalBlocker quiet(box_);
+  box_->setValue(value);
+  Q_EMIT wanted(value);
+}
+
+void NumberEdit::type(double value) {
+  const QSignalBlocker quiet(slider_);
+  slider_->setValue(position_of(value));
+  Q_EMIT wanted(value);
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,203 @@
+#include "editor/panels/properties_panel.hpp"
+
+#include <QLabel>
+#include <QLineEdit>
+#include <QScrollArea>
+#include <QSplitter>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+#include <functional>
+
+#include "editor/panels/field_row.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kPathRole = Qt::UserRole;
+
+using Visit = std::function<void(const world::WorldSection&)>;
+void visit(const std::vector<world::WorldSection>& sections, const Visit& each) {
+  for (const world::WorldSection& section : sections) {
+    each(section);
+    visit(section.parts, each);
+  }
+}
+
+bool same_fields(const world::WorldSection& a, const world::WorldSection& b) {
+  const auto same_field = [](const world::WorldField& x, const world::WorldField& y) {
+    return x.path == y.path && x.kind == y.kind && x.choices == y.choices;
+  };
+  return a.path == b.path && a.title == b.title &&
+         std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), b.fields.end(),
+                    same_field) &&
+         std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), same_fields);
+}
+
+QString path_text(const world::TextPath& path) {
+  return QString::fromStdString(path.text());
+}
+
+}  // namespace
+
+PropertiesPanel::PropertiesPanel(QWidget* parent)
+    : QWidget(parent), search_(new QLineEdit), tree_(new QTreeWidget), scroll_(new QScrollArea) {
+  search_->setPlaceholderText(tr("Search in all fields"));
+  search_->setClearButtonEnabled(true);
+  search_->setAccessibleName(tr("Search in all fields"));
+  tree_->setHeaderHidden(true);
+  tree_->setAccessibleName(tr("Sections of the world"));
+  tree_->setContextMenuPolicy(Qt::CustomContextMenu);
+  scroll_->setWidgetResizable(true);
+  scroll_->setFrameShape(QFrame::NoFrame);
+  auto* splitter = new QSplitter(Qt::Vertical);
+  splitter->addWidget(tree_);
+  splitter->addWidget(scroll_);
+  splitter->setStretchFactor(0, 2);
+  splitter->setStretchFactor(1, 5);
+  splitter->setChildrenCollapsible(false);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(4, 4, 4, 4);
+  layout->addWidget(search_);
+  layout->addWidget(splitter, 1);
+  connect(search_, &QLineEdit::textChanged, this, &PropertiesPanel::search);
+  connect(tree_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
+    if (item == nullptr) return;
+    const auto path = world::parse_text_path(item->data(0, kPathRole).toString().toStdString());
+    if (path) chosen_ = *path;
+    search_->clear();
+    show_section();
+    Q_EMIT section_chosen(chosen_);
+  });
+  connect(tree_, &QTreeWidget::customContextMenuRequested, this, [this](const QPoint& at) {
+    if (tree_->itemAt(at) != nullptr)
+      Q_EMIT section_menu(chosen_, tree_->viewport()->mapToGlobal(at));
+  });
+}
+
+void PropertiesPanel::show(const std::vector<world::WorldSection>& sections) {
+  const bool same = same_shape(sections);
+  sections_ = sections;
+  if (!same) return list(sections);
+  mark(sections);
+  for (FieldRow* row : rows_) {
+    if (const world::WorldField* field = find_field(sections_, row->field().path))
+      row->show(*field);
+  }
+}
+
+bool PropertiesPanel::same_shape(const std::vector<world::WorldSection>& sections) const {
+  return std::equal(sections.begin(), sections.end(), sections_.begin(), sections_.end(),
+                    same_fields);
+}
+
+void PropertiesPanel::list(const std::vector<world::WorldSection>& sections) {
+  const world::TextPath before = chosen_;
+  {
+    const QSignalBlocker quiet(tree_);
+    tree_->clear();
+    for (const world::WorldSection& section : sections)
+      add_item(section, nullptr);
+  }
+  mark(sections);
+  tree_->setCurrentItem(nullptr);
+  go_to(before);
+  if (tree_->currentItem() == nullptr && tree_->topLevelItemCount() > 0)
+    tree_->setCurrentItem(tree_->topLevelItem(0));
+}
+
+void PropertiesPanel::add_item(const world::WorldSection& section, QTreeWidgetItem* parent) {
+  auto* item = parent != nullptr ? new QTreeWidgetItem(parent) : new QTreeWidgetItem(tree_);
+  item->setText(0, QString::fromStdString(section.title));
+  item->setData(0, kPathRole, path_text(section.path));
+  for (const world::WorldSection& part : section.parts)
+    add_item(part, item);
+}
+
+// Sections that the text has are bold.
+void PropertiesPanel::mark(const std::vector<world::WorldSection>& sections) {
+  std::vector<const world::WorldSection*> all;
+  visit(sections, [&](const world::WorldSection& section) { all.push_back(&section); });
+  std::size_t next = 0;
+  for (QTreeWidgetItemIterator it(tree_); *it != nullptr && next < all.size(); ++it) {
+    QFont font = (*it)->font(0);
+    font.setBold(all[next++]->is_set);
+    (*it)->setFont(0, font);
+  }
+}
+
+void PropertiesPanel::go_to(const world::TextPath& section) {
+  for (QTreeWidgetItemIterator it(tree_); *it != nullptr; ++it) {
+    if ((*it)->data(0, kPathRole).toString() != path_text(section)) continue;
+    tree_->setCurrentItem(*it);
+    tree_->scrollToItem(*it);
+    return;
+  }
+}
+
+const world::WorldSection* PropertiesPanel::chosen() const {
+  const world::WorldSection* found = nullptr;
+  visit(sections_, [&](const world::WorldSection& section) {
+    if (section.path == chosen_) found = &section;
+  });
+  return found;
+}
+
+void PropertiesPanel::add_row(const world::WorldField& field) {
+  auto* row = new FieldRow(field);
+  lines_->addWidget(row);
+  rows_.push_back(row);
+  connect(row, &FieldRow::wanted, this, &PropertiesPanel::wanted);
+  connect(row, &FieldRow::reset_wanted, this, &PropertiesPanel::reset_wanted);
+  connect(row, &FieldRow::drag_began, this, &PropertiesPanel::drag_began);
+  connect(row, &FieldRow::drag_ended, this, &PropertiesPanel::drag_ended);
+  connect(row, &FieldRow::attended, this, &PropertiesPanel::attended);
+}
+
+void PropertiesPanel::show_section() {
+  search(search_->text());
+}
+
+// The fields of the chosen section, or all that the text is found in.
+void PropertiesPanel::search(const QString& text) {
+  rows_.clear();
+  form_ = new QWidget;
+  lines_ = new QVBoxLayout(form_);
+  lines_->setSpacing(1);
+  if (text.isEmpty()) {
+    if (const world::WorldSection* section = chosen()) {
+      for (const world::WorldField& field : section->fields)
+        add_row(field);
+    }
+  } else {
+    visit(sections_, [&](const world::WorldSection& section) {
+      bool headed = false;
+      for (const world::WorldField& field : section.fields) {
+        const QString about = QString::fromStdString(section.title + " " + field.label + " " +
+                                                     field.doc + " " + field.path.text());
+        if (!about.contains(text, Qt::CaseInsensitive)) continue;
+        if (!std::exchange(headed, true))
+          lines_->addWidget(new QLabel("<b>" + QString::fromStdString(section.title) + "</b>"));
+        add_row(field);
+      }
+    });
+    if (rows_.empty()) lines_->addWidget(new QLabel(tr("No field is called so.")));
+  }
+  lines_->addStretch(1);
+  scroll_->setWidget(form_);  // the one before is deleted
+}
+
+std::vector<world::WorldField> PropertiesPanel::shown_fields() const {
+  std::vector<world::WorldField> fields;
+  for (const FieldRow* row : rows_)
+    fields.push_back(row->field());
+  return fields;
+}
+
+FieldRow* PropertiesPanel::row(const world::TextPath& path) const {
+  for (FieldRow* row : rows_) {
+    if (row->field().path == path) return row;
+  }
+  return nullptr;
+}
+
+}  // namespace psygen::editor

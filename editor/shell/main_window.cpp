@@ -1,0 +1,261 @@
+#include "editor/shell/main_window.hpp"
+
+#include <QCloseEvent>
+#include <QComboBox>
+#include <QDateTime>
+#include <QDockWidget>
+#include <QDragEnterEvent>
+#include <QLabel>
+#include <QMenu>
+#include <QMenuBar>
+#include <QMimeData>
+#include <QPlainTextEdit>
+#include <QSettings>
+#include <QStatusBar>
+#include <QUndoView>
+#include <QVBoxLayout>
+
+#include "editor/cost/cost_worker.hpp"
+#include "editor/panels/cache_map.hpp"
+#include "editor/panels/field_row.hpp"
+#include "editor/panels/properties_panel.hpp"
+#include "editor/panels/statistics_panel.hpp"
+#include "editor/shell/command_palette.hpp"
+#include "engine/core/log.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kFiguresMs = 250;
+constexpr int kCostsMs = 300;  // after the last change
+constexpr double kSmoothing = 0.1;
+
+QDockWidget* add_dock(QMainWindow& window, const QString& name, const QString& title,
+                      QWidget* content, Qt::DockWidgetArea area) {
+  auto* dock = new QDockWidget(title, &window);
+  dock->setObjectName(name);
+  dock->setWidget(content);
+  window.addDockWidget(area, dock);
+  return dock;
+}
+
+QPlainTextEdit* reading_pane(const QString& name) {
+  auto* pane = new QPlainTextEdit;
+  pane->setReadOnly(true);
+  pane->setAccessibleName(name);
+  pane->setFrameShape(QFrame::NoFrame);
+  return pane;
+}
+
+}  // namespace
+
+MainWindow::MainWindow(MainWindowOptions options)
+    : options_(std::move(options)),
+      document_(options_.document),
+      view_(new WorldView(options_.session)) {
+  setObjectName("main");
+  setAcceptDrops(true);
+  setDockNestingEnabled(true);
+  QWidget* container = QWidget::createWindowContainer(view_, this);
+  container->setFocusPolicy(Qt::StrongFocus);
+  container->setAccessibleName(tr("View of the world"));
+  container->setMinimumSize(320, 240);
+  setCentralWidget(container);
+  view_->set_paused(options_.safe);
+  costs_ = new CostWorker(options_.document.register_models, this);
+  palette_ = new CommandPalette(this);
+  add_docks();
+  add_menus();
+  add_toolbar();
+  figures_ = new QLabel;
+  statusBar()->addPermanentWidget(figures_);
+  connect_document();
+  connect_view();
+  resize(1280, 800);
+  first_layout_ = saveState();
+  restore_layout();
+  fit_title();
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::add_docks() {
+  properties_ = new PropertiesPanel;
+  statistics_ = new StatisticsPanel;
+  map_ = new CacheMap;
+  selection_text_ = reading_pane(tr("What is selected"));
+  selection_text_->setPlaceholderText(tr("Click on a tree, a rock or the ground."));
+  log_ = reading_pane(tr("Messages"));
+  auto* history = new QUndoView(&document_.undo_stack());
+  history->setEmptyLabel(tr("As opened"));
+  history->setAccessibleName(tr("History of edits"));
+  auto* colours = new QComboBox;
+  colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost")});
+  colours->setAccessibleName(tr("What colours of the map mean"));
+  connect(colours, &QComboBox::activated, map_,
+          [this](int index) { map_->set_colour(static_cast<MapColour>(index)); });
+  auto* map_box = new QWidget;
+  auto* map_layout = new QVBoxLayout(map_box);
+  map_layout->setContentsMargins(4, 4, 4, 4);
+  map_layout->addWidget(colours);
+  map_layout->addWidget(map_, 1);
+  add_dock(*this, "properties", tr("Properties"), properties_, Qt::LeftDockWidgetArea);
+  auto* selection =
+      add_dock(*this, "selection", tr("Selection"), selection_text_, Qt::RightDockWidgetArea);
+  auto* steps = add_dock(*this, "history", tr("History"), history, Qt::RightDockWidgetArea);
+  add_dock(*this, "map", tr("Cache map"), map_box, Qt::RightDockWidgetArea);
+  auto* figures =
+      add_dock(*this, "statistics", tr("Statistics"), statistics_, Qt::BottomDockWidgetArea);
+  auto* messages = add_dock(*this, "messages", tr("Messages"), log_, Qt::BottomDockWidgetArea);
+  tabifyDockWidget(selection, steps);
+  tabifyDockWidget(figures, messages);
+  selection->raise();
+  figures->raise();
+  resizeDocks({findChild<QDockWidget*>("properties")}, {380}, Qt::Horizontal);
+  resizeDocks({figures}, {150}, Qt::Vertical);
+}
+
+void MainWindow::connect_document() {
+  connect(&document_, &Document::changed, this, &MainWindow::document_changed);
+  connect(&document_, &Document::modified_changed, this, &MainWindow::fit_title);
+  connect(&document_, &Document::file_changed, this, &MainWindow::note_file);
+  connect(&document_, &Document::disk_changed, this, &MainWindow::disk_changed);
+  connect(&document_, &Document::autosave_failed, this, &MainWindow::say);
+  connect(properties_, &PropertiesPanel::wanted, this,
+          [this](const world::TextPath& path, const std::string& toml) {
+            if (tell(document_.set_value(path, toml))) return;
+            properties_->show(document_.sections());  // back to what is
+          });
+  connect(properties_, &PropertiesPanel::reset_wanted, this,
+          [this](const world::TextPath& path) { tell(document_.reset_value(path)); });
+  connect(properties_, &PropertiesPanel::drag_began, this, [this] { document_.begin_drag(); });
+  connect(properties_, &PropertiesPanel::drag_ended, this, [this] { document_.end_drag(); });
+  connect(properties_, &PropertiesPanel::section_chosen, this, &MainWindow::ask_costs);
+  connect(properties_, &PropertiesPanel::section_menu, this, &MainWindow::section_menu);
+  connect(costs_, &CostWorker::curve, this,
+          [this](const std::string& path, const std::vector<CostPoint>& points) {
+            const auto at = world::parse_text_path(path);
+            FieldRow* row = at ? properties_->row(*at) : nullptr;
+            if (row != nullptr) row->show_cost(points);
+          });
+  connect(costs_, &CostWorker::world_cost, this, [this](const BlockCost& cost) {
+    const world::World& world = document_.world();
+    statistics_->show_world_cost(
+        cost, static_cast<double>(world.blocks_x) * static_cast<double>(world.blocks_z));
+  });
+  costs_timer_.setSingleShot(true);
+  connect(&costs_timer_, &QTimer::timeout, this, &MainWindow::ask_costs);
+}
+
+void MainWindow::connect_view() {
+  connect(view_, &WorldView::opened, this, [this](const QString& error) {
+    if (!error.isEmpty()) return say(error);
+    statistics_->forget();
+    view_->focus();
+    ask_costs();
+  });
+  connect(view_, &WorldView::refused, this, &MainWindow::say);
+  connect(view_, &WorldView::settled, this, [this](double ms) {
+    statusBar()->showMessage(tr("Everything is shown %1 ms after the change.").arg(ms, 0, 'f', 0),
+                             4000);
+  });
+  connect(view_, &WorldView::drawn, this, [this](double ms) {
+    frame_ms_ += (ms - frame_ms_) * (frame_ms_ == 0 ? 1 : kSmoothing);
+    statistics_->note(view_->session()->scene().state());
+  });
+  connect(view_, &WorldView::selected, this, [this] {
+    const auto& selection = view_->selection();
+    if (!selection) return selection_text_->clear();
+    const scene::State& state = view_->session()->scene().state();
+    selection_text_->setPlainText(describe(*selection, state));
+    const std::string name(state.facts.registry[selection->model].name());
+    for (const world::WorldSection& section : document_.sections()) {
+      if (section.title == name || (section.kind == world::SectionKind::kTerrain &&
+                                    selection->kind == query::HitKind::kGround))
+        return properties_->go_to(section.path);
+    }
+  });
+  connect(&figures_timer_, &QTimer::timeout, this, &MainWindow::show_figures);
+  figures_timer_.start(kFiguresMs);
+}
+
+void MainWindow::document_changed(Changes what) {
+  properties_->show(document_.sections());
+  view_->show_world(document_.text(),
+                    document_.file().empty() ? "new.toml" : document_.file().string(),
+                    what.testFlag(Change::kFile));
+  costs_timer_.start(kCostsMs);
+}
+
+// Of the fields that are shown.
+void MainWindow::ask_costs() {
+  std::shared_ptr<const synthesis::CostModel> learnt;
+  if (view_->session() != nullptr)
+    learnt =
+        std::make_shared<synthesis::CostModel>(view_->session()->scene().state().meshes.costs());
+  costs_->ask(document_.text(), document_.file().string(), properties_->shown_fields(),
+              std::move(learnt));
+}
+
+void MainWindow::show_figures() {
+  if (view_->session() == nullptr) return figures_->setText(tr("No picture"));
+  const scene::State& state = view_->session()->scene().state();
+  figures_->setText(tr("%1 ms  ·  %2 triangles  ·  error %3 px  ·  %4 waiting  ·  %5 m/s")
+                        .arg(frame_ms_, 0, 'f', 1)
+                        .arg(QLocale(QLocale::English)
+                                 .toString(static_cast<qulonglong>(state.counters.frame.triangles)))
+                        .arg(state.quality.error_pixels, 0, 'f', 1)
+                        .arg(state.meshes.outstanding())
+                        .arg(view_->camera().speed_m_s(), 0, 'f', 0));
+  if (statistics_->isVisible()) statistics_->show(state);
+  if (map_->isVisible()) map_->show(state);
+}
+
+bool MainWindow::tell(const core::Result<void>& result) {
+  if (!result) say(QString::fromStdString(result.error().message));
+  return result.has_value();
+}
+
+void MainWindow::say(const QString& sentence) {
+  statusBar()->showMessage(sentence, 10'000);
+  log_->appendPlainText(QDateTime::currentDateTime().toString("HH:mm:ss  ") + sentence);
+}
+
+void MainWindow::fit_title() {
+  const QString name = document_.file().empty()
+                           ? tr("new world")
+                           : QString::fromStdString(document_.file().filename().string());
+  setWindowTitle(tr("%1[*] – psygen editor").arg(name));
+  setWindowModified(document_.is_modified());
+}
+
+void MainWindow::restore_layout() {
+  const QSettings settings;
+  restoreGeometry(settings.value("geometry").toByteArray());
+  restoreState(settings.value("layout").toByteArray());
+}
+
+void MainWindow::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::ActivationChange && isActiveWindow()) document_.check_disk();
+  QMainWindow::changeEvent(event);
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  const auto urls = event->mimeData()->urls();
+  if (urls.size() == 1 && urls[0].isLocalFile()) event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  if (may_discard()) open_file(event->mimeData()->urls()[0].toLocalFile().toStdString());
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  if (!may_discard()) return event->ignore();
+  QSettings settings;
+  settings.setValue("geometry", saveGeometry());
+  settings.setValue("layout", saveState());
+  event->accept();
+}
+
+}  // namespace psygen::editor

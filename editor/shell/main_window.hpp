@@ -1,0 +1,100 @@
+// The editor's window: the view of the world in the middle, panels around it, menus in the usual
+// order. It connects document, view and panels; what each does is its own. Main thread.
+#pragma once
+
+#include <QMainWindow>
+#include <QTimer>
+
+#include "editor/document/document.hpp"
+#include "editor/view/world_view.hpp"
+
+class QComboBox;
+class QLabel;
+class QPlainTextEdit;
+
+namespace psygen::editor {
+
+class CacheMap;
+class CommandPalette;
+class CostWorker;
+class PropertiesPanel;
+class StatisticsPanel;
+
+struct MainWindowOptions {
+  app::SessionOptions session;
+  DocumentOptions document;
+  bool safe = false;  // opens with synthesis paused
+};
+
+class MainWindow final : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  explicit MainWindow(MainWindowOptions options);
+  ~MainWindow() override;
+
+  // Opens a world file, or says why not.
+  bool open_file(const std::filesystem::path& file);
+  Document& document() { return document_; }
+  WorldView& view() { return *view_; }
+
+ protected:
+  void closeEvent(QCloseEvent* event) override;
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void add_docks();
+  void add_menus();
+  void add_file_menu();
+  void add_edit_menu();
+  void add_view_menu();
+  void add_world_menu();
+  void add_help_menu();
+  void add_toolbar();
+  void add_species();
+  void connect_document();
+  void connect_view();
+  void restore_layout();
+  void offer_recovery();
+
+  // Says what went wrong in the status bar, and keeps it in the log. True if nothing did.
+  bool tell(const core::Result<void>& result);
+  void say(const QString& sentence);
+  bool may_discard();
+  void choose_file();
+  bool save();
+  bool save_as();
+  void show_diff();
+  void fill_recent_files();
+  void note_file();
+
+  void document_changed(Changes what);
+  void disk_changed(DiskState state, bool conflict);
+  void fit_title();
+  void ask_costs();
+  void show_figures();
+  void section_menu(const world::TextPath& path, const QPoint& at);
+  void set_theme(const QString& name);
+  void set_scale(int percent);
+
+  MainWindowOptions options_;
+  Document document_;
+  WorldView* view_;
+  PropertiesPanel* properties_ = nullptr;
+  StatisticsPanel* statistics_ = nullptr;
+  CacheMap* map_ = nullptr;
+  QPlainTextEdit* selection_text_ = nullptr;
+  QPlainTextEdit* log_ = nullptr;
+  CommandPalette* palette_ = nullptr;
+  CostWorker* costs_ = nullptr;
+  QLabel* figures_ = nullptr;
+  QMenu* recent_menu_ = nullptr;
+  QMenu* panels_menu_ = nullptr;
+  QTimer figures_timer_, costs_timer_;
+  QByteArray first_layout_;
+  double frame_ms_ = 0;  // smoothed
+};
+
+}  // namespace psygen::editor

@@ -1,0 +1,293 @@
+// Menus, toolbar and commands of the window.
+#include <QActionGroup>
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QDockWidget>
+#include <QFileDialog>
+#include <QInputDialog>
+#include <QLabel>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QSettings>
+#include <QSlider>
+#include <QToolBar>
+#include <array>
+#include <filesystem>
+#include <random>
+
+#include "editor/panels/properties_panel.hpp"
+#include "editor/shell/command_line.hpp"
+#include "editor/shell/command_palette.hpp"
+#include "editor/shell/main_window.hpp"
+#include "editor/shell/theme.hpp"
+#include "engine/core/data_file.hpp"
+#include "engine/render/preset.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/world/files/text_file.hpp"
+#include "engine/world/files/text_snippet.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr std::array kScales{80, 100, 125, 150, 200};
+
+QString library_folder() {
+  for (const std::filesystem::path& folder : core::data_folders()) {
+    std::error_code error;
+    if (std::filesystem::is_directory(folder / "library", error))
+      return QString::fromStdString((folder / "library").string());
+  }
+  return {};
+}
+
+std::mt19937_64& dice() {
+  static std::mt19937_64 random{std::random_device{}()};
+  return random;
+}
+
+}  // namespace
+
+void MainWindow::add_menus() {
+  add_file_menu();
+  add_edit_menu();
+  add_view_menu();
+  add_world_menu();
+  add_help_menu();
+}
+
+void MainWindow::add_file_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&File"));
+  menu->addAction(tr("&New world"), QKeySequence(QKeySequence::New), this, [this] {
+    if (may_discard()) tell(document_.make_new());
+  });
+  menu->addAction(tr("&Open …"), QKeySequence::Open, this, &MainWindow::choose_file);
+  recent_menu_ = menu->addMenu(tr("Open &recent"));
+  fill_recent_files();
+  menu->addSeparator();
+  menu->addAction(tr("&Save"), QKeySequence::Save, this, &MainWindow::save);
+  menu->addAction(tr("Save &as …"), QKeySequence::SaveAs, this, &MainWindow::save_as);
+  menu->addAction(tr("Show &changes …"), tr("Ctrl+D"), this, &MainWindow::show_diff);
+  menu->addAction(tr("Re&vert to the saved file"), this, [this] { tell(document_.revert()); });
+  menu->addSeparator();
+  menu->addAction(tr("Save &picture …"), tr("F12"), this, [this] {
+    if (view_->session() == nullptr) return say(tr("There is no picture."));
+    const QString file = QFileDialog::getSaveFileName(this, tr("Save the picture as"),
+                                                      "picture.png", tr("Pictures (*.png)"));
+    if (!file.isEmpty() && tell(view_->session()->save_picture(file.toStdString())))
+      say(tr("Saved %1.").arg(file));
+  });
+  menu->addAction(tr("Copy command &line"), this, [this] {
+    if (view_->session() == nullptr) return say(tr("There is no picture."));
+    const QString line =
+        picture_command(*view_->session(), document_.file(), view_->camera().pose());
+    QApplication::clipboard()->setText(line);
+    say(tr("Copied: %1").arg(line));
+  });
+  menu->addSeparator();
+  menu->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
+}
+
+void MainWindow::add_edit_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Edit"));
+  QAction* undo = document_.undo_stack().createUndoAction(this, tr("&Undo"));
+  undo->setShortcut(QKeySequence::Undo);
+  QAction* redo = document_.undo_stack().createRedoAction(this, tr("&Redo"));
+  redo->setShortcut(QKeySequence::Redo);
+  menu->addActions({undo, redo});
+  menu->addSeparator();
+  menu->addAction(tr("Randomise this section"), tr("Ctrl+R"), this,
+                  [this] { tell(document_.randomise(properties_->section(), dice())); });
+  menu->addAction(tr("Copy this section"), tr("Ctrl+Shift+C"), this, [this] {
+    const auto text = document_.copy(properties_->section());
+    if (!text) return say(QString::fromStdString(text.error().message));
+    QApplication::clipboard()->setText(QString::fromStdString(*text));
+  });
+  menu->addAction(tr("Paste into this section"), tr("Ctrl+Shift+V"), this, [this] {
+    tell(document_.paste(properties_->section(), QApplication::clipboard()->text().toStdString()));
+  });
+  menu->addSeparator();
+  menu->addAction(tr("Find a command or field …"), tr("Ctrl+Shift+P"), this, [this] {
+    std::vector<CommandPalette::Command> commands;
+    for (QAction* action : findChildren<QAction*>()) {
+      if (action->text().isEmpty() || action->menu() != nullptr || !action->isEnabled()) continue;
+      QString name = action->text();
+      commands.push_back(
+          {name.remove('&'), action->shortcut().toString(), [action] { action->trigger(); }});
+    }
+    const auto add = [&](auto& self, const std::vector<world::WorldSection>& sections) -> void {
+      for (const world::WorldSection& section : sections) {
+        for (const world::WorldField& field : section.fields)
+          commands.push_back({QString::fromStdString(section.title + ": " + field.label),
+                              QString::fromStdString(field.doc),
+                              [this, path = section.path] { properties_->go_to(path); }});
+        self(self, section.parts);
+      }
+    };
+    add(add, document_.sections());
+    palette_->ask(std::move(commands));
+  });
+}
+
+void MainWindow::add_view_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&View"));
+  menu->addAction(tr("&Focus the selection"), tr("Ctrl+F"), this, [this] { view_->focus(); });
+  menu->addAction(tr("Select &nothing"), tr("Ctrl+Shift+A"), this,
+                  [this] { view_->select(std::nullopt); });
+  menu->addSeparator();
+  auto* views = new QActionGroup(this);
+  const std::pair<QString, render::View> kinds[] = {
+      {tr("&Picture"), render::View::kNormal},      {tr("&Levels"), render::View::kLevels},
+      {tr("PLP l&ayers"), render::View::kLayers},   {tr("&Bounds"), render::View::kBounds},
+      {tr("&Wireframe"), render::View::kWireframe}, {tr("&Missing"), render::View::kMissing},
+      {tr("&Cache"), render::View::kCache}};
+  int key = 1;
+  for (const auto& [name, kind] : kinds) {
+    QAction* action =
+        menu->addAction(name, QString("Ctrl+%1").arg(key++), this, [this, kind = kind] {
+          if (view_->session() != nullptr) view_->session()->scene().state().input.view = kind;
+        });
+    action->setCheckable(true);
+    action->setChecked(kind == render::View::kNormal);
+    views->addAction(action);
+  }
+  menu->addSeparator();
+  panels_menu_ = menu->addMenu(tr("Pan&els"));
+  for (QDockWidget* dock : findChildren<QDockWidget*>())
+    panels_menu_->addAction(dock->toggleViewAction());
+  menu->addAction(tr("&Reset the layout"), this, [this] { restoreState(first_layout_); });
+  QMenu* themes = menu->addMenu(tr("&Theme"));
+  themes->addAction(tr("&Dark"), this, [this] { set_theme("dark"); });
+  themes->addAction(tr("&Light"), this, [this] { set_theme("light"); });
+  QMenu* scales = menu->addMenu(tr("&Size of text"));
+  for (const int percent : kScales)
+    scales->addAction(QString("%1 %").arg(percent), this, [this, percent] { set_scale(percent); });
+}
+
+void MainWindow::add_world_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&World"));
+  menu->addAction(tr("Add a &species"), this, [this] { add_species(); });
+  menu->addAction(tr("Add a s&catter"), this, [this] {
+    tell(document_.append_table({"scatter"}, "model = \"rock\"\ncount = 10\n"));
+  });
+  menu->addAction(tr("&Duplicate this section"), this,
+                  [this] { tell(document_.duplicate_table(properties_->section())); });
+  menu->addAction(tr("&Remove this section"), this,
+                  [this] { tell(document_.remove_table(properties_->section())); });
+  menu->addSeparator();
+  menu->addAction(tr("Save section as &preset …"), this, [this] {
+    const QString file = QFileDialog::getSaveFileName(this, tr("Save a preset"), "preset.toml",
+                                                      tr("Presets (*.toml)"));
+    if (!file.isEmpty()) tell(document_.save_preset(properties_->section(), file.toStdString()));
+  });
+  menu->addAction(tr("&Apply a preset to this section …"), this, [this] {
+    const QString file =
+        QFileDialog::getOpenFileName(this, tr("Apply a preset"), {}, tr("Presets (*.toml)"));
+    if (!file.isEmpty()) tell(document_.apply_preset(properties_->section(), file.toStdString()));
+  });
+  menu->addSeparator();
+  QAction* pause = menu->addAction(tr("Pause &synthesis"), tr("Ctrl+P"), this,
+                                   [this](bool on) { view_->set_paused(on); });
+  pause->setCheckable(true);
+  pause->setChecked(options_.safe);
+}
+
+void MainWindow::section_menu(const world::TextPath& path, const QPoint& at) {
+  QMenu menu;
+  menu.addAction(tr("Randomise"), this, [&] { tell(document_.randomise(path, dice())); });
+  menu.addAction(tr("Reset"), this, [&] { tell(document_.remove_table(path)); });
+  if (!path.empty() && path.back().is_index) {
+    menu.addAction(tr("Duplicate"), this, [&] { tell(document_.duplicate_table(path)); });
+    menu.addAction(tr("Remove"), this, [&] { tell(document_.remove_table(path)); });
+  }
+  menu.exec(at);
+}
+
+void MainWindow::add_help_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Help"));
+  menu->addAction(tr("&Keys and mouse"), tr("F1"), this, [this] {
+    QMessageBox::information(
+        this, tr("Keys and mouse"),
+        tr("<table><tr><td>W A S D, E, Q &nbsp;<td>fly; Shift faster, wheel: the speed"
+           "<tr><td>right button<td>look around<tr><td>click<td>select"
+           "<tr><td>middle button<td>turn around the selection"
+           "<tr><td>wheel<td>towards the selection<tr><td>Ctrl+F<td>look at the selection"
+           "<tr><td>Ctrl+Shift+P<td>find any command or field</table>"));
+  });
+  menu->addAction(tr("&About"), this, [this] {
+    const QString device =
+        view_->session() == nullptr
+            ? tr("none")
+            : QString::fromStdString(view_->session()->renderer().device().name + ", " +
+                                     view_->session()->renderer().device().driver);
+    QMessageBox::about(this, tr("About the psygen editor"),
+                       tr("<b>psygen editor %1</b><br>Qt %2<br>Device: %3")
+                           .arg(PSYGEN_VERSION, qVersion(), device));
+  });
+}
+
+void MainWindow::add_toolbar() {
+  QToolBar* bar = addToolBar(tr("Picture"));
+  bar->setObjectName("picture");
+  bar->addWidget(new QLabel(tr(" Quality ")));
+  auto* presets = new QComboBox;
+  presets->setAccessibleName(tr("Quality of the picture"));
+  presets->addItems({"low", "medium", "high", "ultra"});
+  bar->addWidget(presets);
+  connect(presets, &QComboBox::textActivated, this, [this](const QString& name) {
+    const auto preset = render::preset_from(name.toStdString());
+    if (view_->session() != nullptr && preset) tell(view_->session()->set_preset(*preset));
+  });
+  connect(view_, &WorldView::opened, this, [this, presets](const QString& error) {
+    if (error.isEmpty())
+      presets->setCurrentText(
+          QString::fromUtf8(render::to_string(view_->session()->renderer().preset()).data()));
+  });
+  bar->addSeparator();
+  bar->addWidget(new QLabel(tr(" Hour ")));
+  auto* hour = new QSlider(Qt::Horizontal);
+  hour->setAccessibleName(tr("Hour of the day"));
+  hour->setRange(0, 24 * 60);
+  hour->setMaximumWidth(240);
+  bar->addWidget(hour);
+  connect(hour, &QSlider::valueChanged, this, [this](int minutes) {
+    const world::Sky& sky = document_.world().sky;
+    if (view_->session() == nullptr) return;
+    double hours = minutes / 60.0 - sky.start_hour;
+    if (hours < 0) hours += 24;
+    view_->session()->set_now(hours / 24 * sky.day_length_s);
+  });
+  const auto fit_hour = [this, hour] {
+    const bool has_day = document_.world().sky.day_length_s > 0;
+    hour->setEnabled(has_day);
+    hour->setToolTip(has_day ? tr("Hour of the day")
+                             : tr("The sun of this world stands still: Sky, day length, is 0"));
+  };
+  connect(&document_, &Document::changed, this, fit_hour);
+  fit_hour();
+}
+
+void MainWindow::add_species() {
+  const QString file = QFileDialog::getOpenFileName(this, tr("Add a species"), library_folder(),
+                                                    tr("Presets (*.toml)"));
+  if (file.isEmpty()) return;
+  const auto snippet =
+      world::read_text_file(file.toStdString()).and_then([&](const std::string& text) {
+        return world::read_preset(text, file.toStdString());
+      });
+  if (!snippet) return say(QString::fromStdString(snippet.error().message));
+  tell(document_.append_table({"species"}, *snippet));
+}
+
+void MainWindow::set_theme(const QString& name) {
+  apply_theme(name);
+  QSettings().setValue("theme", name);
+}
+
+void MainWindow::set_scale(int percent) {
+  apply_scale(percent);
+  QSettings().setValue("scale", percent);
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,34 @@
+// What is under a pixel of the view: an exact ray against ground and models, whatever is drawn.
+// Pure but for the cache of the queries. Main thread.
+#pragma once
+
+#include <QPointF>
+#include <optional>
+
+#include "engine/core/camera.hpp"
+#include "engine/core/surface_provider.hpp"
+#include "engine/query/world.hpp"
+
+namespace psygen::editor {
+
+// What a click selected.
+struct Selection {
+  query::HitKind kind = query::HitKind::kNothing;  // kGround or kModel
+  core::BlockCoord block;
+  std::uint32_t index = 0;  // of the model within the block
+  models::ModelIndex model = 0;
+  models::Parameters parameters;  // of the model, or of the ground of its block
+  core::WorldPosition at;         // of the model's foot, or of the ground that was hit
+  core::Bounds box;               // of a model, from its foot
+  double distance_m = 0;
+};
+
+// The direction of a pixel (device pixels from the upper left corner), unit length.
+glm::dvec3 direction_of(QPointF pixel, core::Extent size, const core::CameraPose& pose,
+                        const core::Projection& projection);
+
+// The first thing from the camera in a direction, within 20 km; nothing: the sky.
+std::optional<Selection> pick(const world::World& world, const models::Registry& registry,
+                              const core::CameraPose& pose, const glm::dvec3& direction);
+
+}  // namespace psygen::editor

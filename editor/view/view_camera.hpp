@@ -1,0 +1,42 @@
+// The camera of the view: flies with keys and the right button, and turns around a point with the
+// middle one. Knows no window: input is a value. Main thread.
+#pragma once
+
+#include <optional>
+
+#include "engine/core/camera.hpp"
+#include "engine/platform/fly_camera.hpp"
+
+namespace psygen::editor {
+
+class ViewCamera {
+ public:
+  const core::CameraPose& pose() const { return pose_; }
+  // The side of a block in metres, above 0.
+  void set_block_size(double block_m) { block_m_ = block_m; }
+  // A leap. Poses that are not valid are ignored.
+  void set_pose(const core::CameraPose& pose);
+  // Moves on by `dt_s` seconds. The right button turns the view, the middle one turns it around
+  // the pivot (or in place without one), the wheel goes towards the pivot or changes the speed of
+  // flying while a key is held. True if the pose changed.
+  bool update(const platform::InputState& input, double dt_s);
+
+  // What the middle button turns around; nothing: it turns in place.
+  void set_pivot(std::optional<core::WorldPosition> pivot) { pivot_ = pivot; }
+  const std::optional<core::WorldPosition>& pivot() const { return pivot_; }
+  // Looks at the pivot from this distance in metres, keeping the direction. Without one, nothing.
+  void focus(double distance_m);
+  double speed_m_s() const { return fly_.speed_m_s(); }
+
+ private:
+  double pivot_distance_m() const;
+  void orbit(double right_px, double down_px);
+  void approach(double wheel);
+
+  platform::FlyCamera fly_;
+  core::CameraPose pose_;
+  double block_m_ = 1;
+  std::optional<core::WorldPosition> pivot_;
+};
+
+}  // namespace psygen::editor

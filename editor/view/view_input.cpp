@@ -1,0 +1,123 @@
+#include "editor/view/view_input.hpp"
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QWheelEvent>
+#include <utility>
+
+namespace psygen::editor {
+namespace {
+
+using platform::Key;
+using platform::MouseButton;
+
+constexpr double kClickPx = 4;       // moved less than this, it was a click
+constexpr double kWheelUnits = 120;  // of Qt, per step
+
+std::optional<Key> key_of(int key) {
+  if (key >= Qt::Key_A && key <= Qt::Key_Z)
+    return static_cast<Key>(static_cast<int>(Key::kA) + key - Qt::Key_A);
+  switch (key) {
+    case Qt::Key_Up:
+      return Key::kUp;
+    case Qt::Key_Down:
+      return Key::kDown;
+    case Qt::Key_Left:
+      return Key::kLeft;
+    case Qt::Key_Right:
+      return Key::kRight;
+    case Qt::Key_Shift:
+      return Key::kShift;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<MouseButton> button_of(Qt::MouseButton button) {
+  switch (button) {
+    case Qt::LeftButton:
+      return MouseButton::kLeft;
+    case Qt::RightButton:
+      return MouseButton::kRight;
+    case Qt::MiddleButton:
+      return MouseButton::kMiddle;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+bool ViewInput::take(const QEvent& event, double pixel_ratio) {
+  switch (event.type()) {
+    case QEvent::KeyPress:
+    case QEvent::KeyRelease:
+      key(event);
+      return true;
+    case QEvent::MouseButtonPress:
+    case QEvent::MouseButtonRelease:
+      button(event, pixel_ratio);
+      return true;
+    case QEvent::MouseMove:
+      move(event, pixel_ratio);
+      return true;
+    case QEvent::Wheel:
+      input_.wheel += static_cast<const QWheelEvent&>(event).angleDelta().y() / kWheelUnits;
+      return true;
+    default:
+      return false;
+  }
+}
+
+void ViewInput::key(const QEvent& event) {
+  const auto& key = static_cast<const QKeyEvent&>(event);
+  const std::optional<Key> known = key_of(key.key());
+  if (!known || key.isAutoRepeat()) return;
+  const auto at = static_cast<std::size_t>(*known);
+  const bool down = event.type() == QEvent::KeyPress;
+  // Shortcuts are not flown.
+  if (down && (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier)) != 0) return;
+  input_.held.set(at, down);
+  (down ? input_.went_down : input_.went_up).set(at);
+}
+
+void ViewInput::button(const QEvent& event, double pixel_ratio) {
+  const auto& mouse = static_cast<const QMouseEvent&>(event);
+  const std::optional<MouseButton> known = button_of(mouse.button());
+  if (!known) return;
+  const auto at = static_cast<std::size_t>(*known);
+  const bool down = event.type() == QEvent::MouseButtonPress;
+  input_.buttons_held.set(at, down);
+  (down ? input_.buttons_went_down : input_.buttons_went_up).set(at);
+  const QPointF place = mouse.position() * pixel_ratio;
+  last_ = place;
+  if (down) pressed_at_ = place;
+  const bool still = (place - pressed_at_).manhattanLength() < kClickPx;
+  if (!down && *known == MouseButton::kLeft && still) click_ = place;
+}
+
+void ViewInput::move(const QEvent& event, double pixel_ratio) {
+  const QPointF place = static_cast<const QMouseEvent&>(event).position() * pixel_ratio;
+  const QPointF by = place - std::exchange(last_, place);
+  input_.move_px += glm::dvec2(by.x(), by.y());
+  input_.pointer_px = {place.x(), place.y()};
+}
+
+platform::InputState ViewInput::take_frame() {
+  input_.looking = input_.is_held(MouseButton::kRight);
+  platform::InputState frame = input_;
+  if (frame.looking) frame.look_px = frame.move_px;
+  platform::clear_changes(input_);
+  return frame;
+}
+
+std::optional<QPointF> ViewInput::take_click() {
+  return std::exchange(click_, std::nullopt);
+}
+
+void ViewInput::release_all() {
+  input_.held.reset();
+  input_.buttons_held.reset();
+}
+
+}  // namespace psygen::editor

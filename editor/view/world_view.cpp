@@ -1,0 +1,192 @@
+#include "editor/view/world_view.hpp"
+
+#include <QGuiApplication>
+#include <QPlatformSurfaceEvent>
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "engine/render/hud_drawing.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kBusyMs = 0, kIdleMs = 100;  // between pictures; idle: another program is in front
+constexpr double kMostStepS = 0.1;
+
+}  // namespace
+
+WorldView::WorldView(app::SessionOptions options) : options_(std::move(options)), surface_(*this) {
+  setSurfaceType(QSurface::VulkanSurface);
+  connect(&timer_, &QTimer::timeout, this, &WorldView::tick);
+}
+
+WorldView::~WorldView() {
+  close();
+}
+
+void WorldView::show_world(std::string text, std::string file, bool anew) {
+  text_ = std::move(text);
+  file_ = std::move(file);
+  text_is_new_ = true;
+  failed_ = false;
+  since_text_.start();
+  if (anew) close();
+  if (!session_ && isExposed()) open();
+}
+
+void WorldView::open() {
+  app::SessionOptions options = options_;
+  options.world_text = text_;
+  options.world_file = file_;
+  options.surface = &surface_;
+  options.size = surface_.framebuffer_size();
+  text_is_new_ = false;
+  auto session = app::Session::create(std::move(options));
+  if (!session) {
+    failed_ = true;
+    Q_EMIT opened(QString::fromStdString(session.error().message));
+    return;
+  }
+  session_ = std::move(*session);
+  camera_.set_block_size(session_->scene().state().facts.world.block_size_m());
+  select(std::nullopt);
+  Q_EMIT opened({});
+  since_tick_.start();
+  timer_.start(kBusyMs);
+}
+
+void WorldView::close() {
+  timer_.stop();
+  has_hung_ = has_hung();
+  if (session_ && session_->has_hung_modelers()) (void)session_.release();
+  session_.reset();
+}
+
+bool WorldView::event(QEvent* event) {
+  if (input_.take(*event, devicePixelRatio())) return true;
+  switch (event->type()) {
+    case QEvent::Expose:
+      // Not within the event: opening takes its time.
+      if (isExposed() && !session_ && !failed_ && !text_.empty())
+        QTimer::singleShot(0, this, [this] {
+          if (!session_ && isExposed()) open();
+        });
+      break;
+    case QEvent::FocusOut:
+      input_.release_all();
+      break;
+    case QEvent::PlatformSurface:
+      if (static_cast<QPlatformSurfaceEvent*>(event)->surfaceEventType() ==
+          QPlatformSurfaceEvent::SurfaceAboutToBeDestroyed)
+        close();
+      break;
+    default:
+      break;
+  }
+  return QWindow::event(event);
+}
+
+void WorldView::take_text() {
+  if (!std::exchange(text_is_new_, false)) return;
+  if (auto ok = session_->set_world(text_); !ok) {
+    since_text_.invalidate();
+    Q_EMIT refused(QString::fromStdString(ok.error().message));
+    return;
+  }
+  camera_.set_block_size(session_->scene().state().facts.world.block_size_m());
+  if (selection_) select(std::nullopt);
+}
+
+void WorldView::tick() {
+  if (!session_ || !isExposed()) return;
+  const double dt_s = std::min(static_cast<double>(since_tick_.nsecsElapsed()) * 1e-9, kMostStepS);
+  since_tick_.start();
+  if (!paused_) take_text();
+  const platform::InputState input = input_.take_frame();
+  camera_.update(input, dt_s);
+  if (const auto click = input_.take_click()) {
+    const scene::State& state = session_->scene().state();
+    select(pick(
+        state.facts.world, state.facts.registry, camera_.pose(),
+        direction_of(*click, session_->picture_size(), camera_.pose(), state.camera.projection)));
+  }
+  write_over_picture();
+  QElapsedTimer spent;
+  spent.start();
+  const bool over = !session_->poll();
+  const auto ok = over ? core::Result<void>{} : session_->tick(camera_.pose(), dt_s);
+  if (over || !ok) {
+    close();
+    failed_ = true;
+    Q_EMIT opened(QString::fromStdString(ok ? "the view was closed" : ok.error().message));
+    return;
+  }
+  Q_EMIT drawn(static_cast<double>(spent.nsecsElapsed()) * 1e-6);
+  note_settled();
+  const bool in_front = QGuiApplication::applicationState() == Qt::ApplicationActive;
+  timer_.setInterval(in_front || input_.busy() || since_text_.isValid() ? kBusyMs : kIdleMs);
+}
+
+void WorldView::note_settled() {
+  if (!since_text_.isValid() || text_is_new_) return;
+  const scene::State& state = session_->scene().state();
+  if (state.counters.awaited > 0 || state.meshes.outstanding() > 0) return;
+  Q_EMIT settled(static_cast<double>(since_text_.nsecsElapsed()) * 1e-6);
+  since_text_.invalidate();
+}
+
+// A frame around what is selected.
+void WorldView::write_over_picture() {
+  render::HudDrawing& hud = session_->hud();
+  hud = {};
+  if (!selection_ || selection_->kind != query::HitKind::kModel) return;
+  const scene::State& state = session_->scene().state();
+  const core::Extent size = session_->picture_size();
+  const glm::mat4 to_clip =
+      core::projection_matrix(state.camera.projection) * core::view_rotation(camera_.pose());
+  const glm::dvec3 foot = core::offset_m(selection_->at.block, camera_.pose().position,
+                                         state.facts.world.block_size_m()) +
+                          selection_->at.local;
+  glm::vec2 low{1e9F}, high{-1e9F};
+  for (int corner = 0; corner < 8; ++corner) {
+    const core::Bounds& box = selection_->box;
+    const glm::vec3 at{(corner & 1) != 0 ? box.max.x : box.min.x,
+                       (corner & 2) != 0 ? box.max.y : box.min.y,
+                       (corner & 4) != 0 ? box.max.z : box.min.z};
+    const glm::vec4 clip = to_clip * glm::vec4(glm::vec3(foot) + at, 1);
+    if (clip.w <= state.camera.projection.near_m) return;
+    const glm::vec2 px{(clip.x / clip.w + 1) * 0.5F * static_cast<float>(size.width),
+                       (clip.y / clip.w + 1) * 0.5F * static_cast<float>(size.height)};
+    low = glm::min(low, px);
+    high = glm::max(high, px);
+  }
+  const glm::vec4 colour{1.0F, 0.78F, 0.25F, 0.9F};
+  const glm::vec2 extent = high - low;
+  const auto bar = [&](glm::vec2 at, glm::vec2 of) {
+    hud.areas.push_back({{{}, at}, {{}, of}, colour});
+  };
+  bar(low, {extent.x, 2});
+  bar({low.x, high.y}, {extent.x + 2, 2});
+  bar(low, {2, extent.y});
+  bar({high.x, low.y}, {2, extent.y});
+}
+
+void WorldView::select(std::optional<Selection> selection) {
+  selection_ = std::move(selection);
+  camera_.set_pivot(selection_ ? std::optional(selection_->at) : std::nullopt);
+  Q_EMIT selected();
+}
+
+void WorldView::focus() {
+  if (!session_) return;
+  if (!selection_) return camera_.set_pose(session_->home());
+  const float radius_m = glm::length(selection_->box.half_extent());
+  core::WorldPosition middle = selection_->at;
+  middle.local += glm::dvec3(selection_->box.center());
+  camera_.set_pivot(middle);
+  camera_.focus(std::max(2.5 * static_cast<double>(radius_m), 3.0));
+}
+
+}  // namespace psygen::editor

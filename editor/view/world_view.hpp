@@ -1,0 +1,81 @@
+// The engine's own picture of the world, in a window that is embedded in the editor's. Owns the
+// session: opens it when the window can first be seen, draws while it can be seen, and follows the
+// text of the world: the newest one wins, and what is drawn stays until the new meshes are there.
+// It changes no document. Main thread.
+#pragma once
+
+#include <QElapsedTimer>
+#include <QTimer>
+#include <QWindow>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "editor/view/picking.hpp"
+#include "editor/view/view_camera.hpp"
+#include "editor/view/view_input.hpp"
+#include "editor/view/window_surface.hpp"
+#include "engine/app/session.hpp"
+
+namespace psygen::editor {
+
+class WorldView final : public QWindow {
+  Q_OBJECT
+
+ public:
+  // `options` say everything but the world, the size and the surface.
+  explicit WorldView(app::SessionOptions options);
+  ~WorldView() override;
+
+  // Shows the world of a text from the next picture on. `file` is for messages and the folder of
+  // its pictures. `anew`: opens another session, as for another file.
+  void show_world(std::string text, std::string file, bool anew);
+  // Null until the window was seen, and while there is no world that can be drawn.
+  app::Session* session() { return session_.get(); }
+  ViewCamera& camera() { return camera_; }
+  // A model hung in some session: its modeler still writes into memory that must not be torn down.
+  bool has_hung() const { return has_hung_ || (session_ && session_->has_hung_modelers()); }
+
+  const std::optional<Selection>& selection() const { return selection_; }
+  void select(std::optional<Selection> selection);
+  // Looks at what is selected from nearby; without a selection, from the world's usual place.
+  void focus();
+  // Synthesis rests: what is there is drawn.
+  void set_paused(bool paused) { paused_ = paused; }
+
+ Q_SIGNALS:
+  // A session was opened, or could not be: `error` says why.
+  void opened(const QString& error);
+  // The present text could not be shown; the world before stays.
+  void refused(const QString& error);
+  void selected();
+  // After every picture, with what it took.
+  void drawn(double frame_ms);
+  // The text that was shown last is in the picture with all its meshes; milliseconds since it came.
+  void settled(double ms);
+
+ protected:
+  bool event(QEvent* event) override;
+
+ private:
+  void open();
+  void close();
+  void tick();
+  void take_text();
+  void write_over_picture();
+  void note_settled();
+
+  app::SessionOptions options_;
+  WindowSurface surface_;
+  std::unique_ptr<app::Session> session_;
+  std::string text_, file_;
+  bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false;
+  ViewCamera camera_;
+  ViewInput input_;
+  std::optional<Selection> selection_;
+  QTimer timer_;
+  QElapsedTimer since_tick_;
+  QElapsedTimer since_text_;  // invalid: everything of the text is drawn
+};
+
+}  // namespace psygen::editor
