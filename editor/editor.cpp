@@ -5,6 +5,7 @@
 #include <QSettings>
 #include <cstdio>
 #include <cstdlib>
+#include <glm/trigonometric.hpp>
 
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
@@ -16,7 +17,11 @@
 namespace psygen::editor {
 namespace {
 
+// What is seen first: the valley of the README.
 constexpr const char* kFirstWorld = "silver_combe";
+constexpr glm::dvec3 kFirstPlaceM{-1257, 24, 3978};
+constexpr double kFirstYawDeg = 110, kFirstPitchDeg = -10;
+
 constexpr double kWatchdogS = 2;  // a model that takes longer hangs: nobody waits for it
 
 struct Arguments {
@@ -88,6 +93,12 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   window.show();
   const auto file = cli::find_file(
       cli::Shipped::kWorld, arguments.file.isEmpty() ? kFirstWorld : arguments.file.toStdString());
+  if (arguments.file.isEmpty()) {
+    core::CameraPose pose{{{}, {kFirstPlaceM.x, 0, kFirstPlaceM.z}},
+                          glm::radians(kFirstYawDeg),
+                          glm::radians(kFirstPitchDeg)};
+    window.set_first_place(pose, kFirstPlaceM.y);
+  }
   if (!file) return usage(QString::fromStdString(file.error().message));
   if (!window.open_file(*file) && !arguments.file.isEmpty())
     std::fprintf(stderr, "psygen-editor: the world could not be opened; the messages say why\n");

@@ -37,15 +37,6 @@ std::optional<double> make_mesh(const models::ModelType& type, const models::Par
   return core::thread_cpu_seconds() - start_s;
 }
 
-// Whether numbers of the field change what is made, and can be varied.
-bool has_curve(const world::WorldField& field) {
-  const bool number = field.kind == FieldKind::kInteger || field.kind == FieldKind::kReal ||
-                      field.kind == FieldKind::kIntegerRange || field.kind == FieldKind::kRealRange;
-  const std::string& table = field.path.empty() ? std::string() : field.path.steps[0].key;
-  return number && !field.numbers.empty() && table != "sky" && table != "palette" &&
-         table != "water";
-}
-
 std::string toml_of(const world::WorldField& field, double value) {
   const bool integer = field.kind == FieldKind::kInteger || field.kind == FieldKind::kIntegerRange;
   if (field.kind == FieldKind::kInteger || field.kind == FieldKind::kReal)
@@ -70,6 +61,14 @@ std::vector<double> values_of(const world::WorldField& field) {
 }
 
 }  // namespace
+
+bool has_cost_curve(const world::WorldField& field) {
+  const bool number = field.kind == FieldKind::kInteger || field.kind == FieldKind::kReal ||
+                      field.kind == FieldKind::kIntegerRange || field.kind == FieldKind::kRealRange;
+  const std::string& table = field.path.empty() ? std::string() : field.path.steps[0].key;
+  return number && !field.numbers.empty() && table != "sky" && table != "palette" &&
+         table != "water";
+}
 
 BlockCost block_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt, bool measure) {
   synthesis::CostModel costs(parsed.registry);
@@ -113,7 +112,7 @@ std::vector<CostPoint> cost_curve(const std::string& text, const std::string& fi
                                   const synthesis::CostModel* learnt,
                                   const std::function<bool()>& go_on) {
   std::vector<CostPoint> curve;
-  if (!has_curve(field)) return curve;
+  if (!has_cost_curve(field)) return curve;
   int number = 0;
   for (const double value : values_of(field)) {
     if (!go_on()) return {};

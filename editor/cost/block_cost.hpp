@@ -24,6 +24,9 @@ struct BlockCost {
 // `measure`: also makes the blocks, unless that is predicted to take over 50 ms.
 BlockCost block_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt, bool measure);
 
+// Whether numbers of a field change what is made, so that there is a curve of it.
+bool has_cost_curve(const world::WorldField& field);
+
 // One value of a field and what the world would cost with it.
 struct CostPoint {
   double value = 0;

@@ -22,7 +22,7 @@ namespace {
 
 using world::FieldKind;
 
-constexpr int kLabelWidth = 150;
+constexpr int kLabelWidth = 116;
 
 bool is_integer(FieldKind kind) {
   return kind == FieldKind::kInteger || kind == FieldKind::kIntegerRange ||
@@ -113,6 +113,7 @@ void FieldRow::build(QHBoxLayout& layout) {
     column_->addLayout(line);
   }
   layout.addLayout(column_, 1);
+  if (has_cost_curve(field_)) add_cost();
 }
 
 void FieldRow::add_number(QHBoxLayout& layout, const QString& name) {
@@ -221,7 +222,7 @@ void FieldRow::choose_colour() {
 void FieldRow::add_seed(QHBoxLayout& layout) {
   auto* line = new QLineEdit;
   line->setAccessibleName(label_->text());
-  lock_ = small_button("🔒", tr("Lock the seed"));
+  lock_ = small_button(tr("lock"), tr("Lock the seed"));
   lock_->setCheckable(true);
   auto* less = small_button("−", tr("The seed before"));
   auto* more = small_button("+", tr("The next seed"));
@@ -267,18 +268,17 @@ void FieldRow::show(const world::WorldField& field) {
   reset_->setEnabled(field_.is_set && !field_.required);
 }
 
+// As wide as the slider above it, and there from the start: nothing jumps when it is known.
+void FieldRow::add_cost() {
+  auto* line = new QHBoxLayout;
+  cost_ = new CostStrip;
+  line->addWidget(cost_, 1);
+  line->addSpacing(numbers_.front()->box_width() + layout()->spacing());
+  column_->addLayout(line);
+}
+
 void FieldRow::show_cost(std::vector<CostPoint> points) {
-  if (column_ == nullptr) return;
-  if (cost_ == nullptr) {
-    // As wide as the slider above it.
-    auto* line = new QHBoxLayout;
-    cost_ = new CostStrip;
-    line->addWidget(cost_, 1);
-    line->addSpacing(numbers_.front()->box_width() + layout()->spacing());
-    column_->addLayout(line);
-  }
-  cost_->set_points(std::move(points));
-  if (!field_.numbers.empty()) cost_->set_value(field_.numbers.back());
+  if (cost_ != nullptr) cost_->set_points(std::move(points));
 }
 
 void FieldRow::enterEvent(QEnterEvent* event) {

@@ -55,6 +55,7 @@ class FieldRow final : public QWidget {
   void add_switch(QHBoxLayout& layout);
   void add_colour(QHBoxLayout& layout);
   void add_seed(QHBoxLayout& layout);
+  void add_cost();
   void want_numbers(std::size_t changed);
   void choose_colour();
   void want(const std::string& toml) { Q_EMIT wanted(field_.path, toml); }
@@ -63,7 +64,7 @@ class FieldRow final : public QWidget {
   QLabel* label_;
   QToolButton* reset_;
   QToolButton* lock_ = nullptr;
-  CostStrip* cost_ = nullptr;  // null until it is known
+  CostStrip* cost_ = nullptr;  // null: costs do not depend on it
   QVBoxLayout* column_ = nullptr;
   std::vector<NumberEdit*> numbers_;
   std::function<void()> refresh_;  // of the other kinds of controls

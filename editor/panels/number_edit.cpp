@@ -74,7 +74,9 @@ NumberEdit::NumberEdit(const Range& range, const QString& name, QWidget* parent)
   box_->setSingleStep(step_of(range));
   box_->setKeyboardTracking(false);
   box_->setAccessibleName(name);
-  box_->setFixedWidth(box_->fontMetrics().horizontalAdvance("0000000000000"));
+  box_->setFixedWidth(
+      box_->fontMetrics().horizontalAdvance("0000000000") +
+      (range.unit.isEmpty() ? 0 : box_->fontMetrics().horizontalAdvance(range.unit)));
   if (!range.unit.isEmpty()) box_->setSuffix(" " + range.unit);
   auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);

@@ -61,7 +61,7 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
   layout->addWidget(splitter, 1);
   connect(search_, &QLineEdit::textChanged, this, &PropertiesPanel::search);
   connect(tree_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
-    if (item == nullptr) return;
+    if (item == nullptr || item->data(0, kPathRole).isNull()) return;
     const auto path = world::parse_text_path(item->data(0, kPathRole).toString().toStdString());
     if (path) chosen_ = *path;
     search_->clear();
@@ -96,13 +96,26 @@ void PropertiesPanel::list(const std::vector<world::WorldSection>& sections) {
     const QSignalBlocker quiet(tree_);
     tree_->clear();
     for (const world::WorldSection& section : sections)
-      add_item(section, nullptr);
+      add_item(section, group_of(section.kind));
+    tree_->expandToDepth(0);
   }
   mark(sections);
   tree_->setCurrentItem(nullptr);
   go_to(before);
   if (tree_->currentItem() == nullptr && tree_->topLevelItemCount() > 0)
     tree_->setCurrentItem(tree_->topLevelItem(0));
+}
+
+// Species and what is scattered have headings; a species and its scatter have the same name.
+QTreeWidgetItem* PropertiesPanel::group_of(world::SectionKind kind) {
+  if (kind != world::SectionKind::kSpecies && kind != world::SectionKind::kScatter) return nullptr;
+  const QString title =
+      kind == world::SectionKind::kSpecies ? tr("Species") : tr("Scattered on every block");
+  const auto known = tree_->findItems(title, Qt::MatchExactly);
+  if (!known.empty()) return known.front();
+  auto* group = new QTreeWidgetItem(tree_, {title});
+  group->setFlags(Qt::ItemIsEnabled);
+  return group;
 }
 
 void PropertiesPanel::add_item(const world::WorldSection& section, QTreeWidgetItem* parent) {
@@ -119,6 +132,7 @@ void PropertiesPanel::mark(const std::vector<world::WorldSection>& sections) {
   visit(sections, [&](const world::WorldSection& section) { all.push_back(&section); });
   std::size_t next = 0;
   for (QTreeWidgetItemIterator it(tree_); *it != nullptr && next < all.size(); ++it) {
+    if ((*it)->data(0, kPathRole).isNull()) continue;
     QFont font = (*it)->font(0);
     font.setBold(all[next++]->is_set);
     (*it)->setFont(0, font);

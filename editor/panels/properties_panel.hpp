@@ -48,6 +48,7 @@ class PropertiesPanel final : public QWidget {
  private:
   bool same_shape(const std::vector<world::WorldSection>& sections) const;
   void list(const std::vector<world::WorldSection>& sections);
+  QTreeWidgetItem* group_of(world::SectionKind kind);
   void add_item(const world::WorldSection& section, QTreeWidgetItem* parent);
   void mark(const std::vector<world::WorldSection>& sections);
   void show_section();

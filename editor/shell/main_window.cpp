@@ -22,6 +22,7 @@
 #include "editor/panels/statistics_panel.hpp"
 #include "editor/shell/command_palette.hpp"
 #include "engine/core/log.hpp"
+#include "engine/models/terrain/ground.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::editor {
@@ -152,7 +153,7 @@ void MainWindow::connect_view() {
   connect(view_, &WorldView::opened, this, [this](const QString& error) {
     if (!error.isEmpty()) return say(error);
     statistics_->forget();
-    view_->focus();
+    restore_place();
     ask_costs();
   });
   connect(view_, &WorldView::refused, this, &MainWindow::say);
@@ -236,6 +237,42 @@ void MainWindow::restore_layout() {
   restoreState(settings.value("layout").toByteArray());
 }
 
+void MainWindow::set_first_place(const core::CameraPose& pose, double height_m) {
+  first_place_ = pose;
+  first_place_->position.local.y = height_m;
+}
+
+// Where the person was in this world before, else the first place, else the world's usual one.
+void MainWindow::restore_place() {
+  const QSettings settings;
+  const QVariantList kept = settings.value("places/" + file_key(document_.file())).toList();
+  if (kept.size() == 7) {
+    core::CameraPose pose;
+    pose.position.block = {kept[0].toInt(), kept[1].toInt()};
+    pose.position.local = {kept[2].toDouble(), kept[3].toDouble(), kept[4].toDouble()};
+    pose.yaw = kept[5].toDouble();
+    pose.pitch = kept[6].toDouble();
+    return view_->camera().set_pose(pose);
+  }
+  view_->focus();
+  if (!first_place_) return;
+  core::CameraPose pose = *std::exchange(first_place_, std::nullopt);
+  const world::World& world = document_.world();
+  pose.position = core::normalised(pose.position, world.block_size_m());
+  const core::WorldPosition& at = pose.position;
+  pose.position.local.y += models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
+  view_->camera().set_pose(pose);
+}
+
+void MainWindow::keep_place() {
+  if (view_->session() == nullptr || document_.file().empty()) return;
+  const core::CameraPose& pose = view_->camera().pose();
+  QSettings().setValue(
+      "places/" + file_key(document_.file()),
+      QVariantList{pose.position.block.x, pose.position.block.z, pose.position.local.x,
+                   pose.position.local.y, pose.position.local.z, pose.yaw, pose.pitch});
+}
+
 void MainWindow::changeEvent(QEvent* event) {
   if (event->type() == QEvent::ActivationChange && isActiveWindow()) document_.check_disk();
   QMainWindow::changeEvent(event);
@@ -255,6 +292,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   QSettings settings;
   settings.setValue("geometry", saveGeometry());
   settings.setValue("layout", saveState());
+  keep_place();
   event->accept();
 }
 

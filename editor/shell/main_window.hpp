@@ -35,6 +35,8 @@ class MainWindow final : public QMainWindow {
 
   // Opens a world file, or says why not.
   bool open_file(const std::filesystem::path& file);
+  // Where the camera stands when the world is first seen, unless the person has been there before.
+  void set_first_place(const core::CameraPose& pose, double height_m);
   Document& document() { return document_; }
   WorldView& view() { return *view_; }
 
@@ -57,6 +59,8 @@ class MainWindow final : public QMainWindow {
   void connect_document();
   void connect_view();
   void restore_layout();
+  void restore_place();
+  void keep_place();
   void offer_recovery();
 
   // Says what went wrong in the status bar, and keeps it in the log. True if nothing did.
@@ -94,7 +98,8 @@ class MainWindow final : public QMainWindow {
   QMenu* panels_menu_ = nullptr;
   QTimer figures_timer_, costs_timer_;
   QByteArray first_layout_;
-  double frame_ms_ = 0;  // smoothed
+  std::optional<core::CameraPose> first_place_;  // its height: above the ground
+  double frame_ms_ = 0;                          // smoothed
 };
 
 }  // namespace psygen::editor
