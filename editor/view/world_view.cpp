@@ -90,11 +90,7 @@ bool WorldView::event(QEvent* event) {
 
 void WorldView::take_text() {
   if (!std::exchange(text_is_new_, false)) return;
-  QElapsedTimer t;
-  t.start();
-  auto ok = session_->set_world(text_);
-  fprintf(stderr, "set_world %.1f ms\n", double(t.nsecsElapsed()) * 1e-6);
-  if (!ok) {
+  if (auto ok = session_->set_world(text_); !ok) {
     since_text_.invalidate();
     Q_EMIT refused(QString::fromStdString(ok.error().message));
     return;
@@ -137,7 +133,6 @@ void WorldView::note_settled() {
   if (!since_text_.isValid() || text_is_new_) return;
   const scene::State& state = session_->scene().state();
   if (state.counters.awaited > 0 || state.meshes.outstanding() > 0) return;
-  fprintf(stderr, "settled %.1f ms\n", double(since_text_.nsecsElapsed()) * 1e-6);
   Q_EMIT settled(static_cast<double>(since_text_.nsecsElapsed()) * 1e-6);
   since_text_.invalidate();
 }
