@@ -125,7 +125,7 @@ void Document::adopt(const std::filesystem::path& file, std::string text, Parsed
   watch_.watch(file_);
   note_saved(*text_);
   Q_EMIT file_changed();
-  Q_EMIT changed(Change::kText | Change::kFile);
+  Q_EMIT changed(Change::kAll);
 }
 
 void Document::note_saved(std::string text) {

@@ -19,6 +19,8 @@
 #include "engine/world/camera_path.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
 #include "engine/world/files/path_file.hpp"
+#include "engine/world/files/text_edit.hpp"
+#include "engine/world/files/text_snippet.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
@@ -59,6 +61,30 @@ bool read_as_world(const std::filesystem::path& file) {
   PSYGEN_CHECK(again.has_value(), "a world that was read can be written");
   PSYGEN_CHECK(*again == *world, "a world reads back as it was");
   return true;
+}
+
+// An edit of any text is refused, or gives a text that has it; what was removed is gone.
+void edit_as_text(std::string_view text) {
+  for (const world::TextPath& path : {world::TextPath{"sky", "exposure"},
+                                      {"scatter", 0, "count"},
+                                      {"species", 0, "foliage", "up"}}) {
+    const auto edited = world::with_value(text, path, "0.5");
+    if (!edited) {
+      PSYGEN_CHECK(!edited.error().message.empty(), "a refused edit says why");
+      continue;
+    }
+    PSYGEN_CHECK(world::value_text(*edited, path) == "0.5", "an edited text has the value");
+    const auto removed = world::without_value(*edited, path);
+    PSYGEN_CHECK(removed && !world::value_text(*removed, path), "a removed value is gone");
+  }
+  const std::size_t count = world::item_count(text, {"scatter"});
+  const auto added = world::with_table_appended(text, {"scatter"}, "count = 1\n");
+  PSYGEN_CHECK(!added || world::item_count(*added, {"scatter"}) == count + 1, "a table is added");
+  const auto without = world::without_table(text, {"scatter", 0});
+  PSYGEN_CHECK(!without || count == 0 || world::item_count(*without, {"scatter"}) < count,
+               "a removed table is gone");
+  (void)world::with_table_moved(text, {"scatter", 1}, 0);
+  (void)world::with_snippet(text, {"sky"}, text);
 }
 
 bool read_as_path(const std::filesystem::path& file) {
@@ -305,6 +331,7 @@ std::filesystem::path FileInMemory::path() const {
 
 int read_as_everything(std::string_view text, FileInMemory& file) {
   file.write(text);
+  edit_as_text(text);
   return int{read_as_world(file.path())} + int{read_as_path(file.path())} +
          int{read_as_bindings(file.path())} + int{read_as_frame_test(text)} +
          int{read_as_recording(text, file.path())} + int{read_as_edits(text)} +

