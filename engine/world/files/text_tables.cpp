@@ -127,7 +127,11 @@ core::Result<std::string> without_table(std::string_view text, const TextPath& p
   if (const int at = layout->find(path);
       at >= 0 && !layout->places[static_cast<std::size_t>(at)].is_header())
     return without_value(text, path);
-  return checked_edit(without_parts(text, parts_of(*layout, path)), path);
+  const std::vector<TextSpan> parts = parts_of(*layout, path);
+  if (parts.empty()) return std::string(text);
+  const std::string rest = without_parts(text, parts);
+  const bool was_last = parts.back().end == text.size();
+  return checked_edit(was_last ? trimmed_table(rest, layout->line_break()) : rest, path);
 }
 
 core::Result<std::string> with_table_duplicated(std::string_view text, const TextPath& item) {

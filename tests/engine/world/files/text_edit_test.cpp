@@ -140,7 +140,7 @@ TEST(TextEdit, AddsDuplicatesMovesAndRemovesTables) {
   EXPECT_EQ(table_text(moved, {"scatter", 0}), table_text(kText, {"scatter", 1}));
   EXPECT_EQ(table_text(moved, {"scatter", 1}), table_text(kText, {"scatter", 0}));
   EXPECT_EQ(*with_table_moved(moved, {"scatter", 0}, 1), kText);
-  EXPECT_EQ(*without_table(kText, {"water"}), replaced("[water]\nlevel_m = 3\n", ""));
+  EXPECT_EQ(*without_table(kText, {"water"}), replaced("\n[water]\nlevel_m = 3\n", ""));
   EXPECT_FALSE(with_table_appended(kText, {"water"}, "level_m = 1"));
   EXPECT_FALSE(with_table_appended(kText, {"scatter"}, "[sky]\nexposure = 1"));
   EXPECT_FALSE(with_table_appended(kText, {"scatter"}, "model = "));
