@@ -98,15 +98,27 @@ core::Result<world::World> Session::read_world(std::optional<std::string_view> t
 }
 
 core::Result<void> Session::set_world(std::string_view text) {
-  auto registry = make_registry(options_.plugins);
-  if (!registry) return tl::unexpected(registry.error());
-  auto world = read_world(text, *registry);
-  if (!world) return tl::unexpected(world.error());
-  if (world->palette.images != scene_->state().facts.world.palette.images) {
+  auto prepared = prepare_world(std::string(text))();
+  if (!prepared) return tl::unexpected(prepared.error());
+  return show_world(std::move(*prepared));
+}
+
+std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(std::string text) const {
+  return [this, text = std::move(text), snapshot = scene_->snapshot()] {
+    return make_registry(options_.plugins).and_then([&](models::Registry registry) {
+      return read_world(text, registry).and_then([&](world::World world) {
+        return scene::prepare_world(std::move(world), std::move(registry), snapshot);
+      });
+    });
+  };
+}
+
+core::Result<void> Session::show_world(scene::PreparedWorld prepared) {
+  if (prepared.facts.world.palette.images != scene_->state().facts.world.palette.images) {
     return core::fail(core::ErrorCode::kInvalidArgument,
                       "other pictures of the ground are shown when the world is opened again");
   }
-  return scene_->set_world(std::move(*world), std::move(*registry));
+  return scene_->set_world(std::move(prepared));
 }
 
 core::Result<void> Session::open_window(const std::string& title) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,7 +30,8 @@ struct HudDrawing;
 }  // namespace psygen::render
 namespace psygen::scene {
 class Scene;
-}
+struct PreparedWorld;
+}  // namespace psygen::scene
 namespace psygen::telemetry {
 class TraceLog;
 }
@@ -106,6 +108,10 @@ class Session {
   // world::parse_world(), and with kInvalidArgument for other pictures of the ground
   // (Palette::images), which the renderer takes only at the start; nothing has changed then.
   core::Result<void> set_world(std::string_view text);
+  // The same in two steps: any thread may call what this returns, while the session lives, also
+  // the plugins' register_models; then the main thread shows the world that it has made.
+  std::function<core::Result<scene::PreparedWorld>()> prepare_world(std::string text) const;
+  core::Result<void> show_world(scene::PreparedWorld prepared);
 
   // Draws with another preset from the next tick on. The window stays alive meanwhile. Fails as
   // Renderer::set_preset(), also where the session ended meanwhile; the old one stays then.

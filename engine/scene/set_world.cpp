@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/scene/cost_samples.hpp"
+#include "engine/scene/draws/lighting.hpp"
 #include "engine/scene/mesh_notes.hpp"
 #include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/nodes/usual_boxes.hpp"
@@ -58,12 +59,41 @@ void destroy_all_nodes(const WorldFacts& facts, State& s) {
   s.draws.handover = {};
 }
 
-void update_all_nodes(State& s) {
+void update_all_nodes(PreparedWorld& prepared, State& s) {
   std::vector<world::Placement> scratch;
   for (const ecs::Entity node : nodes_of(s.entities)) {
-    update_node(s.facts, s.daylight, node, {.world = true}, scratch, s.meshes, s.entities,
-                {s.events.created, s.events.removed});
+    const visibility::NodeCoord at = s.entities.get<Node>(node)->at;
+    const auto models = at.level == 0 ? prepared.models.find(at.coord) : prepared.models.end();
+    const bool known = models != prepared.models.end();
+    if (known) scratch = std::move(models->second);
+    update_node(s.facts, s.daylight, node, {.world = true, .placed = known}, scratch, s.meshes,
+                s.entities, {s.events.created, s.events.removed});
   }
+}
+
+world::World without_edits(world::World world) {
+  world::set_edits(world, nullptr);
+  return world;
+}
+
+// Whether worlds without edits differ in nothing that meshes or places depend on.
+bool same_but_looks(world::World a, const world::World& b) {
+  a.name = b.name;
+  a.sky = b.sky;
+  a.water = b.water;
+  a.palette = b.palette;
+  return a == b;
+}
+
+// Sun and shadows follow by themselves (daylight_system).
+void take_over_looks(const world::World& world, State& s) {
+  WorldFacts& facts = s.facts;
+  facts.world.name = world.name;
+  facts.world.sky = world.sky;
+  facts.world.water = world.water;
+  facts.world.palette = world.palette;
+  facts.light = light_of(facts.world, s.settings.view_distance_m);
+  facts.palette = palette_of(facts.world);
 }
 
 void name_types(const models::Registry& registry, Tracing& trace) {
@@ -75,20 +105,56 @@ void name_types(const models::Registry& registry, Tracing& trace) {
 
 }  // namespace
 
-core::Result<void> Scene::set_world(world::World world, models::Registry registry) {
-  State& s = state_;
+core::Result<PreparedWorld> prepare_world(world::World world, models::Registry registry,
+                                          const SceneSnapshot& snapshot) {
+  PreparedWorld prepared;
+  WorldFacts& facts = prepared.facts;
   world::set_edits(world, nullptr);
-  WorldFacts next;
-  next.world = std::move(world);
-  next.registry = std::move(registry);
-  if (auto ok = derive(s.settings, true, next); !ok) return ok;
+  prepared.looks_only = same_but_looks(world, snapshot.world);
+  facts.world = std::move(world);
+  facts.registry = std::move(registry);
+  if (prepared.looks_only) return prepared;
+  if (auto ok = derive(snapshot.settings, true, facts); !ok) return tl::unexpected(ok.error());
+  facts.usual_boxes = usual_boxes(facts.registry, models_on(facts, {}));
+  for (const core::BlockCoord block : snapshot.blocks)
+    world::place_models(facts.world, facts.registry, block, prepared.models[block]);
+  return prepared;
+}
+
+SceneSnapshot Scene::snapshot() const {
+  SceneSnapshot snapshot{state_.settings, state_.facts.world, {}};
+  world::set_edits(snapshot.world, nullptr);
+  state_.entities.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> nodes) {
+    for (const Node& node : nodes) {
+      if (node.at.level == 0) snapshot.blocks.push_back(node.at.coord);
+    }
+  });
+  return snapshot;
+}
+
+core::Result<void> Scene::set_world(world::World world, models::Registry registry) {
+  auto prepared = prepare_world(std::move(world), std::move(registry), snapshot());
+  if (!prepared) return tl::unexpected(prepared.error());
+  return set_world(std::move(*prepared));
+}
+
+core::Result<void> Scene::set_world(PreparedWorld prepared) {
+  State& s = state_;
+  WorldFacts& next = prepared.facts;
+  // The scene may have changed since the snapshot.
+  if (prepared.looks_only && !same_but_looks(next.world, without_edits(s.facts.world)))
+    return set_world(std::move(next.world), std::move(next.registry));
+  if (prepared.looks_only) {
+    take_over_looks(next.world, s);
+    return {};
+  }
   if (!show_stand_ins(next, s.facts.pictures.get(), s.output)) {
     if (auto ok = derive(s.settings, false, next); !ok) return ok;
+    next.usual_boxes = usual_boxes(next.registry, models_on(next, {}));
   }
   const bool rested = s.meshes.come_to_rest();
   // Nothing fails from here on: the same types were added before.
   if (auto ok = s.assets.follow(next.registry); !ok) return ok;
-  next.usual_boxes = usual_boxes(next.registry, models_on(next, {}));
   const bool same =
       same_nodes(s.facts, next) && same_windows(s.streaming.grids, node_grids(s.settings, next));
   if (!same || !same_types(s.facts.registry, next.registry)) s.output.shared_indices.clear();
@@ -99,7 +165,7 @@ core::Result<void> Scene::set_world(world::World world, models::Registry registr
   take_over_preset();
   name_types(s.facts.registry, s.trace);
   edit(std::move(s.editing.edits));
-  if (same) update_all_nodes(s);
+  if (same) update_all_nodes(prepared, s);
   for (Foresight::Place& place : s.foresight.places)
     place.stale = true;
   return {};

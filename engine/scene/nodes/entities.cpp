@@ -130,10 +130,10 @@ void fit_ground(const WorldFacts& facts, const Daylight& daylight, ecs::Entity n
 }
 
 // Entities of models that stay are kept, with what is drawn of them.
-void update_models(const WorldFacts& facts, core::BlockCoord block, bool world, ecs::Entity node,
-                   std::vector<world::Placement>& scratch, synthesis::MeshSupply& meshes,
-                   ecs::World& entities, const ModelEvents& events) {
-  world::place_models(facts.world, facts.registry, block, scratch);
+void update_models(const WorldFacts& facts, core::BlockCoord block, const NodeChange& change,
+                   ecs::Entity node, std::vector<world::Placement>& scratch,
+                   synthesis::MeshSupply& meshes, ecs::World& entities, const ModelEvents& events) {
+  if (!change.placed) world::place_models(facts.world, facts.registry, block, scratch);
   const std::span<const ecs::Entity> now = entities.children(node);
   std::vector<ecs::Entity> before(now.begin(), now.end()), kept, gone;
   std::vector<world::Placement> created;
@@ -146,7 +146,7 @@ void update_models(const WorldFacts& facts, core::BlockCoord block, bool world, 
       created.push_back(scratch[next++]);
     const bool stays = next < scratch.size() && scratch[next].index == source->index &&
                        scratch[next].model == source->model;
-    if (stays) place_anew(facts, block, scratch[next++], world, model, meshes, entities);
+    if (stays) place_anew(facts, block, scratch[next++], change.world, model, meshes, entities);
     (stays ? kept : gone).push_back(model);
   }
   created.insert(created.end(), scratch.begin() + static_cast<std::ptrdiff_t>(next), scratch.end());
@@ -222,8 +222,7 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
   if (change.world) fit_ground(facts, daylight, node, entities);
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
-    if (change.models)
-      update_models(facts, block, change.world, node, scratch, meshes, entities, events);
+    if (change.models) update_models(facts, block, change, node, scratch, meshes, entities, events);
     return;
   }
   for (const ecs::Entity model : entities.children(node)) {

@@ -27,9 +27,10 @@ struct ModelEvents {
 
 // What changed of a node: of its edits, or all of the world.
 struct NodeChange {
-  bool ground = true;  // heights or light may differ
-  bool models = true;  // the edits of its blocks differ, or heights under its models
-  bool world = false;  // anything may differ, also boxes and levels
+  bool ground = true;   // heights or light may differ
+  bool models = true;   // the edits of its blocks differ, or heights under its models
+  bool world = false;   // anything may differ, also boxes and levels
+  bool placed = false;  // `scratch` has what stands on the block, which has no edits
 };
 
 // Gives a node and its models what they are in the world's present edits. What is drawn of them

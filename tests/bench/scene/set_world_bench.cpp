@@ -40,8 +40,7 @@ void set_world(benchmark::State& state, const world::TextPath& path, const char*
   std::size_t next = 1;
   for (auto _ : state) {
     Parsed parsed(texts[next++ % 2]);
-    benchmark::DoNotOptimize(
-        scene->set_world(std::move(parsed.world), std::move(parsed.registry)));
+    benchmark::DoNotOptimize(scene->set_world(std::move(parsed.world), std::move(parsed.registry)));
     state.PauseTiming();
     scene->settle(pose);
     state.ResumeTiming();
@@ -51,7 +50,9 @@ void set_world(benchmark::State& state, const world::TextPath& path, const char*
 void tree_size(benchmark::State& state) {
   set_world(state, {"scatter", 0, "size_m"}, "[2.2, 3.4]", "[2.2, 3.3]");
 }
-void sky(benchmark::State& state) { set_world(state, {"sky", "exposure"}, "1", "1.1"); }
+void sky(benchmark::State& state) {
+  set_world(state, {"sky", "exposure"}, "1", "1.1");
+}
 void ground(benchmark::State& state) {
   set_world(state, {"terrain", "height"}, "1.15", "1.1");
 }
