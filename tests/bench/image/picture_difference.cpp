@@ -11,6 +11,7 @@
 
 #include "engine/image/image_io.hpp"
 #include "engine/image/similarity.hpp"
+#include "tests/bench/image/pictures_in.hpp"
 
 namespace {
 
@@ -22,20 +23,12 @@ int fail(const std::string& why) {
   return 1;
 }
 
-std::vector<fs::path> pictures_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".png") files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 3) return fail("usage: psygen_bench_pictures FOLDER REFERENCE");
-  const std::vector<fs::path> seen = pictures_in(argv[1]), reference = pictures_in(argv[2]);
+  const std::vector<fs::path> seen = psygen::bench::pictures_in(argv[1]),
+                              reference = psygen::bench::pictures_in(argv[2]);
   if (seen.empty() || seen.size() != reference.size())
     return fail(fmt::format("{} and {} pictures: there must be as many of both, one at least",
                             seen.size(), reference.size()));
