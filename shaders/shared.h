@@ -121,9 +121,10 @@ struct FrameData {
   vec4 water;            // albedo of deep water; w: height of the surface above the camera, m
   vec4 canopy;           // albedo of far forests; w: slope without forests
   vec4 canopy_place;     // x: height where forests start, y: end, m; z: 1 / blend, 1/m
-  vec4 morph;  // of draws with a negative morph; x: distance where it begins, m; y: 1 / length, 1/m
-  vec4 edge;   // of the world: least x, least z, greatest x, greatest z
-  vec4 shadow;        // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
+  vec4 morph;   // of draws with a negative morph; x: distance where it begins, m; y: 1 / length,
+                // 1/m; z: of the pattern of fades, 0 to 1 (fading.glsl)
+  vec4 edge;    // of the world: least x, least z, greatest x, greatest z
+  vec4 shadow;  // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
   vec4 shadow_reach;  // largest distance from the camera of each cascade, m
   vec4 shade;  // x, y: corner of the map of dark spots, m; w: height of the landscape, pixels
   mat4 shadow_from_camera[PSYGEN_MAX_CASCADES];  // to texture and depth, nearest cascade first

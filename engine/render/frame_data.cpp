@@ -82,7 +82,7 @@ void set_water_and_far_things(shaders::FrameData& out, const FrameInput& input) 
   out.canopy_place = {canopy.lowest_m, canopy.highest_m, 1.0F / std::max(canopy.blend_m, 1e-3F),
                       0.0F};
   out.morph = {input.morph.from_m, 1.0F / std::max(input.morph.to_m - input.morph.from_m, 1e-3F),
-               0.0F, 0.0F};
+               input.fade_phase, 0.0F};
   out.edge = {input.edge.least, input.edge.greatest};
 }
 

@@ -284,11 +284,12 @@ struct FrameInput {
   // scaled up to the picture. What lies over it always has all pixels.
   float resolution = 1;
   Morph morph;
-  double block_size_m = 0;               // anchors the slow pattern of the ground; 0: no pattern
-  std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
-  std::span<const MeshDraw> models;      // nearest first, committed ranges only
-  std::span<const ObjectDraw> objects;   // nearest first, committed ranges only
-  std::span<const GroundSpot> spots;     // under what stands near the camera, in any order
+  float fade_phase = 0;     // 0 to 1, of the pattern in which draws with `fade` share their pixels
+  double block_size_m = 0;  // anchors the slow pattern of the ground; 0: no pattern
+  std::span<const TerrainDraw> terrain;      // nearest first, committed ranges only
+  std::span<const MeshDraw> models;          // nearest first, committed ranges only
+  std::span<const ObjectDraw> objects;       // nearest first, committed ranges only
+  std::span<const GroundSpot> spots;         // under what stands near the camera, in any order
   std::span<const PointLight> point_lights;  // the first kMostPointLights are used
   // Back to front; drawn over everything else of the landscape. At most kMostEmitters are drawn.
   std::span<const ParticleDraw> particles;

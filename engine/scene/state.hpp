@@ -223,6 +223,7 @@ struct DrawLists {
   NodeHandover handover;
   std::uint32_t tick = 0;  // of these lists
   double now_s = 0;        // the clock's then
+  float fade_phase = 0;    // of the pattern of fades (next_phase)
 };
 
 // What is drawn of the game's objects in this tick.

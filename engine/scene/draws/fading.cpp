@@ -18,6 +18,11 @@ bool replace_mesh(Fading& fading, const Mesh& before, std::uint8_t level, bool p
   return true;
 }
 
+float next_phase(float phase, FadeStep step) {
+  const float moved = phase + 0.5F * step.share;
+  return moved < 1.0F ? moved : moved - 1.0F;
+}
+
 float come(Fading& fading, FadeStep step, bool fades_in) {
   if (fading.tick + 1 != step.tick) {
     fading.share = fades_in ? 0.0F : 1.0F;

@@ -17,6 +17,10 @@ struct FadeStep {
   float share = 1;  // of a whole fade, in (0, 1]; 1: everything comes and goes at once
 };
 
+// The phase of the pattern in which meshes share pixels (render::FrameInput::fade_phase), 0 to 1:
+// it moves by half of what a fade does. Moved as far as a fade, pixels would change back.
+float next_phase(float phase, FadeStep step);
+
 // The model draws another mesh from now on than `before`, which is resident: its level of detail,
 // and whether it is the quad of a picture. One that was coming itself gives its place to the new
 // one. Returns whether `before` is what goes.

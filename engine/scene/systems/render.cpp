@@ -204,6 +204,7 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
     draw_node(tick, camera, facts, streaming, view, entities, i, draws, counters);
   draws.tick = clock.tick;
   draws.now_s = clock.now_s;
+  draws.fade_phase = next_phase(draws.fade_phase, tick.step);
   counters.missing_pixels_percent = std::min(counters.missing_pixels_percent, 100.0);
   pressure.awaited = counters.awaited;
   meshes.note_drawn(draws.meshes);
@@ -232,6 +233,7 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   frame.lines = draws.lines;
   frame.canopy = facts.canopy;
   frame.morph = morph;
+  frame.fade_phase = draws.fade_phase;
   frame.edge = edge_of(facts.world, camera.pose.position);
   frame.hud = &input.hud;
   frame.panels = input.panels;

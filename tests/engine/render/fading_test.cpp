@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 
 #include "tests/engine/render/on_a_path.hpp"
@@ -51,6 +52,7 @@ TEST_P(Fading, what_goes_and_what_comes_cover_every_pixel_once) {
   const std::array whole{mesh(0, 1), mesh(2, 1)};
   const Picture expected = draw(whole);
   for (const float fade : {0.01F, 0.3F, 0.5F, 0.97F}) {
+    input_.fade_phase = 1 - fade;
     const std::array both{mesh(0, fade), mesh(1, -fade), mesh(2, 1)};
     EXPECT_EQ(draw(both).rgba, expected.rgba) << fade;
     const std::array turned{mesh(2, 1), mesh(1, -fade), mesh(0, fade)};
@@ -70,6 +72,44 @@ TEST_P(Fading, a_mesh_covers_as_large_a_share_of_its_pixels_as_it_is_there) {
   }
   const std::array not_yet_going{mesh(0, 0)};
   EXPECT_EQ(draw(not_yet_going).rgba, draw(whole).rgba);
+}
+
+// Shares rise from frame to frame, and the pattern moves by half as much.
+TEST_P(Fading, a_pixel_changes_once_in_a_fade_and_never_back) {
+  meshes_[1].box_half_extent = {1, 2, 1};  // what goes is smaller
+  const Picture before = draw(std::array{mesh(1, 1)}), after = draw(std::array{mesh(0, 1)});
+  constexpr int kFrames = 6;
+  std::vector<int> changes(before.rgba.size() / 4);
+  Picture last = before;
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    const float share = static_cast<float>(frame) / kFrames;
+    input_.fade_phase = 0.4F + 0.5F * share;
+    input_.fade_phase -= std::floor(input_.fade_phase);
+    Picture now = frame < kFrames ? draw(std::array{mesh(0, share), mesh(1, -share)}) : after;
+    for (std::size_t i = 0; i < changes.size(); ++i)
+      changes[i] += std::equal(&now.rgba[4 * i], &now.rgba[4 * i] + 4, &last.rgba[4 * i]) ? 0 : 1;
+    last = std::move(now);
+  }
+  const std::size_t all = different(before, after);
+  ASSERT_GT(all, 1000u);
+  const auto often = std::ranges::count_if(changes, [](int times) { return times > 1; });
+  // With several samples a pixel's edges have steps between; shadows of what fades do too.
+  const bool samples = std::get<2>(GetParam()) >= Preset::kHigh;
+  EXPECT_LE(often, samples ? static_cast<std::ptrdiff_t>(all / 2) : 0);
+}
+
+TEST_P(Fading, the_pattern_moves_with_its_phase_and_is_the_same_for_the_same_phase) {
+  const std::array half{mesh(0, 0.5F)};
+  const Picture whole = draw(std::array{mesh(0, 1)});
+  const std::size_t all = different(whole, draw({}));
+  const Picture first = draw(half);
+  input_.fade_phase = 0.25F;
+  const Picture second = draw(half);
+  const double moved = static_cast<double>(different(first, second));
+  EXPECT_NEAR(moved / static_cast<double>(all), 0.5, 0.05) << "half of each leaves the other";
+  EXPECT_EQ(draw(half).rgba, second.rgba);
+  input_.fade_phase = 0;
+  EXPECT_EQ(draw(half).rgba, first.rgba);
 }
 
 // Also of its shadow.

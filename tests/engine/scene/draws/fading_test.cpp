@@ -89,6 +89,16 @@ TEST(Fading, WhatIsReplacedOutOfViewLeavesNothingBehind) {
   EXPECT_FALSE(fading.old_mesh);
 }
 
+// A pattern that moved as far as a fade would give pixels back.
+TEST(Fading, ThePatternMovesByHalfOfAFadeAndBeginsAgain) {
+  float phase = 0.7F;
+  for (const float expected : {0.825F, 0.95F, 0.075F}) {
+    phase = next_phase(phase, {1, kQuarter});
+    EXPECT_NEAR(phase, expected, 1e-6F);
+  }
+  EXPECT_LT(next_phase(0.5F, {1, 1.0F}), 1.0F);
+}
+
 using visibility::NodeCoord;
 
 // A tick in which these nodes are drawn; returns the ones that were and are no more.
@@ -204,6 +214,19 @@ TEST(FadingScene, OnAFlightModelsFadeAndWhenItEndsAllAreThere) {
   EXPECT_GT(going, 200u);
   fly(*scene, pose, 60, 0, [&](const Seen& now) { seen = now; });
   EXPECT_EQ(seen.coming + seen.going, 0u);
+}
+
+TEST(FadingScene, ThePatternIsAnotherInEachFrameAndTheSameInTwoScenes) {
+  const auto first = make_scene(small_settings()), second = make_scene(small_settings());
+  float last = -1;
+  for (int i = 0; i < 10; ++i) {
+    tick_at(*first, pose_at(256, 256));
+    tick_at(*second, pose_at(256, 256));
+    const float phase = first->state().draws.fade_phase;
+    EXPECT_NE(phase, last);
+    EXPECT_EQ(phase, second->state().draws.fade_phase);
+    last = phase;
+  }
 }
 
 TEST(FadingScene, AClockThatStandsStillDoesNotKeepModelsAway) {
