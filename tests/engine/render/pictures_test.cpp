@@ -13,6 +13,7 @@
 namespace psygen::render {
 namespace {
 
+constexpr float kAwayM = 25;
 constexpr float kModelHalfWidthM = 4, kModelHalfHeightM = 5;
 constexpr std::array<std::array<std::uint8_t, 3>, 3> kColours{
     {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}};
@@ -84,9 +85,10 @@ class Pictures : public OnAPath {
     draw.pictured = true;
     return draw;
   }
-  Counted seen(const MeshDraw& draw, double yaw) {
+  // Of each pixel the number of its colour of kColours; -1: none of them.
+  std::vector<int> colours(const MeshDraw& draw, double yaw, float lift_m = 0) {
     MeshDraw placed = draw;
-    placed.origin = 25.0F * core::forward_of({{}, yaw, 0});
+    placed.origin = kAwayM * core::forward_of({{}, yaw, 0}) + glm::vec3(0, lift_m, 0);
     FrameInput input = synthetic::look(60, 0, kSize);
     input.pose.yaw = yaw;
     input.light.cloud_cover = 0;
@@ -94,18 +96,26 @@ class Pictures : public OnAPath {
     const std::array models{placed};
     input.models = models;
     const Picture picture = this->draw(input);
-    Counted counted;
+    std::vector<int> found(picture.rgba.size() / 4, -1);
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
       for (std::size_t c = 0; c < 3; ++c) {
         const int own = picture.rgba[i + c];
-        if (own < 100 || own < 3 * picture.rgba[i + (c + 1) % 3] ||
-            own < 3 * picture.rgba[i + (c + 2) % 3])
-          continue;
-        const int y = static_cast<int>(i / 4 / kSize.width);
-        ++counted.of[c];
-        counted.top = std::min(counted.top, y);
-        counted.bottom = std::max(counted.bottom, y);
+        if (own >= 100 && own >= 3 * picture.rgba[i + (c + 1) % 3] &&
+            own >= 3 * picture.rgba[i + (c + 2) % 3])
+          found[i / 4] = static_cast<int>(c);
       }
+    }
+    return found;
+  }
+  Counted seen(const MeshDraw& draw, double yaw) {
+    const std::vector<int> found = colours(draw, yaw);
+    Counted counted;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i] < 0) continue;
+      const int y = static_cast<int>(i / kSize.width);
+      ++counted.of[static_cast<std::size_t>(found[i])];
+      counted.top = std::min(counted.top, y);
+      counted.bottom = std::max(counted.bottom, y);
     }
     return counted;
   }
@@ -129,6 +139,28 @@ TEST_P(Pictures, ShowTheViewOfTheSideFromWhichOneLooks) {
           << yaw;
     }
   }
+}
+
+// In the middle between two views half of the spots are of each. Seen some rows higher, the picture
+// is the same some rows higher.
+TEST_P(Pictures, MixTwoViewsInSpotsThatMoveWithThePicture) {
+  const MeshDraw draw = quad(1, 0);
+  const double yaw = std::atan2(-3.0, -1.0);  // along (3, 1): view 0.5
+  const float tangent = std::tan(synthetic::look(60, 0, kSize).projection.vertical_fov / 2);
+  const float row_m = 2 * tangent * kAwayM / static_cast<float>(kSize.height);
+  constexpr std::size_t kRows = 3;
+  const std::vector<int> low = colours(draw, yaw), high = colours(draw, yaw, kRows * row_m);
+  int both = 0, same = 0, first = 0;
+  for (std::size_t i = kRows * kSize.width; i < low.size(); ++i) {
+    const int above = high[i - kRows * kSize.width];
+    if (low[i] < 0 || above < 0) continue;
+    ++both;
+    same += low[i] == above ? 1 : 0;
+    first += low[i] == 0 ? 1 : 0;
+  }
+  ASSERT_GT(both, 250);
+  EXPECT_NEAR(first, both / 2, both / 8);
+  EXPECT_GT(same, 0.9 * both);
 }
 
 TEST_P(Pictures, LeaveOutWhatIsTransparent) {
