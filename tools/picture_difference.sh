@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # How far pictures of the walk at sixty frames a second are from those at an error of half a pixel
-# with everything there, 1 - SSIM of 27 frames. Build release first; takes some minutes.
+# with everything there: 1 - SSIM, and the share of the pixels that an eye tells apart, of 27 pictures.
+# Build release first; takes some minutes.
 #   tools/picture_difference.sh [PRESET [WORLD PATH]]     default: low paper walk27
+# CLOCK=virtual in the environment: sixty frames by the virtual clock, the same on every machine.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset="${1:-low}" world="${2:-paper}" path="${3:-walk27}"
-out="out/picture_difference"
+out="${OUT:-out/picture_difference}"
 rm -rf "$out"
 fly() { # FOLDER OPTIONS…
   local folder="$1"
   shift
-  build/release/bin/psygen fly --headless --world "$world" --path "$path" --preset "$preset" --size 1280x720 \
-    --seconds 27 --out "$out/$folder" "$@" >/dev/null
+  "${PSYGEN:-build/release/bin/psygen}" fly --headless --world "$world" --path "$path" --preset "$preset" \
+    --size 1280x720 --seconds 27 --out "$out/$folder" "$@" >/dev/null
 }
-fly seen --target-fps 60 --fixed-step 60 --images 60
+fly seen --clock "${CLOCK:-wall}" --target-fps 60 --fixed-step 60 --images 60
 fly reference --paradigm lazy --error 0.5 --budget 2G --fixed-step 1 --images 1
 build/release/bin/psygen_bench_pictures "$out/seen" "$out/reference"

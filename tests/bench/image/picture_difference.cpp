@@ -1,4 +1,5 @@
-// How far the pictures of two flights differ to the eye, 1 - SSIM of each pair and their mean:
+// How far the pictures of two flights differ to the eye: of each pair, and in the mean, 1 - SSIM
+// and the share of the pixels that an eye tells apart, in percent (seen_difference.hpp).
 //   psygen_bench_pictures FOLDER REFERENCE
 // Both folders have as many pictures of psygen fly --images, of the same places in the order of
 // their names. tools/picture_difference.sh makes them.
@@ -12,6 +13,7 @@
 #include "engine/image/image_io.hpp"
 #include "engine/image/similarity.hpp"
 #include "tests/bench/image/pictures_in.hpp"
+#include "tests/bench/image/seen_difference.hpp"
 
 namespace {
 
@@ -32,7 +34,7 @@ int main(int argc, char** argv) {
   if (seen.empty() || seen.size() != reference.size())
     return fail(fmt::format("{} and {} pictures: there must be as many of both, one at least",
                             seen.size(), reference.size()));
-  double sum = 0;
+  double sum = 0, sum_apart = 0;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto a = image::read_image(seen[i]), b = image::read_image(reference[i]);
     if (!a || !b) return fail(!a ? a.error().message : b.error().message);
@@ -40,9 +42,12 @@ int main(int argc, char** argv) {
         std::min(a->width, a->height) < image::kSimilarityWindow)
       return fail(seen[i].string() + ": the two pictures must have one size, 8 pixels at least");
     const double difference = 1 - image::structural_similarity(*a, *b);
-    fmt::print("{}  {:.4f}\n", seen[i].filename().string(), difference);
+    const double apart = 100 * psygen::bench::seen_difference(*a, *b);
+    fmt::print("{}  {:.4f}  {:.1f} %\n", seen[i].filename().string(), difference, apart);
     sum += difference;
+    sum_apart += apart;
   }
-  fmt::print("mean of {}  {:.4f}\n", seen.size(), sum / static_cast<double>(seen.size()));
+  const auto count = static_cast<double>(seen.size());
+  fmt::print("mean of {}  {:.4f}  {:.1f} %\n", seen.size(), sum / count, sum_apart / count);
   return 0;
 }
