@@ -8,8 +8,10 @@
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "lamps.glsl"
+#include "under_water.glsl"
 #include "ground.glsl"
 #include "shadows.glsl"
+#include "shore.glsl"
 #include "texture_look.glsl"
 #ifdef PSYGEN_NEAR_GROUND
 #include "ground_shade.glsl"
@@ -160,10 +162,19 @@ void main() {
   }
 #endif
   if (shadows) sun *= sun_at(place, normalize(normal));
+  float depth = frame.water.w - place.y;
+  albedo *= wet_at(depth);
   vec3 light = ground_light(albedo, n, sun, ambient);
-  if (lamps) light += albedo * lamp_light(place, n, 0.0);
+  const vec3 white = vec3(0.7), up = vec3(0, 1, 0);
+  vec3 foam = ground_light(white, up, sun, ambient);
+  if (lamps) {
+    light += albedo * lamp_light(place, n, 0.0);
+    foam += white * lamp_light(place, up, 0.0);
+  }
   if (fine_grain)
     light += frame.sun_colour.rgb *
              (shine * sun * max(dot(n, frame.sun_direction.xyz), 0.0) * gloss(n, v, rough));
+  light = through_water(light, max(depth, 0.0));
+  light = mix(light, foam, foam_at(place, normalize(normal).y));
   pixel = vec4(shown(through_haze(light, place)), 1.0);
 }

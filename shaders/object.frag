@@ -6,6 +6,7 @@
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "lamps.glsl"
+#include "under_water.glsl"
 #include "shadows.glsl"
 #include "fading.glsl"
 #include "materials.glsl"
@@ -56,5 +57,6 @@ void main() {
   float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) : 1.0);
   vec3 light = model_light(base.rgb, n, place, albedo_ambient.a, sun_leaf_surface.y, sun);
   if (lamps) light += base.rgb * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_surface.y);
-  pixel = vec4(shown(through_haze(light + emitted * frame.sun_colour.w, place)), 1.0);
+  light = through_water(light + emitted * frame.sun_colour.w, water_over(place.y));
+  pixel = vec4(shown(through_haze(light, place)), 1.0);
 }

@@ -76,10 +76,11 @@ using glm::vec4;
 #define PSYGEN_PICTURE_BIT 4u
 #define PSYGEN_PICTURE_VIEWS 8
 
-// The plane of water (water.vert): corners of a ring, rings, vertices of a ring, radius in metres.
-#define PSYGEN_WATER_SIDES 64
-#define PSYGEN_WATER_RINGS 28
-#define PSYGEN_WATER_STRIP (2 * (PSYGEN_WATER_SIDES + 1) + 2)
+// The plane of water (water.vert): columns around, rings from the camera to the horizon, vertices
+// of a column, radius in metres.
+#define PSYGEN_WATER_COLUMNS 28
+#define PSYGEN_WATER_RINGS 26
+#define PSYGEN_WATER_STRIP (2 * (PSYGEN_WATER_RINGS + 1) + 2)
 #define PSYGEN_WATER_REACH 500000.0
 
 // The sky dome of preset low (sky_dome.vert): columns around, rows from the horizon to the top,
@@ -119,6 +120,8 @@ struct FrameData {
   vec4 cloud_colour;     // sun on clouds
   vec4 haze_extinction;  // at the camera's height, 1/m, for red, green, blue
   vec4 water;            // albedo of deep water; w: height of the surface above the camera, m
+  vec4 deep_water;       // light from the depth of water
+  vec4 water_loss;       // loss of light for each metre of depth (under_water.glsl), 1/m
   vec4 canopy;           // albedo of far forests; w: slope without forests
   vec4 canopy_place;     // x: height where forests start, y: end, m; z: 1 / blend, 1/m
   vec4 morph;   // of draws with a negative morph; x: distance where it begins, m; y: 1 / length,
@@ -186,7 +189,7 @@ struct OverlayVertex {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 64 + 29 * 16 + 3 * 64 + 16 + PSYGEN_MAX_LAMPS * 32);
+static_assert(sizeof(FrameData) == 64 + 31 * 16 + 3 * 64 + 16 + PSYGEN_MAX_LAMPS * 32);
 static_assert(sizeof(DrawData) == 64);
 static_assert(sizeof(MaterialData) == 48);
 static_assert(sizeof(EmitterData) == 256);

@@ -6,6 +6,7 @@
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "lamps.glsl"
+#include "under_water.glsl"
 #include "fading.glsl"
 #include "shadows.glsl"
 #include "pictures.glsl"
@@ -42,5 +43,6 @@ void main() {
 #endif
   vec3 light = model_light(albedo, n, place, ambient, sun_leaf_surface.y, sun);
   if (lamps) light += albedo * ambient * lamp_light(place, n, 0.5 * sun_leaf_surface.y);
+  light = through_water(light, water_over(place.y));
   pixel = vec4(shown(through_haze(light, place)), 1.0);
 }

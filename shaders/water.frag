@@ -1,4 +1,5 @@
-// Light for each pixel of the water, with waves if the preset has them.
+// Light for each pixel of the water, with waves if the preset has them. It is blended over what lies
+// under the surface (water.glsl).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -47,7 +48,11 @@ void main() {
                  slope_of(plane.yx, 128.0, vec2(-0.006, 0.009));
     n = normalize(vec3(-slope.x * near, 1.0, -slope.y * near));
   }
-  vec3 light = water_light(place, n);
-  if (lamps) light += frame.water.rgb * lamp_light(place, n, 0.0) + lamp_glint(place, n);
-  pixel = vec4(shown(through_haze(light, place)), 1.0);
+  WaterLight water = water_light(place, n);
+  vec3 lit = vec3(0.0);
+  if (lamps) {
+    lit = frame.water.rgb * lamp_light(place, n, 0.0);
+    water.all += lit + lamp_glint(place, n);
+  }
+  pixel = water_blend(water, lit, place);
 }

@@ -1,6 +1,14 @@
-// Light from a surface of water at `p` with normal `n`: the reflection of the sky and light from
-// the depth, mixed by Fresnel's law (Schlick).
-vec3 water_light(vec3 p, vec3 n) {
+// Light from the surface of water, and how it is blended over what was drawn under it. That has the
+// colour of deep water where it lies deep (under_water.glsl), and so has the sky below the horizon.
+
+struct WaterLight {
+  vec3 all;        // with deep water below
+  float mirrored;  // share of light that is reflected
+};
+
+// The surface at `p` with normal `n`: the reflection of the sky and light from the depth, mixed by
+// Fresnel's law (Schlick).
+WaterLight water_light(vec3 p, vec3 n) {
   vec3 v = p * inversesqrt(max(dot(p, p), 1e-6));
   float facing = clamp(abs(dot(v, n)), 0.0, 1.0);
   float flat_ = 1.0 - facing;
@@ -9,8 +17,6 @@ vec3 water_light(vec3 p, vec3 n) {
   vec3 r = v - 2.0 * dot(v, n) * n;
   r.y = abs(r.y) + 0.03;  // on average, the visible sides of small waves face the camera
   r *= inversesqrt(dot(r, r));
-  float sun = max(frame.sun_direction.y, 0.0);
-  vec3 deep = frame.water.rgb * (ambient_light(vec3(0, 1, 0)) + sun * frame.sun_colour.rgb);
   // The sun's reflection in ripples that are not drawn. The share of ripples with the slope that
   // reflects it to the camera is Gaussian (Cox and Munk 1954). This gives a path of glitter, which
   // is longer for a lower sun.
@@ -18,5 +24,24 @@ vec3 water_light(vec3 p, vec3 n) {
   vec2 slope = h.xz / max(h.y, 1e-3) - n.xz / n.y;
   float steep = dot(slope, slope);
   vec3 glint = frame.sun_colour.rgb * (1.3 * exp(-400.0 * steep) + 0.2 * exp(-45.0 * steep));
-  return mix(deep, sky_light(r), mirrored) + glint * (0.2 + mirrored);
+  return WaterLight(mix(frame.deep_water.rgb, sky_light(r), mirrored) + glint * (0.2 + mirrored),
+                    mirrored);
+}
+
+// The colour to add to a share 1 - a of the picture's. The picture has display values; those of
+// light that is added are found exactly for deep water and for a bright bottom, and are linear in
+// between. `lit`: additional light from deep water, of lamps.
+vec4 water_blend(WaterLight water, vec3 lit, vec3 p) {
+  vec3 kept;
+  vec3 air = haze(p, kept);
+  vec3 deep = frame.deep_water.rgb + lit;
+  vec3 brighter = kept * (0.1 * frame.sun_colour.rgb + 0.2 * frame.zenith_colour.rgb);
+  vec3 all = air + water.all * kept;
+  vec3 from = shown(air + deep * kept), to = shown(all);
+  vec3 bright_from = shown(air + deep * kept + brighter);
+  vec3 bright_to = shown(all + brighter * (1.0 - water.mirrored));
+  float step_ = dot(bright_from - from, vec3(1.0));
+  float share = clamp(dot(bright_to - to, vec3(1.0)) / max(step_, 1e-4), 0.0, 1.0);
+  if (frame.water.w > 0.0) share = 0.0;  // from below, nothing is drawn beyond it
+  return vec4(max(to - share * from, 0.0), 1.0 - share);
 }

@@ -58,6 +58,9 @@ void set_light(shaders::FrameData& out, const FrameInput& input) {
 constexpr float kNoWaterM = -1e9F;
 // Extinction of red, green and blue under water, in 1/m.
 constexpr glm::vec3 kWaterExtinction{0.30F, 0.10F, 0.07F};
+// Seen from above, water near shores is more turbid. Metres that light goes through it to the
+// ground and back, for each metre of its depth, and extinction to the loss of under_water.glsl.
+constexpr float kTurbidity = 0.09F, kWaysThroughWater = 2.6F, kLossOfExtinction = 0.5F;
 
 // Replaces the air by water, for a camera under water.
 void dive(shaders::FrameData& out) {
@@ -76,6 +79,12 @@ void set_water_and_far_things(shaders::FrameData& out, const FrameInput& input) 
   const float altitude = static_cast<float>(input.pose.position.local.y);
   const Water water = input.water.value_or(Water{kNoWaterM, glm::vec3(0.0F)});
   out.water = {water.colour, water.level_m - altitude};
+  const float sun = std::max(out.sun_direction.y, 0.0F);
+  const glm::vec3 sky = glm::mix(glm::vec3(out.horizon_colour), glm::vec3(out.zenith_colour), 0.6F);
+  out.deep_water = {water.colour * (sky + sun * glm::vec3(out.sun_colour)), 0.0F};
+  if (out.water.w <= 0)
+    out.water_loss = {(kWaterExtinction + kTurbidity) * (kWaysThroughWater * kLossOfExtinction),
+                      0.0F};
   if (out.water.w > 0) dive(out);
   const Canopy& canopy = input.canopy;
   out.canopy = {canopy.colour, canopy.slope_max};

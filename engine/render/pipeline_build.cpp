@@ -38,10 +38,10 @@ VkPipelineColorBlendAttachmentState blend_of(PipelineKind kind) {
   VkPipelineColorBlendAttachmentState blend{};
   blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                          VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  const bool particles = kind == PipelineKind::kParticles;
-  if (kind != PipelineKind::kOverlay && kind != PipelineKind::kSun && !particles) return blend;
+  const bool multiplied = kind == PipelineKind::kParticles || kind == PipelineKind::kWater;
+  if (kind != PipelineKind::kOverlay && kind != PipelineKind::kSun && !multiplied) return blend;
   blend.blendEnable = VK_TRUE;
-  blend.srcColorBlendFactor = particles ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_ALPHA;
+  blend.srcColorBlendFactor = multiplied ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_ALPHA;
   blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
   blend.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
   blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;

@@ -202,12 +202,7 @@ void draw_gui(const Device& device, VkPipeline overlay, VkCommandBuffer commands
 
 }  // namespace
 
-void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
-                        bool water, bool lamps) {
-  if (water) {
-    bind_pipeline(device, commands, pipelines.water(lamps));
-    device.vk.vkCmdDraw(commands, PSYGEN_WATER_RINGS * PSYGEN_WATER_STRIP, 1, 0, 0);
-  }
+void draw_sky(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands) {
   if (pipelines.sun() == VK_NULL_HANDLE) {
     bind_pipeline(device, commands, pipelines.sky());
     return device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
@@ -218,6 +213,12 @@ void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkComm
   device.vk.vkCmdDraw(commands, PSYGEN_DOME_COLUMNS * PSYGEN_DOME_STRIP, 1, 0, 0);
   bind_pipeline(device, commands, pipelines.sun());
   device.vk.vkCmdDraw(commands, 4, 1, 0, 0);
+}
+
+void draw_water(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                bool lamps) {
+  bind_pipeline(device, commands, pipelines.water(lamps));
+  device.vk.vkCmdDraw(commands, PSYGEN_WATER_COLUMNS * PSYGEN_WATER_STRIP, 1, 0, 0);
 }
 
 void draw_text(const Device& device, VkPipeline overlay, VkCommandBuffer commands,
@@ -252,7 +253,8 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
       return picture_pipeline(pipelines, run, run.pushed, run.lamps, pass.view);
     });
   }
-  draw_water_and_sky(device, pipelines, commands, pass.water, pass.lamps);
+  draw_sky(device, pipelines, commands);
+  if (pass.water) draw_water(device, pipelines, commands, pass.lamps);
   draw_particles(device, pipelines, slot, pass);
   draw_lines(device, pipelines, commands, pass);
   if (targets.is_coarse()) {

@@ -1,5 +1,5 @@
 // Records a frame: the sun's shadows, if the preset has them; one pass, or two with occlusion
-// culling (gpu_culling.hpp). A pass draws meshes, water, the sky behind, then lines and text in
+// culling (gpu_culling.hpp). A pass draws meshes, the sky behind, water, then lines and text in
 // front. Over a landscape of fewer pixels than the picture, text has a pass of its own. It submits
 // nothing. Main thread. Private to engine/render.
 #pragma once
@@ -62,8 +62,11 @@ void record_text(const Device& device, const Pipelines& pipelines, FrameSlot& sl
 void bind_set(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
               std::size_t emitter = 0);
 void bind_pipeline(const Device& device, VkCommandBuffer commands, VkPipeline pipeline);
-void draw_water_and_sky(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
-                        bool water, bool lamps);
+void draw_sky(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands);
+// After the sky: the surface is blended over what lies under it, and over the sky where nothing
+// does.
+void draw_water(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
+                bool lamps);
 void draw_text(const Device& device, VkPipeline overlay, VkCommandBuffer commands,
                std::uint32_t glyph_vertex_count);
 

@@ -52,7 +52,10 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
       draw_twice(core::VertexLayout::kModel, Coverage::kPart);
       draw_twice(core::VertexLayout::kModel, Coverage::kPictured);
     }
-    if (step == 3) draw_water_and_sky(device, pipelines, commands, true, lamps);
+    if (step == 3) {
+      draw_sky(device, pipelines, commands);
+      draw_water(device, pipelines, commands, lamps);
+    }
     if (step == 4) draw_text(device, pipelines.overlay(false), commands, 3);
   });
   if (step == 4 && targets.is_coarse()) {

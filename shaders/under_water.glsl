@@ -1,0 +1,14 @@
+// Ground and models under water, seen from above. Water lets less of their light through, of red the
+// most, the deeper they lie; what it scatters itself takes the place of the rest. The surface is
+// blended over them (water.glsl). Without water, or with the camera in it, nothing changes.
+
+// Metres of water over what lies at `y`, relative to the camera; 0 above the surface.
+float water_over(float y) { return max(frame.water.w - y, 0.0); }
+
+// `light` from under so many metres of water. The loss is a parabola that follows an exponential
+// at first and ends at a finite depth: it needs no exponential, and deep ground is exactly as dark
+// as deep water.
+vec3 through_water(vec3 light, float metres) {
+  vec3 kept = max(1.0 - frame.water_loss.rgb * metres, 0.0);
+  return mix(frame.deep_water.rgb, light, kept * kept);
+}

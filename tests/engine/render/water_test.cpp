@@ -1,0 +1,146 @@
+// Water over a beach that falls away from the camera: its depth shows, foam lies along its edge,
+// and the sun's path of glitter looks as if it were found for each pixel.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "engine/image/image_io.hpp"
+#include "engine/render/preset.hpp"
+#include "tests/engine/render/synthetic_scene.hpp"
+
+namespace psygen::render {
+namespace {
+
+using synthetic::kGroundSide;
+using synthetic::kPictureSize;
+
+// The ground is 4 m above the water below the camera and 12 m under it 64 m ahead; the edge of the
+// water is 16 m ahead.
+class WaterOfPresets : public testing::TestWithParam<Preset> {
+ protected:
+  std::unique_ptr<Renderer> open(Preset preset) {
+    RendererOptions options;
+    options.validation = true;
+    options.size = kPictureSize;
+    options.geometry_budget_bytes = 1 << 20;
+    options.preset = preset;
+    auto made = Renderer::create(options);
+    EXPECT_TRUE(made) << made.error().message;
+    if (!made) return nullptr;
+    const auto grid = (*made)->upload_shared_indices(synthetic::grid_indices(kGroundSide));
+    const auto beach = synthetic::make_terrain(
+        (*made)->geometry(), kGroundSide, [](int, int z) { return static_cast<float>(z) / 64.0F; });
+    EXPECT_TRUE(grid && beach);
+    if (!grid || !beach) return nullptr;
+    terrain_.range = *beach;
+    terrain_.shared_indices = *grid;
+    return std::move(*made);
+  }
+  void SetUp() override {
+    terrain_.origin = {-32.0F, -32.0F, -64.0F};
+    terrain_.height_range_m = 16.0F;
+    terrain_.near = true;
+    input_ = synthetic::look(20.0, -0.9, kPictureSize);
+    input_.terrain = {&terrain_, 1};
+    input_.block_size_m = 64;
+    input_.light.haze_density = 0.0F;
+    input_.water = Water{0.0F, {0.012F, 0.040F, 0.052F}};
+  }
+  image::Image draw(Renderer& renderer) {
+    const auto drawn = renderer.render(input_);
+    EXPECT_TRUE(drawn) << drawn.error().message;
+    auto picture = renderer.capture();
+    EXPECT_TRUE(picture);
+    renderer.wait_idle();
+    for (const std::string& message : renderer.validation_messages())
+      ADD_FAILURE() << message;
+    if (!picture) return {};
+    return {picture->width, picture->height, std::move(picture->rgba)};
+  }
+  // Red, green and blue of the middle third of a row.
+  static double row(const image::Image& image, std::uint32_t y) {
+    double sum = 0;
+    for (std::uint32_t x = image.width / 3; x < 2 * image.width / 3; ++x) {
+      for (std::size_t c = 0; c < 3; ++c)
+        sum += image.rgba[(std::size_t{y} * image.width + x) * 4 + c];
+    }
+    return sum / (image.width / 3);
+  }
+  // The row of the picture in which the plane of the water is so many metres ahead.
+  std::uint32_t row_ahead(double metres) const {
+    const double below = std::atan2(20.0, metres) - 0.9;
+    const double y = std::tan(below) / std::tan(input_.projection.vertical_fov * 0.5);
+    return static_cast<std::uint32_t>(
+        std::clamp((0.5 + 0.5 * y) * kPictureSize.height, 0.0, kPictureSize.height - 1.0));
+  }
+
+  TerrainDraw terrain_;
+  FrameInput input_;
+};
+
+TEST_P(WaterOfPresets, shows_its_depth_and_over_deep_ground_none) {
+  const auto renderer = open(GetParam());
+  ASSERT_TRUE(renderer);
+  const image::Image beach = draw(*renderer);
+  input_.terrain = {};
+  const image::Image open_water = draw(*renderer);
+  const std::uint32_t shallow = row_ahead(20), deep = row_ahead(45);
+  EXPECT_GT(row(beach, shallow), row(open_water, shallow) + 20);
+  EXPECT_NEAR(row(beach, deep), row(open_water, deep), 6);
+}
+
+TEST_P(WaterOfPresets, has_foam_along_its_edge_where_light_is_per_pixel) {
+  const auto renderer = open(GetParam());
+  ASSERT_TRUE(renderer);
+  const image::Image beach = draw(*renderer);
+  double at_edge = 0, beyond = 0;
+  for (std::uint32_t y = 0; y <= row_ahead(20); ++y)
+    beyond = std::max(beyond, row(beach, y));
+  for (std::uint32_t y = row_ahead(18); y <= row_ahead(15); ++y)
+    at_edge = std::max(at_edge, row(beach, y));
+  if (traits_of(GetParam()).pixel_light) {
+    EXPECT_GT(at_edge, 1.8 * beyond);
+  } else {
+    EXPECT_LT(at_edge, 1.6 * beyond);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, WaterOfPresets,
+                         testing::Values(Preset::kLow, Preset::kMedium, Preset::kHigh,
+                                         Preset::kUltra),
+                         [](const auto& tested) { return std::string(to_string(tested.param)); });
+
+using GlitterOfWater = WaterOfPresets;
+
+TEST_F(GlitterOfWater, with_light_per_vertex_has_the_glitter_of_that_per_pixel) {
+  const auto vertices = open(Preset::kLow), pixels = open(Preset::kMedium);
+  ASSERT_TRUE(vertices && pixels);
+  input_.terrain = {};
+  for (const double elevation_deg : {40.0, 24.0, 10.0}) {
+    const double e = elevation_deg * 3.14159265 / 180;
+    for (const double azimuth : {0.0, 0.3, 0.7}) {
+      input_.light.sun_direction = {std::cos(e) * std::sin(azimuth), std::sin(e),
+                                    -std::cos(e) * std::cos(azimuth)};
+      input_.pose.pitch = -e;
+      const image::Image a = draw(*vertices), b = draw(*pixels);
+      ASSERT_EQ(a.rgba.size(), b.rgba.size());
+      int largest = 0;
+      double mean = 0;
+      for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        // The sky above, and where it meets the water, have a test of their own.
+        if (i / 4 / a.width < row_ahead(1e6) + 2) continue;
+        const int apart = std::abs(a.rgba[i] - b.rgba[i]);
+        largest = std::max(largest, apart);
+        mean += apart / static_cast<double>(a.rgba.size());
+      }
+      SCOPED_TRACE(testing::Message() << elevation_deg << " deg, " << azimuth);
+      EXPECT_LE(largest, 30);
+      EXPECT_LE(mean, 2.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace psygen::render
