@@ -1,11 +1,9 @@
 // Clouds on a plane above the camera. They fade out towards the horizon, where the haze of the land
 // meets the sky.
 
-// The texture coordinates of the clouds in the unit direction `d`.
-vec2 cloud_place(vec3 d) {
-  float drift = frame.sun_direction.w * 0.002;
-  return d.xz * (0.27 / (max(d.y, 0.0) + 0.12)) + vec2(drift, 0.3 * drift);
-}
+// The texture coordinates of the clouds in the unit direction `d`. They stand over the land: the
+// camera moves below them (FrameData::clouds).
+vec2 cloud_place(vec3 d) { return d.xz * (0.27 / (max(d.y, 0.0) + 0.12)) + frame.clouds.xy; }
 
 // Opacity of clouds at height `up` (the y of a unit direction).
 float cloud_presence(float up) { return 0.88 * smoothstep(0.015, 0.2, up); }

@@ -11,6 +11,8 @@
 #include "under_water.glsl"
 #include "ground.glsl"
 #include "shadows.glsl"
+#include "clouds.glsl"
+#include "cloud_shadow.glsl"
 #include "shore.glsl"
 #include "texture_look.glsl"
 #ifdef PSYGEN_NEAR_GROUND
@@ -161,7 +163,7 @@ void main() {
     shine = fine_grain ? near : 0.0;
   }
 #endif
-  if (shadows) sun *= sun_at(place, normalize(normal));
+  if (shadows) sun *= sun_at(place, normalize(normal)) * left_by_clouds(place);
   float depth = frame.water.w - place.y;
   albedo *= wet_at(depth);
   vec3 light = ground_light(albedo, n, sun, ambient);

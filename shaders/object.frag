@@ -8,6 +8,8 @@
 #include "lamps.glsl"
 #include "under_water.glsl"
 #include "shadows.glsl"
+#include "clouds.glsl"
+#include "cloud_shadow.glsl"
 #include "fading.glsl"
 #include "materials.glsl"
 
@@ -54,7 +56,7 @@ void main() {
   if (base.a < m.emissive.w) discard;
 #endif
   if ((options & PSYGEN_MATERIAL_TWO_SIDED) != 0u && dot(n, place) > 0.0) n = -n;
-  float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) : 1.0);
+  float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) * left_by_clouds(place) : 1.0);
   vec3 light = model_light(base.rgb, n, place, albedo_ambient.a, sun_leaf_surface.y, sun);
   if (lamps) light += base.rgb * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_surface.y);
   light = through_water(light + emitted * frame.sun_colour.w, water_over(place.y));

@@ -101,7 +101,7 @@ struct FrameData {
   vec4 ray_right;  // direction of a pixel = ray_forward + ndc.x · ray_right + ndc.y · ray_down
   vec4 ray_down;
   vec4 ray_forward;
-  vec4 sun_direction;    // unit, towards the sun; w: seconds for wind and clouds
+  vec4 sun_direction;    // unit, towards the sun; w: seconds for wind and waves
   vec4 sun_colour;       // w: exposure
   vec4 zenith_colour;    // w: fall-off of the haze with height, 1/m
   vec4 horizon_colour;   // w: height of the camera, m
@@ -122,6 +122,7 @@ struct FrameData {
   vec4 water;            // albedo of deep water; w: height of the surface above the camera, m
   vec4 deep_water;       // light from the depth of water
   vec4 water_loss;       // loss of light for each metre of depth (under_water.glsl), 1/m
+  vec4 clouds;           // x, y: camera in the texture of clouds; z: repeats of it, 1/m
   vec4 canopy;           // albedo of far forests; w: slope without forests
   vec4 canopy_place;     // x: height where forests start, y: end, m; z: 1 / blend, 1/m
   vec4 morph;   // of draws with a negative morph; x: distance where it begins, m; y: 1 / length,
@@ -189,7 +190,7 @@ struct OverlayVertex {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 64 + 31 * 16 + 3 * 64 + 16 + PSYGEN_MAX_LAMPS * 32);
+static_assert(sizeof(FrameData) == 64 + 32 * 16 + 3 * 64 + 16 + PSYGEN_MAX_LAMPS * 32);
 static_assert(sizeof(DrawData) == 64);
 static_assert(sizeof(MaterialData) == 48);
 static_assert(sizeof(EmitterData) == 256);

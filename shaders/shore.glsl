@@ -1,7 +1,6 @@
 // Foam where water meets the ground, and ground that waves keep wet. It lies on the ground under and
-// just above the water, so it has the shape of each shore and costs nothing elsewhere.
-layout(set = 0, binding = PSYGEN_BINDING_CLOUDS) uniform sampler2D noises;
-
+// just above the water, so it has the shape of each shore and costs nothing elsewhere. Needs
+// cloud_shadow.glsl, for the noise.
 // Foam lies up to so many metres under the surface, wet ground up to so many above.
 const float kFoamDepthM = 0.7, kWetM = 0.25;
 
@@ -15,8 +14,8 @@ float foam_at(vec3 p, float up) {
   float time = frame.sun_direction.w;
   vec2 plane = p.xz + frame.ground_anchor.xy;
   float near = 1.0 / (1.0 + dot(p, p) * (1.0 / 3600.0));  // beyond, the noise is finer than pixels
-  float fine = mix(0.5, texture(noises, plane * (1.0 / 8.0) + vec2(0.011, 0.007) * time).r, near);
-  float coarse = texture(noises, plane.yx * (1.0 / 64.0)).r;
+  float fine = mix(0.5, texture(noises, plane * (1.0 / 8.0) + vec2(0.011, 0.007) * time).g, near);
+  float coarse = texture(noises, plane.yx * (1.0 / 64.0)).g;
   // Metres to the edge of the water. Lines of foam run towards it, and it moves to and fro.
   float slope = sqrt(max(1.0 - up * up, 0.0)) / max(up, 0.1);
   float edge = depth / max(slope, 0.04);

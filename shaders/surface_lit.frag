@@ -9,6 +9,8 @@
 #include "under_water.glsl"
 #include "fading.glsl"
 #include "shadows.glsl"
+#include "clouds.glsl"
+#include "cloud_shadow.glsl"
 #include "pictures.glsl"
 #ifndef PSYGEN_PICTURE
 #include "surface_detail.glsl"
@@ -37,7 +39,7 @@ void main() {
 #endif
   vec3 n = normalize(normal);
   float ambient = albedo_ambient.a;
-  float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) : 1.0);
+  float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) * left_by_clouds(place) : 1.0);
 #ifndef PSYGEN_PICTURE
   add_detail(int(sun_leaf_surface.z + 0.5), still_place, albedo, n, ambient);
 #endif

@@ -9,7 +9,7 @@
 #include "water.glsl"
 
 layout(constant_id = 0) const bool waves = false;
-layout(set = 0, binding = PSYGEN_BINDING_CLOUDS) uniform sampler2D heights;
+layout(set = 0, binding = PSYGEN_BINDING_CLOUDS) uniform sampler2D noises;
 layout(location = 0) in vec3 place;
 layout(location = 0) out vec4 pixel;
 
@@ -18,9 +18,9 @@ layout(location = 0) out vec4 pixel;
 vec2 slope_of(vec2 plane, float length_m, vec2 drift) {
   vec2 at = plane / length_m + drift * frame.sun_direction.w;
   const float texel = 2.0 / 256.0;
-  float here = texture(heights, at).r;
-  return vec2(texture(heights, at + vec2(texel, 0)).r - here,
-              texture(heights, at + vec2(0, texel)).r - here);
+  float here = texture(noises, at).g;
+  return vec2(texture(noises, at + vec2(texel, 0)).g - here,
+              texture(noises, at + vec2(0, texel)).g - here);
 }
 
 // The reflections of lamps in ripples, as the sun's in water_light().

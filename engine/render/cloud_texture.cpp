@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
+#include <numeric>
+#include <span>
 
 #include "engine/core/hash.hpp"
 
@@ -33,6 +35,47 @@ float noise(std::uint32_t x, std::uint32_t y, std::uint32_t cells, std::uint32_t
   return std::lerp(top, bottom, fy);
 }
 
+// Billows: 1 at points, one in each of cells² cells, falling to 0 between them (Worley 1996), so
+// their outlines are round. Repeating.
+float billows(std::uint32_t x, std::uint32_t y, std::uint32_t cells, std::uint32_t octave) {
+  const float px = static_cast<float>(x * cells) / kSize,
+              py = static_cast<float>(y * cells) / kSize;
+  const auto i = static_cast<std::uint32_t>(px), j = static_cast<std::uint32_t>(py);
+  float nearest = 1;
+  for (std::uint32_t v = 0; v < 3; ++v) {
+    for (std::uint32_t u = 0; u < 3; ++u) {
+      const std::uint32_t a = (i + u + cells - 1) % cells, b = (j + v + cells - 1) % cells;
+      const float dx = static_cast<float>(i + u) - 1 + lattice(a, b, octave) - px;
+      const float dy = static_cast<float>(j + v) - 1 + lattice(a, b, octave + 1) - py;
+      nearest = std::min(nearest, dx * dx + dy * dy);
+    }
+  }
+  return 1 - std::sqrt(nearest);
+}
+
+// Fractal noise of so many octaves, from 4 lattice points per side on.
+float fractal(std::uint32_t x, std::uint32_t y, std::uint32_t octaves) {
+  float sum = 0, amplitude = 0.5F;
+  std::uint32_t cells = 4;
+  for (std::uint32_t octave = 0; octave < octaves; ++octave, cells *= 2, amplitude *= 0.53F)
+    sum += amplitude * noise(x, y, cells, octave);
+  return sum;
+}
+
+// Replaces each value by that of the same rank in `like`, which keeps how much of the sky a density
+// covers.
+void match_ranks(std::span<float> values, std::span<const float> like) {
+  std::vector<std::uint32_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    return values[a] != values[b] ? values[a] < values[b] : a < b;
+  });
+  std::vector<float> sorted(like.begin(), like.end());
+  std::ranges::sort(sorted);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    values[order[i]] = sorted[i];
+}
+
 std::uint16_t to_half(float unit) {
   return glm::packHalf1x16(std::clamp(unit, 0.0F, 1.0F));
 }
@@ -40,26 +83,24 @@ std::uint16_t to_half(float unit) {
 }  // namespace
 
 std::vector<std::uint16_t> make_cloud_texture() {
-  std::vector<float> density(std::size_t{kSize} * kSize);
+  std::vector<float> noises(std::size_t{kSize} * kSize), clouds(noises.size());
   for (std::uint32_t y = 0; y < kSize; ++y) {
     for (std::uint32_t x = 0; x < kSize; ++x) {
-      float sum = 0, amplitude = 0.5F;
-      std::uint32_t cells = 4;
-      for (std::uint32_t octave = 0; octave < 7; ++octave, cells *= 2, amplitude *= 0.53F)
-        sum += amplitude * noise(x, y, cells, octave);
-      density[y * kSize + x] = sum;
+      const std::size_t at = std::size_t{y} * kSize + x;
+      noises[at] = fractal(x, y, 7);
+      clouds[at] = fractal(x, y, 3) + 0.17F * billows(x, y, 11, 16) +
+                   0.10F * billows(x, y, 23, 18) + 0.06F * billows(x, y, 47, 20);
     }
   }
-  const auto [low, high] = std::minmax_element(density.begin(), density.end());
+  const auto [low, high] = std::ranges::minmax_element(noises);
   const float base = *low, span = *high - *low;
-  std::vector<std::uint16_t> texels(density.size() * 2);
-  for (std::uint32_t y = 0; y < kSize; ++y) {
-    for (std::uint32_t x = 0; x < kSize; ++x) {
-      const float here = density[y * kSize + x];
-      const float aside = density[(y + 5) % kSize * kSize + (x + 5) % kSize];
-      texels[(y * kSize + x) * 2] = to_half((here - base) / span);
-      texels[(y * kSize + x) * 2 + 1] = to_half(0.5F + 2.0F * (here - aside) / span);
-    }
+  for (float& noise_ : noises)
+    noise_ = (noise_ - base) / span;
+  match_ranks(clouds, noises);
+  std::vector<std::uint16_t> texels(noises.size() * 2);
+  for (std::size_t i = 0; i < noises.size(); ++i) {
+    texels[2 * i] = to_half(clouds[i]);
+    texels[2 * i + 1] = to_half(noises[i]);
   }
   return texels;
 }

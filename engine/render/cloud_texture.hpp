@@ -9,8 +9,9 @@ namespace psygen::render {
 
 inline constexpr std::uint32_t kCloudTextureSize = 256;  // texels per side
 
-// The texels, row by row. Red: density of fractal noise, scaled to 0 … 1. Green: its relief, lit
-// from one side.
+// The texels, row by row, both scaled to 0 … 1. Red: density of clouds, fractal noise with round
+// billows. Green: fractal noise, as many texels of each value as red has; waves and foam use it
+// too.
 std::vector<std::uint16_t> make_cloud_texture();
 
 }  // namespace psygen::render

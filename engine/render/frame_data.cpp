@@ -35,6 +35,24 @@ void set_camera(shaders::FrameData& out, const FrameInput& input, core::Extent s
       static_cast<float>(size.width), static_cast<float>(size.height)};
 }
 
+// Clouds: repeats of their texture for each metre, which puts their base 1100 m high (clouds.glsl
+// has 0.27 for a height of 1), and how far the wind moves them.
+constexpr double kCloudRepeats = 0.27 / 1100.0;
+constexpr double kCloudDriftX = 0.002, kCloudDriftZ = 0.0006;  // repeats per second
+
+void set_clouds(shaders::FrameData& out, const FrameInput& input) {
+  const core::WorldPosition& at = input.pose.position;
+  const double seconds = input.light.time_seconds;
+  const auto place = [&](std::int32_t block, double local, double drift) {
+    const double metres = static_cast<double>(block) * input.block_size_m + local;
+    const double repeats = metres * kCloudRepeats + seconds * drift;
+    return static_cast<float>(repeats - std::floor(repeats));
+  };
+  out.clouds = {place(at.block.x, at.local.x, kCloudDriftX),
+                place(at.block.z, at.local.z, kCloudDriftZ), static_cast<float>(kCloudRepeats),
+                0.0F};
+}
+
 void set_light(shaders::FrameData& out, const FrameInput& input) {
   const Light& light = input.light;
   const float e = light.exposure;
@@ -125,6 +143,7 @@ shaders::FrameData frame_data(const FrameInput& input, core::Extent size,
   shaders::FrameData out{};
   set_camera(out, input, size);
   set_light(out, input);
+  set_clouds(out, input);
   set_palette(out, input.palette);
   set_water_and_far_things(out, input);
   set_shadows(input, traits, out);

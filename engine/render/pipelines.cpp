@@ -284,6 +284,7 @@ Result<void> Pipelines::create_sky(Making& making) {
   shape.kind = dome ? PipelineKind::kDome : PipelineKind::kSky;
   shape.vert = dome ? code.sky_dome_vert : code.sky_vert;
   shape.frag = dome ? code.sky_dome_frag : code.sky_frag;
+  shape.constants = {VK_FALSE, on(traits_.fine_grain)};
   if (Result<void> made = make(making, shape, sky_); !made || !dome) return made;
   shape.vert = code.sky_below_vert;
   shape.frag = code.sky_frag;

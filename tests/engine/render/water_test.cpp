@@ -70,7 +70,7 @@ class WaterOfPresets : public testing::TestWithParam<Preset> {
   }
   // The row of the picture in which the plane of the water is so many metres ahead.
   std::uint32_t row_ahead(double metres) const {
-    const double below = std::atan2(20.0, metres) - 0.9;
+    const double below = std::atan2(20.0, metres) + input_.pose.pitch;
     const double y = std::tan(below) / std::tan(input_.projection.vertical_fov * 0.5);
     return static_cast<std::uint32_t>(
         std::clamp((0.5 + 0.5 * y) * kPictureSize.height, 0.0, kPictureSize.height - 1.0));
