@@ -106,10 +106,10 @@ TEST_F(CloudShadows, stand_over_the_land_when_the_camera_moves) {
   double changed = 0;
   for (float seconds = 180; seconds < 300; seconds += 20) {
     const double here = left_on_ground(seconds);
-    EXPECT_NEAR(left_on_ground(seconds, kPeriodM), here, 0.03);
+    EXPECT_NEAR(left_on_ground(seconds, kPeriodM), here, 0.1);
     changed = std::max(changed, std::abs(left_on_ground(seconds, 400) - here));
   }
-  EXPECT_GT(changed, 0.1);
+  EXPECT_GT(changed, 0.2);
 }
 
 TEST_F(CloudShadows, are_not_in_presets_without_shadows) {
