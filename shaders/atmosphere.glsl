@@ -43,6 +43,11 @@ vec3 shown(vec3 light) {
   return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
 }
 
+float shown(float light) {
+  float x = max(light - 0.004, 0.0);
+  return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
+}
+
 // Light of sky and ground on a surface with normal `n`.
 vec3 ambient_light(vec3 n) {
   vec3 sky = mix(frame.horizon_colour.rgb, frame.zenith_colour.rgb, 0.6);

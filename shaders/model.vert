@@ -10,7 +10,6 @@
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "lamps.glsl"
-#include "under_water.glsl"
 #if defined(PSYGEN_PIXEL_LIGHT) && !defined(PSYGEN_OBJECT) && !defined(PSYGEN_PICTURE)
 #define PSYGEN_SURFACES
 #endif
@@ -139,12 +138,10 @@ void main() {
   vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x) +
                m.emissive.rgb * frame.sun_colour.w;
   if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
-  light = through_water(light, water_over(p.y));
   colour = shown(through_haze(light, p));
 #elif !defined(PSYGEN_SHADOW)
   vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x);
   if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
-  light = through_water(light, water_over(p.y));
 #ifdef PSYGEN_PICTURE
   vec3 kept;
   air = haze(p, kept);

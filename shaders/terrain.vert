@@ -9,7 +9,6 @@
 #include "lighting.glsl"
 #include "lamps.glsl"
 #include "ground.glsl"
-#include "under_water.glsl"
 #include "surface_out.glsl"
 #ifdef PSYGEN_GROUND_DETAIL
 #include "ground_shade.glsl"
@@ -69,7 +68,6 @@ void main() {
 #elif !defined(PSYGEN_DRAW_COLOUR) && !defined(PSYGEN_SHADOW)
   vec3 light = ground_light(albedo, n, visible.x, visible.y);
   if (lamps) light += albedo * lamp_light(p, n, 0.0);
-  light = through_water(light, water_over(p.y));
   colour = shown(through_haze(light, p));
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);

@@ -1,4 +1,4 @@
-// Ground and models under water, seen from above. Water lets less of their light through, of red the
+// Ground and models under water, seen from above, with light per pixel. Water lets less of their light through, of red the
 // most, the deeper they lie; what it scatters itself takes the place of the rest. The surface is
 // blended over them (water.glsl). Without water, or with the camera in it, nothing changes.
 

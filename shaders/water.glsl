@@ -30,18 +30,18 @@ WaterLight water_light(vec3 p, vec3 n) {
 
 // The colour to add to a share 1 - a of the picture's. The picture has display values; those of
 // light that is added are found exactly for deep water and for a bright bottom, and are linear in
-// between. `lit`: additional light from deep water, of lamps.
+// between; of green, which is most of the brightness. `lit`: additional light from deep water, of lamps.
 vec4 water_blend(WaterLight water, vec3 lit, vec3 p) {
   vec3 kept;
   vec3 air = haze(p, kept);
   vec3 deep = frame.deep_water.rgb + lit;
-  vec3 brighter = kept * (0.1 * frame.sun_colour.rgb + 0.2 * frame.zenith_colour.rgb);
   vec3 all = air + water.all * kept;
-  vec3 from = shown(air + deep * kept), to = shown(all);
-  vec3 bright_from = shown(air + deep * kept + brighter);
-  vec3 bright_to = shown(all + brighter * (1.0 - water.mirrored));
-  float step_ = dot(bright_from - from, vec3(1.0));
-  float share = clamp(dot(bright_to - to, vec3(1.0)) / max(step_, 1e-4), 0.0, 1.0);
+  vec3 below = air + deep * kept;
+  vec3 from = shown(below), to = shown(all);
+  float brighter = kept.g * (0.1 * frame.sun_colour.g + 0.2 * frame.zenith_colour.g);
+  float from_bright = shown(below.g + brighter);
+  float to_bright = shown(all.g + brighter * (1.0 - water.mirrored));
+  float share = clamp((to_bright - to.g) / max(from_bright - from.g, 1e-4), 0.0, 1.0);
   if (frame.water.w > 0.0) share = 0.0;  // from below, nothing is drawn beyond it
   return vec4(max(to - share * from, 0.0), 1.0 - share);
 }

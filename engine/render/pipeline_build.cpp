@@ -34,11 +34,12 @@ VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, VkShaderMo
   return info;
 }
 
-VkPipelineColorBlendAttachmentState blend_of(PipelineKind kind) {
+VkPipelineColorBlendAttachmentState blend_of(const PipelineShape& shape) {
+  const PipelineKind kind = shape.kind;
   VkPipelineColorBlendAttachmentState blend{};
   blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                          VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  const bool multiplied = kind == PipelineKind::kParticles || kind == PipelineKind::kWater;
+  const bool multiplied = kind == PipelineKind::kParticles || shape.see_through;
   if (kind != PipelineKind::kOverlay && kind != PipelineKind::kSun && !multiplied) return blend;
   blend.blendEnable = VK_TRUE;
   blend.srcColorBlendFactor = multiplied ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_ALPHA;
@@ -151,8 +152,14 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   samples.rasterizationSamples = shape.shadow || shape.flat ? VK_SAMPLE_COUNT_1_BIT : shape.samples;
-  const VkPipelineDepthStencilStateCreateInfo depth = depth_of(shape);
-  const VkPipelineColorBlendAttachmentState attachment = blend_of(shape.kind);
+  VkPipelineDepthStencilStateCreateInfo depth{};
+  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+  depth.depthTestEnable = kind != PipelineKind::kOverlay;
+  depth.depthWriteEnable = writes_depth;
+  depth.depthCompareOp = shape.shadow   ? VK_COMPARE_OP_LESS
+                         : writes_depth ? VK_COMPARE_OP_GREATER
+                                        : VK_COMPARE_OP_GREATER_OR_EQUAL;
+  const VkPipelineColorBlendAttachmentState attachment = blend_of(shape);
   VkPipelineColorBlendStateCreateInfo blend{};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
   blend.attachmentCount = shape.shadow ? 0 : 1;

@@ -269,7 +269,8 @@ Result<void> Pipelines::create_landscape(Making& making, bool lamps, MeshPipelin
   PipelineShape water = usual_shape();
   water.kind = PipelineKind::kWater;
   water.vert = lit ? code.water_lit_vert : code.water_vert;
-  water.frag = lit ? code.water_frag : code.water_colour_frag;
+  water.frag = lit ? code.water_frag : code.surface_frag;
+  water.see_through = lit;
   water.constants = {on(traits_.waves), VK_FALSE, on(lamps)};
   return create_meshes(making, meshes, look, out)
       .and_then([&] { return create_near_ground(making, meshes, out); })

@@ -151,9 +151,6 @@ constexpr std::uint32_t kWaterLitVert[] =
 constexpr std::uint32_t kWaterFrag[] =
 #include "water_frag_spv.h"
     ;
-constexpr std::uint32_t kWaterColourFrag[] =
-#include "water_colour_frag_spv.h"
-    ;
 constexpr std::uint32_t kLineVert[] =
 #include "line_vert_spv.h"
     ;
@@ -275,7 +272,6 @@ constexpr OtherCode kOthers{kSurfaceFrag,
                             kWaterVert,
                             kWaterLitVert,
                             kWaterFrag,
-                            kWaterColourFrag,
                             kLineVert,
                             kSkyVert,
                             kSkyFrag,
