@@ -4,12 +4,44 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "engine/scene/state.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::editor {
 namespace {
 
 constexpr double kFarM = 20'000;
+constexpr double kCrownShare = 0.7;  // of the sphere around a model, that a click must meet
+
+// A model that a ray passes through the middle of.
+struct Crown {
+  core::BlockCoord block;
+  std::uint32_t index = 0;
+  double distance_m = 0;
+};
+
+// The one in front, nearer than `longest_m`, of those that are drawn.
+std::optional<Crown> crown_on(const query::Ray& ray, double longest_m, const scene::State& state) {
+  std::optional<Crown> found;
+  const double block_m = state.facts.world.block_size_m();
+  state.entities.each<const scene::Placed, const scene::Source, const scene::Demand>(
+      [&](std::span<const ecs::Entity>, std::span<const scene::Placed> placed,
+          std::span<const scene::Source> sources, std::span<const scene::Demand> demands) {
+        for (std::size_t i = 0; i < placed.size(); ++i) {
+          if (demands[i].drawn_level == scene::kNoLevel || sources[i].index >= scene::kMergedIndex)
+            continue;
+          const scene::Placed& at = placed[i];
+          const glm::dvec3 middle = core::offset_m(at.block, ray.origin, block_m) +
+                                    glm::dvec3(at.position) + glm::dvec3(at.middle);
+          const double along = glm::dot(middle, ray.direction);
+          const double aside = glm::length(middle - along * ray.direction);
+          const double nearest = found ? found->distance_m : longest_m;
+          if (along <= 0 || along >= nearest || aside > kCrownShare * double{at.radius_m}) continue;
+          found = {at.block, sources[i].index, along};
+        }
+      });
+  return found;
+}
 
 }  // namespace
 
@@ -23,27 +55,54 @@ glm::dvec3 direction_of(QPointF pixel, core::Extent size, const core::CameraPose
   return glm::normalize(glm::dvec3(direction.x, direction.y, direction.z));
 }
 
-std::optional<Selection> pick(const world::World& world, const models::Registry& registry,
-                              const core::CameraPose& pose, const glm::dvec3& direction) {
-  query::World queries(world, registry);
+std::optional<Selection> pick(const scene::State& state, const core::CameraPose& pose,
+                              const glm::dvec3& direction) {
+  const world::World& world = state.facts.world;
+  query::World queries(world, state.facts.registry);
   query::Ray ray;
   ray.origin = pose.position;
   ray.direction = direction;
   ray.longest_m = kFarM;
   const auto hit = queries.cast(ray);
-  if (!hit || hit->kind == query::HitKind::kNothing) return std::nullopt;
-  Selection selection{hit->kind, hit->block,    hit->index, hit->model,
-                      {},        hit->position, {},         hit->distance_m};
-  if (hit->kind == query::HitKind::kModel) {
-    const auto placed = queries.placement(hit->block, hit->index);
-    if (!placed) return std::nullopt;
-    selection.parameters = placed->parameters;
-    selection.at = {hit->block, glm::dvec3(placed->position)};
-    selection.box = registry[hit->model].bounds(placed->parameters);
-  } else {
-    selection.model = world.terrain_model;
-    selection.parameters = world::terrain_parameters(world, hit->block);
+  if (!hit) return std::nullopt;
+  const bool model = hit->kind == query::HitKind::kModel;
+  std::optional<Crown> crown;
+  if (!model) crown = crown_on(ray, hit->distance_m, state);
+  if (!model && !crown && hit->kind == query::HitKind::kNothing) return std::nullopt;
+  if (model || crown) {
+    Selection selection;
+    selection.kind = query::HitKind::kModel;
+    selection.block = crown ? crown->block : hit->block;
+    selection.index = crown ? crown->index : hit->index;
+    selection.distance_m = crown ? crown->distance_m : hit->distance_m;
+    return found_again(selection, state);
   }
+  Selection selection;
+  selection.kind = query::HitKind::kGround;
+  selection.block = hit->block;
+  selection.at = hit->position;
+  selection.distance_m = hit->distance_m;
+  return found_again(selection, state);
+}
+
+std::optional<Selection> found_again(const Selection& before, const scene::State& state) {
+  const world::World& world = state.facts.world;
+  Selection selection = before;
+  if (before.kind == query::HitKind::kGround) {
+    selection.model = world.terrain_model;
+    selection.parameters = world::terrain_parameters(world, before.block);
+    return selection;
+  }
+  query::World queries(world, state.facts.registry);
+  const auto placed = queries.placement(before.block, before.index);
+  if (!placed) return std::nullopt;
+  selection.model = placed->model;
+  selection.parameters = placed->parameters;
+  selection.at = {before.block, glm::dvec3(placed->position)};
+  const core::Bounds box = state.facts.registry[placed->model].bounds(placed->parameters);
+  const core::Bounds& usual = state.facts.usual_boxes[placed->model];
+  selection.box = {box.center() + usual.min * box.half_extent(),
+                   box.center() + usual.max * box.half_extent()};
   return selection;
 }
 

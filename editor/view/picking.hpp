@@ -9,6 +9,10 @@
 #include "engine/core/surface_provider.hpp"
 #include "engine/query/world.hpp"
 
+namespace psygen::scene {
+struct State;
+}
+
 namespace psygen::editor {
 
 // What a click selected.
@@ -28,7 +32,10 @@ glm::dvec3 direction_of(QPointF pixel, core::Extent size, const core::CameraPose
                         const core::Projection& projection);
 
 // The first thing from the camera in a direction, within 20 km; nothing: the sky.
-std::optional<Selection> pick(const world::World& world, const models::Registry& registry,
-                              const core::CameraPose& pose, const glm::dvec3& direction);
+std::optional<Selection> pick(const scene::State& state, const core::CameraPose& pose,
+                              const glm::dvec3& direction);
+
+// The same model, or the same place of the ground, in the present world; nothing if it is gone.
+std::optional<Selection> found_again(const Selection& selection, const scene::State& state);
 
 }  // namespace psygen::editor

@@ -3,9 +3,11 @@
 #include <QGuiApplication>
 #include <QPlatformSurfaceEvent>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "engine/core/start_thread.hpp"
 #include "engine/render/hud_drawing.hpp"
 #include "engine/scene/scene.hpp"
 
@@ -59,6 +61,8 @@ void WorldView::open() {
 
 void WorldView::close() {
   timer_.stop();
+  if (prepared_.valid()) prepared_.wait();  // it uses the session
+  prepared_ = {};
   has_hung_ = has_hung();
   if (session_ && session_->has_hung_modelers()) (void)session_.release();
   session_.reset();
@@ -88,28 +92,45 @@ bool WorldView::event(QEvent* event) {
   return QWindow::event(event);
 }
 
+// The newest text, once what is prepared of the one before has been taken.
 void WorldView::take_text() {
-  if (!std::exchange(text_is_new_, false)) return;
-  if (auto ok = session_->set_world(text_); !ok) {
+  if (prepared_.valid() || !std::exchange(text_is_new_, false)) return;
+  using Task = std::packaged_task<core::Result<scene::PreparedWorld>()>;
+  const auto task = std::make_shared<Task>(session_->prepare_world(text_));
+  prepared_ = task->get_future();
+  auto thread = core::start_thread([task] { (*task)(); });
+  if (!thread) return (*task)();
+  thread->detach();
+}
+
+void WorldView::take_prepared() {
+  if (!prepared_.valid() ||
+      prepared_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  auto prepared = prepared_.get();
+  const auto ok = prepared ? session_->show_world(std::move(*prepared))
+                           : core::Result<void>(tl::unexpected(prepared.error()));
+  if (!ok) {
     since_text_.invalidate();
     Q_EMIT refused(QString::fromStdString(ok.error().message));
     return;
   }
   camera_.set_block_size(session_->scene().state().facts.world.block_size_m());
-  if (selection_) select(std::nullopt);
+  if (selection_) select(found_again(*selection_, session_->scene().state()));
 }
 
 void WorldView::tick() {
   if (!session_ || !isExposed()) return;
   const double dt_s = std::min(static_cast<double>(since_tick_.nsecsElapsed()) * 1e-9, kMostStepS);
   since_tick_.start();
+  take_prepared();
   if (!paused_) take_text();
   const platform::InputState input = input_.take_frame();
   camera_.update(input, dt_s);
   if (const auto click = input_.take_click()) {
     const scene::State& state = session_->scene().state();
     select(pick(
-        state.facts.world, state.facts.registry, camera_.pose(),
+        state, camera_.pose(),
         direction_of(*click, session_->picture_size(), camera_.pose(), state.camera.projection)));
   }
   write_over_picture();
@@ -130,7 +151,7 @@ void WorldView::tick() {
 }
 
 void WorldView::note_settled() {
-  if (!since_text_.isValid() || text_is_new_) return;
+  if (!since_text_.isValid() || text_is_new_ || prepared_.valid()) return;
   const scene::State& state = session_->scene().state();
   if (state.counters.awaited > 0 || state.meshes.outstanding() > 0) return;
   Q_EMIT settled(static_cast<double>(since_text_.nsecsElapsed()) * 1e-6);

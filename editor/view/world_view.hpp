@@ -1,12 +1,14 @@
 // The engine's own picture of the world, in a window that is embedded in the editor's. Owns the
 // session: opens it when the window can first be seen, draws while it can be seen, and follows the
-// text of the world: the newest one wins, and what is drawn stays until the new meshes are there.
+// text of the world: another thread prepares the newest one, and what is drawn stays until the new
+// meshes are there.
 // It changes no document. Main thread.
 #pragma once
 
 #include <QElapsedTimer>
 #include <QTimer>
 #include <QWindow>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +18,7 @@
 #include "editor/view/view_input.hpp"
 #include "editor/view/window_surface.hpp"
 #include "engine/app/session.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen::editor {
 
@@ -62,6 +65,7 @@ class WorldView final : public QWindow {
   void close();
   void tick();
   void take_text();
+  void take_prepared();
   void write_over_picture();
   void note_settled();
 
@@ -73,6 +77,8 @@ class WorldView final : public QWindow {
   ViewCamera camera_;
   ViewInput input_;
   std::optional<Selection> selection_;
+  // What another thread makes of the newest text that it has got; invalid: it rests.
+  std::future<core::Result<scene::PreparedWorld>> prepared_;
   QTimer timer_;
   QElapsedTimer since_tick_;
   QElapsedTimer since_text_;  // invalid: everything of the text is drawn

@@ -152,13 +152,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   samples.rasterizationSamples = shape.shadow || shape.flat ? VK_SAMPLE_COUNT_1_BIT : shape.samples;
-  VkPipelineDepthStencilStateCreateInfo depth{};
-  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = kind != PipelineKind::kOverlay;
-  depth.depthWriteEnable = writes_depth;
-  depth.depthCompareOp = shape.shadow   ? VK_COMPARE_OP_LESS
-                         : writes_depth ? VK_COMPARE_OP_GREATER
-                                        : VK_COMPARE_OP_GREATER_OR_EQUAL;
+  const VkPipelineDepthStencilStateCreateInfo depth = depth_of(shape);
   const VkPipelineColorBlendAttachmentState attachment = blend_of(shape);
   VkPipelineColorBlendStateCreateInfo blend{};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
