@@ -19,13 +19,14 @@ constexpr int kPoints = 24;        // of a curve of reals
 constexpr int kMeasuredEvery = 6;  // points
 constexpr double kMostMeasuredS = 0.05;
 
-// Somewhere in the world, always the same places.
-core::BlockCoord block_of(const world::World& world, int number) {
-  const auto place = [number](std::int64_t blocks, std::int64_t prime) {
-    const std::int64_t along = blocks == 0 ? 512 : blocks;
-    return static_cast<std::int32_t>((along / 2 + number * prime) % along);
+// A few hundred metres apart, within the world.
+core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number) {
+  const auto place = [](std::int64_t at, std::int64_t blocks) {
+    return static_cast<std::int32_t>(blocks == 0 ? at
+                                                 : std::clamp<std::int64_t>(at, 0, blocks - 1));
   };
-  return {place(world.blocks_x, 37), place(world.blocks_z, 53)};
+  return {place(around.x + (number % 2) * 5 - 2, world.blocks_x),
+          place(around.z + (number / 2) * 5 - 2, world.blocks_z)};
 }
 
 // Seconds of this thread to make a mesh; nothing if it fails.
@@ -70,14 +71,15 @@ bool has_cost_curve(const world::WorldField& field) {
          table != "water";
 }
 
-BlockCost block_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt, bool measure) {
+BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
+                     const synthesis::CostModel* learnt, bool measure) {
   synthesis::CostModel costs(parsed.registry);
   if (learnt != nullptr) costs.learn_from(*learnt);
   BlockCost sum;
   std::vector<world::Placement> placements;
   std::vector<std::pair<models::ModelIndex, models::Parameters>> meshes;
   for (int i = 0; i < kBlocks; ++i) {
-    const core::BlockCoord block = block_of(parsed.world, i);
+    const core::BlockCoord block = block_near(parsed.world, around, i);
     world::place_models(parsed.world, parsed.registry, block, placements);
     sum.models += static_cast<double>(placements.size());
     meshes.emplace_back(parsed.world.terrain_model, world::terrain_parameters(parsed.world, block));
@@ -108,7 +110,7 @@ BlockCost block_cost(const ParsedWorld& parsed, const synthesis::CostModel* lear
 
 std::vector<CostPoint> cost_curve(const std::string& text, const std::string& file,
                                   const RegisterModels& register_models,
-                                  const world::WorldField& field,
+                                  const world::WorldField& field, core::BlockCoord around,
                                   const synthesis::CostModel* learnt,
                                   const std::function<bool()>& go_on) {
   std::vector<CostPoint> curve;
@@ -121,7 +123,7 @@ std::vector<CostPoint> cost_curve(const std::string& text, const std::string& fi
     const auto parsed = changed ? parse_world_text(*changed, file, register_models)
                                 : tl::make_unexpected(changed.error());
     if (parsed) {
-      point.cost = block_cost(**parsed, learnt, number++ % kMeasuredEvery == 0);
+      point.cost = block_cost(**parsed, around, learnt, number++ % kMeasuredEvery == 0);
     } else {
       point.refusal = parsed.error().message;
     }

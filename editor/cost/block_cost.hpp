@@ -20,9 +20,11 @@ struct BlockCost {
   std::optional<double> measured_seconds;  // of one core, if blocks were made
 };
 
-// The cost of a world. `learnt`: what a cost model of the same program knows (null: nothing).
-// `measure`: also makes the blocks, unless that is predicted to take over 50 ms.
-BlockCost block_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt, bool measure);
+// The cost of a world, of some blocks around one. `learnt`: what a cost model of the same program
+// knows (null: nothing). `measure`: also makes the blocks, unless that is predicted to take over 50
+// ms.
+BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
+                     const synthesis::CostModel* learnt, bool measure);
 
 // Whether numbers of a field change what is made, so that there is a curve of it.
 bool has_cost_curve(const world::WorldField& field);
@@ -39,7 +41,7 @@ struct CostPoint {
 // values. Some milliseconds a value.
 std::vector<CostPoint> cost_curve(const std::string& text, const std::string& file,
                                   const RegisterModels& register_models,
-                                  const world::WorldField& field,
+                                  const world::WorldField& field, core::BlockCoord around,
                                   const synthesis::CostModel* learnt,
                                   const std::function<bool()>& go_on);
 

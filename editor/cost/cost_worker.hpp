@@ -21,10 +21,10 @@ class CostWorker final : public QObject {
   explicit CostWorker(RegisterModels register_models, QObject* parent = nullptr);
   ~CostWorker() override;
 
-  // Curves of these fields in this text, and the cost of the text itself. Replaces what was asked
-  // before. `learnt` may be null.
+  // Curves of these fields in this text, and the cost of the text itself, of blocks around one.
+  // Replaces what was asked before. `learnt` may be null.
   void ask(std::string text, std::string file, std::vector<world::WorldField> fields,
-           std::shared_ptr<const synthesis::CostModel> learnt);
+           core::BlockCoord around, std::shared_ptr<const synthesis::CostModel> learnt);
 
  Q_SIGNALS:
   void world_cost(const psygen::editor::BlockCost& cost);
@@ -34,6 +34,7 @@ class CostWorker final : public QObject {
   struct Job {
     std::string text, file;
     std::vector<world::WorldField> fields;
+    core::BlockCoord around;
     std::shared_ptr<const synthesis::CostModel> learnt;
     std::uint64_t number = 0;
   };

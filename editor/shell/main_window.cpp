@@ -196,7 +196,7 @@ void MainWindow::ask_costs() {
     learnt =
         std::make_shared<synthesis::CostModel>(view_->session()->scene().state().meshes.costs());
   costs_->ask(document_.text(), document_.file().string(), properties_->shown_fields(),
-              std::move(learnt));
+              view_->camera().pose().position.block, std::move(learnt));
 }
 
 void MainWindow::show_figures() {

@@ -13,6 +13,23 @@ namespace {
 constexpr double kFarM = 20'000;
 constexpr double kCrownShare = 0.7;  // of the sphere around a model, that a click must meet
 
+// Around its vertices where it is drawn, else around all that its parameters could lead to.
+core::Bounds box_of(const Selection& model, const scene::State& state) {
+  std::optional<core::Bounds> tight;
+  state.entities
+      .each<const scene::Placed, const scene::Source, const scene::Demand, const scene::Mesh>(
+          [&](std::span<const ecs::Entity>, std::span<const scene::Placed> placed,
+              std::span<const scene::Source> sources, std::span<const scene::Demand> demands,
+              std::span<const scene::Mesh> meshes) {
+            for (std::size_t i = 0; i < placed.size(); ++i) {
+              if (sources[i].index == model.index && placed[i].block == model.block &&
+                  demands[i].drawn_level != scene::kNoLevel)
+                tight = meshes[i].tight;
+            }
+          });
+  return tight ? *tight : state.facts.registry[model.model].bounds(model.parameters);
+}
+
 // A model that a ray passes through the middle of.
 struct Crown {
   core::BlockCoord block;
@@ -99,10 +116,7 @@ std::optional<Selection> found_again(const Selection& before, const scene::State
   selection.model = placed->model;
   selection.parameters = placed->parameters;
   selection.at = {before.block, glm::dvec3(placed->position)};
-  const core::Bounds box = state.facts.registry[placed->model].bounds(placed->parameters);
-  const core::Bounds& usual = state.facts.usual_boxes[placed->model];
-  selection.box = {box.center() + usual.min * box.half_extent(),
-                   box.center() + usual.max * box.half_extent()};
+  selection.box = box_of(selection, state);
   return selection;
 }
 
