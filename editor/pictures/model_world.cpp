@@ -1,0 +1,242 @@
+#include "editor/pictures/model_world.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "engine/synthesis/synthesize.hpp"
+#include "engine/world/files/text_edit.hpp"
+#include "engine/world/files/text_snippet.hpp"
+#include "engine/world/files/toml_values.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::editor {
+namespace {
+
+// Blocks of four kilometres: the next model is a dot on the horizon.
+constexpr std::string_view kStudio = R"(format = 1
+
+[world]
+name = "portrait"
+seed = 7
+blocks = [0, 0]
+block_vertices = 64
+cell_m = 64
+
+[terrain]
+octaves = 1
+relief_m = 0.01
+
+[sky]
+sun_azimuth_deg = 222
+sun_elevation_deg = 36
+sun_colour = [3.3, 2.9, 2.4]
+zenith_colour = [0.24, 0.36, 0.58]
+horizon_colour = [0.62, 0.68, 0.76]
+haze_colour = [0.62, 0.68, 0.76]
+visibility_m = 2500
+haze_height_m = 2000
+cloud_cover = 0
+
+[palette]
+grass = [0.15, 0.155, 0.12]
+forest = [0.15, 0.155, 0.12]
+dry = [0.15, 0.155, 0.12]
+dry_start_m = 1000
+snow_start_m = 1000
+sand_end_m = -1000
+)";
+// The valley of the README, for skies; terrains get heights that suit their own.
+constexpr std::string_view kCountry = R"(format = 1
+
+[world]
+name = "country"
+seed = 71
+blocks = [0, 0]
+block_vertices = 64
+cell_m = 1
+
+[terrain]
+octaves = 9
+height = 1.15
+lacunarity = 2.03
+offset = 0.98
+gain = 1.8
+feature_m = 720
+relief_m = 330
+
+[[scatter]]
+model = "tree"
+count = 14
+max_height_m = 150
+max_slope_deg = 32
+
+[palette]
+dry_start_m = 150
+dry_blend_m = 60
+snow_start_m = 250
+snow_blend_m = 18
+)";
+constexpr double kCountryHighM = 330;  // its relief
+constexpr double kSnowyM = 300;        // lower terrains have no snow
+
+constexpr int kTried = 4;         // blocks along a side, of which the most lonely model is taken
+constexpr double kPitch = -0.09;  // slightly from above
+constexpr double kAir = 1.12;     // around the model
+constexpr double kLeastHeight = 0.25;  // of the eye over the ground, in heights of the model
+
+tl::unexpected<core::Error> no_such(std::string_view array, std::size_t index) {
+  return core::fail(core::ErrorCode::kInvalidArgument,
+                    fmt::format("{}[{}]: there is no such table", array, index));
+}
+
+// The text with limits and count of its only scatter such that it stands anywhere, once.
+core::Result<std::string> alone(core::Result<std::string> text) {
+  for (const char* limit : {"min_height_m", "max_height_m", "max_slope_deg"})
+    if (text) text = world::without_value(*text, {"scatter", 0, limit});
+  if (text) text = world::with_value(*text, {"scatter", 0, "count"}, "1");
+  return text;
+}
+
+// The table `from` of a text appended to `to`.
+core::Result<std::string> appended(core::Result<std::string> to, const char* array,
+                                   const std::string& table) {
+  if (!to) return to;
+  return world::with_table_appended(*to, {array}, table);
+}
+
+std::string named_scatter(std::string_view species_name_toml) {
+  return fmt::format("model = {}\ncount = 1\n", species_name_toml);
+}
+
+// The number of the species with this name in quotes, if the text has one.
+std::optional<std::size_t> species_named(std::string_view text, const std::string& name_toml) {
+  for (std::size_t i = 0; i < world::item_count(text, {"species"}); ++i)
+    if (world::value_text(text, {"species", i, "name"}) == name_toml) return i;
+  return std::nullopt;
+}
+
+double relief_of(std::string_view terrain) {
+  double relief_m = kCountryHighM;
+  const auto value = world::value_text(terrain, {"terrain", "relief_m"});
+  if (value) std::from_chars(value->data(), value->data() + value->size(), relief_m);
+  return relief_m;
+}
+
+// The country with a terrain: heights of trees, heath and snow go with its relief.
+core::Result<std::string> country_with(std::string_view terrain) {
+  auto text = world::with_snippet(kCountry, {"terrain"}, terrain);
+  const double relief_m = relief_of(terrain);
+  const std::pair<world::TextPath, double> heights[] = {
+      {{"scatter", 0, "max_height_m"}, 0.45 * relief_m},
+      {{"palette", "dry_start_m"}, 0.45 * relief_m},
+      {{"palette", "dry_blend_m"}, std::max(0.2 * relief_m, 1.0)},
+      {{"palette", "snow_start_m"}, relief_m >= kSnowyM ? 0.76 * relief_m : 1e6}};
+  for (const auto& [path, height_m] : heights)
+    if (text) text = world::with_value(*text, path, world::toml_number(height_m));
+  return text;
+}
+
+std::optional<std::string> name_of_table(std::string_view snippet) {
+  const auto table = world::snippet_table(snippet);
+  if (!table || table->size() != 1) return std::nullopt;
+  return table->back().key;
+}
+
+}  // namespace
+
+core::Result<std::string> scatter_portrait(std::string_view text, std::size_t scatter) {
+  const auto table = world::table_text(text, {"scatter", scatter});
+  if (!table) return no_such("scatter", scatter);
+  core::Result<std::string> studio{std::string(kStudio)};
+  const auto model = world::value_text(text, {"scatter", scatter, "model"});
+  if (const auto species = model ? species_named(text, *model) : std::nullopt)
+    studio =
+        appended(std::move(studio), "species", *world::table_text(text, {"species", *species}));
+  return alone(appended(std::move(studio), "scatter", *table));
+}
+
+core::Result<std::string> species_portrait(std::string_view text, std::size_t species) {
+  const auto table = world::table_text(text, {"species", species});
+  const auto name = world::value_text(text, {"species", species, "name"});
+  if (!table || !name) return no_such("species", species);
+  return appended(appended(std::string(kStudio), "species", *table), "scatter",
+                  named_scatter(*name));
+}
+
+PicturePlace country_place(std::string_view snippet) {
+  PicturePlace place{{-1257, 24, 3978}, 1.92, -0.1, true};
+  if (name_of_table(snippet) != "terrain") return place;
+  place.at_m.y = std::max(40.0, 0.3 * relief_of(snippet));
+  place.pitch = -0.2;
+  return place;
+}
+
+bool is_portrait(std::string_view snippet) {
+  const auto table = name_of_table(snippet);
+  return table == "species" || table == "scatter";
+}
+
+core::Result<std::string> snippet_world(std::string_view snippet) {
+  const std::string table = name_of_table(snippet).value_or("");
+  if (table == "species")
+    return appended(std::string(kStudio), "species", std::string(snippet))
+        .and_then([](const std::string& text) { return species_portrait(text, 0); });
+  if (table == "scatter")
+    return alone(appended(std::string(kStudio), "scatter", std::string(snippet)));
+  if (table == "terrain") return country_with(snippet);
+  if (table == "sky") return world::with_snippet(kCountry, {table}, snippet);
+  return core::fail(core::ErrorCode::kInvalidArgument,
+                    fmt::format("there are no pictures of [{}]", table));
+}
+
+std::optional<core::CameraPose> portrait_pose(const ParsedWorld& parsed,
+                                              const core::Projection& projection) {
+  const double block_m = parsed.world.block_size_m();
+  std::optional<core::WorldPosition> foot;
+  const models::ModelType* type = nullptr;
+  models::Parameters parameters;
+  double most_lonely_m = -1;
+  std::vector<world::Placement> placements;
+  for (int i = 0; i < kTried * kTried; ++i) {
+    const core::BlockCoord block{i % kTried, i / kTried};
+    world::place_models(parsed.world, parsed.registry, block, placements);
+    if (placements.empty()) continue;
+    const glm::dvec3 at(placements[0].position);
+    const double lonely_m = std::min({at.x, at.z, block_m - at.x, block_m - at.z});
+    if (lonely_m <= most_lonely_m) continue;
+    most_lonely_m = lonely_m;
+    foot = core::WorldPosition{block, at};
+    type = &parsed.registry[placements[0].model];
+    parameters = placements[0].parameters;
+  }
+  if (!foot) return std::nullopt;
+  core::Bounds box = type->bounds(parameters);
+  const int level = std::min(1, type->level_count_of(parameters) - 1);
+  if (const auto memory = synthesis::HeapDestination::make(*type, parameters, level)) {
+    const auto made = synthesis::synthesize_guarded(*type, parameters, level, memory->view());
+    if (made.ok) box = made.tight;
+  }
+  const glm::dvec3 half(box.half_extent()), middle(box.center());
+  const double half_fov = static_cast<double>(projection.vertical_fov) / 2;
+  const double up = std::tan(half_fov);
+  const double across = up * static_cast<double>(projection.aspect);
+  const double radius_m = std::hypot(half.x, half.z) * 0.85;  // boxes have corners, crowns few
+  const double distance_m =
+      std::max({kAir * half.y / up, kAir * radius_m / across, 0.2}) + radius_m * 0.7;
+  core::CameraPose pose;
+  pose.pitch = kPitch;
+  pose.position = *foot;
+  pose.position.local += middle - glm::dvec3(core::forward_of(pose)) * distance_m;
+  pose.position.local.y =
+      std::max(pose.position.local.y, foot->local.y + std::max(kLeastHeight * 2 * half.y, 0.05));
+  // Looks at the middle from wherever it is.
+  pose.pitch = std::atan2(foot->local.y + middle.y - pose.position.local.y, distance_m);
+  pose.position = core::normalised(pose.position, block_m);
+  return pose;
+}
+
+}  // namespace psygen::editor

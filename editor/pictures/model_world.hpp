@@ -1,0 +1,37 @@
+// Small worlds for pictures of one thing: a model alone on flat, plain ground, a terrain, a sky.
+// Texts of world files; nothing is drawn here. Pure functions, any thread.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "editor/document/parsed_world.hpp"
+#include "editor/pictures/picture_request.hpp"
+#include "engine/core/camera.hpp"
+
+namespace psygen::editor {
+
+// A world with the model of scatter number `scatter` of a world text, with its values, once on each
+// block of some kilometres. Fails with kInvalidArgument where there is no such scatter, and with
+// kParse where the text is not TOML.
+core::Result<std::string> scatter_portrait(std::string_view text, std::size_t scatter);
+// The same of species number `species`, as its defaults are.
+core::Result<std::string> species_portrait(std::string_view text, std::size_t species);
+// A world with this snippet (text_snippet.hpp) of a species, scatter, terrain or sky and little
+// else. Fails with kInvalidArgument for snippets of other tables.
+core::Result<std::string> snippet_world(std::string_view snippet);
+// Whether snippet_world() makes a portrait of a model.
+bool is_portrait(std::string_view snippet);
+// From where the other worlds of snippet_world() are seen: over a valley, higher over terrains that
+// are high.
+PicturePlace country_place(std::string_view snippet);
+
+// Where a portrait is taken: the whole model, seen from its sunny side. `height_share` is the
+// height of the picture over its width. Nothing where nothing stands. Makes a coarse mesh of the
+// model, so a model that hangs hangs here.
+std::optional<core::CameraPose> portrait_pose(const ParsedWorld& parsed,
+                                              const core::Projection& projection);
+
+}  // namespace psygen::editor

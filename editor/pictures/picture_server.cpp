@@ -1,0 +1,247 @@
+#include "editor/pictures/picture_server.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <QCoreApplication>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "editor/pictures/export_file.hpp"
+#include "editor/pictures/model_world.hpp"
+#include "editor/pictures/picture_request.hpp"
+#include "engine/app/session.hpp"
+#include "engine/core/log.hpp"
+#include "engine/models/terrain/ground.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/render/software_tuning.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr double kServerWatchdogS = 3;
+constexpr double kErrorPixels = 1.5;
+constexpr std::uint64_t kServerBudgetBytes = 384ULL << 20;
+constexpr double kLeastEyeM = 0.6;  // over the ground, wherever the camera was
+constexpr int kHungExit = 3;
+constexpr std::size_t kChunk = 1 << 16;
+
+core::Error failed(std::string sentence) {
+  return {core::ErrorCode::kSynthesisFailed, std::move(sentence)};
+}
+
+// Lines of a pipe.
+class LineInput {
+ public:
+  // The next line; nothing at the end of the input.
+  std::optional<QByteArray> next() {
+    while (true) {
+      if (const qsizetype end = buffer_.indexOf('\n'); end >= 0) {
+        QByteArray line = buffer_.left(end);
+        buffer_.remove(0, end + 1);
+        return line;
+      }
+      if (!read()) return std::nullopt;
+    }
+  }
+  // Whether there is more already. Ends the process where the other end is gone.
+  bool waiting() {
+    if (buffer_.contains('\n')) return true;
+    pollfd poll{STDIN_FILENO, POLLIN, 0};
+    if (::poll(&poll, 1, 0) <= 0) return false;
+    if (!read()) std::_Exit(0);
+    return buffer_.contains('\n');
+  }
+
+ private:
+  bool read() {
+    char bytes[kChunk];
+    const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
+    if (count <= 0) return false;
+    buffer_.append(bytes, static_cast<qsizetype>(count));
+    return true;
+  }
+  QByteArray buffer_;
+};
+
+class PictureServer {
+ public:
+  PictureServer(std::vector<app::Plugin> plugins, std::string device_name)
+      : plugins_(std::move(plugins)), device_name_(std::move(device_name)) {}
+
+  // Answers requests until the input ends.
+  int run() {
+    while (const auto line = input_.next()) {
+      const auto request = request_from(*line);
+      if (!request) continue;
+      const PictureReply reply = answer(*request);
+      const QByteArray text = to_line(reply);
+      if (::write(out_, text.constData(), static_cast<std::size_t>(text.size())) < 0) return 0;
+      if (session_ && session_->has_hung_modelers()) std::_Exit(kHungExit);
+    }
+    return 0;
+  }
+  // Takes the standard output for answers: what others print goes to the errors.
+  bool take_output() {
+    out_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+    return out_ >= 0 && ::dup2(STDERR_FILENO, STDOUT_FILENO) >= 0;
+  }
+
+ private:
+  core::Result<void> register_models(models::Registry& registry) const {
+    for (const app::Plugin& plugin : plugins_) {
+      if (!plugin.register_models) continue;
+      if (auto ok = plugin.register_models(registry); !ok) return ok;
+    }
+    return {};
+  }
+
+  PictureReply answer(const PictureRequest& request) {
+    PictureReply reply;
+    reply.id = request.id;
+    const auto parsed = parse_world_text(
+        request.text, request.file, [this](auto& registry) { return register_models(registry); });
+    core::Result<void> done;
+    if (!parsed) {
+      done = tl::unexpected(parsed.error());
+    } else if (request.kind == PictureKind::kCost) {
+      reply.cost = block_cost(**parsed, learnt(), false);
+    } else if (request.kind == PictureKind::kExportModel ||
+               request.kind == PictureKind::kExportBlock) {
+      const core::BlockCoord block{request.block_x, request.block_z};
+      const auto note =
+          request.kind == PictureKind::kExportBlock
+              ? export_block(**parsed, block, request.level, request.out)
+              : export_model(**parsed, block, request.index, request.level, request.out);
+      if (note) {
+        reply.note = *note;
+      } else {
+        done = tl::unexpected(note.error());
+      }
+    } else {
+      done = draw(request, **parsed, reply);
+    }
+    if (!done) reply.error = done.error().message;
+    return reply;
+  }
+
+  const synthesis::CostModel* learnt() const {
+    return session_ ? &session_->scene().state().meshes.costs() : nullptr;
+  }
+
+  core::Result<void> draw(const PictureRequest& request, const ParsedWorld& parsed,
+                          PictureReply& reply) {
+    if (auto ok = show(request, parsed); !ok) return ok;
+    scene::State& state = session_->scene().state();
+    core::Projection projection = state.camera.projection;
+    projection.aspect =
+        static_cast<float>(request.size.width) / static_cast<float>(request.size.height);
+    core::CameraPose pose = session_->home();
+    if (request.kind == PictureKind::kPortrait) {
+      const auto portrait = portrait_pose(parsed, projection);
+      if (!portrait) return tl::unexpected(failed("the model stands nowhere"));
+      pose = *portrait;
+    } else if (request.place) {
+      pose = pose_of(*request.place, parsed.world);
+    }
+    if (!core::is_valid(pose)) return tl::unexpected(failed("there is no such place"));
+    session_->set_now(request.now_s);
+    state.input.size = session_->picture_size();
+    const std::uint64_t failed_before = state.totals.failed;
+    session_->scene().settle(pose, [&](std::string_view, double) {
+      reply.dropped = reply.dropped || input_.waiting();
+      return !reply.dropped;
+    });
+    if (reply.dropped) return {};
+    if (auto ok = session_->tick(pose, 0); !ok) return ok;
+    if (state.totals.failed > failed_before || state.counters.holes > 0)
+      return tl::unexpected(failed(what_failed(state)));
+    reply.cost = block_cost(parsed, learnt(), false);
+    return session_->save_picture(request.out);
+  }
+
+  static std::string what_failed(const scene::State& state) {
+    const auto& hung = state.meshes.hung();
+    if (!hung.empty()) return fmt::format("a model takes more than {} s", kServerWatchdogS);
+    return "a model could not be made";
+  }
+
+  // The session with this world and size.
+  core::Result<void> show(const PictureRequest& request, const ParsedWorld& parsed) {
+    const std::filesystem::path folder = std::filesystem::path(request.file).parent_path();
+    const bool same_pictures = session_ && images_ == parsed.world.palette.images &&
+                               (images_empty(parsed.world) || folder == folder_);
+    if (same_pictures) {
+      if (session_->picture_size() != request.size) {
+        if (auto ok = session_->renderer().resize(request.size); !ok) return ok;
+      }
+      return session_->set_world(request.text);
+    }
+    session_.reset();
+    app::SessionOptions options;
+    options.world_text = request.text;
+    options.world_file = request.file;
+    options.headless = true;
+    options.device_name = device_name_;
+    options.size = request.size;
+    options.preset = render::Preset::kHigh;
+    options.plugins = plugins_;
+    options.scene.budget_bytes = kServerBudgetBytes;
+    options.scene.max_error_pixels = kErrorPixels;
+    options.scene.fade_seconds = 0;
+    options.scene.watchdog_seconds = kServerWatchdogS;
+    auto session = app::Session::create(std::move(options));
+    if (!session) return tl::unexpected(session.error());
+    session_ = std::move(*session);
+    images_ = parsed.world.palette.images;
+    folder_ = folder;
+    return {};
+  }
+
+  static bool images_empty(const world::World& world) {
+    return world.palette.images == decltype(world.palette.images){};
+  }
+
+  static core::CameraPose pose_of(const PicturePlace& place, const world::World& world) {
+    core::CameraPose pose{{{}, {place.at_m.x, 0, place.at_m.z}}, place.yaw, place.pitch};
+    pose.position = core::normalised(pose.position, world.block_size_m());
+    const core::WorldPosition& at = pose.position;
+    double surface_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
+    if (world.water.exists()) surface_m = std::max(surface_m, world.water.level_m);
+    const double wanted_m = place.at_m.y + (place.above_ground ? surface_m : 0);
+    pose.position.local.y = std::max(wanted_m, surface_m + kLeastEyeM);
+    return pose;
+  }
+
+  std::vector<app::Plugin> plugins_;
+  std::string device_name_;
+  std::unique_ptr<app::Session> session_;
+  decltype(world::Palette{}.images) images_{};
+  std::filesystem::path folder_;
+  LineInput input_;
+  int out_ = -1;
+};
+
+}  // namespace
+
+int render_pictures(std::vector<app::Plugin> plugins, std::string device_name) {
+  // Before there are threads, which inherit it.
+  (void)::setpriority(PRIO_PROCESS, 0, 19);
+  std::ofstream("/proc/self/oom_score_adj") << 1000;
+  const rlimit no_core{0, 0};
+  (void)::setrlimit(RLIMIT_CORE, &no_core);
+  if (auto ok = render::fit_software_rendering_to_threads(); !ok)
+    return core::log_error(ok.error().message), 1;
+  PictureServer server(std::move(plugins), std::move(device_name));
+  return server.take_output() ? server.run() : 1;
+}
+
+}  // namespace psygen::editor

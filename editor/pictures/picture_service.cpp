@@ -1,0 +1,162 @@
+#include "editor/pictures/picture_service.hpp"
+
+#include <QFile>
+#include <algorithm>
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kPatienceMs = 1000;
+constexpr int kExportTimes = 10;  // as long as a picture
+constexpr int kEndMs = 200;       // to end by itself
+
+}  // namespace
+
+PictureService::PictureService(QString program, QStringList arguments, QObject* parent,
+                               int limit_ms)
+    : QObject(parent),
+      program_(std::move(program)),
+      arguments_(std::move(arguments)),
+      limit_ms_(limit_ms) {
+  limit_.setSingleShot(true);
+  patience_.setSingleShot(true);
+  connect(&limit_, &QTimer::timeout, this, [this] {
+    if (!process_) return;
+    process_->kill();  // ended() does the rest
+  });
+  connect(&patience_, &QTimer::timeout, this, &PictureService::send_next);
+}
+
+PictureService::~PictureService() {
+  if (!process_) return;
+  process_->disconnect(this);
+  process_->closeWriteChannel();
+  if (!process_->waitForFinished(kEndMs)) {
+    process_->kill();
+    process_->waitForFinished(kEndMs);
+  }
+}
+
+bool PictureService::is_picture(const PictureRequest& request) {
+  return request.kind == PictureKind::kPicture || request.kind == PictureKind::kPortrait;
+}
+
+void PictureService::ask(PictureRequest request, int batch, double rank, QObject* owner,
+                         Done done) {
+  request.id = ++last_id_;
+  if (request.out.empty() && is_picture(request))
+    request.out = folder_.filePath(QString("%1.png").arg(request.id)).toStdString();
+  queue_.push_back({std::move(request), batch, rank, owner, std::move(done)});
+  QMetaObject::invokeMethod(this, &PictureService::send_next, Qt::QueuedConnection);
+}
+
+void PictureService::cancel(const QObject* owner) {
+  std::erase_if(queue_, [&](const Job& job) { return job.owner == owner || !job.owner; });
+  if (current_ && current_->owner == owner) current_->cancelled = true;
+}
+
+void PictureService::set_busy(bool busy) {
+  if (std::exchange(busy_, busy) == busy) return;
+  if (!busy) {
+    patience_.stop();
+    send_next();
+  }
+}
+
+void PictureService::send_next() {
+  std::erase_if(queue_, [](const Job& job) { return !job.owner; });
+  if (queue_.empty()) return;
+  // One at a time; of a picture that nobody wants any more the process lets go for the next one.
+  const bool replaces = current_ && current_->cancelled && is_picture(current_->request);
+  if (current_ && !replaces) return;
+  const auto next = std::ranges::min_element(queue_, [](const Job& a, const Job& b) {
+    const bool drawn_a = is_picture(a.request), drawn_b = is_picture(b.request);
+    if (drawn_a != drawn_b) return drawn_b;
+    if (a.batch != b.batch) return a.batch > b.batch;
+    return a.rank < b.rank;
+  });
+  if (busy_ && is_picture(next->request)) {
+    if (patience_.isActive()) return;
+    if (std::exchange(patient_, !patient_)) return patience_.start(kPatienceMs);
+  }
+  if (!process_) start();
+  if (!process_) return;
+  current_ = std::move(*next);
+  queue_.erase(next);
+  process_->write(to_line(current_->request));
+  ++unanswered_;
+  limit_.start(is_picture(current_->request) ? limit_ms_ : limit_ms_ * kExportTimes);
+}
+
+void PictureService::start() {
+  process_ = std::make_unique<QProcess>();
+  process_->setProcessChannelMode(QProcess::SeparateChannels);
+  process_->setStandardErrorFile(QProcess::nullDevice());
+  connect(process_.get(), &QProcess::readyReadStandardOutput, this, &PictureService::read);
+  connect(process_.get(), &QProcess::finished, this, &PictureService::ended, Qt::QueuedConnection);
+  connect(
+      process_.get(), &QProcess::errorOccurred, this,
+      [this](QProcess::ProcessError error) {
+        if (error == QProcess::FailedToStart) ended();
+      },
+      Qt::QueuedConnection);
+  input_.clear();
+  process_->start(program_, arguments_);
+}
+
+void PictureService::read() {
+  input_ += process_->readAllStandardOutput();
+  while (true) {
+    const qsizetype end = input_.indexOf('\n');
+    if (end < 0) return;
+    const auto reply = reply_from(input_.left(end));
+    input_.remove(0, end + 1);
+    if (!reply) continue;
+    --unanswered_;
+    take(*reply);
+  }
+}
+
+void PictureService::take(const PictureReply& reply) {
+  // Answers to requests that were replaced find nobody.
+  if (!current_ || current_->request.id != reply.id) return;
+  Job job = std::move(*current_);
+  current_.reset();
+  limit_.stop();
+  PictureReply told = reply;
+  if (is_picture(job.request)) {
+    const QString file = QString::fromStdString(job.request.out);
+    if (told.error.empty() && !told.dropped && !job.cancelled) told.image.load(file);
+    if (file.startsWith(folder_.path())) QFile::remove(file);
+  }
+  if (!job.cancelled && job.owner && !told.dropped) job.done(told);
+  send_next();
+}
+
+void PictureService::fail(const QString& why) {
+  if (!current_) return;
+  PictureReply reply;
+  reply.id = current_->request.id;
+  reply.error = why.toStdString();
+  take(reply);
+}
+
+void PictureService::ended() {
+  if (!process_) return;
+  read();  // what it said before
+  const bool killed = !limit_.isActive() && current_.has_value();
+  const bool started = process_->error() != QProcess::FailedToStart;
+  process_->disconnect(this);
+  process_.release()->deleteLater();
+  if (started) ++restarts_;
+  // One that was replaced may have ended it; the present one gets another chance.
+  if (current_ && unanswered_ > 1) queue_.push_back(*std::exchange(current_, std::nullopt));
+  unanswered_ = 0;
+  limit_.stop();
+  if (!current_) return send_next();
+  fail(!started ? tr("the drawing process cannot be started")
+       : killed ? tr("drawing this took more than %1 s").arg(limit_ms_ / 1000)
+                : tr("drawing this ended the drawing process; it was started again"));
+}
+
+}  // namespace psygen::editor

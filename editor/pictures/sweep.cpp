@@ -1,0 +1,143 @@
+#include "editor/pictures/sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/core/hash.hpp"
+#include "engine/world/files/text_edit.hpp"
+#include "engine/world/files/toml_values.hpp"
+
+namespace psygen::editor {
+namespace {
+
+using world::FieldKind;
+
+constexpr std::uint64_t kSeeds = 100'000;  // short ones, which people can say
+constexpr double kDigits = 3;              // of values between the ends
+
+bool is_whole(const world::WorldField& field) {
+  return field.kind == FieldKind::kInteger || field.kind == FieldKind::kIntegerRange;
+}
+
+double with_digits(double value) {
+  if (value == 0) return 0;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - kDigits + 1);
+  return std::round(value / unit) * unit;
+}
+
+// The value at a share of the soft range.
+double value_at(const world::WorldField& field, double share) {
+  const double low = field.soft_min, high = field.soft_max;
+  const double v =
+      field.logarithmic && low > 0 ? low * std::pow(high / low, share) : low + share * (high - low);
+  const double shown = is_whole(field) ? std::round(v)
+                       : share <= 0    ? low
+                       : share >= 1    ? high
+                                       : with_digits(v);
+  return std::clamp(shown, field.hard_min, field.hard_max);
+}
+
+std::string number_toml(const world::WorldField& field, double v) {
+  if (field.kind == FieldKind::kInteger)
+    return world::toml_number(static_cast<std::int64_t>(std::llround(v)));
+  if (field.kind == FieldKind::kReal) return world::toml_number(v);
+  const double half = field.numbers.size() == 2 ? (field.numbers[1] - field.numbers[0]) / 2 : 0;
+  const double low = std::clamp(with_digits(v - half), field.hard_min, field.hard_max);
+  const double high = std::clamp(with_digits(v + half), low, field.hard_max);
+  return world::toml_range(low, high, is_whole(field));
+}
+
+std::vector<std::string> seeds_of(const world::WorldField& field, std::size_t count,
+                                  std::uint64_t page) {
+  std::vector<std::string> values;
+  if (page == 0 && !field.value.empty()) values.push_back(field.value);
+  for (std::uint64_t i = 0; values.size() < count; ++i) {
+    const std::uint64_t seed = core::mix64(page * kSeeds + i) % kSeeds;
+    std::string value = world::toml_seed(seed);
+    if (std::ranges::find(values, value) == values.end()) values.push_back(std::move(value));
+  }
+  return values;
+}
+
+}  // namespace
+
+bool can_sweep(const world::WorldField& field) {
+  switch (field.kind) {
+    case FieldKind::kInteger:
+    case FieldKind::kReal:
+    case FieldKind::kIntegerRange:
+    case FieldKind::kRealRange:
+      return field.soft_max > field.soft_min;
+    case FieldKind::kSeed:
+    case FieldKind::kBoolean:
+      return true;
+    case FieldKind::kChoice:
+      return field.choices.size() > 1;
+    default:
+      return false;
+  }
+}
+
+std::vector<std::string> sweep_values(const world::WorldField& field, std::size_t count,
+                                      std::uint64_t page) {
+  std::vector<std::string> values;
+  if (!can_sweep(field) || count == 0) return values;
+  if (field.kind == FieldKind::kSeed) return seeds_of(field, count, page);
+  if (field.kind == FieldKind::kBoolean) {
+    values = {"false", "true"};
+  } else if (field.kind == FieldKind::kChoice) {
+    for (const std::string& choice : field.choices)
+      values.push_back(world::toml_string(choice));
+  } else {
+    for (std::size_t i = 0; i < count; ++i) {
+      const double share =
+          count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.5;
+      std::string value = number_toml(field, value_at(field, share));
+      if (std::ranges::find(values, value) == values.end()) values.push_back(std::move(value));
+    }
+  }
+  if (values.size() > count) values.resize(count);
+  return values;
+}
+
+core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text,
+                                                 const std::vector<world::WorldField>& fields,
+                                                 std::size_t rows, std::size_t columns,
+                                                 std::uint64_t page) {
+  std::vector<SweepCell> cells;
+  const auto add = [&](std::vector<std::string> values) -> core::Result<void> {
+    SweepCell cell{std::move(values), text, true};
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      auto changed = world::with_value(cell.text, fields[i].path, cell.values[i]);
+      if (!changed) return tl::unexpected(changed.error());
+      cell.text = *std::move(changed);
+      cell.is_present = cell.is_present && cell.values[i] == fields[i].value;
+    }
+    cells.push_back(std::move(cell));
+    return {};
+  };
+  if (fields.size() == 1) {
+    for (std::string& value : sweep_values(fields[0], rows * columns, page))
+      if (auto ok = add({std::move(value)}); !ok) return tl::unexpected(ok.error());
+  } else if (fields.size() == 2) {
+    const auto along = sweep_values(fields[0], columns, page);
+    for (const std::string& down : sweep_values(fields[1], rows, page)) {
+      for (const std::string& value : along)
+        if (auto ok = add({value, down}); !ok) return tl::unexpected(ok.error());
+    }
+  }
+  return cells;
+}
+
+std::vector<std::size_t> cheapest_first(const std::vector<std::optional<double>>& costs) {
+  std::vector<std::size_t> order(costs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    if (!costs[a] || !costs[b]) return costs[a].has_value() && !costs[b].has_value();
+    return *costs[a] < *costs[b];
+  });
+  return order;
+}
+
+}  // namespace psygen::editor
