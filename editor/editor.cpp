@@ -5,8 +5,10 @@
 #include <QSettings>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <glm/trigonometric.hpp>
 
+#include "editor/pictures/picture_server.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "engine/cli/shipped_files.hpp"
@@ -66,6 +68,9 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
 }  // namespace
 
 int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
+  // The process that draws pictures beside the view (gallery/picture_tools.hpp).
+  if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0)
+    return render_pictures(std::move(plugins), argc > 2 ? argv[2] : "");
   QApplication app(argc, argv);
   QApplication::setOrganizationName("psygen");
   QApplication::setApplicationName("psygen-editor");

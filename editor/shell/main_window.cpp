@@ -16,6 +16,8 @@
 #include <QVBoxLayout>
 
 #include "editor/cost/cost_worker.hpp"
+#include "editor/gallery/library_panel.hpp"
+#include "editor/gallery/picture_tools.hpp"
 #include "editor/panels/cache_map.hpp"
 #include "editor/panels/field_row.hpp"
 #include "editor/panels/properties_panel.hpp"
@@ -106,10 +108,18 @@ void MainWindow::add_docks() {
       add_dock(*this, "selection", tr("Selection"), selection_text_, Qt::RightDockWidgetArea);
   auto* steps = add_dock(*this, "history", tr("History"), history, Qt::RightDockWidgetArea);
   add_dock(*this, "map", tr("Cache map"), map_box, Qt::RightDockWidgetArea);
+  pictures_ = new PictureTools(*this, document_, *view_,
+                               QString::fromStdString(options_.session.device_name));
+  connect(pictures_, &PictureTools::told, this, &MainWindow::say);
+  connect(properties_, &PropertiesPanel::attended, pictures_, &PictureTools::attend);
+  auto* library =
+      add_dock(*this, "library", tr("Library"), &pictures_->library(), Qt::LeftDockWidgetArea);
   auto* figures =
       add_dock(*this, "statistics", tr("Statistics"), statistics_, Qt::BottomDockWidgetArea);
   auto* messages = add_dock(*this, "messages", tr("Messages"), log_, Qt::BottomDockWidgetArea);
   tabifyDockWidget(selection, steps);
+  tabifyDockWidget(findChild<QDockWidget*>("properties"), library);
+  findChild<QDockWidget*>("properties")->raise();
   tabifyDockWidget(figures, messages);
   selection->raise();
   figures->raise();

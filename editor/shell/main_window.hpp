@@ -17,6 +17,7 @@ namespace psygen::editor {
 class CacheMap;
 class CommandPalette;
 class CostWorker;
+class PictureTools;
 class PropertiesPanel;
 class StatisticsPanel;
 
@@ -55,7 +56,6 @@ class MainWindow final : public QMainWindow {
   void add_world_menu();
   void add_help_menu();
   void add_toolbar();
-  void add_species();
   void connect_document();
   void connect_view();
   void restore_layout();
@@ -93,6 +93,7 @@ class MainWindow final : public QMainWindow {
   QPlainTextEdit* log_ = nullptr;
   CommandPalette* palette_ = nullptr;
   CostWorker* costs_ = nullptr;
+  PictureTools* pictures_ = nullptr;
   QLabel* figures_ = nullptr;
   QMenu* recent_menu_ = nullptr;
   QMenu* panels_menu_ = nullptr;

@@ -3,6 +3,7 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
+#include <QDir>
 #include <QDockWidget>
 #include <QFileDialog>
 #include <QInputDialog>
@@ -13,34 +14,23 @@
 #include <QSlider>
 #include <QToolBar>
 #include <array>
-#include <filesystem>
 #include <random>
 
+#include "editor/gallery/library_panel.hpp"
+#include "editor/gallery/picture_tools.hpp"
 #include "editor/panels/properties_panel.hpp"
 #include "editor/shell/command_line.hpp"
 #include "editor/shell/command_palette.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
-#include "engine/core/data_file.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/world/files/text_file.hpp"
-#include "engine/world/files/text_snippet.hpp"
 
 namespace psygen::editor {
 namespace {
 
 constexpr std::array kScales{80, 100, 125, 150, 200};
-
-QString library_folder() {
-  for (const std::filesystem::path& folder : core::data_folders()) {
-    std::error_code error;
-    if (std::filesystem::is_directory(folder / "library", error))
-      return QString::fromStdString((folder / "library").string());
-  }
-  return {};
-}
 
 std::mt19937_64& dice() {
   static std::mt19937_64 random{std::random_device{}()};
@@ -85,6 +75,7 @@ void MainWindow::add_file_menu() {
     QApplication::clipboard()->setText(line);
     say(tr("Copied: %1").arg(line));
   });
+  pictures_->add_to_file_menu(*menu);
   menu->addSeparator();
   menu->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
 }
@@ -152,6 +143,7 @@ void MainWindow::add_view_menu() {
     action->setChecked(kind == render::View::kNormal);
     views->addAction(action);
   }
+  pictures_->add_to_view_menu(*menu);
   menu->addSeparator();
   panels_menu_ = menu->addMenu(tr("Pan&els"));
   for (QDockWidget* dock : findChildren<QDockWidget*>())
@@ -167,7 +159,11 @@ void MainWindow::add_view_menu() {
 
 void MainWindow::add_world_menu() {
   QMenu* menu = menuBar()->addMenu(tr("&World"));
-  menu->addAction(tr("Add a &species"), this, [this] { add_species(); });
+  menu->addAction(tr("Add a &species …"), this, [this] {
+    QDockWidget* library = findChild<QDockWidget*>("library");
+    library->show();
+    library->raise();
+  });
   menu->addAction(tr("Add a s&catter"), this, [this] {
     tell(document_.append_table({"scatter"}, "model = \"rock\"\ncount = 10\n"));
   });
@@ -177,9 +173,12 @@ void MainWindow::add_world_menu() {
                   [this] { tell(document_.remove_table(properties_->section())); });
   menu->addSeparator();
   menu->addAction(tr("Save section as &preset …"), this, [this] {
-    const QString file = QFileDialog::getSaveFileName(this, tr("Save a preset"), "preset.toml",
-                                                      tr("Presets (*.toml)"));
-    if (!file.isEmpty()) tell(document_.save_preset(properties_->section(), file.toStdString()));
+    const QString folder = QString::fromStdString(own_library_folder().string());
+    QDir().mkpath(folder);
+    const QString file = QFileDialog::getSaveFileName(
+        this, tr("Save a preset"), folder + "/preset.toml", tr("Presets (*.toml)"));
+    if (!file.isEmpty() && tell(document_.save_preset(properties_->section(), file.toStdString())))
+      pictures_->library().reload();
   });
   menu->addAction(tr("&Apply a preset to this section …"), this, [this] {
     const QString file =
@@ -187,6 +186,7 @@ void MainWindow::add_world_menu() {
     if (!file.isEmpty()) tell(document_.apply_preset(properties_->section(), file.toStdString()));
   });
   menu->addSeparator();
+  pictures_->add_to_world_menu(*menu);
   QAction* pause = menu->addAction(tr("Pause &synthesis"), tr("Ctrl+P"), this,
                                    [this](bool on) { view_->set_paused(on); });
   pause->setCheckable(true);
@@ -266,18 +266,6 @@ void MainWindow::add_toolbar() {
   };
   connect(&document_, &Document::changed, this, fit_hour);
   fit_hour();
-}
-
-void MainWindow::add_species() {
-  const QString file = QFileDialog::getOpenFileName(this, tr("Add a species"), library_folder(),
-                                                    tr("Presets (*.toml)"));
-  if (file.isEmpty()) return;
-  const auto snippet =
-      world::read_text_file(file.toStdString()).and_then([&](const std::string& text) {
-        return world::read_preset(text, file.toStdString());
-      });
-  if (!snippet) return say(QString::fromStdString(snippet.error().message));
-  tell(document_.append_table({"species"}, *snippet));
 }
 
 void MainWindow::set_theme(const QString& name) {

@@ -1,0 +1,342 @@
+#include "editor/gallery/contact_sheet.hpp"
+
+#include <QComboBox>
+#include <QCompleter>
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QSettings>
+#include <QSpinBox>
+#include <algorithm>
+
+#include "editor/gallery/picture_cell.hpp"
+#include "editor/pictures/model_world.hpp"
+#include "editor/pictures/picture_service.hpp"
+#include "engine/world/files/text_edit.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kMostSide = 8;  // cells along a side
+constexpr std::uint32_t kSheetWidth = 320, kPortraitHeight = 300;
+constexpr const char* kGeometryKey = "contact_sheet/geometry";
+
+QString cost_text(const BlockCost& cost) {
+  return QObject::tr("%1 ms").arg(cost.seconds * 1000, 0, 'g', 3);
+}
+
+QString shown_value(const std::string& toml) {
+  QString text = QString::fromStdString(toml);
+  if (text.startsWith('"') && text.endsWith('"')) text = text.mid(1, text.size() - 2);
+  return text;
+}
+
+// The item of species or scatters that a path leads into.
+bool is_of_model(const world::TextPath& path) {
+  return path.size() > 2 && path.steps[1].is_index &&
+         (path.steps[0].key == "species" || path.steps[0].key == "scatter");
+}
+
+}  // namespace
+
+ContactSheet::ContactSheet(Document& document, PictureService& service, AskView ask_view,
+                           QWidget* parent)
+    : QDialog(parent), document_(document), service_(service), ask_view_(std::move(ask_view)) {
+  setWindowTitle(tr("Contact sheet"));
+  setObjectName("contact_sheet");
+  const auto add_box = [this](const QString& name) {
+    auto* box = new QComboBox;
+    box->setAccessibleName(name);
+    box->setEditable(true);
+    box->setInsertPolicy(QComboBox::NoInsert);
+    box->completer()->setFilterMode(Qt::MatchContains);
+    box->completer()->setCompletionMode(QCompleter::PopupCompletion);
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(20);
+    connect(box, &QComboBox::activated, this, [this] {
+      page_ = 0;
+      fill();
+    });
+    return box;
+  };
+  first_ = add_box(tr("Field along the columns"));
+  second_ = add_box(tr("Field along the rows"));
+  what_ = new QComboBox;
+  what_->setAccessibleName(tr("What the pictures show"));
+  what_->addItems({tr("From the view"), tr("The model alone")});
+  connect(what_, &QComboBox::activated, this, &ContactSheet::fill);
+  const auto add_spin = [this](const QString& name) {
+    auto* spin = new QSpinBox;
+    spin->setAccessibleName(name);
+    spin->setRange(1, kMostSide);
+    spin->setValue(4);
+    spin->setKeyboardTracking(false);
+    connect(spin, &QSpinBox::valueChanged, this, &ContactSheet::fill);
+    return spin;
+  };
+  columns_ = add_spin(tr("Columns"));
+  rows_ = add_spin(tr("Rows"));
+  more_ = new QPushButton(tr("&Other seeds"));
+  again_ = new QPushButton(tr("&Draw again"));
+  connect(more_, &QPushButton::clicked, this, [this] {
+    ++page_;
+    fill();
+  });
+  connect(again_, &QPushButton::clicked, this, &ContactSheet::fill);
+  for (QPushButton* button : {more_, again_})
+    button->setAutoDefault(false);
+  auto* line = new QHBoxLayout;
+  line->addWidget(first_, 2);
+  line->addWidget(new QLabel(tr("and")));
+  line->addWidget(second_, 2);
+  line->addWidget(what_);
+  line->addWidget(columns_);
+  line->addWidget(new QLabel("×"));
+  line->addWidget(rows_);
+  grid_ = new QGridLayout;
+  grid_->setSpacing(2);
+  told_ = new QLabel;
+  auto* below = new QHBoxLayout;
+  below->addWidget(told_, 1);
+  below->addWidget(more_);
+  below->addWidget(again_);
+  auto* layout = new QVBoxLayout(this);
+  layout->addLayout(line);
+  layout->addLayout(grid_, 1);
+  layout->addLayout(below);
+  resize(880, 680);
+  restoreGeometry(QSettings().value(kGeometryKey).toByteArray());
+  connect(&document_, &Document::changed, this, [this](Changes what) {
+    if (!isVisible()) return;
+    if (what.testFlag(Change::kFile)) return close(), void();
+    list_fields();
+    mark_present();
+  });
+}
+
+void ContactSheet::showEvent(QShowEvent* event) {
+  QDialog::showEvent(event);
+  if (event->spontaneous()) return;
+  list_fields();
+  choose(suggested_.value_or(world::TextPath{"world", "seed"}));
+  page_ = 0;
+  fill();
+}
+
+void ContactSheet::hideEvent(QHideEvent* event) {
+  service_.cancel(this);
+  QSettings().setValue(kGeometryKey, saveGeometry());
+  QDialog::hideEvent(event);
+}
+
+// The fields of the present world, the choice kept.
+void ContactSheet::list_fields() {
+  const QVariant chosen[] = {first_->currentData(), second_->currentData()};
+  QComboBox* const boxes[] = {first_, second_};
+  for (std::size_t i = 0; i < 2; ++i) {
+    boxes[i]->clear();
+    if (i == 1) boxes[i]->addItem(tr("nothing else"), QString());
+  }
+  const auto list = [&](auto& self, const std::vector<world::WorldSection>& sections,
+                        const QString& before) -> void {
+    for (const world::WorldSection& section : sections) {
+      const QString title = before + QString::fromStdString(section.title);
+      for (const world::WorldField& field : section.fields) {
+        if (!can_sweep(field)) continue;
+        for (QComboBox* box : boxes)
+          box->addItem(title + ": " + QString::fromStdString(field.label),
+                       QString::fromStdString(field.path.text()));
+      }
+      self(self, section.parts, title + ", ");
+    }
+  };
+  list(list, document_.sections(), {});
+  for (std::size_t i = 0; i < 2; ++i)
+    boxes[i]->setCurrentIndex(std::max(boxes[i]->findData(chosen[i]), 0));
+}
+
+void ContactSheet::choose(const world::TextPath& first) {
+  const int index = first_->findData(QString::fromStdString(first.text()));
+  if (index >= 0) first_->setCurrentIndex(index);
+  second_->setCurrentIndex(0);
+  what_->setCurrentIndex(is_of_model(first) ? 1 : 0);
+}
+
+const world::WorldField* ContactSheet::field_of(const QComboBox& box) const {
+  const auto path = world::parse_text_path(box.currentData().toString().toStdString());
+  return path && !path->empty() ? document_.field(*path) : nullptr;
+}
+
+std::vector<world::WorldField> ContactSheet::fields() const {
+  std::vector<world::WorldField> fields;
+  for (const QComboBox* box : {first_, second_}) {
+    const world::WorldField* field = field_of(*box);
+    if (field != nullptr && (fields.empty() || !(fields[0].path == field->path)))
+      fields.push_back(*field);
+  }
+  return fields;
+}
+
+void ContactSheet::fill() {
+  service_.cancel(this);
+  swept_ = fields();
+  const bool of_model = !swept_.empty() && is_of_model(swept_[0].path);
+  what_->setEnabled(of_model);
+  if (!of_model) what_->setCurrentIndex(0);
+  more_->setVisible(std::ranges::any_of(
+      swept_, [](const auto& field) { return field.kind == world::FieldKind::kSeed; }));
+  const auto columns = static_cast<std::size_t>(columns_->value());
+  auto cells = sweep_cells(document_.text(), swept_, static_cast<std::size_t>(rows_->value()),
+                           columns, page_);
+  for (const Shown& shown : shown_)
+    delete shown.widget;
+  shown_.clear();
+  if (!cells) return told_->setText(QString::fromStdString(cells.error().message));
+  // Of two fields the first may have fewer values than there are columns.
+  const std::size_t wide =
+      swept_.size() == 2 ? sweep_values(swept_[0], columns, page_).size() : columns;
+  for (std::size_t i = 0; i < cells->size(); ++i) {
+    auto* widget = new PictureCell;
+    QStringList values;
+    for (const std::string& value : (*cells)[i].values)
+      values += shown_value(value);
+    widget->set_caption(values.join(" · "), {});
+    connect(widget, &PictureCell::clicked, this, [this, i] { adopt(i); });
+    grid_->addWidget(widget, static_cast<int>(i / wide), static_cast<int>(i % wide));
+    shown_.push_back({std::move((*cells)[i]), widget, std::nullopt, false});
+  }
+  mark_present();
+  ask_costs();
+}
+
+core::Result<PictureRequest> ContactSheet::request_of(const SweepCell& cell) const {
+  PictureRequest request;
+  request.file = document_.file().string();
+  request.text = cell.text;
+  const auto view = ask_view_();
+  request.size = {kSheetWidth, kSheetWidth * 5 / 8};
+  if (what_->currentIndex() == 1 && is_of_model(swept_[0].path)) {
+    const std::size_t index = swept_[0].path.steps[1].index;
+    auto text = swept_[0].path.steps[0].key == "species" ? species_portrait(cell.text, index)
+                                                         : scatter_portrait(cell.text, index);
+    if (!text) return tl::unexpected(text.error());
+    request.kind = PictureKind::kPortrait;
+    request.text = *std::move(text);
+    request.size.height = kPortraitHeight;
+  } else if (view) {
+    request.place = view->place;
+    // Other ground is seen from the same height over it.
+    request.place->at_m.y = view->above_m;
+    request.place->above_ground = true;
+    request.now_s = view->now_s;
+    if (view->size.width > 0)
+      request.size.height = std::clamp(kSheetWidth * view->size.height / view->size.width,
+                                       kSheetWidth / 3, kSheetWidth);
+  }
+  return request;
+}
+
+// First what each cell costs, then pictures in this order.
+void ContactSheet::ask_costs() {
+  batch_ = service_.new_batch();
+  drawn_ = 0;
+  costs_left_ = shown_.size();
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    PictureRequest request;
+    request.kind = PictureKind::kCost;
+    request.text = shown_[i].cell.text;
+    request.file = document_.file().string();
+    service_.ask(std::move(request), batch_, static_cast<double>(i), this,
+                 [this, i](const PictureReply& reply) { note_cost(i, reply); });
+  }
+  tell();
+}
+
+void ContactSheet::note_cost(std::size_t i, const PictureReply& reply) {
+  Shown& shown = shown_[i];
+  QStringList values;
+  for (const std::string& value : shown.cell.values)
+    values += shown_value(value);
+  if (reply.cost) {
+    shown.seconds = reply.cost->seconds;
+    shown.widget->set_caption(values.join(" · "), cost_text(*reply.cost));
+  } else {
+    shown.failed = true;
+    shown.widget->set_failure(QString::fromStdString(reply.error));
+  }
+  if (--costs_left_ == 0) ask_pictures();
+}
+
+void ContactSheet::ask_pictures() {
+  std::vector<std::optional<double>> costs;
+  for (const Shown& shown : shown_)
+    costs.push_back(shown.seconds);
+  double rank = 0;
+  for (const std::size_t i : cheapest_first(costs)) {
+    if (shown_[i].failed) continue;
+    auto request = request_of(shown_[i].cell);
+    if (!request) {
+      shown_[i].failed = true;
+      shown_[i].widget->set_failure(QString::fromStdString(request.error().message));
+      continue;
+    }
+    service_.ask(*std::move(request), batch_, rank++, this,
+                 [this, i](const PictureReply& reply) { note_picture(i, reply); });
+  }
+  tell();
+}
+
+void ContactSheet::note_picture(std::size_t i, const PictureReply& reply) {
+  if (reply.error.empty() && !reply.image.isNull()) {
+    shown_[i].widget->set_image(reply.image);
+  } else {
+    shown_[i].failed = true;
+    shown_[i].widget->set_failure(reply.error.empty() ? tr("there is no picture")
+                                                      : QString::fromStdString(reply.error));
+  }
+  ++drawn_;
+  tell();
+}
+
+void ContactSheet::adopt(std::size_t i) {
+  if (i >= shown_.size()) return;
+  const std::vector<std::string> values = shown_[i].cell.values;
+  const auto done = document_.edit(tr("Take over %1").arg(QString::fromStdString(swept_[0].label)),
+                                   [&](std::string_view before) {
+                                     core::Result<std::string> text{std::string(before)};
+                                     for (std::size_t f = 0; text && f < swept_.size(); ++f)
+                                       text = world::with_value(*text, swept_[f].path, values[f]);
+                                     return text;
+                                   });
+  if (!done) Q_EMIT refused(QString::fromStdString(done.error().message));
+}
+
+// By text: undoing an adopted value marks the one before.
+void ContactSheet::mark_present() {
+  for (const Shown& shown : shown_)
+    shown.widget->set_present(shown.cell.text == document_.text());
+  tell();
+}
+
+void ContactSheet::tell() {
+  const auto is_present = [this](const Shown& shown) {
+    return shown.cell.text == document_.text();
+  };
+  const std::size_t failed = static_cast<std::size_t>(
+      std::ranges::count_if(shown_, [](const Shown& shown) { return shown.failed; }));
+  QString text;
+  if (costs_left_ > 0) {
+    text = tr("Predicting costs …");
+  } else if (drawn_ + failed < shown_.size()) {
+    text = tr("%1 of %2 drawn").arg(drawn_).arg(shown_.size());
+  } else {
+    text = tr("Click on a picture to take over its value. Costs are of one block.");
+  }
+  if (costs_left_ == 0 && std::ranges::none_of(shown_, is_present) && page_ == 0 &&
+      document_.undo_stack().canUndo())
+    text += tr("  The world has other values now.");
+  told_->setText(text);
+}
+
+}  // namespace psygen::editor

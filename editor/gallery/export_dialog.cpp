@@ -1,0 +1,152 @@
+#include "editor/gallery/export_dialog.hpp"
+
+#include <QApplication>
+#include <QClipboard>
+#include <QDialog>
+#include <QDialogButtonBox>
+#include <QFileDialog>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QSettings>
+#include <QSpinBox>
+#include <QStandardPaths>
+#include <QVBoxLayout>
+
+#include "engine/world/files/toml_values.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr const char* kFolderKey = "export/folder";
+constexpr int kMostLevel = 6;
+
+QString quoted(const QString& word) {
+  return word.contains(' ') ? "'" + word + "'" : word;
+}
+
+// The parameters that are the user's, as --set takes them.
+QString settings_of(const models::ModelType& type, const models::Parameters& p) {
+  QString text;
+  const auto specs = type.parameters();
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const std::string value = specs[i].type == models::ParameterType::kReal
+                                  ? world::toml_number(p.real(i))
+                                  : std::to_string(p.integer(i));
+    text +=
+        QString(" --set %1=%2")
+            .arg(QString::fromUtf8(specs[i].name.data(), static_cast<int>(specs[i].name.size())),
+                 QString::fromStdString(value));
+  }
+  return text;
+}
+
+}  // namespace
+
+QString export_command(const std::filesystem::path& world_file, const PictureRequest& request,
+                       const models::Registry& registry,
+                       const std::optional<Selection>& selection) {
+  QString line = "psygen export --world " + quoted(QString::fromStdString(world_file.string()));
+  if (request.kind == PictureKind::kExportModel && selection) {
+    const models::ModelType& type = registry[selection->model];
+    line += QString(" --model %1").arg(quoted(QString::fromStdString(std::string(type.name())))) +
+            settings_of(type, selection->parameters);
+  } else {
+    line += QString(" --block=%1,%2").arg(request.block_x).arg(request.block_z);
+  }
+  if (request.level > 0) line += QString(" --level %1").arg(request.level);
+  return line + " --out " + quoted(QString::fromStdString(request.out));
+}
+
+std::optional<PictureRequest> ask_export(QWidget* parent, const Document& document,
+                                         const std::optional<Selection>& selection,
+                                         core::BlockCoord block) {
+  const bool has_model = selection && selection->kind == query::HitKind::kModel;
+  if (selection) block = selection->block;
+  const ParsedWorldPtr parsed = document.parsed();
+  QString name = "block";
+  if (has_model)
+    name = QString::fromStdString(std::string(parsed->registry[selection->model].name()));
+
+  QDialog dialog(parent);
+  dialog.setWindowTitle(QObject::tr("Export"));
+  auto* model = new QRadioButton(has_model ? QObject::tr("The selected model, %1").arg(name)
+                                           : QObject::tr("A model (none is selected)"));
+  auto* whole =
+      new QRadioButton(QObject::tr("Block %1, %2 with everything on it").arg(block.x).arg(block.z));
+  model->setEnabled(has_model);
+  (has_model ? model : whole)->setChecked(true);
+  auto* level = new QSpinBox;
+  level->setRange(0, kMostLevel);
+  level->setSpecialValueText(QObject::tr("0, full"));
+  const QString folder =
+      QSettings()
+          .value(kFolderKey, QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation))
+          .toString();
+  auto* file = new QLineEdit(folder + "/" + name + ".glb");
+  auto* browse = new QPushButton(QObject::tr("…"));
+  auto* command = new QLineEdit;
+  command->setReadOnly(true);
+  auto* copy = new QPushButton(QObject::tr("Copy"));
+  const auto line_of = [](QLineEdit* edit, QPushButton* button) {
+    auto* line = new QHBoxLayout;
+    line->addWidget(edit, 1);
+    line->addWidget(button);
+    return line;
+  };
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Save | QDialogButtonBox::Cancel);
+  auto* form = new QFormLayout;
+  form->addRow(QObject::tr("What"), model);
+  form->addRow(QString(), whole);
+  form->addRow(QObject::tr("Level of detail"), level);
+  form->addRow(QObject::tr("File"), line_of(file, browse));
+  form->addRow(QObject::tr("Command"), line_of(command, copy));
+  auto* layout = new QVBoxLayout(&dialog);
+  layout->addLayout(form);
+  layout->addWidget(buttons);
+  dialog.resize(560, 0);
+
+  const auto request = [&] {
+    PictureRequest wanted;
+    wanted.kind = model->isChecked() ? PictureKind::kExportModel : PictureKind::kExportBlock;
+    wanted.text = document.text();
+    wanted.file = document.file().string();
+    wanted.out = file->text().toStdString();
+    wanted.block_x = block.x;
+    wanted.block_z = block.z;
+    wanted.index = has_model ? selection->index : 0;
+    wanted.level = level->value();
+    return wanted;
+  };
+  const auto fit = [&] {
+    command->setText(export_command(document.file(), request(), parsed->registry, selection));
+    command->setCursorPosition(0);
+    command->setToolTip(document.is_modified()
+                            ? QObject::tr("Changes that are not saved are not in it.")
+                            : QString());
+    const bool known = file->text().endsWith(".glb") || file->text().endsWith(".obj");
+    buttons->button(QDialogButtonBox::Save)->setEnabled(known);
+    file->setToolTip(known ? QString() : QObject::tr("The name must end in .glb or .obj."));
+  };
+  QObject::connect(model, &QRadioButton::toggled, &dialog, fit);
+  QObject::connect(level, &QSpinBox::valueChanged, &dialog, fit);
+  QObject::connect(file, &QLineEdit::textChanged, &dialog, fit);
+  QObject::connect(copy, &QPushButton::clicked, &dialog,
+                   [&] { QApplication::clipboard()->setText(command->text()); });
+  QObject::connect(browse, &QPushButton::clicked, &dialog, [&] {
+    const QString chosen =
+        QFileDialog::getSaveFileName(&dialog, QObject::tr("Export as"), file->text(),
+                                     QObject::tr("Binary glTF (*.glb);;Wavefront OBJ (*.obj)"));
+    if (!chosen.isEmpty()) file->setText(chosen);
+  });
+  QObject::connect(buttons, &QDialogButtonBox::accepted, &dialog, &QDialog::accept);
+  QObject::connect(buttons, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
+  fit();
+  if (dialog.exec() != QDialog::Accepted) return std::nullopt;
+  QSettings().setValue(kFolderKey, QFileInfo(file->text()).absolutePath());
+  return request();
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,214 @@
+#include "editor/gallery/picture_tools.hpp"
+
+#include <QCoreApplication>
+#include <QFileDialog>
+#include <QLabel>
+#include <QMainWindow>
+#include <QMenu>
+#include <QStatusBar>
+#include <algorithm>
+
+#include "editor/gallery/contact_sheet.hpp"
+#include "editor/gallery/export_dialog.hpp"
+#include "editor/gallery/library_panel.hpp"
+#include "editor/pictures/picture_server.hpp"
+#include "engine/models/terrain/ground.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr std::uint32_t kLargeWidth = 3840;
+constexpr int kAttentionMs = 400;  // a mouse that passes over a field on its way is no attention
+
+QStringList server_arguments(const QString& device) {
+  QStringList arguments{kPicturesOption};
+  if (!device.isEmpty()) arguments += device;
+  return arguments;
+}
+
+}  // namespace
+
+PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& view,
+                           const QString& device)
+    : QObject(&window),
+      window_(window),
+      document_(document),
+      view_(view),
+      service_(QCoreApplication::applicationFilePath(), server_arguments(device)),
+      library_(new LibraryPanel(document, service_)),
+      shown_(new QLabel) {
+  attention_.setSingleShot(true);
+  connect(&attention_, &QTimer::timeout, this, [this] {
+    attended_ = passed_;
+    if (sheet_ != nullptr) sheet_->suggest(attended_);
+  });
+  shown_->setVisible(false);
+  window_.statusBar()->addPermanentWidget(shown_);
+  connect(library_, &LibraryPanel::told, this, &PictureTools::told);
+  connect(&view_, &WorldView::drawn, this, [this] {
+    const scene::State& state = view_.session()->scene().state();
+    service_.set_busy(state.counters.awaited > 0 || state.meshes.outstanding() > 0);
+  });
+  connect(&document_, &Document::changed, this, [this](Changes what) {
+    // The view shows the document's text again.
+    shows_marked_ = false;
+    if (what.testFlag(Change::kFile)) {
+      marked_.reset();
+      if (compare_ != nullptr) compare_->hide();
+    }
+    show_shown();
+  });
+}
+
+void PictureTools::attend(const world::TextPath& field) {
+  passed_ = field;
+  attention_.start(kAttentionMs);
+}
+
+std::optional<ViewState> PictureTools::view_state() const {
+  if (view_.session() == nullptr) return std::nullopt;
+  const world::World& world = view_.session()->scene().state().facts.world;
+  const core::CameraPose& pose = view_.camera().pose();
+  const core::WorldPosition& at = pose.position;
+  const double block_m = world.block_size_m();
+  double surface_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
+  if (world.water.exists()) surface_m = std::max(surface_m, world.water.level_m);
+  ViewState state;
+  state.place.at_m = {at.block.x * block_m + at.local.x, at.local.y,
+                      at.block.z * block_m + at.local.z};
+  state.place.yaw = pose.yaw;
+  state.place.pitch = pose.pitch;
+  state.above_m = std::max(at.local.y - surface_m, 1.0);
+  // A clock that runs would make every picture an old one.
+  state.now_s = world.sky.day_length_s > 0 ? view_.session()->now_s() : 0;
+  state.size = view_.session()->picture_size();
+  return state;
+}
+
+// --- The contact sheet
+// ----------------------------------------------------------------------------
+
+void PictureTools::open_sheet() {
+  if (sheet_ == nullptr) {
+    sheet_ = new ContactSheet(
+        document_, service_, [this] { return view_state(); }, &window_);
+    connect(sheet_, &ContactSheet::refused, this, &PictureTools::told);
+    if (!attended_.empty()) sheet_->suggest(attended_);
+  }
+  sheet_->show();
+  sheet_->raise();
+  sheet_->activateWindow();
+}
+
+void PictureTools::add_to_world_menu(QMenu& menu) {
+  menu.addAction(tr("&Contact sheet …"), tr("Ctrl+K"), this, &PictureTools::open_sheet);
+}
+
+// --- Files
+// ------------------------------------------------------------------------------------------
+
+void PictureTools::add_to_file_menu(QMenu& menu) {
+  menu.addAction(tr("&Export a model or block …"), tr("Ctrl+E"), this,
+                 &PictureTools::export_selection);
+  menu.addAction(tr("Save a &large picture …"), tr("Shift+F12"), this,
+                 &PictureTools::save_large_picture);
+}
+
+void PictureTools::export_selection() {
+  const auto request =
+      ask_export(&window_, document_, view_.selection(), view_.camera().pose().position.block);
+  if (!request) return;
+  const QString file = QString::fromStdString(request->out);
+  Q_EMIT told(tr("Exporting %1 …").arg(file));
+  service_.ask(*request, service_.new_batch(), 0, this, [this, file](const PictureReply& reply) {
+    Q_EMIT told(reply.error.empty()
+                    ? tr("Wrote %1: %2.").arg(file, QString::fromStdString(reply.note))
+                    : tr("Not exported: %1").arg(QString::fromStdString(reply.error)));
+  });
+}
+
+void PictureTools::save_large_picture() {
+  const auto view = view_state();
+  if (!view || view->size.width == 0) return Q_EMIT told(tr("There is no picture."));
+  const QString file = QFileDialog::getSaveFileName(&window_, tr("Save a large picture as"),
+                                                    "picture.png", tr("Pictures (*.png)"));
+  if (file.isEmpty()) return;
+  PictureRequest request;
+  request.text = document_.text();
+  request.file = document_.file().string();
+  request.out = file.toStdString();
+  request.place = view->place;
+  request.now_s = view->now_s;
+  request.size = {kLargeWidth, kLargeWidth * view->size.height / view->size.width};
+  Q_EMIT told(tr("Drawing %1 …").arg(file));
+  service_.ask(std::move(request), service_.new_batch(), 0, this,
+               [this, file](const PictureReply& reply) {
+                 Q_EMIT told(reply.error.empty()
+                                 ? tr("Saved %1.").arg(file)
+                                 : tr("Not saved: %1").arg(QString::fromStdString(reply.error)));
+               });
+}
+
+// --- A and B
+// ----------------------------------------------------------------------------------------
+
+void PictureTools::add_to_view_menu(QMenu& menu) {
+  menu.addSeparator();
+  menu.addAction(tr("&Mark this state as A"), tr("Shift+F8"), this, &PictureTools::mark);
+  need_mark_ = {menu.addAction(tr("Swap &A and B"), tr("F8"), this, &PictureTools::swap),
+                menu.addAction(tr("A and B &side by side"), tr("Ctrl+F8"), this,
+                               [this] {
+                                 if (compare_ == nullptr) {
+                                   compare_ = new CompareWindow(
+                                       service_, [this] { return view_state(); },
+                                       [this] { return states(); }, &window_);
+                                 }
+                                 compare_->show();
+                                 compare_->raise();
+                               }),
+                menu.addAction(tr("&Take over A"), this, &PictureTools::take_marked)};
+  show_shown();
+}
+
+std::optional<std::pair<ComparedState, ComparedState>> PictureTools::states() const {
+  if (!marked_) return std::nullopt;
+  const std::string file = document_.file().string();
+  return std::pair{ComparedState{*marked_, file, tr("A, %1").arg(marked_at_.toString("HH:mm"))},
+                   ComparedState{document_.text(), file, tr("B, now")}};
+}
+
+void PictureTools::mark() {
+  marked_ = document_.text();
+  marked_at_ = QTime::currentTime();
+  Q_EMIT told(tr("This is A. Change the world, then F8 swaps between A and what you have made."));
+  show_shown();
+}
+
+void PictureTools::swap() {
+  if (!marked_) return;
+  shows_marked_ = !shows_marked_;
+  view_.show_world(shows_marked_ ? *marked_ : document_.text(),
+                   document_.file().empty() ? "new.toml" : document_.file().string(), false);
+  show_shown();
+}
+
+void PictureTools::show_shown() {
+  for (QAction* action : need_mark_)
+    action->setEnabled(marked_.has_value());
+  shown_->setVisible(marked_.has_value());
+  if (!marked_) return;
+  const QString colours =
+      shows_marked_ ? "background: palette(highlight); color: palette(highlighted-text);" : "";
+  shown_->setStyleSheet(colours + " padding: 0 8px;");
+  shown_->setText(shows_marked_ ? tr("A, %1").arg(marked_at_.toString("HH:mm")) : tr("B, now"));
+  shown_->setToolTip(tr("F8 swaps between A, the marked state, and B, the present one."));
+}
+
+void PictureTools::take_marked() {
+  if (!marked_) return;
+  const auto done = document_.set_text(*marked_, tr("Take over A"));
+  if (!done) Q_EMIT told(QString::fromStdString(done.error().message));
+}
+
+}  // namespace psygen::editor
