@@ -19,7 +19,7 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kMostSide = 8;  // cells along a side
-constexpr std::uint32_t kSheetWidth = 320, kPortraitHeight = 300;
+constexpr std::uint32_t kSheetWidth = 320;
 constexpr const char* kGeometryKey = "contact_sheet/geometry";
 
 QString cost_text(const BlockCost& cost) {
@@ -215,7 +215,11 @@ core::Result<PictureRequest> ContactSheet::request_of(const SweepCell& cell) con
   request.file = document_.file().string();
   request.text = cell.text;
   const auto view = ask_view_();
-  request.size = {kSheetWidth, kSheetWidth * 5 / 8};
+  const QSize place = shown_.front().widget->picture_size();
+  request.size = {kSheetWidth,
+                  std::clamp(kSheetWidth * static_cast<std::uint32_t>(std::max(place.height(), 1)) /
+                                 static_cast<std::uint32_t>(std::max(place.width(), 1)),
+                             kSheetWidth / 4, kSheetWidth * 2)};
   if (what_->currentIndex() == 1 && is_of_model(swept_[0].path)) {
     const std::size_t index = swept_[0].path.steps[1].index;
     auto text = swept_[0].path.steps[0].key == "species" ? species_portrait(cell.text, index)
@@ -223,16 +227,12 @@ core::Result<PictureRequest> ContactSheet::request_of(const SweepCell& cell) con
     if (!text) return tl::unexpected(text.error());
     request.kind = PictureKind::kPortrait;
     request.text = *std::move(text);
-    request.size.height = kPortraitHeight;
   } else if (view) {
     request.place = view->place;
     // Other ground is seen from the same height over it.
     request.place->at_m.y = view->above_m;
     request.place->above_ground = true;
     request.now_s = view->now_s;
-    if (view->size.width > 0)
-      request.size.height = std::clamp(kSheetWidth * view->size.height / view->size.width,
-                                       kSheetWidth / 3, kSheetWidth);
   }
   return request;
 }

@@ -20,6 +20,8 @@ class PictureCell final : public QWidget {
   // A frame: this is how the world is now.
   void set_present(bool present);
   const QImage& image() const { return image_; }
+  // Of the place for a picture.
+  QSize picture_size() const { return picture_area().size(); }
   QSize sizeHint() const override { return {192, 150}; }
   QSize minimumSizeHint() const override { return {96, 84}; }
 

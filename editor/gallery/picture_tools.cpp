@@ -48,6 +48,7 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
   connect(library_, &LibraryPanel::told, this, &PictureTools::told);
   connect(&view_, &WorldView::drawn, this, [this] {
     const scene::State& state = view_.session()->scene().state();
+    view_.set_yielding(service_.waiting() > 0);
     service_.set_busy(state.counters.awaited > 0 || state.meshes.outstanding() > 0);
   });
   connect(&document_, &Document::changed, this, [this](Changes what) {

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <thread>
 
 #include "editor/pictures/export_file.hpp"
 #include "editor/pictures/model_world.hpp"
@@ -27,8 +28,9 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kServerWatchdogS = 3;
-constexpr double kErrorPixels = 1.5;
+constexpr double kServerWatchdogS = 12;
+constexpr double kErrorPixels = 1.5, kSmallErrorPixels = 3;
+constexpr std::uint32_t kSmallWidth = 400;  // of pictures that need not be so fine
 constexpr std::uint64_t kServerBudgetBytes = 384ULL << 20;
 constexpr double kLeastEyeM = 0.6;  // over the ground, wherever the camera was
 constexpr int kHungExit = 3;
@@ -154,6 +156,8 @@ class PictureServer {
     }
     if (!core::is_valid(pose)) return tl::unexpected(failed("there is no such place"));
     session_->set_now(request.now_s);
+    const bool small = request.kind == PictureKind::kPicture && request.size.width <= kSmallWidth;
+    state.settings.max_error_pixels = small ? kSmallErrorPixels : kErrorPixels;
     state.input.size = session_->picture_size();
     const std::uint64_t failed_before = state.totals.failed;
     session_->scene().settle(pose, [&](std::string_view, double) {
@@ -197,6 +201,8 @@ class PictureServer {
     options.scene.budget_bytes = kServerBudgetBytes;
     options.scene.max_error_pixels = kErrorPixels;
     options.scene.fade_seconds = 0;
+    // While they work, the main thread waits.
+    options.scene.modelers = std::max(std::thread::hardware_concurrency(), 1U);
     options.scene.watchdog_seconds = kServerWatchdogS;
     auto session = app::Session::create(std::move(options));
     if (!session) return tl::unexpected(session.error());

@@ -146,6 +146,9 @@ void PictureService::ended() {
   read();  // what it said before
   const bool killed = !limit_.isActive() && current_.has_value();
   const bool started = process_->error() != QProcess::FailedToStart;
+  const QString how = process_->exitStatus() == QProcess::CrashExit
+                          ? tr("signal %1").arg(process_->exitCode())
+                          : tr("exit code %1").arg(process_->exitCode());
   process_->disconnect(this);
   process_.release()->deleteLater();
   if (started) ++restarts_;
@@ -156,7 +159,7 @@ void PictureService::ended() {
   if (!current_) return send_next();
   fail(!started ? tr("the drawing process cannot be started")
        : killed ? tr("drawing this took more than %1 s").arg(limit_ms_ / 1000)
-                : tr("drawing this ended the drawing process; it was started again"));
+                : tr("this has ended the drawing process (%1)").arg(how));
 }
 
 }  // namespace psygen::editor

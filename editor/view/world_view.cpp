@@ -15,6 +15,7 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kBusyMs = 0, kIdleMs = 100;  // between pictures; idle: another program is in front
+constexpr int kYieldMs = 150;
 constexpr double kMostStepS = 0.1;
 
 }  // namespace
@@ -126,7 +127,7 @@ void WorldView::tick() {
   take_prepared();
   if (!paused_) take_text();
   const platform::InputState input = input_.take_frame();
-  camera_.update(input, dt_s);
+  const bool moved = camera_.update(input, dt_s);
   if (const auto click = input_.take_click()) {
     const scene::State& state = session_->scene().state();
     select(pick(
@@ -147,7 +148,10 @@ void WorldView::tick() {
   Q_EMIT drawn(static_cast<double>(spent.nsecsElapsed()) * 1e-6);
   note_settled();
   const bool in_front = QGuiApplication::applicationState() == Qt::ApplicationActive;
-  timer_.setInterval(in_front || input_.busy() || since_text_.isValid() ? kBusyMs : kIdleMs);
+  const bool yields = yielding_ && !moved && !input_.busy() && !since_text_.isValid();
+  timer_.setInterval(yields                                               ? kYieldMs
+                     : in_front || input_.busy() || since_text_.isValid() ? kBusyMs
+                                                                          : kIdleMs);
 }
 
 void WorldView::note_settled() {

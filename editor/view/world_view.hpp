@@ -45,6 +45,9 @@ class WorldView final : public QWindow {
   void focus();
   // Synthesis rests: what is there is drawn.
   void set_paused(bool paused) { paused_ = paused; }
+  // Another picture is being made, on the same processors: while nobody moves here and everything
+  // is shown, a few pictures a second do.
+  void set_yielding(bool yielding) { yielding_ = yielding; }
 
  Q_SIGNALS:
   // A session was opened, or could not be: `error` says why.
@@ -73,7 +76,7 @@ class WorldView final : public QWindow {
   WindowSurface surface_;
   std::unique_ptr<app::Session> session_;
   std::string text_, file_;
-  bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false;
+  bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false, yielding_ = false;
   ViewCamera camera_;
   ViewInput input_;
   std::optional<Selection> selection_;
