@@ -141,7 +141,8 @@ void PropertiesPanel::mark(const std::vector<world::WorldSection>& sections) {
 
 void PropertiesPanel::go_to(const world::TextPath& section) {
   for (QTreeWidgetItemIterator it(tree_); *it != nullptr; ++it) {
-    if ((*it)->data(0, kPathRole).toString() != path_text(section)) continue;
+    const QVariant path = (*it)->data(0, kPathRole);
+    if (path.isNull() || path.toString() != path_text(section)) continue;
     tree_->setCurrentItem(*it);
     tree_->scrollToItem(*it);
     return;

@@ -115,7 +115,7 @@ class PictureServer {
     if (!parsed) {
       done = tl::unexpected(parsed.error());
     } else if (request.kind == PictureKind::kCost) {
-      reply.cost = block_cost(**parsed, learnt(), false);
+      reply.cost = block_cost(**parsed, {request.block_x, request.block_z}, learnt(), false);
     } else if (request.kind == PictureKind::kExportModel ||
                request.kind == PictureKind::kExportBlock) {
       const core::BlockCoord block{request.block_x, request.block_z};
@@ -168,7 +168,7 @@ class PictureServer {
     if (auto ok = session_->tick(pose, 0); !ok) return ok;
     if (state.totals.failed > failed_before || state.counters.holes > 0)
       return tl::unexpected(failed(what_failed(state)));
-    reply.cost = block_cost(parsed, learnt(), false);
+    reply.cost = block_cost(parsed, pose.position.block, learnt(), false);
     return session_->save_picture(request.out);
   }
 

@@ -42,7 +42,13 @@ MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/framete
 MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
 MAY_KNOW["game"] = MAY_KNOW["engine/cli"] | {"engine/cli"}
 MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world"}
-MAY_KNOW["editor"] = MAY_KNOW["game"] | {"editor/document"}
+MAY_KNOW["editor/cost"] = MAY_KNOW["editor/document"] | {"engine/synthesis", "editor/document"}
+MAY_KNOW["editor/view"] = MAY_KNOW["engine/app"] | {"engine/app"}
+MAY_KNOW["editor/panels"] = MAY_KNOW["editor/view"] | {"editor/document", "editor/cost", "editor/view"}
+MAY_KNOW["editor/pictures"] = MAY_KNOW["engine/cli"] | {"engine/cli", "editor/document", "editor/cost"}
+MAY_KNOW["editor/gallery"] = MAY_KNOW["editor/panels"] | {"editor/panels", "editor/pictures"}
+MAY_KNOW["editor/shell"] = MAY_KNOW["editor/pictures"] | MAY_KNOW["editor/gallery"] | {"editor/gallery"}
+MAY_KNOW["editor"] = MAY_KNOW["editor/shell"] | {"editor/shell"}
 
 # folder inside a layer -> its neighbours that it may include. The layer's own headers, one folder up,
 # may be included by all of them but those of NOT_UP.
@@ -66,7 +72,7 @@ NOT_UP = {"engine/models/kit"}
 
 # library header -> the only folders that may include it
 ONLY_IN = {
-    r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform"},
+    r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform", "editor/view"},
     r"^(bt[A-Z]|Bullet|LinearMath/)": {"engine/physics"},
     r"^GLFW/": {"engine/platform"},
     r"^imgui/": {"engine/render", "engine/app", "game"},
@@ -78,7 +84,7 @@ ONLY_IN = {
     r"^spdlog/": {"engine/core"},
     r"^(AL/|sndfile)": {"engine/audio"},
     r"^sqlite3": {"engine/save"},
-    r"^Q[A-Z]|^Qt": {"editor", "editor/document"},
+    r"^Q[A-Z]|^Qt": {folder for folder in MAY_KNOW if folder.startswith("editor")},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
 NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/query", "engine/physics", "engine/visibility",
