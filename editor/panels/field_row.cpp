@@ -238,7 +238,8 @@ void FieldRow::add_seed(QHBoxLayout& layout) {
   connect(dice, &QToolButton::clicked, this, [this] {
     if (!locked()) want(world::toml_seed(QRandomGenerator::global()->generate64() >> 32));
   });
-  connect(lock_, &QToolButton::toggled, this, [less, more, dice, line](bool on) {
+  connect(lock_, &QToolButton::toggled, this, [this, less, more, dice, line](bool on) {
+    Q_EMIT lock_wanted(field_.path, on);
     for (QWidget* widget : std::initializer_list<QWidget*>{less, more, dice, line})
       widget->setEnabled(!on);
   });
@@ -249,6 +250,10 @@ void FieldRow::add_seed(QHBoxLayout& layout) {
     if (line->text().toStdString() != field_.plain) want(world::toml_seed(seed));
   });
   refresh_ = [this, line] { line->setText(QString::fromStdString(field_.plain)); };
+}
+
+void FieldRow::set_locked(bool locked) {
+  if (lock_ != nullptr) lock_->setChecked(locked);
 }
 
 bool FieldRow::locked() const {

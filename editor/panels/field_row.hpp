@@ -33,6 +33,7 @@ class FieldRow final : public QWidget {
   // What its values would cost.
   void show_cost(std::vector<CostPoint> points);
   // Whether dice and steps leave the field alone.
+  void set_locked(bool locked);
   bool locked() const;
 
  Q_SIGNALS:
@@ -41,6 +42,7 @@ class FieldRow final : public QWidget {
   void reset_wanted(const world::TextPath& path);
   void drag_began();
   void drag_ended();
+  void lock_wanted(const world::TextPath& path, bool locked);
   // The mouse or the keyboard came to this field.
   void attended(const world::TextPath& path);
 

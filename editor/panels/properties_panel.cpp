@@ -165,6 +165,8 @@ void PropertiesPanel::add_row(const world::WorldField& field) {
   connect(row, &FieldRow::reset_wanted, this, &PropertiesPanel::reset_wanted);
   connect(row, &FieldRow::drag_began, this, &PropertiesPanel::drag_began);
   connect(row, &FieldRow::drag_ended, this, &PropertiesPanel::drag_ended);
+  Q_EMIT row_made(row);
+  connect(row, &FieldRow::lock_wanted, this, &PropertiesPanel::lock_wanted);
   connect(row, &FieldRow::attended, this, &PropertiesPanel::attended);
 }
 

@@ -40,6 +40,9 @@ class PropertiesPanel final : public QWidget {
   void drag_began();
   void drag_ended();
   void attended(const world::TextPath& path);
+  void lock_wanted(const world::TextPath& path, bool locked);
+  // A control was made.
+  void row_made(psygen::editor::FieldRow* row);
   // The section whose fields are shown.
   void section_chosen(const world::TextPath& path);
   // From the menu of a section.

@@ -142,6 +142,13 @@ void MainWindow::connect_document() {
           [this](const world::TextPath& path) { tell(document_.reset_value(path)); });
   connect(properties_, &PropertiesPanel::drag_began, this, [this] { document_.begin_drag(); });
   connect(properties_, &PropertiesPanel::drag_ended, this, [this] { document_.end_drag(); });
+  connect(properties_, &PropertiesPanel::row_made, this, [this](FieldRow* row) {
+    row->set_locked(document_.locks().is_locked(row->field().path));
+  });
+  connect(properties_, &PropertiesPanel::lock_wanted, this,
+          [this](const world::TextPath& path, bool locked) {
+            document_.locks().set_locked(path, locked);
+          });
   connect(properties_, &PropertiesPanel::section_chosen, this, &MainWindow::ask_costs);
   connect(properties_, &PropertiesPanel::section_menu, this, &MainWindow::section_menu);
   connect(costs_, &CostWorker::curve, this,

@@ -1,0 +1,90 @@
+// An editor's window with a small world, and what waits for it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <QTest>
+#include <fstream>
+#include <memory>
+
+#include "editor/panels/properties_panel.hpp"
+#include "editor/shell/main_window.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace psygen::editor {
+
+inline constexpr const char* kSmallWorld = R"(# a world for tests
+format = 1
+
+[world]
+name = "small"
+seed = 5
+blocks = [64, 64]
+block_vertices = 32
+
+[[scatter]]
+model = "tree"   # the paper's
+count = 6
+size_m = [1.5, 2.5]
+
+[[scatter]]
+model = "rock"
+count = 5
+)";
+
+class EditorWindow : public testing::Test {
+ protected:
+  static constexpr int kMostMs = 120'000;  // only so that a hanging test ends
+
+  void SetUp() override {
+    file_ = folder_.path() / "small.toml";
+    std::ofstream(file_) << kSmallWorld;
+    MainWindowOptions options;
+    options.session.preset = render::Preset::kLow;
+    options.session.target_hz = 0;
+    options.session.validation = true;
+    options.session.scene.view_distance_m = 300;
+    options.session.scene.fade_seconds = 0;
+    options.session.scene.budget_bytes = 64ull << 20;
+    options.document.state_folder = folder_.path() / "state";
+    window_ = std::make_unique<MainWindow>(std::move(options));
+    window_->resize(900, 640);
+    QObject::connect(&window_->view(), &WorldView::settled, window_.get(), [this] { ++settled_; });
+    QObject::connect(&window_->view(), &WorldView::opened, window_.get(),
+                     [this](const QString& error) {
+                       EXPECT_TRUE(error.isEmpty()) << error.toStdString();
+                       ++opened_;
+                       // The same moment for every picture.
+                       if (window_->view().session() != nullptr)
+                         window_->view().session()->set_paused(true);
+                     });
+    window_->show();
+    ASSERT_TRUE(window_->open_file(file_));
+    ASSERT_TRUE(QTest::qWaitFor([this] { return opened_ > 0 && settled_ > 0; }, kMostMs));
+  }
+  void TearDown() override {
+    if (window_ && window_->view().session() != nullptr) {
+      for (const std::string& message : window_->view().session()->renderer().validation_messages())
+        ADD_FAILURE() << message;
+    }
+    window_.reset();
+  }
+
+  Document& document() { return window_->document(); }
+  PropertiesPanel& properties() { return *window_->findChild<PropertiesPanel*>(); }
+  // Waits until a change that was made is in the picture.
+  void settle() {
+    const int before = settled_;
+    ASSERT_TRUE(QTest::qWaitFor([&] { return settled_ > before; }, kMostMs));
+  }
+  image::Image picture() { return window_->view().session()->picture().value(); }
+
+  TemporaryFolder folder_{"editor-window"};
+  std::filesystem::path file_;
+  std::unique_ptr<MainWindow> window_;
+  int opened_ = 0, settled_ = 0;
+};
+
+}  // namespace psygen::editor

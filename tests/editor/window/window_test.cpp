@@ -1,0 +1,131 @@
+// The editor's window, used as a person uses it.
+#include <QAbstractButton>
+#include <QDoubleSpinBox>
+#include <QLineEdit>
+#include <QSlider>
+#include <QUndoStack>
+
+#include "editor/panels/field_row.hpp"
+#include "tests/editor/window/window_fixture.hpp"
+
+namespace psygen::editor {
+namespace {
+
+const world::TextPath kTrees{"scatter", 0}, kCount{"scatter", 0, "count"};
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Takes the handle of a slider and lets it go further right.
+void drag(QSlider& slider, int by_px) {
+  QPoint at(slider.width() * slider.value() / std::max(slider.maximum(), 1), slider.height() / 2);
+  at.setX(std::clamp(at.x(), 6, slider.width() - 8));
+  QTest::mousePress(&slider, Qt::LeftButton, {}, at);
+  for (int i = 1; i <= 8; ++i) {
+    QTest::mouseMove(&slider, at + QPoint(by_px * i / 8, 0));
+    QTest::qWait(1);
+  }
+  QTest::mouseRelease(&slider, Qt::LeftButton, {}, at + QPoint(by_px, 0));
+}
+
+TEST_F(EditorWindow, ADraggedSliderChangesThePictureInOneUndoStep) {
+  const image::Image before = picture();
+  properties().go_to(kTrees);
+  FieldRow* row = properties().row(kCount);
+  ASSERT_NE(row, nullptr);
+  drag(*row->findChild<QSlider*>(), 40);
+  EXPECT_EQ(document().undo_stack().count(), 1);
+  EXPECT_GT(document().field(kCount)->numbers[0], 6);
+  settle();
+  EXPECT_NE(picture().pixels, before.pixels);
+  document().undo_stack().undo();
+  settle();
+  EXPECT_EQ(picture().pixels, before.pixels);
+  EXPECT_EQ(document().text(), kSmallWorld);
+  EXPECT_EQ(row->findChild<QDoubleSpinBox*>()->value(), 6);
+}
+
+TEST_F(EditorWindow, WhatIsSavedOpensAsTheSameWorld) {
+  ASSERT_TRUE(document().set_value(kCount, "9"));
+  EXPECT_TRUE(window_->isWindowModified());
+  ASSERT_TRUE(document().save());
+  EXPECT_FALSE(window_->isWindowModified());
+  EXPECT_NE(text_of(file_).find("count = 9"), std::string::npos);
+  EXPECT_NE(text_of(file_).find("# the paper's"), std::string::npos);
+  settle();
+  const image::Image saved = picture();
+  const int opened = opened_;
+  ASSERT_TRUE(window_->open_file(file_));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return opened_ > opened; }, kMostMs));
+  settle();
+  EXPECT_EQ(picture().pixels, saved.pixels);
+}
+
+TEST_F(EditorWindow, AValueThatIsRefusedChangesNothing) {
+  properties().go_to(kTrees);
+  Q_EMIT properties().wanted(kCount, "100000");
+  EXPECT_EQ(document().text(), kSmallWorld);
+  EXPECT_EQ(document().undo_stack().count(), 0);
+  EXPECT_EQ(properties().row(kCount)->findChild<QDoubleSpinBox*>()->value(), 6);
+}
+
+TEST_F(EditorWindow, ASeedCanBeSteppedAndLocked) {
+  const world::TextPath seed{"world", "seed"};
+  properties().go_to({"world"});
+  FieldRow* row = properties().row(seed);
+  ASSERT_NE(row, nullptr);
+  const auto button = [row](const QString& name) {
+    for (auto* found : row->findChildren<QAbstractButton*>()) {
+      if (found->text() == name) return found;
+    }
+    return static_cast<QAbstractButton*>(nullptr);
+  };
+  button("+")->click();
+  EXPECT_EQ(document().field(seed)->plain, "6");
+  button("lock")->click();
+  EXPECT_TRUE(document().locks().is_locked(seed));
+  button("+")->click();
+  EXPECT_EQ(document().field(seed)->plain, "6");
+}
+
+TEST_F(EditorWindow, AClickSelectsWhatIsUnderIt) {
+  const QSize size = window_->view().size();
+  QTest::mouseClick(&window_->view(), Qt::LeftButton, {},
+                    QPoint(size.width() / 2, size.height() - 5));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().selection().has_value(); }, kMostMs));
+  EXPECT_LT(window_->view().selection()->distance_m, 300);
+}
+
+TEST_F(EditorWindow, KeysFlyTheCamera) {
+  const core::CameraPose before = window_->view().camera().pose();
+  QTest::keyPress(&window_->view(), Qt::Key_W);
+  ASSERT_TRUE(QTest::qWaitFor(
+      [&] { return window_->view().camera().pose().position.local.z != before.position.local.z; },
+      kMostMs));
+  QTest::keyRelease(&window_->view(), Qt::Key_W);
+}
+
+TEST_F(EditorWindow, ResizingHidingAndChangingAtOnceHarmsNothing) {
+  for (int i = 0; i < 12; ++i) {
+    window_->resize(700 + 30 * (i % 5), 500 + 20 * (i % 3));
+    ASSERT_TRUE(document().set_value(kCount, std::to_string(4 + i)));
+    QTest::qWait(5);
+    if (i % 4 == 3) {
+      window_->hide();
+      QTest::qWait(5);
+      window_->show();
+    }
+  }
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isExposed(); }, kMostMs));
+  ASSERT_TRUE(document().set_value(kCount, "6"));
+  settle();
+  // Closed while it makes something.
+  ASSERT_TRUE(document().set_value(kCount, "40"));
+  QTest::qWait(5);
+  window_.reset();
+}
+
+}  // namespace
+}  // namespace psygen::editor
