@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kMostSide = 8;  // cells along a side
 constexpr std::uint32_t kSheetWidth = 320;
+constexpr double kMostSmaller = 5;  // a model is drawn than the largest of its sheet
 constexpr const char* kGeometryKey = "contact_sheet/geometry";
 
 QString cost_text(const BlockCost& cost) {
@@ -204,7 +205,7 @@ void ContactSheet::fill() {
     widget->set_caption(values.join(" · "), {});
     connect(widget, &PictureCell::clicked, this, [this, i] { adopt(i); });
     grid_->addWidget(widget, static_cast<int>(i / wide), static_cast<int>(i % wide));
-    shown_.push_back({std::move((*cells)[i]), widget, std::nullopt, false});
+    shown_.push_back({std::move((*cells)[i]), widget, std::nullopt, 0, false});
   }
   mark_present();
   ask_costs();
@@ -265,14 +266,37 @@ void ContactSheet::note_cost(std::size_t i, const PictureReply& reply) {
     shown.failed = true;
     shown.widget->set_failure(QString::fromStdString(reply.error));
   }
-  if (--costs_left_ == 0) ask_pictures();
+  if (--costs_left_ == 0) ask_distances();
+}
+
+// Models of one sheet are seen from one distance, so that their sizes compare.
+void ContactSheet::ask_distances() {
+  distances_left_ = 0;
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    auto request = request_of(shown_[i].cell);
+    if (shown_[i].failed || !request || request->kind != PictureKind::kPortrait) continue;
+    request->kind = PictureKind::kMeasure;
+    ++distances_left_;
+    service_.ask(*std::move(request), batch_, static_cast<double>(i), this,
+                 [this, i](const PictureReply& reply) {
+                   shown_[i].distance_m = reply.distance_m;
+                   if (!reply.error.empty()) {
+                     shown_[i].failed = true;
+                     shown_[i].widget->set_failure(QString::fromStdString(reply.error));
+                   }
+                   if (--distances_left_ == 0) ask_pictures();
+                 });
+  }
+  if (distances_left_ == 0) ask_pictures();
 }
 
 void ContactSheet::ask_pictures() {
   std::vector<std::optional<double>> costs;
   for (const Shown& shown : shown_)
     costs.push_back(shown.seconds);
-  double rank = 0;
+  double rank = 0, farthest_m = 0;
+  for (const Shown& shown : shown_)
+    farthest_m = std::max(farthest_m, shown.distance_m);
   for (const std::size_t i : cheapest_first(costs)) {
     if (shown_[i].failed) continue;
     auto request = request_of(shown_[i].cell);
@@ -281,6 +305,7 @@ void ContactSheet::ask_pictures() {
       shown_[i].widget->set_failure(QString::fromStdString(request.error().message));
       continue;
     }
+    request->distance_m = std::min(farthest_m, kMostSmaller * shown_[i].distance_m);
     service_.ask(*std::move(request), batch_, rank++, this,
                  [this, i](const PictureReply& reply) { note_picture(i, reply); });
   }
@@ -302,6 +327,7 @@ void ContactSheet::note_picture(std::size_t i, const PictureReply& reply) {
 void ContactSheet::adopt(std::size_t i) {
   if (i >= shown_.size()) return;
   const std::vector<std::string> values = shown_[i].cell.values;
+  const auto view = ask_view_();
   const auto done = document_.edit(tr("Take over %1").arg(QString::fromStdString(swept_[0].label)),
                                    [&](std::string_view before) {
                                      core::Result<std::string> text{std::string(before)};
@@ -309,7 +335,8 @@ void ContactSheet::adopt(std::size_t i) {
                                        text = world::with_value(*text, swept_[f].path, values[f]);
                                      return text;
                                    });
-  if (!done) Q_EMIT refused(QString::fromStdString(done.error().message));
+  if (!done) return Q_EMIT refused(QString::fromStdString(done.error().message));
+  if (view && what_->currentIndex() == 0) Q_EMIT adopted(view->above_m);
 }
 
 // By text: undoing an adopted value marks the one before.

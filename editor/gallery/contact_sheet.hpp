@@ -32,6 +32,8 @@ class ContactSheet final : public QDialog {
   void suggest(const world::TextPath& field) { suggested_ = field; }
 
  Q_SIGNALS:
+  // Values were taken over from a picture whose camera was so high over the ground or water.
+  void adopted(double above_m);
   // Values that the document refused.
   void refused(const QString& sentence);
 
@@ -44,6 +46,7 @@ class ContactSheet final : public QDialog {
     SweepCell cell;
     PictureCell* widget = nullptr;
     std::optional<double> seconds;
+    double distance_m = 0;  // at which a portrait shows the model whole
     bool failed = false;
   };
   void list_fields();
@@ -53,6 +56,7 @@ class ContactSheet final : public QDialog {
   void fill();
   void ask_costs();
   void note_cost(std::size_t i, const PictureReply& reply);
+  void ask_distances();
   void ask_pictures();
   void note_picture(std::size_t i, const PictureReply& reply);
   core::Result<PictureRequest> request_of(const SweepCell& cell) const;
@@ -73,7 +77,7 @@ class ContactSheet final : public QDialog {
   std::vector<world::WorldField> swept_;
   int batch_ = 0;
   std::uint64_t page_ = 0;
-  std::size_t costs_left_ = 0, drawn_ = 0;
+  std::size_t costs_left_ = 0, distances_left_ = 0, drawn_ = 0;
   bool listing_ = false;
 };
 

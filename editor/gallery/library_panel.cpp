@@ -20,7 +20,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kIconWidth = 112, kIconHeight = 84;
+constexpr int kIconWidth = 104, kIconHeight = 78;  // three fit beside each other
 constexpr int kPictureWidth = 240, kPictureHeight = 180;
 constexpr int kPictureVersion = 1;  // higher: pictures of before are not used
 

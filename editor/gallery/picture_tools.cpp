@@ -19,7 +19,14 @@ namespace psygen::editor {
 namespace {
 
 constexpr std::uint32_t kLargeWidth = 3840;
+constexpr double kLeastEyeOverGroundM = 1;
 constexpr int kAttentionMs = 400;  // a mouse that passes over a field on its way is no attention
+
+// The height of the ground, or the water on it.
+double surface_at(const world::World& world, const core::WorldPosition& at) {
+  const double ground_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
+  return world.water.exists() ? std::max(ground_m, world.water.level_m) : ground_m;
+}
 
 QStringList server_arguments(const QString& device) {
   QStringList arguments{kPicturesOption};
@@ -58,6 +65,13 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
       marked_.reset();
       if (compare_ != nullptr) compare_->hide();
     }
+    // Another ground may have risen over the camera.
+    if (what.testAnyFlags(Change::kTerrain | Change::kWorld | Change::kWater) &&
+        !what.testFlag(Change::kFile)) {
+      const core::WorldPosition& at = view_.camera().pose().position;
+      if (at.local.y < surface_at(document_.world(), at) + kLeastEyeOverGroundM)
+        stand(kLeastEyeOverGroundM);
+    }
     show_shown();
   });
 }
@@ -67,14 +81,19 @@ void PictureTools::attend(const world::TextPath& field) {
   attention_.start(kAttentionMs);
 }
 
+void PictureTools::stand(double above_m) {
+  core::CameraPose pose = view_.camera().pose();
+  pose.position.local.y = surface_at(document_.world(), pose.position) + above_m;
+  view_.camera().set_pose(pose);
+}
+
 std::optional<ViewState> PictureTools::view_state() const {
   if (view_.session() == nullptr) return std::nullopt;
   const world::World& world = view_.session()->scene().state().facts.world;
   const core::CameraPose& pose = view_.camera().pose();
   const core::WorldPosition& at = pose.position;
   const double block_m = world.block_size_m();
-  double surface_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
-  if (world.water.exists()) surface_m = std::max(surface_m, world.water.level_m);
+  const double surface_m = surface_at(world, at);
   ViewState state;
   state.place.at_m = {at.block.x * block_m + at.local.x, at.local.y,
                       at.block.z * block_m + at.local.z};
@@ -95,6 +114,7 @@ void PictureTools::open_sheet() {
     sheet_ = new ContactSheet(
         document_, service_, [this] { return view_state(); }, &window_);
     connect(sheet_, &ContactSheet::refused, this, &PictureTools::told);
+    connect(sheet_, &ContactSheet::adopted, this, &PictureTools::stand);
     if (!attended_.empty()) sheet_->suggest(attended_);
   }
   sheet_->show();

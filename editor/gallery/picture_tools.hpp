@@ -48,6 +48,8 @@ class PictureTools final : public QObject {
  private:
   std::optional<ViewState> view_state() const;
   std::optional<std::pair<ComparedState, ComparedState>> states() const;
+  // Puts the camera so high over the ground or water of the present text.
+  void stand(double above_m);
   void open_sheet();
   void export_selection();
   void save_large_picture();

@@ -193,8 +193,8 @@ core::Result<std::string> snippet_world(std::string_view snippet) {
                     fmt::format("there are no pictures of [{}]", table));
 }
 
-std::optional<core::CameraPose> portrait_pose(const ParsedWorld& parsed,
-                                              const core::Projection& projection) {
+std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
+                                          const core::Projection& projection, double distance_m) {
   const double block_m = parsed.world.block_size_m();
   std::optional<core::WorldPosition> foot;
   const models::ModelType* type = nullptr;
@@ -225,8 +225,8 @@ std::optional<core::CameraPose> portrait_pose(const ParsedWorld& parsed,
   const double up = std::tan(half_fov);
   const double across = up * static_cast<double>(projection.aspect);
   const double radius_m = std::hypot(half.x, half.z) * 0.85;  // boxes have corners, crowns few
-  const double distance_m =
-      std::max({kAir * half.y / up, kAir * radius_m / across, 0.2}) + radius_m * 0.7;
+  if (distance_m <= 0)
+    distance_m = std::max({kAir * half.y / up, kAir * radius_m / across, 0.2}) + radius_m * 0.7;
   core::CameraPose pose;
   pose.pitch = kPitch;
   pose.position = *foot;
@@ -236,7 +236,7 @@ std::optional<core::CameraPose> portrait_pose(const ParsedWorld& parsed,
   // Looks at the middle from wherever it is.
   pose.pitch = std::atan2(foot->local.y + middle.y - pose.position.local.y, distance_m);
   pose.position = core::normalised(pose.position, block_m);
-  return pose;
+  return PortraitPose{pose, distance_m};
 }
 
 }  // namespace psygen::editor

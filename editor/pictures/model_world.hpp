@@ -28,10 +28,15 @@ bool is_portrait(std::string_view snippet);
 // are high.
 PicturePlace country_place(std::string_view snippet);
 
-// Where a portrait is taken: the whole model, seen from its sunny side. `height_share` is the
-// height of the picture over its width. Nothing where nothing stands. Makes a coarse mesh of the
-// model, so a model that hangs hangs here.
-std::optional<core::CameraPose> portrait_pose(const ParsedWorld& parsed,
-                                              const core::Projection& projection);
+// Where a portrait is taken: in front of the model, on its sunny side.
+struct PortraitPose {
+  core::CameraPose pose;
+  double distance_m = 0;  // to the middle of the model
+};
+// Such that the whole model is seen, or from `distance_m` where that is above 0. Nothing where
+// nothing stands. Makes a mesh of the model, so a model that hangs hangs here.
+std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
+                                          const core::Projection& projection,
+                                          double distance_m = 0);
 
 }  // namespace psygen::editor

@@ -41,6 +41,7 @@ QByteArray to_line(const PictureRequest& r) {
                 {"width", static_cast<qint64>(r.size.width)},
                 {"height", static_cast<qint64>(r.size.height)},
                 {"now_s", r.now_s},
+                {"distance_m", r.distance_m},
                 {"block", QJsonArray{r.block_x, r.block_z}},
                 {"index", static_cast<qint64>(r.index)},
                 {"level", r.level}};
@@ -68,6 +69,7 @@ std::optional<PictureRequest> request_from(const QByteArray& line) {
   r.size = {static_cast<std::uint32_t>(std::clamp((*o)["width"].toInt(), 1, kMostPixels)),
             static_cast<std::uint32_t>(std::clamp((*o)["height"].toInt(), 1, kMostPixels))};
   r.now_s = (*o)["now_s"].toDouble();
+  r.distance_m = (*o)["distance_m"].toDouble();
   r.block_x = (*o)["block"].toArray().at(0).toInt();
   r.block_z = (*o)["block"].toArray().at(1).toInt();
   r.index = static_cast<std::uint32_t>((*o)["index"].toInteger());
@@ -86,6 +88,7 @@ QByteArray to_line(const PictureReply& r) {
   QJsonObject o{{"id", static_cast<qint64>(r.id)}};
   if (!r.error.empty()) o["error"] = json_text(r.error);
   if (r.dropped) o["dropped"] = true;
+  if (r.distance_m > 0) o["distance_m"] = r.distance_m;
   if (!r.note.empty()) o["note"] = json_text(r.note);
   if (r.cost) {
     o["cost"] = QJsonObject{{"models", r.cost->models},
@@ -103,6 +106,7 @@ std::optional<PictureReply> reply_from(const QByteArray& line) {
   r.id = id_of(*o);
   r.error = (*o)["error"].toString().toStdString();
   r.dropped = (*o)["dropped"].toBool();
+  r.distance_m = (*o)["distance_m"].toDouble();
   r.note = (*o)["note"].toString().toStdString();
   if (const QJsonObject c = (*o)["cost"].toObject(); !c.isEmpty()) {
     r.cost = BlockCost{c["models"].toDouble(), c["triangles"].toDouble(), c["bytes"].toDouble(),

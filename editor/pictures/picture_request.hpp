@@ -20,6 +20,7 @@ enum class PictureKind : std::uint8_t {
   kPicture,      // of the world at a place
   kPortrait,     // of the first scatter's model, near and alone (model_world.hpp)
   kCost,         // of a block, without a picture
+  kMeasure,      // how far away a portrait would be taken
   kExportModel,  // a file with one model of a block
   kExportBlock,  // a file with everything on a block
 };
@@ -39,6 +40,7 @@ struct PictureRequest {
   std::string file;  // of the world: for messages, and the folder of its pictures
   std::string out;   // to be written: .png, or .glb and .obj
   core::Extent size{};
+  double distance_m = 0;              // of a portrait; 0: what shows it whole
   std::optional<PicturePlace> place;  // none: where the camera stands in a new world
   double now_s = 0;                   // of the clock, for worlds with a day
   std::int32_t block_x = 0, block_z = 0;
@@ -52,8 +54,9 @@ struct PictureReply {
   std::string error;
   bool dropped = false;  // another request was more urgent
   std::optional<BlockCost> cost;
-  std::string note;  // of an export: what was written
-  QImage image;      // read from the file by the service; not in the JSON
+  double distance_m = 0;  // of kMeasure
+  std::string note;       // of an export: what was written
+  QImage image;           // read from the file by the service; not in the JSON
 };
 
 // One line each, with its end.

@@ -34,6 +34,7 @@ constexpr std::uint32_t kSmallWidth = 400;  // of pictures that need not be so f
 constexpr std::uint64_t kServerBudgetBytes = 384ULL << 20;
 constexpr double kLeastEyeM = 0.6;  // over the ground, wherever the camera was
 constexpr int kHungExit = 3;
+constexpr const char* kNowhere = "the model stands nowhere";
 constexpr std::size_t kChunk = 1 << 16;
 
 core::Error failed(std::string sentence) {
@@ -115,7 +116,11 @@ class PictureServer {
     if (!parsed) {
       done = tl::unexpected(parsed.error());
     } else if (request.kind == PictureKind::kCost) {
-      reply.cost = block_cost(**parsed, {request.block_x, request.block_z}, learnt(), false);
+      reply.cost = block_cost(**parsed, learnt(), false);
+    } else if (request.kind == PictureKind::kMeasure) {
+      const auto portrait = portrait_pose(**parsed, projection_of(request));
+      if (!portrait) done = tl::unexpected(failed(kNowhere));
+      if (portrait) reply.distance_m = portrait->distance_m;
     } else if (request.kind == PictureKind::kExportModel ||
                request.kind == PictureKind::kExportBlock) {
       const core::BlockCoord block{request.block_x, request.block_z};
@@ -143,14 +148,12 @@ class PictureServer {
                           PictureReply& reply) {
     if (auto ok = show(request, parsed); !ok) return ok;
     scene::State& state = session_->scene().state();
-    core::Projection projection = state.camera.projection;
-    projection.aspect =
-        static_cast<float>(request.size.width) / static_cast<float>(request.size.height);
+    const core::Projection projection = projection_of(request);
     core::CameraPose pose = session_->home();
     if (request.kind == PictureKind::kPortrait) {
-      const auto portrait = portrait_pose(parsed, projection);
-      if (!portrait) return tl::unexpected(failed("the model stands nowhere"));
-      pose = *portrait;
+      const auto portrait = portrait_pose(parsed, projection, request.distance_m);
+      if (!portrait) return tl::unexpected(failed(kNowhere));
+      pose = portrait->pose;
     } else if (request.place) {
       pose = pose_of(*request.place, parsed.world);
     }
@@ -168,8 +171,15 @@ class PictureServer {
     if (auto ok = session_->tick(pose, 0); !ok) return ok;
     if (state.totals.failed > failed_before || state.counters.holes > 0)
       return tl::unexpected(failed(what_failed(state)));
-    reply.cost = block_cost(parsed, pose.position.block, learnt(), false);
+    reply.cost = block_cost(parsed, learnt(), false);
     return session_->save_picture(request.out);
+  }
+
+  static core::Projection projection_of(const PictureRequest& request) {
+    core::Projection projection;
+    projection.aspect =
+        static_cast<float>(request.size.width) / static_cast<float>(request.size.height);
+    return projection;
   }
 
   static std::string what_failed(const scene::State& state) {

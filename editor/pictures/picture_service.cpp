@@ -85,7 +85,9 @@ void PictureService::send_next() {
   queue_.erase(next);
   process_->write(to_line(current_->request));
   ++unanswered_;
-  limit_.start(is_picture(current_->request) ? limit_ms_ : limit_ms_ * kExportTimes);
+  const bool exports = current_->request.kind == PictureKind::kExportModel ||
+                       current_->request.kind == PictureKind::kExportBlock;
+  limit_.start(exports ? limit_ms_ * kExportTimes : limit_ms_);
 }
 
 void PictureService::start() {

@@ -4,6 +4,7 @@
 
 #include <QStandardPaths>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <map>
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kOwn = "Mine";
+constexpr std::array kHeadings{"Species", "Rocks", "Grasses", "Terrains", "Skies"};  // in order
 constexpr double kSmaller = 0.8, kLarger = 1.2;  // the sizes of a new species, over its own
 constexpr double kDryM = 1;                      // above the water
 
@@ -116,7 +118,7 @@ std::vector<fs::path> library_folders() {
 std::vector<Preset> load_library(const std::vector<fs::path>& folders,
                                  std::vector<std::string>* problems) {
   // The first folder that has a file of this name wins, as for worlds.
-  std::map<std::tuple<bool, std::string, std::string>, Preset> presets;
+  std::map<std::tuple<bool, std::ptrdiff_t, std::string, std::string>, Preset> presets;
   for (const fs::path& folder : folders) {
     const bool own = folder == own_library_folder();
     std::error_code error;
@@ -128,7 +130,8 @@ std::vector<Preset> load_library(const std::vector<fs::path>& folders,
           own || file.parent_path() == folder ? kOwn : title_of(file.parent_path().filename());
       auto preset = read_preset_file(file, heading);
       if (preset) {
-        presets.try_emplace({own, heading, preset->name}, *std::move(preset));
+        const auto order = std::ranges::find(kHeadings, heading) - kHeadings.begin();
+        presets.try_emplace({own, order, heading, preset->name}, *std::move(preset));
       } else if (problems != nullptr) {
         problems->push_back(preset.error().message);
       }

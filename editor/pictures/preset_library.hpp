@@ -27,7 +27,8 @@ std::vector<std::filesystem::path> library_folders();
 // The person's own presets; the folder need not exist.
 std::filesystem::path own_library_folder();
 
-// All presets of these folders by heading and name, own ones ("Mine") last. Files that are no
+// All presets of these folders: species, rocks, grasses, terrains, skies, others, each by name, own
+// ones ("Mine") last. Files that are no
 // presets are left out and named in `problems` (may be null).
 std::vector<Preset> load_library(const std::vector<std::filesystem::path>& folders,
                                  std::vector<std::string>* problems = nullptr);

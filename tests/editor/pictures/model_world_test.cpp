@@ -42,9 +42,11 @@ TEST(ModelWorld, TheModelIsWhollyInThePicture) {
     const auto pose = portrait_pose(**parsed, projection);
     ASSERT_TRUE(pose.has_value());
     std::vector<world::Placement> placements;
-    world::place_models((*parsed)->world, (*parsed)->registry, pose->position.block, placements);
+    world::place_models((*parsed)->world, (*parsed)->registry, pose->pose.position.block,
+                        placements);
     ASSERT_EQ(placements.size(), 1U);
-    const double away_m = glm::length(glm::dvec3(placements[0].position) - pose->position.local);
+    const double away_m =
+        glm::length(glm::dvec3(placements[0].position) - pose->pose.position.local);
     EXPECT_GT(away_m, 1);
     EXPECT_LT(away_m, 80);
   }
