@@ -243,11 +243,13 @@ void ContactSheet::ask_costs() {
   batch_ = service_.new_batch();
   drawn_ = 0;
   costs_left_ = shown_.size();
+  const auto view = ask_view_();
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     PictureRequest request;
     request.kind = PictureKind::kCost;
     request.text = shown_[i].cell.text;
     request.file = document_.file().string();
+    if (view) request.place = view->place;
     service_.ask(std::move(request), batch_, static_cast<double>(i), this,
                  [this, i](const PictureReply& reply) { note_cost(i, reply); });
   }

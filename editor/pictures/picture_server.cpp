@@ -116,7 +116,7 @@ class PictureServer {
     if (!parsed) {
       done = tl::unexpected(parsed.error());
     } else if (request.kind == PictureKind::kCost) {
-      reply.cost = block_cost(**parsed, learnt(), false);
+      reply.cost = block_cost(**parsed, block_of(request, (*parsed)->world), learnt(), false);
     } else if (request.kind == PictureKind::kMeasure) {
       const auto portrait = portrait_pose(**parsed, projection_of(request));
       if (!portrait) done = tl::unexpected(failed(kNowhere));
@@ -171,7 +171,7 @@ class PictureServer {
     if (auto ok = session_->tick(pose, 0); !ok) return ok;
     if (state.totals.failed > failed_before || state.counters.holes > 0)
       return tl::unexpected(failed(what_failed(state)));
-    reply.cost = block_cost(parsed, learnt(), false);
+    reply.cost = block_cost(parsed, block_of(request, parsed.world), learnt(), false);
     return session_->save_picture(request.out);
   }
 
@@ -224,6 +224,13 @@ class PictureServer {
 
   static bool images_empty(const world::World& world) {
     return world.palette.images == decltype(world.palette.images){};
+  }
+
+  // Around which costs are meant.
+  static core::BlockCoord block_of(const PictureRequest& request, const world::World& world) {
+    if (request.place) return pose_of(*request.place, world).position.block;
+    return {static_cast<std::int32_t>(world.blocks_x / 2),
+            static_cast<std::int32_t>(world.blocks_z / 2)};
   }
 
   static core::CameraPose pose_of(const PicturePlace& place, const world::World& world) {
