@@ -173,7 +173,7 @@ TEST(CommandLine, APictureOverWaterIsTakenAboveIt) {
   const TemporaryFolder folder;
   const std::string flooded = (folder / "flooded.toml").string();
   std::ofstream(flooded) << read(source_file("game/worlds/paper.toml"))
-                         << "\n[water]\nlevel_m = 5000\n";
+                         << "\n[water]\nlevel_m = 5000\n[sky]\ncloud_cover = 0\n";
   const std::string sky = " --pitch 60 --world " + flooded;
   // Wherever the ground is, the same sky is above.
   EXPECT_EQ(picture(folder, "--at 16159.5,16159.5" + sky),
