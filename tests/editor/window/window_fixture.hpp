@@ -81,7 +81,7 @@ class EditorWindow : public testing::Test {
   }
   image::Image picture() { return window_->view().session()->picture().value(); }
 
-  TemporaryFolder folder_{"editor-window"};
+  TemporaryFolder folder_;
   std::filesystem::path file_;
   std::unique_ptr<MainWindow> window_;
   int opened_ = 0, settled_ = 0;

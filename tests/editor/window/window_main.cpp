@@ -1,18 +1,28 @@
 // Tests of the editor's window run on a display of their own, with settings of their own.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <QApplication>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
 
+#include "editor/pictures/picture_server.hpp"
 #include "tests/engine/platform/virtual_display.hpp"
-#include "tests/temporary_folder.hpp"
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], psygen::editor::kPicturesOption) == 0)
+    return psygen::editor::render_pictures({});
   ::testing::InitGoogleTest(&argc, argv);
   if (::testing::GTEST_FLAG(list_tests)) return RUN_ALL_TESTS();
-  const psygen::TemporaryFolder home("editor-window");
+  // Of this process alone.
+  const std::filesystem::path home = std::filesystem::temp_directory_path() /
+                                     ("psygen_editor_window_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(home);
   for (const char* variable : {"XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"})
-    ::setenv(variable, home.path().c_str(), 1);
+    ::setenv(variable, home.c_str(), 1);
   const auto display = psygen::platform::VirtualDisplay::start();
   if (!display) {
     std::fprintf(stderr, "no display: Xvfb or openbox cannot be started (tools/setup.sh)\n");
@@ -22,5 +32,8 @@ int main(int argc, char** argv) {
   const QApplication application(argc, argv);
   QApplication::setOrganizationName("psygen");
   QApplication::setApplicationName("psygen-editor-test");
-  return RUN_ALL_TESTS();
+  const int code = RUN_ALL_TESTS();
+  std::error_code ignored;
+  std::filesystem::remove_all(home, ignored);
+  return code;
 }

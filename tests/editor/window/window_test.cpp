@@ -39,10 +39,10 @@ TEST_F(EditorWindow, ADraggedSliderChangesThePictureInOneUndoStep) {
   EXPECT_EQ(document().undo_stack().count(), 1);
   EXPECT_GT(document().field(kCount)->numbers[0], 6);
   settle();
-  EXPECT_NE(picture().pixels, before.pixels);
+  EXPECT_NE(picture().rgba, before.rgba);
   document().undo_stack().undo();
   settle();
-  EXPECT_EQ(picture().pixels, before.pixels);
+  EXPECT_EQ(picture().rgba, before.rgba);
   EXPECT_EQ(document().text(), kSmallWorld);
   EXPECT_EQ(row->findChild<QDoubleSpinBox*>()->value(), 6);
 }
@@ -60,7 +60,7 @@ TEST_F(EditorWindow, WhatIsSavedOpensAsTheSameWorld) {
   ASSERT_TRUE(window_->open_file(file_));
   ASSERT_TRUE(QTest::qWaitFor([&] { return opened_ > opened; }, kMostMs));
   settle();
-  EXPECT_EQ(picture().pixels, saved.pixels);
+  EXPECT_EQ(picture().rgba, saved.rgba);
 }
 
 TEST_F(EditorWindow, AValueThatIsRefusedChangesNothing) {
