@@ -96,6 +96,8 @@ bool renew(const models::Parameters& parameters, const WorldFacts& facts, ecs::E
 void place_anew(const WorldFacts& facts, core::BlockCoord block, const world::Placement& placement,
                 bool world, ecs::Entity entity, const synthesis::MeshSupply& meshes,
                 ecs::World& entities) {
+  // The type of the meshes for all models of a node comes after the species, so it moves with them.
+  entities.get<Source>(entity)->model = placement.model;
   if (!renew(placement.parameters, facts, entity, meshes, entities) && !world) {
     entities.get<Placed>(entity)->position = placement.position;
     return;

@@ -3,6 +3,7 @@
 #include <map>
 #include <tuple>
 
+#include "engine/world/files/text_edit.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
@@ -104,6 +105,18 @@ TEST_F(SetWorld, MoreModelsLeadToTheSameSceneAsANewOne) {
 TEST_F(SetWorld, OtherTypesLeadToTheSameSceneAsANewOne) {
   expect_like_new(paper_, species_);
   expect_like_new(species_, paper_);
+}
+
+TEST_F(SetWorld, OneSpeciesMoreOrLessLeadsToTheSameSceneAsANewOne) {
+  const std::string oak = replaced(*world::table_text(species_, {"species", 0}), "oak", "new_oak");
+  const auto more = world::with_table_appended(species_, {"species"}, oak);
+  ASSERT_TRUE(more) << more.error().message;
+  expect_like_new(species_, *more);
+  expect_like_new(*more, species_);
+  const auto planted =
+      world::with_table_appended(*more, {"scatter"}, "model = \"new_oak\"\ncount = 4\n");
+  ASSERT_TRUE(planted) << planted.error().message;
+  expect_like_new(species_, *planted);
 }
 
 TEST_F(SetWorld, BlocksOfAnotherSizeLeadToTheSameSceneAsANewOne) {
