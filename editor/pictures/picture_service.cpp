@@ -6,6 +6,8 @@
 namespace psygen::editor {
 namespace {
 
+constexpr const char* kChild = "PSYGEN_EDITOR_PICTURES";  // set in what it starts
+
 constexpr int kPatienceMs = 1000;
 constexpr int kExportTimes = 10;  // as long as a picture
 constexpr int kEndMs = 200;       // to end by itself
@@ -91,6 +93,8 @@ void PictureService::send_next() {
 }
 
 void PictureService::start() {
+  // A program that does not know the option would start itself again and again.
+  if (qEnvironmentVariableIsSet(kChild)) return;
   process_ = std::make_unique<QProcess>();
   process_->setProcessChannelMode(QProcess::SeparateChannels);
   process_->setStandardErrorFile(QProcess::nullDevice());
@@ -103,6 +107,9 @@ void PictureService::start() {
       },
       Qt::QueuedConnection);
   input_.clear();
+  QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
+  environment.insert(kChild, "1");
+  process_->setProcessEnvironment(environment);
   process_->start(program_, arguments_);
 }
 
