@@ -157,7 +157,9 @@ void WorldView::tick() {
 void WorldView::note_settled() {
   if (!since_text_.isValid() || text_is_new_ || prepared_.valid()) return;
   const scene::State& state = session_->scene().state();
-  if (state.counters.awaited > 0 || state.meshes.outstanding() > 0) return;
+  if (state.counters.awaited > 0 || state.meshes.outstanding() > 0 ||
+      state.output.pictures_lacking != 0)
+    return;
   Q_EMIT settled(static_cast<double>(since_text_.nsecsElapsed()) * 1e-6);
   since_text_.invalidate();
 }

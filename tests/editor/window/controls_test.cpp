@@ -16,7 +16,7 @@ namespace {
 
 // Parts of Qt's own widgets, which they name themselves.
 bool is_inner(const QWidget& widget) {
-  return widget.objectName().startsWith("qt_") ||
+  return widget.objectName().startsWith("qt_") || widget.inherits("QTableCornerButton") ||
          qobject_cast<QAbstractSpinBox*>(widget.parent()) ||
          qobject_cast<QComboBox*>(widget.parent()) || qobject_cast<QLineEdit*>(widget.parent()) ||
          widget.parent()->inherits("QTabBar") || widget.parent()->inherits("QMenuBar") ||
