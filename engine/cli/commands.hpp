@@ -49,7 +49,7 @@ class FlyCommand {
   int told_ = 0;          // exit code of what the end of the flight wrote
   std::string requests_;  // file; empty: they are not recorded
   RequestRecorder recorder_;
-  bool json_ = false;
+  bool inspect_ = false, json_ = false;
 };
 
 // `psygen picture`.

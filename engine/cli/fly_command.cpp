@@ -12,6 +12,7 @@
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/image/image_io.hpp"
+#include "engine/inspect/inspect.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/software_tuning.hpp"
 #include "engine/scene/scene.hpp"
@@ -27,6 +28,10 @@ FlyCommand::FlyCommand(CLI::App& cli)
   add_picture_options();
   command_->add_option("--record-requests", requests_,
                        "File that gets every request of the flight; starts with an empty cache");
+  command_->add_flag(
+      "--inspect", inspect_,
+      "Let programs of this user look into the flight and change it, over a socket in "
+      "$XDG_RUNTIME_DIR");
   command_->add_flag("--json", json_, "Print the summary as JSON instead of a table");
 }
 
@@ -122,6 +127,7 @@ int FlyCommand::run() {
     return kUsage;
   }
   options_.session.stop = &stop_at_interrupt();
+  if (inspect_) options_.session.plugins.push_back(inspect::plugin());
   app::Plugin reporter;
   reporter.name = "report";
   if (!requests_.empty()) {

@@ -38,7 +38,8 @@ MAY_KNOW = {
 }
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/input"}
 MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app"}
-MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/frametest", "engine/compare"}
+MAY_KNOW["engine/inspect"] = MAY_KNOW["engine/app"] | {"engine/app"}
+MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare"}
 MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
 MAY_KNOW["game"] = MAY_KNOW["engine/cli"] | {"engine/cli"}
 MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world"}
@@ -78,7 +79,7 @@ ONLY_IN = {
     r"^imgui/": {"engine/render", "engine/app", "game"},
     r"^OpenImageIO/": {"engine/image"},
     r"^toml\+\+/": {"engine/world"},
-    r"^nlohmann/": {"engine/telemetry", "engine/compare", "engine/cli"},
+    r"^nlohmann/": {"engine/telemetry", "engine/compare", "engine/inspect", "engine/cli"},
     r"^CLI/": {"engine/cli", "game"},
     r"^tiny_gltf": {"engine/exchange", "engine/gltf"},
     r"^spdlog/": {"engine/core"},

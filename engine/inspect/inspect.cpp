@@ -1,0 +1,70 @@
+#include "engine/inspect/inspect.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "engine/app/session.hpp"
+#include "engine/core/log.hpp"
+#include "engine/inspect/line_server.hpp"
+#include "engine/inspect/visit.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::inspect {
+namespace {
+
+constexpr int kMostRequestsAFrame = 16;
+
+// A server with its visitor. A session's schedule owns it.
+struct Desk {
+  std::unique_ptr<LineServer> server;
+  Visit visit;
+
+  void frame(app::Session& session) {
+    if (!server->attached()) {
+      if (!server->accept()) return;
+      visit.begin();
+    }
+    visit.note_frame(session.scene().state());
+    server->receive();
+    for (int i = 0; i < kMostRequestsAFrame && !visit.over(); ++i) {
+      const auto line = server->take_line();
+      if (!line) break;
+      server->send(visit.answer(session, *line));
+      if (visit.has_greeted()) server->trust();
+    }
+    server->transmit();
+    if (visit.over() && !server->is_sending()) server->drop();
+    if (!server->attached()) visit.end(session);
+  }
+};
+
+}  // namespace
+
+app::Plugin plugin(InspectOptions options) {
+  // The systems own the desk: it ends with the scene, whoever else keeps the plugin.
+  const auto seat = std::make_shared<std::weak_ptr<Desk>>();
+  app::Plugin plugin;
+  plugin.name = "inspect";
+  plugin.add_systems = [seat, options](scene::Systems& systems) -> core::Result<void> {
+    auto server = LineServer::open(options.folder);
+    if (!server) return tl::unexpected(server.error());
+    core::log_info(fmt::format("can be inspected at {}", (*server)->address().string()));
+    const auto desk = std::make_shared<Desk>();
+    desk->server = std::move(*server);
+    *seat = desk;
+    systems.frame.add(
+        "inspect",
+        [desk](scene::Input& input) {
+          if (const auto& pose = desk->visit.pose()) input.pose = *pose;
+        },
+        ecs::before("input"));
+    return {};
+  };
+  plugin.on_frame = [seat](app::Session& session, double) {
+    if (const auto desk = seat->lock()) desk->frame(session);
+  };
+  return plugin;
+}
+
+}  // namespace psygen::inspect

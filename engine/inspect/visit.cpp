@@ -1,0 +1,134 @@
+#include "engine/inspect/visit.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "engine/app/session.hpp"
+#include "engine/core/log.hpp"
+#include "engine/inspect/inspect.hpp"
+#include "engine/inspect/json_screen.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/world/files/world_file.hpp"
+
+namespace psygen::inspect {
+namespace {
+
+tl::unexpected<core::Error> refuse(std::string sentence) {
+  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
+}
+
+std::string line_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string refusal(const Json& id, const std::string& sentence) {
+  return line_of({{"id", id}, {"ok", false}, {"error", sentence}});
+}
+
+std::string written_world(const app::Session& session) {
+  const scene::WorldFacts& facts = session.scene().state().facts;
+  return world::write_world(facts.world, facts.registry);
+}
+
+}  // namespace
+
+std::string Visit::answer(app::Session& session, std::string_view request) {
+  if (!is_small_json(request)) return refusal(nullptr, "a request is one small object of JSON");
+  const Json json = Json::parse(request, nullptr, false);
+  if (!json.is_object()) return refusal(nullptr, "a request is one small object of JSON");
+  Json id = json.contains("id") ? json["id"] : Json();
+  if (!id.is_number_integer()) id = nullptr;
+  Reply found = reply(session, json);
+  if (!found) return refusal(id, found.error().message);
+  Json whole = {{"id", std::move(id)}, {"ok", true}};
+  whole.update(*found);
+  return line_of(whole);
+}
+
+Visit::Reply Visit::reply(app::Session& session, const Json& request) {
+  const auto found = request.find("do");
+  if (found == request.end() || !found->is_string()) return refuse("a request has \"do\", a text");
+  const auto& what = found->get_ref<const std::string&>();
+  if (what == "hello") return hello(session, request);
+  if (!greeted_) return refuse("the first request is hello");
+  const scene::State& state = session.scene().state();
+  if (what == "figures") return figures(session, frames_);
+  if (what == "systems") return systems(state, frames_);
+  if (what == "entities") return entities(state);
+  if (what == "parameters") return Json{{"text", world_text(session)}};
+  if (what == "set_world") return set_world(session, request);
+  if (what == "pause") return pause(session, request);
+  if (what == "pose") return place(session, request);
+  if (what == "detach") return detach(request);
+  return refuse(
+      "there are hello, figures, systems, entities, parameters, set_world, pause, pose and detach");
+}
+
+Visit::Reply Visit::hello(app::Session& session, const Json& request) {
+  const auto protocol = request.find("protocol");
+  if (protocol == request.end() || *protocol != kProtocol)
+    return refuse(
+        fmt::format("hello has \"protocol\": \"{}\", the only one that is spoken here", kProtocol));
+  greeted_ = true;
+  const scene::State& state = session.scene().state();
+  return Json{{"protocol", kProtocol},
+              {"pid", ::getpid()},
+              {"world", state.facts.world.name},
+              {"file", session.options().world_file.string()},
+              {"device", session.renderer().device().name},
+              {"block_m", state.facts.world.block_size_m()},
+              {"headless", session.options().headless},
+              {"virtual_clock", state.settings.virtual_time}};
+}
+
+Visit::Reply Visit::set_world(app::Session& session, const Json& request) {
+  const auto text = request.find("text");
+  if (text == request.end() || !text->is_string()) return refuse("set_world has \"text\", a text");
+  std::string before = world_before_ ? std::string() : world_text(session);
+  if (auto ok = session.set_world(text->get_ref<const std::string&>()); !ok)
+    return tl::unexpected(ok.error());
+  if (!world_before_) world_before_ = std::move(before);
+  world_set_ = written_world(session);
+  return Json::object();
+}
+
+Visit::Reply Visit::pause(app::Session& session, const Json& request) {
+  const auto on = request.find("on");
+  if (on == request.end() || !on->is_boolean()) return refuse("pause has \"on\", true or false");
+  if (!paused_before_) paused_before_ = session.paused();
+  paused_set_ = on->get<bool>();
+  session.set_paused(paused_set_);
+  return Json::object();
+}
+
+Visit::Reply Visit::place(app::Session& session, const Json& request) {
+  const auto wanted = request.find("pose");
+  if (wanted == request.end()) return refuse("pose has \"pose\", an object, or null to let go");
+  if (wanted->is_null()) {
+    pose_.reset();
+    return Json::object();
+  }
+  auto pose = pose_from(*wanted, session.scene().state().facts.world.block_size_m());
+  if (!pose) return tl::unexpected(pose.error());
+  pose_ = *pose;
+  return Json::object();
+}
+
+Visit::Reply Visit::detach(const Json& request) {
+  keep_ = request.value("keep", Json(false)) == Json(true);
+  over_ = true;
+  return Json::object();
+}
+
+void Visit::end(app::Session& session) {
+  if (!keep_ && world_before_ && written_world(session) == world_set_) {
+    if (auto ok = session.set_world(*world_before_); !ok)
+      core::log_warning(fmt::format("the world before the visit is lost: {}", ok.error().message));
+  }
+  if (!keep_ && paused_before_ && session.paused() == paused_set_)
+    session.set_paused(*paused_before_);
+  begin();
+}
+
+}  // namespace psygen::inspect
