@@ -51,6 +51,7 @@ class CameraPath {
   CameraPath(Settings settings, std::vector<PathPoint> points);
 
   // The inputs.
+  const Settings& settings() const { return settings_; }
   const std::string& name() const { return settings_.name; }
   const std::vector<PathPoint>& points() const { return points_; }
   // The time of the last point.
