@@ -74,6 +74,13 @@ void CacheMap::show(const scene::State& state) {
   update();
 }
 
+void CacheMap::show_cells(std::vector<Cell> cells, double yaw, double horizontal_fov) {
+  cells_ = std::move(cells);
+  yaw_ = yaw;
+  fov_ = horizontal_fov;
+  update();
+}
+
 double CacheMap::pixels_per_m() const {
   return std::min(width(), height()) / (2 * radius_m_);
 }

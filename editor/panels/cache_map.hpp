@@ -22,18 +22,6 @@ class CacheMap final : public QWidget {
   Q_OBJECT
 
  public:
-  explicit CacheMap(QWidget* parent = nullptr);
-  // Takes over what there is now; some times a second.
-  void show(const scene::State& state);
-  void set_colour(MapColour colour);
-  QSize sizeHint() const override { return {280, 280}; }
-
- protected:
-  void paintEvent(QPaintEvent* event) override;
-  bool event(QEvent* event) override;
-  void wheelEvent(QWheelEvent* event) override;
-
- private:
   // A node as the map shows it.
   struct Cell {
     visibility::NodeCoord at;
@@ -44,6 +32,20 @@ class CacheMap final : public QWidget {
     double cost_s = 0, deadline_s = 0;
     bool chosen = false;  // it is drawn in this picture
   };
+  explicit CacheMap(QWidget* parent = nullptr);
+  // Takes over what there is now; some times a second.
+  void show(const scene::State& state);
+  // The same of nodes from elsewhere, coarse ones first; yaw and field of view in radians.
+  void show_cells(std::vector<Cell> cells, double yaw, double horizontal_fov);
+  void set_colour(MapColour colour);
+  QSize sizeHint() const override { return {280, 280}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  bool event(QEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+
+ private:
   QColor colour_of(const Cell& cell) const;
   QString words(const Cell& cell) const;
   const Cell* cell_at(QPointF place) const;

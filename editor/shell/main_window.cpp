@@ -69,6 +69,7 @@ MainWindow::MainWindow(MainWindowOptions options)
   costs_ = new CostWorker(options_.document.register_models, this);
   palette_ = new CommandPalette(this);
   add_docks();
+  add_tool_docks();
   add_menus();
   add_toolbar();
   figures_ = new QLabel;

@@ -19,7 +19,9 @@ class CommandPalette;
 class CostWorker;
 class PictureTools;
 class PropertiesPanel;
+class RemoteSession;
 class StatisticsPanel;
+class TimelinePanel;
 
 struct MainWindowOptions {
   app::SessionOptions session;
@@ -49,11 +51,14 @@ class MainWindow final : public QMainWindow {
 
  private:
   void add_docks();
+  void add_tool_docks();
   void add_menus();
   void add_file_menu();
   void add_edit_menu();
   void add_view_menu();
   void add_world_menu();
+  void add_flight_menu();
+  void add_attach_action(QMenu* menu);
   void add_help_menu();
   void add_toolbar();
   void connect_document();
@@ -94,6 +99,10 @@ class MainWindow final : public QMainWindow {
   CommandPalette* palette_ = nullptr;
   CostWorker* costs_ = nullptr;
   PictureTools* pictures_ = nullptr;
+  RemoteSession* remote_ = nullptr;
+  TimelinePanel* timeline_ = nullptr;
+  std::string remote_has_;  // the world of the attached program
+  bool remote_follows_ = false;
   QLabel* figures_ = nullptr;
   QMenu* recent_menu_ = nullptr;
   QMenu* panels_menu_ = nullptr;

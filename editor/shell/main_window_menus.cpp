@@ -44,6 +44,7 @@ void MainWindow::add_menus() {
   add_edit_menu();
   add_view_menu();
   add_world_menu();
+  add_flight_menu();
   add_help_menu();
 }
 
@@ -77,6 +78,7 @@ void MainWindow::add_file_menu() {
   });
   pictures_->add_to_file_menu(*menu);
   menu->addSeparator();
+  add_attach_action(menu);
   menu->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
 }
 

@@ -1,0 +1,71 @@
+#include "editor/attach/attach_dialog.hpp"
+
+#include <QDialogButtonBox>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QVBoxLayout>
+#include <algorithm>
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kListMs = 1000;
+
+}  // namespace
+
+AttachDialog::AttachDialog(QWidget* parent)
+    : QDialog(parent), list_(new QListWidget), hint_(new QLabel) {
+  setWindowTitle(tr("Attach to a running game or flight"));
+  resize(620, 300);
+  list_->setAccessibleName(tr("Programs that can be inspected"));
+  list_->setTextElideMode(Qt::ElideMiddle);
+  hint_->setWordWrap(true);
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
+  attach_ = buttons->addButton(tr("Attach"), QDialogButtonBox::AcceptRole);
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(list_, 1);
+  layout->addWidget(hint_);
+  layout->addWidget(buttons);
+  connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+  connect(list_, &QListWidget::itemActivated, this, &QDialog::accept);
+  connect(&timer_, &QTimer::timeout, this, &AttachDialog::list);
+  timer_.start(kListMs);
+  list();
+}
+
+void AttachDialog::list() {
+  const auto found = inspect::endpoints();
+  std::vector<inspect::Endpoint> now = found ? *found : std::vector<inspect::Endpoint>{};
+  const bool same = std::ranges::equal(now, endpoints_, {}, &inspect::Endpoint::socket,
+                                       &inspect::Endpoint::socket);
+  if (!same) {
+    const auto before = chosen();
+    endpoints_ = std::move(now);
+    list_->clear();
+    for (const inspect::Endpoint& endpoint : endpoints_) {
+      auto* item = new QListWidgetItem(
+          tr("%1    process %2").arg(QString::fromStdString(endpoint.command)).arg(endpoint.pid),
+          list_);
+      item->setToolTip(QString::fromStdString(endpoint.command));
+      if (before && before->socket == endpoint.socket) list_->setCurrentItem(item);
+    }
+    if (list_->currentRow() < 0) list_->setCurrentRow(0);
+  }
+  attach_->setEnabled(!endpoints_.empty());
+  hint_->setText(!found ? QString::fromStdString(found.error().message)
+                 : endpoints_.empty()
+                     ? tr("Nothing can be inspected now. Start a flight with <b>psygen fly "
+                          "--inspect</b>, or a game with the plugin inspect; it appears here.")
+                     : tr("Your changes go to the program while it is attached. When you detach, "
+                          "it is as it was."));
+}
+
+std::optional<inspect::Endpoint> AttachDialog::chosen() const {
+  const int row = list_->currentRow();
+  if (row < 0 || row >= static_cast<int>(endpoints_.size())) return std::nullopt;
+  return endpoints_[static_cast<std::size_t>(row)];
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,213 @@
+#include "editor/attach/remote_panel.hpp"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QJsonArray>
+#include <QLabel>
+#include <QLocale>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "editor/attach/system_bars.hpp"
+#include "editor/panels/cache_map.hpp"
+
+namespace psygen::editor {
+namespace {
+
+const QLocale kPanelLocale(QLocale::English);
+
+QLabel* words_label() {
+  auto* label = new QLabel;
+  label->setWordWrap(true);
+  label->setTextFormat(Qt::RichText);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  return label;
+}
+
+QString names(const QJsonValue& list) {
+  QStringList words;
+  for (const QJsonValue& name : list.toArray())
+    words.push_back(name.toString());
+  return words.join(", ");
+}
+
+CacheMap::Cell cell_of(const QJsonArray& node, const core::WorldPosition& camera, double block_m) {
+  CacheMap::Cell cell;
+  cell.at = {{node[0].toInt(), node[1].toInt()},
+             static_cast<std::uint8_t>(std::clamp(node[2].toInt(), 0, 30))};
+  cell.size_m = block_m * static_cast<double>(1U << cell.at.level);
+  const glm::dvec3 corner = core::offset_m(visibility::corner_block(cell.at), camera, block_m);
+  cell.x_m = corner.x;
+  cell.z_m = corner.z;
+  const int flags = node[3].toInt();
+  cell.in_view = (flags & 1) != 0;
+  cell.drawn = (flags & 2) != 0;
+  cell.stale = (flags & 4) != 0;
+  cell.requested = (flags & 8) != 0;
+  cell.failed = (flags & 16) != 0;
+  cell.level_drawn = node[4].toInt();
+  cell.layer = node[5].toInt();
+  cell.lacking = node[6].toInt() < 0 ? UINT32_MAX : static_cast<std::uint32_t>(node[6].toInt());
+  cell.deadline_s = node[7].toDouble(std::numeric_limits<double>::infinity());
+  cell.cost_s = node[8].toDouble() * 1e-6;
+  return cell;
+}
+
+}  // namespace
+
+RemotePanel::RemotePanel(RemoteSession& remote, QWidget* parent)
+    : QWidget(parent),
+      remote_(remote),
+      title_(words_label()),
+      figures_(words_label()),
+      kinds_(words_label()),
+      bars_(new SystemBars),
+      map_(new CacheMap),
+      pause_(new QCheckBox(tr("Pause it"))),
+      follow_(new QCheckBox(tr("Its camera follows mine"))),
+      keep_(new QCheckBox(tr("Keep my changes"))),
+      go_(new QPushButton(tr("Go to its camera"))),
+      detach_(new QPushButton(tr("Detach"))) {
+  auto* colours = new QComboBox;
+  colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost")});
+  colours->setAccessibleName(tr("What colours of its map mean"));
+  keep_->setToolTip(tr("When you detach, the program keeps the world that you have made. Otherwise "
+                       "it is as it was before."));
+  auto* content = new QWidget;
+  auto* layout = new QVBoxLayout(content);
+  auto* camera_row = new QHBoxLayout;
+  camera_row->addWidget(pause_);
+  camera_row->addWidget(follow_);
+  camera_row->addStretch();
+  auto* leave_row = new QHBoxLayout;
+  leave_row->addWidget(go_);
+  leave_row->addStretch();
+  leave_row->addWidget(keep_);
+  leave_row->addWidget(detach_);
+  layout->addWidget(title_);
+  layout->addLayout(camera_row);
+  layout->addLayout(leave_row);
+  layout->addWidget(figures_);
+  layout->addWidget(new QLabel(tr("<b>Systems</b>: mean, and the longest")));
+  layout->addWidget(bars_);
+  layout->addWidget(kinds_);
+  layout->addWidget(colours);
+  layout->addWidget(map_, 1);
+  auto* scroll = new QScrollArea;
+  scroll->setWidget(content);
+  scroll->setWidgetResizable(true);
+  scroll->setFrameShape(QFrame::NoFrame);
+  auto* outer = new QVBoxLayout(this);
+  outer->setContentsMargins(0, 0, 0, 0);
+  outer->addWidget(scroll);
+  connect(colours, &QComboBox::activated, map_,
+          [this](int index) { map_->set_colour(static_cast<MapColour>(index)); });
+  connect(pause_, &QCheckBox::toggled, this, [this](bool on) { remote_.set_paused(on); });
+  connect(follow_, &QCheckBox::toggled, this, &RemotePanel::follow_me);
+  connect(go_, &QPushButton::clicked, this, [this] {
+    if (remote_.pose()) Q_EMIT go_to(*remote_.pose());
+  });
+  connect(detach_, &QPushButton::clicked, this, [this] { remote_.detach(keep_->isChecked()); });
+  connect(&remote_, &RemoteSession::attached, this, &RemotePanel::show_hello);
+  connect(&remote_, &RemoteSession::figures, this, &RemotePanel::show_figures);
+  connect(&remote_, &RemoteSession::systems, this, &RemotePanel::show_systems);
+  connect(&remote_, &RemoteSession::entities, this, &RemotePanel::show_entities);
+  connect(&remote_, &RemoteSession::ended, this, &RemotePanel::show_end);
+  show_end({});
+}
+
+void RemotePanel::show_hello(const QJsonObject& hello) {
+  title_->setText(tr("<b>%1</b> in process %2, drawn by %3%4")
+                      .arg(hello["world"].toString().toHtmlEscaped())
+                      .arg(hello["pid"].toInt())
+                      .arg(hello["device"].toString().toHtmlEscaped(),
+                           hello["virtual_clock"].toBool() ? tr(", on the virtual clock") : ""));
+  for (QWidget* widget : std::initializer_list<QWidget*>{pause_, follow_, keep_, go_, detach_})
+    widget->setEnabled(true);
+}
+
+void RemotePanel::show_figures(const QJsonObject& f) {
+  const QJsonObject cache = f["cache"].toObject();
+  const auto bytes = [&](const char* name) {
+    return kPanelLocale.formattedDataSize(static_cast<qint64>(cache[name].toDouble()));
+  };
+  figures_->setText(
+      tr("%1 s into it%2. Frames take %3 ms, at most %4 ms. %5 triangles in %6 draws, error %7 px, "
+         "%8 % of the picture missing.<br>%9 waiting; %10 modelers, %11 % busy. "
+         "Cache: %12 of %13 in %14 meshes.")
+          .arg(f["time_s"].toDouble(), 0, 'f', 1)
+          .arg(f["paused"].toBool() ? tr(", paused") : QString())
+          .arg(f["frame_ms"].toDouble(), 0, 'f', 1)
+          .arg(f["longest_ms"].toDouble(), 0, 'f', 1)
+          .arg(kPanelLocale.toString(static_cast<qint64>(f["triangles"].toDouble())))
+          .arg(f["draws"].toInt())
+          .arg(f["error_pixels"].toDouble(), 0, 'f', 1)
+          .arg(f["missing_pixels_percent"].toDouble(), 0, 'f', 1)
+          .arg(f["outstanding"].toInt())
+          .arg(f["modelers"].toInt())
+          .arg(f["busy_percent"].toDouble(), 0, 'f', 0)
+          .arg(bytes("bytes"), bytes("budget_bytes"))
+          .arg(cache["meshes"].toInt()));
+}
+
+void RemotePanel::show_systems(const QJsonObject& object) {
+  std::vector<SystemBars::Bar> bars;
+  for (const QJsonValue& value : object["systems"].toArray()) {
+    const QJsonObject system = value.toObject();
+    SystemBars::Bar bar{system["name"].toString(), system["mean_ms"].toDouble(),
+                        system["longest_ms"].toDouble(), {}};
+    bar.words = tr("%1: mean %2 ms, longest %3 ms\nreads %4\nwrites %5")
+                    .arg(bar.name)
+                    .arg(bar.mean_ms, 0, 'f', 3)
+                    .arg(bar.longest_ms, 0, 'f', 3)
+                    .arg(names(system["reads"]), names(system["writes"]));
+    bars.push_back(std::move(bar));
+  }
+  bars_->show_bars(std::move(bars));
+}
+
+void RemotePanel::show_entities(const QJsonObject& object) {
+  QString rows;
+  const QJsonObject kinds = object["kinds"].toObject();
+  for (auto kind = kinds.begin(); kind != kinds.end(); ++kind) {
+    const QJsonObject of = kind.value().toObject();
+    rows += QString("<tr><td>%1&nbsp;&nbsp;</td><td align=right>%2&nbsp;&nbsp;</td>"
+                    "<td align=right>%3</td></tr>")
+                .arg(kind.key().toHtmlEscaped())
+                .arg(of["entities"].toInt())
+                .arg(of["drawn"].toInt());
+  }
+  kinds_->setText(tr("<b>Entities</b>: %1<table><tr><td></td><td>there&nbsp;&nbsp;</td>"
+                     "<td>with a mesh</td></tr>%2</table>")
+                      .arg(object["entities"].toInt())
+                      .arg(rows));
+  const auto camera = pose_of(object["camera"].toObject());
+  const double block_m = object["block_m"].toDouble();
+  if (!camera || !(block_m > 0)) return;
+  std::vector<CacheMap::Cell> cells;
+  for (const QJsonValue& node : object["nodes"].toArray())
+    cells.push_back(cell_of(node.toArray(), camera->position, block_m));
+  map_->show_cells(std::move(cells), camera->yaw, object["horizontal_fov"].toDouble(0.9));
+}
+
+void RemotePanel::show_end(const QString&) {
+  title_->setText(tr("Nothing is attached. File, Attach … lists what can be."));
+  figures_->clear();
+  kinds_->clear();
+  bars_->show_bars({});
+  map_->show_cells({}, 0, 0.9);
+  for (QCheckBox* box : {pause_, follow_, keep_}) {
+    const QSignalBlocker quiet(box);
+    box->setChecked(false);
+  }
+  Q_EMIT follow_me(false);
+  for (QWidget* widget : std::initializer_list<QWidget*>{pause_, follow_, keep_, go_, detach_})
+    widget->setEnabled(false);
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,60 @@
+// A flight that was flown by `psygen fly`, as curves over its time: what its folder tells. Reads
+// and checks; draws nothing. Any thread.
+#pragma once
+
+#include <QJsonObject>
+#include <QString>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "engine/core/surface_provider.hpp"
+#include "engine/render/types.hpp"
+#include "engine/synthesis/policy.hpp"
+
+namespace psygen::editor {
+
+// What a flight is flown with.
+struct FlightSettings {
+  bool virtual_clock = true;
+  unsigned modelers = 0;  // 0: as many as suit the machine
+  int budget_mib = 512;
+  double error_pixels = 4;
+  synthesis::Policy policy = synthesis::Policy::kDeadline;
+  core::Extent size{640, 360};
+  render::Preset preset = render::Preset::kLow;
+  double warmup_s = 1;
+  friend bool operator==(const FlightSettings&, const FlightSettings&) = default;
+};
+
+// "virtual clock, 2 modelers, 512 MiB, 4 px, deadline".
+QString settings_text(const FlightSettings& settings);
+
+// A curve has a value for each frame; NaN: not known.
+struct FlightRun {
+  FlightSettings settings;
+  std::filesystem::path folder;
+  std::vector<double> time_s;
+  std::vector<double> frame_ms, queued, busy_percent, cache_mib, error_pixels, missing_percent;
+  QJsonObject summary;
+};
+
+// The arguments of `psygen` for a flight.
+QStringList flight_arguments(const FlightSettings& settings, const std::filesystem::path& world,
+                             const std::filesystem::path& path, const std::filesystem::path& out);
+
+// Reads frames.csv and summary.json of a folder. Fails with kIo and kParse, naming file and line.
+core::Result<FlightRun> read_flight_run(const std::filesystem::path& folder,
+                                        const FlightSettings& settings);
+// The same of texts in memory.
+core::Result<FlightRun> parse_flight_run(const std::string& frames_csv, const std::string& summary,
+                                         const FlightSettings& settings);
+
+// The text of a frame test (docs/frame-tests.md) whose budgets the run keeps. On the virtual clock
+// they are what the run took; on the wall clock, which is never the same, half as much again.
+// `world` and `path` are as the file names them.
+std::string frame_test_text(const FlightRun& run, const std::string& name, const std::string& world,
+                            const std::string& path);
+
+}  // namespace psygen::editor

@@ -1,0 +1,88 @@
+// Records flights of the view's camera, flies them again, and shows what they cost over their time.
+// Moves the camera of the view; changes no document. Main thread.
+#pragma once
+
+#include <QElapsedTimer>
+#include <QWidget>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "editor/flights/flight_process.hpp"
+#include "engine/world/camera_path.hpp"
+#include "engine/world/recorded_path.hpp"
+
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QPushButton;
+class QSpinBox;
+
+namespace psygen::editor {
+
+class TimelinePlot;
+
+// What the panel needs of the rest of the editor.
+struct TimelineHost {
+  std::function<const world::World&()> world;
+  std::function<std::string()> world_text;
+  // The file of the world if it has just that text, else empty.
+  std::function<std::filesystem::path()> saved_world;
+  std::function<core::CameraPose()> pose;
+  std::function<void(const core::CameraPose&)> set_pose;
+  std::function<core::Extent()> size;
+  std::function<render::Preset()> preset;
+  std::filesystem::path folder;  // for recordings and runs
+};
+
+class TimelinePanel final : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit TimelinePanel(TimelineHost host, QWidget* parent = nullptr);
+  ~TimelinePanel() override;
+
+  bool is_recording() const { return recording_.isValid(); }
+  void set_recording(bool on);
+  void play(bool on);
+  void fly();
+  void save_test();
+  void save_path();
+  void open_path();
+  // To be called after every picture of the view: samples the camera, or moves it on.
+  void picture_drawn();
+
+ Q_SIGNALS:
+  void told(const QString& sentence);
+  void recording_changed(bool on);
+
+ private:
+  void show_path(world::CameraPath path);
+  void show_run(const FlightRun& run);
+  void scrub(double time_s);
+  void fit_buttons();
+  void fit_legend();
+  FlightSettings settings() const;
+  core::Result<std::filesystem::path> write_world(const std::filesystem::path& folder) const;
+
+  TimelineHost host_;
+  FlightProcess process_;
+  std::optional<world::CameraPath> path_;
+  std::filesystem::path path_file_, world_file_;  // of the runs
+  std::string run_world_;                         // the text of the world of the runs
+  std::vector<FlightRun> runs_;
+  QElapsedTimer recording_, playing_;
+  std::vector<world::TimedPose> poses_;
+  double play_from_s_ = 0;
+  int number_ = 0;
+  TimelinePlot* plot_;
+  QPushButton *record_, *play_, *fly_, *cancel_, *save_test_, *save_path_, *open_;
+  QComboBox *clock_, *policy_;
+  QSpinBox *modelers_, *budget_;
+  QDoubleSpinBox* error_;
+  QLabel *legend_, *state_;
+};
+
+}  // namespace psygen::editor
