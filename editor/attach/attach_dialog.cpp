@@ -12,6 +12,13 @@ namespace {
 
 constexpr int kListMs = 1000;
 
+// Without the folder of the program.
+QString command_text(const std::string& command) {
+  const std::size_t end = command.find(' ');
+  const std::size_t slash = command.rfind('/', end);
+  return QString::fromStdString(slash == std::string::npos ? command : command.substr(slash + 1));
+}
+
 }  // namespace
 
 AttachDialog::AttachDialog(QWidget* parent)
@@ -19,7 +26,8 @@ AttachDialog::AttachDialog(QWidget* parent)
   setWindowTitle(tr("Attach to a running game or flight"));
   resize(620, 300);
   list_->setAccessibleName(tr("Programs that can be inspected"));
-  list_->setTextElideMode(Qt::ElideMiddle);
+  list_->setTextElideMode(Qt::ElideRight);
+  list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   hint_->setWordWrap(true);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
   attach_ = buttons->addButton(tr("Attach"), QDialogButtonBox::AcceptRole);
@@ -46,8 +54,7 @@ void AttachDialog::list() {
     list_->clear();
     for (const inspect::Endpoint& endpoint : endpoints_) {
       auto* item = new QListWidgetItem(
-          tr("%1    process %2").arg(QString::fromStdString(endpoint.command)).arg(endpoint.pid),
-          list_);
+          tr("process %1:  %2").arg(endpoint.pid).arg(command_text(endpoint.command)), list_);
       item->setToolTip(QString::fromStdString(endpoint.command));
       if (before && before->socket == endpoint.socket) list_->setCurrentItem(item);
     }

@@ -76,31 +76,30 @@ RemotePanel::RemotePanel(RemoteSession& remote, QWidget* parent)
   auto* colours = new QComboBox;
   colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost")});
   colours->setAccessibleName(tr("What colours of its map mean"));
-  keep_->setToolTip(tr("When you detach, the program keeps the world that you have made. Otherwise "
-                       "it is as it was before."));
+  keep_->setToolTip(
+      tr("When you detach, the program keeps the world that you have made. Otherwise "
+         "it is as it was before."));
   auto* content = new QWidget;
   auto* layout = new QVBoxLayout(content);
-  auto* camera_row = new QHBoxLayout;
-  camera_row->addWidget(pause_);
-  camera_row->addWidget(follow_);
-  camera_row->addStretch();
   auto* leave_row = new QHBoxLayout;
-  leave_row->addWidget(go_);
-  leave_row->addStretch();
-  leave_row->addWidget(keep_);
   leave_row->addWidget(detach_);
+  leave_row->addWidget(keep_, 1);
   layout->addWidget(title_);
-  layout->addLayout(camera_row);
   layout->addLayout(leave_row);
+  layout->addWidget(pause_);
+  layout->addWidget(follow_);
+  layout->addWidget(go_, 0, Qt::AlignLeft);
   layout->addWidget(figures_);
   layout->addWidget(new QLabel(tr("<b>Systems</b>: mean, and the longest")));
   layout->addWidget(bars_);
   layout->addWidget(kinds_);
   layout->addWidget(colours);
+  map_->setMinimumHeight(240);
   layout->addWidget(map_, 1);
   auto* scroll = new QScrollArea;
   scroll->setWidget(content);
   scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   scroll->setFrameShape(QFrame::NoFrame);
   auto* outer = new QVBoxLayout(this);
   outer->setContentsMargins(0, 0, 0, 0);
@@ -159,8 +158,10 @@ void RemotePanel::show_systems(const QJsonObject& object) {
   std::vector<SystemBars::Bar> bars;
   for (const QJsonValue& value : object["systems"].toArray()) {
     const QJsonObject system = value.toObject();
-    SystemBars::Bar bar{system["name"].toString(), system["mean_ms"].toDouble(),
-                        system["longest_ms"].toDouble(), {}};
+    SystemBars::Bar bar{system["name"].toString(),
+                        system["mean_ms"].toDouble(),
+                        system["longest_ms"].toDouble(),
+                        {}};
     bar.words = tr("%1: mean %2 ms, longest %3 ms\nreads %4\nwrites %5")
                     .arg(bar.name)
                     .arg(bar.mean_ms, 0, 'f', 3)
@@ -176,8 +177,9 @@ void RemotePanel::show_entities(const QJsonObject& object) {
   const QJsonObject kinds = object["kinds"].toObject();
   for (auto kind = kinds.begin(); kind != kinds.end(); ++kind) {
     const QJsonObject of = kind.value().toObject();
-    rows += QString("<tr><td>%1&nbsp;&nbsp;</td><td align=right>%2&nbsp;&nbsp;</td>"
-                    "<td align=right>%3</td></tr>")
+    rows += QString(
+                "<tr><td>%1&nbsp;&nbsp;</td><td align=right>%2&nbsp;&nbsp;</td>"
+                "<td align=right>%3</td></tr>")
                 .arg(kind.key().toHtmlEscaped())
                 .arg(of["entities"].toInt())
                 .arg(of["drawn"].toInt());

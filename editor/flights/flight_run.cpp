@@ -22,8 +22,9 @@ constexpr std::size_t kMostRunBytes = std::size_t{1} << 30;
 constexpr double kBusyWindowS = 0.25;
 constexpr double kWallMargin = 1.5;
 
-constexpr std::string_view kRunColumns[] = {"time_s",       "frame_ms",     "requests_queued",
-                                            "cache_bytes",  "error_pixels", "missing_pixels_percent",
+constexpr std::string_view kRunColumns[] = {"time_s",           "frame_ms",
+                                            "requests_queued",  "cache_bytes",
+                                            "error_pixels",     "missing_pixels_percent",
                                             "synthesis_seconds"};
 
 // A cell as a number; NaN for an empty one.
@@ -82,30 +83,18 @@ QStringList flight_arguments(const FlightSettings& settings, const std::filesyst
   const auto text = [](std::string_view word) {
     return QString::fromUtf8(word.data(), static_cast<int>(word.size()));
   };
-  return {"fly",
-          "--headless",
-          "--world",
-          text(world.string()),
-          "--path",
-          text(path.string()),
-          "--out",
-          text(out.string()),
-          "--clock",
-          settings.virtual_clock ? "virtual" : "wall",
-          "--modelers",
-          QString::number(settings.modelers),
-          "--budget",
-          QString("%1M").arg(settings.budget_mib),
-          "--error",
-          QString::number(settings.error_pixels, 'g', 15),
-          "--policy",
-          text(synthesis::name_of(settings.policy)),
-          "--size",
-          QString("%1x%2").arg(settings.size.width).arg(settings.size.height),
-          "--preset",
-          text(render::to_string(settings.preset)),
-          "--warmup",
-          QString::number(settings.warmup_s, 'g', 15)};
+  return {"fly",        "--headless",
+          "--world",    text(world.string()),
+          "--path",     text(path.string()),
+          "--out",      text(out.string()),
+          "--clock",    settings.virtual_clock ? "virtual" : "wall",
+          "--modelers", QString::number(settings.modelers),
+          "--budget",   QString("%1M").arg(settings.budget_mib),
+          "--error",    QString::number(settings.error_pixels, 'g', 15),
+          "--policy",   text(synthesis::name_of(settings.policy)),
+          "--size",     QString("%1x%2").arg(settings.size.width).arg(settings.size.height),
+          "--preset",   text(render::to_string(settings.preset)),
+          "--warmup",   QString::number(settings.warmup_s, 'g', 15)};
 }
 
 core::Result<FlightRun> parse_flight_run(const std::string& frames_csv, const std::string& summary,
@@ -153,8 +142,7 @@ core::Result<FlightRun> read_flight_run(const std::filesystem::path& folder,
   const auto summary = world::read_text_file(folder / "summary.json");
   if (!summary) return tl::unexpected(summary.error());
   auto run = parse_flight_run(*frames, *summary, settings);
-  if (!run)
-    return core::fail(run.error().code, (folder / run.error().message).string());
+  if (!run) return core::fail(run.error().code, (folder / run.error().message).string());
   run->folder = folder;
   return run;
 }
@@ -174,9 +162,12 @@ std::string frame_test_text(const FlightRun& run, const std::string& name, const
   const auto to = std::back_inserter(text);
   fmt::format_to(to, "\n[at_most]\n");
   const double margin = s.virtual_clock ? 1 : kWallMargin;
-  constexpr const char* kBudgets[] = {"frame_ms.p50", "frame_ms.p99",
-                                      "missing.pixels_max_percent", "missing.coarse_max_percent",
-                                      "detail.max_pixels", "cache.peak_bytes"};
+  constexpr const char* kBudgets[] = {"frame_ms.p50",
+                                      "frame_ms.p99",
+                                      "missing.pixels_max_percent",
+                                      "missing.coarse_max_percent",
+                                      "detail.max_pixels",
+                                      "cache.peak_bytes"};
   for (const char* field : kBudgets) {
     const double value = summary_number(run.summary, field);
     if (std::isnan(value)) continue;
@@ -192,7 +183,8 @@ std::string frame_test_text(const FlightRun& run, const std::string& name, const
   for (const char* field : {"world", "path"}) {
     const QJsonValue hash = run.summary["hash"].toObject()[field];
     if (hash.isString())
-      equal += fmt::format("hash.{} = {}\n", field, world::toml_string(hash.toString().toStdString()));
+      equal +=
+          fmt::format("hash.{} = {}\n", field, world::toml_string(hash.toString().toStdString()));
   }
   return equal.empty() ? text : text + "\n[equal]\n" + equal;
 }

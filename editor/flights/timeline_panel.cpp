@@ -33,9 +33,9 @@ std::vector<double> speeds_of(const world::CameraPath& path, const world::World&
   for (std::size_t i = 0; i <= kSpeeds; ++i) {
     const core::CameraPose pose = path.pose_at(static_cast<double>(i) * step_s, world);
     if (before && step_s > 0) {
-      const glm::dvec3 moved = core::offset_m(pose.position.block, before->position,
-                                              world.block_size_m()) +
-                               pose.position.local;
+      const glm::dvec3 moved =
+          core::offset_m(pose.position.block, before->position, world.block_size_m()) +
+          pose.position.local;
       speeds.push_back(glm::length(moved) / step_s);
     }
     before = pose;
@@ -72,8 +72,9 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
   play_->setCheckable(true);
   clock_->addItems({tr("virtual clock"), tr("wall clock")});
   clock_->setAccessibleName(tr("Clock of the run"));
-  clock_->setToolTip(tr("On the virtual clock everything has a fixed price: the run is the same on "
-                        "any machine. The wall clock measures this machine."));
+  clock_->setToolTip(
+      tr("On the virtual clock everything has a fixed price: the run is the same on "
+         "any machine. The wall clock measures this machine."));
   for (const synthesis::Policy policy : synthesis::kAllPolicies) {
     const std::string_view name = synthesis::name_of(policy);
     policy_->addItem(QString::fromUtf8(name.data(), static_cast<int>(name.size())));
@@ -146,6 +147,7 @@ void TimelinePanel::fit_buttons() {
   save_path_->setEnabled(path_.has_value());
   open_->setEnabled(!is_recording() && !flying);
   record_->setEnabled(!flying);
+  Q_EMIT needs_processors(flying && !playing_.isValid());
   record_->setText(is_recording() ? tr("Stop") : tr("Record"));
 }
 
@@ -185,7 +187,14 @@ void TimelinePanel::set_recording(bool on) {
   Q_EMIT recording_changed(on);
 }
 
+void TimelinePanel::tell_progress() {
+  state_->setText(tr("Flying %1 s in the background, for %2 s now …")
+                      .arg(path_->duration_seconds(), 0, 'f', 1)
+                      .arg(flying_.elapsed() / 1000));
+}
+
 void TimelinePanel::picture_drawn() {
+  if (process_.is_flying() && path_) tell_progress();
   if (is_recording()) {
     const double now_s = static_cast<double>(recording_.nsecsElapsed()) * 1e-9;
     if (!poses_.empty() && now_s < poses_.back().time_s + kSampleS) return;
@@ -211,13 +220,15 @@ void TimelinePanel::play(bool on) {
     playing_.invalidate();
   }
   play_->setText(on ? tr("Stop playing") : tr("Play"));
+  fit_buttons();
 }
 
 void TimelinePanel::scrub(double time_s) {
   if (!path_) return;
   host_.set_pose(path_->pose_at(time_s, host_.world()));
   if (!process_.is_flying() && !is_recording())
-    state_->setText(tr("At %1 s of %2 s").arg(time_s, 0, 'f', 2).arg(path_->duration_seconds(), 0, 'f', 1));
+    state_->setText(
+        tr("At %1 s of %2 s").arg(time_s, 0, 'f', 2).arg(path_->duration_seconds(), 0, 'f', 1));
 }
 
 void TimelinePanel::show_path(world::CameraPath path) {
@@ -250,7 +261,8 @@ core::Result<std::filesystem::path> TimelinePanel::write_world(
     const std::filesystem::path& folder) const {
   if (auto saved = host_.saved_world(); !saved.empty()) return saved;
   const auto file = folder / "world.toml";
-  if (auto ok = core::replace_file(file, host_.world_text()); !ok) return tl::unexpected(ok.error());
+  if (auto ok = core::replace_file(file, host_.world_text()); !ok)
+    return tl::unexpected(ok.error());
   return file;
 }
 
@@ -269,7 +281,8 @@ void TimelinePanel::fly() {
   world_file_ = *world_file;
   run_world_ = host_.world_text();
   process_.fly(settings(), world_file_, path_file_, folder / "run");
-  state_->setText(tr("Flying %1 s in the background …").arg(path_->duration_seconds(), 0, 'f', 1));
+  flying_.start();
+  tell_progress();
   fit_buttons();
 }
 
@@ -278,7 +291,8 @@ void TimelinePanel::show_run(const FlightRun& run) {
   runs_.push_back(run);
   plot_->set_runs(runs_);
   const double p50 = run.summary["frame_ms"].toObject()["p50"].toDouble();
-  state_->setText(tr("%1 frames, half of them within %2 ms").arg(run.time_s.size()).arg(p50, 0, 'f', 2));
+  state_->setText(
+      tr("%1 frames, half of them within %2 ms").arg(run.time_s.size()).arg(p50, 0, 'f', 2));
   fit_legend();
   fit_buttons();
 }
@@ -302,8 +316,8 @@ void TimelinePanel::save_test() {
     ok = core::replace_file(beside("world"), run_world_);
   }
   if (ok) {
-    ok = core::replace_file(test, frame_test_text(runs_.back(), stem, world,
-                                                  beside("path").filename().string()));
+    ok = core::replace_file(
+        test, frame_test_text(runs_.back(), stem, world, beside("path").filename().string()));
   }
   Q_EMIT told(ok ? tr("Saved %1 with its path and world. psygen test runs it.").arg(file)
                  : QString::fromStdString(ok.error().message));

@@ -57,6 +57,8 @@ class TimelinePanel final : public QWidget {
  Q_SIGNALS:
   void told(const QString& sentence);
   void recording_changed(bool on);
+  // A flight in the background needs the processors, and nothing moves in the view.
+  void needs_processors(bool on);
 
  private:
   void show_path(world::CameraPath path);
@@ -64,6 +66,7 @@ class TimelinePanel final : public QWidget {
   void scrub(double time_s);
   void fit_buttons();
   void fit_legend();
+  void tell_progress();
   FlightSettings settings() const;
   core::Result<std::filesystem::path> write_world(const std::filesystem::path& folder) const;
 
@@ -73,7 +76,7 @@ class TimelinePanel final : public QWidget {
   std::filesystem::path path_file_, world_file_;  // of the runs
   std::string run_world_;                         // the text of the world of the runs
   std::vector<FlightRun> runs_;
-  QElapsedTimer recording_, playing_;
+  QElapsedTimer recording_, playing_, flying_;
   std::vector<world::TimedPose> poses_;
   double play_from_s_ = 0;
   int number_ = 0;

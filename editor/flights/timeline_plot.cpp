@@ -29,6 +29,7 @@ std::size_t frame_at(const std::vector<double>& time_s, double t) {
 
 QString short_number(double value) {
   if (!std::isfinite(value)) return "–";
+  if (std::abs(value) < 0.0005) return "0";
   return QString::number(value, value != 0 && std::abs(value) < 100 ? 'g' : 'f',
                          std::abs(value) < 100 ? 3 : 0);
 }
@@ -171,8 +172,8 @@ void TimelinePlot::paintEvent(QPaintEvent*) {
   }
   const QRectF all = area();
   const std::size_t count = runs_.empty() ? 1 : rows_.size() + 1;
-  const double high = (all.height() - kGapPx * static_cast<double>(count - 1)) /
-                      static_cast<double>(count);
+  const double high =
+      (all.height() - kGapPx * static_cast<double>(count - 1)) / static_cast<double>(count);
   for (std::size_t i = 0; i < count; ++i) {
     const QRectF place(all.left(), all.top() + static_cast<double>(i) * (high + kGapPx),
                        all.width(), high);

@@ -14,6 +14,8 @@
 namespace psygen::editor {
 namespace {
 
+constexpr int kAttachedPx = 330;
+
 QDockWidget* add_hidden_dock(QMainWindow& window, const QString& name, const QString& title,
                              QWidget* content, Qt::DockWidgetArea area) {
   auto* dock = new QDockWidget(title, &window);
@@ -34,10 +36,11 @@ void reveal(QDockWidget* dock) {
 void MainWindow::add_tool_docks() {
   remote_ = new RemoteSession(this);
   auto* panel = new RemotePanel(*remote_);
-  auto* attached = add_hidden_dock(*this, "attached", tr("Attached"), panel, Qt::RightDockWidgetArea);
-  connect(panel, &RemotePanel::go_to, this, [this](const core::CameraPose& pose) {
-    view_->camera().set_pose(pose);
-  });
+  auto* attached =
+      add_hidden_dock(*this, "attached", tr("Attached"), panel, Qt::RightDockWidgetArea);
+  tabifyDockWidget(findChild<QDockWidget*>("map"), attached);
+  connect(panel, &RemotePanel::go_to, this,
+          [this](const core::CameraPose& pose) { view_->camera().set_pose(pose); });
   connect(panel, &RemotePanel::follow_me, this, [this](bool on) {
     remote_follows_ = on && remote_->is_attached();
     if (!on && remote_->is_attached()) remote_->set_pose(std::nullopt);
@@ -45,6 +48,7 @@ void MainWindow::add_tool_docks() {
   connect(remote_, &RemoteSession::attached, this,
           [this, attached](const QJsonObject&, const std::string& text) {
             reveal(attached);
+            resizeDocks({attached}, {kAttachedPx}, Qt::Horizontal);
             if (text != document_.text()) {
               if (!may_discard()) return remote_->detach(false);
               tell(document_.make_new(text));
@@ -88,6 +92,8 @@ void MainWindow::add_tool_docks() {
   tabifyDockWidget(findChild<QDockWidget*>("statistics"), dock);
   connect(timeline_, &TimelinePanel::told, this, &MainWindow::say);
   connect(timeline_, &TimelinePanel::recording_changed, this, [dock](bool) { reveal(dock); });
+  connect(timeline_, &TimelinePanel::needs_processors, this,
+          [this](bool on) { view_->set_yielding(on); });
   connect(view_, &WorldView::drawn, this, [this] {
     timeline_->picture_drawn();
     if (remote_follows_) remote_->set_pose(view_->camera().pose());

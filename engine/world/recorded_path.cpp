@@ -13,7 +13,7 @@ namespace {
 constexpr double kRecordedSmoothing_s = 0.1;  // the least: poses are near where they were
 constexpr double kLeap_m_s = 1900;            // path files have 2000 at most
 constexpr double kMostHeading_deg = 36'000, kMostPitch_deg = 89;
-constexpr double kProbeHeight_m = 1000;       // higher than any clearance
+constexpr double kProbeHeight_m = 1000;  // higher than any clearance
 
 // `heading` within half a turn of the one before.
 double unwrapped(double heading, double before) {
@@ -24,7 +24,8 @@ double unwrapped(double heading, double before) {
 
 CameraPath recorded_path(const std::string& name, std::span<const TimedPose> poses,
                          const World& world) {
-  PSYGEN_ASSERT(!poses.empty() && poses.size() <= kMostRecordedPoses, "a path has 1 to 10,000 points");
+  PSYGEN_ASSERT(!poses.empty() && poses.size() <= kMostRecordedPoses,
+                "a path has 1 to 10,000 points");
   const core::BlockCoord origin = poses.front().pose.position.block;
   std::vector<PathPoint> points;
   double heading = 0;

@@ -10,10 +10,10 @@ namespace psygen::world {
 
 std::string write_camera_path(const CameraPath& path) {
   const CameraPath::Settings& settings = path.settings();
-  std::string text = fmt::format(
-      "format = {}\n\n[path]\nname = {}\norigin_block = [{}, {}]\nsmoothing_s = {}\n", kPathFormat,
-      toml_string(settings.name), settings.origin_block.x, settings.origin_block.z,
-      toml_number(settings.smoothing_s));
+  std::string text =
+      fmt::format("format = {}\n\n[path]\nname = {}\norigin_block = [{}, {}]\nsmoothing_s = {}\n",
+                  kPathFormat, toml_string(settings.name), settings.origin_block.x,
+                  settings.origin_block.z, toml_number(settings.smoothing_s));
   const auto to = std::back_inserter(text);
   for (const PathPoint& point : path.points()) {
     const double at_m[] = {point.at_m.x, point.at_m.y};
@@ -25,8 +25,7 @@ std::string write_camera_path(const CameraPath& path) {
       const double target_m[] = {point.look_at_m->x, point.look_at_m->y};
       fmt::format_to(to, "look_at_m = {}\n", toml_vector(target_m));
     }
-    if (point.pitch_deg != 0)
-      fmt::format_to(to, "pitch_deg = {}\n", toml_number(point.pitch_deg));
+    if (point.pitch_deg != 0) fmt::format_to(to, "pitch_deg = {}\n", toml_number(point.pitch_deg));
     if (point.jump) fmt::format_to(to, "jump = true\n");
   }
   return text;
