@@ -1,5 +1,7 @@
 #include "editor/pictures/picture_service.hpp"
 
+#include <unistd.h>
+
 #include <QFile>
 #include <algorithm>
 
@@ -10,7 +12,20 @@ constexpr const char* kChild = "PSYGEN_EDITOR_PICTURES";  // set in what it star
 
 constexpr int kPatienceMs = 1000;
 constexpr int kExportTimes = 10;  // as long as a picture
+constexpr int kMostOverdue = 10;  // limits: a process that sleeps is ended too
 constexpr int kEndMs = 200;       // to end by itself
+
+// What a process has used of processors, in all its threads.
+double processor_ms(qint64 process) {
+  QFile file(QString("/proc/%1/stat").arg(process));
+  if (process <= 0 || !file.open(QIODevice::ReadOnly)) return 0;
+  const QByteArray stat = file.readAll();
+  // After the name, which may contain anything: fields 14 and 15 of proc(5).
+  const QList<QByteArray> fields = stat.mid(stat.lastIndexOf(')') + 2).split(' ');
+  if (fields.size() < 13) return 0;
+  return (fields[11].toDouble() + fields[12].toDouble()) * 1000 /
+         static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
 
 }  // namespace
 
@@ -24,6 +39,9 @@ PictureService::PictureService(QString program, QStringList arguments, QObject* 
   patience_.setSingleShot(true);
   connect(&limit_, &QTimer::timeout, this, [this] {
     if (!process_) return;
+    // Where others take the processors it gets little of them and does nothing wrong.
+    const double worked_ms = processor_ms(process_->processId()) - worked_before_ms_;
+    if (++overdue_ < kMostOverdue && worked_ms < limit_ms_) return limit_.start(limit_ms_);
     process_->kill();  // ended() does the rest
   });
   connect(&patience_, &QTimer::timeout, this, &PictureService::send_next);
@@ -87,6 +105,8 @@ void PictureService::send_next() {
   queue_.erase(next);
   process_->write(to_line(current_->request));
   ++unanswered_;
+  overdue_ = 0;
+  worked_before_ms_ = processor_ms(process_->processId());
   const bool exports = current_->request.kind == PictureKind::kExportModel ||
                        current_->request.kind == PictureKind::kExportBlock;
   limit_.start(exports ? limit_ms_ * kExportTimes : limit_ms_);

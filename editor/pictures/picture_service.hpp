@@ -24,7 +24,7 @@ class PictureService final : public QObject {
   using Done = std::function<void(const PictureReply&)>;
 
   // `program` with `arguments` is a process that calls render_pictures(). `limit_ms`: one that
-  // takes longer for a picture is ended; exports may take ten times as long.
+  // works longer than that on a picture is ended; exports may take ten times as long.
   PictureService(QString program, QStringList arguments, QObject* parent = nullptr,
                  int limit_ms = 30'000);
   ~PictureService() override;
@@ -71,6 +71,8 @@ class PictureService final : public QObject {
   int unanswered_ = 0;  // requests that the process has; more than one: current_ has replaced one
   QByteArray input_;
   QTimer limit_, patience_;
+  int overdue_ = 0;              // limits that have passed
+  double worked_before_ms_ = 0;  // by the process, when it got the request
   bool busy_ = false, patient_ = true;
   int last_batch_ = 0;
   std::uint64_t last_id_ = 0;
