@@ -77,6 +77,7 @@ struct Source {
   models::ModelIndex model = 0;
   std::uint16_t first_level = 0;         // of the model type: what level 0 of Detail and Demand is
   models::ModelIndex picture_model = 0;  // type of quads with pictures of such models; 0: none
+  std::uint32_t picture_set = 0;         // which pictures these are: quads name them by number
 };
 using world::kTerrainIndex;
 inline constexpr std::uint32_t kMergedIndex = kTerrainIndex - 1;

@@ -33,6 +33,8 @@ MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
   columns.placed.surface = type.surface();
   if (placement.model < facts.quad_models.size())
     columns.source.picture_model = facts.quad_models[placement.model];
+  if (columns.source.picture_model != 0)
+    columns.source.picture_set = static_cast<std::uint32_t>(facts.pictures->identity());
   if (picture_level > 0) columns.detail.picture_level = static_cast<std::uint16_t>(picture_level);
   return columns;
 }

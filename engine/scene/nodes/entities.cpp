@@ -4,6 +4,7 @@
 
 #include "engine/scene/nodes/columns.hpp"
 #include "engine/scene/nodes/levels.hpp"
+#include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/nodes/solidity.hpp"
 #include "engine/world/far/merged_models.hpp"
 
@@ -74,6 +75,18 @@ MeshColumns ground_columns(const WorldFacts& facts, const Daylight& daylight,
       at.level == 0 ? 0 : level, level);
 }
 
+// Whether what is drawn of an entity is of its present parameters and pictures. When an edit is
+// taken back, the old mesh may still be drawn.
+void note_stale(ecs::Entity entity, const synthesis::MeshSupply& meshes, ecs::World& entities) {
+  Demand& demand = *entities.get<Demand>(entity);
+  const synthesis::MeshRecord* drawn = meshes.ready(entities.get<Mesh>(entity)->handle);
+  const Source& source = *entities.get<Source>(entity);
+  const bool right = drawn != nullptr &&
+                     drawn->key.model == (demand.pictured ? source.picture_model : source.model) &&
+                     drawn->key.parameters_hash == hash_of(source, demand.pictured);
+  demand.stale = demand.drawn_level != kNoLevel && !right;
+}
+
 // Sets what an entity shows from now on. True if that is another mesh.
 bool renew(const models::Parameters& parameters, const WorldFacts& facts, ecs::Entity entity,
            const synthesis::MeshSupply& meshes, ecs::World& entities) {
@@ -84,10 +97,7 @@ bool renew(const models::Parameters& parameters, const WorldFacts& facts, ecs::E
   if (!other) return false;
   source.parameters_hash = hash;
   Demand& demand = *entities.get<Demand>(entity);
-  // When an edit is taken back, the old mesh may still be drawn.
-  const synthesis::MeshRecord* drawn = meshes.ready(entities.get<Mesh>(entity)->handle);
-  const bool right = drawn != nullptr && drawn->key.parameters_hash == source.parameters_hash;
-  demand.stale = demand.drawn_level != kNoLevel && !right;
+  note_stale(entity, meshes, entities);
   demand.requested_level = kNoLevel;
   demand.failed_levels = 0;
   return true;
@@ -106,7 +116,10 @@ void place_anew(const WorldFacts& facts, core::BlockCoord block, const world::Pl
   *entities.get<Placed>(entity) = columns.placed;
   *entities.get<Detail>(entity) = columns.detail;
   entities.get<Source>(entity)->picture_model = columns.source.picture_model;
-  if (world) entities.get<Demand>(entity)->requested_level = kNoLevel;  // dropped meanwhile
+  entities.get<Source>(entity)->picture_set = columns.source.picture_set;
+  if (!world) return;
+  entities.get<Demand>(entity)->requested_level = kNoLevel;  // dropped meanwhile
+  note_stale(entity, meshes, entities);
 }
 
 void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& meshes,

@@ -34,7 +34,12 @@ synthesis::MeshKey key_of(const Placed& placed, const Detail& detail, const Sour
   const bool picture = level == detail.picture_level;
   return {placed.block, source.index, picture ? source.picture_model : source.model,
           static_cast<std::uint16_t>(picture ? 0 : source.first_level + level),
-          source.parameters_hash};
+          hash_of(source, picture)};
+}
+
+std::uint64_t hash_of(const Source& source, bool picture) {
+  return picture ? core::combine(source.parameters_hash, source.picture_set)
+                 : source.parameters_hash;
 }
 
 std::uint8_t level_of(const Detail& detail, const Source& source, const synthesis::MeshKey& key) {

@@ -16,6 +16,9 @@ Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds&
 Detail detail_of(const models::ModelType& type, const models::Parameters& parameters, int first = 0,
                  int last = INT_MAX);
 
+// MeshKey::parameters_hash of an entity's meshes; of quads it says also which pictures they name.
+std::uint64_t hash_of(const Source& source, bool picture);
+
 // The mesh of a level of an entity, as the cache names it.
 synthesis::MeshKey key_of(const Placed& placed, const Detail& detail, const Source& source,
                           std::uint8_t level);

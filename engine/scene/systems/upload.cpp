@@ -132,7 +132,7 @@ void offer(ecs::Entity owner, synthesis::MeshHandle handle, const synthesis::Mes
   const Source& source = *entities.get<Source>(owner);
   const Detail& detail = *entities.get<Detail>(owner);
   const std::uint8_t level = level_of(detail, source, record.key);
-  const bool fresh = record.key.parameters_hash == source.parameters_hash;
+  const bool fresh = record.key.parameters_hash == hash_of(source, level == detail.picture_level);
   if (level == kNoLevel || !accept(*demand, level, fresh, now_s, counters)) {
     meshes.rank(handle, synthesis::Rank::unwanted());
     return;
