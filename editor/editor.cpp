@@ -24,7 +24,6 @@ constexpr const char* kFirstWorld = "silver_combe";
 constexpr glm::dvec3 kFirstPlaceM{-1257, 24, 3978};
 constexpr double kFirstYawDeg = 110, kFirstPitchDeg = -10;
 
-constexpr double kWatchdogS = 2;  // a model that takes longer hangs: nobody waits for it
 
 struct Arguments {
   QString file;
@@ -84,7 +83,6 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
 
   MainWindowOptions options;
   options.session = std::move(arguments.session);
-  options.session.scene.watchdog_seconds = kWatchdogS;
   options.safe = arguments.safe;
   options.document.register_models = [plugins](models::Registry& registry) -> core::Result<void> {
     for (const app::Plugin& plugin : plugins) {
