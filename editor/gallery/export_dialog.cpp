@@ -4,6 +4,7 @@
 #include <QClipboard>
 #include <QDialog>
 #include <QDialogButtonBox>
+#include <QDir>
 #include <QFileDialog>
 #include <QFormLayout>
 #include <QHBoxLayout>
@@ -81,10 +82,11 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   auto* level = new QSpinBox;
   level->setRange(0, kMostLevel);
   level->setSpecialValueText(QObject::tr("0, full"));
-  const QString folder =
+  QString folder =
       QSettings()
           .value(kFolderKey, QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation))
           .toString();
+  if (!QDir(folder).exists()) folder = QDir::homePath();
   auto* file = new QLineEdit(folder + "/" + name + ".glb");
   auto* browse = new QPushButton(QObject::tr("…"));
   auto* command = new QLineEdit;

@@ -30,7 +30,7 @@ namespace {
 
 constexpr double kServerWatchdogS = 12;
 constexpr double kErrorPixels = 1.5, kSmallErrorPixels = 3;
-constexpr std::uint32_t kSmallWidth = 400;  // of pictures that need not be so fine
+constexpr std::uint32_t kSmallWidth = 1000;  // of pictures that need not be so fine
 constexpr std::uint64_t kServerBudgetBytes = 384ULL << 20;
 constexpr double kLeastEyeM = 0.6;  // over the ground, wherever the camera was
 constexpr int kHungExit = 3;
