@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/handmade/files.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::editor {
@@ -28,7 +29,7 @@ core::Result<ParsedWorldPtr> parse_world_text(const std::string& text, const std
     if (auto registered = register_models(parsed->registry); !registered)
       return tl::unexpected(std::move(registered.error()));
   }
-  auto world = world::parse_world(text, file_name, parsed->registry);
+  auto world = world::parse_world(text, file_name, parsed->registry, &handmade::files());
   if (!world) return tl::unexpected(std::move(world.error()));
   parsed->world = *std::move(world);
   return parsed;

@@ -108,9 +108,11 @@ void PropertiesPanel::list(const std::vector<world::WorldSection>& sections) {
 
 // Species and what is scattered have headings; a species and its scatter have the same name.
 QTreeWidgetItem* PropertiesPanel::group_of(world::SectionKind kind) {
-  if (kind != world::SectionKind::kSpecies && kind != world::SectionKind::kScatter) return nullptr;
-  const QString title =
-      kind == world::SectionKind::kSpecies ? tr("Species") : tr("Scattered on every block");
+  const QString title = kind == world::SectionKind::kSpecies   ? tr("Species")
+                        : kind == world::SectionKind::kModel   ? tr("Models from files")
+                        : kind == world::SectionKind::kScatter ? tr("Scattered on every block")
+                                                               : QString();
+  if (title.isEmpty()) return nullptr;
   const auto known = tree_->findItems(title, Qt::MatchExactly);
   if (!known.empty()) return known.front();
   auto* group = new QTreeWidgetItem(tree_, {title});

@@ -12,6 +12,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/handmade/files.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/platform/window.hpp"
@@ -90,8 +91,9 @@ core::Result<void> Session::open() {
 
 core::Result<world::World> Session::read_world(std::optional<std::string_view> text,
                                                models::Registry& registry) const {
-  auto world = text ? world::parse_world(*text, options_.world_file.string(), registry)
-                    : world::load_world(options_.world_file, registry);
+  auto world =
+      text ? world::parse_world(*text, options_.world_file.string(), registry, &handmade::files())
+           : world::load_world(options_.world_file, registry, &handmade::files());
   if (!world) return world;
   if (auto ok = set_hour(options_, *world); !ok) return tl::unexpected(ok.error());
   return world;

@@ -8,6 +8,7 @@
 
 #include "engine/core/data_file.hpp"
 #include "engine/core/nearest_word.hpp"
+#include "engine/handmade/files.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
@@ -88,7 +89,7 @@ core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
 core::Result<world::World> load_world(const std::string& name, models::Registry& registry) {
   const auto file = find_file(Shipped::kWorld, name);
   if (!file) return tl::unexpected(file.error());
-  return world::load_world(*file, registry);
+  return world::load_world(*file, registry, &handmade::files());
 }
 
 core::Result<void> find_world(app::SessionOptions& options) {

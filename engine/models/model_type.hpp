@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -159,6 +160,10 @@ class ModelType {
   // approximate the mesh of level 0; the type says how well. Works without the user's mesh and in
   // microseconds: queries ask for the colliders of a whole block at once (engine/query/).
   virtual Collider collider(const Parameters&) const { return {}; }
+  // For types whose instances are all one shape, scaled and turned about +Y: by how much this one
+  // is turned, in degrees. Such types need one picture each (world/far/tree_pictures.hpp), and have
+  // it without leaves too. Nothing for all others.
+  virtual std::optional<double> turn_deg(const Parameters&) const { return std::nullopt; }
   // True only if synthesis always ends, in about the predicted time, for all parameters. Then the
   // main thread may synthesise a mesh itself when its absence would be visible. A type that could
   // hang must leave this to the modelers, which are watched.

@@ -75,6 +75,15 @@ void add_scatter(Facts& facts, const models::ModelType& type, const world::Scatt
   }
 }
 
+// What stands and stops; the identity of a type has what its file says.
+void add_handmade(Facts& facts, const models::Registry& registry,
+                  const world::HandmadeModel& model) {
+  facts.add("model");
+  facts.add(model.name);
+  if (const int index = registry.find(model.name); index >= 0)
+    facts.add("shape", registry[static_cast<models::ModelIndex>(index)].identity());
+}
+
 // The branches of a species. Leaves and colours are looks.
 void add_species(Facts& facts, models::Species species) {
   const models::Species usual;
@@ -113,6 +122,8 @@ WorldIdentity identity_of(const world::World& world, const models::Registry& reg
   add_terrain(facts, registry[world.terrain_model], world.terrain);
   for (const models::Species& species : world.species)
     add_species(facts, species);
+  for (const world::HandmadeModel& model : world.models)
+    add_handmade(facts, registry, model);
   for (const world::Scatter& scatter : world.scatter)
     add_scatter(facts, registry[scatter.model], scatter);
   return {world.name, facts.hash()};

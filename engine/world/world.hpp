@@ -28,6 +28,21 @@ struct ParameterRange {
   friend bool operator==(const ParameterRange&, const ParameterRange&) = default;
 };
 
+// How a handmade model can be solid: the hull of its points, their box, or not at all.
+inline constexpr std::array<std::string_view, 3> kHandmadeColliders{"hull", "box", "none"};
+
+// A model that was made by hand: a glTF file, and how it stands in the world.
+struct HandmadeModel {
+  std::string name;   // of its model type
+  std::string file;   // relative to the folder of the world's file
+  double size_m = 0;  // height; 0: that of the file, times `scale`
+  double scale = 1;
+  double sink_m = 0;        // how deep its lowest point is in the ground
+  std::int64_t levels = 5;  // of detail, at most
+  std::string collider{kHandmadeColliders[0]};
+  friend bool operator==(const HandmadeModel&, const HandmadeModel&) = default;
+};
+
 // One kind of model that is scattered over every block.
 struct Scatter {
   models::ModelIndex model = 0;
@@ -130,6 +145,7 @@ struct World {
   models::ModelIndex terrain_model = 0;
   models::Parameters terrain;            // of the block (0, 0)
   std::vector<models::Species> species;  // defined by the file; types of the registry
+  std::vector<HandmadeModel> models;     // the same
   std::vector<Scatter> scatter;
   Sky sky;
   Water water;

@@ -37,6 +37,7 @@ TEST(Readers, TakeEveryShippedFileAsWhatItIs) {
   EXPECT_EQ(read_as_everything(example_recording(), file), 1);
   EXPECT_EQ(read_as_everything(example_edits(), file), 1);
   EXPECT_EQ(read_as_everything(example_gltf(), file), 1);
+  EXPECT_EQ(read_as_everything(example_world(), file), 1);
   for (const std::string& text : shipped_texts())
     EXPECT_EQ(read_as_everything(text, file), 1) << text.substr(0, 200);
 }
@@ -44,8 +45,8 @@ TEST(Readers, TakeEveryShippedFileAsWhatItIs) {
 TEST(Readers, SurviveShippedFilesWithUnicodeAndOtherThingsInWrongPlaces) {
   constexpr int kTextsOfEachFile = 40;
   std::vector<std::string> texts = shipped_texts();
-  for (const auto& example :
-       {example_bindings, example_frame_test, example_recording, example_edits, example_gltf})
+  for (const auto& example : {example_bindings, example_frame_test, example_recording,
+                              example_edits, example_gltf, example_world})
     texts.push_back(example());
   ASSERT_GT(texts.size(), 10u);
   FileInMemory file;

@@ -13,6 +13,7 @@
 #include "engine/frametest/frame_test.hpp"
 #include "engine/gltf/animation.hpp"
 #include "engine/gltf/read_file.hpp"
+#include "engine/handmade/files.hpp"
 #include "engine/input/bindings_file.hpp"
 #include "engine/input/recording.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -47,17 +48,32 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
+// Whatever file a world names is the example.
+class ExampleBeside final : public world::FilesBeside {
+ public:
+  ExampleBeside() { file_.write(example_gltf()); }
+  core::Result<std::unique_ptr<models::ModelType>> read_model(
+      const std::filesystem::path&, const world::HandmadeModel& model) const override {
+    return handmade::files().read_model(file_.path(), model);
+  }
+
+ private:
+  FileInMemory file_;
+};
+
 bool read_as_world(const std::filesystem::path& file) {
+  static const ExampleBeside beside;
   static models::Registry registry = models::make_standard_registry();
   static const std::size_t before = registry.size();
   registry.shrink(before);  // without the species of the text before
-  const auto world = world::load_world(file, registry);
+  const auto world = world::load_world(file, registry, &beside);
   if (!world) {
     check_refusal(world.error(), file.string() + ":");
     PSYGEN_CHECK(registry.size() == before, "a refused world registers nothing");
     return false;
   }
-  const auto again = world::parse_world(world::write_world(*world, registry), "again", registry);
+  const auto again =
+      world::parse_world(world::write_world(*world, registry), "again", registry, &beside);
   PSYGEN_CHECK(again.has_value(), "a world that was read can be written");
   PSYGEN_CHECK(*again == *world, "a world reads back as it was");
   return true;
@@ -178,6 +194,15 @@ bool read_as_recording(std::string_view text, const std::filesystem::path& file)
 }
 
 bool read_as_gltf(const std::filesystem::path& file) {
+  world::HandmadeModel how;
+  how.name = "fuzzed", how.file = file.string();
+  if (const auto type = handmade::files().read_model(file, how)) {
+    const models::Parameters p = models::default_parameters(**type);
+    PSYGEN_CHECK((*type)->mesh_size(p, 0).triangle_count() > 0, "a model has triangles");
+    PSYGEN_CHECK(core::is_finite((*type)->bounds(p).max), "a model has an end");
+  } else {
+    check_refusal(type.error(), file.string() + ":", true);
+  }
   const auto model = gltf::read_file(file);
   if (!model) {
     check_refusal(model.error(), file.string() + ":", true);
@@ -291,6 +316,32 @@ std::string example_edits() {
                     edits.edit_ground(world, stamp);
   PSYGEN_CHECK(made, "a block can be edited");
   return std::string(characters(world::encode_block(edits, registry, kEdited)));
+}
+
+std::string example_world() {
+  return R"(format = 1
+[world]
+name = "made"
+seed = 5
+blocks = [8, 4]
+cell_m = 2
+block_vertices = 33
+[terrain]
+octaves = 4
+[[model]]
+name = "leaf"
+file = "models/leaf.gltf"
+size_m = 3
+sink_m = 0.25
+levels = 3
+collider = "box"
+[[scatter]]
+model = "leaf"
+count = 4
+max_slope_deg = 30
+scale = [0.5, 2]
+turn_deg = [0, 360]
+)";
 }
 
 std::string example_gltf() {

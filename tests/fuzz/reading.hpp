@@ -36,5 +36,6 @@ std::string example_frame_test();
 std::string example_recording();
 std::string example_edits();
 std::string example_gltf();
+std::string example_world();
 
 }  // namespace psygen::fuzz

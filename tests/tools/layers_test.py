@@ -23,6 +23,7 @@ MAY_KNOW = {
     "engine/visibility": {"engine/core"},
     "engine/image": {"engine/core"},
     "engine/gltf": {"engine/core", "engine/image"},
+    "engine/handmade": {"engine/core", "engine/models", "engine/world", "engine/image", "engine/gltf"},
     "engine/render": {"engine/core", "engine/image", "shaders"},
     "engine/platform": {"engine/core"},
     "engine/input": {"engine/core", "engine/platform", "engine/world"},
@@ -36,13 +37,13 @@ MAY_KNOW = {
     "engine/save": {"ecs", "engine/core", "engine/models", "engine/world"},
     "shaders": set(),
 }
-MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/input"}
+MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/handmade", "engine/input"}
 MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["engine/inspect"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare"}
 MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
 MAY_KNOW["game"] = MAY_KNOW["engine/cli"] | {"engine/cli"}
-MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world"}
+MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world", "engine/handmade"}
 MAY_KNOW["editor/cost"] = MAY_KNOW["editor/document"] | {"engine/synthesis", "editor/document"}
 MAY_KNOW["editor/view"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["editor/panels"] = MAY_KNOW["editor/view"] | {"editor/document", "editor/cost", "editor/view"}
@@ -85,6 +86,7 @@ ONLY_IN = {
     r"^nlohmann/": {"engine/telemetry", "engine/compare", "engine/inspect", "engine/cli"},
     r"^CLI/": {"engine/cli", "game"},
     r"^tiny_gltf": {"engine/exchange", "engine/gltf"},
+    r"^meshoptimizer": {"engine/handmade"},
     r"^spdlog/": {"engine/core"},
     r"^(AL/|sndfile)": {"engine/audio"},
     r"^sqlite3": {"engine/save"},

@@ -37,10 +37,11 @@ std::vector<Corner> corners_of(const SampleMesh& mesh) {
 
 // Whether pictures are of use for this type, and can be made of it.
 bool suits(const ModelType& type, const Parameters& p) {
-  if (type.level_count_of(p) < 2) return false;
   const models::MeshSize finest = type.mesh_size(p, 0);
-  return finest.layout == core::VertexLayout::kModel && finest.triangle_count() > kMostTriangles &&
-         finest.triangle_count() <= kMostBaked;
+  if (finest.layout != core::VertexLayout::kModel || finest.triangle_count() > kMostBaked)
+    return false;
+  return type.turn_deg(p) ||
+         (type.level_count_of(p) > 1 && finest.triangle_count() > kMostTriangles);
 }
 
 // Without std::hypot, which may differ between C libraries.
@@ -71,22 +72,36 @@ std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType&
   PicturedModel m{index, p, size_of_bounds(type.bounds(p)), coarse_m, {0, 1e30F, -1e30F, 0}};
   mesh.make(type, p, 0);
   PictureFrame& frame = m.frame;
-  float leaves = 0;
+  float leaves = 0, solids = 0, ambient = 0;
   for (const Corner& c : corners_of(mesh)) {
     if (c.material == kLeaf) {
       frame.ambient += c.ambient;
       ++leaves;
+    } else {
+      ambient += c.ambient;
+      ++solids;
     }
     frame.half_width_m = std::max(frame.half_width_m, distance_from_axis(c.position));
     frame.bottom_m = std::min(frame.bottom_m, c.position.y);
     frame.top_m = std::max(frame.top_m, c.position.y);
   }
-  frame.ambient /= std::max(leaves, 1.0F);
+  m.leafy = leaves > 0;
+  if (!m.leafy) frame.ambient = ambient;
+  frame.ambient /= std::max(m.leafy ? leaves : solids, 1.0F);
+  m.turn_deg = type.turn_deg(p).value_or(0);
   frame.bottom_m = std::max(frame.bottom_m, 0.0F);  // what is in the ground is not seen
   frame.half_width_m *= 1 + kMargin;
   frame.top_m += kMargin * (frame.top_m - frame.bottom_m);
   const bool flat = !(frame.half_width_m > 1e-3F && frame.top_m - frame.bottom_m > 1e-3F);
-  return leaves > 0 && !flat ? std::optional(m) : std::nullopt;
+  return (m.leafy || type.turn_deg(p)) && !flat ? std::optional(m) : std::nullopt;
+}
+
+// By how many views of a picture a model is turned that was turned by `from` degrees there.
+std::uint32_t views_between(double from_deg, double to_deg) {
+  const double views = (to_deg - from_deg) * core::kPictureViews / 360;
+  const auto whole = static_cast<std::int64_t>(std::floor(views + 0.5));
+  constexpr std::int64_t kAll = core::kPictureViews;
+  return static_cast<std::uint32_t>((whole % kAll + kAll) % kAll);
 }
 
 // The factors that make `from` as large as `to`, within reason.
@@ -137,11 +152,12 @@ void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::ui
     candidates.emplace_back(box.max.y - box.min.y, p);
   }
   if (candidates.empty()) return;
+  if (type.turn_deg(candidates.front().second)) most = 1;
   std::ranges::stable_sort(candidates, {}, [](const auto& c) { return c.first; });
   for (std::size_t k = 0; k < most && models_.size() < core::kMostPictures; ++k) {
     const Parameters& p = candidates[(2 * k + 1) * candidates.size() / (2 * most)].second;
     const bool known = std::ranges::any_of(models_, [&](const PicturedModel& m) {
-      return m.model == scatter.model && m.parameters == p;
+      return m.model == scatter.model && (m.parameters == p || type.turn_deg(p));
     });
     if (known) continue;
     const std::optional<PicturedModel> model = measured(scatter.model, type, p);
@@ -169,6 +185,7 @@ void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, Sample
                            FormMesh& out) const {
   PSYGEN_CHECK(has(model), "a type that has pictures");
   const ModelType& type = *types_[model];
+  if (type.turn_deg(p)) scratch = nullptr;  // one shape: bounds say all
   const glm::vec2 own_m =
       scratch != nullptr ? coarse_size(type, p, *scratch) : size_of_bounds(type.bounds(p));
   const auto size_of = [&](const PicturedModel& m) {
@@ -189,14 +206,15 @@ void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, Sample
   const PicturedModel& m = models_[best];
   const glm::vec2 factor = stretch(size_of(m), own_m);
   const float half_m = factor.x * m.frame.half_width_m;
-  const auto turn = static_cast<std::uint32_t>(hash >> 40) % core::kPictureViews;
+  const auto turn = type.turn_deg(p) ? views_between(m.turn_deg, *type.turn_deg(p))
+                                     : static_cast<std::uint32_t>(hash >> 40) % core::kPictureViews;
   Corner corner;
   corner.material = kLeaf | core::kPictureBit;
   corner.ambient = m.frame.ambient;
   for (std::size_t i = 0; i < 4; ++i) {
     const bool right = i == 1 || i == 2, top = i >= 2;
     corner.position = {0, factor.y * (top ? m.frame.top_m : m.frame.bottom_m), 0};
-    corner.sway = top ? kTopSway : 0;
+    corner.sway = top && m.leafy ? kTopSway : 0;
     corner.colour = {static_cast<float>(best * core::kPictureViews + turn) / 255,
                      right ? 1.0F : 0.0F, top ? 0.0F : 1.0F};
     out.corners[i] = corner;

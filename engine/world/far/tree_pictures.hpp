@@ -29,6 +29,8 @@ struct PicturedModel {
   // reaches from the foot to any side and up.
   glm::vec2 bounds_m{0.0F}, coarse_m{0.0F};
   PictureFrame frame;
+  bool leafy = true;    // sways in the wind
+  double turn_deg = 0;  // ModelType::turn_deg
 };
 
 // All of a world.
@@ -39,7 +41,8 @@ class PictureSet {
 
   // Synthesises one instance for each picture (some 100 µs each). There are none for types that are
   // not seen from far, that may not run on the main thread, that throw, or whose finest mesh has no
-  // leaves or too few triangles to need pictures. The types of `registry` must outlive it.
+  // leaves or too few triangles to need pictures; types of one shape (ModelType::turn_deg) have one
+  // each, with or without leaves. The types of `registry` must outlive it.
   PictureSet(const World& world, const models::Registry& registry);
 
   std::span<const PicturedModel> models() const { return models_; }

@@ -90,6 +90,18 @@ void visit_palette(P& palette, const Visit& visit) {
         slope("steeper ground sheds its snow: 0 flat, 0.29 at 45 degrees, 1 vertical"));
 }
 
+// The numbers of a HandmadeModel.
+template <class M, class Visit>
+void visit_handmade(M& model, const Visit& visit) {
+  visit("size_m", model.size_m,
+        FieldSpec{0, 1000, 0, 50, "m", "height; 0: that of the file, times scale"});
+  visit("scale", model.scale,
+        FieldSpec{1e-6, 1e6, 0.01, 100, "", "metres of the world for one of the file"});
+  visit("sink_m", model.sink_m,
+        FieldSpec{0, 100, 0, 5, "m", "how deep its lowest point is in the ground"});
+  visit("levels", model.levels, FieldSpec{1, 8, 1, 8, "", "levels of detail, at most"});
+}
+
 // The fields of a [[scatter]] that say where instances may stand.
 template <class S, class Visit>
 void visit_place(S& scatter, const Visit& visit) {

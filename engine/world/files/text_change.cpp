@@ -11,7 +11,7 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::string_view kSections[] = {"format",  "world", "terrain", "species",
+constexpr std::string_view kSections[] = {"format",  "world", "terrain", "species", "model",
                                           "scatter", "sky",   "water",   "palette"};
 constexpr std::string_view kSpeciesParts[] = {"kind", "rule", "foliage", "colours"};
 

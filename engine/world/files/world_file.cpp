@@ -1,5 +1,6 @@
 // World files: text → World. The [[scatter]] tables are read in scatter_file.cpp, the species in
-// species_file.cpp. Writing is in write_world.cpp. docs/world-files.md describes the format.
+// species_file.cpp, the handmade models in handmade_file.cpp. Writing is in write_world.cpp.
+// docs/world-files.md describes the format.
 #include "engine/world/files/world_file.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "engine/core/utf8.hpp"
 #include "engine/world/files/document.hpp"
 #include "engine/world/files/fields.hpp"
+#include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/model_fields.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/species_file.hpp"
@@ -109,11 +111,8 @@ void read_palette(TableReader& root, Palette& palette, Problems& problems) {
   });
   for (std::size_t i = 0; i < kPaletteImages.size(); ++i) {
     const std::string_view key = kPaletteImages[i];
-    if (!reader.read(key, palette.images[i], kLongestName)) continue;
-    const std::filesystem::path path(palette.images[i]);
-    if (path.has_root_path() || std::find(path.begin(), path.end(), "..") != path.end())
-      reader.problem(reader.find(key)->line, key,
-                     "it must be a name relative to the folder of the world's file, without ..");
+    if (reader.read(key, palette.images[i], kLongestName))
+      check_name_beside(reader, key, palette.images[i]);
   }
   reader.finish();
 }
@@ -156,7 +155,8 @@ void register_species(TableReader& root, const World& world, const models::Regis
 }
 
 core::Result<World> read_world(std::string_view text, std::string_view file_name,
-                               const models::Registry& registry, models::Registry* grown) {
+                               const models::Registry& registry, models::Registry* grown,
+                               const FilesBeside* beside) {
   const int terrain_model = registry.find("terrain");
   if (terrain_model < 0)
     return core::fail(core::ErrorCode::kInvalidArgument, "no model type is called terrain");
@@ -175,11 +175,11 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
   read_terrain_table(root, terrain, problems);
   check_model(terrain, problems);
   world.terrain = corner_of(terrain, 0);
-  Problems of_species(file_name);
-  world.species = read_species(root, of_species);
-  if (!of_species.any()) register_species(root, world, registry, grown, of_species);
-  if (of_species.any())
-    return tl::unexpected(problems.any() ? problems.first() : of_species.first());
+  Problems of_types(file_name);
+  world.species = read_species(root, of_types);
+  if (!of_types.any()) register_species(root, world, registry, grown, of_types);
+  world.models = read_handmade(root, {file_name, beside, registry, grown}, of_types);
+  if (of_types.any()) return tl::unexpected(problems.any() ? problems.first() : of_types.first());
   read_scatters(root, registry, world, problems);
   world.sky = usual_sky(root);
   read_fields(root, "sky", problems, [&](const auto& visit) { visit_sky(world.sky, visit); });
@@ -194,29 +194,30 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
 }  // namespace
 
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
-                                models::Registry& registry) {
+                                models::Registry& registry, const FilesBeside* beside) {
   const std::size_t before = registry.size();
-  auto world = read_world(text, file_name, registry, &registry);
+  auto world = read_world(text, file_name, registry, &registry, beside);
   if (!world) registry.shrink(before);
   return world;
 }
 
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
-                                const models::Registry& registry) {
-  return read_world(text, file_name, registry, nullptr);
+                                const models::Registry& registry, const FilesBeside* beside) {
+  return read_world(text, file_name, registry, nullptr, beside);
 }
 
-core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry) {
+core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry,
+                               const FilesBeside* beside) {
   const core::Result<std::string> text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
-  return parse_world(*text, file.string(), registry);
+  return parse_world(*text, file.string(), registry, beside);
 }
 
-core::Result<World> load_world(const std::filesystem::path& file,
-                               const models::Registry& registry) {
+core::Result<World> load_world(const std::filesystem::path& file, const models::Registry& registry,
+                               const FilesBeside* beside) {
   const core::Result<std::string> text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
-  return parse_world(*text, file.string(), registry);
+  return parse_world(*text, file.string(), registry, beside);
 }
 
 }  // namespace psygen::world

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/world/files/fields.hpp"
+#include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/species_file.hpp"
 #include "engine/world/files/text_layout.hpp"
@@ -64,6 +65,8 @@ class SchemaBuilder {
     sections.push_back(palette_section());
     for (std::size_t i = 0; i < world_.species.size(); ++i)
       sections.push_back(species_section(world_.species[i], {"species", i}));
+    for (std::size_t i = 0; i < world_.models.size(); ++i)
+      sections.push_back(handmade_section(world_.models[i], {"model", i}));
     for (std::size_t i = 0; i < world_.scatter.size(); ++i)
       sections.push_back(scatter_section(world_.scatter[i], {"scatter", i}));
     return sections;
@@ -240,6 +243,20 @@ class SchemaBuilder {
     return made;
   }
 
+  WorldSection handmade_section(const HandmadeModel& m, const TextPath& path) const {
+    const HandmadeModel usual;
+    WorldSection made = section(SectionKind::kModel, path, m.name);
+    add_required(made, "name", text_value(m.name),
+                 {0, 0, 0, 0, "", "snake_case, unlike any other model"});
+    add_required(
+        made, "file", text_value(m.file),
+        {0, 0, 0, 0, "", "a glTF file (.glb or .gltf) in the folder of the world or below"});
+    add_all(made, m, usual, [](auto& o, const auto& v) { visit_handmade(o, v); });
+    add_choice(made, "collider", m.collider, usual.collider, kHandmadeColliders,
+               "what is solid of it: the hull of its points, their box, or nothing");
+    return made;
+  }
+
   WorldSection scatter_section(const Scatter& s, const TextPath& path) const {
     const models::ModelType& type = registry_[s.model];
     WorldSection made = section(SectionKind::kScatter, path, std::string(type.name()));
@@ -270,6 +287,7 @@ core::Result<std::vector<WorldSection>> world_schema(std::string_view text, cons
   const auto layout = lay_out(text, "the text");
   if (!layout) return tl::unexpected(layout.error());
   if (layout->item_count({"species"}) != world.species.size() ||
+      layout->item_count({"model"}) != world.models.size() ||
       layout->item_count({"scatter"}) != world.scatter.size())
     return core::fail(core::ErrorCode::kInvalidArgument, "the world is not that of the text");
   return SchemaBuilder(*layout, world, registry).all();
@@ -308,6 +326,8 @@ std::size_t most_tables(SectionKind kind) {
       return models::kMaxKinds;
     case SectionKind::kSpeciesRule:
       return models::kMaxRules;
+    case SectionKind::kModel:
+      return kMaxHandmadeModels;
     case SectionKind::kScatter:
       return kMaxScatters;
     default:

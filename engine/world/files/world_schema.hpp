@@ -65,6 +65,7 @@ enum class SectionKind : std::uint8_t {
   kSpeciesRule,
   kSpeciesFoliage,
   kSpeciesColours,
+  kModel,
   kScatter,
 };
 
@@ -78,7 +79,8 @@ struct WorldSection {
   std::vector<WorldSection> parts;  // of a species: kinds, rules, foliage, colours
 };
 
-// The sections of a world: World, Terrain, Sky, Water, Palette, each species, each scatter. `world`
+// The sections of a world: World, Terrain, Sky, Water, Palette, each species, each
+// handmade model, each scatter. `world`
 // must be what parse_world() made of `text` with `registry`. Fails with kParse where the text is
 // not TOML, and with kInvalidArgument where the world is of another text.
 core::Result<std::vector<WorldSection>> world_schema(std::string_view text, const World& world,
@@ -90,7 +92,8 @@ const WorldField* find_field(const std::vector<WorldSection>& sections, const Te
 // A name of a file as a label: "sun_elevation_deg" in degrees is "Sun elevation".
 std::string field_label(std::string_view key, std::string_view unit);
 
-// How many tables a file may have at most: species, kinds and rules of one of them, scatters.
+// How many tables a file may have at most: species, kinds and rules of one of them, handmade
+// models, scatters.
 std::size_t most_tables(SectionKind kind);
 
 }  // namespace psygen::world

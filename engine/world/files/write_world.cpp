@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "engine/world/files/fields.hpp"
+#include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/species_file.hpp"
 #include "engine/world/files/toml_values.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -86,6 +87,7 @@ std::string write_world(const World& world, const models::Registry& registry) {
                  world.blocks_z);
   write_terrain(out, world, registry[world.terrain_model]);
   write_species(world.species, text);
+  write_handmade(world.models, text);
   for (const Scatter& scatter : world.scatter)
     write_scatter(out, scatter, registry[scatter.model]);
   fmt::format_to(out, "\n[sky]\n");

@@ -1,0 +1,229 @@
+#include "engine/handmade/levels.hpp"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+
+#include "engine/models/kit/packing.hpp"
+
+namespace psygen::handmade {
+namespace {
+
+constexpr std::size_t kMostLevelVertices = 65'536;
+constexpr std::size_t kLeastTriangles = 12;
+constexpr std::size_t kStep = 4;      // triangles of a level over those of the next
+constexpr float kMostError = 0.5F;    // of the extent
+constexpr float kNearlyThere = 1.3F;  // times the wanted triangles
+constexpr float kLeastGain = 0.8F;    // a level with more of the one before is not worth having
+
+using Indices = std::vector<std::uint32_t>;
+
+// What tells vertices apart. Without padding, as its bytes are compared.
+struct Key {
+  glm::vec3 position;
+  std::array<std::int16_t, 2> normal;
+  std::array<std::uint8_t, 4> colour;
+};
+static_assert(sizeof(Key) == 20);
+
+enum class Keep : std::uint8_t { kAll, kColours, kPositions };
+
+Key key_of(const Vertex& v, Keep keep) {
+  Key key{v.position + 0.0F, {0, 0}, {0, 0, 0, v.leaf}};  // −0 is 0
+  if (keep == Keep::kAll) {
+    const glm::vec2 n = models::encode_octahedral(v.normal);
+    key.normal = {models::pack_snorm16(n.x), models::pack_snorm16(n.y)};
+  }
+  for (std::size_t c = 0; c < 3 && keep != Keep::kPositions; ++c)
+    key.colour[c] = keep == Keep::kAll ? v.colour[c] : static_cast<std::uint8_t>(v.colour[c] >> 4);
+  return key;
+}
+
+struct Mesh {
+  std::vector<Vertex> vertices;
+  Indices indices;
+};
+
+// The mesh with one vertex for all that are alike, whose colour is their mean. `remap`: the new
+// numbers of vertices; of those that no triangle has ~0.
+Mesh welded(const std::vector<Vertex>& vertices, const Indices& indices, Keep keep,
+            std::vector<unsigned>& remap) {
+  std::vector<Key> keys;
+  keys.reserve(vertices.size());
+  for (const Vertex& v : vertices)
+    keys.push_back(key_of(v, keep));
+  remap.resize(vertices.size());
+  const std::size_t count = meshopt_generateVertexRemap(
+      remap.data(), indices.data(), indices.size(), keys.data(), keys.size(), sizeof(Key));
+  Mesh mesh;
+  mesh.vertices.resize(count);
+  std::vector<std::array<std::uint32_t, 4>> sums(count);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (remap[i] == ~0U) continue;  // no triangle has it
+    auto& sum = sums[remap[i]];
+    if (sum[3]++ == 0) mesh.vertices[remap[i]] = vertices[i];
+    for (std::size_t c = 0; c < 3; ++c)
+      sum[c] += vertices[i].colour[c];
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      mesh.vertices[i].colour[c] =
+          static_cast<std::uint8_t>((sums[i][c] + sums[i][3] / 2) / std::max(sums[i][3], 1U));
+  for (const std::uint32_t i : indices)
+    mesh.indices.push_back(remap[i]);
+  return mesh;
+}
+
+// Triangles thinner than a millionth of their length cover no pixel, and their normals mean
+// nothing.
+Indices without_slivers(const std::vector<Vertex>& vertices, const Indices& indices) {
+  constexpr float kSliver = 1e-6F;
+  Indices kept;
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const glm::vec3 a = vertices[indices[i]].position, b = vertices[indices[i + 1]].position,
+                    c = vertices[indices[i + 2]].position;
+    const float longest =
+        std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
+    if (glm::length(glm::cross(b - a, c - a)) > kSliver * longest)
+      kept.insert(kept.end(), {indices[i], indices[i + 1], indices[i + 2]});
+  }
+  return kept;
+}
+
+// What is simplified, and the normals that the finest mesh has at each of its vertices:
+// normals[first[i] … first[i + 1] − 1].
+struct Source {
+  Mesh mesh;
+  std::vector<std::uint32_t> first;
+  std::vector<glm::vec3> normals;
+};
+
+Source source_of(const Mesh& finest, Keep keep) {
+  std::vector<unsigned> remap;
+  Source source{welded(finest.vertices, finest.indices, keep, remap), {}, {}};
+  source.first.resize(source.mesh.vertices.size() + 1);
+  for (const unsigned to : remap)
+    ++source.first[to + 1];
+  for (std::size_t i = 1; i < source.first.size(); ++i)
+    source.first[i] += source.first[i - 1];
+  source.normals.resize(remap.size());
+  std::vector<std::uint32_t> next(source.first.begin(), source.first.end() - 1);
+  for (std::size_t i = 0; i < remap.size(); ++i)
+    source.normals[next[remap[i]]++] = finest.vertices[i].normal;
+  return source;
+}
+
+// The mesh of some triangles of a source. Each corner has that of the finest mesh's normals there
+// which fits its triangle best: so smooth parts stay smooth and edges stay hard.
+Mesh with_normals(const Source& source, const Indices& indices) {
+  constexpr std::uint32_t kMostNormals = 64;  // of a vertex that are compared
+  Mesh out;
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    const std::uint32_t* triangle = &indices[k / 3 * 3];
+    const auto at = [&](int i) { return source.mesh.vertices[triangle[i]].position; };
+    const glm::vec3 across = glm::cross(at(1) - at(0), at(2) - at(0));
+    Vertex v = source.mesh.vertices[indices[k]];
+    const std::uint32_t first = source.first[indices[k]], end = source.first[indices[k] + 1];
+    for (std::uint32_t n = first; n < std::min(end, first + kMostNormals); ++n) {
+      if (glm::dot(source.normals[n], across) > glm::dot(v.normal, across))
+        v.normal = source.normals[n];
+    }
+    out.vertices.push_back(v);
+    out.indices.push_back(static_cast<std::uint32_t>(k));
+  }
+  std::vector<unsigned> remap;
+  return welded(out.vertices, out.indices, Keep::kAll, remap);
+}
+
+// Fewer triangles over some of the same vertices, and how far they are from all of them.
+struct Simplified {
+  Indices indices;
+  double error_m = 0;
+};
+
+Simplified simplified(const Mesh& mesh, std::size_t triangles, bool sloppily) {
+  const float* const places = &mesh.vertices.front().position.x;
+  const std::size_t count = mesh.vertices.size(), stride = sizeof(Vertex);
+  const std::size_t target = std::min(3 * triangles, mesh.indices.size());
+  Simplified result{Indices(mesh.indices.size()), 0};
+  float error = 0;
+  const std::size_t left =
+      sloppily
+          ? meshopt_simplifySloppy(result.indices.data(), mesh.indices.data(), mesh.indices.size(),
+                                   places, count, stride, target, kMostError, &error)
+          : meshopt_simplify(result.indices.data(), mesh.indices.data(), mesh.indices.size(),
+                             places, count, stride, target, kMostError, 0, &error);
+  result.indices.resize(left);
+  result.error_m = static_cast<double>(error * meshopt_simplifyScale(places, count, stride));
+  return result;
+}
+
+// The source of all levels: vertices that differ in colour are kept apart, or are not.
+struct Sources {
+  Source coloured, plain;
+};
+
+// About as many triangles as wanted.
+std::pair<Mesh, double> coarser(const Sources& sources, std::size_t triangles) {
+  const float most = kNearlyThere * static_cast<float>(3 * triangles);
+  for (const bool sloppily : {false, true}) {
+    for (const Source* source : {&sources.coloured, &sources.plain}) {
+      if (sloppily && source == &sources.coloured) continue;
+      const Simplified found = simplified(source->mesh, triangles, sloppily);
+      if (found.indices.empty() || (!sloppily && static_cast<float>(found.indices.size()) > most))
+        continue;
+      return {with_normals(*source, found.indices), found.error_m};
+    }
+  }
+  return {};
+}
+
+Level packed(Mesh mesh, double error_m) {
+  meshopt_optimizeVertexCache(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(),
+                              mesh.vertices.size());
+  Level level;
+  level.vertices.resize(mesh.vertices.size());
+  level.vertices.resize(meshopt_optimizeVertexFetch(level.vertices.data(), mesh.indices.data(),
+                                                    mesh.indices.size(), mesh.vertices.data(),
+                                                    mesh.vertices.size(), sizeof(Vertex)));
+  for (const std::uint32_t i : mesh.indices)
+    level.indices.push_back(static_cast<std::uint16_t>(i));
+  level.error_m = error_m;
+  return level;
+}
+
+}  // namespace
+
+std::vector<Level> levels_of(const Triangles& triangles, int most) {
+  const Indices sound = without_slivers(triangles.vertices, triangles.indices);
+  if (sound.empty()) return {};
+  std::vector<unsigned> remap;
+  Mesh finest = welded(triangles.vertices, sound, Keep::kAll, remap);
+  const Sources sources{source_of(finest, Keep::kColours), source_of(finest, Keep::kPositions)};
+  std::vector<Level> levels;
+  std::size_t wanted = finest.indices.size() / 3;
+  while (finest.vertices.size() > kMostLevelVertices) {
+    wanted = std::min(wanted * 9 / 10, wanted * kMostLevelVertices / finest.vertices.size());
+    finest = coarser(sources, wanted).first;
+    if (finest.indices.empty()) return {};
+  }
+  wanted = finest.indices.size() / 3;
+  levels.push_back(packed(std::move(finest), 0));
+  while (static_cast<int>(levels.size()) < most && wanted > kLeastTriangles) {
+    wanted = std::max(wanted / kStep, kLeastTriangles);
+    auto [mesh, error_m] = coarser(sources, wanted);
+    const float before = static_cast<float>(levels.back().indices.size());
+    if (mesh.indices.empty() || static_cast<float>(mesh.indices.size()) > kLeastGain * before ||
+        mesh.vertices.size() > kMostLevelVertices)
+      break;
+    error_m = std::max(error_m, 1.01 * levels.back().error_m);
+    levels.push_back(packed(std::move(mesh), std::max(error_m, 1e-4)));
+  }
+  return levels;
+}
+
+}  // namespace psygen::handmade

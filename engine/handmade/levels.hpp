@@ -1,0 +1,24 @@
+// The levels of detail of a mesh, simplified by meshoptimizer. Pure; any thread. The same mesh
+// gives the same levels with the same version of meshoptimizer.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/handmade/triangles.hpp"
+
+namespace psygen::handmade {
+
+// One level: at most 65,536 vertices.
+struct Level {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint16_t> indices;
+  double error_m = 0;  // as the simplifier measures it; 0 at level 0, and grows
+};
+
+// One to `most` levels, each with about a quarter of the triangles of the one before. The first has
+// all triangles, or as many as 65,536 vertices can have. Where seams and loose parts leave nothing
+// to be merged, coarse levels keep the outline alone. Empty where all triangles are degenerate.
+std::vector<Level> levels_of(const Triangles& triangles, int most);
+
+}  // namespace psygen::handmade

@@ -1,0 +1,96 @@
+#include "engine/handmade/texture_colours.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include "engine/models/kit/exact_math.hpp"
+
+namespace psygen::handmade {
+namespace {
+
+constexpr int kMostSteps = 8;  // samples along a side of a triangle, at most
+
+// Linear light of the bytes of sRGB.
+const std::array<float, 256>& linear_light() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> t{};
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      const double v = static_cast<double>(i) / 255;
+      t[i] = static_cast<float>(v <= 0.04045 ? v / 12.92
+                                             : models::exact_pow((v + 0.055) / 1.055, 2.4));
+    }
+    return t;
+  }();
+  return table;
+}
+
+// The pixel at a place of the texture, which repeats: linear colour, opacity.
+glm::vec4 pixel_at(const image::Image& image, glm::vec2 uv) {
+  const auto along = [](float v, std::uint32_t size) {
+    const float part = v - std::floor(v);
+    const auto at = static_cast<std::uint32_t>(part * static_cast<float>(size));
+    return std::isfinite(part) ? std::min(at, size - 1) : 0U;
+  };
+  const auto p = image.pixel(along(uv.x, image.width), along(uv.y, image.height));
+  const std::array<float, 256>& light = linear_light();
+  return {light[p[0]], light[p[1]], light[p[2]], static_cast<float>(p[3]) / 255};
+}
+
+// About one sample for two texels.
+int steps_of(const image::Image& image, const glm::vec2 (&uv)[3]) {
+  const glm::vec2 size(image.width, image.height);
+  float most = 0;
+  for (int k = 0; k < 3; ++k)
+    most = std::max(most, glm::length((uv[(k + 1) % 3] - uv[k]) * size));
+  return static_cast<int>(std::clamp(0.5F * most, 1.0F, static_cast<float>(kMostSteps)));
+}
+
+struct Sum {
+  glm::vec3 drawn{0.0F}, all{0.0F};
+  float drawn_weight = 0, all_weight = 0;
+  void add(const glm::vec4& pixel, float weight, float least_opacity) {
+    all += glm::vec3(pixel) * weight;
+    all_weight += weight;
+    if (pixel.w < least_opacity) return;
+    drawn += glm::vec3(pixel) * weight;
+    drawn_weight += weight;
+  }
+  glm::vec3 mean() const {
+    if (drawn_weight > 0) return drawn / drawn_weight;
+    return all_weight > 0 ? all / all_weight : glm::vec3(1.0F);
+  }
+};
+
+}  // namespace
+
+std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::Image& image,
+                                       float least_opacity) {
+  std::vector<Sum> sums(mesh.positions.size());
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const std::uint32_t* corner = &mesh.indices[i];
+    const glm::vec2 uv[3] = {mesh.uvs[corner[0]], mesh.uvs[corner[1]], mesh.uvs[corner[2]]};
+    const int steps = steps_of(image, uv);
+    for (int a = 0; a < steps; ++a) {
+      for (int b = 0; a + b < steps; ++b) {
+        // Inside the triangle: a texture may show something else beyond its border.
+        const float u = (static_cast<float>(a) + 1.0F / 3) / static_cast<float>(steps);
+        const float v = (static_cast<float>(b) + 1.0F / 3) / static_cast<float>(steps);
+        const float w = 1 - u - v;
+        const glm::vec4 pixel = pixel_at(image, u * uv[0] + v * uv[1] + w * uv[2]);
+        sums[corner[0]].add(pixel, u, least_opacity);
+        sums[corner[1]].add(pixel, v, least_opacity);
+        sums[corner[2]].add(pixel, w, least_opacity);
+      }
+    }
+  }
+  std::vector<glm::vec3> colours;
+  colours.reserve(sums.size());
+  for (const Sum& sum : sums)
+    colours.push_back(sum.mean());
+  return colours;
+}
+
+}  // namespace psygen::handmade

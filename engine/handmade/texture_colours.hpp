@@ -1,0 +1,18 @@
+// The colours of vertices that stand for a texture: means over the triangles around each. Pure; any
+// thread.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "engine/core/mesh_data.hpp"
+#include "engine/gltf/model.hpp"
+
+namespace psygen::handmade {
+
+// One linear colour for each vertex of the mesh. Pixels of less opacity than the material draws do
+// not count. Linear in the triangles.
+std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::Image& image,
+                                       float least_opacity);
+
+}  // namespace psygen::handmade

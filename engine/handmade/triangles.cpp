@@ -1,0 +1,135 @@
+#include "engine/handmade/triangles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+#include "engine/handmade/texture_colours.hpp"
+#include "engine/models/kit/packing.hpp"
+
+namespace psygen::handmade {
+namespace {
+
+constexpr float kLeastSizeM = 0.01F, kMostSizeM = 1000;
+
+glm::mat4 matrix_of(const gltf::Pose& pose) {
+  return glm::translate(glm::mat4(1.0F), pose.translation) * glm::mat4_cast(pose.rotation) *
+         glm::scale(glm::mat4(1.0F), pose.scale);
+}
+
+// Linear colours of the vertices of a primitive.
+std::vector<glm::vec3> colours_of(const gltf::Model& model, const gltf::Primitive& primitive) {
+  const core::MeshData& mesh = primitive.mesh;
+  std::vector<glm::vec3> colours(mesh.positions.size(), glm::vec3(1.0F));
+  if (primitive.material != gltf::kNone) {
+    const gltf::Material& material = model.materials[primitive.material];
+    if (material.base_texture != gltf::kNone && !mesh.uvs.empty())
+      colours = texture_colours(mesh, model.images[material.base_texture], material.least_opacity);
+    for (glm::vec3& colour : colours)
+      colour *= material.base_colour;
+  }
+  if (mesh.colours.empty()) return colours;
+  for (std::size_t i = 0; i < colours.size(); ++i)
+    colours[i] *= mesh.colours[i];
+  return colours;
+}
+
+void add(const gltf::Model& model, const gltf::Primitive& primitive, const glm::mat4& placed,
+         Triangles& out) {
+  const core::MeshData& mesh = primitive.mesh;
+  const glm::mat3 linear(placed);
+  // The matrix of cofactors: it turns normals, whatever the scales.
+  const glm::mat3 normals(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                          glm::cross(linear[0], linear[1]));
+  const bool mirrored = glm::determinant(linear) < 0;
+  const std::vector<glm::vec3> colours = colours_of(model, primitive);
+  const bool leaf =
+      primitive.material != gltf::kNone && model.materials[primitive.material].least_opacity > 0;
+  const auto first = static_cast<std::uint32_t>(out.vertices.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    Vertex v;
+    v.position = glm::vec3(placed * glm::vec4(mesh.positions[i], 1.0F));
+    if (!mesh.normals.empty()) {
+      const glm::vec3 n = (mirrored ? -1.0F : 1.0F) * (normals * mesh.normals[i]);
+      const float length = glm::length(n);
+      if (length > 0 && std::isfinite(length)) v.normal = n / length;
+    }
+    for (std::size_t c = 0; c < 3; ++c)
+      v.colour[c] = models::pack_albedo(colours[i][static_cast<int>(c)]);
+    v.leaf = leaf ? 1 : 0;
+    out.vertices.push_back(v);
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const std::uint32_t *t = &mesh.indices[i], b = mirrored ? 2 : 1, c = mirrored ? 1 : 2;
+    out.indices.insert(out.indices.end(), {first + t[0], first + t[b], first + t[c]});
+  }
+}
+
+// Of all triangles; files may have more vertices.
+core::Bounds box_of(const Triangles& triangles) {
+  const glm::vec3 first = triangles.vertices[triangles.indices.front()].position;
+  core::Bounds box{first, first};
+  for (const std::uint32_t i : triangles.indices) {
+    const glm::vec3& p = triangles.vertices[i].position;
+    box = {glm::min(box.min, p), glm::max(box.max, p)};
+  }
+  return box;
+}
+
+// Scales the model, and puts its foot into the middle of its base.
+core::Result<void> place(const world::HandmadeModel& how, Triangles& out) {
+  const core::Bounds box = box_of(out);
+  const glm::vec3 size = box.max - box.min;
+  const float most = std::max({size.x, size.y, size.z});
+  if (how.size_m > 0 && !(size.y > 1e-4F * most))
+    return core::fail(core::ErrorCode::kParse,
+                      "it is flat, so size_m cannot say how high it is; use scale");
+  const float scale =
+      static_cast<float>(how.size_m > 0 ? how.size_m / static_cast<double>(size.y) : how.scale);
+  if (!(scale * most >= kLeastSizeM && scale * most <= kMostSizeM))
+    return core::fail(core::ErrorCode::kParse,
+                      fmt::format("it would be {:.3g} m large; {} to {} m are allowed",
+                                  scale * most, kLeastSizeM, kMostSizeM));
+  const glm::vec3 foot{0.5F * (box.min.x + box.max.x), box.min.y, 0.5F * (box.min.z + box.max.z)};
+  for (Vertex& v : out.vertices)
+    v.position = scale * (v.position - foot) - glm::vec3(0, static_cast<float>(how.sink_m), 0);
+  out.box = box_of(out);
+  return {};
+}
+
+}  // namespace
+
+core::Result<Triangles> triangles_of(const gltf::Model& model, const world::HandmadeModel& how) {
+  Triangles out;
+  std::vector<glm::mat4> placed;
+  for (const gltf::Node& node : model.nodes) {
+    const glm::mat4 own = matrix_of(node.rest);
+    placed.push_back(node.parent == gltf::kNone ? own : placed[node.parent] * own);
+    if (node.mesh == gltf::kNone) continue;
+    for (const gltf::Primitive& primitive : model.meshes[node.mesh].primitives) {
+      if (out.vertices.size() + primitive.mesh.positions.size() > kMostVertices ||
+          out.indices.size() + primitive.mesh.indices.size() > 6 * kMostVertices)
+        return core::fail(core::ErrorCode::kOverBudget,
+                          fmt::format("with all its nodes it has more than {} vertices or {} "
+                                      "triangles",
+                                      kMostVertices, 2 * kMostVertices));
+      add(model, primitive, placed.back(), out);
+    }
+  }
+  const auto finite = [](const Vertex& v) {
+    return std::isfinite(v.position.x + v.position.y + v.position.z);
+  };
+  if (out.indices.empty()) return core::fail(core::ErrorCode::kParse, "it has no triangles");
+  if (!std::ranges::all_of(out.vertices, finite))
+    return core::fail(core::ErrorCode::kParse, "its nodes place it at infinity");
+  if (auto ok = place(how, out); !ok) return tl::unexpected(ok.error());
+  return out;
+}
+
+}  // namespace psygen::handmade

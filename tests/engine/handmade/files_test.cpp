@@ -1,0 +1,203 @@
+#include "engine/handmade/files.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "engine/world/files/world_schema.hpp"
+#include "engine/world/placement.hpp"
+#include "tests/engine/handmade/shapes.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace psygen::handmade {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr const char* kHead = R"(format = 1
+[world]
+name = "small"
+seed = 5
+blocks = [8, 4]
+cell_m = 2
+block_vertices = 33
+[terrain]
+octaves = 4
+)";
+constexpr const char* kBall = R"([[model]]
+name = "ball"
+file = "things/ball.glb"
+size_m = 3
+)";
+constexpr const char* kScatter = R"([[scatter]]
+model = "ball"
+count = 6
+max_slope_deg = 40
+scale = [0.5, 2]
+turn_deg = [0, 360]
+)";
+
+// A folder with a world and its models.
+struct World {
+  TemporaryFolder folder;
+  models::Registry registry = models::make_standard_registry();
+
+  World() {
+    std::filesystem::create_directory(folder / "things");
+    gltf::write_bytes(folder / "things/ball.glb", ball(24, 40).glb());
+  }
+  std::string file() const { return (folder / "w.toml").string(); }
+  core::Result<world::World> read(const std::string& text) {
+    return world::parse_world(text, file(), registry, &files());
+  }
+  // The message that refuses a text; nothing is registered then.
+  std::string error_of(const std::string& text) {
+    const std::size_t before = registry.size();
+    const auto world = read(text);
+    EXPECT_FALSE(world.has_value()) << text;
+    EXPECT_EQ(registry.size(), before);
+    return world ? "" : world.error().message;
+  }
+  std::string error_with(std::string_view from, const std::string& to) {
+    std::string text = std::string(kHead) + kBall + kScatter;
+    text.replace(text.find(from), from.size(), to);
+    return error_of(text);
+  }
+};
+
+TEST(HandmadeFiles, MakeAModelThatCanBeScattered) {
+  World w;
+  const auto world = w.read(std::string(kHead) + kBall + kScatter);
+  ASSERT_TRUE(world.has_value()) << world.error().message;
+  ASSERT_EQ(w.registry.size(), 5U);
+  EXPECT_EQ(w.registry[4].name(), "ball");
+  EXPECT_THAT(std::string(w.registry[4].doc()), HasSubstr("things/ball.glb"));
+  std::vector<world::Placement> placed;
+  world::place_models(*world, w.registry, {3, 2}, placed);
+  EXPECT_GT(placed.size(), 0U);
+  EXPECT_GT(world::world_size(*world, w.registry).triangles, 0);
+}
+
+TEST(HandmadeFiles, ReadBackAsTheyWereWritten) {
+  World w;
+  const auto world = w.read(std::string(kHead) + kBall +
+                            "sink_m = 0.5\nlevels = 3\ncollider = \"box\"\n" + kScatter);
+  ASSERT_TRUE(world.has_value()) << world.error().message;
+  const std::string text = world::write_world(*world, w.registry);
+  models::Registry other = models::make_standard_registry();
+  const auto again = world::parse_world(text, w.file(), other, &files());
+  ASSERT_TRUE(again.has_value()) << again.error().message;
+  EXPECT_EQ(*again, *world);
+  EXPECT_EQ(other[4].identity(), w.registry[4].identity());
+}
+
+TEST(HandmadeFiles, KeepOneTypeForEqualModelsAndRefuseOthersOfTheName) {
+  World w;
+  const std::string text = std::string(kHead) + kBall + kScatter;
+  ASSERT_TRUE(w.read(text).has_value());
+  ASSERT_TRUE(w.read(text).has_value());
+  EXPECT_EQ(w.registry.size(), 5U);
+  EXPECT_THAT(w.error_with("size_m = 3", "size_m = 4"),
+              AllOf(StartsWith(w.file() + ":11: model[0].name: "),
+                    HasSubstr("there is another model called ball")));
+  const models::Registry& constant = w.registry;
+  EXPECT_TRUE(world::parse_world(text, w.file(), constant, &files()).has_value());
+  // A file that has changed is read again.
+  gltf::write_bytes(w.folder / "things/ball.glb", ball(20, 30).glb());
+  EXPECT_THAT(w.error_of(text), HasSubstr("there is another model called ball"));
+}
+
+TEST(HandmadeFiles, RefuseWithFileLineAndField) {
+  World w;
+  const std::string at = w.file() + ":12: model[0].file: ";
+  EXPECT_THAT(w.error_with("things/ball.glb", "things/no.glb"),
+              AllOf(StartsWith(at), HasSubstr("no.glb")));
+  EXPECT_THAT(w.error_with("things/ball.glb", "../ball.glb"),
+              AllOf(StartsWith(at), HasSubstr("..")));
+  EXPECT_THAT(w.error_with("things/ball.glb", "/etc/passwd"), HasSubstr("relative to the folder"));
+  EXPECT_THAT(w.error_with("things/ball.glb", "things"), StartsWith(at));
+  EXPECT_THAT(w.error_with("file = \"things/ball.glb\"", ""), HasSubstr("model[0].file"));
+  EXPECT_THAT(w.error_with("name = \"ball\"\nfile", "name = \"Ball\"\nfile"),
+              HasSubstr("snake_case"));
+  EXPECT_THAT(w.error_with("name = \"ball\"\nfile", "name = \"tree\"\nfile"),
+              HasSubstr("another model called tree"));
+  EXPECT_THAT(w.error_with("size_m = 3", "size_m = -3"), HasSubstr("model[0].size_m"));
+  EXPECT_THAT(w.error_with("size_m = 3", "size_m = 3\nscale = 2"),
+              AllOf(HasSubstr("model[0].scale"), HasSubstr("only one")));
+  EXPECT_THAT(w.error_with("size_m = 3", "levels = 9"), HasSubstr("model[0].levels"));
+  EXPECT_THAT(w.error_with("size_m = 3", "collider = \"mesh\""), HasSubstr("hull, box, none"));
+  EXPECT_THAT(w.error_with("size_m = 3", "sizes_m = 3"), HasSubstr("did you mean size_m"));
+  EXPECT_THAT(w.error_with("scale = [0.5, 2]", "scale = 1000"), HasSubstr("scatter[0].scale"));
+  EXPECT_THAT(w.error_with("size_m = 3", "scale = 1e5"), AllOf(StartsWith(at), HasSubstr("large")));
+  const auto without = world::parse_world(std::string(kHead) + kBall, w.file(), w.registry);
+  ASSERT_FALSE(without.has_value());
+  EXPECT_THAT(without.error().message, HasSubstr("reads no models from files"));
+}
+
+TEST(HandmadeFiles, RefuseEveryCutFile) {
+  World w;
+  const std::string whole = ball(4, 5).glb();
+  for (std::size_t n = 0; n < whole.size(); n += 37) {
+    gltf::write_bytes(w.folder / "things/ball.glb", whole.substr(0, n));
+    EXPECT_THAT(w.error_of(std::string(kHead) + kBall), HasSubstr("ball.glb")) << n;
+  }
+}
+
+TEST(HandmadeFiles, RefuseModelsAboveTheirBudget) {
+  World w;
+  std::string text = kHead;
+  for (int i = 0; i < 65; ++i)
+    text += fmt::format("[[model]]\nname = \"m{}\"\nfile = \"things/ball.glb\"\n", i);
+  EXPECT_THAT(w.error_of(text), HasSubstr("model"));
+  gltf::write_bytes(w.folder / "things/ball.glb", ball(60, 90).glb());  // 10,800 triangles
+  EXPECT_THAT(w.error_with("count = 6", "count = 16384"), HasSubstr("too large"));
+}
+
+// One picture stands for all instances, and it does not sway.
+TEST(HandmadeFiles, AreSeenFromFarAsOnePicture) {
+  World w;
+  const auto world = w.read(std::string(kHead) + kBall + kScatter);
+  ASSERT_TRUE(world.has_value());
+  const world::PictureSet pictures(*world, w.registry);
+  ASSERT_EQ(pictures.count(), 1U);
+  const models::ModelIndex ball = 4;
+  EXPECT_TRUE(pictures.has(ball));
+  models::Parameters p = pictures.models()[0].parameters;
+  const auto view_of = [&](double turn_deg) {
+    p.set_real(1, turn_deg);
+    world::FormMesh quad;
+    pictures.make_quad(ball, p, nullptr, quad);
+    EXPECT_EQ(quad.corners[2].sway, 0);
+    return static_cast<int>(std::lround(quad.corners[0].colour.x * 255));
+  };
+  p.set_real(0, 1);
+  const double own = pictures.models()[0].turn_deg;
+  EXPECT_EQ(view_of(own), 0);
+  for (int k = 0; k < 8; ++k) {
+    const double turn = own + 45 * k > 360 ? own + 45 * k - 360 : own + 45 * k;
+    EXPECT_EQ(view_of(turn), k);
+  }
+}
+
+TEST(HandmadeFiles, AreSectionsOfTheSchema) {
+  World w;
+  const std::string text = std::string(kHead) + kBall + kScatter;
+  const auto world = w.read(text);
+  ASSERT_TRUE(world.has_value());
+  const auto sections = world::world_schema(text, *world, w.registry);
+  ASSERT_TRUE(sections.has_value());
+  const world::WorldField* file = world::find_field(*sections, {"model", 0, "file"});
+  ASSERT_NE(file, nullptr);
+  EXPECT_EQ(file->plain, "things/ball.glb");
+  EXPECT_TRUE(file->required);
+  EXPECT_NE(world::find_field(*sections, {"model", 0, "levels"}), nullptr);
+  const world::WorldField* turn = world::find_field(*sections, {"scatter", 0, "turn_deg"});
+  ASSERT_NE(turn, nullptr);
+  EXPECT_EQ(turn->kind, world::FieldKind::kRealRange);
+}
+
+}  // namespace
+}  // namespace psygen::handmade
