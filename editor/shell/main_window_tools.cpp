@@ -14,7 +14,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kAttachedPx = 330;
+constexpr int kPropertiesPx = 380, kAttachedPx = 330, kStatisticsPx = 150;
 
 QDockWidget* add_hidden_dock(QMainWindow& window, const QString& name, const QString& title,
                              QWidget* content, Qt::DockWidgetArea area) {
@@ -48,7 +48,8 @@ void MainWindow::add_tool_docks() {
   connect(remote_, &RemoteSession::attached, this,
           [this, attached](const QJsonObject&, const std::string& text) {
             reveal(attached);
-            resizeDocks({attached}, {kAttachedPx}, Qt::Horizontal);
+            resizeDocks({findChild<QDockWidget*>("properties"), attached}, {kPropertiesPx, kAttachedPx},
+                        Qt::Horizontal);
             if (text != document_.text()) {
               if (!may_discard()) return remote_->detach(false);
               tell(document_.make_new(text));
@@ -90,6 +91,9 @@ void MainWindow::add_tool_docks() {
   auto* dock =
       add_hidden_dock(*this, "timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
   tabifyDockWidget(findChild<QDockWidget*>("statistics"), dock);
+  // Docks that are added take the sizes of the others with them.
+  resizeDocks({findChild<QDockWidget*>("properties")}, {kPropertiesPx}, Qt::Horizontal);
+  resizeDocks({findChild<QDockWidget*>("statistics")}, {kStatisticsPx}, Qt::Vertical);
   connect(timeline_, &TimelinePanel::told, this, &MainWindow::say);
   connect(timeline_, &TimelinePanel::recording_changed, this, [dock](bool) { reveal(dock); });
   connect(timeline_, &TimelinePanel::needs_processors, this,
