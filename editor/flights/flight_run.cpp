@@ -62,7 +62,8 @@ double summary_number(const QJsonObject& summary, const QString& field) {
 double rounded_up(double value) {
   if (!(value > 0)) return 0;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
-  return std::max(value, std::ceil(value / unit - 1e-9) * unit);
+  // Without the last bits of the product, which nobody wants to read.
+  return std::max(value, std::stod(fmt::format("{:.6g}", std::ceil(value / unit - 1e-9) * unit)));
 }
 
 }  // namespace

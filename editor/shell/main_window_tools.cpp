@@ -48,8 +48,8 @@ void MainWindow::add_tool_docks() {
   connect(remote_, &RemoteSession::attached, this,
           [this, attached](const QJsonObject&, const std::string& text) {
             reveal(attached);
-            resizeDocks({findChild<QDockWidget*>("properties"), attached}, {kPropertiesPx, kAttachedPx},
-                        Qt::Horizontal);
+            resizeDocks({findChild<QDockWidget*>("properties"), attached},
+                        {kPropertiesPx, kAttachedPx}, Qt::Horizontal);
             if (text != document_.text()) {
               if (!may_discard()) return remote_->detach(false);
               tell(document_.make_new(text));
