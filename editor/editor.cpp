@@ -24,7 +24,6 @@ constexpr const char* kFirstWorld = "silver_combe";
 constexpr glm::dvec3 kFirstPlaceM{-1257, 24, 3978};
 constexpr double kFirstYawDeg = 110, kFirstPitchDeg = -10;
 
-
 struct Arguments {
   QString file;
   bool safe = false;

@@ -43,9 +43,12 @@ constexpr double kCloudDriftX = 0.002, kCloudDriftZ = 0.0006;  // repeats per se
 void set_clouds(shaders::FrameData& out, const FrameInput& input) {
   const core::WorldPosition& at = input.pose.position;
   const double seconds = input.light.time_seconds;
+  // Repeats of a block in 2^-32, so that they meet where the numbers of blocks wrap.
+  const auto of_block =
+      static_cast<std::uint32_t>(std::llround(input.block_size_m * kCloudRepeats * 0x1p32));
   const auto place = [&](std::int32_t block, double local, double drift) {
-    const double metres = static_cast<double>(block) * input.block_size_m + local;
-    const double repeats = metres * kCloudRepeats + seconds * drift;
+    const double corner = static_cast<std::uint32_t>(block) * of_block * 0x1p-32;
+    const double repeats = corner + local * kCloudRepeats + seconds * drift;
     return static_cast<float>(repeats - std::floor(repeats));
   };
   out.clouds = {place(at.block.x, at.local.x, kCloudDriftX),
