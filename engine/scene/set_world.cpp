@@ -153,6 +153,7 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
     next.usual_boxes = usual_boxes(next.registry, models_on(next, {}));
   }
   const bool rested = s.meshes.come_to_rest();
+  forget_pictures(s.facts, s.meshes);
   // Nothing fails from here on: the same types were added before.
   if (auto ok = s.assets.follow(next.registry); !ok) return ok;
   const bool same =

@@ -18,7 +18,20 @@ std::uint32_t all_of(std::size_t pictures) {
   return static_cast<std::uint32_t>((std::uint64_t{1} << pictures) - 1);
 }
 
+synthesis::MeshKey key_of_picture(const WorldFacts& facts, std::size_t number) {
+  return {{},
+          static_cast<std::uint32_t>(number),
+          facts.picture_model,
+          0,
+          facts.picture_parameters[number].hash()};
+}
+
 }  // namespace
+
+void forget_pictures(const WorldFacts& facts, synthesis::MeshSupply& meshes) {
+  for (std::size_t i = 0; i < facts.picture_parameters.size(); ++i)
+    meshes.forget(meshes.find(key_of_picture(facts, i)));
+}
 
 bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, Output& output) {
   if (output.renderer == nullptr) return true;
@@ -68,10 +81,7 @@ core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts) {
 void want_pictures(const WorldFacts& facts, const Output& output, synthesis::MeshSupply& meshes) {
   for (std::size_t i = 0; output.pictures_lacking >> i != 0; ++i) {
     if ((output.pictures_lacking >> i & 1) == 0) continue;
-    const models::Parameters& p = facts.picture_parameters[i];
-    const synthesis::MeshKey key{
-        {}, static_cast<std::uint32_t>(i), facts.picture_model, 0, p.hash()};
-    meshes.want({key, &p, owner_of(ecs::kNullEntity),
+    meshes.want({key_of_picture(facts, i), &facts.picture_parameters[i], owner_of(ecs::kNullEntity),
                  synthesis::Rank::by_layer(synthesis::RankGroup::kVisibleCoarse, 0, 0.0F)});
   }
 }

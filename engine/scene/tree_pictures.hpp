@@ -21,6 +21,10 @@ bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, Ou
 // Wants the pictures that the renderer lacks. Part of the cache system.
 void want_pictures(const WorldFacts& facts, const Output& output, synthesis::MeshSupply& meshes);
 
+// Of a world that is about to be replaced: pictures that were finished and that the renderer has
+// not got.
+void forget_pictures(const WorldFacts& facts, synthesis::MeshSupply& meshes);
+
 // Gives a finished picture to the renderer, and returns whether the request was for one. What could
 // not be made keeps its stand-in. Waits for the device. Part of the upload system.
 bool take_picture(const synthesis::Completion& job, const WorldFacts& facts,

@@ -81,6 +81,9 @@ class EditorWindow : public testing::Test {
   }
   image::Image picture() { return window_->view().session()->picture().value(); }
 
+  // The world that the view shows.
+  const world::World& shown() { return window_->view().session()->scene().state().facts.world; }
+
   TemporaryFolder folder_;
   std::filesystem::path file_;
   std::unique_ptr<MainWindow> window_;

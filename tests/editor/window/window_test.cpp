@@ -72,12 +72,14 @@ TEST_F(EditorWindow, WhatIsSavedOpensAsTheSameWorld) {
   EXPECT_NE(text_of(file_).find("count = 9"), std::string::npos);
   EXPECT_NE(text_of(file_).find("# the paper's"), std::string::npos);
   settle();
-  const image::Image saved = picture();
+  const world::World saved = shown();
   const int opened = opened_;
   ASSERT_TRUE(window_->open_file(file_));
   ASSERT_TRUE(QTest::qWaitFor([&] { return opened_ > opened; }, kMostMs));
   settle();
-  EXPECT_LT(difference(picture(), saved), 0.002);
+  EXPECT_EQ(shown(), saved);
+  EXPECT_EQ(shown().scatter[0].count, 9u);
+  EXPECT_FALSE(window_->isWindowModified());
 }
 
 TEST_F(EditorWindow, AValueThatIsRefusedChangesNothing) {
@@ -137,7 +139,7 @@ TEST_F(EditorWindow, ResizingHidingAndChangingAtOnceHarmsNothing) {
   }
   ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isExposed(); }, kMostMs));
   ASSERT_TRUE(document().set_value(kCount, "6"));
-  settle();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return shown().scatter[0].count == 6; }, kMostMs));
   // Closed while it makes something.
   ASSERT_TRUE(document().set_value(kCount, "40"));
   QTest::qWait(5);
