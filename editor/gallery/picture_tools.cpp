@@ -12,8 +12,8 @@
 #include "editor/gallery/export_dialog.hpp"
 #include "editor/gallery/library_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
-#include "engine/models/terrain/ground.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/surface.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -21,12 +21,6 @@ namespace {
 constexpr std::uint32_t kLargeWidth = 3840;
 constexpr double kLeastEyeOverGroundM = 1;
 constexpr int kAttentionMs = 400;  // a mouse that passes over a field on its way is no attention
-
-// The height of the ground, or the water on it.
-double surface_at(const world::World& world, const core::WorldPosition& at) {
-  const double ground_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
-  return world.water.exists() ? std::max(ground_m, world.water.level_m) : ground_m;
-}
 
 QStringList server_arguments(const QString& device) {
   QStringList arguments{kPicturesOption};
@@ -55,7 +49,7 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
   connect(library_, &LibraryPanel::told, this, &PictureTools::told);
   connect(&view_, &WorldView::drawn, this, [this] {
     const scene::State& state = view_.session()->scene().state();
-    view_.set_yielding(service_.waiting() > 0);
+    view_.set_yielding(Beside::kPictures, service_.waiting() > 0);
     service_.set_busy(state.counters.awaited > 0 || state.meshes.outstanding() > 0);
   });
   connect(&document_, &Document::changed, this, [this](Changes what) {
@@ -69,7 +63,7 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
     if (what.testAnyFlags(Change::kTerrain | Change::kWorld | Change::kWater) &&
         !what.testFlag(Change::kFile)) {
       const core::WorldPosition& at = view_.camera().pose().position;
-      if (at.local.y < surface_at(document_.world(), at) + kLeastEyeOverGroundM)
+      if (at.local.y < world::surface_height_m(document_.world(), at) + kLeastEyeOverGroundM)
         stand(kLeastEyeOverGroundM);
     }
     show_shown();
@@ -83,7 +77,7 @@ void PictureTools::attend(const world::TextPath& field) {
 
 void PictureTools::stand(double above_m) {
   core::CameraPose pose = view_.camera().pose();
-  pose.position.local.y = surface_at(document_.world(), pose.position) + above_m;
+  pose.position.local.y = world::surface_height_m(document_.world(), pose.position) + above_m;
   view_.camera().set_pose(pose);
 }
 
@@ -93,7 +87,7 @@ std::optional<ViewState> PictureTools::view_state() const {
   const core::CameraPose& pose = view_.camera().pose();
   const core::WorldPosition& at = pose.position;
   const double block_m = world.block_size_m();
-  const double surface_m = surface_at(world, at);
+  const double surface_m = world::surface_height_m(world, at);
   ViewState state;
   state.place.at_m = {at.block.x * block_m + at.local.x, at.local.y,
                       at.block.z * block_m + at.local.z};

@@ -1,13 +1,16 @@
 #include "editor/panels/field_row.hpp"
 
+#include <QApplication>
 #include <QCheckBox>
+#include <QClipboard>
 #include <QColorDialog>
 #include <QComboBox>
+#include <QContextMenuEvent>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
+#include <QMenu>
 #include <QPushButton>
-#include <QRandomGenerator>
 #include <QSignalBlocker>
 #include <QToolButton>
 #include <algorithm>
@@ -222,27 +225,15 @@ void FieldRow::choose_colour() {
 void FieldRow::add_seed(QHBoxLayout& layout) {
   auto* line = new QLineEdit;
   line->setAccessibleName(label_->text());
-  lock_ = small_button(tr("lock"), tr("Lock the seed"));
-  lock_->setCheckable(true);
   auto* less = small_button("−", tr("The seed before"));
   auto* more = small_button("+", tr("The next seed"));
   auto* dice = small_button("⚄", tr("Another seed at random"));
-  for (QWidget* widget : std::initializer_list<QWidget*>{line, less, more, dice, lock_})
+  for (QWidget* widget : std::initializer_list<QWidget*>{line, less, more, dice})
     layout.addWidget(widget, widget == line ? 1 : 0);
   setFocusProxy(line);
-  const auto step = [this](std::uint64_t by) {
-    want(world::toml_seed(QString::fromStdString(field_.plain).toULongLong() + by));
-  };
-  connect(less, &QToolButton::clicked, this, [step] { step(~std::uint64_t{0}); });
-  connect(more, &QToolButton::clicked, this, [step] { step(1); });
-  connect(dice, &QToolButton::clicked, this, [this] {
-    if (!locked()) want(world::toml_seed(QRandomGenerator::global()->generate64() >> 32));
-  });
-  connect(lock_, &QToolButton::toggled, this, [this, less, more, dice, line](bool on) {
-    Q_EMIT lock_wanted(field_.path, on);
-    for (QWidget* widget : std::initializer_list<QWidget*>{less, more, dice, line})
-      widget->setEnabled(!on);
-  });
+  connect(less, &QToolButton::clicked, this, [this] { Q_EMIT step_wanted(field_.path, -1); });
+  connect(more, &QToolButton::clicked, this, [this] { Q_EMIT step_wanted(field_.path, 1); });
+  connect(dice, &QToolButton::clicked, this, [this] { Q_EMIT dice_wanted(field_.path); });
   connect(line, &QLineEdit::editingFinished, this, [this, line] {
     bool ok = false;
     const std::uint64_t seed = line->text().toULongLong(&ok);
@@ -253,11 +244,31 @@ void FieldRow::add_seed(QHBoxLayout& layout) {
 }
 
 void FieldRow::set_locked(bool locked) {
-  if (lock_ != nullptr) lock_->setChecked(locked);
+  locked_ = locked;
+  QFont font = label_->font();
+  font.setItalic(locked);
+  label_->setFont(font);
 }
 
-bool FieldRow::locked() const {
-  return lock_ != nullptr && lock_->isChecked();
+// What every field can do, whatever its control is.
+void FieldRow::contextMenuEvent(QContextMenuEvent* event) {
+  QMenu menu;
+  QAction* lock = menu.addAction(tr("Lock against dice"), this, [this](bool on) {
+    set_locked(on);
+    Q_EMIT lock_wanted(field_.path, on);
+  });
+  lock->setCheckable(true);
+  lock->setChecked(locked_);
+  menu.addAction(tr("Random value"), this, [this] { Q_EMIT dice_wanted(field_.path); });
+  menu.addAction(tr("Reset to the default"), this, [this] { Q_EMIT reset_wanted(field_.path); })
+      ->setEnabled(reset_->isEnabled());
+  menu.addSeparator();
+  menu.addAction(tr("Copy the value"), this, [this] {
+    QApplication::clipboard()->setText(QString::fromStdString(field_.value));
+  });
+  menu.addAction(tr("Paste a value"), this,
+                 [this] { want(QApplication::clipboard()->text().trimmed().toStdString()); });
+  menu.exec(event->globalPos());
 }
 
 void FieldRow::show(const world::WorldField& field) {

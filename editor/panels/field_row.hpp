@@ -32,14 +32,17 @@ class FieldRow final : public QWidget {
   void show(const world::WorldField& field);
   // What its values would cost.
   void show_cost(std::vector<CostPoint> points);
-  // Whether dice and steps leave the field alone.
+  // Whether dice leave the field alone; its name is slanted then.
   void set_locked(bool locked);
-  bool locked() const;
+  bool is_locked() const { return locked_; }
 
  Q_SIGNALS:
   // A value as TOML.
   void wanted(const world::TextPath& path, const std::string& toml);
   void reset_wanted(const world::TextPath& path);
+  // So many steps further, and any value.
+  void step_wanted(const world::TextPath& path, int steps);
+  void dice_wanted(const world::TextPath& path);
   void drag_began();
   void drag_ended();
   void lock_wanted(const world::TextPath& path, bool locked);
@@ -48,6 +51,7 @@ class FieldRow final : public QWidget {
 
  protected:
   void enterEvent(QEnterEvent* event) override;
+  void contextMenuEvent(QContextMenuEvent* event) override;
 
  private:
   void build(QHBoxLayout& layout);
@@ -65,7 +69,7 @@ class FieldRow final : public QWidget {
   world::WorldField field_;
   QLabel* label_;
   QToolButton* reset_;
-  QToolButton* lock_ = nullptr;
+  bool locked_ = false;
   CostStrip* cost_ = nullptr;  // null: costs do not depend on it
   QVBoxLayout* column_ = nullptr;
   std::vector<NumberEdit*> numbers_;

@@ -165,6 +165,8 @@ void PropertiesPanel::add_row(const world::WorldField& field) {
   rows_.push_back(row);
   connect(row, &FieldRow::wanted, this, &PropertiesPanel::wanted);
   connect(row, &FieldRow::reset_wanted, this, &PropertiesPanel::reset_wanted);
+  connect(row, &FieldRow::step_wanted, this, &PropertiesPanel::step_wanted);
+  connect(row, &FieldRow::dice_wanted, this, &PropertiesPanel::dice_wanted);
   connect(row, &FieldRow::drag_began, this, &PropertiesPanel::drag_began);
   connect(row, &FieldRow::drag_ended, this, &PropertiesPanel::drag_ended);
   Q_EMIT row_made(row);

@@ -37,6 +37,8 @@ class PropertiesPanel final : public QWidget {
  Q_SIGNALS:
   void wanted(const world::TextPath& path, const std::string& toml);
   void reset_wanted(const world::TextPath& path);
+  void step_wanted(const world::TextPath& path, int steps);
+  void dice_wanted(const world::TextPath& path);
   void drag_began();
   void drag_ended();
   void attended(const world::TextPath& path);

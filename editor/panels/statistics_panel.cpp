@@ -23,15 +23,21 @@ struct Held {
   std::uint64_t meshes = 0, triangles = 0, vertices = 0, bytes = 0;
 };
 
+// By name; of some thousand records.
 std::map<std::string, Held> held_by(const scene::State& state) {
-  std::map<std::string, Held> held;
+  std::vector<Held> of_model(state.facts.registry.size());
   for (const synthesis::MeshRecord& record : state.meshes.records()) {
-    if (record.state != synthesis::MeshState::kReady) continue;
-    Held& of = held[std::string(state.facts.registry[record.key.model].name())];
+    if (record.state != synthesis::MeshState::kReady || record.key.model >= of_model.size())
+      continue;
+    Held& of = of_model[record.key.model];
     ++of.meshes;
     of.triangles += record.size.triangle_count();
     of.vertices += record.size.vertex_count;
     of.bytes += record.range.bytes;
+  }
+  std::map<std::string, Held> held;
+  for (models::ModelIndex i = 0; i < of_model.size(); ++i) {
+    if (of_model[i].meshes > 0) held[std::string(state.facts.registry[i].name())] = of_model[i];
   }
   return held;
 }

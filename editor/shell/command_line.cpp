@@ -4,10 +4,10 @@
 #include <glm/trigonometric.hpp>
 
 #include "engine/app/session.hpp"
-#include "engine/models/terrain/ground.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/surface.hpp"
 
 namespace psygen::editor {
 
@@ -17,8 +17,7 @@ QString picture_command(app::Session& session, const std::filesystem::path& worl
   const world::World& world = state.facts.world;
   const double block_m = world.block_size_m();
   const core::WorldPosition& at = pose.position;
-  double surface_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
-  if (world.water.exists()) surface_m = std::max(surface_m, world.water.level_m);
+  const double surface_m = world::surface_height_m(world, at);
   const render::Preset preset = session.renderer().preset();
   const std::string_view name = render::to_string(preset);
   QString file = QString::fromStdString(world_file.string());

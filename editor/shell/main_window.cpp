@@ -23,9 +23,10 @@
 #include "editor/panels/properties_panel.hpp"
 #include "editor/panels/statistics_panel.hpp"
 #include "editor/shell/command_palette.hpp"
+#include "editor/shell/docks.hpp"
 #include "engine/core/log.hpp"
-#include "engine/models/terrain/ground.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/surface.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -33,15 +34,6 @@ namespace {
 constexpr int kFiguresMs = 250;
 constexpr int kCostsMs = 300;  // after the last change
 constexpr double kSmoothing = 0.1;
-
-QDockWidget* add_dock(QMainWindow& window, const QString& name, const QString& title,
-                      QWidget* content, Qt::DockWidgetArea area) {
-  auto* dock = new QDockWidget(title, &window);
-  dock->setObjectName(name);
-  dock->setWidget(content);
-  window.addDockWidget(area, dock);
-  return dock;
-}
 
 QPlainTextEdit* reading_pane(const QString& name) {
   auto* pane = new QPlainTextEdit;
@@ -124,8 +116,6 @@ void MainWindow::add_docks() {
   tabifyDockWidget(figures, messages);
   selection->raise();
   figures->raise();
-  resizeDocks({findChild<QDockWidget*>("properties")}, {380}, Qt::Horizontal);
-  resizeDocks({figures}, {150}, Qt::Vertical);
 }
 
 void MainWindow::connect_document() {
@@ -141,6 +131,10 @@ void MainWindow::connect_document() {
           });
   connect(properties_, &PropertiesPanel::reset_wanted, this,
           [this](const world::TextPath& path) { tell(document_.reset_value(path)); });
+  connect(
+      properties_, &PropertiesPanel::step_wanted, this,
+      [this](const world::TextPath& path, int steps) { tell(document_.step_value(path, steps)); });
+  connect(properties_, &PropertiesPanel::dice_wanted, this, &MainWindow::randomise);
   connect(properties_, &PropertiesPanel::drag_began, this, [this] { document_.begin_drag(); });
   connect(properties_, &PropertiesPanel::drag_ended, this, [this] { document_.end_drag(); });
   connect(properties_, &PropertiesPanel::row_made, this, [this](FieldRow* row) {
@@ -201,9 +195,12 @@ void MainWindow::connect_view() {
 
 void MainWindow::document_changed(Changes what) {
   properties_->show(document_.sections());
+  // The renderer takes pictures of the ground only when it is made.
+  const auto& images = document_.world().palette.images;
   view_->show_world(document_.text(),
                     document_.file().empty() ? "new.toml" : document_.file().string(),
-                    what.testFlag(Change::kFile));
+                    what.testFlag(Change::kFile) || images != shown_images_);
+  shown_images_ = images;
   costs_timer_.start(kCostsMs);
 }
 
@@ -277,8 +274,7 @@ void MainWindow::restore_place() {
   core::CameraPose pose = *std::exchange(first_place_, std::nullopt);
   const world::World& world = document_.world();
   pose.position = core::normalised(pose.position, world.block_size_m());
-  const core::WorldPosition& at = pose.position;
-  pose.position.local.y += models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
+  pose.position.local.y += world::surface_height_m(world, pose.position);
   view_->camera().set_pose(pose);
 }
 

@@ -84,6 +84,7 @@ class MainWindow final : public QMainWindow {
   void fit_title();
   void ask_costs();
   void show_figures();
+  void randomise(const world::TextPath& path);
   void section_menu(const world::TextPath& path, const QPoint& at);
   void set_theme(const QString& name);
   void set_scale(int percent);
@@ -109,7 +110,8 @@ class MainWindow final : public QMainWindow {
   QTimer figures_timer_, costs_timer_;
   QByteArray first_layout_;
   std::optional<core::CameraPose> first_place_;  // its height: above the ground
-  double frame_ms_ = 0;                          // smoothed
+  decltype(world::Palette::images) shown_images_;
+  double frame_ms_ = 0;  // smoothed
 };
 
 }  // namespace psygen::editor

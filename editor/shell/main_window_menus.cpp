@@ -32,11 +32,6 @@ namespace {
 
 constexpr std::array kScales{80, 100, 125, 150, 200};
 
-std::mt19937_64& dice() {
-  static std::mt19937_64 random{std::random_device{}()};
-  return random;
-}
-
 }  // namespace
 
 void MainWindow::add_menus() {
@@ -91,7 +86,7 @@ void MainWindow::add_edit_menu() {
   menu->addActions({undo, redo});
   menu->addSeparator();
   menu->addAction(tr("Randomise this section"), tr("Ctrl+R"), this,
-                  [this] { tell(document_.randomise(properties_->section(), dice())); });
+                  [this] { randomise(properties_->section()); });
   menu->addAction(tr("Copy this section"), tr("Ctrl+Shift+C"), this, [this] {
     const auto text = document_.copy(properties_->section());
     if (!text) return say(QString::fromStdString(text.error().message));
@@ -195,9 +190,15 @@ void MainWindow::add_world_menu() {
   pause->setChecked(options_.safe);
 }
 
+// What is not locked of a section or field.
+void MainWindow::randomise(const world::TextPath& path) {
+  static std::mt19937_64 random{std::random_device{}()};
+  tell(document_.randomise(path, random));
+}
+
 void MainWindow::section_menu(const world::TextPath& path, const QPoint& at) {
   QMenu menu;
-  menu.addAction(tr("Randomise"), this, [&] { tell(document_.randomise(path, dice())); });
+  menu.addAction(tr("Randomise"), this, [&] { randomise(path); });
   menu.addAction(tr("Reset"), this, [&] { tell(document_.remove_table(path)); });
   if (!path.empty() && path.back().is_index) {
     menu.addAction(tr("Duplicate"), this, [&] { tell(document_.duplicate_table(path)); });

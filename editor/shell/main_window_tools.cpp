@@ -7,6 +7,7 @@
 #include "editor/attach/remote_panel.hpp"
 #include "editor/attach/remote_session.hpp"
 #include "editor/flights/timeline_panel.hpp"
+#include "editor/shell/docks.hpp"
 #include "editor/shell/main_window.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
@@ -14,14 +15,9 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kPropertiesPx = 380, kAttachedPx = 330, kStatisticsPx = 150;
-
 QDockWidget* add_hidden_dock(QMainWindow& window, const QString& name, const QString& title,
                              QWidget* content, Qt::DockWidgetArea area) {
-  auto* dock = new QDockWidget(title, &window);
-  dock->setObjectName(name);
-  dock->setWidget(content);
-  window.addDockWidget(area, dock);
+  QDockWidget* dock = add_dock(window, name, title, content, area);
   dock->hide();
   return dock;
 }
@@ -97,7 +93,7 @@ void MainWindow::add_tool_docks() {
   connect(timeline_, &TimelinePanel::told, this, &MainWindow::say);
   connect(timeline_, &TimelinePanel::recording_changed, this, [dock](bool) { reveal(dock); });
   connect(timeline_, &TimelinePanel::needs_processors, this,
-          [this](bool on) { view_->set_yielding(on); });
+          [this](bool on) { view_->set_yielding(Beside::kFlight, on); });
   connect(view_, &WorldView::drawn, this, [this] {
     timeline_->picture_drawn();
     if (remote_follows_) remote_->set_pose(view_->camera().pose());

@@ -148,7 +148,7 @@ void WorldView::tick() {
   Q_EMIT drawn(static_cast<double>(spent.nsecsElapsed()) * 1e-6);
   note_settled();
   const bool in_front = QGuiApplication::applicationState() == Qt::ApplicationActive;
-  const bool yields = yielding_ && !moved && !input_.busy() && !since_text_.isValid();
+  const bool yields = beside_.any() && !moved && !input_.busy() && !since_text_.isValid();
   timer_.setInterval(yields                                               ? kYieldMs
                      : in_front || input_.busy() || since_text_.isValid() ? kBusyMs
                                                                           : kIdleMs);

@@ -8,6 +8,8 @@
 #include <QElapsedTimer>
 #include <QTimer>
 #include <QWindow>
+#include <bitset>
+#include <cstdint>
 #include <future>
 #include <memory>
 #include <optional>
@@ -21,6 +23,9 @@
 #include "engine/scene/scene.hpp"
 
 namespace psygen::editor {
+
+// What may work beside the view.
+enum class Beside : std::uint8_t { kPictures, kFlight };
 
 class WorldView final : public QWindow {
   Q_OBJECT
@@ -45,9 +50,9 @@ class WorldView final : public QWindow {
   void focus();
   // Synthesis rests: what is there is drawn.
   void set_paused(bool paused) { paused_ = paused; }
-  // Another picture is being made, on the same processors: while nobody moves here and everything
-  // is shown, a few pictures a second do.
-  void set_yielding(bool yielding) { yielding_ = yielding; }
+  // Something else works on the same processors: while any of it does, nobody moves here and
+  // everything is shown, a few pictures a second do.
+  void set_yielding(Beside work, bool on) { beside_.set(static_cast<std::size_t>(work), on); }
 
  Q_SIGNALS:
   // A session was opened, or could not be: `error` says why.
@@ -76,7 +81,8 @@ class WorldView final : public QWindow {
   WindowSurface surface_;
   std::unique_ptr<app::Session> session_;
   std::string text_, file_;
-  bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false, yielding_ = false;
+  bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false;
+  std::bitset<2> beside_;  // by Beside
   ViewCamera camera_;
   ViewInput input_;
   std::optional<Selection> selection_;

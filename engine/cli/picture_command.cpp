@@ -21,6 +21,7 @@
 #include "engine/scene/scene.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/camera_path.hpp"
+#include "engine/world/surface.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -49,12 +50,6 @@ core::Result<void> check_complete(const scene::State& state) {
   if (state.totals.failed > 0 || state.counters.holes > 0)
     return core::fail(core::ErrorCode::kSynthesisFailed, "not all that is seen could be made");
   return {};
-}
-
-// What the eye is above: the ground, or the water that covers it.
-double surface_m(const world::World& world, const core::WorldPosition& at) {
-  const double ground_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
-  return world.water.exists() ? std::max(ground_m, world.water.level_m) : ground_m;
 }
 
 }  // namespace
@@ -116,7 +111,7 @@ core::Result<void> PictureCommand::take(app::Session& session) const {
     if (!at) return tl::unexpected(at.error());
     pose.position = *at;
   }
-  pose.position.local.y = surface_m(world, pose.position) + height_m_;
+  pose.position.local.y = world::surface_height_m(world, pose.position) + height_m_;
   pose.yaw = glm::radians(yaw_deg_);
   pose.pitch = glm::radians(pitch_deg_);
   if (auto ok = session.prepare(pose); !ok) return ok;

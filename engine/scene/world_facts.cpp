@@ -72,10 +72,11 @@ core::Result<void> check_size(const world::World& world, std::span<const NodeLev
 // node.
 core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
   const models::ModelType* merged = nullptr;
+  const auto world = std::make_shared<const world::World>(facts.world);
+  const auto scatters = world::far_scatters(world, facts.registry);
   if (settings.levels_of_detail && world::models_per_block(facts.world) > 0) {
-    const auto world = std::make_shared<const world::World>(facts.world);
-    const auto added =
-        facts.registry.add(world::make_merged_type(world, facts.registry, facts.pictures));
+    const auto added = facts.registry.add(
+        world::make_merged_type(world, facts.registry, facts.pictures, scatters));
     if (!added) return tl::unexpected(added.error());
     facts.merged_model = *added;
     merged = &facts.registry[*added];
@@ -85,7 +86,7 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
   for (int level = 0; level < models::kTerrainLevels; ++level)
     facts.grids.emplace_back(size, level);
   if (facts.levels[0].mesh_level != 0) facts.tiles.emplace(size);
-  const world::FarCover cover = world::far_cover(facts.world, facts.registry);
+  const world::FarCover cover = world::far_cover(facts.world, facts.registry, *scatters);
   facts.canopy = canopy_of(facts.world, cover.albedo);
   facts.cover_share = cover.share;
   return {};

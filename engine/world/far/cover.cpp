@@ -20,16 +20,14 @@ glm::vec3 albedo_of(const Outline& outline) {
 
 }  // namespace
 
-FarCover far_cover(const World& world, const models::Registry& registry) {
+FarCover far_cover(const World& world, const models::Registry& registry,
+                   const FarScatters& scatters) {
   const std::vector<double> placed = placed_per_block(world, registry);
   const double block_m2 = world.block_size_m() * world.block_size_m();
   glm::vec3 light(0.0F);
   double covered = 0;
-  std::uint32_t first = 0;
   for (std::size_t s = 0; s < world.scatter.size(); ++s) {
-    const Scatter& scatter = world.scatter[s];
-    const FarScatter far(world, registry[scatter.model], scatter, first);
-    first += scatter.count;
+    const FarScatter& far = scatters.all()[s];
     for (const Representative& r : far.representatives()) {
       const double share = placed[s] * static_cast<double>(r.silhouette.plan_m2) /
                            (static_cast<double>(far.representatives().size()) * block_m2);

@@ -37,20 +37,19 @@ int level_of(const Parameters& p) {
 class MergedType final : public models::ModelType {
  public:
   MergedType(std::shared_ptr<const World> world, const models::Registry& registry,
-             std::shared_ptr<const PictureSet> pictures)
+             std::shared_ptr<const PictureSet> pictures,
+             std::shared_ptr<const FarScatters> scatters)
       : world_(without_edits(std::move(world))),
         pictures_(std::move(pictures)),
         identity_(merged_identity(*world_, registry)) {
     if (pictures_) identity_ = core::combine(identity_, pictures_->identity());
     for (models::ModelIndex i = 0; i < registry.size(); ++i)
       types_.push_back(&registry[i]);
-    std::uint32_t first = 0;
-    for (const Scatter& scatter : world_->scatter) {
-      scatters_.emplace_back(*world_, registry[scatter.model], scatter, first);
-      first += scatter.count;
+    held_scatters_ = scatters ? std::move(scatters) : far_scatters(world_, registry);
+    scatters_ = held_scatters_->all();
+    for (const FarScatter& scatter : scatters_) {
       may_run_on_main_thread_ =
-          may_run_on_main_thread_ &&
-          (scatters_.back().empty() || scatters_.back().type().may_run_on_main_thread());
+          may_run_on_main_thread_ && (scatter.empty() || scatter.type().may_run_on_main_thread());
     }
     for (int level = 1; level <= kMaxMergedLevel; ++level)
       make_plans(level);
@@ -130,8 +129,9 @@ class MergedType final : public models::ModelType {
   std::shared_ptr<const PictureSet> pictures_;  // null: none
   std::uint64_t identity_;
   std::vector<const models::ModelType*> types_;  // of the registry, for what is placed by hand
-  std::vector<FarScatter> scatters_;
-  bool may_run_on_main_thread_ = true;  // true if it is for all scattered types
+  std::shared_ptr<const FarScatters> held_scatters_;
+  std::span<const FarScatter> scatters_;  // of these
+  bool may_run_on_main_thread_ = true;    // true if it is for all scattered types
   // Indexed by node level (0 is unused) and level of detail. Plans of one node level have equal
   // boxes.
   std::array<std::array<LevelPlan, kDetails>, kMaxMergedLevel + 1> plans_;
@@ -302,8 +302,10 @@ core::Bounds MergedType::synthesize(const Parameters& p, int level, const MeshVi
 
 std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
                                                     const models::Registry& registry,
-                                                    std::shared_ptr<const PictureSet> pictures) {
-  return std::make_unique<MergedType>(std::move(world), registry, std::move(pictures));
+                                                    std::shared_ptr<const PictureSet> pictures,
+                                                    std::shared_ptr<const FarScatters> scatters) {
+  return std::make_unique<MergedType>(std::move(world), registry, std::move(pictures),
+                                      std::move(scatters));
 }
 
 models::Parameters merged_parameters(core::BlockCoord node, int node_level) {

@@ -27,17 +27,25 @@ inline constexpr int kMaxMergedLevel = 5;
 
 class PictureSet;
 
+// What stands for the instances of each scatter from afar (scatter.hpp). Synthesises 32 instances
+// of every scatter, some milliseconds in all. The model types of `registry` must outlive it;
+// `world` must belong to this registry.
+class FarScatters;
+std::shared_ptr<const FarScatters> far_scatters(std::shared_ptr<const World> world,
+                                                const models::Registry& registry);
+
 // The model type of a world. It has two levels of detail: the forms of the node level, and those of
 // the next node level, which are coarser than all single models except the smallest stones.
 // Positions are in metres from the node's corner. Models that find no place leave degenerate
-// triangles at the end of the mesh. Synthesis needs 1.1 MiB of stack. This function synthesises a
-// few instances of every scatter (about 0.1 ms a scatter). The model types of `registry` must
-// outlive the result, which may be added to it; `world` must belong to this registry. Edits of
+// triangles at the end of the mesh. Synthesis needs 1.1 MiB of stack. The model types of `registry`
+// must outlive the result, which may be added to it; `world` must belong to this registry. Edits of
 // `world` are ignored: a mesh shows those that its parameters name. Placed models of types that may
 // not run on the main thread are left out. `pictures`: those of this world; null for none.
+// `scatters`: those of this world; null: they are made.
 std::unique_ptr<models::ModelType> make_merged_type(
     std::shared_ptr<const World> world, const models::Registry& registry,
-    std::shared_ptr<const PictureSet> pictures = nullptr);
+    std::shared_ptr<const PictureSet> pictures = nullptr,
+    std::shared_ptr<const FarScatters> scatters = nullptr);
 
 // The parameters of one node without edits, which is counted in nodes of its level,
 // 1 … kMaxMergedLevel.
@@ -51,7 +59,9 @@ struct FarCover {
                            // visibility
   float share = 0;         // of the ground that is covered, mean over the world; 0 … 1
 };
-// The cover of a world. Takes about 2 ms, because it places models on kSizeBlocks blocks.
-FarCover far_cover(const World& world, const models::Registry& registry);
+// The cover of a world. Takes some milliseconds, because it places models on kSizeBlocks blocks.
+// `scatters` must be those of this world.
+FarCover far_cover(const World& world, const models::Registry& registry,
+                   const FarScatters& scatters);
 
 }  // namespace psygen::world

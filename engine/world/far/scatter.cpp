@@ -61,6 +61,20 @@ models::Parameters sample_parameters(const World& world, const models::ModelType
   return scattering.parameters(first + number % scatter.count);
 }
 
+FarScatters::FarScatters(std::shared_ptr<const World> world, const models::Registry& registry)
+    : world_(std::move(world)) {
+  std::uint32_t first = 0;
+  for (const Scatter& scatter : world_->scatter) {
+    all_.emplace_back(*world_, registry[scatter.model], scatter, first);
+    first += scatter.count;
+  }
+}
+
+std::shared_ptr<const FarScatters> far_scatters(std::shared_ptr<const World> world,
+                                                const models::Registry& registry) {
+  return std::make_shared<const FarScatters>(std::move(world), registry);
+}
+
 FarScatter::FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,
                        std::uint32_t first)
     : type_(&type), scatter_(&scatter), first_(first) {

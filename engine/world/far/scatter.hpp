@@ -93,4 +93,16 @@ class FarScatter {
   bool leafy_ = false, conical_ = false, trunk_ = false, slender_ = false, cheap_ = false;
 };
 
+// Those of all scatters of a world, in its order.
+class FarScatters {
+ public:
+  // `registry` must be that of the world; its types must outlive this.
+  FarScatters(std::shared_ptr<const World> world, const models::Registry& registry);
+  std::span<const FarScatter> all() const { return all_; }
+
+ private:
+  std::shared_ptr<const World> world_;  // the scatters refer to it
+  std::vector<FarScatter> all_;
+};
+
 }  // namespace psygen::world

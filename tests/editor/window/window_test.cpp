@@ -95,18 +95,36 @@ TEST_F(EditorWindow, ASeedCanBeSteppedAndLocked) {
   properties().go_to({"world"});
   FieldRow* row = properties().row(seed);
   ASSERT_NE(row, nullptr);
-  const auto button = [row](const QString& name) {
+  const auto click = [row](const QString& name) {
     for (auto* found : row->findChildren<QAbstractButton*>()) {
-      if (found->text() == name) return found;
+      if (found->text() == name) return found->click();
     }
-    return static_cast<QAbstractButton*>(nullptr);
+    FAIL() << name.toStdString();
   };
-  button("+")->click();
+  click("+");
   EXPECT_EQ(document().field(seed)->plain, "6");
-  button("lock")->click();
+  click("−");
+  EXPECT_EQ(document().field(seed)->plain, "5");
+  Q_EMIT properties().lock_wanted(seed, true);
   EXPECT_TRUE(document().locks().is_locked(seed));
-  button("+")->click();
-  EXPECT_EQ(document().field(seed)->plain, "6");
+  click("⚄");
+  EXPECT_EQ(document().field(seed)->plain, "5");
+  // Controls that are made anew know it.
+  properties().go_to(kTrees);
+  properties().go_to({"world"});
+  EXPECT_TRUE(properties().row(seed)->is_locked());
+  Q_EMIT properties().lock_wanted(seed, false);
+  Q_EMIT properties().dice_wanted(seed);
+  EXPECT_NE(document().field(seed)->plain, "5");
+}
+
+// Keys that the view has no use for are the window's, also while it has the keyboard.
+TEST_F(EditorWindow, ShortcutsWorkWhileTheViewHasTheKeyboard) {
+  ASSERT_TRUE(document().set_value(kCount, "9"));
+  window_->view().requestActivate();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isActive(); }, kMostMs));
+  QTest::keyClick(&window_->view(), Qt::Key_Z, Qt::ControlModifier);
+  EXPECT_TRUE(QTest::qWaitFor([&] { return document().text() == kSmallWorld; }, kMostMs / 10));
 }
 
 TEST_F(EditorWindow, AClickSelectsWhatIsUnderIt) {

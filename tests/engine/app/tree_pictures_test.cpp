@@ -39,6 +39,27 @@ TEST(PicturesOfTrees, GiveTheRendererTheirPicturesBeforeTheFirstFrame) {
   EXPECT_FALSE(s.output.error);
 }
 
+TEST(PicturesOfTrees, ThatAreFinishedWhileTheWorldIsReplacedAreNotLost) {
+  const auto renderer = small_renderer(64U << 20);
+  ASSERT_TRUE(renderer);
+  models::Registry registry = models::make_standard_registry(),
+                   next = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  Settings settings = small_settings();
+  settings.virtual_time = false;
+  auto made = Scene::create(world, std::move(registry), settings, renderer.get());
+  ASSERT_TRUE(made);
+  Scene& scene = **made;
+  const State& s = scene.state();
+  tick_at(scene, pose_at(256, 256));
+  ASSERT_NE(s.output.pictures_lacking, 0U);
+  scene.state().meshes.wait();  // all are made, and nobody has taken them
+  world.scatter[1].count += 1;
+  ASSERT_TRUE(scene.set_world(world, std::move(next)));
+  scene.settle(pose_at(256, 256));
+  EXPECT_EQ(s.output.pictures_lacking, 0U);
+}
+
 TEST(PicturesOfTrees, AreMeshesWhereTheRendererHasNoRoomForPictures) {
   const auto renderer = small_renderer(1U << 20);
   ASSERT_TRUE(renderer);

@@ -43,6 +43,7 @@ struct Scenery {
     world = std::make_shared<const World>(*std::move(parsed));
     type = make_merged_type(world, registry);
   }
+  FarCover cover() const { return far_cover(*world, registry, *far_scatters(world, registry)); }
   Mesh mesh(core::BlockCoord node, int level, int detail = 0) const {
     return synthesize(*type, merged_parameters(node, level), detail);
   }
@@ -457,8 +458,8 @@ TEST(MergedModels, LeaveOutWhatIsNotSeenFromFar) {
     EXPECT_EQ(with.type->complexity(p, 0), without.type->complexity(p, 0));
     EXPECT_EQ(with.mesh({0, 0}, level).vertex_bytes, without.mesh({0, 0}, level).vertex_bytes);
   }
-  const FarCover green = far_cover(*with.world, with.registry);
-  const FarCover bare = far_cover(*without.world, without.registry);
+  const FarCover green = with.cover();
+  const FarCover bare = without.cover();
   EXPECT_EQ(green.share, bare.share);
   EXPECT_EQ(green.albedo, bare.albedo);
 }
@@ -472,7 +473,7 @@ TEST(MergedModels, OfNothingButGrassAreEmpty) {
     EXPECT_EQ(grass.type->mesh_size(p, 0).vertex_count, 0U);
     EXPECT_EQ(grass.type->level_count_of(p), 1);
   }
-  EXPECT_EQ(far_cover(*grass.world, grass.registry).share, 0);
+  EXPECT_EQ(grass.cover().share, 0);
 }
 
 // Behaves as a fence until it is synthesised.
@@ -523,7 +524,7 @@ TEST(MergedModels, OfAnEmptyWorldAreAnEmptyMesh) {
   const std::string text = trees();
   const Scenery scenery(text.substr(0, text.find("[[scatter]]")));
   EXPECT_EQ(scenery.mesh({0, 0}, 3).size, (models::MeshSize{0, 0}));
-  EXPECT_EQ(far_cover(*scenery.world, scenery.registry).share, 0);
+  EXPECT_EQ(scenery.cover().share, 0);
 }
 
 TEST(MergedModels, OfDifferentWorldsHaveDifferentIdentities) {
@@ -544,7 +545,7 @@ TEST(MergedModels, OfDifferentWorldsHaveDifferentIdentities) {
 TEST(FarCover, GrowsWithTheNumberOfTreesAndIsGreen) {
   const auto cover = [](const std::string& text) {
     const Scenery scenery(text);
-    return far_cover(*scenery.world, scenery.registry);
+    return scenery.cover();
   };
   const FarCover few = cover(trees()), many = cover(replaced(trees(), "count = 3", "count = 300"));
   EXPECT_GT(few.share, 0);
