@@ -2,6 +2,8 @@
 // room for them.
 #include "engine/world/far/tree_pictures.hpp"
 
+#include <algorithm>
+
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
@@ -51,9 +53,18 @@ TEST(PicturesOfTrees, ThatAreFinishedWhileTheWorldIsReplacedAreNotLost) {
   ASSERT_TRUE(made);
   Scene& scene = **made;
   const State& s = scene.state();
-  tick_at(scene, pose_at(256, 256));
+  // Until some are made that nobody has taken.
+  const auto is_picture = [&s](const synthesis::Completion& job) {
+    return job.key.model == s.facts.picture_model;
+  };
+  bool made_some = false;
+  for (int i = 0; i < 100 && !made_some; ++i) {
+    tick_at(scene, pose_at(256, 256));
+    scene.state().meshes.wait();
+    made_some = std::ranges::any_of(scene.state().meshes.collect(), is_picture);
+  }
+  ASSERT_TRUE(made_some);
   ASSERT_NE(s.output.pictures_lacking, 0U);
-  scene.state().meshes.wait();  // all are made, and nobody has taken them
   world.scatter[1].count += 1;
   ASSERT_TRUE(scene.set_world(world, std::move(next)));
   scene.settle(pose_at(256, 256));
