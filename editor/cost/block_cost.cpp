@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/document/scale.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/synthesis/synthesize.hpp"
 #include "engine/world/files/text_edit.hpp"
@@ -39,7 +40,7 @@ std::optional<double> make_mesh(const models::ModelType& type, const models::Par
 }
 
 std::string toml_of(const world::WorldField& field, double value) {
-  const bool integer = field.kind == FieldKind::kInteger || field.kind == FieldKind::kIntegerRange;
+  const bool integer = is_whole(field.kind);
   if (field.kind == FieldKind::kInteger || field.kind == FieldKind::kReal)
     return integer ? world::toml_number(static_cast<std::int64_t>(std::llround(value)))
                    : world::toml_number(value);
@@ -47,17 +48,12 @@ std::string toml_of(const world::WorldField& field, double value) {
 }
 
 std::vector<double> values_of(const world::WorldField& field) {
-  const bool integer = field.kind == FieldKind::kInteger || field.kind == FieldKind::kIntegerRange;
-  const double span = field.soft_max - field.soft_min;
-  const int points = integer ? static_cast<int>(std::min<double>(span + 1, kPoints)) : kPoints;
+  const Scale scale = scale_of(field);
+  const double span = scale.high - scale.low;
+  const int points = scale.whole ? static_cast<int>(std::min<double>(span + 1, kPoints)) : kPoints;
   std::vector<double> values;
-  for (int i = 0; i < points; ++i) {
-    const double share = points > 1 ? static_cast<double>(i) / (points - 1) : 0;
-    const double v = field.logarithmic
-                         ? field.soft_min * std::pow(field.soft_max / field.soft_min, share)
-                         : field.soft_min + share * span;
-    values.push_back(integer ? std::round(v) : v);
-  }
+  for (int i = 0; i < points; ++i)
+    values.push_back(scale.at(points > 1 ? static_cast<double>(i) / (points - 1) : 0));
   return values;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "editor/document/recovery.hpp"
+#include "editor/document/scale.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/text_path.hpp"
@@ -19,33 +20,19 @@ namespace {
 using world::FieldKind;
 using world::WorldField;
 
-constexpr int kDigits = 3;
 constexpr double kStepsOfRange = 100;
 constexpr std::uint64_t kMostLockBytes = 1 << 20;
-
-bool is_whole(FieldKind kind) {
-  return kind == FieldKind::kInteger || kind == FieldKind::kIntegerRange;
-}
 
 // 0 … 1, the same on every machine.
 double share(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11) * 0x1.0p-53;
 }
 
-double rounded(double value, const WorldField& field) {
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - (kDigits - 1));
-  // Through text: so that 0.3 is 0.3.
-  double shortest = std::round(value / unit) * unit;
-  const std::string digits = fmt::format("{:.{}g}", shortest, kDigits);
-  std::from_chars(digits.data(), digits.data() + digits.size(), shortest);
-  return std::clamp(shortest, field.hard_min, field.hard_max);
-}
-
 double drawn(const WorldField& field, std::mt19937_64& random) {
   const double low = field.soft_min, high = field.soft_max, at = share(random);
+  // All integers are equally likely.
   if (is_whole(field.kind)) return std::min(high, std::floor(low + at * (high - low + 1)));
-  return rounded(field.logarithmic ? low * std::pow(high / low, at) : low + at * (high - low),
-                 field);
+  return std::clamp(scale_of(field).at(at), field.hard_min, field.hard_max);
 }
 
 double stepped(const WorldField& field, double value, int steps) {

@@ -27,11 +27,6 @@ using world::FieldKind;
 
 constexpr int kLabelWidth = 116;
 
-bool is_integer(FieldKind kind) {
-  return kind == FieldKind::kInteger || kind == FieldKind::kIntegerRange ||
-         kind == FieldKind::kIntegerPair;
-}
-
 std::size_t count_of(FieldKind kind) {
   switch (kind) {
     case FieldKind::kIntegerRange:
@@ -120,12 +115,7 @@ void FieldRow::build(QHBoxLayout& layout) {
 }
 
 void FieldRow::add_number(QHBoxLayout& layout, const QString& name) {
-  NumberEdit::Range range{field_.hard_min,
-                          field_.hard_max,
-                          field_.soft_min,
-                          field_.soft_max,
-                          field_.logarithmic,
-                          is_integer(field_.kind),
+  NumberEdit::Range range{field_.hard_min, field_.hard_max, scale_of(field_),
                           QString::fromStdString(field_.unit == "1" ? "" : field_.unit)};
   auto* edit = new NumberEdit(range, name);
   const std::size_t at = numbers_.size();
@@ -146,10 +136,10 @@ void FieldRow::want_numbers(std::size_t changed) {
       field_.kind == FieldKind::kIntegerRange || field_.kind == FieldKind::kRealRange;
   if (range && values[0] > values[1]) values[1 - changed] = values[changed];
   const auto whole = [](double v) { return static_cast<std::int64_t>(std::llround(v)); };
-  if (range) return want(world::toml_range(values[0], values[1], is_integer(field_.kind)));
+  if (range) return want(world::toml_range(values[0], values[1], is_whole(field_.kind)));
   if (field_.kind == FieldKind::kIntegerPair) return want(world::toml_vector(values));
-  want(is_integer(field_.kind) ? world::toml_number(whole(values[0]))
-                               : world::toml_number(values[0]));
+  want(is_whole(field_.kind) ? world::toml_number(whole(values[0]))
+                             : world::toml_number(values[0]));
 }
 
 void FieldRow::add_choice(QHBoxLayout& layout) {

@@ -56,8 +56,8 @@ class NumberBox final : public QDoubleSpinBox {
 
 // A step of the box: about a hundredth of the soft range, as one digit.
 double step_of(const NumberEdit::Range& range) {
-  if (range.integer) return 1;
-  const double span = std::max(range.soft_max - range.soft_min, 1e-9);
+  if (range.scale.whole) return 1;
+  const double span = std::max(range.scale.high - range.scale.low, 1e-9);
   return std::pow(10.0, std::floor(std::log10(span / 50)));
 }
 
@@ -65,11 +65,11 @@ double step_of(const NumberEdit::Range& range) {
 
 NumberEdit::NumberEdit(const Range& range, const QString& name, QWidget* parent)
     : QWidget(parent), range_(range), slider_(new QSlider(Qt::Horizontal)), box_(new NumberBox) {
-  const double span = range.soft_max - range.soft_min;
-  slider_->setRange(0, range.integer && span < kSteps ? static_cast<int>(span) : kSteps);
+  const double span = range.scale.high - range.scale.low;
+  slider_->setRange(0, range.scale.whole && span < kSteps ? static_cast<int>(span) : kSteps);
   slider_->setAccessibleName(name);
   slider_->setFocusPolicy(Qt::StrongFocus);
-  box_->setDecimals(range.integer ? 0 : 10);
+  box_->setDecimals(range.scale.whole ? 0 : 10);
   box_->setRange(range.hard_min, range.hard_max);
   box_->setSingleStep(step_of(range));
   box_->setKeyboardTracking(false);
@@ -104,23 +104,11 @@ void NumberEdit::set_value(double value) {
 }
 
 double NumberEdit::value_at(int position) const {
-  const double share = static_cast<double>(position) / std::max(slider_->maximum(), 1);
-  double value = range_.soft_min + share * (range_.soft_max - range_.soft_min);
-  if (range_.logarithmic)
-    value = range_.soft_min * std::pow(range_.soft_max / range_.soft_min, share);
-  if (range_.integer) return std::round(value);
-  // Three digits of a thousand steps are all that a slider means.
-  const double unit = std::pow(10.0, std::floor(std::log10(std::max(std::abs(value), 1e-9))) - 2);
-  return std::clamp(std::round(value / unit) * unit, range_.soft_min, range_.soft_max);
+  return range_.scale.at(static_cast<double>(position) / std::max(slider_->maximum(), 1));
 }
 
 int NumberEdit::position_of(double value) const {
-  const double v = std::clamp(value, range_.soft_min, range_.soft_max);
-  const double span = range_.soft_max - range_.soft_min;
-  double share = span > 0 ? (v - range_.soft_min) / span : 0;
-  if (range_.logarithmic)
-    share = std::log(v / range_.soft_min) / std::log(range_.soft_max / range_.soft_min);
-  return static_cast<int>(std::lround(share * slider_->maximum()));
+  return static_cast<int>(std::lround(range_.scale.share_of(value) * slider_->maximum()));
 }
 
 void NumberEdit::slide(int position) {

@@ -4,6 +4,8 @@
 
 #include <QWidget>
 
+#include "editor/document/scale.hpp"
+
 class QDoubleSpinBox;
 class QSlider;
 
@@ -14,9 +16,8 @@ class NumberEdit final : public QWidget {
 
  public:
   struct Range {
-    double hard_min = 0, hard_max = 1, soft_min = 0, soft_max = 1;
-    bool logarithmic = false;  // soft_min is above 0
-    bool integer = false;
+    double hard_min = 0, hard_max = 1;
+    Scale scale;  // of the slider
     QString unit;
   };
   explicit NumberEdit(const Range& range, const QString& name, QWidget* parent = nullptr);

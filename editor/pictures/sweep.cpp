@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "editor/document/scale.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
@@ -14,28 +15,10 @@ namespace {
 using world::FieldKind;
 
 constexpr std::uint64_t kSeeds = 100'000;  // short ones, which people can say
-constexpr double kDigits = 3;              // of values between the ends
-
-bool is_whole(const world::WorldField& field) {
-  return field.kind == FieldKind::kInteger || field.kind == FieldKind::kIntegerRange;
-}
-
-double with_digits(double value) {
-  if (value == 0) return 0;
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - kDigits + 1);
-  return std::round(value / unit) * unit;
-}
 
 // The value at a share of the soft range.
 double value_at(const world::WorldField& field, double share) {
-  const double low = field.soft_min, high = field.soft_max;
-  const double v =
-      field.logarithmic && low > 0 ? low * std::pow(high / low, share) : low + share * (high - low);
-  const double shown = is_whole(field) ? std::round(v)
-                       : share <= 0    ? low
-                       : share >= 1    ? high
-                                       : with_digits(v);
-  return std::clamp(shown, field.hard_min, field.hard_max);
+  return std::clamp(scale_of(field).at(share), field.hard_min, field.hard_max);
 }
 
 std::string number_toml(const world::WorldField& field, double v) {
@@ -45,7 +28,7 @@ std::string number_toml(const world::WorldField& field, double v) {
   const double half = field.numbers.size() == 2 ? (field.numbers[1] - field.numbers[0]) / 2 : 0;
   const double low = std::clamp(with_digits(v - half), field.hard_min, field.hard_max);
   const double high = std::clamp(with_digits(v + half), low, field.hard_max);
-  return world::toml_range(low, high, is_whole(field));
+  return world::toml_range(low, high, is_whole(field.kind));
 }
 
 std::vector<std::string> seeds_of(const world::WorldField& field, std::size_t count,
