@@ -16,6 +16,8 @@ bool same_tables(const ParsedWorld& a, const ParsedWorld& b) {
     return a.registry[x.model].name() == b.registry[y.model].name();
   };
   return std::ranges::equal(a.world.species, b.world.species, same_species) &&
+         std::ranges::equal(a.world.models, b.world.models, {}, &world::HandmadeModel::name,
+                            &world::HandmadeModel::name) &&
          std::ranges::equal(a.world.scatter, b.world.scatter, same_scatter);
 }
 
@@ -46,7 +48,7 @@ Changes changes_between(const ParsedWorld& before, const ParsedWorld& after) {
   note(a.water == b.water, Change::kWater);
   note(a.palette == b.palette, Change::kPalette);
   note(a.species == b.species, Change::kSpecies);
-  note(a.scatter == b.scatter, Change::kScatter);
+  note(a.scatter == b.scatter && a.models == b.models, Change::kScatter);
   note(same_tables(before, after), Change::kTables);
   return changes;
 }

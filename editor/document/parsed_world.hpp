@@ -38,10 +38,10 @@ enum class Change : unsigned {
   kWater = 16,
   kPalette = 32,
   kSpecies = 64,
-  kScatter = 128,
-  kTables = 256,  // how many tables there are, or the model of one: controls must be made anew
-  kFile = 512,    // another file was opened
-  kAll = 1023,    // what comes with kFile
+  kScatter = 128,  // also models that were made by hand
+  kTables = 256,   // how many tables there are, or the model of one: controls must be made anew
+  kFile = 512,     // another file was opened
+  kAll = 1023,     // what comes with kFile
 };
 Q_DECLARE_FLAGS(Changes, Change)
 Q_DECLARE_OPERATORS_FOR_FLAGS(Changes)

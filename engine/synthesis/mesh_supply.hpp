@@ -73,7 +73,7 @@ class MeshSupply {
   PlanReport plan(std::span<const Want> wants, const PlanLimits& limits, Policy policy);
   // Predicted seconds of one core, with warm caches.
   double predict(const Want& want) const;
-  // What is known of the costs of types. A copy may be used by any thread.
+  // What is known of the costs of types. Other models may learn from a copy, in any thread.
   const CostModel& costs() const { return *cost_; }
 
   // What has come -------------------------------------------------------------------------------

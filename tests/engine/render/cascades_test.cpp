@@ -21,12 +21,7 @@ constexpr double kHeight = 200, kPitch = -0.5;
 class Cascades : public testing::Test {
  protected:
   void SetUp() override {
-    RendererOptions options;
-    options.validation = true;
-    options.size = kSize;
-    options.geometry_budget_bytes = 1 << 20;
-    options.preset = Preset::kHigh;
-    auto made = Renderer::create(options);
+    auto made = synthetic::open_renderer(Preset::kHigh, kSize);
     ASSERT_TRUE(made) << made.error().message;
     renderer_ = std::move(*made);
     const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(kGroundSide));

@@ -19,12 +19,7 @@ const glm::vec3 kSun{0.0F, 0.6F, -0.8F};
 class CloudShadows : public testing::Test {
  protected:
   void open(Preset preset) {
-    RendererOptions options;
-    options.validation = true;
-    options.size = kPictureSize;
-    options.geometry_budget_bytes = 1 << 20;
-    options.preset = preset;
-    auto made = Renderer::create(options);
+    auto made = synthetic::open_renderer(preset);
     ASSERT_TRUE(made) << made.error().message;
     renderer_ = std::move(*made);
     const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(kGroundSide));

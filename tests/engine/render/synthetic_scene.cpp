@@ -33,6 +33,15 @@ core::ModelVertex model_vertex(glm::vec3 position, glm::vec3 normal, glm::vec3 a
 
 }  // namespace
 
+core::Result<std::unique_ptr<Renderer>> open_renderer(Preset preset, core::Extent size) {
+  RendererOptions options;
+  options.validation = true;
+  options.size = size;
+  options.geometry_budget_bytes = 1 << 20;
+  options.preset = preset;
+  return Renderer::create(options);
+}
+
 std::vector<std::uint16_t> grid_indices(int side) {
   std::vector<std::uint16_t> indices;
   for (int z = 0; z + 1 < side; ++z) {

@@ -15,6 +15,10 @@ namespace psygen::render::synthetic {
 inline constexpr core::Extent kPictureSize{160, 120};
 inline constexpr int kGroundSide = 65;
 
+// A headless renderer for pictures of a preset, with validation and 1 MiB for geometry.
+core::Result<std::unique_ptr<Renderer>> open_renderer(Preset preset,
+                                                      core::Extent size = kPictureSize);
+
 // Height in [0, 1] at grid line (x, z).
 using HeightFunction = std::function<float(int x, int z)>;
 

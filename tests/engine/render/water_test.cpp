@@ -21,12 +21,7 @@ using synthetic::kPictureSize;
 class WaterOfPresets : public testing::TestWithParam<Preset> {
  protected:
   std::unique_ptr<Renderer> open(Preset preset) {
-    RendererOptions options;
-    options.validation = true;
-    options.size = kPictureSize;
-    options.geometry_budget_bytes = 1 << 20;
-    options.preset = preset;
-    auto made = Renderer::create(options);
+    auto made = synthetic::open_renderer(preset);
     EXPECT_TRUE(made) << made.error().message;
     if (!made) return nullptr;
     const auto grid = (*made)->upload_shared_indices(synthetic::grid_indices(kGroundSide));
