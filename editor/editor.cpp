@@ -83,12 +83,8 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   MainWindowOptions options;
   options.session = std::move(arguments.session);
   options.safe = arguments.safe;
-  options.document.register_models = [plugins](models::Registry& registry) -> core::Result<void> {
-    for (const app::Plugin& plugin : plugins) {
-      if (!plugin.register_models) continue;
-      if (auto ok = plugin.register_models(registry); !ok) return ok;
-    }
-    return {};
+  options.document.register_models = [plugins](models::Registry& registry) {
+    return app::register_models(plugins, registry);
   };
   options.session.plugins = std::move(plugins);
   MainWindow window(std::move(options));

@@ -99,19 +99,12 @@ class PictureServer {
   }
 
  private:
-  core::Result<void> register_models(models::Registry& registry) const {
-    for (const app::Plugin& plugin : plugins_) {
-      if (!plugin.register_models) continue;
-      if (auto ok = plugin.register_models(registry); !ok) return ok;
-    }
-    return {};
-  }
-
   PictureReply answer(const PictureRequest& request) {
     PictureReply reply;
     reply.id = request.id;
-    const auto parsed = parse_world_text(
-        request.text, request.file, [this](auto& registry) { return register_models(registry); });
+    const auto parsed = parse_world_text(request.text, request.file, [this](auto& registry) {
+      return app::register_models(plugins_, registry);
+    });
     core::Result<void> done;
     if (!parsed) {
       done = tl::unexpected(parsed.error());

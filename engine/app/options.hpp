@@ -45,6 +45,10 @@ struct Plugin {
   std::function<void(Session&)> on_gui = {};
 };
 
+// Lets plugins register their model types, in order. Fails as the first that does, also by an
+// exception; the error names the plugin.
+core::Result<void> register_models(const std::vector<Plugin>& plugins, models::Registry& registry);
+
 // Options of a session.
 struct SessionOptions {
   std::filesystem::path world_file;

@@ -50,16 +50,21 @@ core::Result<void> set_hour(const SessionOptions& options, world::World& world) 
 
 core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins) {
   models::Registry registry = models::make_standard_registry();
-  for (const Plugin& plugin : plugins) {
-    if (!plugin.register_models) continue;
-    const auto ok =
-        call_plugin(plugin, "register_models", [&] { return plugin.register_models(registry); });
-    if (!ok) return tl::unexpected(ok.error());
-  }
+  if (auto ok = register_models(plugins, registry); !ok) return tl::unexpected(ok.error());
   return registry;
 }
 
 }  // namespace
+
+core::Result<void> register_models(const std::vector<Plugin>& plugins, models::Registry& registry) {
+  for (const Plugin& plugin : plugins) {
+    if (!plugin.register_models) continue;
+    const auto ok =
+        call_plugin(plugin, "register_models", [&] { return plugin.register_models(registry); });
+    if (!ok) return ok;
+  }
+  return {};
+}
 
 Session::Session(SessionOptions options) : options_(std::move(options)) {}
 
