@@ -25,6 +25,8 @@ using glm::vec4;
 #define PSYGEN_BINDING_GROUND 8
 #define PSYGEN_BINDING_SHADE 9
 #define PSYGEN_BINDING_PICTURES 10
+#define PSYGEN_BINDING_MIRROR 11
+#define PSYGEN_BINDING_MIRROR_DEPTH 12
 
 // Bindings of the second descriptor set: the textures of a material.
 #define PSYGEN_TEXTURE_BASE 0
@@ -130,7 +132,7 @@ struct FrameData {
   vec4 edge;    // of the world: least x, least z, greatest x, greatest z
   vec4 shadow;  // x: texel of a shadow map, 0 to 1; y: cascades, 0 to 3
   vec4 shadow_reach;  // largest distance from the camera of each cascade, m
-  vec4 shade;  // x, y: corner of the map of dark spots, m; w: height of the landscape, pixels
+  vec4 shade;  // x, y: corner of the map of dark spots, m; z, w: size of the landscape, pixels
   mat4 shadow_from_camera[PSYGEN_MAX_CASCADES];  // to texture and depth, nearest cascade first
   vec4 lamp_count;                               // x: lamps
   vec4 lamps[2 * PSYGEN_MAX_LAMPS];  // place, 1 / range² in 1/m²; light on what faces it at 1 m

@@ -1,11 +1,15 @@
-// Light for each pixel of the water, with waves if the preset has them. It is blended over what lies
-// under the surface (water.glsl).
+// Light for each pixel of the water, with waves and the mirrored land (PSYGEN_MIRROR) if the preset
+// has them. It is blended over what lies under the surface (water.glsl).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "lamps.glsl"
+#ifdef PSYGEN_MIRROR
+#include "dither.glsl"
+#include "mirror.glsl"
+#endif
 #include "water.glsl"
 
 layout(constant_id = 0) const bool waves = false;

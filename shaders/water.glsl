@@ -6,8 +6,8 @@ struct WaterLight {
   float mirrored;  // share of light that is reflected
 };
 
-// The surface at `p` with normal `n`: the reflection of the sky and light from the depth, mixed by
-// Fresnel's law (Schlick).
+// The surface at `p` with normal `n`: the reflection of the sky, or of the land before it
+// (mirror.glsl), and light from the depth, mixed by Fresnel's law (Schlick).
 WaterLight water_light(vec3 p, vec3 n) {
   vec3 v = p * inversesqrt(max(dot(p, p), 1e-6));
   float facing = clamp(abs(dot(v, n)), 0.0, 1.0);
@@ -15,8 +15,19 @@ WaterLight water_light(vec3 p, vec3 n) {
   float flat2 = flat_ * flat_;
   float mirrored = 0.02 + 0.80 * flat2 * flat2 * flat_;
   vec3 r = v - 2.0 * dot(v, n) * n;
+#ifdef PSYGEN_MIRROR
+  // A pixel shows many waves, and their slopes there cancel in part.
+  vec3 calm = vec3(0.35, 1.0, 0.35) * n;
+  calm *= inversesqrt(dot(calm, calm));
+  vec3 to_land = v - 2.0 * dot(v, calm) * calm;
+  vec4 land = mirrored_land(p, vec3(to_land.x, abs(to_land.y), to_land.z));
+#endif
   r.y = abs(r.y) + 0.03;  // on average, the visible sides of small waves face the camera
   r *= inversesqrt(dot(r, r));
+  vec3 sky = sky_light(r);
+#ifdef PSYGEN_MIRROR
+  sky = mix(sky, land.rgb, land.a);
+#endif
   // The sun's reflection in ripples that are not drawn. The share of ripples with the slope that
   // reflects it to the camera is Gaussian (Cox and Munk 1954). This gives a path of glitter, which
   // is longer for a lower sun.
@@ -24,7 +35,7 @@ WaterLight water_light(vec3 p, vec3 n) {
   vec2 slope = h.xz / max(h.y, 1e-3) - n.xz / n.y;
   float steep = dot(slope, slope);
   vec3 glint = frame.sun_colour.rgb * (1.3 * exp(-400.0 * steep) + 0.2 * exp(-45.0 * steep));
-  return WaterLight(mix(frame.deep_water.rgb, sky_light(r), mirrored) + glint * (0.2 + mirrored),
+  return WaterLight(mix(frame.deep_water.rgb, sky, mirrored) + glint * (0.2 + mirrored),
                     mirrored);
 }
 

@@ -105,17 +105,6 @@ std::vector<bool> left_out_of(Runs a, Runs b) {
   return left_out;
 }
 
-std::vector<double> slow_frames(const Times& runs, const std::vector<double>& minima) {
-  std::vector<double> counts;
-  for (const auto& run : runs) {
-    double count = 0;
-    for (std::size_t k = 0; k < minima.size(); ++k)
-      count += run[k] > kSlowFrame * minima[k] ? 1 : 0;
-    counts.push_back(count);
-  }
-  return counts;
-}
-
 template <class Field>
 std::vector<double> figures(Runs runs, const Field& field) {
   std::vector<double> values;
@@ -164,15 +153,6 @@ core::Result<Batch> judge_batch(Runs a, Runs b) {
                               batch.frames, kFewestFrames));
   batch.minima = minima_test(times_a, times_b);
   batch.cpu = cpu_test(a, b, left_out);
-  std::vector<double> minima = times_a.front();
-  for (const Times& times : {std::cref(times_a), std::cref(times_b)})
-    for (const auto& run : times)
-      std::ranges::transform(minima, run, minima.begin(),
-                             [](double x, double y) { return std::min(x, y); });
-  const auto slow_a = slow_frames(times_a, minima), slow_b = slow_frames(times_b, minima);
-  batch.slow_frames_a = mean(slow_a);
-  batch.slow_frames_b = mean(slow_b);
-  batch.p_slow_frames = swap_test(slow_a, slow_b);
   batch.hitchy_a = hitchy(times_a);
   batch.hitchy_b = hitchy(times_b);
   batch.p_hitchy = fisher_more(batch.hitchy_a, a.size(), batch.hitchy_b, b.size());
@@ -186,8 +166,6 @@ enum Finding {
   kError,
   kSlower,
   kMoreCpu,
-  kTail,
-  kSlowFrames,
   kHitches,
   kFaster,  // the last two are good
   kLessCpu,
@@ -200,9 +178,6 @@ std::array<bool, kFindings> findings_of(const Batch& batch) {
   found[kMissing] = batch.p_missing <= kSignificant && batch.missing_b > batch.missing_a + kPercent;
   found[kError] = batch.p_error <= kSignificant && batch.error_b > 1.01 * batch.error_a;
   found[kSlower] = batch.minima.p_slower <= kSignificant && batch.minima.ratio > kSlowerRatio;
-  found[kTail] = batch.minima.p_tail <= kSignificant && batch.minima.tail_ratio > kTailRatio;
-  found[kSlowFrames] =
-      batch.p_slow_frames <= kSignificant && batch.slow_frames_b > 1.2 * batch.slow_frames_a + 0.5;
   found[kHitches] = batch.p_hitchy <= kSignificant;
   found[kFaster] = batch.minima.p_faster <= kSignificant && batch.minima.ratio < 1 / kSlowerRatio;
   if (batch.cpu) {
@@ -225,12 +200,6 @@ std::string sentence_of(Finding finding, const Batch& b) {
                          b.error_b, b.error_a);
     case kSlower:
       return fmt::format("frames take {:.1f} % more (p {:.3f})", percent, b.minima.p_slower);
-    case kTail:
-      return fmt::format("the 1 % of frames that changed most take {:.2f} times as long (p {:.3f})",
-                         b.minima.tail_ratio, b.minima.p_tail);
-    case kSlowFrames:
-      return fmt::format("{:.1f} frames of a run are slow, before {:.1f} (p {:.3f})",
-                         b.slow_frames_b, b.slow_frames_a, b.p_slow_frames);
     case kHitches:
       return fmt::format("{} of {} runs have a hitch, before {} (p {:.3f})", b.hitchy_b, b.pairs,
                          b.hitchy_a, b.p_hitchy);
@@ -243,6 +212,51 @@ std::string sentence_of(Finding finding, const Batch& b) {
     default:
       return fmt::format("frames take {:.1f} % less (p {:.3f})", percent, b.minima.p_faster);
   }
+}
+
+// The figures of B, if it were better by `share` of them and `amount`.
+std::vector<double> less(std::vector<double> figures, double share, double amount) {
+  for (double& figure : figures)
+    figure -= share * figure + amount;
+  return figures;
+}
+
+// What all pairs say together: how slow rare frames are, and whether B is known to show as much as
+// A.
+void judge_all(Runs a, Runs b, Comparison& comparison) {
+  const std::vector<bool> left_out = left_out_of(a, b);
+  Times times = times_of(a, left_out, &RecordedRun::frame_ms);
+  const Times times_b = times_of(b, left_out, &RecordedRun::frame_ms);
+  comparison.tail = tail_test(times, times_b);
+  times.insert(times.end(), times_b.begin(), times_b.end());
+  const std::vector<double> rare = rare_frames(times);
+  const std::vector<double> rare_a(rare.begin(), rare.begin() + static_cast<long>(a.size())),
+      rare_b(rare.begin() + static_cast<long>(a.size()), rare.end());
+  comparison.rare_a = std::exp(mean(rare_a));
+  comparison.rare_b = std::exp(mean(rare_b));
+  comparison.p_rare = swap_test(rare_a, rare_b);
+  const double p_missing =
+      swap_test(less(figures(b, missing_of), 0, kUnseenPercent), figures(a, missing_of));
+  const double p_error =
+      swap_test(less(figures(b, error_of), 1 - 1 / kUnseenErrorRatio, 0), figures(a, error_of));
+  comparison.shows_as_much = std::max(p_missing, p_error) <= kLikely;
+}
+
+// Adds the reasons of a verdict, if there are any.
+bool judge_rare_frames(Comparison& comparison) {
+  const bool tail = comparison.tail.p <= kSignificantRare && comparison.tail.ratio > kTailRatio;
+  if (tail)
+    comparison.reasons.push_back(
+        fmt::format("the 1 % of frames that changed most take {:.2f} times as long (p {:.4f})",
+                    comparison.tail.ratio, comparison.tail.p));
+  const bool rare =
+      comparison.p_rare <= kSignificantRare && comparison.rare_b > kRareRatio * comparison.rare_a;
+  if (rare)
+    comparison.reasons.push_back(
+        fmt::format("the slowest frames of a run take {:.2f} times their usual time, before {:.2f} "
+                    "(p {:.4f})",
+                    comparison.rare_b, comparison.rare_a, comparison.p_rare));
+  return tail || rare;
 }
 
 bool is_narrow(const MinimaTest& test) {
@@ -262,6 +276,7 @@ void conclude(Comparison& comparison) {
     comparison.reasons.push_back(sentence_of(static_cast<Finding>(f), last));
     worse = worse || f < kFaster;
   }
+  worse = judge_rare_frames(comparison) || worse;
   const bool faster = found[kFaster] || found[kLessCpu];
   if (worse && faster)
     comparison.reasons.push_back("faster with anything else worse is not better");
@@ -269,6 +284,11 @@ void conclude(Comparison& comparison) {
   if (!confirmed && (worse || faster)) {
     comparison.reasons.push_back(
         fmt::format("no second batch confirms it: record {} pairs or more", 2 * kFewestPairs));
+  } else if (faster && !worse && !comparison.shows_as_much) {
+    comparison.reasons.push_back(fmt::format(
+        "missing geometry and its error vary too much from run to run to tell whether B "
+        "shows as much: {:.3g} and {:.3g} % of the picture, error {:.3g} and {:.3g} pixels",
+        last.missing_a, last.missing_b, last.error_a, last.error_b));
   } else if (worse || faster) {
     comparison.verdict = worse ? Verdict::kWorse : Verdict::kBetter;
   } else if (narrow && !once) {
@@ -351,6 +371,7 @@ core::Result<Comparison> compare(Runs a, Runs b) {
       if (!batch) return tl::unexpected(batch.error());
       result->batches.push_back(std::move(*batch));
     }
+    if (two) judge_all(a.first(2 * half), b.first(2 * half), *result);
     const Batch& last = result->batches.back();
     result->noise_percent = 50 * (last.minima.high - last.minima.low);
     if (last.cpu)

@@ -20,9 +20,12 @@ std::string_view name_of(Verdict verdict);  // "same", "worse", …
 
 // Limits of the verdict.
 inline constexpr double kSignificant = 0.01;
-inline constexpr double kSlowerRatio = 1.03, kTailRatio = 1.3;
-// A frame of more than so many times its minimum over all runs is slow.
-inline constexpr double kSlowFrame = 1.8;
+inline constexpr double kSlowerRatio = 1.03;
+// Of few frames, which are judged once, over all pairs.
+inline constexpr double kSignificantRare = 0.001, kTailRatio = 1.2, kRareRatio = 1.1;
+// So much more may be missing, in percent of the picture, and so much larger may the error be,
+// without being seen. "Better" needs that chance alone hides no more.
+inline constexpr double kUnseenPercent = 0.25, kUnseenErrorRatio = 1.02, kLikely = 0.05;
 inline constexpr std::size_t kFewestFrames = 50;
 
 // What one batch of pairs says.
@@ -30,8 +33,7 @@ struct Batch {
   std::size_t pairs = 0, frames = 0;
   MinimaTest minima;
   std::optional<MinimaTest> cpu;  // of the main thread's processor time; none on the virtual clock
-  double slow_frames_a = 0, slow_frames_b = 0, p_slow_frames = 1;  // mean of a run
-  std::uint64_t hitchy_a = 0, hitchy_b = 0;                        // runs with a hitch
+  std::uint64_t hitchy_a = 0, hitchy_b = 0;  // runs with a hitch
   double p_hitchy = 1;
   double missing_a = 0, missing_b = 0, p_missing = 1;  // percent of the picture, holes and coarse
   double error_a = 0, error_b = 0, p_error = 1;        // pixels, of levels of detail
@@ -43,6 +45,11 @@ struct Comparison {
   // Half of the interval of the ratio, of the last batch; the wider of frame and processor time.
   double noise_percent = 0;
   bool exact = false;  // by the virtual clock: no statistics
+  // Over all pairs of two batches: the frames that changed most, and how many times their usual
+  // time rare frames take (rare_frames()), mean of the runs.
+  TailTest tail;
+  double rare_a = 1, rare_b = 1, p_rare = 1;
+  bool shows_as_much = true;  // the noise hides no picture of B that lacks more than is unseen
   std::vector<Batch> batches;
 };
 

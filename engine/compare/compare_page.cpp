@@ -135,11 +135,6 @@ std::vector<Effect> effects_of(const Batch& b, bool exact) {
   std::vector<Effect> effects = {
       {"frame time", "", "", interval, p(std::min(b.minima.p_slower, b.minima.p_faster))}};
   if (!exact) {
-    effects.push_back(
-        {"1 % of frames that grew most", "", "", times(b.minima.tail_ratio), p(b.minima.p_tail)});
-    effects.push_back({"slow frames of a run", three_digits(b.slow_frames_a),
-                       three_digits(b.slow_frames_b), change(b.slow_frames_a, b.slow_frames_b),
-                       p(b.p_slow_frames)});
     effects.push_back({"runs with a hitch", std::to_string(b.hitchy_a), std::to_string(b.hitchy_b),
                        change(static_cast<double>(b.hitchy_a), static_cast<double>(b.hitchy_b)),
                        p(b.p_hitchy)});
@@ -182,6 +177,13 @@ std::string batch_section(const Comparison& comparison, std::size_t index) {
   for (const Effect& e : effects_of(batch, comparison.exact))
     html += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>", e.name,
                         e.a, e.b, e.effect, e.chance);
+  if (index == 1)
+    html += fmt::format(
+        "<tr><th>1 % of frames that grew most, both batches</th><td></td><td></td><td>× {:.3f}</td>"
+        "<td>p {:.4f}</td></tr><tr><th>slowest frames, times their usual time, both batches</th>"
+        "<td>{:.2f}</td><td>{:.2f}</td><td>× {:.3f}</td><td>p {:.4f}</td></tr>",
+        comparison.tail.ratio, comparison.tail.p, comparison.rare_a, comparison.rare_b,
+        comparison.rare_b / comparison.rare_a, comparison.p_rare);
   return html + "</table></section>\n";
 }
 

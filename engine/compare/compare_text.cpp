@@ -27,8 +27,6 @@ Json batch_json(const Batch& b) {
           {"frames", b.frames},
           {"frame_ms", test_json(b.minima)},
           {"main_cpu_ms", b.cpu ? test_json(*b.cpu) : Json(nullptr)},
-          {"tail", {{"ratio", finite(b.minima.tail_ratio)}, {"p", b.minima.p_tail}}},
-          {"slow_frames", {{"a", b.slow_frames_a}, {"b", b.slow_frames_b}, {"p", b.p_slow_frames}}},
           {"hitchy_runs", {{"a", b.hitchy_a}, {"b", b.hitchy_b}, {"p", b.p_hitchy}}},
           {"missing_percent", {{"a", b.missing_a}, {"b", b.missing_b}, {"p", b.p_missing}}},
           {"error_pixels", {{"a", b.error_a}, {"b", b.error_b}, {"p", b.p_error}}}};
@@ -49,10 +47,8 @@ std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
     if (comparison.exact) {
       text += " (exact)";
     } else {
-      text += fmt::format(
-          " ({:.3f} to {:.3f}), slow frames {:.1f} and {:.1f}, runs with a hitch "
-          "{} and {}",
-          b.minima.low, b.minima.high, b.slow_frames_a, b.slow_frames_b, b.hitchy_a, b.hitchy_b);
+      text += fmt::format(" ({:.3f} to {:.3f}), runs with a hitch {} and {}", b.minima.low,
+                          b.minima.high, b.hitchy_a, b.hitchy_b);
     }
     if (b.cpu)
       text += fmt::format(", processor time of the main thread {:.4f} ({:.3f} to {:.3f})",
@@ -60,6 +56,11 @@ std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
     text += fmt::format(", missing or coarse {:.3g} and {:.3g} %, error {:.3g} and {:.3g} pixels\n",
                         b.missing_a, b.missing_b, b.error_a, b.error_b);
   }
+  if (comparison.batches.size() > 1)
+    text += fmt::format(
+        "all pairs: the 1 % of frames that changed most {:.3f}, the slowest frames take {:.2f} and "
+        "{:.2f} times their usual time\n",
+        comparison.tail.ratio, comparison.rare_a, comparison.rare_b);
   if (alarms != nullptr)
     text += fmt::format("A against itself, {} comparisons: {} worse, {} better, {} inconclusive\n",
                         alarms->comparisons, alarms->worse, alarms->better, alarms->inconclusive);
@@ -73,6 +74,10 @@ std::string to_json(const Comparison& comparison, const FalseAlarms* alarms) {
   json["reasons"] = comparison.reasons;
   json["noise_percent"] = finite(comparison.noise_percent);
   json["exact"] = comparison.exact;
+  json["tail"] = {{"ratio", finite(comparison.tail.ratio)}, {"p", comparison.tail.p}};
+  json["rare_frames"] = {
+      {"a", comparison.rare_a}, {"b", comparison.rare_b}, {"p", comparison.p_rare}};
+  json["shows_as_much"] = comparison.shows_as_much;
   json["batches"] = Json::array();
   for (const Batch& batch : comparison.batches)
     json["batches"].push_back(batch_json(batch));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <random>
 
 #include "engine/core/assert.hpp"
 
@@ -13,49 +14,81 @@ namespace {
 
 constexpr double kSame = 1 - 1e-12;  // sums of the same values in another order
 constexpr double kTailShare = 0.01;
+constexpr double kRareShare = 0.015;
+constexpr std::size_t kSumWindow = 10, kTailWindow = 3;  // frames
+constexpr std::uint32_t kTailLabellings = 4096;
 constexpr double kStep = 0.0025, kFarthest = 1.0;  // of the search for the interval
 constexpr double kRefused = 0.025;                 // on either side
 
 using Frames = std::vector<double>;
 
-void lower(Frames& minima, const Frames& run) {
-  for (std::size_t k = 0; k < minima.size(); ++k)
-    minima[k] = std::min(minima[k], run[k]);
-}
+// The two least times of each window over the runs of a set.
+struct Least {
+  Frames first, second;
 
-struct Minima {
-  Frames a, b;
+  explicit Least(std::size_t windows)
+      : first(windows, std::numeric_limits<double>::infinity()), second(first) {}
+  void add(const Frames& run) {
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      second[k] = std::min(second[k], std::max(first[k], run[k]));
+      first[k] = std::min(first[k], run[k]);
+    }
+  }
+};
+
+struct LeastOfBoth {
+  Least a, b;
 };
 
 // Bit i of the labelling exchanges the runs of pair i.
-Minima minima_of(const Times& a, const Times& b, std::uint32_t labelling) {
-  const Frames none(a[0].size(), std::numeric_limits<double>::infinity());
-  Minima minima{none, none};
+LeastOfBoth least_of(const Times& a, const Times& b, std::uint32_t labelling) {
+  LeastOfBoth least{Least(a[0].size()), Least(a[0].size())};
   for (std::size_t i = 0; i < a.size(); ++i) {
     const bool swapped = (labelling >> i & 1) != 0;
-    lower(minima.a, swapped ? b[i] : a[i]);
-    lower(minima.b, swapped ? a[i] : b[i]);
+    least.a.add(swapped ? b[i] : a[i]);
+    least.b.add(swapped ? a[i] : b[i]);
   }
-  return minima;
+  return least;
+}
+
+// Sums over each `window` successive frames of each run; over all of them if there are fewer.
+Times windows_of(const Times& runs, std::size_t window) {
+  Times sums;
+  for (const Frames& run : runs) {
+    const std::size_t w = std::min(window, run.size());
+    double sum = 0;
+    sums.emplace_back();
+    for (std::size_t k = 0; k < run.size(); ++k) {
+      sum += run[k] - (k >= w ? run[k - w] : 0);
+      if (k + 1 >= w) sums.back().push_back(sum);
+    }
+  }
+  return sums;
 }
 
 double sum(const Frames& frames) {
   return std::accumulate(frames.begin(), frames.end(), 0.0);
 }
 
-double ratio_of(const Minima& minima) {
-  return sum(minima.b) / sum(minima.a);
+double ratio_of(const LeastOfBoth& least) {
+  return sum(least.b.first) / sum(least.a.first);
 }
 
-double tail_of(const Minima& minima) {
-  Frames ratios(minima.a.size());
-  std::ranges::transform(minima.b, minima.a, ratios.begin(), std::divides{});
+// Moves the greatest `share` of the values to the front, at least one, and returns how many.
+std::size_t greatest_first(Frames& values, double share) {
   const auto count =
-      static_cast<std::size_t>(std::ceil(kTailShare * static_cast<double>(ratios.size())));
-  std::ranges::nth_element(ratios, ratios.begin() + static_cast<std::ptrdiff_t>(count - 1),
+      static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(count - 1),
                            std::greater{});
-  ratios.resize(count);
-  return sum(ratios) / static_cast<double>(count);
+  return count;
+}
+
+double tail_of(const LeastOfBoth& least) {
+  const auto& [a, b] = least;
+  Frames ratios(a.first.size());
+  std::ranges::transform(b.second, a.second, ratios.begin(), std::divides{});
+  ratios.resize(greatest_first(ratios, kTailShare));
+  return sum(ratios) / static_cast<double>(ratios.size());
 }
 
 struct Tails {
@@ -83,7 +116,7 @@ Tails ratio_tails(const Times& a, const Times& b, double scale) {
     for (double& ms : run)
       ms /= scale;
   return over_labellings(
-      a.size(), [&](std::uint32_t labelling) { return ratio_of(minima_of(a, scaled, labelling)); });
+      a.size(), [&](std::uint32_t labelling) { return ratio_of(least_of(a, scaled, labelling)); });
 }
 
 // The ends of the interval: scales at which what is left is refused.
@@ -109,7 +142,7 @@ double log_choose(std::uint64_t n, std::uint64_t k) {
 }  // namespace
 
 double swap_test(std::span<const double> a, std::span<const double> b) {
-  PSYGEN_ASSERT(a.size() == b.size() && a.size() <= kMostPairs, "pairs");
+  PSYGEN_ASSERT(a.size() == b.size() && a.size() <= 2 * kMostPairs, "pairs");
   return over_labellings(a.size(),
                          [&](std::uint32_t labelling) {
                            double difference = 0;
@@ -121,19 +154,49 @@ double swap_test(std::span<const double> a, std::span<const double> b) {
 }
 
 MinimaTest minima_test(const Times& a, const Times& b) {
-  PSYGEN_ASSERT(!a.empty() && a.size() == b.size() && a.size() <= kMostPairs, "pairs");
+  PSYGEN_ASSERT(a.size() > 1 && a.size() == b.size() && a.size() <= kMostPairs, "pairs");
   MinimaTest test;
-  const Minima seen = minima_of(a, b, 0);
-  test.ratio = ratio_of(seen);
-  test.tail_ratio = tail_of(seen);
-  const Tails tails = ratio_tails(a, b, 1);
+  const Times sums_a = windows_of(a, kSumWindow), sums_b = windows_of(b, kSumWindow);
+  test.ratio = ratio_of(least_of(sums_a, sums_b, 0));
+  const Tails tails = ratio_tails(sums_a, sums_b, 1);
   test.p_slower = tails.p_larger;
   test.p_faster = tails.p_smaller;
-  test.p_tail = over_labellings(a.size(), [&](std::uint32_t labelling) {
-                  return tail_of(minima_of(a, b, labelling));
-                }).p_larger;
-  find_interval(a, b, test);
+  find_interval(sums_a, sums_b, test);
   return test;
+}
+
+TailTest tail_test(const Times& a, const Times& b) {
+  PSYGEN_ASSERT(a.size() > 1 && a.size() == b.size() && a.size() <= 2 * kMostPairs, "pairs");
+  const Times sums_a = windows_of(a, kTailWindow), sums_b = windows_of(b, kTailWindow);
+  const double seen = tail_of(least_of(sums_a, sums_b, 0));
+  std::mt19937_64 random(1);
+  std::uint32_t larger = 1;  // the labelling that was seen
+  for (std::uint32_t i = 1; i < kTailLabellings; ++i) {
+    const auto labelling = static_cast<std::uint32_t>(random());
+    larger += tail_of(least_of(sums_a, sums_b, labelling)) >= seen * kSame ? 1U : 0U;
+  }
+  return {seen, static_cast<double>(larger) / kTailLabellings};
+}
+
+std::vector<double> rare_frames(const Times& runs) {
+  PSYGEN_ASSERT(!runs.empty() && !runs.front().empty(), "frames");
+  Frames usual(runs.front().size()), times(runs.size());
+  const auto quartile = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 4);
+  for (std::size_t k = 0; k < usual.size(); ++k) {
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      times[i] = runs[i][k];
+    std::ranges::nth_element(times, quartile);
+    usual[k] = *quartile;
+  }
+  std::vector<double> rare;
+  for (const Frames& run : runs) {
+    Frames logarithms(usual.size());
+    std::ranges::transform(run, usual, logarithms.begin(),
+                           [](double ms, double usually) { return std::log(ms / usually); });
+    logarithms.resize(greatest_first(logarithms, kRareShare));
+    rare.push_back(sum(logarithms) / static_cast<double>(logarithms.size()));
+  }
+  return rare;
 }
 
 double fisher_more(std::uint64_t a_hits, std::uint64_t a_all, std::uint64_t b_hits,

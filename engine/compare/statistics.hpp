@@ -16,12 +16,13 @@ namespace psygen::compare {
 inline constexpr std::size_t kFewestPairs = 7, kMostPairs = 12;
 
 // One figure of each run. p that the sum of b − a is at least what it is. Requires equal sizes, at
-// most kMostPairs. O(n 2^n).
+// most 2 kMostPairs. O(n 2^n).
 double swap_test(std::span<const double> a, std::span<const double> b);
 
 // Times of the frames of runs: [run][frame], all of one length of at least 1, above 0. Frame k does
 // the same work in every run, so the minimum over a set's runs is that work without what others
-// took.
+// took. With frames in flight a frame that follows a delayed one waits less, so minima are taken of
+// windows: sums over 10 successive frames.
 using Times = std::vector<std::vector<double>>;
 
 struct MinimaTest {
@@ -29,11 +30,23 @@ struct MinimaTest {
   double p_slower = 1;       // that chance alone gives this ratio or a larger one
   double p_faster = 1;       // … or a smaller one
   double low = 0, high = 0;  // of the ratio: what a two-sided test at 5 % does not refuse
-  double tail_ratio = 1;  // mean of B's minima over A's, of the 1 % of frames where it is largest
-  double p_tail = 1;      // that chance alone gives this tail or a larger one
 };
-// Requires equal sizes, at most kMostPairs. O(2^n n frames), some 100 times.
+// Requires equal sizes, 2 to kMostPairs. O(2^n n frames), some 100 times.
 MinimaTest minima_test(const Times& a, const Times& b);
+
+// What the sum hides: of windows of 3 frames, the second least of a set's runs, B's over A's, and
+// the mean of that over the 1 % of windows where it is largest.
+struct TailTest {
+  double ratio = 1;
+  double p = 1;  // that chance alone gives this ratio or a larger one; of 4096 labellings at random
+};
+// Requires equal sizes, 2 to 2 kMostPairs.
+TailTest tail_test(const Times& a, const Times& b);
+
+// Of each run, how slow its rare frames are: the mean logarithm of the largest 1.5 % of the ratios
+// of a frame's time to its lower quartile over all runs. Half of these may be slow in the same
+// frame.
+std::vector<double> rare_frames(const Times& runs);
 
 // Fisher's exact test: of `a_all` runs of A `a_hits` have a property, and of B likewise. p that B
 // has at least so many if both are the same. Requires hits <= all.

@@ -22,10 +22,11 @@ constexpr VkBool32 on(bool yes) {
   return yes ? VK_TRUE : VK_FALSE;
 }
 
-Result<UniqueSampler> make_smooth_sampler(const Device& device, VkSamplerAddressMode mode) {
+Result<UniqueSampler> make_plain_sampler(const Device& device, VkFilter filter,
+                                         VkSamplerAddressMode mode) {
   VkSamplerCreateInfo info{};
-  info.magFilter = VK_FILTER_LINEAR;
-  info.minFilter = VK_FILTER_LINEAR;
+  info.magFilter = filter;
+  info.minFilter = filter;
   info.addressModeU = mode;
   info.addressModeV = mode;
   info.addressModeW = mode;
@@ -75,12 +76,17 @@ Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
 
 Result<void> Pipelines::create_textures(const Device& device, const Overlay& overlay,
                                         std::span<const GroundPicture> ground) {
-  Result<UniqueSampler> clouds = make_smooth_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+  constexpr VkSamplerAddressMode kClamp = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  Result<UniqueSampler> clouds =
+      make_plain_sampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT);
   if (!clouds) return tl::unexpected(clouds.error());
   cloud_sampler_ = std::move(*clouds);
-  Result<UniqueSampler> font = make_smooth_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
-  if (!font) return tl::unexpected(font.error());
-  font_sampler_ = std::move(*font);
+  Result<UniqueSampler> smooth = make_plain_sampler(device, VK_FILTER_LINEAR, kClamp);
+  if (!smooth) return tl::unexpected(smooth.error());
+  smooth_sampler_ = std::move(*smooth);
+  Result<UniqueSampler> depth = make_plain_sampler(device, VK_FILTER_NEAREST, kClamp);
+  if (!depth) return tl::unexpected(depth.error());
+  depth_sampler_ = std::move(*depth);
   const std::vector<std::uint16_t> texels = make_cloud_texture();
   Result<Image> cloud_image =
       make_texture(device, {kCloudTextureSize, kCloudTextureSize}, VK_FORMAT_R16G16_SFLOAT,
@@ -104,7 +110,7 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_CLOUDS, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                    1, VK_SHADER_STAGE_FRAGMENT_BIT, cloud_sampler_.address()},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_FONT, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                   1, VK_SHADER_STAGE_FRAGMENT_BIT, font_sampler_.address()},
+                                   1, VK_SHADER_STAGE_FRAGMENT_BIT, smooth_sampler_.address()},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_GLYPHS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
                                    VK_SHADER_STAGE_VERTEX_BIT, nullptr},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_SHADOWS,
@@ -121,7 +127,12 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
                                    nullptr},
       VkDescriptorSetLayoutBinding{PSYGEN_BINDING_EMITTER,
                                    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1,
-                                   VK_SHADER_STAGE_VERTEX_BIT, nullptr}};
+                                   VK_SHADER_STAGE_VERTEX_BIT, nullptr},
+      VkDescriptorSetLayoutBinding{PSYGEN_BINDING_MIRROR, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                   1, VK_SHADER_STAGE_FRAGMENT_BIT, smooth_sampler_.address()},
+      VkDescriptorSetLayoutBinding{PSYGEN_BINDING_MIRROR_DEPTH,
+                                   VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+                                   VK_SHADER_STAGE_FRAGMENT_BIT, depth_sampler_.address()}};
   VkDescriptorSetLayoutCreateInfo set_info{};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set_info.bindingCount = static_cast<std::uint32_t>(bindings.size());
@@ -135,7 +146,7 @@ Result<void> Pipelines::create_layouts(const Device& device, std::uint32_t sets)
   const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, sets},
                          VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 4 * sets},
-                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 5 * sets}};
+                         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 7 * sets}};
   VkDescriptorPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   pool_info.maxSets = sets;
@@ -269,7 +280,7 @@ Result<void> Pipelines::create_landscape(Making& making, bool lamps, MeshPipelin
   PipelineShape water = usual_shape();
   water.kind = PipelineKind::kWater;
   water.vert = lit ? code.water_lit_vert : code.water_vert;
-  water.frag = lit ? code.water_frag : code.surface_frag;
+  water.frag = !lit ? code.surface_frag : mirrors() ? code.water_mirror_frag : code.water_frag;
   water.see_through = lit;
   water.constants = {on(traits_.waves), VK_FALSE, on(lamps)};
   return create_meshes(making, meshes, look, out)
@@ -487,6 +498,26 @@ void Pipelines::write_set(const Device& device, VkDescriptorSet set, const Buffe
       write(PSYGEN_BINDING_PICTURES, texture, nullptr, &pictures_info),
       write(PSYGEN_BINDING_EMITTER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, &emitters_info,
             nullptr)};
+  device.vk.vkUpdateDescriptorSets(device.handle, static_cast<std::uint32_t>(writes.size()),
+                                   writes.data(), 0, nullptr);
+}
+
+void Pipelines::write_mirror(const Device& device, VkDescriptorSet set,
+                             const Mirror& mirror) const {
+  if (!mirror.exists()) return;
+  const std::array images{VkDescriptorImageInfo{VK_NULL_HANDLE, mirror.colour.view.get(),
+                                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+                          VkDescriptorImageInfo{VK_NULL_HANDLE, mirror.depth.view.get(),
+                                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
+  std::array<VkWriteDescriptorSet, 2> writes{};
+  for (std::size_t i = 0; i < writes.size(); ++i) {
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[i].dstSet = set;
+    writes[i].dstBinding = i == 0 ? PSYGEN_BINDING_MIRROR : PSYGEN_BINDING_MIRROR_DEPTH;
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    writes[i].pImageInfo = &images[i];
+  }
   device.vk.vkUpdateDescriptorSets(device.handle, static_cast<std::uint32_t>(writes.size()),
                                    writes.data(), 0, nullptr);
 }

@@ -8,6 +8,7 @@
 #include "engine/render/draw_list.hpp"
 #include "engine/render/ground_image.hpp"
 #include "engine/render/materials.hpp"
+#include "engine/render/mirror.hpp"
 #include "engine/render/model_pictures.hpp"
 #include "engine/render/overlay.hpp"
 #include "engine/render/pipeline_build.hpp"
@@ -42,6 +43,8 @@ class Pipelines {
   const PresetTraits& traits() const { return traits_; }
   VkSampleCountFlagBits samples() const { return samples_; }
   VkPipelineLayout layout() const { return layout_.get(); }
+  // Whether water mirrors the land: its pipelines need write_mirror().
+  bool mirrors() const { return traits_.waves && samples_ != VK_SAMPLE_COUNT_1_BIT; }
   // The pipeline for meshes. `pushed`: the data of a draw is in push constants, else in the buffer
   // of draws. `lamps`, after create_lamps(): with point lights.
   VkPipeline mesh(core::VertexLayout layout, bool pushed, Coverage coverage, bool lamps,
@@ -78,6 +81,8 @@ class Pipelines {
   void write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,
                  const Buffer& draws, const Buffer& glyphs, const Buffer& emitters,
                  const Buffer& shade) const;
+  // The same with what water mirrors, if that exists.
+  void write_mirror(const Device& device, VkDescriptorSet set, const Mirror& mirror) const;
 
  private:
   core::Result<void> create_layouts(const Device& device, std::uint32_t sets);
@@ -134,7 +139,7 @@ class Pipelines {
   PresetTraits traits_;
   VkSampleCountFlagBits samples_ = VK_SAMPLE_COUNT_1_BIT;
   VkFormat colour_format_ = VK_FORMAT_UNDEFINED;
-  UniqueSampler cloud_sampler_, font_sampler_;
+  UniqueSampler cloud_sampler_, smooth_sampler_, depth_sampler_;
   ShadowMaps shadows_;
   Image clouds_, font_;
   GroundImage ground_;

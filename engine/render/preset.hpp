@@ -15,7 +15,7 @@ namespace psygen::render {
 struct PresetTraits {
   bool pixel_light = false;        // light and haze per pixel, else per vertex
   bool fine_grain = false;         // on near ground
-  bool waves = false;              // on water
+  bool waves = false;              // on water, which also mirrors the land
   std::uint32_t samples = 1;       // per pixel; fewer if the device supports fewer
   std::uint32_t cascades = 0;      // of the sun's shadow
   std::uint32_t shadow_size = 1;   // pixels along one side of a cascade

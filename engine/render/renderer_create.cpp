@@ -173,7 +173,8 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
   has_picture_ = false;
   std::vector<Targets> targets;
   for (std::size_t i = 0; i < (culling_ ? 1 : kFramesInFlight); ++i) {
-    Result<Targets> made = make_targets(*device_, colour_format_, extent, pipelines_.samples());
+    Result<Targets> made =
+        make_targets(*device_, colour_format_, extent, pipelines_.samples(), pipelines_.mirrors());
     if (!made) return tl::unexpected(made.error());
     made->host_ordered = !culling_;
     targets.push_back(std::move(*made));
@@ -183,6 +184,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
     if (!fits) return fits;
   }
   targets_ = std::move(targets);
+  use_mirrors();
   return {};
 }
 

@@ -128,6 +128,7 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
                        .shadows = frame_.shadow.y > 0};
   Targets& targets = targets_of(slot);
   targets.drawn = drawn_;
+  targets.mirrors = water_ && targets.mirror.exists();
   record_scene(*device_, pipelines_, slot, targets, pass);
   if (windowed) {
     record_copy_to_window(*device_, slot.commands(), targets, swapchain_.image(),
@@ -278,7 +279,8 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   const glm::dvec3& at = input.pose.position.local;
   shade_.build(input.spots, {at.x, at.z});
   drawn_ = landscape_size(input.resolution);
-  frame_.shade = {shade_.corner(), 0.0F, static_cast<float>(drawn_.height)};
+  frame_.shade = {shade_.corner(), static_cast<float>(drawn_.width),
+                  static_cast<float>(drawn_.height)};
   out.resolution = static_cast<double>(drawn_.height) / size().height;
   const GpuCulling::Counts counted =
       culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};

@@ -85,6 +85,8 @@ class RendererImpl {
   core::Result<void> create_culling();
   core::Result<void> create_looks(Preset preset, const Progress& progress);
   void use_pipelines();
+  void use_mirrors();
+  core::Result<Targets> make_small_targets();
   core::Result<void> warm_up(const Progress& progress);
   core::Result<void> warm_up_objects(bool lamps);
   using RecordStep = std::function<void(FrameSlot&, Targets&, VkDescriptorSet, int)>;

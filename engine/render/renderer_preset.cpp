@@ -45,6 +45,14 @@ Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress)
 void RendererImpl::use_pipelines() {
   for (FrameSlot& slot : slots_)
     slot.use(*device_, pipelines_, index_of(slot));
+  use_mirrors();
+}
+
+// Binds what water mirrors to the sets of the slots, after either has changed.
+void RendererImpl::use_mirrors() {
+  if (targets_.empty()) return;
+  for (const FrameSlot& slot : slots_)
+    pipelines_.write_mirror(*device_, slot.set(), targets_of(slot).mirror);
 }
 
 Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
@@ -80,8 +88,19 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
   return {};
 }
 
+// Targets for draws before the first frame. Their mirror is bound until use_mirrors().
+Result<Targets> RendererImpl::make_small_targets() {
+  wait_idle();
+  Result<Targets> small =
+      make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples(), pipelines_.mirrors());
+  if (!small) return small;
+  for (const FrameSlot& slot : slots_)
+    pipelines_.write_mirror(*device_, slot.set(), small->mirror);
+  return small;
+}
+
 Result<void> RendererImpl::warm_up(const Progress& progress) {
-  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
+  Result<Targets> small = make_small_targets();
   if (!small) return tl::unexpected(small.error());
   if (scales_up_) {
     if (Result<void> added = add_coarse(*device_, colour_format_, *small); !added) return added;
@@ -104,6 +123,7 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
             .and_then([&] { return go_on(progress, (step + 1.0) / kWarmUpSteps); });
     if (!drawn) return drawn;
   }
+  use_mirrors();
   small->drawn = small->extent;
   return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
 }
@@ -158,27 +178,27 @@ Result<void> RendererImpl::warm_up_later(int steps, const RecordStep& record) {
   static_assert(kObjectWarmUpSteps % kFramesInFlight == 0);
   static_assert(kLampWarmUpSteps % kFramesInFlight == 0);
   static_assert(kParticleWarmUpSteps % kFramesInFlight == 0);
-  Result<Targets> small = make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples());
+  Result<Targets> small = make_small_targets();
   if (!small) return tl::unexpected(small.error());
   const Result<VkDescriptorSet> textures = materials_.blank_set(*device_);
   if (!textures) return tl::unexpected(textures.error());
-  wait_idle();
   const std::vector<shaders::EmitterData> emitters(1);
-  for (int step = 0; step < steps; ++step) {
+  Result<void> drawn;
+  for (int step = 0; drawn && step < steps; ++step) {
     FrameSlot& slot = slot_of(frame_value_ + 1);
-    const Result<void> drawn = slot.write(*device_, pipelines_, frame_data({}, small->extent),
-                                          std::vector<shaders::DrawData>(1), {}, emitters)
-                                   .and_then([&] { return slot.begin(*device_); })
-                                   .and_then([&] {
-                                     record(slot, *small, *textures, step);
-                                     return slot.end(*device_);
-                                   })
-                                   .and_then([&] { return submit(slot, false); })
-                                   .and_then([&] { return wait_for(slot); });
-    if (!drawn) return drawn;
+    drawn = slot.write(*device_, pipelines_, frame_data({}, small->extent),
+                       std::vector<shaders::DrawData>(1), {}, emitters)
+                .and_then([&] { return slot.begin(*device_); })
+                .and_then([&] {
+                  record(slot, *small, *textures, step);
+                  return slot.end(*device_);
+                })
+                .and_then([&] { return submit(slot, false); })
+                .and_then([&] { return wait_for(slot); });
   }
+  use_mirrors();
   idle_value_ = warm_up_value_ = frame_value_;
-  return {};
+  return drawn;
 }
 
 // Draws an empty frame with every dispatch.

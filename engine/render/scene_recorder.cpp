@@ -254,6 +254,10 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
     });
   }
   draw_sky(device, pipelines, commands);
+  if (targets.mirrors) {
+    device.vk.vkCmdEndRendering(commands);
+    begin_pass(device, commands, targets, PassPart::kWater);
+  }
   if (pass.water) draw_water(device, pipelines, commands, pass.lamps);
   draw_particles(device, pipelines, slot, pass);
   draw_lines(device, pipelines, commands, pass);

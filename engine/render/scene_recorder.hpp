@@ -1,7 +1,7 @@
 // Records a frame: the sun's shadows, if the preset has them; one pass, or two with occlusion
 // culling (gpu_culling.hpp). A pass draws meshes, the sky behind, water, then lines and text in
-// front. Over a landscape of fewer pixels than the picture, text has a pass of its own. It submits
-// nothing. Main thread. Private to engine/render.
+// front. Water that mirrors the land begins a pass, and so does text over a landscape of fewer
+// pixels than the picture. It submits nothing. Main thread. Private to engine/render.
 #pragma once
 
 #include <span>

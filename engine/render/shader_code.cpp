@@ -151,6 +151,9 @@ constexpr std::uint32_t kWaterLitVert[] =
 constexpr std::uint32_t kWaterFrag[] =
 #include "water_frag_spv.h"
     ;
+constexpr std::uint32_t kWaterMirrorFrag[] =
+#include "water_mirror_frag_spv.h"
+    ;
 constexpr std::uint32_t kLineVert[] =
 #include "line_vert_spv.h"
     ;
@@ -272,6 +275,7 @@ constexpr OtherCode kOthers{kSurfaceFrag,
                             kWaterVert,
                             kWaterLitVert,
                             kWaterFrag,
+                            kWaterMirrorFrag,
                             kLineVert,
                             kSkyVert,
                             kSkyFrag,

@@ -24,10 +24,17 @@ const Image& landscape_of(const Targets& targets) {
   return targets.is_coarse() ? targets.coarse : targets.colour;
 }
 
+// Whether the landscape is complete after this part of a frame, and water mirrors it.
+bool is_mirrored(const Targets& targets, PassPart part) {
+  return targets.mirrors && (part == PassPart::kWhole || part == PassPart::kSecond);
+}
+
 // Moves the targets to the layouts of attachments, after all previous uses.
 void to_attachments(const Device& device, VkCommandBuffer commands, Targets& targets,
                     PassPart part) {
   VkImageLayout& layout = targets.is_coarse() ? targets.coarse_layout : targets.colour_layout;
+  if (is_mirrored(targets, part)) mirror_to_attachments(device, commands, targets.mirror);
+  if (part == PassPart::kWater) mirror_to_textures(device, commands, targets.mirror);
   if (part == PassPart::kWhole && targets.host_ordered &&
       layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)
     return;
@@ -53,6 +60,10 @@ void to_attachments(const Device& device, VkCommandBuffer commands, Targets& tar
     depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
     depth.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     depth.srcAccessMask = VK_ACCESS_2_NONE;
+  }
+  if (part == PassPart::kWater) {
+    colour.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   }
   VkImageMemoryBarrier2 samples = colour;
   samples.image = targets.samples.image.get();
@@ -150,6 +161,45 @@ Result<Image> make_colour(const Device& device, VkFormat format, core::Extent ex
                     VK_IMAGE_ASPECT_COLOR_BIT);
 }
 
+VkRenderingAttachmentInfo colour_of_pass(const Targets& targets, PassPart part) {
+  const bool loads = part == PassPart::kSecond || part == PassPart::kWater;
+  VkRenderingAttachmentInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  info.imageView = landscape_of(targets).view.get();
+  info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  // Before the first pass nothing is kept: the sky covers all other pixels.
+  info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+  info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  if (!has_samples(targets)) return info;
+  info.imageView = targets.samples.view.get();
+  if (part == PassPart::kFirst) return info;
+  const bool mirrored = is_mirrored(targets, part);
+  const Image& mean = mirrored ? targets.mirror.colour : landscape_of(targets);
+  if (!mirrored) info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  info.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+  info.resolveImageView = mean.view.get();
+  info.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  return info;
+}
+
+VkRenderingAttachmentInfo depth_of_pass(const Targets& targets, PassPart part) {
+  const bool loads = part == PassPart::kSecond || part == PassPart::kWater;
+  const bool mirrored = is_mirrored(targets, part);
+  VkRenderingAttachmentInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  info.imageView = targets.depth.view.get();
+  info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  // Cleared to 0, infinitely far.
+  info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR;
+  info.storeOp = mirrored || part == PassPart::kFirst ? VK_ATTACHMENT_STORE_OP_STORE
+                                                      : VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  if (!mirrored) return info;
+  info.resolveMode = VK_RESOLVE_MODE_SAMPLE_ZERO_BIT;
+  info.resolveImageView = targets.mirror.depth.view.get();
+  info.resolveImageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  return info;
+}
+
 VkRenderingInfo rendering_info(const VkRect2D& area, const VkRenderingAttachmentInfo& colour) {
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
@@ -189,7 +239,7 @@ Result<void> add_coarse(const Device& device, VkFormat format, Targets& targets)
 }
 
 Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
-                             VkSampleCountFlagBits samples) {
+                             VkSampleCountFlagBits samples, bool mirrored) {
   Targets targets;
   targets.extent = targets.drawn = extent;
   Result<Image> colour = make_colour(device, format, extent);
@@ -204,40 +254,20 @@ Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent
                                    VK_IMAGE_ASPECT_COLOR_BIT, {.samples = samples});
   if (!drawn) return tl::unexpected(drawn.error());
   targets.samples = std::move(*drawn);
+  if (!mirrored) return targets;
+  Result<Mirror> mirror = make_mirror(device, format, extent);
+  if (!mirror) return tl::unexpected(mirror.error());
+  targets.mirror = std::move(*mirror);
   return targets;
 }
 
 void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets, PassPart part) {
   to_attachments(device, commands, targets, part);
-  VkRenderingAttachmentInfo colour_info{};
-  colour_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  colour_info.imageView = landscape_of(targets).view.get();
-  colour_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  colour_info.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  // the sky covers all other pixels
-  colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  if (has_samples(targets)) {
-    colour_info.imageView = targets.samples.view.get();
-    colour_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    colour_info.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
-    colour_info.resolveImageView = landscape_of(targets).view.get();
-    colour_info.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  }
-  if (part == PassPart::kFirst) {
-    colour_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    colour_info.resolveMode = VK_RESOLVE_MODE_NONE;
-  }
-  VkRenderingAttachmentInfo depth_info{};
-  depth_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  depth_info.imageView = targets.depth.view.get();
-  depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-  depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;  // to 0, infinitely far
-  depth_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-  if (part == PassPart::kFirst) depth_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  if (part == PassPart::kSecond)
-    colour_info.loadOp = depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-  const VkRect2D area{{0, 0}, {targets.drawn.width, targets.drawn.height}};
-  VkRenderingInfo info = rendering_info(area, colour_info);
-  info.pDepthAttachment = &depth_info;
+  const VkRenderingAttachmentInfo colour = colour_of_pass(targets, part);
+  const VkRenderingAttachmentInfo depth = depth_of_pass(targets, part);
+  VkRenderingInfo info =
+      rendering_info({{0, 0}, {targets.drawn.width, targets.drawn.height}}, colour);
+  info.pDepthAttachment = &depth;
   begin_rendering(device, commands, info);
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/render/device.hpp"
 #include "engine/render/memory.hpp"
+#include "engine/render/mirror.hpp"
 
 namespace psygen::render {
 
@@ -13,8 +14,11 @@ struct Targets {
   Image colour, depth;
   Image samples;  // empty with one sample per pixel
   Image coarse;   // instead of `colour` for a landscape of fewer pixels; empty until add_coarse()
+  Mirror mirror;  // empty if water mirrors only the sky
   core::Extent extent;
   core::Extent drawn;  // pixels of the landscape: extent, or fewer, in the corner of the images
+  bool mirrors =
+      false;  // the frame has water, and a mirror: PassPart::kWater follows the landscape
   // After the last recorded frame.
   VkImageLayout colour_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkImageLayout coarse_layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -25,16 +29,18 @@ struct Targets {
 
   bool is_coarse() const { return drawn != extent; }
 };
-// Creates targets of `extent` pixels. Fails with kOutOfMemory.
+// Creates targets of `extent` pixels, with a mirror if `mirrored`, which needs more than one sample
+// per pixel. Fails with kOutOfMemory.
 core::Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
-                                   VkSampleCountFlagBits samples);
+                                   VkSampleCountFlagBits samples, bool mirrored);
 // Whether the device can scale images of this format up, smoothly.
 bool can_scale_up(const Device& device, VkFormat format);
 // Creates Targets::coarse, for frames of fewer pixels. Fails with kOutOfMemory.
 core::Result<void> add_coarse(const Device& device, VkFormat format, Targets& targets);
 
-// A frame has one pass, or two with a read of depth in between.
-enum class PassPart : std::uint8_t { kWhole, kFirst, kSecond };
+// A frame has one pass, or two with a read of depth in between. With Targets::mirrors, another one
+// follows, in which water reads what was drawn before.
+enum class PassPart : std::uint8_t { kWhole, kFirst, kSecond, kWater };
 // Moves the targets to the layouts of attachments, after all previous uses, and begins a pass on
 // all of them. Depth is cleared; whatever draws must cover every pixel.
 void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets,

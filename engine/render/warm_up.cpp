@@ -34,6 +34,7 @@ void bind_textures(const Device& device, const Pipelines& pipelines, VkCommandBu
 
 void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot& slot,
                     Targets& targets, VkBuffer blank, int step, bool lamps) {
+  targets.mirrors = step == 3 && targets.mirror.exists();
   warm_up_pass(device, pipelines, slot, targets, [&](VkCommandBuffer commands) {
     bind_blank(device, pipelines, commands, blank);
     const auto draw_twice = [&](core::VertexLayout layout, Coverage coverage) {
@@ -54,6 +55,10 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
     }
     if (step == 3) {
       draw_sky(device, pipelines, commands);
+      if (targets.mirrors) {
+        device.vk.vkCmdEndRendering(commands);
+        begin_pass(device, commands, targets, PassPart::kWater);
+      }
       draw_water(device, pipelines, commands, lamps);
     }
     if (step == 4) draw_text(device, pipelines.overlay(false), commands, 3);

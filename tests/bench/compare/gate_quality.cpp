@@ -1,7 +1,9 @@
 // How good the gate of `psygen compare` is, over the noise of real runs (docs/frame-tests.md):
 //   psygen_bench_gate RUNS [COMPARISONS]
-// RUNS is a folder with at least 16 runs of one program. Each comparison draws two batches of 8
-// pairs from them at random, changes B's frames as the line says, and asks for the verdict.
+// RUNS is a folder with at least 32 runs of one program, named in the order in which they were
+// flown. As in a comparison, the two runs of a pair follow each other. Each comparison draws two
+// batches of 8 pairs and which of a pair is B, changes B's frames as the line says, and asks for
+// the verdict.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -51,18 +53,17 @@ const std::pair<const char*, Change> kChanges[] = {
 std::array<std::size_t, 4> verdicts(const std::vector<RecordedRun>& runs, const Change& change,
                                     std::size_t count) {
   Random random(1);
-  std::vector<std::size_t> order(runs.size());
+  std::vector<std::size_t> order(runs.size() / 2);  // of pairs
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::array<std::size_t, 4> counts{};
   for (std::size_t n = 0; n < count; ++n) {
     std::vector<RecordedRun> a, b;
-    for (int batch = 0; batch < 2; ++batch) {
-      std::shuffle(order.begin(), order.end(), random);
-      for (std::size_t i = 0; i < kPairs; ++i) {
-        a.push_back(runs[order[2 * i]]);
-        b.push_back(runs[order[2 * i + 1]]);
-        change(b.back(), random);
-      }
+    std::shuffle(order.begin(), order.end(), random);
+    for (std::size_t i = 0; i < 2 * kPairs; ++i) {
+      const std::size_t first = random() % 2;
+      a.push_back(runs[2 * order[i] + first]);
+      b.push_back(runs[2 * order[i] + 1 - first]);
+      change(b.back(), random);
     }
     const auto result = compare(a, b);
     if (!result) {
@@ -84,8 +85,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto runs = read_runs(argv[1]);
-  if (!runs || runs->size() < 2 * kPairs) {
-    std::fprintf(stderr, "%s\n", runs ? "16 runs are needed" : runs.error().message.c_str());
+  if (!runs || runs->size() < 4 * kPairs) {
+    std::fprintf(stderr, "%s\n", runs ? "32 runs are needed" : runs.error().message.c_str());
     return 1;
   }
   const std::size_t count = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 100;

@@ -33,7 +33,9 @@ TEST(Compare, FindsAFewDoubledFramesAlwaysTheSameOnesOrAnyOnes) {
     for (int i = 0; i < 3; ++i)
       run.frame_ms[random() % run.frame_ms.size()] *= 2;
   };
-  EXPECT_EQ(judged(make_sets(16, any)).verdict, Verdict::kWorse);
+  const Comparison rare = judged(make_sets(16, any));
+  EXPECT_EQ(rare.verdict, Verdict::kWorse);
+  EXPECT_THAT(rare.reasons, testing::Contains(HasSubstr("times their usual time")));
 }
 
 TEST(Compare, FasterWithMoreMissingOrALargerErrorIsNotBetter) {
@@ -44,6 +46,25 @@ TEST(Compare, FasterWithMoreMissingOrALargerErrorIsNotBetter) {
   EXPECT_THAT(missing.reasons, testing::Contains(HasSubstr("is not better")));
   const auto coarser = [](RecordedRun& run, std::mt19937&) { run.error_pixels = 5; };
   EXPECT_EQ(judged(make_sets(16, coarser, 0.8)).verdict, Verdict::kWorse);
+}
+
+TEST(Compare, FasterIsNotBetterWhereNoiseHidesWhetherAsMuchIsShown) {
+  const auto varies = [](double percent, double error) {
+    Sets sets = make_sets(16, kNothing, 0.8);
+    std::mt19937 random(3);
+    for (Runs* runs : {&sets.a, &sets.b}) {
+      for (RecordedRun& run : *runs) {
+        run.missing_percent = percent * static_cast<double>(random() % 1000) / 1000;
+        run.error_pixels = 4 + error * static_cast<double>(random() % 1000) / 1000;
+      }
+    }
+    return judged(sets);
+  };
+  EXPECT_EQ(varies(0.2, 0).verdict, Verdict::kBetter) << "so little is not seen";
+  const Comparison hidden = varies(10, 0);
+  EXPECT_EQ(hidden.verdict, Verdict::kInconclusive);
+  EXPECT_THAT(hidden.reasons, testing::Contains(HasSubstr("whether B shows as much")));
+  EXPECT_EQ(varies(0, 3).verdict, Verdict::kInconclusive);
 }
 
 TEST(Compare, FindsMoreProcessorTimeOfTheMainThreadWhereFramesAreTooNoisy) {

@@ -1,10 +1,13 @@
 // The expected figures were computed by counting with whole numbers and fractions, in Python:
 //   fisher: sum(comb(nb, k) * comb(na, h - k) for k in range(b, min(h, nb) + 1)) / comb(na + nb, h)
 //   swap_test: the signs in {1, -1}^8 with sum(sign * (b - a)) >= sum(b - a), as Fractions
-//   minima_test: the labellings in {0, 1}^7 whose ratio or tail is at least that of no exchange
+//   minima_test: the labellings in {0, 1}^7 whose ratio or tail is at least that of no exchange;
+//   the ratio of windows of min(10, frames) frames, the tail of windows of 3
 #include "engine/compare/statistics.hpp"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace psygen::compare {
 namespace {
@@ -25,19 +28,37 @@ TEST(SwapTest, CountsTheLabellingsThatAreAtLeastAsExtreme) {
   EXPECT_EQ(swap_test(std::vector<double>(8, 1.0), std::vector<double>(8, 2.0)), 1.0 / 256);
 }
 
-TEST(MinimaTest, ComparesTheSumsAndTheTailsOfTheMinima) {
-  const Times a{{10, 20, 30}, {11, 19, 33}, {10, 22, 31}, {12, 20, 30},
-                {11, 21, 29}, {10, 23, 35}, {13, 20, 31}};
-  const Times b{{11, 22, 33}, {12, 20, 35}, {10, 24, 31}, {14, 21, 33},
-                {11, 22, 30}, {11, 26, 38}, {13, 23, 33}};
+TEST(MinimaTest, ComparesTheSumsOfTheMinimaOfWindows) {
+  const Times a{{10, 20, 30, 12}, {11, 19, 33, 12}, {10, 22, 31, 12}, {12, 20, 30, 14},
+                {11, 21, 29, 12}, {10, 23, 35, 13}, {13, 20, 31, 12}};
+  const Times b{{11, 22, 33, 13}, {12, 20, 35, 12}, {10, 24, 31, 15}, {14, 21, 33, 12},
+                {11, 22, 30, 13}, {11, 26, 38, 12}, {13, 23, 33, 14}};
   const MinimaTest test = minima_test(a, b);
-  EXPECT_NEAR(test.ratio, 30.0 / 29, 1e-12) << "minima 10 + 20 + 30 and 10 + 19 + 29";
-  EXPECT_EQ(test.p_slower, 32.0 / 128);
+  EXPECT_NEAR(test.ratio, 19.0 / 18, 1e-12) << "four frames are one window: 76 and 72";
+  EXPECT_EQ(test.p_slower, 8.0 / 128);
   EXPECT_EQ(test.p_faster, 128.0 / 128);
-  EXPECT_NEAR(test.tail_ratio, 20.0 / 19, 1e-12);
-  EXPECT_EQ(test.p_tail, 64.0 / 128);
-  EXPECT_LT(test.low, 30.0 / 29);
-  EXPECT_GT(test.high, 30.0 / 29);
+  EXPECT_LT(test.low, 19.0 / 18);
+  EXPECT_GT(test.high, 19.0 / 18);
+}
+
+TEST(TailTest, ComparesTheSecondLeastOfWindowsOfThreeFrames) {
+  const Times a{{10, 20, 30, 12}, {11, 19, 33, 12}, {10, 22, 31, 12}, {12, 20, 30, 14},
+                {11, 21, 29, 12}, {10, 23, 35, 13}, {13, 20, 31, 12}};
+  const Times b{{11, 22, 33, 13}, {12, 20, 35, 12}, {10, 24, 31, 15}, {14, 21, 33, 12},
+                {11, 22, 30, 13}, {11, 26, 38, 12}, {13, 23, 33, 14}};
+  const TailTest test = tail_test(a, b);
+  EXPECT_NEAR(test.ratio, 65.0 / 61, 1e-12) << "of the first of two windows";
+  EXPECT_NEAR(test.p, 2.0 / 128, 0.006) << "of all labellings; three standard deviations of 4096";
+}
+
+TEST(RareFrames, AreThoseThatTakeLongestBesideTheirLowerQuartileOverAllRuns) {
+  const Times runs{{10, 20, 30, 12}, {20, 22, 31, 12}, {12, 19, 90, 14}, {12, 20, 30, 11}};
+  const std::vector<double> rare = rare_frames(runs);
+  ASSERT_EQ(rare.size(), 4u);
+  EXPECT_NEAR(rare[0], std::log(1.0), 1e-12) << "quartiles 12, 20, 30, 12";
+  EXPECT_NEAR(rare[1], std::log(5.0 / 3), 1e-12);
+  EXPECT_NEAR(rare[2], std::log(3.0), 1e-12);
+  EXPECT_NEAR(rare[3], std::log(1.0), 1e-12);
 }
 
 TEST(MinimaTest, TheIntervalHoldsAKnownRatioAndShrinksWithTheNoise) {

@@ -1,5 +1,6 @@
 // Water over a beach that falls away from the camera: its depth shows, foam lies along its edge,
-// and the sun's path of glitter looks as if it were found for each pixel.
+// and the sun's path of glitter looks as if it were found for each pixel. A cliff behind the water
+// is mirrored in it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -103,6 +104,39 @@ TEST_P(WaterOfPresets, has_foam_along_its_edge_where_light_is_per_pixel) {
     EXPECT_GT(at_edge, 1.8 * beyond);
   } else {
     EXPECT_LT(at_edge, 1.6 * beyond);
+  }
+}
+
+// The cliff is 56 m ahead and 20 m high. The water is 12 m deep before it. At half of the
+// resolution the mirrored picture is smaller than its image.
+TEST_P(WaterOfPresets, mirrors_a_cliff_where_it_has_waves) {
+  const auto renderer = open(GetParam());
+  ASSERT_TRUE(renderer);
+  const auto cliff = synthetic::make_terrain(renderer->geometry(), kGroundSide,
+                                             [](int, int z) { return z < 8 ? 1.0F : 0.0F; });
+  ASSERT_TRUE(cliff);
+  const float height = 6.0F;
+  input_ = synthetic::look(height, -0.15, kPictureSize);
+  input_.block_size_m = 64;
+  input_.light.haze_density = 0.0F;
+  input_.water = Water{0.0F, {0.012F, 0.040F, 0.052F}};
+  terrain_.range = *cliff;
+  terrain_.origin = {-32.0F, -height - 12.0F, -64.0F};
+  terrain_.height_range_m = 32.0F;
+  const double below = std::atan2(height, 45.0) + input_.pose.pitch;
+  const double y = std::tan(below) / std::tan(input_.projection.vertical_fov * 0.5);
+  const auto at = static_cast<std::uint32_t>((0.5 + 0.5 * y) * kPictureSize.height);
+  for (const float resolution : {1.0F, 0.5F}) {
+    input_.resolution = resolution;
+    input_.terrain = {};
+    const double sky = row(draw(*renderer), at);
+    input_.terrain = {&terrain_, 1};
+    const double land = row(draw(*renderer), at);
+    if (traits_of(GetParam()).waves) {
+      EXPECT_LT(land, 0.8 * sky) << resolution;
+    } else {
+      EXPECT_NEAR(land, sky, 6) << resolution;
+    }
   }
 }
 
