@@ -16,8 +16,9 @@ WaterLight water_light(vec3 p, vec3 n) {
   float mirrored = 0.02 + 0.80 * flat2 * flat2 * flat_;
   vec3 r = v - 2.0 * dot(v, n) * n;
 #ifdef PSYGEN_MIRROR
-  // A pixel shows many waves, and their slopes there cancel in part.
-  vec3 calm = vec3(0.35, 1.0, 0.35) * n;
+  // A far pixel shows many waves, whose slopes cancel in part.
+  float rough = 0.35 / (1.0 + dot(p, p) * (1.0 / 3600.0));
+  vec3 calm = vec3(rough, 1.0, rough) * n;
   calm *= inversesqrt(dot(calm, calm));
   vec3 to_land = v - 2.0 * dot(v, calm) * calm;
   vec4 land = mirrored_land(p, vec3(to_land.x, abs(to_land.y), to_land.z));
