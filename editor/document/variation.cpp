@@ -93,6 +93,7 @@ std::optional<std::string> random_value(const WorldField& field, std::mt19937_64
     case FieldKind::kIntegerPair:
     case FieldKind::kText:
     case FieldKind::kImage:
+    case FieldKind::kToml:
       return {};
   }
   return {};
@@ -117,6 +118,7 @@ std::optional<std::string> stepped_value(const WorldField& field, int steps) {
     case FieldKind::kIntegerPair:
     case FieldKind::kText:
     case FieldKind::kImage:
+    case FieldKind::kToml:
       return {};
   }
   return {};

@@ -94,6 +94,7 @@ void FieldRow::build(QHBoxLayout& layout) {
       return add_switch(layout);
     case FieldKind::kText:
     case FieldKind::kImage:
+    case FieldKind::kToml:
       return add_text(layout);
     default:
       break;
@@ -159,11 +160,13 @@ void FieldRow::add_text(QHBoxLayout& layout) {
   line->setAccessibleName(label_->text());
   layout.addWidget(line, 1);
   setFocusProxy(line);
-  connect(line, &QLineEdit::editingFinished, this, [this, line] {
+  const bool toml = field_.kind == FieldKind::kToml;
+  const auto shown_text = [this, toml] { return toml ? field_.value : field_.plain; };
+  connect(line, &QLineEdit::editingFinished, this, [this, line, toml, shown_text] {
     const std::string text = line->text().toStdString();
-    if (text != field_.plain) want(world::toml_string(text));
+    if (text != shown_text()) want(toml ? text : world::toml_string(text));
   });
-  refresh_ = [this, line] { line->setText(QString::fromStdString(field_.plain)); };
+  refresh_ = [line, shown_text] { line->setText(QString::fromStdString(shown_text())); };
 }
 
 void FieldRow::add_switch(QHBoxLayout& layout) {

@@ -30,7 +30,8 @@ enum class Purpose : std::uint32_t {
   kParameters = 2,
   kSeed = 3,
   kStructure = 4,
-  kColour = 5
+  kColour = 5,
+  kMask = 6
 };
 
 // Counter-based generator: the k-th number is hash(world seed, block x, block z, index, purpose,

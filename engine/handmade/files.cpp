@@ -4,11 +4,15 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <tuple>
 
+#include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "engine/handmade/handmade_type.hpp"
+#include "engine/image/image_io.hpp"
 
 namespace psygen::handmade {
 namespace {
@@ -38,52 +42,65 @@ core::Result<ShapePtr> read_shape(const fs::path& file, const world::HandmadeMod
   return shape;
 }
 
-// Shapes that are in use, by file, its time and size, and the settings.
-class Shapes {
+using PicturePtr = std::shared_ptr<const world::GreyPicture>;
+
+core::Result<PicturePtr> read_picture(const fs::path& file) {
+  const image::ImageLimits most{4096, 4096, std::uint64_t{64} << 20, std::uint64_t{64} << 20};
+  auto image = image::read_grey(file, most);
+  if (!image) return tl::unexpected(image.error());
+  auto picture = std::make_shared<world::GreyPicture>();
+  picture->width = image->width, picture->height = image->height;
+  picture->pixels = std::move(image->grey);
+  picture->hash =
+      core::combine(core::hash_bytes(std::as_bytes(std::span(picture->pixels))), picture->width);
+  return picture;
+}
+
+// A file as it was: its path, its time and its size.
+using FileState = std::tuple<std::string, std::int64_t, std::uintmax_t>;
+
+std::optional<FileState> state_of(const fs::path& file) {
+  std::error_code error;
+  const auto time = fs::last_write_time(file, error);
+  const std::uintmax_t bytes = error ? 0 : fs::file_size(file, error);
+  if (error) return std::nullopt;
+  return FileState{fs::absolute(file, error).string(), time.time_since_epoch().count(), bytes};
+}
+
+// What was made of files and is in use.
+template <class Key, class Made>
+class InUse {
  public:
-  core::Result<ShapePtr> read(const fs::path& file, const world::HandmadeModel& how) {
-    std::error_code error;
-    const auto time = fs::last_write_time(file, error);
-    const std::uintmax_t bytes = error ? 0 : fs::file_size(file, error);
-    // Other glTF files consist of several, which may change alone.
-    if (error || file.extension() != ".glb") return read_shape(file, how);
-    const Key key{fs::absolute(file, error).string(),
-                  time.time_since_epoch().count(),
-                  bytes,
-                  how.size_m,
-                  how.scale,
-                  how.sink_m,
-                  how.levels,
-                  how.collider};
-    if (ShapePtr known = find(key)) return known;
-    auto shape = read_shape(file, how);
-    if (shape) keep(key, *shape);
-    return shape;
+  // What is known for a key, or what `make` makes, which is known from then on.
+  template <class Make>
+  core::Result<std::shared_ptr<const Made>> find_or(const Key& key, const Make& make) {
+    if (auto known = find(key)) return known;
+    auto made = make();
+    if (made) keep(key, *made);
+    return made;
   }
 
  private:
-  using Key = std::tuple<std::string, std::int64_t, std::uintmax_t, double, double, double,
-                         std::int64_t, std::string>;
-  ShapePtr find(const Key& key) {
+  std::shared_ptr<const Made> find(const Key& key) {
     const std::lock_guard lock(mutex_);
-    const auto found = shapes_.find(key);
-    return found == shapes_.end() ? nullptr : found->second.lock();
+    const auto found = made_.find(key);
+    return found == made_.end() ? nullptr : found->second.lock();
   }
-  void keep(const Key& key, const ShapePtr& shape) {
+  void keep(const Key& key, const std::shared_ptr<const Made>& made) {
     const std::lock_guard lock(mutex_);
-    std::erase_if(shapes_, [](const auto& entry) { return entry.second.expired(); });
-    shapes_[key] = shape;
+    std::erase_if(made_, [](const auto& entry) { return entry.second.expired(); });
+    made_[key] = made;
   }
 
   std::mutex mutex_;
-  std::map<Key, std::weak_ptr<const Shape>> shapes_;
+  std::map<Key, std::weak_ptr<const Made>> made_;
 };
 
 class Files final : public world::FilesBeside {
  public:
   core::Result<std::unique_ptr<models::ModelType>> read_model(
       const fs::path& file, const world::HandmadeModel& model) const override {
-    const auto shape = shapes_.read(file, model);
+    const auto shape = shape_from(file, model);
     if (!shape) return tl::unexpected(shape.error());
     return make_handmade_type(model.name,
                               fmt::format("handmade: {}, {} triangles", model.file,
@@ -91,8 +108,26 @@ class Files final : public world::FilesBeside {
                               *shape);
   }
 
+  core::Result<PicturePtr> read_grey(const fs::path& file) const override {
+    const auto state = state_of(file);
+    if (!state) return read_picture(file);
+    return pictures_.find_or(*state, [&] { return read_picture(file); });
+  }
+
  private:
-  mutable Shapes shapes_;
+  using ShapeKey =
+      std::tuple<FileState, double, double, double, std::int64_t, std::string>;  // with settings
+
+  core::Result<ShapePtr> shape_from(const fs::path& file, const world::HandmadeModel& how) const {
+    const auto state = state_of(file);
+    // Other glTF files consist of several, which may change alone.
+    if (!state || file.extension() != ".glb") return read_shape(file, how);
+    const ShapeKey key{*state, how.size_m, how.scale, how.sink_m, how.levels, how.collider};
+    return shapes_.find_or(key, [&] { return read_shape(file, how); });
+  }
+
+  mutable InUse<ShapeKey, Shape> shapes_;
+  mutable InUse<FileState, world::GreyPicture> pictures_;
 };
 
 }  // namespace

@@ -24,6 +24,14 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
+// A picture of grey values with 16 bits, such as masks and heights; no colour management. Valid
+// when `grey` has width · height values.
+struct GreyImage {
+  std::uint32_t width = 0;          // pixels
+  std::uint32_t height = 0;         // pixels
+  std::vector<std::uint16_t> grey;  // 0 … 65535
+};
+
 // A picture of one colour (transparent black by default). Sizes in pixels, channels 0 … 255.
 Image make_image(std::uint32_t width, std::uint32_t height, std::uint8_t red = 0,
                  std::uint8_t green = 0, std::uint8_t blue = 0, std::uint8_t alpha = 0);

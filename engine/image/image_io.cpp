@@ -87,6 +87,18 @@ core::Result<Image> read_image(const std::filesystem::path& path, const ImageLim
   });
 }
 
+core::Result<GreyImage> read_grey(const std::filesystem::path& path, const ImageLimits& limits) {
+  return without_exceptions(path, ErrorCode::kParse, [&]() -> core::Result<GreyImage> {
+    const auto bytes = core::read_file(path, limits.max_file_bytes);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return checked_header(path, *bytes, limits).and_then([&](const PictureHeader& header) {
+      return with_path(path, picture_codec().and_then([&](const PictureCodec* codec) {
+        return codec->decode_grey(*bytes, header);
+      }));
+    });
+  });
+}
+
 core::Result<void> write_png(const std::filesystem::path& path, const Image& image) {
   constexpr std::uint32_t kLargest = 1U << 20;  // pixels per side
   if (image.width == 0 || image.height == 0 || !is_valid(image) || image.width > kLargest ||

@@ -34,6 +34,11 @@ core::Result<Image> read_image(const std::filesystem::path& path, const ImageLim
 core::Result<Image> decode_image(std::span<const std::uint8_t> bytes,
                                  const std::filesystem::path& name, const ImageLimits& limits = {});
 
+// Reads any PNG or JPEG as grey values with 16 bits: colours become their mean, 8 bits are spread,
+// alpha is left out. Fails like read_image(), whose limits count 4 bytes a pixel.
+core::Result<GreyImage> read_grey(const std::filesystem::path& path,
+                                  const ImageLimits& limits = {});
+
 // Writes a temporary file next to `path`, flushes it to the disk and renames it: `path` holds the
 // old picture or the new one, never a mix. Refuses to replace anything that is not a regular file.
 // Fails with kInvalidArgument (no pixels, more than 2^20 per side, or bytes that do not match the

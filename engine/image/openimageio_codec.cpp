@@ -26,7 +26,17 @@ void expand_channels(const Bytes& source, std::size_t channels, Bytes& rgba) {
   }
 }
 
-core::Result<Image> decode(std::span<const std::uint8_t> bytes, const PictureHeader& header) {
+// The channels of all pixels, as many as the file has.
+template <class Channel>
+struct Decoded {
+  std::size_t channels = 0;
+  std::vector<Channel> values;
+};
+
+template <class Channel>
+core::Result<Decoded<Channel>> decode_channels(std::span<const std::uint8_t> bytes,
+                                               const PictureHeader& header,
+                                               OIIO::TypeDesc::BASETYPE type) {
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
   const char* format = header.format == PictureFormat::kPng ? "png" : "jpeg";
   const auto input = OIIO::ImageInput::create(format);
@@ -44,12 +54,33 @@ core::Result<Image> decode(std::span<const std::uint8_t> bytes, const PictureHea
     return core::fail(ErrorCode::kParse, "its headers contradict each other");
   }
   const std::size_t pixels = std::size_t{header.width} * header.height;
-  Image image{header.width, header.height, Bytes(pixels * 4)};
-  Bytes source(pixels * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, source.data())) {
+  Decoded<Channel> decoded{channels, std::vector<Channel>(pixels * channels)};
+  if (!input->read_image(0, 0, 0, spec.nchannels, type, decoded.values.data())) {
     return core::fail(ErrorCode::kParse, "cannot be decoded: " + input->geterror());
   }
-  expand_channels(source, channels, image.rgba);
+  return decoded;
+}
+
+core::Result<Image> decode(std::span<const std::uint8_t> bytes, const PictureHeader& header) {
+  const auto decoded = decode_channels<std::uint8_t>(bytes, header, OIIO::TypeDesc::UINT8);
+  if (!decoded) return tl::unexpected(decoded.error());
+  Image image{header.width, header.height, Bytes(std::size_t{header.width} * header.height * 4)};
+  expand_channels(decoded->values, decoded->channels, image.rgba);
+  return image;
+}
+
+core::Result<GreyImage> decode_grey(std::span<const std::uint8_t> bytes,
+                                    const PictureHeader& header) {
+  const auto decoded = decode_channels<std::uint16_t>(bytes, header, OIIO::TypeDesc::UINT16);
+  if (!decoded) return tl::unexpected(decoded.error());
+  const std::size_t colours = decoded->channels >= 3 ? 3 : 1;
+  GreyImage image{header.width, header.height, {}};
+  for (std::size_t i = 0; i < decoded->values.size(); i += decoded->channels) {
+    std::uint32_t sum = 0;
+    for (std::size_t c = 0; c < colours; ++c)
+      sum += decoded->values[i + c];
+    image.grey.push_back(static_cast<std::uint16_t>((sum + colours / 2) / colours));
+  }
   return image;
 }
 
@@ -74,5 +105,5 @@ core::Result<Bytes> encode_png(const Image& image) {
 }  // namespace psygen::image
 
 extern "C" __attribute__((visibility("default")))
-const psygen::image::PictureCodec psygen_picture_codec = {psygen::image::decode,
-                                                          psygen::image::encode_png};
+const psygen::image::PictureCodec psygen_picture_codec = {
+    psygen::image::decode, psygen::image::decode_grey, psygen::image::encode_png};

@@ -1,4 +1,4 @@
-// The decoder and encoder of pictures: OpenImageIO behind two functions. They are in a library of
+// The decoder and encoder of pictures: OpenImageIO behind three functions. They are in a library of
 // their own, which is loaded when the first picture is read or written. OpenImageIO depends on
 // about 250 more libraries. Linked directly, they would cost every start 0.2 s and 100 MB; they
 // also start threads, and end the program when they cannot. Not for files, limits and headers:
@@ -20,6 +20,9 @@ struct PictureCodec {
   // Decodes a file whose header has been read to four channels of 8 bits. Fails with kParse, or
   // with kInternal when OpenImageIO lacks the format.
   core::Result<Image> (*decode)(std::span<const std::uint8_t> bytes, const PictureHeader& header);
+  // The same to one grey value of 16 bits.
+  core::Result<GreyImage> (*decode_grey)(std::span<const std::uint8_t> bytes,
+                                         const PictureHeader& header);
   // Encodes a valid picture as a PNG file. Fails with kIo, or with kInternal when OpenImageIO lacks
   // the format.
   core::Result<std::vector<std::uint8_t>> (*encode_png)(const Image& image);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/hash.hpp"
+#include "engine/world/ground_blends.hpp"
 
 namespace psygen::save {
 namespace {
@@ -65,6 +66,7 @@ void add_scatter(Facts& facts, const models::ModelType& type, const world::Scatt
   facts.add("min_height_m", scatter.min_height_m, usual.min_height_m);
   facts.add("max_height_m", scatter.max_height_m, usual.max_height_m);
   facts.add("max_slope_deg", scatter.max_slope_deg, usual.max_slope_deg);
+  if (const std::uint64_t mask = world::mask_hash(scatter.mask); mask != 0) facts.add("mask", mask);
   const auto specs = type.parameters();
   for (std::size_t i = 0; i < scatter.ranges.size(); ++i) {
     const auto [low, high] = scatter.ranges[i];
@@ -126,6 +128,8 @@ WorldIdentity identity_of(const world::World& world, const models::Registry& reg
     add_handmade(facts, registry, model);
   for (const world::Scatter& scatter : world.scatter)
     add_scatter(facts, registry[scatter.model], scatter);
+  if (const std::uint64_t ground = world::placing_hash(world); ground != 0)
+    facts.add("ground", ground);
   return {world.name, facts.hash()};
 }
 

@@ -12,6 +12,7 @@
 #include "engine/scene/scene.hpp"
 #include "engine/scene/tree_pictures.hpp"
 #include "engine/scene/world_facts.hpp"
+#include "engine/world/ground_blends.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -78,6 +79,7 @@ world::World without_edits(world::World world) {
 
 // Whether worlds without edits differ in nothing that meshes or places depend on.
 bool same_but_looks(world::World a, const world::World& b) {
+  if (world::placing_hash(a) != world::placing_hash(b)) return false;
   a.name = b.name;
   a.sky = b.sky;
   a.water = b.water;

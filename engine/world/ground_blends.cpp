@@ -1,8 +1,11 @@
 #include "engine/world/ground_blends.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+
+#include "engine/core/hash.hpp"
 
 namespace psygen::world {
 namespace {
@@ -63,6 +66,17 @@ GroundBlends ground_blends(const Palette& palette, float height_m, const glm::ve
           smooth(0.5F * uneven - blend(palette.sand_end_m, palette.sand_blend_m, height_m)),
           glm::smoothstep(rock_start, rock_full, slope + 0.06F * uneven),
           snow * (1.0F - glm::smoothstep(0.7F * steep, steep, slope))};
+}
+
+std::uint64_t placing_hash(const World& world) {
+  if (std::ranges::none_of(world.scatter, [](const Scatter& s) { return s.mask.ground != 0; }))
+    return 0;
+  const Palette p = drawn_palette(world);
+  std::uint64_t hash = 1;
+  for (const double v : {p.sand_end_m, p.sand_blend_m, p.dry_start_m, p.dry_blend_m, p.snow_start_m,
+                         p.snow_blend_m, p.rock_slope_start, p.rock_slope_full, p.snow_slope_max})
+    hash = core::combine(hash, std::bit_cast<std::uint64_t>(v + 0.0));
+  return std::max<std::uint64_t>(hash, 1);
 }
 
 GroundKind main_kind(const GroundBlends& blends) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <string_view>
 
 #include "engine/core/coordinates.hpp"
 #include "engine/world/world.hpp"
@@ -30,6 +31,14 @@ glm::vec2 pattern_place(core::BlockCoord block, double block_size_m, glm::vec2 l
 // The blends of a point. `palette` is that of drawn_palette(); `normal` has unit length.
 GroundBlends ground_blends(const Palette& palette, float height_m, const glm::vec3& normal,
                            glm::vec2 pattern_place_m);
+
+// Their names in world files, in the same order.
+inline constexpr std::array<std::string_view, kGroundKinds> kGroundNames{"grass", "forest", "dry",
+                                                                         "sand",  "rock",   "snow"};
+
+// Of all that decides where each kind is, in worlds whose scatters ask for kinds of ground; 0 in
+// all others. Colours decide nothing.
+std::uint64_t placing_hash(const World& world);
 
 // The kind with the largest share of what is seen: its blend times what later kinds leave of it.
 // The first one of equals.

@@ -8,6 +8,7 @@
 
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/ground_blends.hpp"
 
 namespace psygen::world {
 namespace {
@@ -17,13 +18,6 @@ namespace {
 double draw_coordinate(core::RandomStream& random, float block_size_m) {
   const auto drawn = static_cast<float>(random.next_unit() * static_cast<double>(block_size_m));
   return static_cast<double>(drawn < block_size_m ? drawn : std::nextafter(block_size_m, 0.0F));
-}
-
-// Whether an instance of a scatter may stand here. `least_up` is the smallest allowed y of the
-// ground's normal.
-bool may_stand(const Scatter& scatter, float least_up, const models::GroundPoint& ground) {
-  return ground.height_m >= scatter.min_height_m && ground.height_m <= scatter.max_height_m &&
-         ground.normal.y >= least_up;
 }
 
 // The world's terrain as the function has it.
@@ -45,7 +39,32 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
       defaults_(models::default_parameters(type)),
       block_(block),
       least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
-      slope_(slope_parameters(type)) {}
+      slope_(slope_parameters(type)) {
+  if (scatter.mask.ground != 0) palette_ = drawn_palette(world);
+}
+
+// Whether the limits allow this ground.
+bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const {
+  if (!(ground.height_m >= scatter_.min_height_m && ground.height_m <= scatter_.max_height_m &&
+        ground.normal.y >= least_up_))
+    return false;
+  if (!palette_) return true;
+  const GroundKind kind = main_kind(
+      ground_blends(*palette_, static_cast<float>(ground.height_m), ground.normal,
+                    pattern_place(block_, static_cast<double>(size_m_), glm::vec2(local_m))));
+  return (scatter_.mask.ground >> static_cast<unsigned>(kind) & 1U) != 0;
+}
+
+// Whether a mask leaves the instance out that has found this place.
+bool Scattering::is_left_out(std::uint32_t index, glm::dvec2 local_m) const {
+  if (!scatter_.mask.thins()) return false;
+  const glm::dvec2 place_m =
+      glm::dvec2(block_.x, block_.z) * static_cast<double>(size_m_) + local_m;
+  const double share = mask_share(scatter_.mask, seed_, place_m);
+  if (share <= 0 || share >= 1) return share <= 0;
+  core::RandomStream random(seed_, block_.x, block_.z, index, core::Purpose::kMask);
+  return random.next_unit() >= share;
+}
 
 std::optional<Scattering::Foothold> Scattering::place(const models::BlockGround& ground,
                                                       std::uint32_t index,
@@ -54,8 +73,9 @@ std::optional<Scattering::Foothold> Scattering::place(const models::BlockGround&
   for (int i = 0; i < kPlacementTries; ++i) {
     const double x = draw_coordinate(random, size_m_), z = draw_coordinate(random, size_m_);
     const models::GroundPoint point = ground.at(corner_m + glm::dvec2(x, z));
-    if (!scatter_.has_filter() || may_stand(scatter_, least_up_, point))
-      return Foothold{{x, point.height_m, z}, point.normal};
+    if (scatter_.has_filter() && !may_stand(point, {x, z})) continue;
+    if (is_left_out(index, {x, z})) return std::nullopt;
+    return Foothold{{x, point.height_m, z}, point.normal};
   }
   return std::nullopt;
 }

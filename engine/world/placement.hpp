@@ -51,8 +51,9 @@ class Scattering {
     glm::vec3 position{0.0F};
     glm::vec3 normal{0, 1, 0};  // of the ground
   };
-  // The first allowed place that instance `index` of the block tries, or nothing. `ground` is that
-  // of the block, or of a larger node that has the block's corner at `corner_m`.
+  // The first allowed place that instance `index` of the block tries, or nothing, also where a mask
+  // leaves it out there. `ground` is that of the block, or of a larger node that has the block's
+  // corner at `corner_m`.
   std::optional<Foothold> place(const models::BlockGround& ground, std::uint32_t index,
                                 glm::dvec2 corner_m = {0, 0}) const;
   // The parameters of instance `index` on ground with this normal. Types with the placed parameters
@@ -60,6 +61,9 @@ class Scattering {
   models::Parameters parameters(std::uint32_t index, const glm::vec3& normal = {0, 1, 0}) const;
 
  private:
+  bool may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const;
+  bool is_left_out(std::uint32_t index, glm::dvec2 local_m) const;
+
   std::uint64_t seed_;
   float size_m_;
   const models::ModelType& type_;
@@ -68,6 +72,7 @@ class Scattering {
   models::Parameters defaults_;
   core::BlockCoord block_;
   float least_up_;
+  std::optional<Palette> palette_;  // where kinds of ground matter
   SlopeParameters slope_;
 };
 

@@ -16,6 +16,7 @@
 #include "engine/core/coordinates.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/models/tree/species.hpp"
+#include "engine/world/mask.hpp"
 
 namespace psygen::world {
 
@@ -53,9 +54,11 @@ struct Scatter {
   double min_height_m = -std::numeric_limits<double>::infinity();
   double max_height_m = std::numeric_limits<double>::infinity();
   double max_slope_deg = 90;  // of the ground, against the horizontal
-  // Whether any limit excludes ground.
+  ScatterMask mask;           // where they may stand within these limits
+  // Whether any limit or mask excludes ground.
   bool has_filter() const {
-    return min_height_m > -std::numeric_limits<double>::infinity() ||
+    return mask.thins() || mask.ground != 0 ||
+           min_height_m > -std::numeric_limits<double>::infinity() ||
            max_height_m < std::numeric_limits<double>::infinity() || max_slope_deg < 90;
   }
   friend bool operator==(const Scatter&, const Scatter&) = default;

@@ -56,6 +56,11 @@ class ExampleBeside final : public world::FilesBeside {
       const std::filesystem::path&, const world::HandmadeModel& model) const override {
     return handmade::files().read_model(file_.path(), model);
   }
+  core::Result<std::shared_ptr<const world::GreyPicture>> read_grey(
+      const std::filesystem::path&) const override {
+    return std::make_shared<const world::GreyPicture>(
+        world::GreyPicture{2, 2, {0, 20'000, 40'000, 65'535}, 7});
+  }
 
  private:
   FileInMemory file_;
@@ -341,6 +346,15 @@ count = 4
 max_slope_deg = 30
 scale = [0.5, 2]
 turn_deg = [0, 360]
+[[scatter]]
+model = "rock"
+count = 4
+on_ground = ["grass", "rock"]
+mask_image = "masks/rocks.png"
+mask_area_m = [10, 20.5, 300, 200]
+mask_noise_m = 40
+mask_share = 0.3
+mask_patches = 2
 )";
 }
 

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "engine/world/far/merged_models.hpp"
+#include "engine/world/ground_blends.hpp"
 
 namespace psygen::world {
 namespace {
@@ -47,7 +48,9 @@ std::uint64_t merged_identity(const World& world, const models::Registry& regist
     add_real(s.min_height_m);
     add_real(s.max_height_m);
     add_real(s.max_slope_deg);
+    if (const std::uint64_t mask = mask_hash(s.mask); mask != 0) add(mask);
   }
+  if (const std::uint64_t ground = placing_hash(world); ground != 0) add(ground);
   return h;
 }
 

@@ -113,6 +113,18 @@ void visit_place(S& scatter, const Visit& visit) {
         FieldSpec{0, 90, 0, 90, "degrees", "steepest ground on which instances stand"});
 }
 
+// The numbers of a ScatterMask.
+template <class M, class Visit>
+void visit_mask(M& mask, const Visit& visit) {
+  visit("mask_noise_m", mask.noise_m,
+        FieldSpec{0, 1e6, 0, 1000, "m", "size of patches in which instances stand; 0: everywhere"});
+  visit("mask_share", mask.share,
+        FieldSpec{0, 1, 0, 1, "", "share of the ground that the patches cover"});
+  visit(
+      "mask_patches", mask.patches,
+      FieldSpec{0, 1e6, 0, 20, "", "which patches: those of equal numbers and sizes are the same"});
+}
+
 // The numbers of a world that are not of its terrain.
 inline constexpr FieldSpec kBlocks{
     0, 0x1.0p31, 0, 1024, "blocks", "number of blocks along x and z; 0: without an end"};

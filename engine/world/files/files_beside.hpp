@@ -1,10 +1,11 @@
-// What a world file names beside itself and world cannot read: models in glTF files. Implemented by
-// engine/handmade, handed to parse_world() by whoever reads world files. One virtual seam; any
-// thread.
+// What a world file names beside itself and world cannot read: models in glTF files, and pictures.
+// Implemented by engine/handmade, handed to parse_world() by whoever reads world files. One virtual
+// seam; any thread.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "engine/core/error.hpp"
 #include "engine/models/model_type.hpp"
@@ -20,6 +21,24 @@ class FilesBeside {
   // gltf::read_file().
   virtual core::Result<std::unique_ptr<models::ModelType>> read_model(
       const std::filesystem::path& file, const HandmadeModel& model) const = 0;
+  // A picture of at most 4096 × 4096 pixels as grey values. Fails likewise.
+  virtual core::Result<std::shared_ptr<const GreyPicture>> read_grey(
+      const std::filesystem::path& file) const = 0;
+};
+
+// The files beside one world file.
+struct Beside {
+  std::string_view world_file;  // names are relative to its folder
+  const FilesBeside* files;     // null: this program reads none
+
+  std::filesystem::path path_of(std::string_view name) const {
+    return std::filesystem::path(world_file).parent_path() / name;
+  }
+  core::Result<std::shared_ptr<const GreyPicture>> read_grey(std::string_view name) const {
+    if (files != nullptr) return files->read_grey(path_of(name));
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "this program reads no files beside world files (engine/handmade)");
+  }
 };
 
 }  // namespace psygen::world

@@ -44,11 +44,10 @@ void register_model(const HandmadeModel& model, const HandmadeSource& source, co
       if (member.key == key) line = member.value.line;
     problems.add(line, fmt::format("model[{}].{}", number, key), sentence, code);
   };
-  if (source.beside == nullptr)
-    return refuse("file", "this program reads no models from files (engine/handmade)",
+  if (source.beside.files == nullptr)
+    return refuse("file", "this program reads no files beside world files (engine/handmade)",
                   core::ErrorCode::kInvalidArgument);
-  const auto folder = std::filesystem::path(source.world_file).parent_path();
-  auto type = source.beside->read_model(folder / model.file, model);
+  auto type = source.beside.files->read_model(source.beside.path_of(model.file), model);
   if (!type) return refuse("file", type.error().message, type.error().code);
   if (const int known = source.registry.find(model.name); known >= 0) {
     const models::ModelType& there = source.registry[static_cast<models::ModelIndex>(known)];
@@ -63,11 +62,14 @@ void register_model(const HandmadeModel& model, const HandmadeSource& source, co
 
 }  // namespace
 
-void check_name_beside(TableReader& reader, std::string_view key, const std::string& name) {
+bool check_name_beside(TableReader& reader, std::string_view key, const std::string& name) {
   const std::filesystem::path path(name);
-  if (path.has_root_path() || std::find(path.begin(), path.end(), "..") != path.end())
+  const bool leads_out =
+      path.has_root_path() || std::find(path.begin(), path.end(), "..") != path.end();
+  if (leads_out)
     reader.problem(reader.find(key)->line, key,
                    "it must be a name relative to the folder of the world's file, without ..");
+  return !leads_out;
 }
 
 std::vector<HandmadeModel> read_handmade(TableReader& root, const HandmadeSource& source,

@@ -17,8 +17,7 @@ inline constexpr std::size_t kMaxHandmadeModels = 64;  // per file
 
 // What handmade models are read with.
 struct HandmadeSource {
-  std::string_view world_file;  // names of models are relative to its folder
-  const FilesBeside* beside;    // null: files cannot be read
+  Beside beside;
   const models::Registry& registry;
   models::Registry* grown;  // the same, or null where it cannot grow
 };
@@ -31,7 +30,7 @@ std::vector<HandmadeModel> read_handmade(TableReader& root, const HandmadeSource
 // Appends tables to `out` from which read_handmade() makes equal models.
 void write_handmade(const std::vector<HandmadeModel>& models, std::string& out);
 
-// Adds a problem for a name that leads out of the folder of the world file.
-void check_name_beside(TableReader& reader, std::string_view key, const std::string& name);
+// Adds a problem for a name that leads out of the folder of the world file, and returns false.
+bool check_name_beside(TableReader& reader, std::string_view key, const std::string& name);
 
 }  // namespace psygen::world

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/world/files/fields.hpp"
+#include "engine/world/files/mask_file.hpp"
 #include "engine/world/files/model_fields.hpp"
 #include "engine/world/placement.hpp"
 
@@ -46,7 +47,7 @@ std::int64_t read_count(TableReader& reader) {
 
 // Reads one [[scatter]]. Returns log2 of its largest number of triangles per block.
 double read_scatter(const Node& node, std::size_t number, const models::Registry& registry,
-                    World& world, Problems& problems) {
+                    const Beside& beside, World& world, Problems& problems) {
   TableReader reader(node, fmt::format("scatter[{}]", number), node.line, problems);
   const int model = read_model_name(reader, world, registry);
   if (model < 0) return 0;
@@ -61,6 +62,7 @@ double read_scatter(const Node& node, std::size_t number, const models::Registry
   if (scatter.min_height_m > scatter.max_height_m)
     reader.problem(node.line, "min_height_m", "it must not be above max_height_m");
 
+  read_mask(reader, world, beside, scatter.mask);
   ModelFields fields = fields_of(registry[scatter.model], node.line);
   const auto specs = fields.type->parameters();
   for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -83,13 +85,13 @@ double read_scatter(const Node& node, std::size_t number, const models::Registry
 
 }  // namespace
 
-void read_scatters(TableReader& root, const models::Registry& registry, World& world,
-                   Problems& problems) {
+void read_scatters(TableReader& root, const models::Registry& registry, const Beside& beside,
+                   World& world, Problems& problems) {
   double triangles = 0;
   std::size_t number = 0;
   int line = root.line();
   for (const Node* node : root.tables("scatter", kMaxScatters)) {
-    triangles += std::exp2(read_scatter(*node, number++, registry, world, problems));
+    triangles += std::exp2(read_scatter(*node, number++, registry, beside, world, problems));
     line = node->line;
   }
   if (models_per_block(world) > kMaxModelsPerBlock)

@@ -2,6 +2,7 @@
 // Writing is in write_world.cpp. Format: docs/world-files.md.
 #pragma once
 
+#include "engine/world/files/files_beside.hpp"
 #include "engine/world/files/table_reader.hpp"
 #include "engine/world/world.hpp"
 
@@ -10,8 +11,9 @@ namespace psygen::world {
 inline constexpr std::size_t kMaxScatters = 64;  // per file
 
 // Reads all tables into world.scatter. Adds problems for unknown models, for parameters that their
-// types refuse, and for too many models or triangles on a block. Requires world.terrain_model.
-void read_scatters(TableReader& root, const models::Registry& registry, World& world,
-                   Problems& problems);
+// types refuse, and for too many models or triangles on a block. Requires all of the world's
+// table and its terrain.
+void read_scatters(TableReader& root, const models::Registry& registry, const Beside& beside,
+                   World& world, Problems& problems);
 
 }  // namespace psygen::world

@@ -166,6 +166,15 @@ bool TableReader::read(std::string_view key, glm::dvec2& value, Limits limits, P
   return true;
 }
 
+bool TableReader::read(std::string_view key, std::array<double, 4>& value, Limits limits,
+                       Presence presence) {
+  const Node* node = array_of(key, value.size(), limits, false, presence);
+  if (node == nullptr) return false;
+  for (std::size_t i = 0; i < value.size(); ++i)
+    value[i] = node->items[i].real;
+  return true;
+}
+
 bool TableReader::read_pair(std::string_view key, std::int64_t (&value)[2], Limits limits,
                             Presence presence) {
   const Node* node = array_of(key, 2, limits, true, presence);

@@ -4,6 +4,7 @@
 // file. It parses no text (document.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -75,6 +76,8 @@ class TableReader {
             Presence = Presence::kOptional);
   bool read(std::string_view key, glm::vec3& value, Limits limits, Presence = Presence::kOptional);
   bool read(std::string_view key, glm::dvec2& value, Limits limits, Presence = Presence::kOptional);
+  bool read(std::string_view key, std::array<double, 4>& value, Limits limits,
+            Presence = Presence::kOptional);
   bool read_pair(std::string_view key, std::int64_t (&value)[2], Limits limits,
                  Presence = Presence::kOptional);
   std::optional<NumberRange> read_range(std::string_view key);
@@ -93,8 +96,9 @@ class TableReader {
   // The full name of a key ("sky.exposure"), the first line of the table, and a problem with a key.
   std::string field(std::string_view key) const;
   int line() const { return line_; }
-  void problem(int line, std::string_view key, std::string_view sentence) {
-    problems_.add(line, field(key), sentence);
+  void problem(int line, std::string_view key, std::string_view sentence,
+               core::ErrorCode code = core::ErrorCode::kParse) {
+    problems_.add(line, field(key), sentence, code);
   }
 
  private:

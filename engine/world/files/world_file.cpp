@@ -178,9 +178,9 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
   Problems of_types(file_name);
   world.species = read_species(root, of_types);
   if (!of_types.any()) register_species(root, world, registry, grown, of_types);
-  world.models = read_handmade(root, {file_name, beside, registry, grown}, of_types);
+  world.models = read_handmade(root, {{file_name, beside}, registry, grown}, of_types);
   if (of_types.any()) return tl::unexpected(problems.any() ? problems.first() : of_types.first());
-  read_scatters(root, registry, world, problems);
+  read_scatters(root, registry, {file_name, beside}, world, problems);
   world.sky = usual_sky(root);
   read_fields(root, "sky", problems, [&](const auto& visit) { visit_sky(world.sky, visit); });
   read_fields(root, "water", problems, [&](const auto& visit) { visit_water(world.water, visit); });

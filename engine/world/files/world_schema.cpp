@@ -7,6 +7,7 @@
 
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/handmade_file.hpp"
+#include "engine/world/files/mask_file.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/species_file.hpp"
 #include "engine/world/files/text_layout.hpp"
@@ -257,6 +258,18 @@ class SchemaBuilder {
     return made;
   }
 
+  void add_mask(WorldSection& to, const ScatterMask& mask) const {
+    const bool whole_world = mask.area_m == std::array<double, 4>{};
+    add(to, "on_ground", {FieldKind::kToml, mask.ground == 0 ? "" : toml_grounds(mask.ground), {}},
+        "", {0, 0, 0, 0, "", "kinds of ground on which instances stand: [\"grass\", \"forest\"]"});
+    add(to, "mask_image", text_value(mask.image, FieldKind::kImage), "",
+        {0, 0, 0, 0, "",
+         "a picture whose grey is the share of instances that stand: white is all"});
+    add(to, "mask_area_m", {FieldKind::kToml, whole_world ? "" : toml_vector(mask.area_m), {}}, "",
+        {0, 0, 0, 0, "m", "where the picture lies: [x0, z0, x1, z1]; without it the whole world"});
+    add_all(to, mask, ScatterMask{}, [](auto& o, const auto& v) { visit_mask(o, v); });
+  }
+
   WorldSection scatter_section(const Scatter& s, const TextPath& path) const {
     const models::ModelType& type = registry_[s.model];
     WorldSection made = section(SectionKind::kScatter, path, std::string(type.name()));
@@ -267,6 +280,7 @@ class SchemaBuilder {
       if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
     add_required(made, "count", value_of(std::int64_t{s.count}), kCount);
     add_all(made, s, Scatter{}, [](auto& o, const auto& v) { visit_place(o, v); });
+    add_mask(made, s.mask);
     for (std::size_t i = 0; i < s.ranges.size(); ++i) {
       const models::ParameterSpec& spec = type.parameters()[i];
       if (spec.source == models::ParameterSource::kUser)

@@ -28,6 +28,7 @@ enum class FieldKind : std::uint8_t {
   kImage,   // the name of a picture, relative to the folder of the file
   kChoice,  // one of `choices`
   kBoolean,
+  kToml,  // of several parts, shown and written as TOML
 };
 
 // One field.

@@ -6,6 +6,7 @@
 
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/handmade_file.hpp"
+#include "engine/world/files/mask_file.hpp"
 #include "engine/world/files/species_file.hpp"
 #include "engine/world/files/toml_values.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -55,7 +56,8 @@ void write_terrain(Text out, const World& world, const models::ModelType& type) 
   }
 }
 
-void write_scatter(Text out, const Scatter& scatter, const models::ModelType& type) {
+void write_scatter(std::string& text, const Scatter& scatter, const models::ModelType& type) {
+  const Text out(text);
   fmt::format_to(out, "\n[[scatter]]\nmodel = {}\ncount = {}\n", toml_string(type.name()),
                  scatter.count);
   if (std::isfinite(scatter.min_height_m))
@@ -64,6 +66,7 @@ void write_scatter(Text out, const Scatter& scatter, const models::ModelType& ty
     fmt::format_to(out, "max_height_m = {}\n", scatter.max_height_m);
   if (scatter.max_slope_deg < 90)
     fmt::format_to(out, "max_slope_deg = {}\n", scatter.max_slope_deg);
+  write_mask(scatter.mask, text);
   for (std::size_t i = 0; i < scatter.ranges.size(); ++i) {
     const models::ParameterSpec& spec = type.parameters()[i];
     const ParameterRange& range = scatter.ranges[i];
@@ -89,7 +92,7 @@ std::string write_world(const World& world, const models::Registry& registry) {
   write_species(world.species, text);
   write_handmade(world.models, text);
   for (const Scatter& scatter : world.scatter)
-    write_scatter(out, scatter, registry[scatter.model]);
+    write_scatter(text, scatter, registry[scatter.model]);
   fmt::format_to(out, "\n[sky]\n");
   visit_sky(world.sky, FieldWriter{out});
   fmt::format_to(out, "\n[water]\n");

@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <span>
+
+#include "engine/core/read_file.hpp"
+#include "engine/image/image_io.hpp"
 #include "engine/world/far/tree_pictures.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/files/world_schema.hpp"
 #include "engine/world/placement.hpp"
 #include "tests/engine/handmade/shapes.hpp"
+#include "tests/engine/image/test_files.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::handmade {
@@ -134,7 +139,59 @@ TEST(HandmadeFiles, RefuseWithFileLineAndField) {
   EXPECT_THAT(w.error_with("size_m = 3", "scale = 1e5"), AllOf(StartsWith(at), HasSubstr("large")));
   const auto without = world::parse_world(std::string(kHead) + kBall, w.file(), w.registry);
   ASSERT_FALSE(without.has_value());
-  EXPECT_THAT(without.error().message, HasSubstr("reads no models from files"));
+  EXPECT_THAT(without.error().message, HasSubstr("reads no files beside world files"));
+}
+
+constexpr const char* kMask = R"([[scatter]]
+model = "rock"
+count = 20
+subdivisions = 1
+mask_image = "m.png"
+)";
+
+std::size_t rocks_with(World& w) {
+  const auto world = w.read(std::string(kHead) + kMask);
+  EXPECT_TRUE(world.has_value()) << (world ? "" : world.error().message);
+  std::vector<world::Placement> placed;
+  if (world) world::place_models(*world, w.registry, {3, 2}, placed);
+  return placed.size();
+}
+
+TEST(HandmadeFiles, ReadMasksAndReadThemAgainWhenTheyChange) {
+  World w;
+  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(2, 2, 255, 255, 255)));
+  EXPECT_EQ(rocks_with(w), 20U);
+  const auto kept = w.read(std::string(kHead) + kMask);  // the picture stays in use
+  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(64, 32)));
+  EXPECT_EQ(rocks_with(w), 0U);
+  // One pixel is a picture too.
+  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(1, 1, 255, 255, 255)));
+  EXPECT_EQ(rocks_with(w), 20U);
+}
+
+TEST(HandmadeFiles, RefuseBadMasks) {
+  World w;
+  const auto error = [&] { return w.error_of(std::string(kHead) + kMask); };
+  const std::string at = w.file() + ":14: scatter[0].mask_image: ";
+  EXPECT_THAT(error(), AllOf(StartsWith(at), HasSubstr("m.png")));
+  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(4097, 1)));
+  EXPECT_THAT(error(), AllOf(StartsWith(at), HasSubstr("4097 x 1")));
+  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(64, 64, 9, 99, 200)));
+  const auto whole = core::read_file(w.folder / "m.png", 1 << 20);
+  ASSERT_TRUE(whole.has_value());
+  for (std::size_t length = 0; length < whole->size(); length += 7) {
+    image::write_bytes(w.folder / "m.png", std::span(*whole).first(length));
+    EXPECT_THAT(error(), StartsWith(at)) << length;
+  }
+  for (std::size_t byte = 0; byte < whole->size(); byte += 11) {
+    auto damaged = *whole;
+    damaged[byte] ^= 0x55;
+    image::write_bytes(w.folder / "m.png", damaged);
+    EXPECT_THAT(error(), StartsWith(at)) << byte;
+  }
+  std::filesystem::remove(w.folder / "m.png");
+  std::filesystem::create_directory(w.folder / "m.png");
+  EXPECT_THAT(error(), StartsWith(at));
 }
 
 TEST(HandmadeFiles, RefuseEveryCutFile) {

@@ -53,6 +53,21 @@ TEST(ImageIo, APngComesBackBitForBitWithItsAlpha) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
+TEST(ImageIo, ReadsGreyValuesWithSixteenBits) {
+  const auto ramp = read_grey(source_file("tests/engine/image/data/ramp_16_bits.png"));
+  ASSERT_TRUE(ramp) << ramp.error().message;
+  EXPECT_EQ(ramp->width, 4U);
+  EXPECT_EQ(ramp->height, 2U);
+  EXPECT_EQ(ramp->grey, (std::vector<std::uint16_t>{0, 1, 256, 65535, 1000, 2000, 3000, 40001}));
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_png(folder / "red.png", make_image(3, 1, 255, 0, 0, 0)));
+  const auto mean = read_grey(folder / "red.png");
+  ASSERT_TRUE(mean) << mean.error().message;
+  EXPECT_EQ(mean->grey, std::vector<std::uint16_t>(3, 21845));
+  EXPECT_EQ(read_grey(folder / "no.png").error().code, ErrorCode::kIo);
+  EXPECT_EQ(read_grey(folder / "red.png", {2, 2, 16, 1000}).error().code, ErrorCode::kOverBudget);
+}
+
 TEST(ImageIo, ReadsAJpegWhateverItIsCalled) {
   const TemporaryFolder folder;
   std::filesystem::copy_file(kJpegFile, folder / "picture.png");

@@ -42,6 +42,25 @@ TEST(WorldIdentity, IsNoMatterOfColoursAndOfTheName) {
   EXPECT_EQ(identity_of(world, registry()), (WorldIdentity{"other", hash}));
 }
 
+TEST(WorldIdentity, KnowsMasksAndTheKindsOfGroundThatTheyAskFor) {
+  world::World world = parsed(kSmallWorld);
+  const auto hash = identity_of(world, registry()).hash;
+  world.scatter[1].mask.share = 0.3;  // of no patches
+  EXPECT_EQ(identity_of(world, registry()).hash, hash);
+  world.scatter[1].mask.noise_m = 40;
+  const auto patches = identity_of(world, registry()).hash;
+  EXPECT_NE(patches, hash);
+  world.palette.snow_start_m = 20;
+  EXPECT_EQ(identity_of(world, registry()).hash, patches);
+  world.scatter[1].mask.ground = 2;
+  const auto by_ground = identity_of(world, registry()).hash;
+  world.palette.snow_start_m = 30;
+  EXPECT_NE(identity_of(world, registry()).hash, by_ground);
+  world.palette.snow_start_m = 20;
+  world.palette.snow = glm::vec3(0.5F);
+  EXPECT_EQ(identity_of(world, registry()).hash, by_ground);
+}
+
 TEST(WorldIdentity, KnowsTheHeightOfWaterButNotThatThereIsNone) {
   world::World world = parsed(kSmallWorld);
   const auto hash = identity_of(world, registry()).hash;

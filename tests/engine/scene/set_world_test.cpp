@@ -102,6 +102,18 @@ TEST_F(SetWorld, MoreModelsLeadToTheSameSceneAsANewOne) {
   expect_like_new(paper_, replaced(paper_, "count = 23", "count = 31"));
 }
 
+TEST_F(SetWorld, OtherMasksLeadToTheSameSceneAsANewOne) {
+  const std::string thin = replaced(paper_, "count = 23", "count = 23\nmask_noise_m = 60");
+  expect_like_new(paper_, thin);
+  expect_like_new(thin, replaced(thin, "mask_noise_m = 60", "mask_noise_m = 60\nmask_share = 0.2"));
+}
+
+// Where the palette decides what stands where, it is more than looks.
+TEST_F(SetWorld, OtherKindsOfGroundLeadToTheSameSceneAsANewOne) {
+  const std::string dry = replaced(paper_, "count = 23", "count = 23\non_ground = [\"dry\"]");
+  expect_like_new(dry, dry + "\n[palette]\ndry_start_m = 20\n");
+}
+
 TEST_F(SetWorld, OtherTypesLeadToTheSameSceneAsANewOne) {
   expect_like_new(paper_, species_);
   expect_like_new(species_, paper_);
