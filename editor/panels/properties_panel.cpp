@@ -111,6 +111,8 @@ QTreeWidgetItem* PropertiesPanel::group_of(world::SectionKind kind) {
   const QString title = kind == world::SectionKind::kSpecies   ? tr("Species")
                         : kind == world::SectionKind::kModel   ? tr("Models from files")
                         : kind == world::SectionKind::kScatter ? tr("Scattered on every block")
+                        : kind == world::SectionKind::kStamp   ? tr("Stamps in the ground")
+                        : kind == world::SectionKind::kRoad    ? tr("Roads")
                                                                : QString();
   if (title.isEmpty()) return nullptr;
   const auto known = tree_->findItems(title, Qt::MatchExactly);

@@ -128,6 +128,7 @@ WorldIdentity identity_of(const world::World& world, const models::Registry& reg
     add_handmade(facts, registry, model);
   for (const world::Scatter& scatter : world.scatter)
     add_scatter(facts, registry[scatter.model], scatter);
+  if (const std::uint64_t shape = world::shape_hash(world); shape != 0) facts.add("shape", shape);
   if (const std::uint64_t ground = world::placing_hash(world); ground != 0)
     facts.add("ground", ground);
   return {world.name, facts.hash()};

@@ -147,6 +147,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   }
   s.memory = renderer != nullptr ? &renderer->geometry() : s.heap.get();
   s.meshes.open(facts.registry, *s.memory, settings.budget_bytes);
+  s.meshes.set_edits(facts.world.layer());
   if (!settings.virtual_time) {
     scene->calibration_ = s.meshes.calibrate(cost_samples(facts), [&](double fraction) {
       if (progress) (void)progress("calibrating", fraction);

@@ -165,6 +165,7 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
   std::swap(s.facts, next);
   if (!rested || s.assets.mesh_count() > 0) retired_types_.push_back(std::move(next.registry));
   s.meshes.take_over_types(mesh_notes(s.facts));
+  s.meshes.set_edits(s.facts.world.layer());
   take_over_preset();
   name_types(s.facts.registry, s.trace);
   edit(std::move(s.editing.edits));

@@ -20,10 +20,10 @@ double draw_coordinate(core::RandomStream& random, float block_size_m) {
   return static_cast<double>(drawn < block_size_m ? drawn : std::nextafter(block_size_m, 0.0F));
 }
 
-// The world's terrain as the function has it.
+// The world's terrain as the function has it, with its stamps and roads.
 models::Parameters unedited_terrain(const World& world) {
   models::Parameters p = world.terrain;
-  p.set_edits(nullptr, 0);
+  p.set_edits(world.shaped.layer.get(), 0);
   return p;
 }
 
@@ -41,6 +41,9 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
       least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
       slope_(slope_parameters(type)) {
   if (scatter.mask.ground != 0) palette_ = drawn_palette(world);
+  if (!world.shaped.roads.empty() && world.shaped.layer)
+    roads_ =
+        world.shaped.layer->ground.roads_in(models::QuadPlace::of(block), world.block_size_m());
 }
 
 // Whether the limits allow this ground.
@@ -55,8 +58,11 @@ bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m
   return (scatter_.mask.ground >> static_cast<unsigned>(kind) & 1U) != 0;
 }
 
-// Whether a mask leaves the instance out that has found this place.
+// Whether a road or a mask leaves the instance out that has found this place.
 bool Scattering::is_left_out(std::uint32_t index, glm::dvec2 local_m) const {
+  for (const models::GroundEdit* road : roads_) {
+    if (keeps_clear(*road->road, block_, local_m, static_cast<double>(size_m_))) return true;
+  }
   if (!scatter_.mask.thins()) return false;
   const glm::dvec2 place_m =
       glm::dvec2(block_.x, block_.z) * static_cast<double>(size_m_) + local_m;
@@ -121,11 +127,13 @@ models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
   p.set_integer(models::kTerrainBlockZ, node.z);
   p.set_integer(models::kTerrainNodeLevel, node_level);
   set_sun(p, world.sky.sun_azimuth_deg, world.sky.sun_elevation_deg);
-  if (!world.edits) return p;
+  p.set_edits(nullptr, 0);
+  const models::EditLayer* const layer = world.layer().get();
+  if (layer == nullptr) return p;
   const auto at = models::QuadPlace::of(node, static_cast<std::uint32_t>(node_level));
   const std::uint64_t hash =
-      world.edits->ground.hash_of(at, ground_margin(world, node_level), world.block_size_m());
-  if (hash != 0) p.set_edits(world.edits.get(), hash);
+      layer->ground.hash_of(at, ground_margin(world, node_level), world.block_size_m());
+  if (hash != 0) p.set_edits(layer, hash);
   return p;
 }
 
@@ -147,7 +155,7 @@ namespace {
 // Whether edits may change heights in a block.
 bool has_edited_ground(const World& world, core::BlockCoord block) {
   return world.edits &&
-         world.edits->ground.reaches(models::QuadPlace::of(block), world.block_size_m());
+         world.edits->ground.own().reaches(models::QuadPlace::of(block), world.block_size_m());
 }
 
 // The placements of the world's function that nobody removed. They find their places on `base` and

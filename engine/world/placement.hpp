@@ -52,8 +52,8 @@ class Scattering {
     glm::vec3 normal{0, 1, 0};  // of the ground
   };
   // The first allowed place that instance `index` of the block tries, or nothing, also where a mask
-  // leaves it out there. `ground` is that of the block, or of a larger node that has the block's
-  // corner at `corner_m`.
+  // or a road leaves it out there. `ground` is that of the block, or of a larger node that has the
+  // block's corner at `corner_m`.
   std::optional<Foothold> place(const models::BlockGround& ground, std::uint32_t index,
                                 glm::dvec2 corner_m = {0, 0}) const;
   // The parameters of instance `index` on ground with this normal. Types with the placed parameters
@@ -72,7 +72,8 @@ class Scattering {
   models::Parameters defaults_;
   core::BlockCoord block_;
   float least_up_;
-  std::optional<Palette> palette_;  // where kinds of ground matter
+  std::optional<Palette> palette_;                // where kinds of ground matter
+  std::vector<const models::GroundEdit*> roads_;  // that may pass the block
   SlopeParameters slope_;
 };
 
@@ -91,7 +92,7 @@ models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
 double ground_margin(const World& world, int node_level);
 
 // An upper bound of the placements of one block without edits: the sum of all counts. Exact where
-// no scatter has a filter.
+// no scatter has a filter and no road passes.
 std::size_t models_per_block(const World& world);
 
 // Replaces `out` by the placements of `block`, by growing index. An instance that finds no allowed
@@ -107,7 +108,8 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
                   const models::BlockGround& ground, std::vector<Placement>& out);
 
 // The mean number of instances of each scatter that find a place in a block. Exact if no scatter
-// has a filter; otherwise the mean over kSizeBlocks blocks, always the same ones.
+// has a filter and there are no roads; otherwise the mean over kSizeBlocks blocks, always the same
+// ones.
 std::vector<double> placed_per_block(const World& world, const models::Registry& registry);
 
 // Sets parameter `i`, of either type. Integers are rounded to nearest and limited to 64 bits.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::world {
@@ -16,9 +17,16 @@ double World::cell_m() const {
 }
 
 void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits) {
+  static const models::EditLayer none;
+  const models::EditLayer& below = world.shaped.layer ? *world.shaped.layer : none;
+  if (edits && !edits->ground.lies_on(below.ground)) {
+    models::EditLayer layer = *edits;
+    layer.ground = layer.ground.over(below.ground);
+    edits = std::make_shared<const models::EditLayer>(std::move(layer));
+  }
   world.edits = std::move(edits);
   // Without a hash: which of the edits matter is known only for a node (placement.hpp).
-  world.terrain.set_edits(world.edits.get(), 0);
+  world.terrain.set_edits(world.layer().get(), 0);
 }
 
 Palette drawn_palette(const World& world) {

@@ -17,6 +17,7 @@
 #include "engine/models/registry.hpp"
 #include "engine/models/tree/species.hpp"
 #include "engine/world/mask.hpp"
+#include "engine/world/shaped_ground.hpp"
 
 namespace psygen::world {
 
@@ -150,12 +151,19 @@ struct World {
   std::vector<models::Species> species;  // defined by the file; types of the registry
   std::vector<HandmadeModel> models;     // the same
   std::vector<Scatter> scatter;
+  ShapedGround shaped;  // stamps and roads; part of the function
   Sky sky;
   Water water;
   Palette palette;
-  // What was changed by hand (edits/edits.hpp); null: nothing. Not part of world files. `terrain`
-  // names the same layer: use set_edits().
+  // What was changed by hand (edits/edits.hpp), over the shaped ground; null: nothing. Not part of
+  // world files. `terrain` names the same layer: use set_edits().
   std::shared_ptr<const models::EditLayer> edits;
+
+  // What lies over the terrain's function: the edits, or the shaped ground without edits; null:
+  // nothing.
+  const std::shared_ptr<const models::EditLayer>& layer() const {
+    return edits ? edits : shaped.layer;
+  }
 
   double block_size_m() const;  // metres along one side of a block
   double cell_m() const;        // between neighbouring vertices of the terrain
@@ -165,7 +173,8 @@ struct World {
   friend bool operator==(const World&, const World&) = default;
 };
 
-// Replaces the edits of a world; null: none. O(1).
+// Replaces the edits of a world; null: none. They lie over its shaped ground from then on, so
+// World::edits is another layer where there is such ground. O(1).
 void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits);
 
 // The palette with which ground is drawn and exported: World::palette with sand on the shore of the

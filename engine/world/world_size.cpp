@@ -35,7 +35,7 @@ MeanSize mean_size(const World& world, const models::Registry& registry, const S
 
 std::vector<double> placed_per_block(const World& world, const models::Registry& registry) {
   std::vector<double> counts;
-  bool filtered = false;
+  bool filtered = !world.shaped.roads.empty();
   for (const Scatter& scatter : world.scatter) {
     counts.push_back(scatter.count);
     filtered = filtered || scatter.has_filter();

@@ -81,6 +81,19 @@ bool read_as_world(const std::filesystem::path& file) {
       world::parse_world(world::write_world(*world, registry), "again", registry, &beside);
   PSYGEN_CHECK(again.has_value(), "a world that was read can be written");
   PSYGEN_CHECK(*again == *world, "a world reads back as it was");
+  PSYGEN_CHECK(world::shape_hash(*again) == world::shape_hash(*world),
+               "shaped ground reads back as it was");
+  if (world->shaped.layer) {
+    const double relief_m = world->terrain.real(models::kTerrainReliefM);
+    for (const world::Road& road : world->shaped.roads) {
+      const core::WorldPosition at = core::normalised(
+          {{0, 0}, {road.points_m[0].x, 0, road.points_m[0].y}}, world->block_size_m());
+      const double height_m =
+          models::ground_height_m(world->terrain, at.block, at.local.x, at.local.z);
+      PSYGEN_CHECK(height_m >= 0 && height_m < relief_m * 1.0001 + 0.001,
+                   "a road has a height of the world");
+    }
+  }
   return true;
 }
 
@@ -355,6 +368,21 @@ mask_area_m = [10, 20.5, 300, 200]
 mask_noise_m = 40
 mask_share = 0.3
 mask_patches = 2
+[[stamp]]
+image = "hill.png"
+centre_m = [100, 90.5]
+size_m = 60
+turn_deg = 20
+base_m = 2
+height_m = 30
+border_m = 9
+mode = "set"
+[[road]]
+points_m = [[10, 20], [150, 80.5], [300, 40]]
+width_m = 7
+border_m = 5
+smoothing_m = 20
+clear_m = 2
 )";
 }
 

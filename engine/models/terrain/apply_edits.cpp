@@ -12,16 +12,32 @@ namespace {
 using Cell = QuadMap<GroundCell>::Cell;
 using EditPtr = std::shared_ptr<const GroundEdit>;
 
+// The weight `left` metres before the end of what fades out over `fades` metres: smooth, 0 … 1.
+double faded(double left, double fades) {
+  if (!(left >= 0)) return 0;
+  if (left >= fades) return 1;
+  const double t = left / fades;
+  return t * t * (3 - 2 * t);
+}
+
 // The weight of an edit at a distance from its centre: smooth from 1 to 0.
 double weight_of(const GroundEdit& edit, double dx, double dz) {
   const double away =
       edit.square ? std::max(std::abs(dx), std::abs(dz)) : std::sqrt(dx * dx + dz * dz);
-  if (!(away <= edit.radius_m)) return 0;
-  const double fades = edit.falloff * edit.radius_m;
-  const double left = edit.radius_m - away;
-  if (left >= fades) return 1;
-  const double t = left / fades;
-  return t * t * (3 - 2 * t);
+  return faded(edit.radius_m - away, edit.falloff * edit.radius_m);
+}
+
+// The nearest place of a segment: its share of the way, and the square of its distance.
+struct Foot {
+  double share, away2;
+};
+Foot foot_of(const RoadSegment& segment, glm::dvec2 place_m) {
+  const glm::dvec2 along = segment.to_m - segment.from_m, to = place_m - segment.from_m;
+  const double length2 = along.x * along.x + along.y * along.y;
+  const double at = to.x * along.x + to.y * along.y;
+  const double share = length2 > 0 ? std::clamp(at / length2, 0.0, 1.0) : 0;
+  const double x = to.x - share * along.x, z = to.y - share * along.y;
+  return {share, x * x + z * z};
 }
 
 double height_in(const Heightmap& map, double u, double v) {
@@ -41,6 +57,15 @@ double height_in(const Heightmap& map, double u, double v) {
 
 // A height of the ground, in metres, as an edit leaves it.
 double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
+  if (edit.road) {
+    const RoadEffect road = effect_of(*edit.road, {dx, dz});
+    return height_m + road.weight * (road.height_m - height_m);
+  }
+  if (edit.turn != glm::dvec2(1, 0)) {  // back to the sides of the stamp
+    const double x = dx * edit.turn.x - dz * edit.turn.y;
+    dz = dx * edit.turn.y + dz * edit.turn.x;
+    dx = x;
+  }
   const double weight = weight_of(edit, dx, dz);
   const auto stamp = [&] {
     return height_in(*edit.map, 0.5 + 0.5 * dx / edit.radius_m, 0.5 + 0.5 * dz / edit.radius_m);
@@ -54,6 +79,8 @@ double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
       return height_m + weight * stamp();
     case GroundChange::kStampSet:
       return height_m + weight * (stamp() - height_m);
+    case GroundChange::kRoad:
+      break;
   }
   return height_m;
 }
@@ -135,9 +162,9 @@ class Application {
   Range within(const GroundEdit& edit, std::span<const std::int64_t> at, Range range,
                std::int32_t block, double local_m) const {
     const auto all = at.subspan(range.first, range.end - range.first);
-    const auto before = [&](std::int64_t i) { return away_m(i, block, local_m) < -edit.radius_m; };
+    const auto before = [&](std::int64_t i) { return away_m(i, block, local_m) < -edit.reach_m(); };
     const auto not_after = [&](std::int64_t i) {
-      return away_m(i, block, local_m) <= edit.radius_m;
+      return away_m(i, block, local_m) <= edit.reach_m();
     };
     const auto first = std::ranges::partition_point(all, before);
     const auto end = std::ranges::partition_point(first, all.end(), not_after);
@@ -149,10 +176,11 @@ class Application {
     const core::WorldPosition& centre = edit.centre;
     columns = within(edit, x_, columns, centre.block.x, centre.local.x);
     rows = within(edit, z_, rows, centre.block.z, centre.local.z);
+    const core::WorldPosition& from = edit.road ? edit.road->origin : centre;
     for (std::size_t k = rows.first; k < rows.end; ++k) {
-      const double dz = away_m(z_[k], centre.block.z, centre.local.z);
+      const double dz = away_m(z_[k], from.block.z, from.local.z);
       for (std::size_t i = columns.first; i < columns.end; ++i) {
-        const double dx = away_m(x_[i], centre.block.x, centre.local.x);
+        const double dx = away_m(x_[i], from.block.x, from.local.x);
         float& value = values_[k * stride_ + i];
         const double height_m = edited(edit, double{value} * scale_.unit_m, dx, dz);
         value = std::clamp(static_cast<float>(height_m / scale_.unit_m), 0.0F, scale_.highest);
@@ -170,12 +198,50 @@ class Application {
 
 }  // namespace
 
+RoadEffect effect_of(const RoadPiece& road, glm::dvec2 place_m) {
+  const double reach_m = road.half_width_m + road.border_m;
+  std::size_t nearest = road.end;
+  Foot foot{0, reach_m * reach_m};
+  for (std::size_t i = road.first; i < road.end; ++i) {
+    const Foot of = foot_of(road.segments[i], place_m);
+    if (of.away2 < foot.away2) foot = of, nearest = i;
+  }
+  if (nearest == road.end) return {};
+  for (std::size_t i = 0; i < road.segments.size(); ++i) {
+    if (i == road.first) i = road.end;
+    if (i == road.segments.size()) break;
+    const double away2 = foot_of(road.segments[i], place_m).away2;
+    if (away2 < foot.away2 || (away2 == foot.away2 && i < nearest)) return {};
+  }
+  const RoadSegment& segment = road.segments[nearest];
+  return {segment.from_height_m + foot.share * (segment.to_height_m - segment.from_height_m),
+          faded(reach_m - std::sqrt(foot.away2), road.border_m)};
+}
+
+bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
+                 double block_m) {
+  const auto from_origin = [block_m](std::int32_t here, std::int32_t there, double local,
+                                     double origin) {
+    return static_cast<double>(std::int64_t{here} - std::int64_t{there}) * block_m + local - origin;
+  };
+  const core::WorldPosition& o = road.origin;
+  const glm::dvec2 place_m{from_origin(block.x, o.block.x, local_m.x, o.local.x),
+                           from_origin(block.z, o.block.z, local_m.y, o.local.z)};
+  const double clear_m = road.half_width_m + road.clear_m;
+  for (std::size_t i = road.first; i < road.end; ++i) {
+    if (foot_of(road.segments[i], place_m).away2 <= clear_m * clear_m) return true;
+  }
+  return false;
+}
+
 void GroundEdits::apply(const GroundScale& scale, std::span<const std::int64_t> x,
                         std::span<const std::int64_t> z, std::span<float> values,
                         std::size_t stride, double narrowest_m) const {
-  if (cells_.empty()) return;
-  Application(scale, x, z, values, stride, narrowest_m)
-      .walk(cells_.root(), {QuadPlace::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
+  for (const auto* cells : {&below_, &cells_}) {
+    if (cells->empty()) continue;
+    Application(scale, x, z, values, stride, narrowest_m)
+        .walk(cells->root(), {QuadPlace::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
+  }
 }
 
 }  // namespace psygen::models

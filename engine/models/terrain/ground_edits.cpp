@@ -58,12 +58,25 @@ std::uint64_t content_hash(const GroundEdit& edit) {
     hash = core::combine(hash, (std::uint64_t{edit.map->columns} << 32) | edit.map->rows);
     hash = core::combine(hash, core::hash_bytes(std::as_bytes(std::span(edit.map->heights_m))));
   }
-  return hash;
+  if (edit.turn != glm::dvec2(1, 0)) {
+    add(edit.turn.x);
+    add(edit.turn.y);
+  }
+  if (!edit.road) return hash;
+  const RoadPiece& road = *edit.road;
+  const QuadPlace origin = QuadPlace::of(road.origin.block);
+  hash = core::combine(hash, origin.x << 32 | origin.z);
+  hash = core::combine(hash, road.first << 32 | road.end);
+  for (const double v :
+       {road.origin.local.x, road.origin.local.z, road.half_width_m, road.border_m, road.clear_m})
+    add(v);
+  return core::combine(hash, core::hash_bytes(std::as_bytes(std::span(road.segments))));
 }
 
 // How far an edit moves a height at most.
 float most_of(const GroundEdit& edit) {
-  if (edit.change == GroundChange::kRaise) return static_cast<float>(std::abs(edit.height_m));
+  if (edit.change == GroundChange::kRaise || edit.change == GroundChange::kRoad)
+    return static_cast<float>(std::abs(edit.height_m));
   if (edit.change != GroundChange::kStampAdd) return 1e30F;  // the relief limits it
   float most = 0;
   for (const float h : edit.map->heights_m)
@@ -75,7 +88,7 @@ float most_of(const GroundEdit& edit) {
 // room for rounding.
 template <class Visit>
 void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
-  const double reach_m = GroundEdits::kInfluence * edit.radius_m + 1e-3 * block_m;
+  const double reach_m = GroundEdits::kInfluence * edit.reach_m() + 1e-3 * block_m;
   const Area area = area_of(edit, reach_m, block_m);
   std::uint32_t level = 0;
   while (level < QuadPlace::kMaxLevel &&
@@ -92,7 +105,8 @@ void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
 }
 
 float steepness_of(const GroundEdit& edit) {
-  double slope = kSteepest / std::max(edit.falloff * edit.radius_m, 1e-6);
+  const double fades_m = edit.road ? edit.road->border_m : edit.falloff * edit.radius_m;
+  double slope = kSteepest / std::max(fades_m, 1e-6);
   if (edit.map) {
     const double points = std::max(edit.map->columns, edit.map->rows);
     slope += points / edit.radius_m;
@@ -111,7 +125,7 @@ void add_hashes(const Cell* cell, const Area& area, int whole, double block_m,
   }
   if (cell->value) {
     for (const EditPtr& edit : cell->value->edits) {
-      const Area reach = area_of(*edit, GroundEdits::kInfluence * edit->radius_m, block_m);
+      const Area reach = area_of(*edit, GroundEdits::kInfluence * edit->reach_m(), block_m);
       if (reach.touches(area)) hash = core::combine(hash, edit->content);
     }
   }
@@ -141,7 +155,7 @@ bool any_reaches(const Cell* cell, const Area& area, double block_m) {
   if (!own.touches(area)) return false;
   if (area.holds(own)) return true;
   const auto reaches = [&](const EditPtr& edit) {
-    return area_of(*edit, edit->radius_m, block_m).touches(area);
+    return area_of(*edit, edit->reach_m(), block_m).touches(area);
   };
   if (cell->value && std::ranges::any_of(cell->value->edits, reaches)) return true;
   return std::ranges::any_of(cell->quarters, [&](const auto& quarter) {
@@ -158,7 +172,7 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
   if (area.holds(own)) return cell->summary;
   if (cell->value) {
     for (const EditPtr& edit : cell->value->edits) {
-      if (!area_of(*edit, edit->radius_m, block_m).touches(area)) continue;
+      if (!area_of(*edit, edit->reach_m(), block_m).touches(area)) continue;
       most.change_m += edit->most_m;
       most.steepness += steepness_of(*edit);
     }
@@ -170,6 +184,7 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
 
 // The time that an edit takes for a height, in units of a simple one. Measured.
 double weight_of(const GroundEdit& edit) {
+  if (edit.road) return 1 + 0.5 * static_cast<double>(edit.road->segments.size());
   return is_stamp(edit.change) ? 3 : 1;
 }
 
@@ -183,11 +198,25 @@ double work_in(const Cell* cell, const Area& area, double block_m) {
   if (cell->value) {
     const Area part = own.common(area);
     for (const EditPtr& edit : cell->value->edits)
-      sum += weight_of(*edit) * area_of(*edit, edit->radius_m, block_m).common(part).size();
+      sum += weight_of(*edit) * area_of(*edit, edit->reach_m(), block_m).common(part).size();
   }
   for (const auto& quarter : cell->quarters)
     sum += work_in(quarter.get(), area, block_m);
   return sum;
+}
+
+void add_roads(const Cell* cell, const Area& area, double block_m,
+               std::vector<const GroundEdit*>& roads) {
+  if (cell == nullptr || !area_of(cell->place).touches(area)) return;
+  if (cell->value) {
+    for (const EditPtr& edit : cell->value->edits) {
+      const bool listed = std::ranges::find(roads, edit.get()) != roads.end();
+      if (edit->road && !listed && area_of(*edit, edit->reach_m(), block_m).touches(area))
+        roads.push_back(edit.get());
+    }
+  }
+  for (const auto& quarter : cell->quarters)
+    add_roads(quarter.get(), area, block_m, roads);
 }
 
 }  // namespace
@@ -215,7 +244,7 @@ GroundCell::Summary GroundCell::summary() const {
   for (const EditPtr& edit : edits) {
     sum.change_m += edit->most_m;
     sum.steepness += steepness_of(*edit);
-    sum.work_m2 += weight_of(*edit) * 4 * edit->radius_m * edit->radius_m;
+    sum.work_m2 += weight_of(*edit) * 4 * edit->reach_m() * edit->reach_m();
   }
   return sum;
 }
@@ -249,23 +278,38 @@ void GroundEdits::remove(const GroundEdit& edit, double block_m) {
 
 std::uint64_t GroundEdits::hash_of(const QuadPlace& node, double margin, double block_m) const {
   std::uint64_t hash = 0;
-  add_hashes(cells_.root(), area_of(node, margin), whole_level(node), block_m, hash);
+  for (const auto* cells : {&below_, &cells_})
+    add_hashes(cells->root(), area_of(node, margin), whole_level(node), block_m, hash);
   return hash;
 }
 
 bool GroundEdits::same_in(const GroundEdits& a, const GroundEdits& b, const QuadPlace& node,
                           double margin) {
-  return same(a.cells_.root(), b.cells_.root(), area_of(node, margin), whole_level(node));
+  const Area area = area_of(node, margin);
+  const int whole = whole_level(node);
+  return same(a.cells_.root(), b.cells_.root(), area, whole) &&
+         same(a.below_.root(), b.below_.root(), area, whole);
 }
 
 bool GroundEdits::reaches(const QuadPlace& node, double block_m) const {
-  return any_reaches(cells_.root(), area_of(node), block_m);
+  const Area area = area_of(node);
+  return any_reaches(cells_.root(), area, block_m) || any_reaches(below_.root(), area, block_m);
+}
+
+std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadPlace& node, double block_m) const {
+  std::vector<const GroundEdit*> roads;
+  for (const auto* cells : {&below_, &cells_})
+    add_roads(cells->root(), area_of(node), block_m, roads);
+  return roads;
 }
 
 double GroundEdits::error_m(const QuadPlace& node, double spacing_m, double block_m) const {
-  const GroundCell::Summary most = most_in(cells_.root(), area_of(node), block_m);
-  const double change_m = double{most.change_m} + double{most.below_change_m};
-  const double steepness = double{most.steepness} + double{most.below_steepness};
+  double change_m = 0, steepness = 0;
+  for (const auto* cells : {&below_, &cells_}) {
+    const GroundCell::Summary most = most_in(cells->root(), area_of(node), block_m);
+    change_m += double{most.change_m} + double{most.below_change_m};
+    steepness += double{most.steepness} + double{most.below_steepness};
+  }
   return std::min(change_m, steepness * spacing_m);
 }
 
@@ -274,7 +318,10 @@ double GroundEdits::edits_per_height(const GroundScale& scale, LatticeSpan x, La
     return static_cast<double>(vertex) / static_cast<double>(scale.cells_per_block) + 0x1.0p31;
   };
   const Area area{block(x.first), block(z.first), block(x.last), block(z.last)};
-  return area.size() > 0 ? work_in(cells_.root(), area, scale.block_m()) / area.size() : 0;
+  if (!(area.size() > 0)) return 0;
+  const double block_m = scale.block_m();
+  return (work_in(below_.root(), area, block_m) + work_in(cells_.root(), area, block_m)) /
+         area.size();
 }
 
 }  // namespace psygen::models

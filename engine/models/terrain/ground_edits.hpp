@@ -5,7 +5,10 @@
 // nothing (world/edits) and stores nothing.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <span>
 #include <utility>
@@ -22,9 +25,10 @@ enum class GroundChange : std::uint8_t {
   kFlatten,   // moves it to height_m
   kStampAdd,  // adds the heightmap
   kStampSet,  // replaces it by the heightmap
+  kRoad,      // moves it to the height of a road
 };
 constexpr bool is_stamp(GroundChange change) {
-  return change >= GroundChange::kStampAdd;
+  return change == GroundChange::kStampAdd || change == GroundChange::kStampSet;
 }
 
 // Heights in metres over a square, row by row from its corner at the least x and z. Linear between
@@ -34,6 +38,35 @@ struct Heightmap {
   std::vector<float> heights_m;         // columns · rows
 };
 
+// A straight part of a road's middle, in metres from the origin of the road, with its heights.
+struct RoadSegment {
+  glm::dvec2 from_m{0.0}, to_m{0.0};
+  double from_height_m = 0, to_height_m = 0;
+};
+
+// A piece of a road. A place belongs to the nearest segment of the whole road, the first of equals,
+// so exactly one piece shapes it. All pieces of a road have the same origin, so they agree.
+struct RoadPiece {
+  core::WorldPosition origin;
+  double half_width_m = 3;  // of what has the height of the road
+  double border_m = 4;      // beyond it, over which the road fades out
+  double clear_m = 1;       // beyond it, where no models stand
+  // Its own ones, `first` … `end` − 1, among all that may be nearer to its places. In the order of
+  // the road.
+  std::vector<RoadSegment> segments;
+  std::size_t first = 0, end = 0;
+
+  // How far it reaches from its middle.
+  double reach_m() const { return half_width_m + std::max(border_m, clear_m); }
+};
+
+// What a piece of a road does at a place, in metres from the road's origin: the height of the road
+// and its weight, 0 … 1.
+struct RoadEffect {
+  double height_m = 0, weight = 0;
+};
+RoadEffect effect_of(const RoadPiece& road, glm::dvec2 place_m);
+
 // One edit. Immutable once it is part of a GroundEdits.
 struct GroundEdit {
   GroundChange change = GroundChange::kRaise;
@@ -41,13 +74,18 @@ struct GroundEdit {
   core::WorldPosition centre;  // normalised; y is not used
   double radius_m = 1;         // of the disc, or half the side of the square
   double falloff = 0.5;        // share of the radius over which the edit fades out; 0: a cliff
-  double height_m = 0;         // kRaise: difference; kFlatten: height above 0
-  std::shared_ptr<const Heightmap> map;  // of the two stamps
-  std::uint32_t id = 0;                  // unique in the block of the centre
+  // kRaise: difference; kFlatten: height above 0; kRoad: how far it moves heights at most.
+  double height_m = 0;
+  std::shared_ptr<const Heightmap> map;   // of the two stamps
+  glm::dvec2 turn{1, 0};                  // of stamps: cosine and sine of a turn about +Y
+  std::shared_ptr<const RoadPiece> road;  // of kRoad, which is a square around the piece
+  std::uint32_t id = 0;                   // unique in the block of the centre
   // Set by seal():
   std::uint64_t content = 0;  // identifies everything above
   float most_m = 0;  // how far it moves a height at most; 1e30: as far as the relief allows
 
+  // Half the side of the square along the axes that holds all of it.
+  double reach_m() const { return radius_m * (std::abs(turn.x) + std::abs(turn.y)); }
   // Edits act in this order.
   std::pair<std::uint32_t, core::BlockCoord> order() const { return {id, centre.block}; }
 };
@@ -85,7 +123,8 @@ struct GroundCell {
   Summary summary() const;
 };
 
-// All edits of the ground of a world.
+// All edits of the ground of a world. Others may lie below them, which act first; they are part of
+// everything but add() and remove().
 class GroundEdits {
  public:
   // Light baked into vertices reaches this many radii from an edit's centre (light.hpp); beyond, no
@@ -95,7 +134,16 @@ class GroundEdits {
   static constexpr std::size_t kMostTogether = 1024;
 
   // Whether there is no edit.
-  bool empty() const { return cells_.empty(); }
+  bool empty() const { return cells_.empty() && below_.empty(); }
+
+  // These edits over those of `below`, and these alone. O(1).
+  GroundEdits over(const GroundEdits& below) const {
+    GroundEdits both = *this;
+    both.below_ = below.cells_;
+    return both;
+  }
+  GroundEdits own() const { return over({}); }
+  bool lies_on(const GroundEdits& below) const { return below_.root() == below.cells_.root(); }
 
   // Adds a sealed edit, or takes the one with this id and block away, in O(log n + kMostTogether).
   // add() returns false, and changes nothing, where kMostTogether are there already.
@@ -110,6 +158,8 @@ class GroundEdits {
                       double margin);
   // Whether any edit may change heights within a node. May say yes although none does.
   bool reaches(const QuadPlace& node, double block_m) const;
+  // The pieces of roads that may keep models from places in a node. O(log n + pieces there).
+  std::vector<const GroundEdit*> roads_in(const QuadPlace& node, double block_m) const;
   // How far the ground may lie off a mesh of the node whose vertices are `spacing_m` apart, because
   // of edits between them. An upper bound in metres; 0: there are none.
   double error_m(const QuadPlace& node, double spacing_m, double block_m) const;
@@ -127,7 +177,10 @@ class GroundEdits {
              double narrowest_m = 0) const;
 
  private:
-  QuadMap<GroundCell> cells_;
+  QuadMap<GroundCell> cells_, below_;
 };
+
+// Whether a piece of a road keeps models away from a place in a block.
+bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m, double block_m);
 
 }  // namespace psygen::models

@@ -232,7 +232,7 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
   if (change.ground) {
     renew(lit_ground(facts, daylight, at), facts, node, meshes, entities);
   } else if (models::Parameters& p = entities.get<Source>(node)->parameters; p.edits() != nullptr) {
-    p.set_edits(facts.world.edits.get(), p.edits_hash());
+    p.set_edits(facts.world.layer().get(), p.edits_hash());
   }
   if (change.world) fit_ground(facts, daylight, node, entities);
   const core::BlockCoord block = visibility::corner_block(at);
@@ -245,7 +245,7 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
     if (change.ground || change.models) {
       place_anew(facts, block, merged_placement(facts, at), change.world, model, meshes, entities);
     } else if (p.edits() != nullptr) {
-      p.set_edits(facts.world.edits.get(), p.edits_hash());
+      p.set_edits(facts.world.layer().get(), p.edits_hash());
     }
   }
 }

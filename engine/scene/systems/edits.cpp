@@ -64,11 +64,11 @@ void edits_system(const Daylight& daylight, Editing& editing, WorldFacts& facts,
                   ecs::EventQueue<ModelRemoved>& removed_models) {
   if (!std::exchange(editing.pending, false)) return;
   // Kept until nothing in the scene refers to it.
-  const std::shared_ptr<const models::EditLayer> before = facts.world.edits;
+  const std::shared_ptr<const models::EditLayer> before = facts.world.layer();
   world::set_edits(facts.world, editing.edits.layer());
-  meshes.set_edits(editing.edits.layer());
+  meshes.set_edits(facts.world.layer());
   facts.models_reach_m = world::with_placed_models(facts.scattered_reach_m, facts.world);
-  const LayerChange change(facts.world, before.get(), facts.world.edits.get());
+  const LayerChange change(facts.world, before.get(), facts.world.layer().get());
   std::vector<ecs::Entity> nodes;
   entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node>) {
     nodes.insert(nodes.end(), rows.begin(), rows.end());

@@ -123,6 +123,8 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
       return check_heightmap(edit.map.get(), relief_m, true);
     case models::GroundChange::kStampSet:
       return check_heightmap(edit.map.get(), relief_m, false);
+    case models::GroundChange::kRoad:
+      return refuse("roads are in world files, and not among edits");
   }
   return refuse("there is no such change of the ground");
 }

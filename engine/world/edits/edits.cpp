@@ -152,6 +152,8 @@ core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
   const auto at = check_place(world, edit.centre);
   if (!at) return tl::unexpected(at.error());
   if (auto ok = check_ground(world, edit); !ok) return tl::unexpected(ok.error());
+  edit.turn = {1, 0};
+  edit.road.reset();
   if (is_stamp(edit.change)) {
     edit.square = true;
   } else {

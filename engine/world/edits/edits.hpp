@@ -82,8 +82,9 @@ class Edits {
   core::Result<void> remove_placed(const EditName& model);
 
   // Ground -------------------------------------------------------------------------------------
-  // Adds an edit of the ground, after all others. Stamps are always squares, and only they have a
-  // heightmap. `id` of the argument, and what seal() sets, are not used.
+  // Adds an edit of the ground, after all others. Stamps are always squares along the axes, and
+  // only they have a heightmap. `id` of the argument, and what seal() sets, are not used. Roads and
+  // turned stamps are in world files only (shaped_ground.hpp).
   core::Result<EditName> edit_ground(const World& world, models::GroundEdit edit);
   // The usual ones: raises ground (or digs, with a negative height), and flattens it to a height,
   // in a disc of this radius whose outer half fades out.

@@ -50,6 +50,7 @@ std::uint64_t merged_identity(const World& world, const models::Registry& regist
     add_real(s.max_slope_deg);
     if (const std::uint64_t mask = mask_hash(s.mask); mask != 0) add(mask);
   }
+  if (const std::uint64_t shape = shape_hash(world); shape != 0) add(shape);
   if (const std::uint64_t ground = placing_hash(world); ground != 0) add(ground);
   return h;
 }

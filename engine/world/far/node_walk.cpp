@@ -57,7 +57,7 @@ void NodeWalk::make_ground(std::uint32_t ordinal, std::optional<models::BlockGro
 
 models::BlockGround NodeWalk::whole_ground(const models::EditLayer* edits) const {
   models::Parameters terrain = world_.terrain;
-  terrain.set_edits(edits, 0);
+  if (edits != nullptr) terrain.set_edits(edits, 0);
   terrain.set_integer(models::kTerrainNodeLevel, level_);
   return {terrain, node_, kMany};
 }

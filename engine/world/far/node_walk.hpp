@@ -1,6 +1,7 @@
 // The blocks of a node in Morton order, and the ground under them: evaluated in square tiles of
 // blocks, which follow each other in the same order, and as the node draws it. Tiles are without
-// edits, because models find their places there. Pure functions, any thread. Places no models.
+// edits, because models find their places there; stamps and roads are part of the world. Pure
+// functions, any thread. Places no models.
 #pragma once
 
 #include <cstdint>
@@ -49,8 +50,8 @@ class NodeWalk {
   }
   // Makes the ground of the tile that a block lies on. Needs 256 KiB of stack.
   void make_ground(std::uint32_t ordinal, std::optional<models::BlockGround>& out) const;
-  // The ground of the whole node with these edits (null: none), which must outlive it, and the
-  // stride for BlockGround::at() that gives the drawn ground.
+  // The ground of the whole node with these edits (null: that of the world), which must outlive it,
+  // and the stride for BlockGround::at() that gives the drawn ground.
   models::BlockGround whole_ground(const models::EditLayer* edits) const;
   int drawn_stride() const;
 

@@ -125,6 +125,30 @@ void visit_mask(M& mask, const Visit& visit) {
       FieldSpec{0, 1e6, 0, 20, "", "which patches: those of equal numbers and sizes are the same"});
 }
 
+// The numbers of a Stamp.
+template <class S, class Visit>
+void visit_stamp(S& stamp, const Visit& visit) {
+  visit("size_m", stamp.size_m, FieldSpec{1, 20'000, 10, 2000, "m", "side of the square"});
+  visit("turn_deg", stamp.turn_deg,
+        FieldSpec{-360, 360, 0, 360, "degrees", "how far it is turned about the vertical axis"});
+  visit("base_m", stamp.base_m, FieldSpec{-1e5, 1e5, 0, 100, "m", "height of black"});
+  visit("height_m", stamp.height_m,
+        FieldSpec{-1e5, 1e5, 0, 100, "m", "height of white above that of black"});
+  visit("border_m", stamp.border_m,
+        FieldSpec{0, 20'000, 0, 200, "m", "inside the square, over which the stamp fades out"});
+}
+
+// The numbers of a Road.
+template <class R, class Visit>
+void visit_road(R& road, const Visit& visit) {
+  visit("width_m", road.width_m, FieldSpec{0.5, 200, 2, 30, "m", "of what is flat"});
+  visit("border_m", road.border_m,
+        FieldSpec{0, 500, 0, 50, "m", "on both sides, over which the road meets the ground"});
+  visit("smoothing_m", road.smoothing_m,
+        FieldSpec{0, 1000, 0, 200, "m", "how calmly the road follows the ground"});
+  visit("clear_m", road.clear_m, FieldSpec{0, 100, 0, 10, "m", "on both sides, without models"});
+}
+
 // The numbers of a world that are not of its terrain.
 inline constexpr FieldSpec kBlocks{
     0, 0x1.0p31, 0, 1024, "blocks", "number of blocks along x and z; 0: without an end"};

@@ -9,6 +9,7 @@
 #include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/mask_file.hpp"
 #include "engine/world/files/scatter_file.hpp"
+#include "engine/world/files/shaped_file.hpp"
 #include "engine/world/files/species_file.hpp"
 #include "engine/world/files/text_layout.hpp"
 #include "engine/world/files/toml_values.hpp"
@@ -70,6 +71,10 @@ class SchemaBuilder {
       sections.push_back(handmade_section(world_.models[i], {"model", i}));
     for (std::size_t i = 0; i < world_.scatter.size(); ++i)
       sections.push_back(scatter_section(world_.scatter[i], {"scatter", i}));
+    for (std::size_t i = 0; i < world_.shaped.stamps.size(); ++i)
+      sections.push_back(stamp_section(world_.shaped.stamps[i], {"stamp", i}));
+    for (std::size_t i = 0; i < world_.shaped.roads.size(); ++i)
+      sections.push_back(road_section(world_.shaped.roads[i], {"road", i}));
     return sections;
   }
 
@@ -289,6 +294,29 @@ class SchemaBuilder {
     return made;
   }
 
+  WorldSection stamp_section(const Stamp& s, const TextPath& path) const {
+    const Stamp usual;
+    WorldSection made = section(SectionKind::kStamp, path, s.image);
+    add_required(made, "image", text_value(s.image, FieldKind::kImage),
+                 {0, 0, 0, 0, "", "a picture whose grey is the height, black to white"});
+    add_required(made, "centre_m",
+                 {FieldKind::kToml, toml_vector(std::array{s.centre_m.x, s.centre_m.y}), {}},
+                 {0, 0, 0, 0, "m", "where its middle lies: [x, z]"});
+    add_all(made, s, usual, [](auto& o, const auto& v) { visit_stamp(o, v); });
+    add_choice(made, "mode", s.mode, usual.mode, kStampModes,
+               "whether it is added to the ground, or takes its place");
+    return made;
+  }
+
+  WorldSection road_section(const Road& r, const TextPath& path) const {
+    WorldSection made =
+        section(SectionKind::kRoad, path, fmt::format("road {}", path.back().index + 1));
+    add_required(made, "points_m", {FieldKind::kToml, toml_points(r.points_m), {}},
+                 {0, 0, 0, 0, "m", "where it leads: [[x, z], [x, z]]"});
+    add_all(made, r, Road{}, [](auto& o, const auto& v) { visit_road(o, v); });
+    return made;
+  }
+
   const TextLayout& layout_;
   const World& world_;
   const models::Registry& registry_;
@@ -302,7 +330,9 @@ core::Result<std::vector<WorldSection>> world_schema(std::string_view text, cons
   if (!layout) return tl::unexpected(layout.error());
   if (layout->item_count({"species"}) != world.species.size() ||
       layout->item_count({"model"}) != world.models.size() ||
-      layout->item_count({"scatter"}) != world.scatter.size())
+      layout->item_count({"scatter"}) != world.scatter.size() ||
+      layout->item_count({"stamp"}) != world.shaped.stamps.size() ||
+      layout->item_count({"road"}) != world.shaped.roads.size())
     return core::fail(core::ErrorCode::kInvalidArgument, "the world is not that of the text");
   return SchemaBuilder(*layout, world, registry).all();
 }
@@ -344,6 +374,10 @@ std::size_t most_tables(SectionKind kind) {
       return kMaxHandmadeModels;
     case SectionKind::kScatter:
       return kMaxScatters;
+    case SectionKind::kStamp:
+      return kMaxStamps;
+    case SectionKind::kRoad:
+      return kMaxRoads;
     default:
       return 1;
   }

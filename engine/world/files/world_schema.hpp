@@ -68,6 +68,8 @@ enum class SectionKind : std::uint8_t {
   kSpeciesColours,
   kModel,
   kScatter,
+  kStamp,
+  kRoad,
 };
 
 // A table of the file with its fields.
@@ -80,10 +82,10 @@ struct WorldSection {
   std::vector<WorldSection> parts;  // of a species: kinds, rules, foliage, colours
 };
 
-// The sections of a world: World, Terrain, Sky, Water, Palette, each species, each
-// handmade model, each scatter. `world`
-// must be what parse_world() made of `text` with `registry`. Fails with kParse where the text is
-// not TOML, and with kInvalidArgument where the world is of another text.
+// The sections of a world: World, Terrain, Sky, Water, Palette, each species, each handmade model,
+// each scatter, each stamp, each road. `world` must be what parse_world() made of `text` with
+// `registry`. Fails with kParse where the text is not TOML, and with kInvalidArgument where the
+// world is of another text.
 core::Result<std::vector<WorldSection>> world_schema(std::string_view text, const World& world,
                                                      const models::Registry& registry);
 
@@ -94,7 +96,7 @@ const WorldField* find_field(const std::vector<WorldSection>& sections, const Te
 std::string field_label(std::string_view key, std::string_view unit);
 
 // How many tables a file may have at most: species, kinds and rules of one of them, handmade
-// models, scatters.
+// models, scatters, stamps, roads.
 std::size_t most_tables(SectionKind kind);
 
 }  // namespace psygen::world

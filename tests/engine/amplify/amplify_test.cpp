@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tests/engine/amplify/throwing_type.hpp"
+#include "tests/engine/world/shaped_worlds.hpp"
 #include "tests/engine/world/shipped.hpp"
 #include "tests/faults.hpp"
 
@@ -37,6 +38,21 @@ TEST(Amplify, TheHashIsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(many->totals.hash.value(), one->totals.hash.value());
     EXPECT_EQ(many->totals.triangles, one->totals.triangles);
     EXPECT_EQ(many->totals.bytes, one->totals.bytes);
+  }
+}
+
+TEST(Amplify, TheHashOfShapedGroundIsTheSameForAnyNumberOfThreads) {
+  const world::World world = world::testing::shaped_world(world::testing::kShapes);
+  const Region region = *whole(world);
+  const auto one = amplify(world, registry(), region, with_threads(1));
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_NE(one->totals.hash.value(),
+            amplify(parsed(kSmallWorld), registry(), region, with_threads(4))->totals.hash.value());
+  EXPECT_LT(one->totals.models, 32u * 8);  // some would stand on the road
+  for (const unsigned threads : {2u, 8u}) {
+    const auto many = amplify(world, registry(), region, with_threads(threads));
+    ASSERT_TRUE(many);
+    EXPECT_EQ(many->totals.hash.value(), one->totals.hash.value());
   }
 }
 

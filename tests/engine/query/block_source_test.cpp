@@ -3,6 +3,7 @@
 #include "engine/world/edits/edits.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/query/worlds.hpp"
+#include "tests/engine/world/shaped_worlds.hpp"
 
 namespace psygen::query {
 namespace {
@@ -33,6 +34,27 @@ TEST(BlockSource, ModelsAreThoseThatTheWorldPlaces) {
     EXPECT_EQ(models[i].index, placed[i].index);
     EXPECT_EQ(models[i].position, placed[i].position);
   }
+}
+
+TEST(BlockSource, StampsAndRoadsAreInTheGroundAndAreNoEdits) {
+  world::World world = world::testing::shaped_world(world::testing::kShapes);
+  const models::Registry& registry = world::testing::registry();
+  const core::BlockCoord block{2, 2};
+  const auto mesh = models::test::synthesize(registry[world.terrain_model],
+                                             world::terrain_parameters(world, block), 0);
+  const auto vertices = mesh.vertices<core::TerrainVertex>();
+  const std::vector<std::uint16_t> heights = ground_of_block(world, block);
+  const auto plain = ground_of_block(world::testing::parsed(world::testing::kSmallWorld), block);
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    ASSERT_EQ(heights[i], vertices[i].height);
+  EXPECT_NE(heights, plain);
+  EXPECT_EQ(edits_of_block(world, block), 0U);
+  world::Edits edits;
+  ASSERT_TRUE(edits.raise(world, {{7, 3}, {30, 0, 30}}, 5, 2));
+  world::set_edits(world, edits.layer());
+  EXPECT_EQ(edits_of_block(world, block), 0U);
+  EXPECT_NE(edits_of_block(world, {7, 3}), 0U);
+  EXPECT_EQ(ground_of_block(world, block), heights);
 }
 
 TEST(BlockSource, EditsOfABlockChangeItsHashAndWhatIsThere) {

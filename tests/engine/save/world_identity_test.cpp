@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "engine/world/edits/edits.hpp"
+#include "tests/engine/world/shaped_worlds.hpp"
 #include "tests/engine/world/shipped.hpp"
 
 namespace psygen::save {
@@ -59,6 +61,20 @@ TEST(WorldIdentity, KnowsMasksAndTheKindsOfGroundThatTheyAskFor) {
   world.palette.snow_start_m = 20;
   world.palette.snow = glm::vec3(0.5F);
   EXPECT_EQ(identity_of(world, registry()).hash, by_ground);
+}
+
+TEST(WorldIdentity, KnowsStampsAndRoadsAndNoEdits) {
+  using world::testing::kShapes;
+  world::World world = world::testing::shaped_world(kShapes);
+  const auto hash = identity_of(world, registry()).hash;
+  EXPECT_NE(hash, identity_of(parsed(kSmallWorld), registry()).hash);
+  EXPECT_EQ(hash, identity_of(world::testing::shaped_world(kShapes), registry()).hash);
+  const std::string wider = replaced(kShapes, "width_m = 10", "width_m = 12");
+  EXPECT_NE(hash, identity_of(world::testing::shaped_world(wider), registry()).hash);
+  world::Edits edits;
+  ASSERT_TRUE(edits.raise(world, {{2, 2}, {8, 0, 8}}, 20, 3));
+  world::set_edits(world, edits.layer());
+  EXPECT_EQ(hash, identity_of(world, registry()).hash);
 }
 
 TEST(WorldIdentity, KnowsTheHeightOfWaterButNotThatThereIsNone) {

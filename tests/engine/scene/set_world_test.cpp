@@ -108,6 +108,29 @@ TEST_F(SetWorld, OtherMasksLeadToTheSameSceneAsANewOne) {
   expect_like_new(thin, replaced(thin, "mask_noise_m = 60", "mask_noise_m = 60\nmask_share = 0.2"));
 }
 
+std::string with_road(const std::string& text, const char* width = "8") {
+  return text +
+         "\n[[road]]\npoints_m = [[15900, 16160], [16160, 16100], [16300, 16200]]\nwidth_m = " +
+         width + "\n";
+}
+
+TEST_F(SetWorld, ARoadThatComesOrGoesLeadsToTheSameSceneAsANewOne) {
+  expect_like_new(paper_, with_road(paper_));
+  expect_like_new(with_road(paper_), with_road(paper_, "12"));
+  expect_like_new(with_road(paper_), paper_);
+}
+
+// Equal roads are not laid anew when colours change.
+TEST_F(SetWorld, LooksOfAWorldWithARoadAreLooksOnly) {
+  const std::string road = with_road(paper_);
+  const auto scene = scene_of(road, settings_);
+  Parsed after(road + "\n[palette]\ndry = [0.3, 0.2, 0.1]\n");
+  const auto prepared =
+      prepare_world(std::move(after.world), std::move(after.registry), scene->snapshot());
+  ASSERT_TRUE(prepared);
+  EXPECT_TRUE(prepared->looks_only);
+}
+
 // Where the palette decides what stands where, it is more than looks.
 TEST_F(SetWorld, OtherKindsOfGroundLeadToTheSameSceneAsANewOne) {
   const std::string dry = replaced(paper_, "count = 23", "count = 23\non_ground = [\"dry\"]");

@@ -167,6 +167,42 @@ std::map<Name, std::uint64_t> drawn_bytes(const Scene& scene) {
   return bytes;
 }
 
+// A road of the world's file lies below edits, and a camera that follows it sees no hole.
+TEST(Edits, LieOverRoadsOfTheWorldWhileACameraFollowsOne) {
+  models::Registry registry = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  const double size_m = world.block_size_m();
+  world::Road road;
+  for (int i = 0; i < 6; ++i)
+    road.points_m.emplace_back((252 + 2 * i) * size_m, (256 + i % 2) * size_m);
+  world.shaped.roads.push_back(road);
+  ASSERT_TRUE(world::shape_ground(world));
+  const auto scene = make_scene(world, small_settings(), std::move(registry));
+  scene->settle(pose_at(254, 256));
+  const auto plain = shown_in(*scene);
+  world::Edits edits = scene->edits();
+  EXPECT_TRUE(edits.empty());
+  for (int tick = 0; tick < 90; ++tick) {
+    core::CameraPose pose = pose_at(254, 256, 0.02 * tick);
+    pose.position.local.x += 3.0 * tick;
+    if (tick == 30) expect_ok(edits.raise(world, {{256, 256}, {31, 0, 31}}, 20, 5));
+    if (tick == 60) edits = {};
+    if (tick == 30 || tick == 60) scene->edit(edits);
+    scene->state().meshes.wait();
+    tick_at(*scene, pose);
+    EXPECT_EQ(scene->state().counters.holes, 0u) << "tick " << tick;
+  }
+  tick_until_fresh(*scene, pose_at(254, 256));
+  const auto again = shown_in(*scene);
+  std::size_t compared = 0;
+  for (const auto& [name, shown] : again) {
+    if (!plain.contains(name)) continue;
+    EXPECT_EQ(shown.hash, plain.at(name).hash);
+    ++compared;
+  }
+  EXPECT_GT(compared, 100u);
+}
+
 TEST(Edits, ASceneThatStartsWithEditsShowsWhatOneThatGotThemShows) {
   models::Registry registry = models::make_standard_registry();
   world::World world = paper_world(registry);

@@ -1,0 +1,25 @@
+// Reads and writes [[stamp]] and [[road]] of a world file. Internal to world; one thread per file.
+// Format: docs/world-files.md.
+#pragma once
+
+#include <string>
+
+#include "engine/world/files/files_beside.hpp"
+#include "engine/world/files/table_reader.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+
+// Reads all tables, and the pictures that stamps name. Faults are problems.
+ShapedGround read_shaped(TableReader& root, const Beside& beside, Problems& problems);
+
+// shape_ground() for a world that was read from this file. Faults are problems.
+void shape_world(TableReader& root, World& world, Problems& problems);
+
+// Appends tables to `out` from which read_shaped() makes equal ground.
+void write_shaped(const ShapedGround& shaped, std::string& out);
+
+// Points as TOML: [[1, 2], [3, 4]].
+std::string toml_points(const std::vector<glm::dvec2>& points);
+
+}  // namespace psygen::world

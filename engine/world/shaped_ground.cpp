@@ -1,0 +1,306 @@
+#include "engine/world/shaped_ground.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/models/edits.hpp"
+#include "engine/models/kit/exact_math.hpp"
+#include "engine/models/terrain/ground.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/road_line.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+namespace {
+
+using models::GroundChange;
+using models::GroundEdit;
+using models::RoadPiece;
+using models::RoadSegment;
+
+// A piece has at most this many segments, and as many heights are looked at to know how far it
+// moves them.
+constexpr std::size_t kPieceSegments = 12;
+constexpr double kMostLookedAt = 40'000;
+// Segments of a road that may lie near one of its pieces: it may cross itself, and not cover an
+// area.
+constexpr std::size_t kMostNear = 1000;
+
+struct Box {
+  glm::dvec2 least{1e300}, most{-1e300};
+  void add(glm::dvec2 point) {
+    least = {std::min(least.x, point.x), std::min(least.y, point.y)};
+    most = {std::max(most.x, point.x), std::max(most.y, point.y)};
+  }
+  bool touches(const Box& o, double within_m) const {
+    return least.x - within_m <= o.most.x && o.least.x - within_m <= most.x &&
+           least.y - within_m <= o.most.y && o.least.y - within_m <= most.y;
+  }
+  glm::dvec2 centre() const { return (least + most) * 0.5; }
+  double half_side() const { return std::max(most.x - least.x, most.y - least.y) * 0.5; }
+};
+
+Box box_of(const RoadSegment& segment) {
+  Box box;
+  box.add(segment.from_m);
+  box.add(segment.to_m);
+  return box;
+}
+
+tl::unexpected<ShapeError> refused(std::string_view key, core::Error error) {
+  return tl::unexpected(ShapeError{{}, key, 0, std::move(error)});
+}
+tl::unexpected<ShapeError> refused(std::string_view key, std::string sentence) {
+  return refused(key, {core::ErrorCode::kInvalidArgument, std::move(sentence)});
+}
+
+using Shaped = tl::expected<void, ShapeError>;
+
+// Builds the layer of one world, edit by edit.
+class Shaper {
+ public:
+  explicit Shaper(const World& world)
+      : world_(world),
+        block_m_(world.block_size_m()),
+        relief_m_(world.terrain.real(models::kTerrainReliefM)) {}
+
+  Shaped add(const Stamp& stamp) {
+    const bool sets = stamp.mode == "set";
+    const double lowest = sets ? 0 : -relief_m_;
+    for (const double height_m : {stamp.base_m, stamp.base_m + stamp.height_m}) {
+      if (height_m >= lowest && height_m <= relief_m_) continue;
+      return refused("height_m",
+                     fmt::format("the stamp has {:g} m, and must have {:g} to {:g} m: the relief "
+                                 "of the terrain (relief_m)",
+                                 height_m, lowest, relief_m_));
+    }
+    const auto centre = inside(stamp.centre_m);
+    if (!centre) return refused("centre_m", centre.error());
+    GroundEdit edit;
+    edit.change = sets ? GroundChange::kStampSet : GroundChange::kStampAdd;
+    edit.square = true;
+    edit.centre = *centre;
+    edit.radius_m = stamp.size_m / 2;
+    edit.falloff = std::min(stamp.border_m / edit.radius_m, 1.0);
+    edit.map = map_of(stamp);
+    if (stamp.turn_deg != 0)
+      edit.turn = {models::exact_cos_degrees(stamp.turn_deg),
+                   models::exact_sin_degrees(stamp.turn_deg)};
+    return add(std::move(edit), "centre_m");
+  }
+
+  Shaped add(const Road& road) {
+    for (const glm::dvec2& point : road.points_m) {
+      if (const auto at = inside(point); !at) return refused("points_m", at.error());
+    }
+    length_m_ += chords_m(road);
+    if (length_m_ > kMostRoadsM)
+      return refused("points_m", {core::ErrorCode::kOverBudget,
+                                  fmt::format("all roads together are longer than {:g} m, and no "
+                                              "more is allowed",
+                                              kMostRoadsM)});
+    models::Parameters terrain = world_.terrain;
+    const models::EditLayer before = layer_;
+    terrain.set_edits(&before, 0);
+    const double step_m = std::max(world_.cell_m(), std::clamp(road.width_m / 3, 1.0, 10.0));
+    const auto line = road_line(road, step_m, [&](glm::dvec2 at_m) {
+      const core::WorldPosition at = position(at_m);
+      return models::ground_height_m(terrain, at.block, at.local.x, at.local.z);
+    });
+    std::vector<RoadPiece> pieces = pieces_of(road, line);
+    for (RoadPiece& piece : pieces) {
+      if (piece.segments.size() > kMostNear) return too_much("points_m");
+      if (auto ok = add_piece(std::move(piece), terrain); !ok) return ok;
+    }
+    return {};
+  }
+
+  models::EditLayer take() { return std::move(layer_); }
+
+ private:
+  core::WorldPosition position(glm::dvec2 at_m) const {
+    return core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, block_m_);
+  }
+  core::Result<core::WorldPosition> inside(glm::dvec2 at_m) const {
+    const core::WorldPosition at = position(at_m);
+    if (world_.contains(at.block)) return at;
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{:g}, {:g} m is outside of the world", at_m.x, at_m.y));
+  }
+
+  static std::shared_ptr<const models::Heightmap> map_of(const Stamp& stamp) {
+    auto map = std::make_shared<models::Heightmap>();
+    map->columns = stamp.picture->width, map->rows = stamp.picture->height;
+    map->heights_m.reserve(stamp.picture->pixels.size());
+    for (const std::uint16_t grey : stamp.picture->pixels)
+      map->heights_m.push_back(
+          static_cast<float>(stamp.base_m + stamp.height_m * (static_cast<double>(grey) / 65535)));
+    return map;
+  }
+
+  Shaped add(GroundEdit edit, std::string_view key) {
+    edit.id = layer_.next_id++;
+    seal(edit);
+    if (layer_.ground.add(std::make_shared<const GroundEdit>(std::move(edit)), block_m_)) return {};
+    return too_much(key);
+  }
+
+  static tl::unexpected<ShapeError> too_much(std::string_view key) {
+    return refused(key, {core::ErrorCode::kOverBudget,
+                         fmt::format("more than {} stamps and pieces of roads lie on top of each "
+                                     "other there",
+                                     kMostNear)});
+  }
+
+  // The pieces of a road. Each has the segments of others that may be nearer to its places.
+  std::vector<RoadPiece> pieces_of(const Road& road, const std::vector<RoadPoint>& line) const {
+    const core::WorldPosition origin = position(line.front().at_m);
+    const glm::dvec2 from = line.front().at_m;
+    std::vector<RoadSegment> segments;
+    for (std::size_t i = 1; i < line.size(); ++i)
+      segments.push_back(
+          {line[i - 1].at_m - from, line[i].at_m - from, line[i - 1].height_m, line[i].height_m});
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      if (i % kPieceSegments == 0) boxes.emplace_back();
+      boxes.back().add(segments[i].from_m);
+      boxes.back().add(segments[i].to_m);
+    }
+    const double within_m = 2 * (road.width_m / 2 + road.border_m) + 1e-6;
+    std::vector<RoadPiece> pieces;
+    for (std::size_t p = 0; p < boxes.size(); ++p) {
+      RoadPiece piece{origin, road.width_m / 2, road.border_m, road.clear_m, {}, 0, 0};
+      for (std::size_t q = 0; q < boxes.size(); ++q) {
+        if (q == p) piece.first = piece.segments.size();
+        if (!boxes[q].touches(boxes[p], within_m)) continue;
+        const std::size_t end = std::min((q + 1) * kPieceSegments, segments.size());
+        for (std::size_t i = q * kPieceSegments; i < end; ++i) {
+          if (q == p || box_of(segments[i]).touches(boxes[p], within_m))
+            piece.segments.push_back(segments[i]);
+        }
+        if (piece.segments.size() > kMostNear) break;
+        if (q == p) piece.end = piece.segments.size();
+      }
+      pieces.push_back(std::move(piece));
+      if (pieces.back().segments.size() > kMostNear) break;
+    }
+    return pieces;
+  }
+
+  Shaped add_piece(RoadPiece piece, const models::Parameters& before) {
+    Box box;
+    for (std::size_t i = piece.first; i < piece.end; ++i) {
+      box.add(piece.segments[i].from_m);
+      box.add(piece.segments[i].to_m);
+    }
+    GroundEdit edit;
+    edit.change = GroundChange::kRoad;
+    edit.square = true;
+    core::WorldPosition centre = piece.origin;
+    centre.local.x += box.centre().x;
+    centre.local.z += box.centre().y;
+    edit.centre = core::normalised(centre, block_m_);
+    edit.radius_m = box.half_side() + piece.reach_m();
+    edit.height_m = most_moved(piece, edit, before);
+    edit.road = std::make_shared<const RoadPiece>(std::move(piece));
+    return add(std::move(edit), "points_m");
+  }
+
+  // How far a piece moves a vertex of the finest ground at most.
+  double most_moved(const RoadPiece& piece, const GroundEdit& edit,
+                    const models::Parameters& before) const {
+    const double cell_m = world_.cell_m(), radius_m = edit.radius_m + cell_m;
+    if (4 * radius_m * radius_m / (cell_m * cell_m) > kMostLookedAt) return relief_m_;
+    const core::WorldPosition& centre = edit.centre;
+    const auto block_at = [&](double local_m) {
+      return static_cast<std::int64_t>(std::floor(local_m / block_m_));
+    };
+    double most = 0;
+    for (std::int64_t z = block_at(centre.local.z - radius_m);
+         z <= block_at(centre.local.z + radius_m); ++z) {
+      for (std::int64_t x = block_at(centre.local.x - radius_m);
+           x <= block_at(centre.local.x + radius_m); ++x)
+        most = std::max(most, most_moved(piece, edit, core::moved(centre.block, x, z), before));
+    }
+    return most;
+  }
+
+  double most_moved(const RoadPiece& piece, const GroundEdit& edit, core::BlockCoord block,
+                    const models::Parameters& before) const {
+    const auto last = world_.terrain.integer(models::kTerrainSize) - 1;
+    const models::BlockGround ground(before, block, static_cast<std::size_t>(last * last));
+    const glm::dvec3 corner = core::offset_m(block, piece.origin, block_m_);
+    const glm::dvec3 away = core::offset_m(block, edit.centre, block_m_);
+    // Vertices in the square of the edit, along one axis.
+    const auto first_of = [&](double from_m) {
+      return std::clamp<std::int64_t>(
+          static_cast<std::int64_t>(std::floor((-from_m - edit.radius_m) / world_.cell_m())), 0,
+          last);
+    };
+    const auto last_of = [&](double from_m) {
+      return std::clamp<std::int64_t>(
+          static_cast<std::int64_t>(std::ceil((-from_m + edit.radius_m) / world_.cell_m())), 0,
+          last);
+    };
+    double most = 0;
+    for (std::int64_t z = first_of(away.z); z <= last_of(away.z); ++z) {
+      for (std::int64_t x = first_of(away.x); x <= last_of(away.x); ++x) {
+        const glm::dvec2 local_m =
+            glm::dvec2(static_cast<double>(x), static_cast<double>(z)) * world_.cell_m();
+        const models::RoadEffect road = effect_of(piece, local_m + glm::dvec2(corner.x, corner.z));
+        if (road.weight <= 0) continue;
+        most = std::max(most, std::abs(road.height_m - ground.at(local_m).height_m));
+      }
+    }
+    return most;
+  }
+
+  const World& world_;
+  double block_m_, relief_m_;
+  double length_m_ = 0;  // of all roads so far
+  models::EditLayer layer_;
+};
+
+// Adds all of one kind.
+template <class Shapes>
+Shaped add_all(const Shapes& shapes, std::string_view place, Shaper& shaper) {
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (auto ok = shaper.add(shapes[i]); !ok) {
+      ShapeError error = std::move(ok.error());
+      error.place = place, error.number = i;
+      return tl::unexpected(std::move(error));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+bool operator==(const Stamp& a, const Stamp& b) {
+  const auto content = [](const Stamp& s) { return s.picture ? s.picture->hash : 0; };
+  return a.image == b.image && content(a) == content(b) && a.centre_m == b.centre_m &&
+         a.size_m == b.size_m && a.turn_deg == b.turn_deg && a.base_m == b.base_m &&
+         a.height_m == b.height_m && a.border_m == b.border_m && a.mode == b.mode;
+}
+
+tl::expected<void, ShapeError> shape_ground(World& world) {
+  world.shaped.layer = nullptr;
+  set_edits(world, nullptr);
+  if (world.shaped.stamps.empty() && world.shaped.roads.empty()) return {};
+  Shaper shaper(world);
+  if (auto ok = add_all(world.shaped.stamps, "stamp", shaper); !ok) return ok;
+  if (auto ok = add_all(world.shaped.roads, "road", shaper); !ok) return ok;
+  world.shaped.layer = std::make_shared<const models::EditLayer>(shaper.take());
+  set_edits(world, nullptr);
+  return {};
+}
+
+std::uint64_t shape_hash(const World& world) {
+  if (!world.shaped.layer) return 0;
+  return world.shaped.layer->ground.hash_of({models::QuadPlace::kMaxLevel, 0, 0}, 0,
+                                            world.block_size_m());
+}
+
+}  // namespace psygen::world

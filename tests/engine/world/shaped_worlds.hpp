@@ -1,0 +1,77 @@
+// Worlds with stamps and roads for tests, whose pictures are in memory.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "engine/core/hash.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "tests/engine/world/shipped.hpp"
+
+namespace psygen::world::testing {
+
+// Pictures by name: "ramp.png" has 17 × 17 different values, "white.png" 3 × 3, "dot.png" one
+// pixel; others are missing.
+class MadePictures final : public FilesBeside {
+ public:
+  core::Result<std::unique_ptr<models::ModelType>> read_model(const std::filesystem::path& file,
+                                                              const HandmadeModel&) const override {
+    return core::fail(core::ErrorCode::kIo, file.string() + ": no models");
+  }
+  core::Result<std::shared_ptr<const GreyPicture>> read_grey(
+      const std::filesystem::path& file) const override {
+    const std::string name = file.filename().string();
+    if (name == "ramp.png") return made(17, [](std::uint32_t i) { return i * 65'535 / 288; });
+    if (name == "white.png") return made(3, [](std::uint32_t) { return 65'535; });
+    if (name == "dot.png") return made(1, [](std::uint32_t) { return 9; });
+    return core::fail(core::ErrorCode::kIo, file.string() + ": there is no such file");
+  }
+
+ private:
+  template <class Grey>
+  static std::shared_ptr<const GreyPicture> made(std::uint32_t side, const Grey& grey) {
+    auto picture = std::make_shared<GreyPicture>();
+    picture->width = picture->height = side;
+    for (std::uint32_t i = 0; i < side * side; ++i)
+      picture->pixels.push_back(static_cast<std::uint16_t>(grey(i)));
+    picture->hash = core::combine(side, picture->pixels.back());
+    return picture;
+  }
+};
+
+inline core::Result<World> read_shaped_world(const std::string& tables,
+                                             const std::string& text = kSmallWorld) {
+  static const MadePictures pictures;
+  return parse_world(text + tables, "maps/w.toml", registry(), &pictures);
+}
+
+// kSmallWorld, which is 512 m by 256 m and up to 60 m high, with these tables.
+inline World shaped_world(const std::string& tables) {
+  auto world = read_shaped_world(tables);
+  if (!world) std::fprintf(stderr, "%s\n", world.error().message.c_str());
+  PSYGEN_CHECK(world.has_value(), "the world of the test is sound");
+  return std::move(*world);
+}
+
+// A road that bends and comes back near itself, and a stamp that it crosses.
+inline constexpr const char* kShapes = R"(
+[[stamp]]
+image = "ramp.png"
+centre_m = [128, 128]
+size_m = 96
+base_m = 4
+height_m = 20
+border_m = 16
+turn_deg = 30
+
+[[road]]
+points_m = [[20, 30], [140, 140], [260, 60], [400, 200], [440, 150], [300, 90]]
+width_m = 10
+border_m = 8
+clear_m = 2
+)";
+
+}  // namespace psygen::world::testing
