@@ -111,6 +111,7 @@ QTreeWidgetItem* PropertiesPanel::group_of(world::SectionKind kind) {
   const QString title = kind == world::SectionKind::kSpecies   ? tr("Species")
                         : kind == world::SectionKind::kModel   ? tr("Models from files")
                         : kind == world::SectionKind::kScatter ? tr("Scattered on every block")
+                        : kind == world::SectionKind::kPlace   ? tr("Placed by hand")
                         : kind == world::SectionKind::kStamp   ? tr("Stamps in the ground")
                         : kind == world::SectionKind::kRoad    ? tr("Roads")
                                                                : QString();

@@ -129,6 +129,8 @@ WorldIdentity identity_of(const world::World& world, const models::Registry& reg
   for (const world::Scatter& scatter : world.scatter)
     add_scatter(facts, registry[scatter.model], scatter);
   if (const std::uint64_t shape = world::shape_hash(world); shape != 0) facts.add("shape", shape);
+  if (const std::uint64_t places = world::places_hash(world, registry); places != 0)
+    facts.add("places", places);
   if (const std::uint64_t ground = world::placing_hash(world); ground != 0)
     facts.add("ground", ground);
   return {world.name, facts.hash()};

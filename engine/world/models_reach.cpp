@@ -41,9 +41,12 @@ glm::vec2 models_reach_m(const World& world, const models::Registry& registry) {
 }
 
 glm::vec2 with_placed_models(glm::vec2 scattered, const World& world) {
-  if (!world.edits || world.edits->blocks.empty()) return scattered;
-  const glm::vec3& placed = world.edits->blocks.root()->summary.reach_m;
-  return glm::max(scattered, glm::vec2(placed.x, placed.y));
+  for (const models::EditLayer* layer : {world.edits.get(), world.places.by_block.get()}) {
+    if (layer == nullptr || layer->blocks.empty()) continue;
+    const glm::vec3& placed = layer->blocks.root()->summary.reach_m;
+    scattered = glm::max(scattered, glm::vec2(placed.x, placed.y));
+  }
+  return scattered;
 }
 
 }  // namespace psygen::world

@@ -182,13 +182,14 @@ void place_instances(const World& world, const models::Registry& registry, core:
 }
 
 void place_by_hand(const models::BlockEdits& edits, const models::Registry& registry,
-                   const models::BlockGround& ground, std::vector<Placement>& out) {
+                   const models::BlockGround& ground, std::uint32_t first_index,
+                   std::vector<Placement>& out) {
   for (const models::PlacedModel& placed : edits.placed) {
     const models::GroundPoint point = ground.at(placed.local_m);
     const models::ModelType& type = registry[placed.model];
     Placement placement{
         placed.model,
-        kPlacedIndex + placed.id,
+        first_index + placed.id,
         {placed.local_m.x, static_cast<float>(point.height_m) + placed.above_m, placed.local_m.y},
         placed.parameters};
     set_slope(type, slope_parameters(type),
@@ -215,7 +216,10 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
   } else {
     place_instances(world, registry, block, ground, ground, edits, out);
   }
-  if (edits != nullptr) place_by_hand(*edits, registry, ground, out);
+  if (edits != nullptr) place_by_hand(*edits, registry, ground, kPlacedIndex, out);
+  if (!world.places.by_block) return;
+  if (const models::BlockEdits* const of_file = world.places.by_block->block(block))
+    place_by_hand(*of_file, registry, ground, kFilePlacedIndex, out);
 }
 
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,

@@ -19,9 +19,11 @@ namespace psygen::world {
 
 // The index of a block's terrain among its meshes. Models count from 0.
 inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
-// Models that were placed by hand have this index plus their id. Ids end at kMaxEditId.
+// Models that edits have placed have this index plus their id. Ids end at kMaxEditId.
 inline constexpr std::uint32_t kPlacedIndex = 1U << 30;
 inline constexpr std::uint32_t kMaxEditId = (1U << 30) - 1;
+// Those of the world's file (places.hpp) have this index plus their number, from 1.
+inline constexpr std::uint32_t kFilePlacedIndex = 1U << 31;
 
 // One model on a block.
 struct Placement {
@@ -100,7 +102,8 @@ std::size_t models_per_block(const World& world);
 // for the block's heights and 0.1 µs for each model. Does not check whether the world contains the
 // block. Needs 350 KiB of stack.
 // With edits: instances find their places on the ground without edits, and stand on the ground with
-// them. Removed ones are left out; placed ones follow, by growing id.
+// them. Removed ones are left out; those that edits have placed follow, by growing id, and those of
+// the world's file.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out);
 // The same with the block's ground already made, which has the block's edits.

@@ -17,6 +17,7 @@
 #include "engine/models/registry.hpp"
 #include "engine/models/tree/species.hpp"
 #include "engine/world/mask.hpp"
+#include "engine/world/places.hpp"
 #include "engine/world/shaped_ground.hpp"
 
 namespace psygen::world {
@@ -152,6 +153,7 @@ struct World {
   std::vector<HandmadeModel> models;     // the same
   std::vector<Scatter> scatter;
   ShapedGround shaped;  // stamps and roads; part of the function
+  Places places;        // what is placed by hand; the same
   Sky sky;
   Water water;
   Palette palette;
@@ -195,9 +197,9 @@ struct WorldSize {
 };
 
 // The size of a world, computed without synthesis. Exact for models whose size depends on no random
-// parameter (terrain, rocks with a fixed subdivision). For others it is the mean over kSizeSamples
-// parameter sets, always the same ones. With filters, the share of instances that find a place is
-// measured on kSizeBlocks blocks.
+// parameter (terrain, rocks with a fixed subdivision). Without what is placed by hand. For others
+// it is the mean over kSizeSamples parameter sets, always the same ones. With filters, the share of
+// instances that find a place is measured on kSizeBlocks blocks.
 inline constexpr std::uint32_t kSizeSamples = 1024;
 inline constexpr std::uint32_t kSizeBlocks = 64;
 WorldSize world_size(const World& world, const models::Registry& registry);

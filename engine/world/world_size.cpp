@@ -51,6 +51,7 @@ std::vector<double> placed_per_block(const World& world, const models::Registry&
     const std::int32_t x = coordinate(world.blocks_x), z = coordinate(world.blocks_z);
     place_models(world, registry, {x, z}, placements);
     for (const Placement& placement : placements) {
+      if (placement.index >= kPlacedIndex) continue;
       std::size_t s = 0;
       for (std::uint32_t first = 0; placement.index - first >= world.scatter[s].count; ++s)
         first += world.scatter[s].count;

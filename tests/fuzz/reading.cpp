@@ -368,6 +368,11 @@ mask_area_m = [10, 20.5, 300, 200]
 mask_noise_m = 40
 mask_share = 0.3
 mask_patches = 2
+[[place]]
+model = "rock"
+at_m = [30.5, 40]
+above_m = 1
+subdivisions = 1
 [[stamp]]
 image = "hill.png"
 centre_m = [100, 90.5]

@@ -51,6 +51,11 @@ std::uint64_t merged_identity(const World& world, const models::Registry& regist
     if (const std::uint64_t mask = mask_hash(s.mask); mask != 0) add(mask);
   }
   if (const std::uint64_t shape = shape_hash(world); shape != 0) add(shape);
+  if (const std::uint64_t places = places_hash(world, registry); places != 0) {
+    add(places);
+    for (const Place& place : world.places.all)
+      add(registry[place.model].identity());
+  }
   if (const std::uint64_t ground = placing_hash(world); ground != 0) add(ground);
   return h;
 }

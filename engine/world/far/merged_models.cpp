@@ -70,7 +70,7 @@ class MergedType final : public models::ModelType {
     return level == 0 ? 0 : kNextFormsError * std::ldexp(height_m, level_of(p) - 1);
   }
   core::Bounds bounds(const Parameters& p) const override {
-    return with_reach(plan(p, 0).box, edits_of(p).reach_m);
+    return with_reach(plan(p, 0).box, placed_on(p).reach_m);
   }
   MeshSize mesh_size(const Parameters& p, int level) const override {
     const LevelPlan& made = plan(p, level);
@@ -105,17 +105,20 @@ class MergedType final : public models::ModelType {
     if (next.vertices == 0) next = own;  // all too small: keep the finer forms
     own.box = next.box = core::united(own.box, next.box);
   }
-  // The edits of the blocks of a node, counted; of nothing without edits.
-  static models::BlockEdits::Summary edits_of(const Parameters& p) {
-    if (p.edits() == nullptr) return {};
+  // What edits and the file have placed on the blocks of a node, counted.
+  models::BlockEdits::Summary placed_on(const Parameters& p) const {
     const core::BlockCoord node{static_cast<std::int32_t>(p.integer(kMergedBlockX)),
                                 static_cast<std::int32_t>(p.integer(kMergedBlockZ))};
-    const auto* cell = p.edits()->blocks.at_or_below(
-        models::QuadPlace::of(node, static_cast<std::uint32_t>(level_of(p))));
-    return cell != nullptr ? cell->summary : models::BlockEdits::Summary{};
+    const auto at = models::QuadPlace::of(node, static_cast<std::uint32_t>(level_of(p)));
+    models::BlockEdits::Summary sum;
+    for (const models::EditLayer* layer : {p.edits(), world_->places.by_block.get()}) {
+      const auto* cell = layer != nullptr ? layer->blocks.at_or_below(at) : nullptr;
+      if (cell != nullptr) sum.add(cell->summary);
+    }
+    return sum;
   }
-  static PlacedPlan placed_plan(const Parameters& p, const LevelPlan& made) {
-    return {made.form_level, edits_of(p).placed, made.vertices};
+  PlacedPlan placed_plan(const Parameters& p, const LevelPlan& made) const {
+    return {made.form_level, placed_on(p).placed, made.vertices};
   }
   void add_placed(const models::BlockEdits& edits, const NodeBlock& block, Making& making) const;
   const LevelPlan& plan(const Parameters& p, int level) const {
@@ -294,6 +297,9 @@ core::Bounds MergedType::synthesize(const Parameters& p, int level, const MeshVi
     for (std::size_t s = 0; s < scatters_.size(); ++s)
       add_scatter(s, block, making);
     if (making.edits != nullptr) add_placed(*making.edits, block, making);
+    if (!world_->places.by_block) continue;
+    if (const models::BlockEdits* of_file = world_->places.by_block->block(block.coord))
+      add_placed(*of_file, block, making);
   }
   return making.writer.finish();
 }

@@ -125,6 +125,13 @@ void visit_mask(M& mask, const Visit& visit) {
       FieldSpec{0, 1e6, 0, 20, "", "which patches: those of equal numbers and sizes are the same"});
 }
 
+// The numbers of a Place, beside the parameters of its model.
+template <class P, class Visit>
+void visit_placed(P& place, const Visit& visit) {
+  visit("above_m", place.above_m,
+        FieldSpec{-1000, 1000, -10, 100, "m", "how high its foot is over the ground"});
+}
+
 // The numbers of a Stamp.
 template <class S, class Visit>
 void visit_stamp(S& stamp, const Visit& visit) {

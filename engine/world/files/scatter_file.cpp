@@ -17,22 +17,6 @@ namespace {
 // log2 of the largest allowed number of triangles of all models of one block.
 constexpr double kMaxLog2BlockCost = 26;
 
-// The index of the named model, or −1 after a problem.
-int read_model_name(TableReader& reader, const World& world, const models::Registry& registry) {
-  std::string name;
-  if (!reader.read("model", name, 64, Presence::kRequired)) return -1;
-  const int index = registry.find(name);
-  if (index >= 0 && index != world.terrain_model) return index;
-  std::vector<std::string> known;
-  for (models::ModelIndex i = 0; i < registry.size(); ++i) {
-    if (i != world.terrain_model) known.emplace_back(registry[i].name());
-  }
-  reader.problem(
-      reader.find("model")->line, "model",
-      fmt::format("there is no such model to scatter; allowed: {}", fmt::join(known, ", ")));
-  return -1;
-}
-
 // The number of models of a [[scatter]] per block, or 0 after a problem. Too large numbers are
 // returned too, so the caller can refuse them with their cost.
 std::int64_t read_count(TableReader& reader) {
@@ -84,6 +68,21 @@ double read_scatter(const Node& node, std::size_t number, const models::Registry
 }
 
 }  // namespace
+
+int read_model_name(TableReader& reader, const World& world, const models::Registry& registry) {
+  std::string name;
+  if (!reader.read("model", name, 64, Presence::kRequired)) return -1;
+  const int index = registry.find(name);
+  if (index >= 0 && index != world.terrain_model) return index;
+  std::vector<std::string> known;
+  for (models::ModelIndex i = 0; i < registry.size(); ++i) {
+    if (i != world.terrain_model) known.emplace_back(registry[i].name());
+  }
+  reader.problem(
+      reader.find("model")->line, "model",
+      fmt::format("there is no such model to scatter; allowed: {}", fmt::join(known, ", ")));
+  return -1;
+}
 
 void read_scatters(TableReader& root, const models::Registry& registry, const Beside& beside,
                    World& world, Problems& problems) {

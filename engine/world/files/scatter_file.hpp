@@ -10,6 +10,10 @@ namespace psygen::world {
 
 inline constexpr std::size_t kMaxScatters = 64;  // per file
 
+// Reads the key "model" of a table: the index of the model type, or −1 after a problem. The terrain
+// is none of them.
+int read_model_name(TableReader& reader, const World& world, const models::Registry& registry);
+
 // Reads all tables into world.scatter. Adds problems for unknown models, for parameters that their
 // types refuse, and for too many models or triangles on a block. Requires all of the world's
 // table and its terrain.

@@ -1,6 +1,7 @@
 // World files: text → World. The [[scatter]] tables are read in scatter_file.cpp, the species in
-// species_file.cpp, the handmade models in handmade_file.cpp, stamps and roads in shaped_file.cpp.
-// Writing is in write_world.cpp. docs/world-files.md describes the format.
+// species_file.cpp, the handmade models in handmade_file.cpp, stamps and roads in shaped_file.cpp,
+// what is placed by hand in place_file.cpp. Writing is in write_world.cpp. docs/world-files.md
+// describes the format.
 #include "engine/world/files/world_file.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/model_fields.hpp"
+#include "engine/world/files/place_file.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/shaped_file.hpp"
 #include "engine/world/files/species_file.hpp"
@@ -186,12 +188,14 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
   read_fields(root, "sky", problems, [&](const auto& visit) { visit_sky(world.sky, visit); });
   read_fields(root, "water", problems, [&](const auto& visit) { visit_water(world.water, visit); });
   read_palette(root, world.palette, problems);
+  world.places.all = read_places(root, registry, world, problems);
   world.shaped = read_shaped(root, {file_name, beside}, problems);
   root.finish();
   if (problems.any()) return tl::unexpected(problems.first());
   world.terrain = terrain_parameters(world, {0, 0});
   shape_world(root, world, problems);
   if (problems.any()) return tl::unexpected(problems.first());
+  sort_places(world, registry);
   return world;
 }
 

@@ -71,6 +71,8 @@ class SchemaBuilder {
       sections.push_back(handmade_section(world_.models[i], {"model", i}));
     for (std::size_t i = 0; i < world_.scatter.size(); ++i)
       sections.push_back(scatter_section(world_.scatter[i], {"scatter", i}));
+    for (std::size_t i = 0; i < world_.places.all.size(); ++i)
+      sections.push_back(place_section(world_.places.all[i], {"place", i}));
     for (std::size_t i = 0; i < world_.shaped.stamps.size(); ++i)
       sections.push_back(stamp_section(world_.shaped.stamps[i], {"stamp", i}));
     for (std::size_t i = 0; i < world_.shaped.roads.size(); ++i)
@@ -294,6 +296,28 @@ class SchemaBuilder {
     return made;
   }
 
+  WorldSection place_section(const Place& p, const TextPath& path) const {
+    const models::ModelType& type = registry_[p.model];
+    WorldSection made = section(SectionKind::kPlace, path, std::string(type.name()));
+    WorldField& model = add(made, "model", text_value(std::string(type.name()), FieldKind::kChoice),
+                            "", {0, 0, 0, 0, "", "what stands there"});
+    model.required = true;
+    for (models::ModelIndex i = 0; i < registry_.size(); ++i)
+      if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
+    add_required(made, "at_m", {FieldKind::kToml, toml_vector(std::array{p.at_m.x, p.at_m.y}), {}},
+                 {0, 0, 0, 0, "m", "where it stands: [x, z]"});
+    add_all(made, p, Place{}, [](auto& o, const auto& v) { visit_placed(o, v); });
+    const auto specs = type.parameters();
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      if (specs[i].source != models::ParameterSource::kUser) continue;
+      const double now = specs[i].type == models::ParameterType::kInteger
+                             ? static_cast<double>(p.parameters.integer(i))
+                             : p.parameters.real(i);
+      add_parameter(made, specs[i].name, specs[i], {now, now}, false);
+    }
+    return made;
+  }
+
   WorldSection stamp_section(const Stamp& s, const TextPath& path) const {
     const Stamp usual;
     WorldSection made = section(SectionKind::kStamp, path, s.image);
@@ -331,6 +355,7 @@ core::Result<std::vector<WorldSection>> world_schema(std::string_view text, cons
   if (layout->item_count({"species"}) != world.species.size() ||
       layout->item_count({"model"}) != world.models.size() ||
       layout->item_count({"scatter"}) != world.scatter.size() ||
+      layout->item_count({"place"}) != world.places.all.size() ||
       layout->item_count({"stamp"}) != world.shaped.stamps.size() ||
       layout->item_count({"road"}) != world.shaped.roads.size())
     return core::fail(core::ErrorCode::kInvalidArgument, "the world is not that of the text");
@@ -374,6 +399,8 @@ std::size_t most_tables(SectionKind kind) {
       return kMaxHandmadeModels;
     case SectionKind::kScatter:
       return kMaxScatters;
+    case SectionKind::kPlace:
+      return kMaxPlaces;
     case SectionKind::kStamp:
       return kMaxStamps;
     case SectionKind::kRoad:

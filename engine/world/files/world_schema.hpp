@@ -68,6 +68,7 @@ enum class SectionKind : std::uint8_t {
   kSpeciesColours,
   kModel,
   kScatter,
+  kPlace,
   kStamp,
   kRoad,
 };
@@ -83,9 +84,9 @@ struct WorldSection {
 };
 
 // The sections of a world: World, Terrain, Sky, Water, Palette, each species, each handmade model,
-// each scatter, each stamp, each road. `world` must be what parse_world() made of `text` with
-// `registry`. Fails with kParse where the text is not TOML, and with kInvalidArgument where the
-// world is of another text.
+// each scatter, each place, each stamp, each road. `world` must be what parse_world() made of
+// `text` with `registry`. Fails with kParse where the text is not TOML, and with kInvalidArgument
+// where the world is of another text.
 core::Result<std::vector<WorldSection>> world_schema(std::string_view text, const World& world,
                                                      const models::Registry& registry);
 
@@ -96,7 +97,7 @@ const WorldField* find_field(const std::vector<WorldSection>& sections, const Te
 std::string field_label(std::string_view key, std::string_view unit);
 
 // How many tables a file may have at most: species, kinds and rules of one of them, handmade
-// models, scatters, stamps, roads.
+// models, scatters, places, stamps, roads.
 std::size_t most_tables(SectionKind kind);
 
 }  // namespace psygen::world

@@ -7,6 +7,7 @@
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/mask_file.hpp"
+#include "engine/world/files/place_file.hpp"
 #include "engine/world/files/shaped_file.hpp"
 #include "engine/world/files/species_file.hpp"
 #include "engine/world/files/toml_values.hpp"
@@ -94,6 +95,7 @@ std::string write_world(const World& world, const models::Registry& registry) {
   write_handmade(world.models, text);
   for (const Scatter& scatter : world.scatter)
     write_scatter(text, scatter, registry[scatter.model]);
+  write_places(world, registry, text);
   write_shaped(world.shaped, text);
   fmt::format_to(out, "\n[sky]\n");
   visit_sky(world.sky, FieldWriter{out});
