@@ -31,7 +31,7 @@ struct Blends {
 };
 
 // The blends of a place. `height` is that in the world. `cover`: share of the ground that far
-// forests hide where they can grow.
+// forests hide where they can grow; below 0 the share of a road, negative.
 Blends blends_of(float height, vec3 n, float pattern, float cover) {
   float slope = 1.0 - n.y;
   float uneven = (pattern - 0.5) * 2.0;
@@ -46,6 +46,12 @@ Blends blends_of(float height, vec3 n, float pattern, float cover) {
   b.canopy = bears * clamp(cover * (1.0 + 0.8 * uneven), 0.0, 1.0);
   b.snow = smoothstep(0.0, 1.0, (height - frame.snow_line.x) / frame.snow_line.y + uneven) *
            (1.0 - smoothstep(0.7 * frame.snow_line.z, frame.snow_line.z, slope));
+  if (cover < 0.0) {
+    b.dry = mix(b.dry, 1.0, -cover);
+    b.sand = mix(b.sand, 0.0, -cover);
+    b.rock = mix(b.rock, 0.6, -cover);
+    b.snow = mix(b.snow, 0.3 * b.snow, -cover);
+  }
   return b;
 }
 

@@ -14,7 +14,7 @@
 #include "ground_shade.glsl"
 #endif
 
-// x: grid x, grid z, height; y: coarse height, normal; z: sun, ambient, spare
+// x: grid x, grid z, height; y: coarse height, normal; z: sun, ambient, unused, road
 layout(location = 0) in uvec3 packed;
 
 void main() {
@@ -38,10 +38,12 @@ void main() {
 #if defined(PSYGEN_DRAW_COLOUR)
   colour = colour_of_draw(draw.scale.w, n);
 #elif !defined(PSYGEN_SHADOW)
+  float road = float(packed.z >> 24) * (1.0 / 255.0);
+  float cover = road > 0.0 ? -road : draw.scale.w;
   vec2 plane = p.xz + frame.ground_anchor.xy;
   float pattern = ground_pattern(plane);
 #if !defined(PSYGEN_PIXEL_LIGHT)
-  Blends blends = blends_of(p.y + frame.horizon_colour.w, n, pattern, draw.scale.w);
+  Blends blends = blends_of(p.y + frame.horizon_colour.w, n, pattern, cover);
   vec3 albedo = blended_albedo(blends, grain);
 #endif
 #endif
@@ -63,7 +65,7 @@ void main() {
 #if defined(PSYGEN_PIXEL_LIGHT)
   place = p;
   normal = n;
-  albedo_ambient = vec4(pattern, grain, draw.scale.w, visible.y);
+  albedo_ambient = vec4(pattern, grain, cover, visible.y);
   sun_leaf_surface = vec3(visible.x, 0.0, 0.0);
 #elif !defined(PSYGEN_DRAW_COLOUR) && !defined(PSYGEN_SHADOW)
   vec3 light = ground_light(albedo, n, visible.x, visible.y);

@@ -31,7 +31,7 @@ struct TerrainVertex {
   std::uint8_t sun = 255;      // unorm8: visible share of the sun, 255 = unshadowed
   std::uint8_t ambient = 255;  // unorm8: visible share of the sky, 255 = open
   std::uint8_t cover = 0;      // unused, always 0: far forests are per draw (TerrainDraw::cover)
-  std::uint8_t spare = 0;
+  std::uint8_t road = 0;       // unorm8: share of a road
 };
 static_assert(sizeof(TerrainVertex) == 12);
 // Bit 7 of TerrainVertex::grid_x.

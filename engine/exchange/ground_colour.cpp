@@ -7,9 +7,9 @@
 namespace psygen::exchange {
 
 glm::vec3 ground_albedo(const world::Palette& palette, float height_m, const glm::vec3& normal,
-                        glm::vec2 pattern_place_m, std::uint16_t packed_height) {
+                        glm::vec2 pattern_place_m, std::uint16_t packed_height, float road) {
   const world::GroundBlends blends =
-      world::ground_blends(palette, height_m, normal, pattern_place_m);
+      world::ground_blends(palette, height_m, normal, pattern_place_m, road);
   const glm::vec3* const kinds[world::kGroundKinds] = {
       &palette.grass, &palette.forest, &palette.dry, &palette.sand, &palette.rock, &palette.snow};
   glm::vec3 c = *kinds[0];

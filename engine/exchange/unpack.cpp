@@ -60,7 +60,8 @@ Vertex terrain_vertex(const models::MeshView& mesh, std::uint32_t i, const Groun
   const glm::vec2 place = world::pattern_place(ground.block, ground.block_size_m, plane);
   return {{plane.x, height_m, plane.y},
           normal,
-          ground_albedo(ground.palette, height_m, normal, place, v.height),
+          ground_albedo(ground.palette, height_m, normal, place, v.height,
+                        static_cast<float>(v.road) * (1.0F / 255.0F)),
           kGround};
 }
 

@@ -62,7 +62,8 @@ core::Result<Ground> World::ground(const core::WorldPosition& position) {
   const models::GroundPoint point = cache_.ground(at->block).at(local);
   const world::GroundBlends blends =
       world::ground_blends(palette_, static_cast<float>(point.height_m), point.normal,
-                           world::pattern_place(at->block, block_m_, glm::vec2(local)));
+                           world::pattern_place(at->block, block_m_, glm::vec2(local)),
+                           world::road_at(*world_, at->block, local));
   const world::Water& water = world_->water;
   return Ground{point.height_m, point.normal, world::main_kind(blends),
                 water.exists() ? std::max(water.level_m - point.height_m, 0.0) : 0.0};

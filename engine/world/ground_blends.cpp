@@ -49,7 +49,7 @@ glm::vec2 pattern_place(core::BlockCoord block, double block_size_m, glm::vec2 l
 }
 
 GroundBlends ground_blends(const Palette& palette, float height_m, const glm::vec3& normal,
-                           glm::vec2 pattern_place_m) {
+                           glm::vec2 pattern_place_m, float road) {
   const float pattern = 0.65F * slow_noise(pattern_place_m * (1.0F / 32.0F)) +
                         0.35F * slow_noise(pattern_place_m * (1.0F / 8.0F));
   const float slope = 1.0F - normal.y;
@@ -60,12 +60,19 @@ GroundBlends ground_blends(const Palette& palette, float height_m, const glm::ve
       std::max(static_cast<float>(palette.rock_slope_full), rock_start + kLeastSpan);
   const float snow = smooth(blend(palette.snow_start_m, palette.snow_blend_m, height_m) + uneven);
   const float steep = std::max(static_cast<float>(palette.snow_slope_max), kLeastSpan);
-  return {1.0F,
-          glm::smoothstep(0.35F, 0.62F, pattern + slope * 0.5F),
-          smooth(blend(palette.dry_start_m, palette.dry_blend_m, height_m) + uneven),
-          smooth(0.5F * uneven - blend(palette.sand_end_m, palette.sand_blend_m, height_m)),
-          glm::smoothstep(rock_start, rock_full, slope + 0.06F * uneven),
-          snow * (1.0F - glm::smoothstep(0.7F * steep, steep, slope))};
+  GroundBlends blends{
+      1.0F,
+      glm::smoothstep(0.35F, 0.62F, pattern + slope * 0.5F),
+      smooth(blend(palette.dry_start_m, palette.dry_blend_m, height_m) + uneven),
+      smooth(0.5F * uneven - blend(palette.sand_end_m, palette.sand_blend_m, height_m)),
+      glm::smoothstep(rock_start, rock_full, slope + 0.06F * uneven),
+      snow * (1.0F - glm::smoothstep(0.7F * steep, steep, slope))};
+  if (road <= 0.0F) return blends;
+  blends[2] = glm::mix(blends[2], 1.0F, road);
+  blends[3] = glm::mix(blends[3], 0.0F, road);
+  blends[4] = glm::mix(blends[4], 0.6F, road);
+  blends[5] = glm::mix(blends[5], 0.3F * blends[5], road);
+  return blends;
 }
 
 std::uint64_t placing_hash(const World& world) {

@@ -28,9 +28,10 @@ inline constexpr double kGroundPatternPeriodM = 2048;
 // from the corner of `block`.
 glm::vec2 pattern_place(core::BlockCoord block, double block_size_m, glm::vec2 local_m);
 
-// The blends of a point. `palette` is that of drawn_palette(); `normal` has unit length.
+// The blends of a point. `palette` is that of drawn_palette(); `normal` has unit length. `road`:
+// how much of the ground is a road, 0 … 1; roads are rock and dry ground.
 GroundBlends ground_blends(const Palette& palette, float height_m, const glm::vec3& normal,
-                           glm::vec2 pattern_place_m);
+                           glm::vec2 pattern_place_m, float road = 0.0F);
 
 // Their names in world files, in the same order.
 inline constexpr std::array<std::string_view, kGroundKinds> kGroundNames{"grass", "forest", "dry",

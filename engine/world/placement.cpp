@@ -222,6 +222,17 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
     place_by_hand(*of_file, registry, ground, kFilePlacedIndex, out);
 }
 
+float road_at(const World& world, core::BlockCoord block, glm::dvec2 local_m) {
+  if (world.shaped.roads.empty() || !world.shaped.layer) return 0;
+  const double block_m = world.block_size_m();
+  double share = 0;
+  for (const models::GroundEdit* edit :
+       world.shaped.layer->ground.roads_in(models::QuadPlace::of(block), block_m))
+    share = std::max(share,
+                     road_share(*edit->road, from_origin_m(*edit->road, block, local_m, block_m)));
+  return static_cast<float>(share);
+}
+
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,
                    double value) {
   if (type.parameters()[i].type == models::ParameterType::kInteger) {

@@ -110,6 +110,9 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out);
 
+// How much of the ground at a place of a block is a road, 0 … 1. O(log n + pieces of roads there).
+float road_at(const World& world, core::BlockCoord block, glm::dvec2 local_m);
+
 // The mean number of instances of each scatter that find a place in a block. Exact if no scatter
 // has a filter and there are no roads; otherwise the mean over kSizeBlocks blocks, always the same
 // ones.

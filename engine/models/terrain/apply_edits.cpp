@@ -218,15 +218,28 @@ RoadEffect effect_of(const RoadPiece& road, glm::dvec2 place_m) {
           faded(reach_m - std::sqrt(foot.away2), road.border_m)};
 }
 
-bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
-                 double block_m) {
-  const auto from_origin = [block_m](std::int32_t here, std::int32_t there, double local,
-                                     double origin) {
+double road_share(const RoadPiece& road, glm::dvec2 place_m) {
+  constexpr double kEdgeM = 1;
+  const double outside_m = road.half_width_m + kEdgeM / 2;
+  double nearest2 = outside_m * outside_m;
+  for (std::size_t i = road.first; i < road.end; ++i)
+    nearest2 = std::min(nearest2, foot_of(road.segments[i], place_m).away2);
+  return std::clamp((outside_m - std::sqrt(nearest2)) / kEdgeM, 0.0, 1.0);
+}
+
+glm::dvec2 from_origin_m(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
+                         double block_m) {
+  const auto along = [block_m](std::int32_t here, std::int32_t there, double local, double origin) {
     return static_cast<double>(std::int64_t{here} - std::int64_t{there}) * block_m + local - origin;
   };
   const core::WorldPosition& o = road.origin;
-  const glm::dvec2 place_m{from_origin(block.x, o.block.x, local_m.x, o.local.x),
-                           from_origin(block.z, o.block.z, local_m.y, o.local.z)};
+  return {along(block.x, o.block.x, local_m.x, o.local.x),
+          along(block.z, o.block.z, local_m.y, o.local.z)};
+}
+
+bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
+                 double block_m) {
+  const glm::dvec2 place_m = from_origin_m(road, block, local_m, block_m);
   const double clear_m = road.half_width_m + road.clear_m;
   for (std::size_t i = road.first; i < road.end; ++i) {
     if (foot_of(road.segments[i], place_m).away2 <= clear_m * clear_m) return true;

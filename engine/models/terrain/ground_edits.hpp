@@ -66,6 +66,8 @@ struct RoadEffect {
   double height_m = 0, weight = 0;
 };
 RoadEffect effect_of(const RoadPiece& road, glm::dvec2 place_m);
+// How much of the ground there is the road, 0 … 1: its edge is 1 m wide.
+double road_share(const RoadPiece& road, glm::dvec2 place_m);
 
 // One edit. Immutable once it is part of a GroundEdits.
 struct GroundEdit {
@@ -180,6 +182,9 @@ class GroundEdits {
   QuadMap<GroundCell> cells_, below_;
 };
 
+// Metres from the origin of a road to a place in a block.
+glm::dvec2 from_origin_m(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
+                         double block_m);
 // Whether a piece of a road keeps models away from a place in a block.
 bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m, double block_m);
 

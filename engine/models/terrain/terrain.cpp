@@ -12,6 +12,7 @@
 #include "engine/models/terrain/grid.hpp"
 #include "engine/models/terrain/kernel.hpp"
 #include "engine/models/terrain/light.hpp"
+#include "engine/models/terrain/road_marks.hpp"
 #include "engine/models/terrain/shape.hpp"
 
 namespace psygen::models {
@@ -245,6 +246,10 @@ core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshV
        .quantum = shape.quantum,
        .slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m)},
       out.vertices.data());
+  mark_roads(shape, grid,
+             {static_cast<std::int32_t>(p.integer(kTerrainBlockX)),
+              static_cast<std::int32_t>(p.integer(kTerrainBlockZ))},
+             out.vertices.data());
   core::Bounds box = bounds(p);
   box.min.y = shape.relief_m * (static_cast<float>(heights.lowest) / 65535.0F);
   box.max.y = shape.relief_m * (static_cast<float>(heights.highest) / 65535.0F);

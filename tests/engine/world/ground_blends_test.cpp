@@ -96,6 +96,26 @@ TEST(GroundBlends, AreThoseOfTheShader) {
   }
 }
 
+TEST(GroundBlends, RoadsAreThoseOfTheShader) {
+  const Palette palette = telling_palette();
+  set_frame(palette);
+  const glm::vec3 colours[] = {palette.grass, palette.forest, palette.dry,
+                               palette.sand,  palette.rock,   palette.snow};
+  core::RandomStream random(3, 0, 0, 0, core::Purpose::kPosition);
+  for (int i = 0; i < 5000; ++i) {
+    const Point at = random_point(random);
+    const auto road = static_cast<float>(random.next_real(0.001, 1));
+    const GroundBlends blends = ground_blends(palette, at.height, at.normal, at.place, road);
+    glm::vec3 colour(0.0F);
+    for (std::size_t k = 0; k < kGroundKinds; ++k)
+      colour = glm::mix(colour, colours[k], blends[k]);
+    const glm::vec3 drawn = shader::ground_albedo(at.height, at.normal, at.place, 0.5F, -road);
+    ASSERT_LT(glm::length(drawn - colour), 1e-4F) << at.height;
+  }
+  const glm::vec3 flat{0, 1, 0};
+  EXPECT_EQ(main_kind(ground_blends(palette, 60, flat, {7, 9}, 1)), GroundKind::kRock);
+}
+
 TEST(GroundBlends, TheMainKindHasTheLargestShare) {
   const Palette palette = telling_palette();
   core::RandomStream random(2, 0, 0, 0, core::Purpose::kPosition);

@@ -211,6 +211,37 @@ TEST(Road, NothingStandsOnItAndWhatStandsBesideItStaysThere) {
   EXPECT_LT(world_size(world, registry()).models, world_size(base, registry()).models);
 }
 
+// Vertices know the share of a road, in meshes of all levels, as queries do.
+TEST(Road, IsMarkedInTheGround) {
+  const World world =
+      shaped_world("[[road]]\npoints_m = [[40, 100], [440, 100]]\nwidth_m = 16\nborder_m = 12\n");
+  const models::ModelType& terrain = registry()[world.terrain_model];
+  for (int level = 0; level < 3; ++level) {
+    const auto vertices =
+        models::test::synthesize(terrain, terrain_parameters(world, {0, 0}, level), 0)
+            .vertices<core::TerrainVertex>();
+    const int step_m = 2 << level;
+    for (int k = 0; k < 33; ++k) {
+      for (int i = 0; i < 33; ++i) {
+        const int x = i * step_m, z = k * step_m;
+        const bool on_it = x >= 40 && x <= 440 && std::abs(z - 100) <= 7;
+        const bool off_it = x < 31 || x > 449 || std::abs(z - 100) >= 9;
+        const std::uint8_t road = vertices[static_cast<std::size_t>(k * 33 + i)].road;
+        if (on_it) {
+          EXPECT_EQ(road, 255) << x << ' ' << z;
+        }
+        if (off_it) {
+          EXPECT_EQ(road, 0) << x << ' ' << z;
+        }
+        const core::BlockCoord block{x / 64, z / 64};
+        EXPECT_NEAR(road_at(world, block, {x % 64, z % 64}), road / 255.0F, 0.003F);
+      }
+    }
+  }
+  const World base = parsed(kSmallWorld);
+  EXPECT_EQ(road_at(base, {1, 1}, {36, 36}), 0);
+}
+
 TEST(Road, RoadsAndStampsMayLieOnEachOther) {
   std::string tables;
   for (int i = 0; i < 20; ++i) {
