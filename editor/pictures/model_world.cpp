@@ -95,7 +95,8 @@ tl::unexpected<core::Error> no_such(std::string_view array, std::size_t index) {
 
 // The text with limits and count of its only scatter such that it stands anywhere, once.
 core::Result<std::string> alone(core::Result<std::string> text) {
-  for (const char* limit : {"min_height_m", "max_height_m", "max_slope_deg"})
+  for (const char* limit : {"min_height_m", "max_height_m", "max_slope_deg", "on_ground",
+                            "mask_image", "mask_area_m", "mask_noise_m"})
     if (text) text = world::without_value(*text, {"scatter", 0, limit});
   if (text) text = world::with_value(*text, {"scatter", 0, "count"}, "1");
   return text;

@@ -6,6 +6,7 @@
 
 #include "engine/app/session.hpp"
 #include "engine/core/clock.hpp"
+#include "engine/handmade/files.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/files/text_file.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -244,7 +245,7 @@ std::string world_text(const app::Session& session) {
   }
   // The registry has the species, if it is the same world.
   const models::Registry& types = facts.registry;
-  auto world = world::parse_world(text, options.world_file.string(), types);
+  auto world = world::parse_world(text, options.world_file.string(), types, &handmade::files());
   if (!world) return written;
   if (options.start_hour) world->sky.start_hour = *options.start_hour;
   return world::write_world(*world, types) == written ? text : written;
