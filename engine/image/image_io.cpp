@@ -25,9 +25,12 @@ tl::unexpected<core::Error> fail_at(ErrorCode code, const std::filesystem::path&
 
 core::Result<PictureHeader> checked_header(const std::filesystem::path& path,
                                            std::span<const std::uint8_t> bytes,
-                                           const ImageLimits& limits) {
+                                           const ImageLimits& limits, bool may_be_exr = false) {
   const auto header = read_picture_header(bytes);
-  if (!header) return fail_at(ErrorCode::kParse, path, "is not a PNG or JPEG picture");
+  if (!header || (header->format == PictureFormat::kExr && !may_be_exr))
+    return fail_at(
+        ErrorCode::kParse, path,
+        may_be_exr ? "is not a PNG, JPEG or OpenEXR picture" : "is not a PNG or JPEG picture");
   const std::uint64_t pixels = std::uint64_t{header->width} * header->height;
   if (pixels == 0) return fail_at(ErrorCode::kParse, path, "the picture has no pixels");
   if (header->width > limits.max_width || header->height > limits.max_height ||
@@ -91,7 +94,7 @@ core::Result<GreyImage> read_grey(const std::filesystem::path& path, const Image
   return without_exceptions(path, ErrorCode::kParse, [&]() -> core::Result<GreyImage> {
     const auto bytes = core::read_file(path, limits.max_file_bytes);
     if (!bytes) return tl::unexpected(bytes.error());
-    return checked_header(path, *bytes, limits).and_then([&](const PictureHeader& header) {
+    return checked_header(path, *bytes, limits, true).and_then([&](const PictureHeader& header) {
       return with_path(path, picture_codec().and_then([&](const PictureCodec* codec) {
         return codec->decode_grey(*bytes, header);
       }));

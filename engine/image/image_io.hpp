@@ -35,7 +35,8 @@ core::Result<Image> decode_image(std::span<const std::uint8_t> bytes,
                                  const std::filesystem::path& name, const ImageLimits& limits = {});
 
 // Reads any PNG or JPEG as grey values with 16 bits: colours become their mean, 8 bits are spread,
-// alpha is left out. Fails like read_image(), whose limits count 4 bytes a pixel.
+// alpha is left out. OpenEXR files of one part are read too: 0 is black, 1 is white, and what is no
+// number is black. Fails like read_image(), whose limits count 4 bytes a pixel.
 core::Result<GreyImage> read_grey(const std::filesystem::path& path,
                                   const ImageLimits& limits = {});
 

@@ -38,7 +38,9 @@ core::Result<Decoded<Channel>> decode_channels(std::span<const std::uint8_t> byt
                                                const PictureHeader& header,
                                                OIIO::TypeDesc::BASETYPE type) {
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
-  const char* format = header.format == PictureFormat::kPng ? "png" : "jpeg";
+  const char* format = header.format == PictureFormat::kPng   ? "png"
+                       : header.format == PictureFormat::kExr ? "openexr"
+                                                              : "jpeg";
   const auto input = OIIO::ImageInput::create(format);
   if (!input) return core::fail(ErrorCode::kInternal, OIIO::geterror());
   input->threads(1);
@@ -69,19 +71,36 @@ core::Result<Image> decode(std::span<const std::uint8_t> bytes, const PictureHea
   return image;
 }
 
-core::Result<GreyImage> decode_grey(std::span<const std::uint8_t> bytes,
-                                    const PictureHeader& header) {
-  const auto decoded = decode_channels<std::uint16_t>(bytes, header, OIIO::TypeDesc::UINT16);
-  if (!decoded) return tl::unexpected(decoded.error());
-  const std::size_t colours = decoded->channels >= 3 ? 3 : 1;
+// The mean of the colours of each pixel.
+template <class Channel, class Spread>
+GreyImage means_of(const Decoded<Channel>& decoded, const PictureHeader& header,
+                   const Spread& spread) {
+  const std::size_t colours = decoded.channels >= 3 ? 3 : 1;
   GreyImage image{header.width, header.height, {}};
-  for (std::size_t i = 0; i < decoded->values.size(); i += decoded->channels) {
+  image.grey.reserve(decoded.values.size() / decoded.channels);
+  for (std::size_t i = 0; i < decoded.values.size(); i += decoded.channels) {
     std::uint32_t sum = 0;
     for (std::size_t c = 0; c < colours; ++c)
-      sum += decoded->values[i + c];
-    image.grey.push_back(static_cast<std::uint16_t>((sum + colours / 2) / colours));
+      sum += spread(decoded.values[i + c]);
+    image.grey.push_back(
+        static_cast<std::uint16_t>((sum + colours / 2) / static_cast<std::uint32_t>(colours)));
   }
   return image;
+}
+
+core::Result<GreyImage> decode_grey(std::span<const std::uint8_t> bytes,
+                                    const PictureHeader& header) {
+  if (header.format == PictureFormat::kExr) {
+    const auto decoded = decode_channels<float>(bytes, header, OIIO::TypeDesc::FLOAT);
+    if (!decoded) return tl::unexpected(decoded.error());
+    return means_of(*decoded, header, [](float v) {
+      if (!(v > 0)) return std::uint32_t{0};
+      return static_cast<std::uint32_t>(std::min(v, 1.0F) * 65535.0F + 0.5F);
+    });
+  }
+  const auto decoded = decode_channels<std::uint16_t>(bytes, header, OIIO::TypeDesc::UINT16);
+  if (!decoded) return tl::unexpected(decoded.error());
+  return means_of(*decoded, header, [](std::uint16_t v) { return std::uint32_t{v}; });
 }
 
 core::Result<Bytes> encode_png(const Image& image) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 namespace psygen::image {
 namespace {
@@ -75,6 +76,50 @@ std::optional<PictureHeader> jpeg_header(Bytes bytes) {
   return std::nullopt;
 }
 
+constexpr std::array<std::uint8_t, 4> kExrSignature{0x76, 0x2F, 0x31, 0x01};
+
+std::uint32_t little_endian(Bytes bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 4; i-- > 0;)
+    value = (value << 8) | bytes[i];
+  return value;
+}
+
+// Signature, version, then attributes up to an empty name: name, type, size, value. The picture is
+// as large as the box "dataWindow": least x and y, greatest x and y (OpenEXR file layout).
+std::optional<PictureHeader> exr_header(Bytes bytes) {
+  constexpr std::uint32_t kPlain = 0xFF | 0x200 | 0x400;  // version, tiles, long names
+  if (bytes.size() < 8 || (little_endian(bytes.subspan(4)) & ~kPlain) != 0) return std::nullopt;
+  bytes = bytes.subspan(8);
+  const auto word = [&bytes]() -> std::optional<std::string_view> {
+    const auto end = std::ranges::find(bytes, std::uint8_t{0});
+    if (end == bytes.end()) return std::nullopt;
+    const auto length = static_cast<std::size_t>(end - bytes.begin());
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), length);
+    bytes = bytes.subspan(length + 1);
+    return text;
+  };
+  while (const auto name = word()) {
+    if (name->empty() || !word() || bytes.size() < 4) return std::nullopt;
+    const std::uint32_t size = little_endian(bytes);
+    bytes = bytes.subspan(4);
+    if (size > bytes.size()) return std::nullopt;
+    if (*name == "dataWindow") {
+      if (size != 16) return std::nullopt;
+      const auto side = [&bytes](std::size_t axis) {
+        const auto at = [&bytes](std::size_t i) {
+          return std::int64_t{static_cast<std::int32_t>(little_endian(bytes.subspan(4 * i)))};
+        };
+        const std::int64_t pixels = at(axis + 2) - at(axis) + 1;
+        return static_cast<std::uint32_t>(std::clamp<std::int64_t>(pixels, 0, UINT32_MAX));
+      };
+      return PictureHeader{PictureFormat::kExr, side(0), side(1)};
+    }
+    bytes = bytes.subspan(size);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool png_is_whole(Bytes bytes) {
@@ -96,6 +141,7 @@ bool png_is_whole(Bytes bytes) {
 std::optional<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes) {
   if (starts_with(bytes, kPngSignature)) return png_header(bytes);
   if (starts_with(bytes, kJpegSignature)) return jpeg_header(bytes);
+  if (starts_with(bytes, kExrSignature)) return exr_header(bytes);
   return std::nullopt;
 }
 

@@ -1,6 +1,6 @@
-// The size that a PNG or JPEG file claims to have, read from its first markers without a decoder
-// and without allocating. A claim can thus be refused before anything is allocated for it. Not a
-// validation: the rest of the file may still be damaged. Pure; any thread.
+// The size that a PNG, JPEG or OpenEXR file claims to have, read from its first markers without a
+// decoder and without allocating. A claim can thus be refused before anything is allocated for it.
+// Not a validation: the rest of the file may still be damaged. Pure; any thread.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace psygen::image {
 
-// The formats that are read.
-enum class PictureFormat : std::uint8_t { kPng, kJpeg };
+// The formats that are read; kExr as grey values only.
+enum class PictureFormat : std::uint8_t { kPng, kJpeg, kExr };
 
 // What a file claims to be. Sizes in pixels, not checked against any limit.
 struct PictureHeader {
@@ -25,7 +25,8 @@ struct PictureHeader {
 // O(bytes).
 bool png_is_whole(std::span<const std::uint8_t> bytes);
 
-// Empty when the bytes are neither format or end before the size. O(markers).
+// Empty when the bytes are no such format or end before the size, and for OpenEXR files of several
+// parts or with deep pixels. O(markers).
 std::optional<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes);
 
 }  // namespace psygen::image

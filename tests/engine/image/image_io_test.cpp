@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -66,6 +68,96 @@ TEST(ImageIo, ReadsGreyValuesWithSixteenBits) {
   EXPECT_EQ(mean->grey, std::vector<std::uint16_t>(3, 21845));
   EXPECT_EQ(read_grey(folder / "no.png").error().code, ErrorCode::kIo);
   EXPECT_EQ(read_grey(folder / "red.png", {2, 2, 16, 1000}).error().code, ErrorCode::kOverBudget);
+}
+
+// An OpenEXR file without compression: one channel of floats, 3 × 2 pixels.
+std::vector<std::uint8_t> small_exr() {
+  std::vector<std::uint8_t> bytes;
+  const auto put = [&bytes](auto value) {
+    std::uint8_t raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    bytes.insert(bytes.end(), raw, raw + sizeof value);
+  };
+  const auto text = [&bytes](std::string_view name) {
+    bytes.insert(bytes.end(), name.begin(), name.end());
+    bytes.push_back(0);
+  };
+  const auto attribute = [&](std::string_view name, std::string_view type, std::uint32_t size) {
+    text(name);
+    text(type);
+    put(size);
+  };
+  put(std::uint32_t{20'000'630});
+  put(std::uint32_t{2});
+  attribute("channels", "chlist", 19);
+  text("Y");
+  for (const std::uint32_t v : {2U, 0U, 1U, 1U})  // float, linear, every pixel
+    put(v);
+  bytes.push_back(0);
+  attribute("compression", "compression", 1);
+  bytes.push_back(0);
+  for (const char* window : {"dataWindow", "displayWindow"}) {
+    attribute(window, "box2i", 16);
+    for (const std::int32_t v : {0, 0, 2, 1})
+      put(v);
+  }
+  attribute("lineOrder", "lineOrder", 1);
+  bytes.push_back(0);
+  attribute("pixelAspectRatio", "float", 4);
+  put(1.0F);
+  attribute("screenWindowCenter", "v2f", 8);
+  put(0.0F);
+  put(0.0F);
+  attribute("screenWindowWidth", "float", 4);
+  put(1.0F);
+  bytes.push_back(0);
+  const std::uint64_t first = bytes.size() + 16;
+  put(first);
+  put(first + 20);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float pixels[2][3] = {{0, 0.5F, 1}, {-3, 7, nan}};
+  for (std::int32_t y = 0; y < 2; ++y) {
+    put(y);
+    put(std::uint32_t{12});
+    for (const float v : pixels[y])
+      put(v);
+  }
+  return bytes;
+}
+
+TEST(ImageIo, ReadsOpenExrAsGreyValuesAndAsNothingElse) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.exr", small_exr());
+  const auto grey = read_grey(folder / "a.exr");
+  ASSERT_TRUE(grey) << grey.error().message;
+  EXPECT_EQ(grey->width, 3U);
+  EXPECT_EQ(grey->height, 2U);
+  EXPECT_EQ(grey->grey, (std::vector<std::uint16_t>{0, 32768, 65535, 0, 65535, 0}));
+  const auto image = read_image(folder / "a.exr");
+  ASSERT_FALSE(image);
+  EXPECT_NE(image.error().message.find("is not a PNG or JPEG"), std::string::npos);
+  EXPECT_EQ(read_grey(folder / "a.exr", {2, 2, 800, 1000}).error().code, ErrorCode::kOverBudget);
+}
+
+TEST(ImageIo, DamagedOpenExrFilesAreErrorsOrPicturesOfTheSameLimits) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> whole = small_exr();
+  const ImageLimits limits{64, 64, 64 * 64 * 4, 10'000};
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    write_bytes(folder / "cut.exr", std::span(whole).first(length));
+    EXPECT_FALSE(read_grey(folder / "cut.exr", limits)) << length;
+  }
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    for (const unsigned flip : {1U, 0x80U, 0xFFU}) {
+      auto bytes = whole;
+      bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ flip);
+      write_bytes(folder / "b.exr", bytes);
+      const auto read = read_grey(folder / "b.exr", limits);
+      if (!read) continue;
+      EXPECT_LE(read->width, 64U);
+      EXPECT_EQ(read->grey.size(), std::size_t{read->width} * read->height);
+    }
+  }
 }
 
 TEST(ImageIo, ReadsAJpegWhateverItIsCalled) {
