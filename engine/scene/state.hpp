@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -56,6 +57,10 @@ struct Input {
   float text_scale = 1;             // of the panels' text
   const ImDrawData* gui = nullptr;  // valid during the tick; null: none
   render::View view = render::View::kNormal;
+  // While values are tried out one after another: meshes of a world before are replaced by coarse
+  // ones, and nothing gets finer, until it ends (quality/mesh_choice.hpp).
+  bool draft = false;
+  std::span<const render::Line> lines;  // over the picture, from the camera; valid during the tick
   // What the last frame took, without waiting for a display, and drew; 0: unknown.
   double frame_ms = 0, frame_triangles = 0;
 };
@@ -78,6 +83,7 @@ struct Quality {
   // where one looks, and few of a frame's triangles.
   double model_error_pixels = 0;
   float coarsening = 1;  // >= 1: factor of both, while the geometry budget is too small
+  bool draft = false;    // Input::draft
   // Real seconds since which every picture has awaited something (Counters::awaited); +inf: the
   // last one did not, or there was none.
   double awaiting_since_s = std::numeric_limits<double>::infinity();

@@ -1,5 +1,6 @@
 #include "engine/scene/quality/mesh_choice.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -16,6 +17,20 @@ constexpr double kHolePatienceSeconds = 0.02;
 // A picture is kept up to so much more than kMostPicturePixels.
 constexpr float kKept = 1.1F;
 
+// The level that a draft has in place of the wanted one; a picture only where that is wanted.
+int draft_level(const Detail& detail, std::uint8_t wanted_level) {
+  const int levels = static_cast<int>(detail.level_count);
+  const int coarsest = detail.picture_level == levels - 1 ? levels - 2 : levels - 1;
+  return std::max(std::min(wanted_level + kDraftLevels, coarsest), int{wanted_level});
+}
+
+// Whether what is drawn of a draft is fine enough for it.
+bool is_drafted(const ChoiceRules& rules, const Detail& detail, const Demand& demand) {
+  return rules.draft && !demand.stale && demand.drawn_level != kNoLevel &&
+         demand.drawn_level >= demand.wanted_level &&
+         int{demand.drawn_level} <= draft_level(detail, demand.wanted_level);
+}
+
 // The wanted level; for a hole in view whose wanted level is not cached, the coarsest one first;
 // the nearest one to it where it cannot be synthesised. kNoLevel if nothing is better than what is
 // drawn.
@@ -29,7 +44,10 @@ std::uint8_t level_to_request(const ChoiceRules& rules, const Detail& detail, co
                      demand.seen_s >= 0 &&
                      rules.real_s - double{demand.seen_s} > kHolePatienceSeconds;
   const int coarsest = stuck && levels > 1 ? levels - 2 : levels - 1;
-  const int first = coarse_first ? coarsest : demand.wanted_level;
+  const bool draft = rules.draft && demand.drawn_level != kNoLevel &&
+                     (demand.stale || demand.drawn_level > demand.wanted_level);
+  const int wanted = draft ? draft_level(detail, demand.wanted_level) : demand.wanted_level;
+  const int first = coarse_first ? coarsest : wanted;
   for (int distance = 0; distance < levels; ++distance) {
     for (const int level : {first + distance, first - distance}) {
       if (level < 0 || level >= levels || (demand.failed_levels >> level & 1) != 0) continue;
@@ -76,7 +94,8 @@ MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Det
   const bool hole = is_hole(node, demand, in_view);
   MeshChoice choice;
   choice.there = demand.drawn_level == demand.wanted_level && !demand.stale;
-  if (!choice.there) choice.request = level_to_request(rules, detail, demand, hole, cached);
+  if (!choice.there && !is_drafted(rules, detail, demand))
+    choice.request = level_to_request(rules, detail, demand, hole, cached);
   const bool too_fine =
       !is_ground && !nothing && choice.request != kNoLevel && choice.request > demand.drawn_level;
   const RankGroup drawn = too_fine ? RankGroup::kVisibleFine : RankGroup::kDrawn;

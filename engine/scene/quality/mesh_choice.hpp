@@ -23,7 +23,11 @@ struct ChoiceRules {
   bool coarse_first = true;      // Rules::coarse_first
   bool short_of_memory = false;  // the picture is coarser for want of memory
   bool awaits_memory = false;    // requests wait for memory that is about to be free
+  bool draft = false;            // Quality::draft
 };
+
+// In a draft, meshes may be so many levels coarser than wanted.
+inline constexpr int kDraftLevels = 2;
 
 // Models that are larger on screen have no picture: its texels would be seen.
 inline constexpr float kMostPicturePixels = 160;

@@ -74,6 +74,7 @@ ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clo
   choice.coarse_first = rules.coarse_first;
   choice.short_of_memory = quality.coarsening > 1;
   choice.awaits_memory = pressure.waiting > 0;
+  choice.draft = quality.draft && !rules.settle;
   return choice;
 }
 

@@ -79,6 +79,7 @@ void quality_system(const Settings& settings, const Rules& rules, const Input& i
                                  ? std::min(quality.awaiting_since_s, pressure.at_s)
                                  : std::numeric_limits<double>::infinity();
   quality.governor.observe(input.frame_ms, input.frame_triangles);
+  quality.draft = input.draft;
   set_detail(settings, quality);
 }
 

@@ -187,7 +187,7 @@ void render_system(const Settings& settings, const Input& input, const Clock& cl
   draws.terrain.clear();
   draws.models.clear();
   draws.meshes.clear();
-  draws.lines.clear();
+  draws.lines.assign(input.lines.begin(), input.lines.end());
   draws.entities.clear();
   for (const visibility::CutNode& node : view.cut.nodes)
     draws.entities.push_back(streaming.grids[node.node.level].entity_of(node.node.coord));

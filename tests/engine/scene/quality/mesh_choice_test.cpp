@@ -126,6 +126,36 @@ TEST(MeshChoice, AHoleAsksForItsWantedLevelWhereTheCacheHasIt) {
   EXPECT_EQ(choose_mesh({}, in_view(), four_levels(), hole, true, false, false).request, 3);
 }
 
+TEST(MeshChoice, ADraftReplacesOldMeshesByCoarseOnesAndRefinesNothing) {
+  ChoiceRules rules;
+  rules.draft = true;
+  Demand old = demand(0, 0);
+  old.stale = true;
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), old, true, false).request, kDraftLevels);
+  const Demand drafted = demand(kDraftLevels, 0);
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), drafted, true, false).request, kNoLevel);
+  EXPECT_FALSE(choose_mesh(rules, in_view(), four_levels(), drafted, true, false).there);
+  const Demand new_one = demand(3, 0);
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), new_one, true, false).request,
+            kDraftLevels);
+  rules.draft = false;
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), drafted, true, false).request, 0);
+}
+
+TEST(MeshChoice, ADraftHasNoPictureWhereAMeshIsWanted) {
+  ChoiceRules rules;
+  rules.draft = true;
+  Demand old = demand(1, 1);
+  old.stale = true;
+  EXPECT_EQ(choose_mesh(rules, in_view(), pictured(), old, true, false).request, 2);
+  old.wanted_level = 3;
+  EXPECT_EQ(choose_mesh(rules, in_view(), pictured(), old, true, false).request, 3);
+  // What is finer than wanted gives way as usual, and holes are filled as usual.
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), demand(0, 1), true, false).request, 1);
+  EXPECT_EQ(choose_mesh(rules, in_view(), four_levels(), demand(kNoLevel, 1), true, false).request,
+            3);
+}
+
 TEST(MeshChoice, HolesAreInViewAndNeitherDrawnNorCovered) {
   NodeView node = in_view();
   EXPECT_TRUE(is_hole(node, demand(kNoLevel, 1), true));
