@@ -118,6 +118,7 @@ void Document::adopt(const std::filesystem::path& file, std::string text, Parsed
   locks_ = kept_locks_ =
       file_.empty() ? FieldLocks() : FieldLocks::load(options_.state_folder, file_);
   drag_ = 0;
+  drop_asked();
   text_ = std::make_shared<const std::string>(std::move(text));
   parsed_ = std::move(parsed);
   sections_.reset();
@@ -257,6 +258,7 @@ void Document::show(const TextPtr& text) {
   }
   text_ = text;
   sections_.reset();
+  drop_asked();
   Q_EMIT changed(Change::kText | changes_between(*before, *parsed_));
   note_modified();
   if (!autosave_timer_.isActive()) autosave_timer_.start();

@@ -34,6 +34,10 @@ struct DocumentOptions {
   int autosave_ms = 3000;                   // after a change
 };
 
+// Asked before an edit counts: a sentence where a person shall agree first; empty: it counts at
+// once. Some milliseconds.
+using EditGuard = std::function<QString(const ParsedWorld& before, const ParsedWorld& after)>;
+
 // What became of the file on the disk.
 enum class DiskState { kSame, kChanged, kRemoved };
 
@@ -93,6 +97,8 @@ class Document : public QObject {
   core::Result<void> set_text(std::string text, const QString& step);
   core::Result<void> set_value(const world::TextPath& path, std::string_view toml_value);
   core::Result<void> reset_value(const world::TextPath& path);
+  // All fields below `path` that have a default.
+  core::Result<void> reset_section(const world::TextPath& path);
   core::Result<void> append_table(const world::TextPath& array, std::string_view table);
   core::Result<void> remove_table(const world::TextPath& path);
   core::Result<void> move_table(const world::TextPath& item, std::size_t to);
@@ -105,6 +111,17 @@ class Document : public QObject {
   // Any change of the text by one function, such as world::with_snippet().
   core::Result<void> edit(const QString& step,
                           const std::function<core::Result<std::string>(std::string_view)>& change);
+  // --- Edits that wait for an answer. All edits but set_text() are shown to the guard. One that it
+  // has a sentence for succeeds, but changes nothing yet: the newest one waits until it is applied,
+  // dropped, or the text changes.
+
+  void set_guard(EditGuard guard) { guard_ = std::move(guard); }
+  // What is asked; empty: nothing.
+  const QString& question() const { return question_; }
+  // Makes the edit that waits, as it would have been made at first. Without one, nothing.
+  core::Result<void> apply_asked();
+  void drop_asked() { ask(std::nullopt, {}); }
+
   // Edits between these two are one step: a drag, or several values at once.
   void begin_drag();
   void end_drag() { drag_ = 0; }
@@ -143,6 +160,8 @@ class Document : public QObject {
   void changed(psygen::editor::Changes what);
   void modified_changed(bool modified);
   void file_changed();
+  // Another edit waits for an answer; empty: none.
+  void asked(const QString& sentence);
   // Others changed or removed the file, or put it back. `conflict`: there are unsaved changes too.
   void disk_changed(psygen::editor::DiskState state, bool conflict);
   // The recovery file cannot be written. Once, until it works again.
@@ -158,8 +177,17 @@ class Document : public QObject {
   core::Result<void> require_known_disk() const;
   core::Result<ParsedWorldPtr> parse(const std::string& text) const;
   std::string name() const;  // for messages
+  // An edit whose text is a world.
+  struct Edit {
+    std::string text;
+    QString step;
+    std::optional<FieldLocks> locks;
+    int drag = 0;
+  };
   core::Result<void> push(std::string text, const QString& step,
-                          std::optional<FieldLocks> locks = {});
+                          std::optional<FieldLocks> locks = {}, bool guarded = true);
+  void make(Edit edit, ParsedWorldPtr parsed);
+  void ask(std::optional<Edit> edit, const QString& question);
   void show(const TextPtr& text);
   void note_modified();
   void autosave();
@@ -175,6 +203,9 @@ class Document : public QObject {
   bool was_modified_ = false;
   bool autosave_told_ = false;
   int drag_ = 0, last_drag_ = 0;
+  EditGuard guard_;
+  std::optional<Edit> asked_;
+  QString question_;
   FieldLocks locks_, kept_locks_;  // kept: as the state folder has them
   QUndoStack undo_;
   DiskWatch watch_;

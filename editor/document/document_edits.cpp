@@ -1,6 +1,8 @@
 // Edits of a document: each is a change of its text (engine/world/files/text_edit.hpp).
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "editor/document/document.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/text_edit.hpp"
@@ -19,28 +21,66 @@ QString shown(const world::TextPath& path) {
 
 using Text = core::Result<std::string>;
 
+// All fields whose path begins with this one, in order.
+std::vector<const world::WorldField*> fields_below(
+    const world::TextPath& path, const std::vector<world::WorldSection>& sections) {
+  std::vector<const world::WorldField*> fields;
+  for (const world::WorldSection& section : sections) {
+    for (const world::WorldField& field : section.fields) {
+      if (field.path.starts_with(path)) fields.push_back(&field);
+    }
+    const auto parts = fields_below(path, section.parts);
+    fields.insert(fields.end(), parts.begin(), parts.end());
+  }
+  return fields;
+}
+
 }  // namespace
 
 core::Result<void> Document::push(std::string text, const QString& step,
-                                  std::optional<FieldLocks> locks) {
-  if (text == *text_) return {};
+                                  std::optional<FieldLocks> locks, bool guarded) {
+  if (text == *text_) return drop_asked(), core::Result<void>{};
   auto parsed = parse(text);
   if (!parsed) return tl::unexpected(std::move(parsed.error()));
-  next_parsed_ = *std::move(parsed);
+  Edit edit{std::move(text), step, std::move(locks), drag_};
+  if (guarded && guard_) {
+    const QString question = guard_(*parsed_, **parsed);
+    if (!question.isEmpty()) return ask(std::move(edit), question), core::Result<void>{};
+  }
+  make(std::move(edit), *std::move(parsed));
+  return {};
+}
+
+void Document::make(Edit edit, ParsedWorldPtr parsed) {
+  next_parsed_ = std::move(parsed);
   const TextPtr before = text_;
   auto show_text = [this](const TextPtr& shown_text) { show(shown_text); };
-  auto show_both = [this, before, undone = locks_, done = locks](const TextPtr& shown_text) {
+  auto show_both = [this, before, undone = locks_, done = edit.locks](const TextPtr& shown_text) {
     locks_ = shown_text == before ? undone : *done;
     show(shown_text);
   };
-  undo_.push(new TextCommand(step, before, std::make_shared<const std::string>(std::move(text)),
-                             drag_,
-                             locks ? std::function<void(const TextPtr&)>(show_both) : show_text));
+  undo_.push(new TextCommand(
+      edit.step, before, std::make_shared<const std::string>(std::move(edit.text)), edit.drag,
+      edit.locks ? std::function<void(const TextPtr&)>(show_both) : show_text));
+}
+
+void Document::ask(std::optional<Edit> edit, const QString& question) {
+  asked_ = std::move(edit);
+  if (std::exchange(question_, question) != question) Q_EMIT asked(question);
+}
+
+core::Result<void> Document::apply_asked() {
+  if (!asked_) return {};
+  Edit edit = *std::move(asked_);
+  drop_asked();
+  auto parsed = parse(edit.text);
+  if (!parsed) return tl::unexpected(std::move(parsed.error()));
+  make(std::move(edit), *std::move(parsed));
   return {};
 }
 
 core::Result<void> Document::set_text(std::string text, const QString& step) {
-  return push(std::move(text), step);
+  return push(std::move(text), step, {}, false);
 }
 
 core::Result<void> Document::edit(const QString& step,
@@ -161,22 +201,22 @@ core::Result<void> Document::apply_preset(const world::TextPath& path,
               [&](std::string_view before) { return world::with_snippet(before, path, *snippet); });
 }
 
+core::Result<void> Document::reset_section(const world::TextPath& path) {
+  return edit(tr("Reset %1").arg(shown(path)), [&](std::string_view before) {
+    Text text{std::string(before)};
+    for (const world::WorldField* field : fields_below(path, sections())) {
+      if (text && field->is_set && !field->required)
+        text = world::without_value(*text, field->path);
+    }
+    return text;
+  });
+}
+
 core::Result<void> Document::randomise(const world::TextPath& path, std::mt19937_64& random) {
-  std::vector<const world::WorldField*> fields;
-  const std::function<void(const std::vector<world::WorldSection>&)> collect =
-      [&](const std::vector<world::WorldSection>& sections) {
-        for (const world::WorldSection& section : sections) {
-          for (const world::WorldField& f : section.fields) {
-            const bool names_others = f.required && f.kind == world::FieldKind::kChoice;
-            if (f.path.starts_with(path) && !names_others && !locks_.is_locked(f.path))
-              fields.push_back(&f);
-          }
-          collect(section.parts);
-        }
-      };
-  collect(sections());
   std::string text = *text_;
-  for (const world::WorldField* field : fields) {
+  for (const world::WorldField* field : fields_below(path, sections())) {
+    const bool names_others = field->required && field->kind == world::FieldKind::kChoice;
+    if (names_others || locks_.is_locked(field->path)) continue;
     for (int i = 0; i < kTries; ++i) {
       const auto value = random_value(*field, random);
       if (!value) break;
