@@ -10,6 +10,7 @@
 
 #include "editor/pictures/picture_server.hpp"
 #include "editor/shell/main_window.hpp"
+#include "editor/shell/manual_pictures.hpp"
 #include "editor/shell/theme.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/core/log.hpp"
@@ -27,6 +28,7 @@ constexpr double kFirstYawDeg = 110, kFirstPitchDeg = -10;
 struct Arguments {
   QString file;
   bool safe = false;
+  QString pictures;  // a folder; empty: none are taken
   app::SessionOptions session;
 };
 
@@ -46,7 +48,8 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
   parser.addOptions({{"safe", "Open with synthesis paused, for a world that hangs."},
                      {"preset", "Light and detail: low, medium, high, ultra.", "preset"},
                      {"device", "Part of the name of the Vulkan device.", "name"},
-                     {"validation", "Vulkan validation."}});
+                     {"validation", "Vulkan validation."},
+                     {"pictures", "Take the pictures of the manual and end.", "folder"}});
   if (!parser.parse(app.arguments())) return usage(parser.errorText());
   if (parser.isSet("help")) parser.showHelp(0);
   if (parser.isSet("version")) parser.showVersion();
@@ -58,6 +61,7 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
   }
   arguments.file = parser.positionalArguments().value(0);
   arguments.safe = parser.isSet("safe");
+  arguments.pictures = parser.value("pictures");
   arguments.session.device_name = parser.value("device").toStdString();
   arguments.session.validation = parser.isSet("validation");
   return std::nullopt;
@@ -81,6 +85,10 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   apply_scale(QSettings().value("scale", 100).toInt());
 
   MainWindowOptions options;
+  if (!arguments.pictures.isEmpty()) {  // as fine as they get, however long it takes
+    arguments.session.target_hz = 0;
+    if (!arguments.session.preset) arguments.session.preset = render::Preset::kMedium;
+  }
   options.session = std::move(arguments.session);
   options.safe = arguments.safe;
   options.document.register_models = [plugins](models::Registry& registry) {
@@ -88,7 +96,7 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   };
   options.session.plugins = std::move(plugins);
   MainWindow window(std::move(options));
-  window.show();
+  arguments.pictures.isEmpty() ? window.show() : window.showFullScreen();
   const auto file = cli::find_file(
       cli::Shipped::kWorld, arguments.file.isEmpty() ? kFirstWorld : arguments.file.toStdString());
   if (arguments.file.isEmpty()) {
@@ -100,6 +108,11 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   if (!file) return usage(QString::fromStdString(file.error().message));
   if (!window.open_file(*file) && !arguments.file.isEmpty())
     std::fprintf(stderr, "psygen-editor: the world could not be opened; the messages say why\n");
+  if (!arguments.pictures.isEmpty()) {
+    const QString suffix =
+        QString("%1-%2").arg(QSettings().value("theme", "dark").toString()).arg(window.width());
+    return take_manual_pictures(window, arguments.pictures.toStdString(), suffix) ? 0 : 1;
+  }
   const int code = QApplication::exec();
   // The memory of a modeler that hangs must not be torn down.
   if (window.view().has_hung()) std::_Exit(code);

@@ -20,16 +20,6 @@ constexpr int kPoints = 24;        // of a curve of reals
 constexpr int kMeasuredEvery = 6;  // points
 constexpr double kMostMeasuredS = 0.05;
 
-// A few hundred metres apart, within the world.
-core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number) {
-  const auto place = [](std::int64_t at, std::int64_t blocks) {
-    return static_cast<std::int32_t>(blocks == 0 ? at
-                                                 : std::clamp<std::int64_t>(at, 0, blocks - 1));
-  };
-  return {place(around.x + (number % 2) * 5 - 2, world.blocks_x),
-          place(around.z + (number / 2) * 5 - 2, world.blocks_z)};
-}
-
 // Seconds of this thread to make a mesh; nothing if it fails.
 std::optional<double> make_mesh(const models::ModelType& type, const models::Parameters& p) {
   const auto memory = synthesis::HeapDestination::make(type, p, 0);
@@ -59,6 +49,20 @@ std::vector<double> values_of(const world::WorldField& field) {
 
 }  // namespace
 
+core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number) {
+  const auto place = [](std::int64_t at, std::int64_t blocks) {
+    return static_cast<std::int32_t>(blocks == 0 ? at
+                                                 : std::clamp<std::int64_t>(at, 0, blocks - 1));
+  };
+  return {place(around.x + (number % 2) * 5 - 2, world.blocks_x),
+          place(around.z + (number / 2) * 5 - 2, world.blocks_z)};
+}
+
+double mesh_bytes(const models::MeshSize& size) {
+  return static_cast<double>(size.vertex_count) * core::vertex_stride_bytes(size.layout) +
+         (size.shared_indices != 0 ? 0.0 : 2.0 * size.index_count);
+}
+
 bool has_cost_curve(const world::WorldField& field) {
   const bool number = field.kind == FieldKind::kInteger || field.kind == FieldKind::kReal ||
                       field.kind == FieldKind::kIntegerRange || field.kind == FieldKind::kRealRange;
@@ -87,9 +91,7 @@ BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
     const models::ModelType& type = parsed.registry[model];
     if (const auto size = synthesis::mesh_size_guarded(type, p, 0)) {
       sum.triangles += size->triangle_count();
-      sum.bytes +=
-          static_cast<double>(size->vertex_count) * core::vertex_stride_bytes(size->layout) +
-          (size->shared_indices != 0 ? 0.0 : 2.0 * size->index_count);
+      sum.bytes += mesh_bytes(*size);
     }
     sum.seconds += costs.predict(model, p, 0);
   }

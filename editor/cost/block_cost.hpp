@@ -26,6 +26,12 @@ struct BlockCost {
 BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
                      const synthesis::CostModel* learnt, bool measure);
 
+// Blocks of which means are taken: number 0, 1, … around a block, a few hundred metres apart,
+// within the world.
+core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number);
+// Of vertices and of indices that are the mesh's own.
+double mesh_bytes(const models::MeshSize& size);
+
 // Whether numbers of a field change what is made, so that there is a curve of it.
 bool has_cost_curve(const world::WorldField& field);
 

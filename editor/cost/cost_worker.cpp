@@ -24,6 +24,7 @@ CostWorker::~CostWorker() {
   {
     const std::lock_guard lock(mutex_);
     next_.reset();
+    next_impact_.reset();
   }
   asked_.notify_all();
   if (thread_.joinable()) thread_.join();
@@ -40,20 +41,52 @@ void CostWorker::ask(std::string text, std::string file, std::vector<world::Worl
   asked_.notify_all();
 }
 
+void CostWorker::ask_impact(ParsedWorldPtr before, ParsedWorldPtr after, core::BlockCoord around,
+                            CacheContents contents,
+                            std::shared_ptr<const synthesis::CostModel> learnt) {
+  {
+    const std::lock_guard lock(mutex_);
+    next_impact_ = ImpactJob{std::move(before), std::move(after), around, std::move(contents),
+                             std::move(learnt)};
+  }
+  asked_.notify_all();
+}
+
 void CostWorker::run() {
   synthesis::lower_priority_of_this_thread();
   while (true) {
     std::unique_lock lock(mutex_);
-    asked_.wait(lock, [this] { return next_.has_value() || newest_.load() == kEnd; });
+    asked_.wait(lock, [this] {
+      return next_.has_value() || next_impact_.has_value() || newest_.load() == kEnd;
+    });
     if (newest_.load() == kEnd) return;
+    if (!next_) {
+      lock.unlock();
+      work_on_impact();
+      continue;
+    }
     const Job job = *std::exchange(next_, std::nullopt);
     lock.unlock();
     work(job);
   }
 }
 
+void CostWorker::work_on_impact() {
+  std::unique_lock lock(mutex_);
+  if (!next_impact_) return;
+  const ImpactJob job = *std::exchange(next_impact_, std::nullopt);
+  lock.unlock();
+  const WorldImpact found =
+      impact_of(*job.before, *job.after, job.around, job.contents, job.learnt.get());
+  QMetaObject::invokeMethod(this, [this, found] { Q_EMIT impact(found); });
+}
+
 void CostWorker::work(const Job& job) {
-  const auto wanted = [&] { return newest_.load() == job.number; };
+  const auto wanted = [&] {
+    work_on_impact();
+    return newest_.load() == job.number;
+  };
+  work_on_impact();
   if (const auto parsed = parse_world_text(job.text, job.file, register_models_)) {
     const BlockCost cost = block_cost(**parsed, job.around, job.learnt.get(), true);
     QMetaObject::invokeMethod(this, [this, cost] { Q_EMIT world_cost(cost); });

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "editor/cost/block_cost.hpp"
+#include "editor/cost/world_impact.hpp"
 
 namespace psygen::editor {
 
@@ -25,10 +26,15 @@ class CostWorker final : public QObject {
   // Replaces what was asked before. `learnt` may be null.
   void ask(std::string text, std::string file, std::vector<world::WorldField> fields,
            core::BlockCoord around, std::shared_ptr<const synthesis::CostModel> learnt);
+  // What `after` changes of a cache that has meshes of `before`. Goes before curves, and replaces
+  // only the impact that was asked before.
+  void ask_impact(ParsedWorldPtr before, ParsedWorldPtr after, core::BlockCoord around,
+                  CacheContents contents, std::shared_ptr<const synthesis::CostModel> learnt);
 
  Q_SIGNALS:
   void world_cost(const psygen::editor::BlockCost& cost);
   void curve(const std::string& path, const std::vector<psygen::editor::CostPoint>& points);
+  void impact(const psygen::editor::WorldImpact& impact);
 
  private:
   struct Job {
@@ -38,13 +44,21 @@ class CostWorker final : public QObject {
     std::shared_ptr<const synthesis::CostModel> learnt;
     std::uint64_t number = 0;
   };
+  struct ImpactJob {
+    ParsedWorldPtr before, after;
+    core::BlockCoord around;
+    CacheContents contents;
+    std::shared_ptr<const synthesis::CostModel> learnt;
+  };
   void run();
   void work(const Job& job);
+  void work_on_impact();
 
   RegisterModels register_models_;
   std::mutex mutex_;
   std::condition_variable asked_;
   std::optional<Job> next_;
+  std::optional<ImpactJob> next_impact_;
   std::atomic<std::uint64_t> newest_{0};  // number of the newest job; UINT64_MAX: the end
   std::thread thread_;
 };

@@ -5,7 +5,6 @@
 #include <QComboBox>
 #include <QDateTime>
 #include <QDoubleSpinBox>
-#include <QFileDialog>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -17,7 +16,6 @@
 #include "editor/flights/timeline_plot.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/path_file.hpp"
-#include "engine/world/files/text_file.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -41,11 +39,6 @@ std::vector<double> speeds_of(const world::CameraPath& path, const world::World&
     before = pose;
   }
   return speeds;
-}
-
-bool has_pictures(const world::World& world) {
-  return std::ranges::any_of(world.palette.images,
-                             [](const std::string& name) { return !name.empty(); });
 }
 
 }  // namespace
@@ -256,16 +249,6 @@ FlightSettings TimelinePanel::settings() const {
   return settings;
 }
 
-// The world as it is now; pictures of the ground lie beside a file that is not copied.
-core::Result<std::filesystem::path> TimelinePanel::write_world(
-    const std::filesystem::path& folder) const {
-  if (auto saved = host_.saved_world(); !saved.empty()) return saved;
-  const auto file = folder / "world.toml";
-  if (auto ok = core::replace_file(file, host_.world_text()); !ok)
-    return tl::unexpected(ok.error());
-  return file;
-}
-
 void TimelinePanel::fly() {
   if (!path_ || process_.is_flying()) return;
   const QString time = QDateTime::currentDateTime().toString("yyyyMMdd-HHmmss");
@@ -295,52 +278,6 @@ void TimelinePanel::show_run(const FlightRun& run) {
       tr("%1 frames, half of them within %2 ms").arg(run.time_s.size()).arg(p50, 0, 'f', 2));
   fit_legend();
   fit_buttons();
-}
-
-void TimelinePanel::save_test() {
-  if (runs_.empty() || !path_) return;
-  QString file = QFileDialog::getSaveFileName(this, tr("Save as frame test"), "flight.toml",
-                                              tr("Frame tests (*.toml)"));
-  if (file.isEmpty()) return;
-  if (!file.endsWith(".toml")) file += ".toml";
-  const std::filesystem::path test = file.toStdString();
-  const std::string stem = test.stem().string();
-  const auto beside = [&](const char* what) {
-    return test.parent_path() / fmt::format("{}.{}.toml", stem, what);
-  };
-  core::Result<void> ok = core::replace_file(beside("path"), world::write_camera_path(*path_));
-  std::string world = beside("world").filename().string();
-  if (has_pictures(host_.world())) {
-    world = world_file_.string();
-  } else if (ok) {
-    ok = core::replace_file(beside("world"), run_world_);
-  }
-  if (ok) {
-    ok = core::replace_file(
-        test, frame_test_text(runs_.back(), stem, world, beside("path").filename().string()));
-  }
-  Q_EMIT told(ok ? tr("Saved %1 with its path and world. psygen test runs it.").arg(file)
-                 : QString::fromStdString(ok.error().message));
-}
-
-void TimelinePanel::save_path() {
-  if (!path_) return;
-  QString file = QFileDialog::getSaveFileName(this, tr("Save the path"), "path.toml",
-                                              tr("Camera paths (*.toml)"));
-  if (file.isEmpty()) return;
-  if (!file.endsWith(".toml")) file += ".toml";
-  const auto ok = core::replace_file(file.toStdString(), world::write_camera_path(*path_));
-  Q_EMIT told(ok ? tr("Saved %1.").arg(file) : QString::fromStdString(ok.error().message));
-}
-
-void TimelinePanel::open_path() {
-  const QString file =
-      QFileDialog::getOpenFileName(this, tr("Open a path"), {}, tr("Camera paths (*.toml)"));
-  if (file.isEmpty()) return;
-  auto path = world::load_camera_path(file.toStdString());
-  if (!path) return Q_EMIT told(QString::fromStdString(path.error().message));
-  show_path(std::move(*path));
-  scrub(0);
 }
 
 }  // namespace psygen::editor

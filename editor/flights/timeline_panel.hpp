@@ -51,6 +51,8 @@ class TimelinePanel final : public QWidget {
   void save_test();
   void save_path();
   void open_path();
+  // Takes a path file, or tells why not.
+  void open_path_file(const std::filesystem::path& file);
   // To be called after every picture of the view: samples the camera, or moves it on.
   void picture_drawn();
 

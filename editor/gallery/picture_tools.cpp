@@ -61,7 +61,7 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
     }
     // Another ground may have risen over the camera.
     if (what.testAnyFlags(Change::kTerrain | Change::kWorld | Change::kWater) &&
-        !what.testFlag(Change::kFile)) {
+        !what.testFlag(Change::kFile) && on_world_) {
       const core::WorldPosition& at = view_.camera().pose().position;
       if (at.local.y < world::surface_height_m(document_.world(), at) + kLeastEyeOverGroundM)
         stand(kLeastEyeOverGroundM);
@@ -75,14 +75,21 @@ void PictureTools::attend(const world::TextPath& field) {
   attention_.start(kAttentionMs);
 }
 
+void PictureTools::set_on_world(bool on) {
+  on_world_ = on;
+  if (!on) shows_marked_ = false;
+  show_shown();
+}
+
 void PictureTools::stand(double above_m) {
+  if (!on_world_) return;
   core::CameraPose pose = view_.camera().pose();
   pose.position.local.y = world::surface_height_m(document_.world(), pose.position) + above_m;
   view_.camera().set_pose(pose);
 }
 
 std::optional<ViewState> PictureTools::view_state() const {
-  if (view_.session() == nullptr) return std::nullopt;
+  if (view_.session() == nullptr || !on_world_) return std::nullopt;
   const world::World& world = view_.session()->scene().state().facts.world;
   const core::CameraPose& pose = view_.camera().pose();
   const core::WorldPosition& at = pose.position;
@@ -210,7 +217,7 @@ void PictureTools::swap() {
 
 void PictureTools::show_shown() {
   for (QAction* action : need_mark_)
-    action->setEnabled(marked_.has_value());
+    action->setEnabled(marked_.has_value() && on_world_);
   shown_->setVisible(marked_.has_value());
   if (!marked_) return;
   const QString colours =

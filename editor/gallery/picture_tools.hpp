@@ -38,6 +38,8 @@ class PictureTools final : public QObject {
   LibraryPanel& library() { return *library_; }
   // The field that the person was at last: what the contact sheet offers.
   void attend(const world::TextPath& field);
+  // Whether the view shows the world, and its camera stands there.
+  void set_on_world(bool on);
   void add_to_file_menu(QMenu& menu);
   void add_to_view_menu(QMenu& menu);
   void add_to_world_menu(QMenu& menu);
@@ -72,7 +74,7 @@ class PictureTools final : public QObject {
   std::optional<std::string> marked_;  // the text A
   std::filesystem::path marked_file_;
   QTime marked_at_;
-  bool shows_marked_ = false;
+  bool shows_marked_ = false, on_world_ = true;
 };
 
 }  // namespace psygen::editor

@@ -14,6 +14,8 @@ namespace psygen::editor {
 namespace {
 
 constexpr double kLeastRadiusM = 100, kMostRadiusM = 30'000;
+constexpr double kOldestPower = 3;  // of 10 seconds: all older ones are blue
+const QColor kNothing(90, 90, 96);
 
 // From blue over green and yellow to red, for 0 … 1.
 QColor heat(double share) {
@@ -34,6 +36,22 @@ void CacheMap::set_colour(MapColour colour) {
   update();
 }
 
+void CacheMap::note(const scene::State& state) {
+  std::unordered_map<std::uint64_t, Known> known;
+  state.entities.each<const scene::Node, const scene::Mesh, const scene::Demand>(
+      [&](std::span<const ecs::Entity> entities, std::span<const scene::Node>,
+          std::span<const scene::Mesh> meshes, std::span<const scene::Demand> demands) {
+        for (std::size_t i = 0; i < entities.size(); ++i) {
+          if (demands[i].drawn_level == scene::kNoLevel) continue;
+          const std::uint64_t owner = scene::owner_of(entities[i]);
+          const auto before = known_.find(owner);
+          const bool same = before != known_.end() && before->second.mesh == meshes[i].handle;
+          known[owner] = same ? before->second : Known{meshes[i].handle, state.clock.real_s};
+        }
+      });
+  known_ = std::move(known);
+}
+
 void CacheMap::show(const scene::State& state) {
   cells_.clear();
   const core::WorldPosition& camera = state.camera.pose.position;
@@ -44,7 +62,7 @@ void CacheMap::show(const scene::State& state) {
   std::vector<bool> chosen;
   state.entities.each<const scene::Node, const scene::Visibility, const scene::Lacking,
                       const scene::Source, const scene::Demand>(
-      [&](std::span<const ecs::Entity>, std::span<const scene::Node> nodes,
+      [&](std::span<const ecs::Entity> entities, std::span<const scene::Node> nodes,
           std::span<const scene::Visibility> seen, std::span<const scene::Lacking> lacking,
           std::span<const scene::Source> sources, std::span<const scene::Demand> demands) {
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -67,6 +85,8 @@ void CacheMap::show(const scene::State& state) {
           cell.lacking = lacking[i].meshes;
           cell.cost_s = state.meshes.costs().predict(sources[i].model, sources[i].parameters,
                                                      sources[i].first_level);
+          const auto known = known_.find(scene::owner_of(entities[i]));
+          if (known != known_.end()) cell.age_s = state.clock.real_s - known->second.since_s;
           cells_.push_back(cell);
         }
       });
@@ -93,13 +113,16 @@ QColor CacheMap::colour_of(const Cell& cell) const {
       return heat(1 - cell.layer / 24.0);
     case MapColour::kCost:
       return heat(std::log10(std::max(cell.cost_s * 1e6, 1.0)) / 3);
+    case MapColour::kAge:
+      if (cell.age_s < 0) return kNothing;
+      return heat(1 - std::log10(1 + cell.age_s) / kOldestPower);
     case MapColour::kState:
       break;
   }
   if (cell.failed) return QColor(190, 60, 190);
   if (cell.stale) return QColor(230, 150, 40);
   if (cell.requested || (cell.in_view && cell.lacking > 0)) return QColor(225, 205, 70);
-  if (!cell.drawn) return QColor(90, 90, 96);
+  if (!cell.drawn) return kNothing;
   return cell.in_view ? QColor(86, 176, 92) : QColor(70, 110, 150);
 }
 
@@ -163,6 +186,7 @@ QString CacheMap::words(const Cell& cell) const {
           : std::isfinite(cell.deadline_s)
               ? tr("It is expected in view in %1 s.\n").arg(cell.deadline_s, 0, 'f', 1)
               : tr("It is out of view; PLP layer %1.\n").arg(cell.layer);
+  if (cell.age_s >= 0) text += tr("Its mesh came %1 s ago.\n").arg(cell.age_s, 0, 'f', 1);
   return text + tr("Making its ground takes %1 µs.").arg(cell.cost_s * 1e6, 0, 'f', 0);
 }
 

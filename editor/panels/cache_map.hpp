@@ -4,9 +4,12 @@
 #pragma once
 
 #include <QWidget>
+#include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
+#include "engine/synthesis/mesh_key.hpp"
 #include "engine/visibility/quadtree.hpp"
 
 namespace psygen::scene {
@@ -16,7 +19,7 @@ struct State;
 namespace psygen::editor {
 
 // What colours mean.
-enum class MapColour { kState, kLevel, kLayer, kCost };
+enum class MapColour { kState, kLevel, kLayer, kCost, kAge };
 
 class CacheMap final : public QWidget {
   Q_OBJECT
@@ -30,10 +33,13 @@ class CacheMap final : public QWidget {
     int level_drawn = 0, layer = 0;
     std::uint32_t lacking = 0;
     double cost_s = 0, deadline_s = 0;
+    double age_s = -1;    // since the mesh of its ground came; below 0: unknown
     bool chosen = false;  // it is drawn in this picture
   };
   explicit CacheMap(QWidget* parent = nullptr);
-  // Takes over what there is now; some times a second.
+  // Notes which meshes are new, for their ages; some times a second, also while nobody looks.
+  void note(const scene::State& state);
+  // Takes over what there is now, after note().
   void show(const scene::State& state);
   // The same of nodes from elsewhere, coarse ones first; yaw and field of view in radians.
   void show_cells(std::vector<Cell> cells, double yaw, double horizontal_fov);
@@ -51,7 +57,12 @@ class CacheMap final : public QWidget {
   const Cell* cell_at(QPointF place) const;
   double pixels_per_m() const;
 
-  std::vector<Cell> cells_;  // coarse ones first
+  struct Known {
+    synthesis::MeshHandle mesh;
+    double since_s = 0;  // the real clock of the scene
+  };
+  std::vector<Cell> cells_;                         // coarse ones first
+  std::unordered_map<std::uint64_t, Known> known_;  // by entity of a node
   double radius_m_ = 1500, yaw_ = 0, fov_ = 0.9;
   MapColour colour_ = MapColour::kState;
 };

@@ -9,6 +9,8 @@
 #include <functional>
 
 #include "editor/panels/field_row.hpp"
+#include "editor/panels/impact_bar.hpp"
+#include "editor/panels/section_bar.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -40,7 +42,12 @@ QString path_text(const world::TextPath& path) {
 }  // namespace
 
 PropertiesPanel::PropertiesPanel(QWidget* parent)
-    : QWidget(parent), search_(new QLineEdit), tree_(new QTreeWidget), scroll_(new QScrollArea) {
+    : QWidget(parent),
+      search_(new QLineEdit),
+      tree_(new QTreeWidget),
+      section_bar_(new SectionBar),
+      scroll_(new QScrollArea),
+      impact_(new ImpactBar) {
   search_->setPlaceholderText(tr("Search in all fields"));
   search_->setClearButtonEnabled(true);
   search_->setAccessibleName(tr("Search in all fields"));
@@ -49,9 +56,15 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
   tree_->setContextMenuPolicy(Qt::CustomContextMenu);
   scroll_->setWidgetResizable(true);
   scroll_->setFrameShape(QFrame::NoFrame);
+  auto* fields = new QWidget;
+  auto* fields_layout = new QVBoxLayout(fields);
+  fields_layout->setContentsMargins(0, 0, 0, 0);
+  fields_layout->setSpacing(2);
+  fields_layout->addWidget(section_bar_);
+  fields_layout->addWidget(scroll_, 1);
   auto* splitter = new QSplitter(Qt::Vertical);
   splitter->addWidget(tree_);
-  splitter->addWidget(scroll_);
+  splitter->addWidget(fields);
   splitter->setStretchFactor(0, 2);
   splitter->setStretchFactor(1, 5);
   splitter->setChildrenCollapsible(false);
@@ -59,6 +72,11 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
   layout->setContentsMargins(4, 4, 4, 4);
   layout->addWidget(search_);
   layout->addWidget(splitter, 1);
+  layout->addWidget(impact_);
+  connect(section_bar_, &SectionBar::copy, this, [this] { Q_EMIT copy_wanted(chosen_); });
+  connect(section_bar_, &SectionBar::paste, this, [this] { Q_EMIT paste_wanted(chosen_); });
+  connect(section_bar_, &SectionBar::dice, this, [this] { Q_EMIT dice_wanted(chosen_); });
+  connect(section_bar_, &SectionBar::reset, this, [this] { Q_EMIT section_reset_wanted(chosen_); });
   connect(search_, &QLineEdit::textChanged, this, &PropertiesPanel::search);
   connect(tree_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
     if (item == nullptr || item->data(0, kPathRole).isNull()) return;
@@ -79,6 +97,7 @@ void PropertiesPanel::show(const std::vector<world::WorldSection>& sections) {
   sections_ = sections;
   if (!same) return list(sections);
   mark(sections);
+  if (search_->text().isEmpty()) section_bar_->show(chosen());
   for (FieldRow* row : rows_) {
     if (const world::WorldField* field = find_field(sections_, row->field().path))
       row->show(*field);
@@ -188,11 +207,14 @@ void PropertiesPanel::search(const QString& text) {
   lines_ = new QVBoxLayout(form_);
   lines_->setSpacing(1);
   if (text.isEmpty()) {
-    if (const world::WorldSection* section = chosen()) {
+    const world::WorldSection* section = chosen();
+    section_bar_->show(section);
+    if (section != nullptr) {
       for (const world::WorldField& field : section->fields)
         add_row(field);
     }
   } else {
+    section_bar_->show(nullptr);
     visit(sections_, [&](const world::WorldSection& section) {
       bool headed = false;
       for (const world::WorldField& field : section.fields) {

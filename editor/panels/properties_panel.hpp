@@ -17,6 +17,8 @@ class QVBoxLayout;
 namespace psygen::editor {
 
 class FieldRow;
+class ImpactBar;
+class SectionBar;
 
 class PropertiesPanel final : public QWidget {
   Q_OBJECT
@@ -33,6 +35,8 @@ class PropertiesPanel final : public QWidget {
   const world::TextPath& section() const { return chosen_; }
   // The control of a field, null while its section is not shown.
   FieldRow* row(const world::TextPath& path) const;
+  // What a change does to the world, and what is asked before.
+  ImpactBar& impact() { return *impact_; }
 
  Q_SIGNALS:
   void wanted(const world::TextPath& path, const std::string& toml);
@@ -49,6 +53,10 @@ class PropertiesPanel final : public QWidget {
   void section_chosen(const world::TextPath& path);
   // From the menu of a section.
   void section_menu(const world::TextPath& path, const QPoint& at);
+  // What the buttons over the fields are for, with the section that is chosen.
+  void copy_wanted(const world::TextPath& path);
+  void paste_wanted(const world::TextPath& path);
+  void section_reset_wanted(const world::TextPath& path);
 
  private:
   bool same_shape(const std::vector<world::WorldSection>& sections) const;
@@ -65,7 +73,9 @@ class PropertiesPanel final : public QWidget {
   world::TextPath chosen_;
   QLineEdit* search_;
   QTreeWidget* tree_;
+  SectionBar* section_bar_;
   QScrollArea* scroll_;
+  ImpactBar* impact_;
   QWidget* form_ = nullptr;
   QVBoxLayout* lines_ = nullptr;
   std::vector<FieldRow*> rows_;

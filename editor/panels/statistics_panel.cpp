@@ -81,6 +81,7 @@ StatisticsPanel::StatisticsPanel(QWidget* parent)
   table_->setHorizontalHeaderLabels(columns);
   table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
   table_->verticalHeader()->hide();
+  table_->verticalHeader()->setDefaultSectionSize(table_->fontMetrics().height() + 4);
   table_->setAccessibleName(tr("Meshes in the cache, by model"));
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(world_);

@@ -113,10 +113,13 @@ std::string named_scatter(std::string_view species_name_toml) {
   return fmt::format("model = {}\ncount = 1\n", species_name_toml);
 }
 
-// The number of the species with this name in quotes, if the text has one.
-std::optional<std::size_t> species_named(std::string_view text, const std::string& name_toml) {
-  for (std::size_t i = 0; i < world::item_count(text, {"species"}); ++i)
-    if (world::value_text(text, {"species", i, "name"}) == name_toml) return i;
+// The table of an array with this name in quotes, if the text has one.
+std::optional<std::string> table_named(std::string_view text, const char* array,
+                                       const std::string& name_toml) {
+  for (std::size_t i = 0; i < world::item_count(text, {array}); ++i) {
+    if (world::value_text(text, {array, i, "name"}) == name_toml)
+      return world::table_text(text, {array, i});
+  }
   return std::nullopt;
 }
 
@@ -154,9 +157,10 @@ core::Result<std::string> scatter_portrait(std::string_view text, std::size_t sc
   if (!table) return no_such("scatter", scatter);
   core::Result<std::string> studio{std::string(kStudio)};
   const auto model = world::value_text(text, {"scatter", scatter, "model"});
-  if (const auto species = model ? species_named(text, *model) : std::nullopt)
-    studio =
-        appended(std::move(studio), "species", *world::table_text(text, {"species", *species}));
+  for (const char* array : {"species", "model"}) {
+    if (const auto type = model ? table_named(text, array, *model) : std::nullopt)
+      studio = appended(std::move(studio), array, *type);
+  }
   return alone(appended(std::move(studio), "scatter", *table));
 }
 
@@ -194,33 +198,27 @@ core::Result<std::string> snippet_world(std::string_view snippet) {
                     fmt::format("there are no pictures of [{}]", table));
 }
 
-std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
-                                          const core::Projection& projection, double distance_m) {
-  const double block_m = parsed.world.block_size_m();
-  std::optional<core::WorldPosition> foot;
-  const models::ModelType* type = nullptr;
-  models::Parameters parameters;
+std::optional<LonelyModel> lonely_model(const world::World& world,
+                                        const models::Registry& registry) {
+  const double block_m = world.block_size_m();
+  std::optional<LonelyModel> found;
   double most_lonely_m = -1;
   std::vector<world::Placement> placements;
   for (int i = 0; i < kTried * kTried; ++i) {
     const core::BlockCoord block{i % kTried, i / kTried};
-    world::place_models(parsed.world, parsed.registry, block, placements);
+    world::place_models(world, registry, block, placements);
     if (placements.empty()) continue;
     const glm::dvec3 at(placements[0].position);
     const double lonely_m = std::min({at.x, at.z, block_m - at.x, block_m - at.z});
     if (lonely_m <= most_lonely_m) continue;
     most_lonely_m = lonely_m;
-    foot = core::WorldPosition{block, at};
-    type = &parsed.registry[placements[0].model];
-    parameters = placements[0].parameters;
+    found = LonelyModel{{block, at}, placements[0].model, placements[0].parameters};
   }
-  if (!foot) return std::nullopt;
-  core::Bounds box = type->bounds(parameters);
-  const int level = std::min(1, type->level_count_of(parameters) - 1);
-  if (const auto memory = synthesis::HeapDestination::make(*type, parameters, level)) {
-    const auto made = synthesis::synthesize_guarded(*type, parameters, level, memory->view());
-    if (made.ok) box = made.tight;
-  }
+  return found;
+}
+
+PortraitPose pose_before(const core::WorldPosition& foot, const core::Bounds& box, double block_m,
+                         const core::Projection& projection, double distance_m) {
   const glm::dvec3 half(box.half_extent()), middle(box.center());
   const double half_fov = static_cast<double>(projection.vertical_fov) / 2;
   const double up = std::tan(half_fov);
@@ -230,14 +228,28 @@ std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
     distance_m = std::max({kAir * half.y / up, kAir * radius_m / across, 0.2}) + radius_m * 0.7;
   core::CameraPose pose;
   pose.pitch = kPitch;
-  pose.position = *foot;
+  pose.position = foot;
   pose.position.local += middle - glm::dvec3(core::forward_of(pose)) * distance_m;
   pose.position.local.y =
-      std::max(pose.position.local.y, foot->local.y + std::max(kLeastHeight * 2 * half.y, 0.05));
+      std::max(pose.position.local.y, foot.local.y + std::max(kLeastHeight * 2 * half.y, 0.05));
   // Looks at the middle from wherever it is.
-  pose.pitch = std::atan2(foot->local.y + middle.y - pose.position.local.y, distance_m);
+  pose.pitch = std::atan2(foot.local.y + middle.y - pose.position.local.y, distance_m);
   pose.position = core::normalised(pose.position, block_m);
-  return PortraitPose{pose, distance_m};
+  return {pose, {foot.block, foot.local + middle}, distance_m};
+}
+
+std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
+                                          const core::Projection& projection, double distance_m) {
+  const auto model = lonely_model(parsed.world, parsed.registry);
+  if (!model) return std::nullopt;
+  const models::ModelType& type = parsed.registry[model->model];
+  core::Bounds box = type.bounds(model->parameters);
+  const int level = std::min(1, type.level_count_of(model->parameters) - 1);
+  if (const auto memory = synthesis::HeapDestination::make(type, model->parameters, level)) {
+    const auto made = synthesis::synthesize_guarded(type, model->parameters, level, memory->view());
+    if (made.ok) box = made.tight;
+  }
+  return pose_before(model->foot, box, parsed.world.block_size_m(), projection, distance_m);
 }
 
 }  // namespace psygen::editor

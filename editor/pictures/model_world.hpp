@@ -28,13 +28,27 @@ bool is_portrait(std::string_view snippet);
 // are high.
 PicturePlace country_place(std::string_view snippet);
 
+// The model of a portrait world that has most room around it.
+struct LonelyModel {
+  core::WorldPosition foot;
+  models::ModelIndex model = 0;
+  models::Parameters parameters;
+};
+// Of some blocks around the origin; nothing where nothing stands.
+std::optional<LonelyModel> lonely_model(const world::World& world,
+                                        const models::Registry& registry);
+
 // Where a portrait is taken: in front of the model, on its sunny side.
 struct PortraitPose {
   core::CameraPose pose;
-  double distance_m = 0;  // to the middle of the model
+  core::WorldPosition middle;  // of the model
+  double distance_m = 0;       // to it
 };
-// Such that the whole model is seen, or from `distance_m` where that is above 0. Nothing where
-// nothing stands. Makes a mesh of the model, so a model that hangs hangs here.
+// Such that a box (from the foot) is seen whole, or from `distance_m` where that is above 0.
+PortraitPose pose_before(const core::WorldPosition& foot, const core::Bounds& box, double block_m,
+                         const core::Projection& projection, double distance_m = 0);
+// The same of the lonely model of a world. Nothing where nothing stands. Makes a mesh of the model,
+// so a model that hangs hangs here.
 std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
                                           const core::Projection& projection,
                                           double distance_m = 0);

@@ -6,7 +6,8 @@
 
 namespace psygen::editor {
 
-inline constexpr int kPropertiesPx = 380, kAttachedPx = 330, kStatisticsPx = 150;
+inline constexpr int kPropertiesPx = 380, kSelectionPx = 240, kAttachedPx = 330,
+                     kStatisticsPx = 150;
 
 // A dock around `content`. `name` is that of its place in kept layouts.
 inline QDockWidget* add_dock(QMainWindow& window, const QString& name, const QString& title,

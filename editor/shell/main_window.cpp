@@ -17,9 +17,9 @@
 
 #include "editor/cost/cost_worker.hpp"
 #include "editor/gallery/library_panel.hpp"
+#include "editor/gallery/model_view.hpp"
 #include "editor/gallery/picture_tools.hpp"
 #include "editor/panels/cache_map.hpp"
-#include "editor/panels/field_row.hpp"
 #include "editor/panels/properties_panel.hpp"
 #include "editor/panels/statistics_panel.hpp"
 #include "editor/shell/command_palette.hpp"
@@ -32,7 +32,6 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kFiguresMs = 250;
-constexpr int kCostsMs = 300;  // after the last change
 constexpr double kSmoothing = 0.1;
 
 QPlainTextEdit* reading_pane(const QString& name) {
@@ -59,6 +58,7 @@ MainWindow::MainWindow(MainWindowOptions options)
   setCentralWidget(container);
   view_->set_paused(options_.safe);
   costs_ = new CostWorker(options_.document.register_models, this);
+  model_ = new ModelView(document_, *view_, this);
   palette_ = new CommandPalette(this);
   add_docks();
   add_tool_docks();
@@ -67,6 +67,7 @@ MainWindow::MainWindow(MainWindowOptions options)
   figures_ = new QLabel;
   statusBar()->addPermanentWidget(figures_);
   connect_document();
+  connect_properties();
   connect_view();
   resize(1280, 800);
   first_layout_ = saveState();
@@ -83,11 +84,12 @@ void MainWindow::add_docks() {
   selection_text_ = reading_pane(tr("What is selected"));
   selection_text_->setPlaceholderText(tr("Click on a tree, a rock or the ground."));
   log_ = reading_pane(tr("Messages"));
+  log_->setPlaceholderText(tr("What was refused, saved or copied is listed here."));
   auto* history = new QUndoView(&document_.undo_stack());
   history->setEmptyLabel(tr("As opened"));
   history->setAccessibleName(tr("History of edits"));
   auto* colours = new QComboBox;
-  colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost")});
+  colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost"), tr("Age")});
   colours->setAccessibleName(tr("What colours of the map mean"));
   connect(colours, &QComboBox::activated, map_,
           [this](int index) { map_->set_colour(static_cast<MapColour>(index)); });
@@ -118,49 +120,6 @@ void MainWindow::add_docks() {
   figures->raise();
 }
 
-void MainWindow::connect_document() {
-  connect(&document_, &Document::changed, this, &MainWindow::document_changed);
-  connect(&document_, &Document::modified_changed, this, &MainWindow::fit_title);
-  connect(&document_, &Document::file_changed, this, &MainWindow::note_file);
-  connect(&document_, &Document::disk_changed, this, &MainWindow::disk_changed);
-  connect(&document_, &Document::autosave_failed, this, &MainWindow::say);
-  connect(properties_, &PropertiesPanel::wanted, this,
-          [this](const world::TextPath& path, const std::string& toml) {
-            if (tell(document_.set_value(path, toml))) return;
-            properties_->show(document_.sections());  // back to what is
-          });
-  connect(properties_, &PropertiesPanel::reset_wanted, this,
-          [this](const world::TextPath& path) { tell(document_.reset_value(path)); });
-  connect(
-      properties_, &PropertiesPanel::step_wanted, this,
-      [this](const world::TextPath& path, int steps) { tell(document_.step_value(path, steps)); });
-  connect(properties_, &PropertiesPanel::dice_wanted, this, &MainWindow::randomise);
-  connect(properties_, &PropertiesPanel::drag_began, this, [this] { document_.begin_drag(); });
-  connect(properties_, &PropertiesPanel::drag_ended, this, [this] { document_.end_drag(); });
-  connect(properties_, &PropertiesPanel::row_made, this, [this](FieldRow* row) {
-    row->set_locked(document_.locks().is_locked(row->field().path));
-  });
-  connect(properties_, &PropertiesPanel::lock_wanted, this,
-          [this](const world::TextPath& path, bool locked) {
-            document_.locks().set_locked(path, locked);
-          });
-  connect(properties_, &PropertiesPanel::section_chosen, this, &MainWindow::ask_costs);
-  connect(properties_, &PropertiesPanel::section_menu, this, &MainWindow::section_menu);
-  connect(costs_, &CostWorker::curve, this,
-          [this](const std::string& path, const std::vector<CostPoint>& points) {
-            const auto at = world::parse_text_path(path);
-            FieldRow* row = at ? properties_->row(*at) : nullptr;
-            if (row != nullptr) row->show_cost(points);
-          });
-  connect(costs_, &CostWorker::world_cost, this, [this](const BlockCost& cost) {
-    const world::World& world = document_.world();
-    statistics_->show_world_cost(
-        cost, static_cast<double>(world.blocks_x) * static_cast<double>(world.blocks_z));
-  });
-  costs_timer_.setSingleShot(true);
-  connect(&costs_timer_, &QTimer::timeout, this, &MainWindow::ask_costs);
-}
-
 void MainWindow::connect_view() {
   connect(view_, &WorldView::opened, this, [this](const QString& error) {
     if (!error.isEmpty()) return say(error);
@@ -169,9 +128,13 @@ void MainWindow::connect_view() {
     ask_costs();
   });
   connect(view_, &WorldView::refused, this, &MainWindow::say);
+  connect(view_, &WorldView::answered, this, [this](double ms) { answered_ms_ = ms; });
   connect(view_, &WorldView::settled, this, [this](double ms) {
-    statusBar()->showMessage(tr("Everything is shown %1 ms after the change.").arg(ms, 0, 'f', 0),
-                             4000);
+    statusBar()->showMessage(
+        tr("The first picture came %1 ms after the change, the last mesh after %2 ms.")
+            .arg(answered_ms_, 0, 'f', 0)
+            .arg(ms, 0, 'f', 0),
+        4000);
   });
   connect(view_, &WorldView::drawn, this, [this](double ms) {
     frame_ms_ += (ms - frame_ms_) * (frame_ms_ == 0 ? 1 : kSmoothing);
@@ -189,29 +152,12 @@ void MainWindow::connect_view() {
         return properties_->go_to(section.path);
     }
   });
+  connect(model_, &ModelView::told, this, &MainWindow::say);
+  connect(model_, &ModelView::switched, this,
+          [this] { pictures_->set_on_world(!model_->is_on()); });
+  connect(properties_, &PropertiesPanel::section_chosen, model_, &ModelView::follow);
   connect(&figures_timer_, &QTimer::timeout, this, &MainWindow::show_figures);
   figures_timer_.start(kFiguresMs);
-}
-
-void MainWindow::document_changed(Changes what) {
-  properties_->show(document_.sections());
-  // The renderer takes pictures of the ground only when it is made.
-  const auto& images = document_.world().palette.images;
-  view_->show_world(document_.text(),
-                    document_.file().empty() ? "new.toml" : document_.file().string(),
-                    what.testFlag(Change::kFile) || images != shown_images_);
-  shown_images_ = images;
-  costs_timer_.start(kCostsMs);
-}
-
-// Of the fields that are shown.
-void MainWindow::ask_costs() {
-  std::shared_ptr<const synthesis::CostModel> learnt;
-  if (view_->session() != nullptr)
-    learnt =
-        std::make_shared<synthesis::CostModel>(view_->session()->scene().state().meshes.costs());
-  costs_->ask(document_.text(), document_.file().string(), properties_->shown_fields(),
-              view_->camera().pose().position.block, std::move(learnt));
 }
 
 void MainWindow::show_figures() {
@@ -225,6 +171,7 @@ void MainWindow::show_figures() {
                         .arg(state.meshes.outstanding())
                         .arg(view_->camera().speed_m_s(), 0, 'f', 0));
   if (statistics_->isVisible()) statistics_->show(state);
+  map_->note(state);
   if (map_->isVisible()) map_->show(state);
 }
 
@@ -280,7 +227,7 @@ void MainWindow::restore_place() {
 
 void MainWindow::keep_place() {
   if (view_->session() == nullptr || document_.file().empty()) return;
-  const core::CameraPose& pose = view_->camera().pose();
+  const core::CameraPose pose = model_->world_pose();
   QSettings().setValue(
       "places/" + file_key(document_.file()),
       QVariantList{pose.position.block.x, pose.position.block.z, pose.position.local.x,

@@ -2,21 +2,26 @@
 // order. It connects document, view and panels; what each does is its own. Main thread.
 #pragma once
 
+#include <QElapsedTimer>
 #include <QMainWindow>
 #include <QTimer>
 
+#include "editor/cost/edit_cost.hpp"
+#include "editor/cost/world_impact.hpp"
 #include "editor/document/document.hpp"
 #include "editor/view/world_view.hpp"
 
 class QComboBox;
 class QLabel;
 class QPlainTextEdit;
+class QToolBar;
 
 namespace psygen::editor {
 
 class CacheMap;
 class CommandPalette;
 class CostWorker;
+class ModelView;
 class PictureTools;
 class PropertiesPanel;
 class RemoteSession;
@@ -27,6 +32,7 @@ struct MainWindowOptions {
   app::SessionOptions session;
   DocumentOptions document;
   bool safe = false;  // opens with synthesis paused
+  CostLimits limits;  // beyond which values ask first; the cache is at most that of the session
 };
 
 class MainWindow final : public QMainWindow {
@@ -61,7 +67,15 @@ class MainWindow final : public QMainWindow {
   void add_attach_action(QMenu* menu);
   void add_help_menu();
   void add_toolbar();
+  void add_hour(QToolBar& bar);
+  void add_weather(QToolBar& bar, const QString& label, const QString& help,
+                   const world::TextPath& path);
+  void add_model_bar();
+  void add_model_action(QMenu& menu);
+  void add_grid_menu(QMenu& menu);
   void connect_document();
+  void connect_properties();
+  void connect_costs();
   void connect_view();
   void restore_layout();
   void restore_place();
@@ -82,9 +96,13 @@ class MainWindow final : public QMainWindow {
   void document_changed(Changes what);
   void disk_changed(DiskState state, bool conflict);
   void fit_title();
+  void set_dragging(bool on);
+  void look_at_scene();
   void ask_costs();
   void show_figures();
   void randomise(const world::TextPath& path);
+  void copy_section(const world::TextPath& path);
+  void paste_section(const world::TextPath& path);
   void section_menu(const world::TextPath& path, const QPoint& at);
   void set_theme(const QString& name);
   void set_scale(int percent);
@@ -99,6 +117,7 @@ class MainWindow final : public QMainWindow {
   QPlainTextEdit* log_ = nullptr;
   CommandPalette* palette_ = nullptr;
   CostWorker* costs_ = nullptr;
+  ModelView* model_ = nullptr;
   PictureTools* pictures_ = nullptr;
   RemoteSession* remote_ = nullptr;
   TimelinePanel* timeline_ = nullptr;
@@ -108,10 +127,17 @@ class MainWindow final : public QMainWindow {
   QMenu* recent_menu_ = nullptr;
   QMenu* panels_menu_ = nullptr;
   QTimer figures_timer_, costs_timer_;
+  // What the scene's cache held and its cost model knew, when it was looked at last.
+  CacheContents contents_;
+  std::shared_ptr<const synthesis::CostModel> learnt_;
+  QElapsedTimer looked_;
+  ParsedWorldPtr drag_from_;    // null: nothing is dragged
+  ParsedWorldPtr last_parsed_;  // before the last change
   QByteArray first_layout_;
   std::optional<core::CameraPose> first_place_;  // its height: above the ground
   decltype(world::Palette::images) shown_images_;
-  double frame_ms_ = 0;  // smoothed
+  double frame_ms_ = 0;     // smoothed
+  double answered_ms_ = 0;  // of the last change
 };
 
 }  // namespace psygen::editor

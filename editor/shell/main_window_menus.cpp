@@ -2,28 +2,23 @@
 #include <QActionGroup>
 #include <QApplication>
 #include <QClipboard>
-#include <QComboBox>
 #include <QDir>
 #include <QDockWidget>
 #include <QFileDialog>
 #include <QInputDialog>
-#include <QLabel>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QSettings>
-#include <QSlider>
-#include <QToolBar>
 #include <array>
-#include <random>
 
 #include "editor/gallery/library_panel.hpp"
+#include "editor/gallery/model_view.hpp"
 #include "editor/gallery/picture_tools.hpp"
 #include "editor/panels/properties_panel.hpp"
 #include "editor/shell/command_line.hpp"
 #include "editor/shell/command_palette.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
-#include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 
@@ -66,6 +61,7 @@ void MainWindow::add_file_menu() {
   });
   menu->addAction(tr("Copy command &line"), this, [this] {
     if (view_->session() == nullptr) return say(tr("There is no picture."));
+    if (model_->is_on()) return say(tr("Only pictures of the world have a command line."));
     const QString line =
         picture_command(*view_->session(), document_.file(), view_->camera().pose());
     QApplication::clipboard()->setText(line);
@@ -87,14 +83,12 @@ void MainWindow::add_edit_menu() {
   menu->addSeparator();
   menu->addAction(tr("Randomise this section"), tr("Ctrl+R"), this,
                   [this] { randomise(properties_->section()); });
-  menu->addAction(tr("Copy this section"), tr("Ctrl+Shift+C"), this, [this] {
-    const auto text = document_.copy(properties_->section());
-    if (!text) return say(QString::fromStdString(text.error().message));
-    QApplication::clipboard()->setText(QString::fromStdString(*text));
-  });
-  menu->addAction(tr("Paste into this section"), tr("Ctrl+Shift+V"), this, [this] {
-    tell(document_.paste(properties_->section(), QApplication::clipboard()->text().toStdString()));
-  });
+  menu->addAction(tr("Reset this section"), tr("Ctrl+Shift+0"), this,
+                  [this] { tell(document_.reset_section(properties_->section())); });
+  menu->addAction(tr("Copy this section"), tr("Ctrl+Shift+C"), this,
+                  [this] { copy_section(properties_->section()); });
+  menu->addAction(tr("Paste into this section"), tr("Ctrl+Shift+V"), this,
+                  [this] { paste_section(properties_->section()); });
   menu->addSeparator();
   menu->addAction(tr("Find a command or field …"), tr("Ctrl+Shift+P"), this, [this] {
     std::vector<CommandPalette::Command> commands;
@@ -140,6 +134,8 @@ void MainWindow::add_view_menu() {
     action->setChecked(kind == render::View::kNormal);
     views->addAction(action);
   }
+  add_model_action(*menu);
+  add_grid_menu(*menu);
   pictures_->add_to_view_menu(*menu);
   menu->addSeparator();
   panels_menu_ = menu->addMenu(tr("Pan&els"));
@@ -190,23 +186,6 @@ void MainWindow::add_world_menu() {
   pause->setChecked(options_.safe);
 }
 
-// What is not locked of a section or field.
-void MainWindow::randomise(const world::TextPath& path) {
-  static std::mt19937_64 random{std::random_device{}()};
-  tell(document_.randomise(path, random));
-}
-
-void MainWindow::section_menu(const world::TextPath& path, const QPoint& at) {
-  QMenu menu;
-  menu.addAction(tr("Randomise"), this, [&] { randomise(path); });
-  menu.addAction(tr("Reset"), this, [&] { tell(document_.remove_table(path)); });
-  if (!path.empty() && path.back().is_index) {
-    menu.addAction(tr("Duplicate"), this, [&] { tell(document_.duplicate_table(path)); });
-    menu.addAction(tr("Remove"), this, [&] { tell(document_.remove_table(path)); });
-  }
-  menu.exec(at);
-}
-
 void MainWindow::add_help_menu() {
   QMenu* menu = menuBar()->addMenu(tr("&Help"));
   menu->addAction(tr("&Keys and mouse"), tr("F1"), this, [this] {
@@ -228,47 +207,6 @@ void MainWindow::add_help_menu() {
                        tr("<b>psygen editor %1</b><br>Qt %2<br>Device: %3")
                            .arg(PSYGEN_VERSION, qVersion(), device));
   });
-}
-
-void MainWindow::add_toolbar() {
-  QToolBar* bar = addToolBar(tr("Picture"));
-  bar->setObjectName("picture");
-  bar->addWidget(new QLabel(tr(" Quality ")));
-  auto* presets = new QComboBox;
-  presets->setAccessibleName(tr("Quality of the picture"));
-  presets->addItems({"low", "medium", "high", "ultra"});
-  bar->addWidget(presets);
-  connect(presets, &QComboBox::textActivated, this, [this](const QString& name) {
-    const auto preset = render::preset_from(name.toStdString());
-    if (view_->session() != nullptr && preset) tell(view_->session()->set_preset(*preset));
-  });
-  connect(view_, &WorldView::opened, this, [this, presets](const QString& error) {
-    if (error.isEmpty())
-      presets->setCurrentText(
-          QString::fromUtf8(render::to_string(view_->session()->renderer().preset()).data()));
-  });
-  bar->addSeparator();
-  bar->addWidget(new QLabel(tr(" Hour ")));
-  auto* hour = new QSlider(Qt::Horizontal);
-  hour->setAccessibleName(tr("Hour of the day"));
-  hour->setRange(0, 24 * 60);
-  hour->setMaximumWidth(240);
-  bar->addWidget(hour);
-  connect(hour, &QSlider::valueChanged, this, [this](int minutes) {
-    const world::Sky& sky = document_.world().sky;
-    if (view_->session() == nullptr) return;
-    double hours = minutes / 60.0 - sky.start_hour;
-    if (hours < 0) hours += 24;
-    view_->session()->set_now(hours / 24 * sky.day_length_s);
-  });
-  const auto fit_hour = [this, hour] {
-    const bool has_day = document_.world().sky.day_length_s > 0;
-    hour->setEnabled(has_day);
-    hour->setToolTip(has_day ? tr("Hour of the day")
-                             : tr("The sun of this world stands still: Sky, day length, is 0"));
-  };
-  connect(&document_, &Document::changed, this, fit_hour);
-  fit_hour();
 }
 
 void MainWindow::set_theme(const QString& name) {

@@ -7,6 +7,7 @@
 #include "editor/attach/remote_panel.hpp"
 #include "editor/attach/remote_session.hpp"
 #include "editor/flights/timeline_panel.hpp"
+#include "editor/gallery/model_view.hpp"
 #include "editor/shell/docks.hpp"
 #include "editor/shell/main_window.hpp"
 #include "engine/render/renderer.hpp"
@@ -36,7 +37,7 @@ void MainWindow::add_tool_docks() {
       add_hidden_dock(*this, "attached", tr("Attached"), panel, Qt::RightDockWidgetArea);
   tabifyDockWidget(findChild<QDockWidget*>("map"), attached);
   connect(panel, &RemotePanel::go_to, this,
-          [this](const core::CameraPose& pose) { view_->camera().set_pose(pose); });
+          [this](const core::CameraPose& pose) { model_->stand_in_world(pose); });
   connect(panel, &RemotePanel::follow_me, this, [this](bool on) {
     remote_follows_ = on && remote_->is_attached();
     if (!on && remote_->is_attached()) remote_->set_pose(std::nullopt);
@@ -72,7 +73,7 @@ void MainWindow::add_tool_docks() {
     return document_.is_modified() ? std::filesystem::path() : document_.file();
   };
   host.pose = [this] { return view_->camera().pose(); };
-  host.set_pose = [this](const core::CameraPose& pose) { view_->camera().set_pose(pose); };
+  host.set_pose = [this](const core::CameraPose& pose) { model_->stand_in_world(pose); };
   host.size = [this] {
     return view_->session() != nullptr ? view_->session()->picture_size() : core::Extent{};
   };
@@ -88,15 +89,19 @@ void MainWindow::add_tool_docks() {
       add_hidden_dock(*this, "timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
   tabifyDockWidget(findChild<QDockWidget*>("statistics"), dock);
   // Docks that are added take the sizes of the others with them.
-  resizeDocks({findChild<QDockWidget*>("properties")}, {kPropertiesPx}, Qt::Horizontal);
+  resizeDocks({findChild<QDockWidget*>("properties"), findChild<QDockWidget*>("selection")},
+              {kPropertiesPx, kSelectionPx}, Qt::Horizontal);
   resizeDocks({findChild<QDockWidget*>("statistics")}, {kStatisticsPx}, Qt::Vertical);
   connect(timeline_, &TimelinePanel::told, this, &MainWindow::say);
-  connect(timeline_, &TimelinePanel::recording_changed, this, [dock](bool) { reveal(dock); });
+  connect(timeline_, &TimelinePanel::recording_changed, this, [this, dock](bool) {
+    model_->close();
+    reveal(dock);
+  });
   connect(timeline_, &TimelinePanel::needs_processors, this,
           [this](bool on) { view_->set_yielding(Beside::kFlight, on); });
   connect(view_, &WorldView::drawn, this, [this] {
     timeline_->picture_drawn();
-    if (remote_follows_) remote_->set_pose(view_->camera().pose());
+    if (remote_follows_) remote_->set_pose(model_->world_pose());
   });
 }
 

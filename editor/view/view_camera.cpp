@@ -27,7 +27,9 @@ bool ViewCamera::update(const platform::InputState& input, double dt_s) {
   platform::InputState flown = input;
   flown.wheel = input.held.any() ? input.wheel : 0;  // the speed, while it flies
   pose_ = fly_.update(pose_, flown, dt_s);
-  if (input.is_held(platform::MouseButton::kMiddle)) orbit(input.move_px.x, input.move_px.y);
+  if (input.is_held(platform::MouseButton::kMiddle) ||
+      (turntable_ && input.is_held(platform::MouseButton::kLeft)))
+    orbit(input.move_px.x, input.move_px.y);
   if (input.wheel != 0 && !input.held.any()) approach(input.wheel);
   if (!core::is_valid(pose_)) pose_ = before;
   pose_.position = core::normalised(pose_.position, block_m_);

@@ -26,6 +26,8 @@ class ViewCamera {
   const std::optional<core::WorldPosition>& pivot() const { return pivot_; }
   // Looks at the pivot from this distance in metres, keeping the direction. Without one, nothing.
   void focus(double distance_m);
+  // Whether the left button turns around the pivot too.
+  void set_turntable(bool on) { turntable_ = on; }
   double speed_m_s() const { return fly_.speed_m_s(); }
 
  private:
@@ -36,6 +38,7 @@ class ViewCamera {
   platform::FlyCamera fly_;
   core::CameraPose pose_;
   double block_m_ = 1;
+  bool turntable_ = false;
   std::optional<core::WorldPosition> pivot_;
 };
 

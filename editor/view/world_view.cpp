@@ -53,8 +53,8 @@ void WorldView::open() {
     return;
   }
   session_ = std::move(*session);
-  camera_.set_block_size(session_->scene().state().facts.world.block_size_m());
   select(std::nullopt);
+  take_stand();
   Q_EMIT opened({});
   since_tick_.start();
   timer_.start(kBusyMs);
@@ -96,6 +96,7 @@ bool WorldView::event(QEvent* event) {
 // The newest text, once what is prepared of the one before has been taken.
 void WorldView::take_text() {
   if (prepared_.valid() || !std::exchange(text_is_new_, false)) return;
+  since_prepared_ = since_text_;
   using Task = std::packaged_task<core::Result<scene::PreparedWorld>()>;
   const auto task = std::make_shared<Task>(session_->prepare_world(text_));
   prepared_ = task->get_future();
@@ -116,7 +117,8 @@ void WorldView::take_prepared() {
     Q_EMIT refused(QString::fromStdString(ok.error().message));
     return;
   }
-  camera_.set_block_size(session_->scene().state().facts.world.block_size_m());
+  since_taken_ = since_prepared_;
+  take_stand();
   if (selection_) select(found_again(*selection_, session_->scene().state()));
 }
 
@@ -129,12 +131,15 @@ void WorldView::tick() {
   const platform::InputState input = input_.take_frame();
   const bool moved = camera_.update(input, dt_s);
   if (const auto click = input_.take_click()) {
-    const scene::State& state = session_->scene().state();
+    const scene::State& seen = session_->scene().state();
     select(pick(
-        state, camera_.pose(),
-        direction_of(*click, session_->picture_size(), camera_.pose(), state.camera.projection)));
+        seen, camera_.pose(),
+        direction_of(*click, session_->picture_size(), camera_.pose(), seen.camera.projection)));
   }
   write_over_picture();
+  scene::State& state = session_->scene().state();
+  state.input.draft = draft_;
+  state.input.lines = grid_.lines(state.facts.world, camera_.pose().position);
   QElapsedTimer spent;
   spent.start();
   const bool over = !session_->poll();
@@ -146,6 +151,7 @@ void WorldView::tick() {
     return;
   }
   Q_EMIT drawn(static_cast<double>(spent.nsecsElapsed()) * 1e-6);
+  note_answered();
   note_settled();
   const bool in_front = QGuiApplication::applicationState() == Qt::ApplicationActive;
   const bool yields = beside_.any() && !moved && !input_.busy() && !since_text_.isValid();
@@ -154,8 +160,29 @@ void WorldView::tick() {
                                                                           : kIdleMs);
 }
 
+// In the world that is shown from now on.
+void WorldView::take_stand() {
+  grid_.forget();
+  const scene::State& state = session_->scene().state();
+  camera_.set_block_size(state.facts.world.block_size_m());
+  const FindStand find = std::exchange(find_stand_, nullptr);
+  const auto stand = find ? find(state) : std::nullopt;
+  if (!stand) return;
+  camera_.set_pose(stand->pose);
+  camera_.set_pivot(stand->pivot);
+}
+
+// Looks alone change at once, meshes when the first of them lands.
+void WorldView::note_answered() {
+  if (!since_taken_.isValid()) return;
+  const scene::State& state = session_->scene().state();
+  if (state.counters.completed == 0 && state.meshes.outstanding() > 0) return;
+  Q_EMIT answered(static_cast<double>(since_taken_.nsecsElapsed()) * 1e-6);
+  since_taken_.invalidate();
+}
+
 void WorldView::note_settled() {
-  if (!since_text_.isValid() || text_is_new_ || prepared_.valid()) return;
+  if (!since_text_.isValid() || text_is_new_ || prepared_.valid() || draft_) return;
   const scene::State& state = session_->scene().state();
   if (state.counters.awaited > 0 || state.meshes.outstanding() > 0 ||
       state.output.pictures_lacking != 0)

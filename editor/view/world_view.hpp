@@ -10,11 +10,13 @@
 #include <QWindow>
 #include <bitset>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "editor/view/ground_grid.hpp"
 #include "editor/view/picking.hpp"
 #include "editor/view/view_camera.hpp"
 #include "editor/view/view_input.hpp"
@@ -48,6 +50,19 @@ class WorldView final : public QWindow {
   void select(std::optional<Selection> selection);
   // Looks at what is selected from nearby; without a selection, from the world's usual place.
   void focus();
+  // While values are tried out, new meshes are coarse; they get fine when it ends.
+  void set_draft(bool draft) { draft_ = draft; }
+  // The lines on the ground.
+  GroundGrid& grid() { return grid_; }
+  // Where the camera stands, turning around the pivot.
+  struct Stand {
+    core::CameraPose pose;
+    std::optional<core::WorldPosition> pivot;
+  };
+  // Asked for with the scene of the text that was given last, when that is taken over; nothing: the
+  // camera stays.
+  using FindStand = std::function<std::optional<Stand>(const scene::State&)>;
+  void stand_with_text(FindStand find) { find_stand_ = std::move(find); }
   // Synthesis rests: what is there is drawn.
   void set_paused(bool paused) { paused_ = paused; }
   // Something else works on the same processors: while any of it does, nobody moves here and
@@ -62,6 +77,8 @@ class WorldView final : public QWindow {
   void selected();
   // After every picture, with what it took.
   void drawn(double frame_ms);
+  // The first picture that has something of another text; milliseconds since it came.
+  void answered(double ms);
   // The text that was shown last is in the picture with all its meshes; milliseconds since it came.
   void settled(double ms);
 
@@ -74,14 +91,16 @@ class WorldView final : public QWindow {
   void tick();
   void take_text();
   void take_prepared();
+  void take_stand();
   void write_over_picture();
+  void note_answered();
   void note_settled();
 
   app::SessionOptions options_;
   WindowSurface surface_;
   std::unique_ptr<app::Session> session_;
   std::string text_, file_;
-  bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false;
+  bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false, draft_ = false;
   std::bitset<2> beside_;  // by Beside
   ViewCamera camera_;
   ViewInput input_;
@@ -90,7 +109,10 @@ class WorldView final : public QWindow {
   std::future<core::Result<scene::PreparedWorld>> prepared_;
   QTimer timer_;
   QElapsedTimer since_tick_;
-  QElapsedTimer since_text_;  // invalid: everything of the text is drawn
+  QElapsedTimer since_text_;                    // invalid: everything of the text is drawn
+  QElapsedTimer since_prepared_, since_taken_;  // the text that is prepared, and drawn, came
+  GroundGrid grid_;
+  FindStand find_stand_;
 };
 
 }  // namespace psygen::editor

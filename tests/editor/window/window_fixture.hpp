@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <QAction>
+#include <QSlider>
 #include <QTest>
+#include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 
@@ -34,13 +38,38 @@ model = "rock"
 count = 5
 )";
 
+// The share of pixels that differ by more than an eye could see.
+inline double difference(const image::Image& a, const image::Image& b) {
+  EXPECT_EQ(a.rgba.size(), b.rgba.size());
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i + 3 < a.rgba.size(); i += 4) {
+    int most = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      most = std::max(most, std::abs(int{a.rgba[i + c]} - int{b.rgba[i + c]}));
+    differing += most > 12;
+  }
+  return static_cast<double>(differing) / (static_cast<double>(a.rgba.size()) / 4);
+}
+
+// Takes the handle of a slider and lets it go further right.
+inline void drag(QSlider& slider, int by_px) {
+  QPoint at(slider.width() * slider.value() / std::max(slider.maximum(), 1), slider.height() / 2);
+  at.setX(std::clamp(at.x(), 6, slider.width() - 8));
+  QTest::mousePress(&slider, Qt::LeftButton, {}, at);
+  for (int i = 1; i <= 8; ++i) {
+    QTest::mouseMove(&slider, at + QPoint(by_px * i / 8, 0));
+    QTest::qWait(1);
+  }
+  QTest::mouseRelease(&slider, Qt::LeftButton, {}, at + QPoint(by_px, 0));
+}
+
 class EditorWindow : public testing::Test {
  protected:
   static constexpr int kMostMs = 120'000;  // only so that a hanging test ends
 
   void SetUp() override {
     file_ = folder_.path() / "small.toml";
-    std::ofstream(file_) << kSmallWorld;
+    std::ofstream(file_) << world_text();
     MainWindowOptions options;
     options.session.preset = render::Preset::kLow;
     options.session.target_hz = 0;
@@ -49,6 +78,7 @@ class EditorWindow : public testing::Test {
     options.session.scene.fade_seconds = 0;
     options.session.scene.budget_bytes = 64ull << 20;
     options.document.state_folder = folder_.path() / "state";
+    adjust(options);
     window_ = std::make_unique<MainWindow>(std::move(options));
     window_->resize(900, 640);
     QObject::connect(&window_->view(), &WorldView::settled, window_.get(), [this] { ++settled_; });
@@ -70,6 +100,16 @@ class EditorWindow : public testing::Test {
         ADD_FAILURE() << message;
     }
     window_.reset();
+  }
+
+  virtual void adjust(MainWindowOptions&) {}
+  virtual std::string world_text() { return kSmallWorld; }
+  // Triggers a command of the menus by its text without “&”.
+  void command(const QString& name) {
+    for (QAction* action : window_->findChildren<QAction*>()) {
+      if (action->text().remove('&') == name) return action->trigger();
+    }
+    FAIL() << name.toStdString();
   }
 
   Document& document() { return window_->document(); }

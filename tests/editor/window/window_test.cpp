@@ -4,8 +4,6 @@
 #include <QLineEdit>
 #include <QSlider>
 #include <QUndoStack>
-#include <algorithm>
-#include <cstdlib>
 
 #include "editor/panels/field_row.hpp"
 #include "tests/editor/window/window_fixture.hpp"
@@ -18,31 +16,6 @@ const world::TextPath kTrees{"scatter", 0}, kCount{"scatter", 0, "count"};
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// The share of pixels that differ by more than an eye could see.
-double difference(const image::Image& a, const image::Image& b) {
-  EXPECT_EQ(a.rgba.size(), b.rgba.size());
-  std::size_t differing = 0;
-  for (std::size_t i = 0; i + 3 < a.rgba.size(); i += 4) {
-    int most = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      most = std::max(most, std::abs(int{a.rgba[i + c]} - int{b.rgba[i + c]}));
-    differing += most > 12;
-  }
-  return static_cast<double>(differing) / (static_cast<double>(a.rgba.size()) / 4);
-}
-
-// Takes the handle of a slider and lets it go further right.
-void drag(QSlider& slider, int by_px) {
-  QPoint at(slider.width() * slider.value() / std::max(slider.maximum(), 1), slider.height() / 2);
-  at.setX(std::clamp(at.x(), 6, slider.width() - 8));
-  QTest::mousePress(&slider, Qt::LeftButton, {}, at);
-  for (int i = 1; i <= 8; ++i) {
-    QTest::mouseMove(&slider, at + QPoint(by_px * i / 8, 0));
-    QTest::qWait(1);
-  }
-  QTest::mouseRelease(&slider, Qt::LeftButton, {}, at + QPoint(by_px, 0));
 }
 
 TEST_F(EditorWindow, ADraggedSliderChangesThePictureInOneUndoStep) {

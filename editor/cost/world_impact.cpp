@@ -1,0 +1,195 @@
+#include "editor/cost/world_impact.hpp"
+
+#include <QLocale>
+#include <QObject>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+#include "editor/cost/block_cost.hpp"
+#include "engine/synthesis/synthesize.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kImpactBlocks = 8;
+constexpr std::size_t kCosted = 24;    // meshes of each type, whose cost is asked for
+constexpr double kUsualDetail = 0.25;  // of full detail, where nothing is known
+
+// Means over some meshes of a type at full detail.
+struct CostMean {
+  double seconds = 0, bytes = 0;
+  std::size_t count = 0;
+
+  void add(const ParsedWorld& parsed, models::ModelIndex model, const models::Parameters& p,
+           const synthesis::CostModel& costs) {
+    if (count == kCosted) return;
+    const auto size = synthesis::mesh_size_guarded(parsed.registry[model], p, 0);
+    const double share = 1.0 / static_cast<double>(++count);
+    seconds += (costs.predict(model, p, 0) - seconds) * share;
+    bytes += ((size ? mesh_bytes(*size) : 0) - bytes) * share;
+  }
+};
+
+// What some blocks have of a type: before, of these what is the same afterwards, and what is new.
+struct TypeChange {
+  double before = 0, same = 0, fresh = 0;
+  CostMean cost_before, cost_fresh;
+
+  double factor(double CostMean::*of) const {
+    const double was = cost_before.*of, is = cost_fresh.*of;
+    return cost_before.count == 0 || cost_fresh.count == 0 || was <= 0 ? 1 : is / was;
+  }
+};
+
+// Both worlds on some blocks.
+class Comparison {
+ public:
+  Comparison(const ParsedWorld& before, const ParsedWorld& after,
+             const synthesis::CostModel* learnt)
+      : before_(before),
+        after_(after),
+        costs_before_(before.registry),
+        costs_after_(after.registry) {
+    if (learnt == nullptr) return;
+    costs_before_.learn_from(*learnt);
+    costs_after_.learn_from(*learnt);
+  }
+
+  void add(core::BlockCoord block) {
+    add_ground(block);
+    world::place_models(before_.world, before_.registry, block, old_);
+    world::place_models(after_.world, after_.registry, block, new_);
+    std::unordered_map<std::uint32_t, const world::Placement*> known;
+    for (const world::Placement& placed : old_) {
+      known[placed.index] = &placed;
+      TypeChange& type = types_[name(before_, placed)];
+      ++type.before;
+      type.cost_before.add(before_, placed.model, placed.parameters, costs_before_);
+    }
+    for (const world::Placement& placed : new_) {
+      const auto was = known.find(placed.index);
+      TypeChange& type = types_[name(after_, placed)];
+      if (was != known.end() && is_same(*was->second, placed)) {
+        ++type.same;
+        continue;
+      }
+      ++type.fresh;
+      type.cost_fresh.add(after_, placed.model, placed.parameters, costs_after_);
+    }
+  }
+
+  const std::map<std::string, TypeChange>& types() const { return types_; }
+  const TypeChange& ground() const { return ground_; }
+  bool any_model_changes() const {
+    return std::ranges::any_of(types_, [](const auto& entry) {
+      return entry.second.fresh > 0 || entry.second.same < entry.second.before;
+    });
+  }
+
+ private:
+  static std::string name(const ParsedWorld& parsed, const world::Placement& placed) {
+    return std::string(parsed.registry[placed.model].name());
+  }
+  bool is_same(const world::Placement& a, const world::Placement& b) const {
+    return a.parameters.hash() == b.parameters.hash() && name(before_, a) == name(after_, b);
+  }
+  void add_ground(core::BlockCoord block) {
+    const auto was = world::terrain_parameters(before_.world, block);
+    const auto is = world::terrain_parameters(after_.world, block);
+    ++ground_.before;
+    (was.hash() == is.hash() ? ground_.same : ground_.fresh) += 1;
+    ground_.cost_before.add(before_, before_.world.terrain_model, was, costs_before_);
+    ground_.cost_fresh.add(after_, after_.world.terrain_model, is, costs_after_);
+  }
+
+  const ParsedWorld &before_, &after_;
+  synthesis::CostModel costs_before_, costs_after_;
+  std::vector<world::Placement> old_, new_;
+  std::map<std::string, TypeChange> types_;
+  TypeChange ground_;
+};
+
+// Adds a type of which the cache has some meshes.
+void add_held(const HeldMeshes& held, const TypeChange& change, WorldImpact& impact) {
+  const auto meshes = static_cast<double>(held.meshes);
+  impact.held += meshes;
+  if (change.before <= 0) {  // none stands where we looked
+    impact.bytes += held.bytes;
+    return;
+  }
+  const double fresh = change.fresh / change.before, same = change.same / change.before;
+  impact.changed += meshes * fresh;
+  impact.seconds += held.seconds * fresh * change.factor(&CostMean::seconds);
+  impact.bytes += held.bytes * (same + fresh * change.factor(&CostMean::bytes));
+}
+
+// Adds types that the cache has no meshes of yet, at the detail that it has of others.
+void add_new(const Comparison& comparison, const CacheContents& contents, WorldImpact& impact) {
+  double meshes = 0, placed = 0, seconds = 0, full_seconds = 0;
+  std::map<std::string, bool> known;
+  for (const HeldMeshes& held : contents.held) {
+    const auto type = comparison.types().find(held.type);
+    if (held.kind != HeldMeshes::Kind::kModel || type == comparison.types().end()) continue;
+    known[held.type] = true;
+    meshes += static_cast<double>(held.meshes);
+    placed += type->second.before;
+    seconds += held.seconds;
+    full_seconds += static_cast<double>(held.meshes) * type->second.cost_before.seconds;
+  }
+  if (placed <= 0) return;
+  const double detail = full_seconds > 0 ? std::min(seconds / full_seconds, 1.0) : kUsualDetail;
+  for (const auto& [name, type] : comparison.types()) {
+    if (known.contains(name) || type.fresh <= 0) continue;
+    const double made = type.fresh * meshes / placed;
+    impact.changed += made;
+    impact.seconds += made * detail * type.cost_fresh.seconds;
+    impact.bytes += made * detail * type.cost_fresh.bytes;
+  }
+}
+
+}  // namespace
+
+WorldImpact impact_of(const ParsedWorld& before, const ParsedWorld& after, core::BlockCoord around,
+                      const CacheContents& contents, const synthesis::CostModel* learnt) {
+  Comparison comparison(before, after, learnt);
+  for (int i = 0; i < kImpactBlocks; ++i)
+    comparison.add(block_near(before.world, around, i));
+  TypeChange derived;  // each stands for many models, of which one is enough
+  derived.before = 1;
+  (comparison.any_model_changes() || comparison.ground().fresh > 0 ? derived.fresh : derived.same) =
+      1;
+  WorldImpact impact;
+  impact.budget_bytes = contents.budget_bytes;
+  for (const HeldMeshes& held : contents.held) {
+    if (held.kind == HeldMeshes::Kind::kModel) {
+      const auto type = comparison.types().find(held.type);
+      add_held(held, type != comparison.types().end() ? type->second : TypeChange{}, impact);
+    } else {
+      add_held(held, held.kind == HeldMeshes::Kind::kGround ? comparison.ground() : derived,
+               impact);
+    }
+  }
+  add_new(comparison, contents, impact);
+  impact.seconds /= std::max(contents.modelers, 1U);
+  return impact;
+}
+
+QString impact_text(const WorldImpact& impact) {
+  const QLocale english(QLocale::English);
+  if (impact.changed < 0.5 && impact.seconds <= 0) return QObject::tr("No mesh changes.");
+  const auto whole = [&](double count) { return english.toString(std::llround(count)); };
+  const QString time = impact.seconds < 0.095
+                           ? QObject::tr("%1 ms").arg(std::ceil(impact.seconds * 1e3))
+                           : QObject::tr("%1 s").arg(impact.seconds, 0, 'f', 1);
+  return QObject::tr(
+             "About %1 meshes change of %2 in the cache; %3 to make them. Then the world takes %4 "
+             "of %5.")
+      .arg(whole(impact.changed), whole(impact.held), time,
+           english.formattedDataSize(std::llround(impact.bytes), 1),
+           english.formattedDataSize(std::llround(impact.budget_bytes), 0));
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,63 @@
+#include "editor/panels/cache_contents.hpp"
+
+#include <algorithm>
+
+#include "engine/scene/state.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr std::size_t kSampled = 256;  // entities of each column, for predicted times
+
+// Mean predicted seconds of meshes that are drawn, by model type; 0 where none was sampled.
+std::vector<double> mean_seconds(const scene::State& state) {
+  std::vector<double> sums(state.facts.registry.size());
+  std::vector<double> counts(sums.size());
+  state.entities.each<const scene::Source, const scene::Demand>(
+      [&](std::span<const ecs::Entity>, std::span<const scene::Source> sources,
+          std::span<const scene::Demand> demands) {
+        const std::size_t step = std::max<std::size_t>(sources.size() / kSampled, 1);
+        for (std::size_t i = 0; i < sources.size(); i += step) {
+          const scene::Source& source = sources[i];
+          if (demands[i].drawn_level == scene::kNoLevel || source.model >= sums.size()) continue;
+          sums[source.model] += state.meshes.costs().predict(
+              source.model, source.parameters, source.first_level + demands[i].drawn_level);
+          ++counts[source.model];
+        }
+      });
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    sums[i] /= std::max(counts[i], 1.0);
+  return sums;
+}
+
+}  // namespace
+
+CacheContents contents_of(const scene::State& state) {
+  using Kind = HeldMeshes::Kind;
+  CacheContents contents;
+  contents.budget_bytes = static_cast<double>(state.meshes.stats().budget_bytes);
+  contents.modelers =
+      std::max(static_cast<unsigned>(state.meshes.modeler_stats().modelers.size()), 1U);
+  const scene::WorldFacts& facts = state.facts;
+  std::vector<HeldMeshes> of_type(facts.registry.size());
+  for (const synthesis::MeshRecord& record : state.meshes.records()) {
+    if (record.state != synthesis::MeshState::kReady || record.key.model >= of_type.size())
+      continue;
+    ++of_type[record.key.model].meshes;
+    of_type[record.key.model].bytes += static_cast<double>(record.range.bytes);
+  }
+  const std::vector<double> seconds = mean_seconds(state);
+  for (models::ModelIndex i = 0; i < of_type.size(); ++i) {
+    HeldMeshes& held = of_type[i];
+    if (held.meshes == 0) continue;
+    held.type = facts.registry[i].name();
+    held.kind = i == facts.world.terrain_model ? Kind::kGround
+                : i >= facts.given_types       ? Kind::kDerived
+                                               : Kind::kModel;
+    held.seconds = seconds[i] * static_cast<double>(held.meshes);
+    contents.held.push_back(std::move(held));
+  }
+  return contents;
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,63 @@
+#include "editor/panels/impact_bar.hpp"
+
+#include <QAccessible>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+namespace psygen::editor {
+
+ImpactBar::ImpactBar(QWidget* parent)
+    : QFrame(parent),
+      text_(new QLabel),
+      apply_(new QPushButton(tr("&Apply it"))),
+      keep_(new QPushButton(tr("&Keep the old value"))) {
+  setObjectName("impact");
+  text_->setWordWrap(true);
+  text_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
+  text_->setAccessibleName(tr("Impact of the last change"));
+  text_->setMinimumHeight(2 * text_->fontMetrics().lineSpacing());
+  auto* buttons = new QHBoxLayout;
+  buttons->addWidget(apply_);
+  buttons->addWidget(keep_);
+  buttons->addStretch(1);
+  for (QPushButton* button : {apply_, keep_}) {
+    QSizePolicy policy = button->sizePolicy();
+    policy.setRetainSizeWhenHidden(true);
+    button->setSizePolicy(policy);
+  }
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(6, 4, 6, 4);
+  layout->setSpacing(2);
+  layout->addWidget(text_);
+  layout->addLayout(buttons);
+  connect(apply_, &QPushButton::clicked, this, &ImpactBar::apply_wanted);
+  connect(keep_, &QPushButton::clicked, this, &ImpactBar::keep_wanted);
+  impact_ = tr("What a change costs the world is shown here.");
+  fit();
+}
+
+void ImpactBar::show_impact(const QString& sentence) {
+  impact_ = sentence;
+  fit();
+}
+
+void ImpactBar::ask(const QString& sentence) {
+  question_ = sentence;
+  asks_ = !sentence.isEmpty();
+  fit();
+  if (!asks_) return;
+  QAccessibleEvent alert(text_, QAccessible::Alert);
+  QAccessible::updateAccessibility(&alert);
+}
+
+void ImpactBar::fit() {
+  text_->setText(asks_ ? question_ : impact_);
+  apply_->setVisible(asks_);
+  keep_->setVisible(asks_);
+  setStyleSheet(
+      QString("#impact { border: 2px solid palette(%1); }").arg(asks_ ? "highlight" : "midlight"));
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,261 @@
+#include "editor/shell/manual_pictures.hpp"
+
+#include <QAction>
+#include <QApplication>
+#include <QComboBox>
+#include <QDeadlineTimer>
+#include <QDockWidget>
+#include <QElapsedTimer>
+#include <QImage>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPainter>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QThread>
+#include <cstdio>
+#include <functional>
+
+#include "editor/flights/timeline_panel.hpp"
+#include "editor/gallery/contact_sheet.hpp"
+#include "editor/panels/impact_bar.hpp"
+#include "editor/panels/properties_panel.hpp"
+#include "editor/shell/command_palette.hpp"
+#include "editor/shell/main_window.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kLongestMs = 180'000, kRestMs = 700, kQuality = 82;
+constexpr int kFlownMs = 5000;
+constexpr double kFlownMps = 25, kFlownTurn = 0.12;  // a second
+
+// Lets everything go on until something is so. False: it did not come.
+bool wait_until(const std::function<bool()>& is_so, int longest_ms = kLongestMs) {
+  const QDeadlineTimer end(longest_ms);
+  while (!is_so()) {
+    if (end.hasExpired()) return false;
+    QApplication::processEvents(QEventLoop::AllEvents, 20);
+    QThread::msleep(5);
+  }
+  return true;
+}
+
+void rest(int ms = kRestMs) {
+  const QDeadlineTimer end(ms);
+  wait_until([&] { return end.hasExpired(); });
+}
+
+class Photographer {
+ public:
+  Photographer(MainWindow& window, std::filesystem::path folder, QString suffix)
+      : window_(window), folder_(std::move(folder)), suffix_(std::move(suffix)) {
+    QObject::connect(&window.view(), &WorldView::settled, &window, [this] { ++settled_; });
+  }
+  bool ok() const { return ok_; }
+  Document& document() { return window_.document(); }
+  PropertiesPanel& properties() { return *window_.findChild<PropertiesPanel*>(); }
+
+  void fail(const QString& sentence) {
+    std::fprintf(stderr, "psygen-editor: %s\n", qPrintable(sentence));
+    ok_ = false;
+  }
+  void command(const QString& name) {
+    for (QAction* action : window_.findChildren<QAction*>()) {
+      if (action->text().remove('&') == name) return action->trigger();
+    }
+    fail("there is no command " + name);
+  }
+  // Until a change is in the picture with all its meshes.
+  void settle(const std::function<void()>& change) {
+    const int before = settled_;
+    change();
+    if (!wait_until([&] { return settled_ > before; })) fail("the view does not settle");
+  }
+  void set(const world::TextPath& path, const std::string& toml) {
+    if (auto done = document().set_value(path, toml); !done)
+      fail(QString::fromStdString(done.error().message));
+  }
+
+  void save(const QString& name, const QPixmap& picture) {
+    const auto file = folder_ / (name + "-" + suffix_ + ".jpg").toStdString();
+    if (!picture.save(QString::fromStdString(file.string()), "JPG", kQuality))
+      fail("cannot write " + QString::fromStdString(file.string()));
+  }
+  void widget(const QString& name, QWidget& widget) {
+    rest();
+    save(name, widget.grab());
+  }
+  void panel(const QString& dock_name, const QString& name) {
+    auto* dock = window_.findChild<QDockWidget*>(dock_name);
+    if (dock == nullptr) return fail("there is no panel " + dock_name);
+    dock->show();
+    dock->raise();
+    rest();
+    save(name, dock->widget()->grab());
+  }
+  // The whole window; the view is not Qt's to grab.
+  void window(const QString& name) {
+    rest();
+    QPixmap picture = window_.grab();
+    const auto seen = window_.view().session()->picture();
+    if (!seen) return fail(QString::fromStdString(seen.error().message));
+    const QImage view(seen->rgba.data(), static_cast<int>(seen->width),
+                      static_cast<int>(seen->height), QImage::Format_RGBA8888);
+    QPainter painter(&picture);
+    painter.drawImage(window_.centralWidget()->geometry(),
+                      view.convertToFormat(QImage::Format_RGB32));
+    painter.end();
+    save(name, picture);
+  }
+
+ private:
+  MainWindow& window_;
+  std::filesystem::path folder_;
+  QString suffix_;
+  int settled_ = 0;
+  bool ok_ = true;
+};
+
+// The section with this title below a table.
+world::TextPath section_called(const Document& document, const std::string& table,
+                               const std::string& title) {
+  for (const world::WorldSection& section : document.sections()) {
+    if (section.title == title && !section.path.empty() && section.path.steps[0].key == table)
+      return section.path;
+  }
+  return {};
+}
+
+void take_fields(Photographer& take) {
+  const world::TextPath oaks = section_called(take.document(), "scatter", "oak");
+  take.properties().go_to(oaks);
+  rest(6000);  // curves of costs
+  const world::TextPath size = oaks.with("size_m");
+  take.settle([&] { take.set(size, "[2.4, 3.9]"); });
+  ImpactBar& impact = take.properties().impact();
+  wait_until([&] { return impact.findChild<QLabel*>()->text().contains("meshes change"); });
+  rest(6000);
+  take.window("window");
+  take.panel("properties", "properties");
+  take.set(oaks.with("count"), "400");
+  if (!impact.asks()) take.fail("a costly value does not ask");
+  take.widget("question", impact);
+  take.document().drop_asked();
+  take.properties().show(take.document().sections());
+}
+
+void take_panels(Photographer& take, MainWindow& window) {
+  const scene::State& state = window.view().session()->scene().state();
+  const glm::vec3 ahead = core::forward_of(window.view().camera().pose());
+  window.view().select(pick(state, window.view().camera().pose(), glm::dvec3(ahead)));
+  take.panel("selection", "selection");
+  take.panel("history", "history");
+  take.panel("map", "map");
+  auto* colours = window.findChild<QDockWidget*>("map")->findChild<QComboBox*>();
+  colours->setCurrentText("Age");
+  Q_EMIT colours->activated(colours->currentIndex());
+  take.panel("map", "map-age");
+  Q_EMIT take.properties().wanted({"sky", "cloud_cover"}, "7");  // is refused
+  take.panel("messages", "messages");
+  take.panel("statistics", "statistics");
+  window.view().select(std::nullopt);
+  auto* library = window.findChild<QDockWidget*>("library");
+  library->show();
+  library->raise();
+  auto* list = library->findChild<QListWidget*>();
+  wait_until([&] {
+    for (int i = 0; i < std::min(list->count(), 9); ++i) {
+      if (list->item(i)->icon().isNull()) return false;
+    }
+    return list->count() > 0;
+  });
+  take.panel("library", "library");
+  window.findChild<QDockWidget*>("properties")->raise();
+}
+
+void take_model(Photographer& take) {
+  take.properties().go_to(section_called(take.document(), "species", "oak"));
+  take.settle([&] { take.command("Model alone"); });
+  take.command("1 m");
+  rest(3000);
+  take.window("model");
+  take.command("None");
+  take.settle([&] { take.command("Model alone"); });
+}
+
+// A few seconds straight ahead are recorded and flown.
+void take_timeline(Photographer& take, MainWindow& window) {
+  auto* timeline = window.findChild<TimelinePanel*>();
+  timeline->set_recording(true);
+  const core::CameraPose start = window.view().camera().pose();
+  QElapsedTimer flown;
+  flown.start();
+  while (flown.elapsed() < kFlownMs) {
+    core::CameraPose pose = start;
+    const double seconds = static_cast<double>(flown.elapsed()) * 1e-3;
+    pose.position.local += glm::dvec3(core::forward_of(start)) * kFlownMps * seconds;
+    pose.yaw += kFlownTurn * seconds;
+    window.view().camera().set_pose(pose);
+    rest(20);
+  }
+  timeline->set_recording(false);
+  const auto tells = [&](const QString& words) {
+    for (QLabel* label : timeline->findChildren<QLabel*>()) {
+      if (label->text().contains(words)) return true;
+    }
+    return false;
+  };
+  if (!wait_until([&] { return tells("frames, half of them"); }))
+    take.fail("the flight does not end");
+  take.panel("timeline", "timeline");
+  window.view().camera().set_pose(start);
+}
+
+void take_sheet(Photographer& take, MainWindow& window) {
+  const world::TextPath oak = section_called(take.document(), "species", "oak");
+  take.properties().go_to(oak);
+  Q_EMIT take.properties().attended(oak.with("spread"));
+  rest();
+  take.command("Contact sheet …");
+  auto* sheet = window.findChild<ContactSheet*>();
+  if (sheet == nullptr) return take.fail("there is no contact sheet");
+  for (auto* spin : sheet->findChildren<QSpinBox*>())
+    spin->setValue(3);
+  const auto is_filled = [&] {
+    for (QLabel* label : sheet->findChildren<QLabel*>()) {
+      if (label->text().startsWith("Click on a picture")) return true;
+    }
+    return false;
+  };
+  if (!wait_until(is_filled)) take.fail("the contact sheet does not fill");
+  sheet->resize(880, 640);
+  take.widget("contact-sheet", *sheet);
+  sheet->close();
+  take.command("Find a command or field …");
+  auto* palette = window.findChild<CommandPalette*>();
+  palette->findChild<QLineEdit*>()->setText("size");
+  take.widget("commands", *palette);
+  palette->reject();
+}
+
+}  // namespace
+
+bool take_manual_pictures(MainWindow& window, const std::filesystem::path& folder,
+                          const QString& suffix) {
+  Photographer take(window, folder, suffix);
+  if (!wait_until([&] { return window.view().session() != nullptr; })) return false;
+  take.settle([] {});
+  take_fields(take);
+  take_panels(take, window);
+  take_model(take);
+  take_sheet(take, window);
+  take_timeline(take, window);
+  while (window.document().undo_stack().canUndo())
+    window.document().undo_stack().undo();
+  return take.ok();
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,114 @@
+// What a change costs is shown beside it, and costly values ask first.
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QPushButton>
+
+#include "editor/cost/edit_cost.hpp"
+#include "editor/panels/field_row.hpp"
+#include "editor/panels/impact_bar.hpp"
+#include "engine/world/files/text_edit.hpp"
+#include "tests/editor/window/window_fixture.hpp"
+
+namespace psygen::editor {
+namespace {
+
+const world::TextPath kScattered{"scatter", 0}, kScatteredCount{"scatter", 0, "count"};
+constexpr double kMostCount = 30;
+
+// More than 30 trees on a block are too many bytes, whatever this machine needs for them.
+class CostQuestion : public EditorWindow {
+ protected:
+  void adjust(MainWindowOptions& options) override {
+    const auto text = world::with_value(kSmallWorld, kScatteredCount, "30");
+    const auto parsed = parse_world_text(*text, "small.toml", {});
+    options.limits = {1e9, 1e9, 4 * edit_cost(**parsed, nullptr).block_bytes, 4};
+  }
+  ImpactBar& bar() { return properties().impact(); }
+  QString said() { return bar().findChild<QLabel*>()->text(); }
+  void click(const QString& button) {
+    for (auto* found : bar().findChildren<QPushButton*>()) {
+      if (found->text().remove('&') == button) {
+        EXPECT_TRUE(found->isVisible());
+        return QTest::mouseClick(found, Qt::LeftButton);
+      }
+    }
+    FAIL() << button.toStdString();
+  }
+  double in_box() {
+    return properties().row(kScatteredCount)->findChild<QDoubleSpinBox*>()->value();
+  }
+};
+
+TEST_F(CostQuestion, TheImpactOfAChangeIsShownBesideIt) {
+  properties().go_to(kScattered);
+  auto* slider = properties().row(kScatteredCount)->findChild<QSlider*>();
+  slider->setSliderDown(true);
+  slider->setValue(slider->value() + 4);
+  slider->setSliderDown(false);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return said().contains("meshes change"); }, kMostMs))
+      << said().toStdString();
+  EXPECT_FALSE(bar().asks());
+  ASSERT_TRUE(document().set_value({"sky", "exposure"}, "1.5"));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return said() == "No mesh changes."; }, kMostMs))
+      << said().toStdString();
+}
+
+TEST_F(CostQuestion, ACostlyValueAsksAndChangesNothingUntilItIsApplied) {
+  properties().go_to(kScattered);
+  const int height = bar().height();
+  Q_EMIT properties().wanted(kScatteredCount, "200");
+  EXPECT_TRUE(bar().asks());
+  EXPECT_TRUE(said().contains("A block at full detail would take")) << said().toStdString();
+  EXPECT_EQ(document().text(), kSmallWorld);
+  QTest::qWait(20);
+  EXPECT_EQ(bar().height(), height) << "nothing jumps";
+  click("Keep the old value");
+  EXPECT_FALSE(bar().asks());
+  EXPECT_EQ(in_box(), 6);
+  Q_EMIT properties().wanted(kScatteredCount, "200");
+  click("Apply it");
+  EXPECT_FALSE(bar().asks());
+  settle();
+  EXPECT_EQ(shown().scatter[0].count, 200U);
+  EXPECT_EQ(in_box(), 200);
+  document().undo_stack().undo();
+  EXPECT_EQ(document().text(), kSmallWorld);
+}
+
+TEST_F(CostQuestion, ADragOverCostlyValuesMakesNothingOfThem) {
+  properties().go_to(kScattered);
+  std::uint32_t most = 0;
+  QObject::connect(&window_->view(), &WorldView::drawn, window_.get(),
+                   [&] { most = std::max(most, shown().scatter[0].count); });
+  QSlider& slider = *properties().row(kScatteredCount)->findChild<QSlider*>();
+  drag(slider, slider.width());
+  EXPECT_TRUE(bar().asks());
+  EXPECT_GT(in_box(), kMostCount) << "the slider stays under the mouse";
+  EXPECT_LE(document().world().scatter[0].count, kMostCount);
+  QTest::qWait(200);
+  EXPECT_LE(most, kMostCount);
+  click("Keep the old value");
+  EXPECT_EQ(in_box(), document().world().scatter[0].count);
+}
+
+// The slider is held: meshes are coarse. It is let go: they get fine.
+TEST_F(CostQuestion, PicturesAreCoarseWhileASliderIsHeld) {
+  const world::TextPath size{"scatter", 0, "size_m"};
+  properties().go_to(kScattered);
+  QSlider& slider = *properties().row(size)->findChild<QSlider*>();
+  double answered = 0;
+  QObject::connect(&window_->view(), &WorldView::answered, window_.get(),
+                   [&](double ms) { answered = ms; });
+  const auto& quality = window_->view().session()->scene().state().quality;
+  const QPoint at(slider.width() * slider.value() / slider.maximum(), slider.height() / 2);
+  QTest::mousePress(&slider, Qt::LeftButton, {}, at);
+  QTest::mouseMove(&slider, at - QPoint(slider.width() / 10, 0));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return quality.draft && answered > 0; }, kMostMs));
+  EXPECT_EQ(document().undo_stack().count(), 1);
+  const int before = settled_;
+  QTest::mouseRelease(&slider, Qt::LeftButton, {}, at - QPoint(slider.width() / 10, 0));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !quality.draft && settled_ > before; }, kMostMs));
+}
+
+}  // namespace
+}  // namespace psygen::editor

@@ -1,0 +1,73 @@
+// A species is edited in the window and saved; the game flies the result.
+#include <QFile>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QProcess>
+#include <iterator>
+
+#include "editor/flights/flight_process.hpp"
+#include "editor/panels/field_row.hpp"
+#include "engine/world/files/text_snippet.hpp"
+#include "tests/editor/window/window_fixture.hpp"
+#include "tests/source_file.hpp"
+
+namespace psygen::editor {
+namespace {
+
+// The summary of a short flight through the world of a file.
+QJsonObject flown(const std::filesystem::path& world, const std::filesystem::path& out) {
+  QProcess flight;
+  flight.start(psygen_program(),
+               {"fly", "--headless", "--world", QString::fromStdString(world.string()), "--frames",
+                "20", "--fixed-step", "30", "--size", "160x90", "--preset", "low",
+                "--view-distance", "200", "--out", QString::fromStdString(out.string())});
+  EXPECT_TRUE(flight.waitForFinished(600'000));
+  EXPECT_EQ(flight.exitStatus(), QProcess::NormalExit);
+  EXPECT_EQ(flight.exitCode(), 0) << flight.readAllStandardError().toStdString();
+  QFile summary(QString::fromStdString((out / "summary.json").string()));
+  EXPECT_TRUE(summary.open(QIODevice::ReadOnly));
+  return QJsonDocument::fromJson(summary.readAll()).object();
+}
+
+// The small world with the oak of the library.
+class FlySaved : public EditorWindow {
+ protected:
+  std::string world_text() override {
+    std::ifstream in(source_file("editor/library/species/oak.toml"));
+    const std::string preset{std::istreambuf_iterator<char>(in), {}};
+    const auto species = world::read_preset(preset, "oak.toml");
+    EXPECT_TRUE(species.has_value());
+    return std::string(kSmallWorld) + "\n" + *species +
+           "\n[[scatter]]\nmodel = \"oak\"\ncount = 8\n";
+  }
+};
+
+TEST_F(FlySaved, TheGameFliesTheSpeciesThatWasEditedInTheWindow) {
+  const world::TextPath species{"species", 0}, size{"species", 0, "size_m"};
+  const QJsonObject before = flown(file_, folder_.path() / "before");
+  properties().go_to(species);
+  ASSERT_NE(properties().row(size), nullptr);
+  const double small_m = document().field(size)->numbers[0];
+  drag(*properties().row(size)->findChild<QSlider*>(), 30);
+  const double large_m = document().field(size)->numbers[0];
+  EXPECT_GT(large_m, small_m);
+  settle();
+  QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !window_->isWindowModified(); }, kMostMs));
+  const QJsonObject after = flown(file_, folder_.path() / "after");
+  const auto hash = [](const QJsonObject& summary) {
+    return summary["hash"].toObject()["world"].toString();
+  };
+  EXPECT_FALSE(hash(before).isEmpty());
+  EXPECT_NE(hash(after), hash(before)) << "other trees stand in the world that was flown";
+  // What was edited is what the game read, and the window shows the same.
+  const auto saved = parse_world_text(document().text(), file_.string(), {});
+  ASSERT_TRUE(saved.has_value());
+  EXPECT_DOUBLE_EQ((*saved)->world.species[0].size_m, large_m);
+  EXPECT_EQ(shown(), (*saved)->world);
+  // The same file gives the same world again.
+  EXPECT_EQ(hash(flown(file_, folder_.path() / "again")), hash(after));
+}
+
+}  // namespace
+}  // namespace psygen::editor

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Takes the pictures of docs/editor.md: each panel of the editor in the dark and the light theme, at
+# 1280 × 800 and 1920 × 1080, on displays of their own. Some minutes.
+#   tools/editor_pictures.sh [FOLDER]     default: docs/images/editor
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+editor=${PSYGEN_EDITOR:-build/release/bin/psygen-editor}
+out=${1:-docs/images/editor}
+mkdir -p "$out"
+home=$(mktemp -d)
+pids=()
+finish() {
+  for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null || true; done
+  rm -rf "$home"
+}
+trap finish EXIT
+
+take() { # THEME WIDTHxHEIGHT DISPLAY
+  local folder=$home/$1-$2
+  mkdir -p "$folder"/{config/psygen,state,cache,run,screen}
+  chmod 700 "$folder/run"
+  printf '[General]\ntheme=%s\n' "$1" >"$folder/config/psygen/psygen-editor.conf"
+  Xvfb "$3" -screen 0 "${2}x24" -fbdir "$folder/screen" >"$folder/xvfb.log" 2>&1 &
+  pids+=($!)
+  sleep 1
+  DISPLAY=$3 openbox --sm-disable >"$folder/openbox.log" 2>&1 &
+  pids+=($!)
+  sleep 2
+  DISPLAY=$3 QT_QPA_PLATFORM=xcb XDG_RUNTIME_DIR=$folder/run XDG_CONFIG_HOME=$folder/config \
+    XDG_STATE_HOME=$folder/state XDG_CACHE_HOME=$folder/cache "$editor" --pictures "$out"
+}
+
+display=77
+for size in 1280x800 1920x1080; do
+  for theme in dark light; do
+    take "$theme" "$size" ":$display"
+    display=$((display + 1))
+  done
+done
+du -ch "$out"/*.jpg | tail -n 1
