@@ -1,5 +1,6 @@
 // How long a scene takes to take over another world while it is drawn, at every step of a slider:
-// in all, and of that the part of the main thread, while which nothing is drawn.
+// in all, of that the part of the main thread, while which nothing is drawn, and what modelers need
+// for the new meshes, fine ones and those of a draft.
 #include <benchmark/benchmark.h>
 
 #include <fstream>
@@ -22,21 +23,30 @@ struct Parsed {
   }
 };
 
+std::string text_of_world() {
+  std::ifstream in(source_file("game/worlds/silver_combe.toml"));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+core::CameraPose usual_pose() {
+  core::CameraPose pose;
+  pose.position = {{-20, 63}, {3.0, 60.0, 9.0}};
+  pose.yaw = 1.9;
+  return pose;
+}
+
 // Steps a value of a shipped world back and forth, with all that its view holds.
 enum class Part { kAll, kMainThread };
 void set_world(benchmark::State& state, Part part, const world::TextPath& path, const char* low,
                const char* high) {
-  std::ifstream in(source_file("game/worlds/silver_combe.toml"));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = text_of_world();
   const std::string texts[] = {world::with_value(text, path, low).value(),
                                world::with_value(text, path, high).value()};
   Parsed first(texts[0]);
   Settings settings;
   settings.modelers = 1;
   auto scene = Scene::create(first.world, std::move(first.registry), settings, nullptr).value();
-  core::CameraPose pose;
-  pose.position = {{-20, 63}, {3.0, 60.0, 9.0}};
-  pose.yaw = 1.9;
+  const core::CameraPose pose = usual_pose();
   scene->settle(pose);
   std::size_t next = 1;
   for (auto _ : state) {
@@ -51,6 +61,44 @@ void set_world(benchmark::State& state, Part part, const world::TextPath& path, 
     state.ResumeTiming();
   }
 }
+
+// Processor seconds of the modelers until all new meshes of the view are there.
+void make_meshes(benchmark::State& state, bool draft, const world::TextPath& path, const char* low,
+                 const char* high) {
+  const std::string text = text_of_world();
+  const std::string texts[] = {world::with_value(text, path, low).value(),
+                               world::with_value(text, path, high).value()};
+  const core::CameraPose pose = usual_pose();
+  for (auto _ : state) {
+    Parsed first(texts[0]), second(texts[1]);
+    Settings settings;
+    settings.modelers = 1;
+    settings.main_thread_budget_ms = 0;
+    auto scene = Scene::create(first.world, std::move(first.registry), settings, nullptr).value();
+    scene->settle(pose);
+    const double before_s = scene->state().meshes.modeler_stats().cpu_seconds;
+    benchmark::DoNotOptimize(scene->set_world(std::move(second.world), std::move(second.registry)));
+    scene->state().input.pose = pose;
+    scene->state().input.draft = draft;
+    for (int quiet = 0; quiet < 16;) {
+      tick(scene->state());
+      scene->state().meshes.wait();
+      quiet = scene->state().counters.requests == 0 ? quiet + 1 : 0;
+    }
+    state.SetIterationTime(scene->state().meshes.modeler_stats().cpu_seconds - before_s);
+  }
+}
+
+void tree_meshes(benchmark::State& state, bool draft) {
+  make_meshes(state, draft, {"scatter", 0, "size_m"}, "[2.2, 3.4]", "[2.2, 3.3]");
+}
+void ground_meshes(benchmark::State& state, bool draft) {
+  make_meshes(state, draft, {"terrain", "height"}, "1.15", "1.1");
+}
+BENCHMARK_CAPTURE(tree_meshes, fine, false)->Unit(benchmark::kMillisecond)->UseManualTime();
+BENCHMARK_CAPTURE(tree_meshes, draft, true)->Unit(benchmark::kMillisecond)->UseManualTime();
+BENCHMARK_CAPTURE(ground_meshes, fine, false)->Unit(benchmark::kMillisecond)->UseManualTime();
+BENCHMARK_CAPTURE(ground_meshes, draft, true)->Unit(benchmark::kMillisecond)->UseManualTime();
 
 void trees(benchmark::State& state, Part part) {
   set_world(state, part, {"scatter", 0, "size_m"}, "[2.2, 3.4]", "[2.2, 3.3]");

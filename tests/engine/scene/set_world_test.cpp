@@ -170,6 +170,66 @@ TEST_F(SetWorld, WhatIsDrawnStaysUntilTheNewMeshesAreThere) {
   EXPECT_EQ(scene->state().counters.holes, 0u);
 }
 
+// Ticks until nothing is asked for any more.
+void tick_until_quiet(Scene& scene, const core::CameraPose& pose) {
+  for (int quiet = 0; quiet < 16;) {
+    tick_at(scene, pose);
+    scene.state().meshes.wait();
+    quiet = scene.state().counters.requests == 0 && scene.state().counters.completed == 0
+                ? quiet + 1
+                : 0;
+  }
+}
+
+// Triangles of what is drawn of models, whether any of it is of a world before, and how many levels
+// coarser than wanted it is at most.
+struct DrawnModels {
+  std::uint64_t triangles = 0;
+  bool stale = false;
+  int coarser = 0;
+};
+DrawnModels models_drawn(Scene& scene) {
+  DrawnModels drawn;
+  std::as_const(scene.state().entities)
+      .each<const Demand, const Mesh, const Source>(
+          [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
+              std::span<const Mesh> meshes, std::span<const Source> sources) {
+            for (std::size_t i = 0; i < demands.size(); ++i) {
+              const Demand& demand = demands[i];
+              if (sources[i].index >= kMergedIndex || demand.drawn_level == kNoLevel ||
+                  demand.wanted_level == kNoLevel)
+                continue;
+              if (const auto* record = scene.state().meshes.ready(meshes[i].handle))
+                drawn.triangles += record->size.triangle_count();
+              drawn.stale |= demand.stale;
+              drawn.coarser = std::max(drawn.coarser, demand.drawn_level - demand.wanted_level);
+            }
+          });
+  return drawn;
+}
+
+TEST_F(SetWorld, ADraftIsCoarseAndGetsFineWhenItEnds) {
+  const auto scene = scene_of(paper_, settings_);
+  scene->settle(pose_);
+  tick_until_quiet(*scene, pose_);
+  const DrawnModels before = models_drawn(*scene);
+  EXPECT_EQ(before.coarser, 0);
+  ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]")));
+  scene->state().input.draft = true;
+  tick_until_quiet(*scene, pose_);
+  const DrawnModels draft = models_drawn(*scene);
+  EXPECT_FALSE(draft.stale) << "everything is of the new world";
+  EXPECT_GT(draft.coarser, 0);
+  EXPECT_LT(draft.triangles, before.triangles);
+  scene->state().input.draft = false;
+  tick_until_quiet(*scene, pose_);
+  const DrawnModels fine = models_drawn(*scene);
+  EXPECT_FALSE(fine.stale);
+  EXPECT_EQ(fine.coarser, 0);
+  EXPECT_GT(fine.triangles, draft.triangles);
+  expect_consistent(*scene);
+}
+
 TEST_F(SetWorld, WhatIsTakenBackIsStillInTheCache) {
   const auto scene = scene_of(paper_, settings_);
   scene->settle(pose_);
