@@ -99,7 +99,7 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   arguments.pictures.isEmpty() ? window.show() : window.showFullScreen();
   const auto file = cli::find_file(
       cli::Shipped::kWorld, arguments.file.isEmpty() ? kFirstWorld : arguments.file.toStdString());
-  if (arguments.file.isEmpty()) {
+  if (arguments.file.isEmpty() || !arguments.pictures.isEmpty()) {
     core::CameraPose pose{{{}, {kFirstPlaceM.x, 0, kFirstPlaceM.z}},
                           glm::radians(kFirstYawDeg),
                           glm::radians(kFirstPitchDeg)};

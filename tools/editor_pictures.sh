@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Takes the pictures of docs/editor.md: each panel of the editor in the dark and the light theme, at
-# 1280 × 800 and 1920 × 1080, on displays of their own. Some minutes.
+# Takes the pictures of docs/editor.md on displays of their own: the window in the dark and the light
+# theme at 1280 × 800 and 1920 × 1080, and each panel dark in the small and light in the large window.
+# Some minutes.
 #   tools/editor_pictures.sh [FOLDER]     default: docs/images/editor
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -8,6 +9,7 @@ editor=${PSYGEN_EDITOR:-build/release/bin/psygen-editor}
 out=${1:-docs/images/editor}
 mkdir -p "$out"
 home=$(mktemp -d)
+mkdir "$home/cache"
 pids=()
 finish() {
   for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null || true; done
@@ -15,9 +17,9 @@ finish() {
 }
 trap finish EXIT
 
-take() { # THEME WIDTHxHEIGHT DISPLAY
+take() { # THEME WIDTHxHEIGHT DISPLAY FOLDER
   local folder=$home/$1-$2
-  mkdir -p "$folder"/{config/psygen,state,cache,run,screen}
+  mkdir -p "$folder"/{config/psygen,state,run,screen}
   chmod 700 "$folder/run"
   printf '[General]\ntheme=%s\n' "$1" >"$folder/config/psygen/psygen-editor.conf"
   Xvfb "$3" -screen 0 "${2}x24" -fbdir "$folder/screen" >"$folder/xvfb.log" 2>&1 &
@@ -27,13 +29,20 @@ take() { # THEME WIDTHxHEIGHT DISPLAY
   pids+=($!)
   sleep 2
   DISPLAY=$3 QT_QPA_PLATFORM=xcb XDG_RUNTIME_DIR=$folder/run XDG_CONFIG_HOME=$folder/config \
-    XDG_STATE_HOME=$folder/state XDG_CACHE_HOME=$folder/cache "$editor" --pictures "$out"
+    XDG_STATE_HOME=$folder/state XDG_CACHE_HOME=$home/cache "$editor" --pictures "$4" \
+    game/worlds/silver_combe.toml
 }
 
 display=77
 for size in 1280x800 1920x1080; do
   for theme in dark light; do
-    take "$theme" "$size" ":$display"
+    all=$home/$theme-$size.pictures
+    mkdir -p "$all"
+    take "$theme" "$size" ":$display" "$all"
+    case $theme-$size in
+      dark-1280x800 | light-1920x1080) cp "$all"/*.jpg "$out" ;;
+      *) cp "$all"/window-*.jpg "$out" ;;
+    esac
     display=$((display + 1))
   done
 done

@@ -133,6 +133,7 @@ const Preset& LibraryPanel::preset_of(const QListWidgetItem& item) const {
 void LibraryPanel::ask_pictures() {
   service_.cancel(this);
   const int batch = service_.new_batch();
+  awaited_ = 0;
   for (int row = 0; row < list_->count(); ++row) {
     QListWidgetItem* item = list_->item(row);
     const Preset& preset = preset_of(*item);
@@ -149,8 +150,10 @@ void LibraryPanel::ask_pictures() {
     request.file = preset.file.string();
     request.size = {kPictureWidth, kPictureHeight};
     if (request.kind == PictureKind::kPicture) request.place = country_place(preset.snippet);
+    ++awaited_;
     service_.ask(std::move(request), batch, row, this,
                  [this, row, kept](const PictureReply& reply) {
+                   --awaited_;
                    QListWidgetItem* const of = list_->item(row);
                    if (reply.image.isNull()) {
                      of->setToolTip(of->toolTip() + "\n" + QString::fromStdString(reply.error));

@@ -27,6 +27,8 @@ class LibraryPanel final : public QWidget {
 
   // Reads the folders again.
   void reload();
+  // Pictures that are listed and not there yet.
+  int awaited() const { return awaited_; }
 
  Q_SIGNALS:
   // What was done or refused, as a sentence.
@@ -49,6 +51,7 @@ class LibraryPanel final : public QWidget {
   QLineEdit* search_;
   QListWidget* list_;
   bool loaded_ = false;
+  int awaited_ = 0;
 };
 
 }  // namespace psygen::editor

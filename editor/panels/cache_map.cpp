@@ -1,5 +1,6 @@
 #include "editor/panels/cache_map.hpp"
 
+#include <QCoreApplication>
 #include <QHelpEvent>
 #include <QPainter>
 #include <QPainterPath>
@@ -15,7 +16,8 @@ namespace {
 
 constexpr double kLeastRadiusM = 100, kMostRadiusM = 30'000;
 constexpr double kOldestPower = 3;  // of 10 seconds: all older ones are blue
-const QColor kNothing(90, 90, 96);
+const QColor kNothing(90, 90, 96), kFailed(190, 60, 190), kStale(230, 150, 40),
+    kWaiting(225, 205, 70), kSeen(86, 176, 92), kUnseen(70, 110, 150);
 
 // From blue over green and yellow to red, for 0 … 1.
 QColor heat(double share) {
@@ -23,7 +25,38 @@ QColor heat(double share) {
                           0.85F);
 }
 
+QString swatch(const QColor& colour, const QString& words) {
+  return QString("<font color=%1>■</font>&nbsp;%2 ").arg(colour.name(), words);
+}
+
+// The ends and the middle of heat().
+QString scale_text(const QString& least, const QString& middle, const QString& most) {
+  return swatch(heat(0), least) + swatch(heat(0.5), middle) + swatch(heat(1), most);
+}
+
 }  // namespace
+
+QString legend_text(MapColour colour) {
+  const auto words = [](const char* text) {
+    return QCoreApplication::translate("CacheMap", text).replace(' ', "&nbsp;");
+  };
+  switch (colour) {
+    case MapColour::kState:
+      return swatch(kSeen, words("in view")) + swatch(kUnseen, words("out of view")) +
+             swatch(kWaiting, words("waits")) + swatch(kStale, words("old mesh")) +
+             swatch(kNothing, words("nothing")) + swatch(kFailed, words("failed"));
+    case MapColour::kLevel:
+      return scale_text(words("level 8"), words("4"), words("0, finest"));
+    case MapColour::kLayer:
+      return scale_text(words("layer 24"), words("12"), words("0, first"));
+    case MapColour::kCost:
+      return scale_text(words("1 µs"), words("30 µs"), words("1 ms"));
+    case MapColour::kAge:
+      return scale_text(words("1000 s"), words("30 s"), words("new")) +
+             swatch(kNothing, words("none"));
+  }
+  return {};
+}
 
 CacheMap::CacheMap(QWidget* parent) : QWidget(parent) {
   setMinimumSize(160, 160);
@@ -119,11 +152,11 @@ QColor CacheMap::colour_of(const Cell& cell) const {
     case MapColour::kState:
       break;
   }
-  if (cell.failed) return QColor(190, 60, 190);
-  if (cell.stale) return QColor(230, 150, 40);
-  if (cell.requested || (cell.in_view && cell.lacking > 0)) return QColor(225, 205, 70);
+  if (cell.failed) return kFailed;
+  if (cell.stale) return kStale;
+  if (cell.requested || (cell.in_view && cell.lacking > 0)) return kWaiting;
   if (!cell.drawn) return kNothing;
-  return cell.in_view ? QColor(86, 176, 92) : QColor(70, 110, 150);
+  return cell.in_view ? kSeen : kUnseen;
 }
 
 void CacheMap::paintEvent(QPaintEvent*) {

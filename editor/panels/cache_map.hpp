@@ -21,6 +21,9 @@ namespace psygen::editor {
 // What colours mean.
 enum class MapColour { kState, kLevel, kLayer, kCost, kAge };
 
+// What the colours are, as rich text.
+QString legend_text(MapColour colour);
+
 class CacheMap final : public QWidget {
   Q_OBJECT
 

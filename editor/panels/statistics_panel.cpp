@@ -166,9 +166,10 @@ QString describe(const Selection& selection, const scene::State& state) {
               .arg(selection.at.local.z, 0, 'f', 1)
               .arg(selection.distance_m, 0, 'f', 1);
   const int levels = type.level_count_of(p);
+  text += QObject::tr("level: triangles, error, time\n");
   for (int level = 0; level < levels; ++level) {
     const models::MeshSize size = type.mesh_size(p, level);
-    text += QObject::tr("level %1: %2 triangles, error %3 m, %4 µs\n")
+    text += QObject::tr("%1: %2, %3 m, %4 µs\n")
                 .arg(level)
                 .arg(kEnglish.toString(size.triangle_count()))
                 .arg(type.level_error_m(p, level), 0, 'g', 3)

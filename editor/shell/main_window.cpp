@@ -91,13 +91,20 @@ void MainWindow::add_docks() {
   auto* colours = new QComboBox;
   colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost"), tr("Age")});
   colours->setAccessibleName(tr("What colours of the map mean"));
-  connect(colours, &QComboBox::activated, map_,
-          [this](int index) { map_->set_colour(static_cast<MapColour>(index)); });
+  auto* legend = new QLabel(legend_text(MapColour::kState));
+  legend->setWordWrap(true);
+  legend->setMinimumHeight(2 * legend->fontMetrics().lineSpacing());
+  legend->setAlignment(Qt::AlignTop);
+  connect(colours, &QComboBox::activated, map_, [this, legend](int index) {
+    map_->set_colour(static_cast<MapColour>(index));
+    legend->setText(legend_text(static_cast<MapColour>(index)));
+  });
   auto* map_box = new QWidget;
   auto* map_layout = new QVBoxLayout(map_box);
   map_layout->setContentsMargins(4, 4, 4, 4);
   map_layout->addWidget(colours);
   map_layout->addWidget(map_, 1);
+  map_layout->addWidget(legend);
   add_dock(*this, "properties", tr("Properties"), properties_, Qt::LeftDockWidgetArea);
   auto* selection =
       add_dock(*this, "selection", tr("Selection"), selection_text_, Qt::RightDockWidgetArea);
@@ -197,6 +204,7 @@ void MainWindow::restore_layout() {
   const QSettings settings;
   restoreGeometry(settings.value("geometry").toByteArray());
   restoreState(settings.value("layout").toByteArray());
+  Q_EMIT model_->switched();  // its bar is shown with it only
 }
 
 void MainWindow::set_first_place(const core::CameraPose& pose, double height_m) {

@@ -109,6 +109,8 @@ void MainWindow::set_dragging(bool on) {
 }
 
 void MainWindow::document_changed(Changes what) {
+  // The slider that was dragged may be gone.
+  if (drag_from_ && what.testAnyFlags(Change::kTables | Change::kFile)) set_dragging(false);
   properties_->show(document_.sections());
   // The renderer takes pictures of the ground only when it is made.
   const auto& images = document_.world().palette.images;

@@ -98,16 +98,20 @@ void MainWindow::add_edit_menu() {
       commands.push_back(
           {name.remove('&'), action->shortcut().toString(), [action] { action->trigger(); }});
     }
-    const auto add = [&](auto& self, const std::vector<world::WorldSection>& sections) -> void {
+    // A species and its scatter have one name, and every species has a foliage.
+    const auto add = [&](auto& self, const std::vector<world::WorldSection>& sections,
+                         const QString& of) -> void {
       for (const world::WorldSection& section : sections) {
+        QString title = of + QString::fromStdString(section.title);
+        if (section.kind == world::SectionKind::kScatter) title = tr("Scattered %1").arg(title);
         for (const world::WorldField& field : section.fields)
-          commands.push_back({QString::fromStdString(section.title + ": " + field.label),
+          commands.push_back({title + ": " + QString::fromStdString(field.label),
                               QString::fromStdString(field.doc),
                               [this, path = section.path] { properties_->go_to(path); }});
-        self(self, section.parts);
+        self(self, section.parts, title + ", ");
       }
     };
-    add(add, document_.sections());
+    add(add, document_.sections(), {});
     palette_->ask(std::move(commands));
   });
 }
@@ -141,7 +145,10 @@ void MainWindow::add_view_menu() {
   panels_menu_ = menu->addMenu(tr("Pan&els"));
   for (QDockWidget* dock : findChildren<QDockWidget*>())
     panels_menu_->addAction(dock->toggleViewAction());
-  menu->addAction(tr("&Reset the layout"), this, [this] { restoreState(first_layout_); });
+  menu->addAction(tr("&Reset the layout"), this, [this] {
+    restoreState(first_layout_);
+    Q_EMIT model_->switched();
+  });
   QMenu* themes = menu->addMenu(tr("&Theme"));
   themes->addAction(tr("&Dark"), this, [this] { set_theme("dark"); });
   themes->addAction(tr("&Light"), this, [this] { set_theme("light"); });

@@ -9,7 +9,6 @@
 #include <QImage>
 #include <QLabel>
 #include <QLineEdit>
-#include <QListWidget>
 #include <QPainter>
 #include <QPushButton>
 #include <QSpinBox>
@@ -19,6 +18,7 @@
 
 #include "editor/flights/timeline_panel.hpp"
 #include "editor/gallery/contact_sheet.hpp"
+#include "editor/gallery/library_panel.hpp"
 #include "editor/panels/impact_bar.hpp"
 #include "editor/panels/properties_panel.hpp"
 #include "editor/shell/command_palette.hpp"
@@ -28,7 +28,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kLongestMs = 180'000, kRestMs = 700, kQuality = 82;
+constexpr int kLongestMs = 400'000, kRestMs = 700, kQuality = 78;
 constexpr int kFlownMs = 5000;
 constexpr double kFlownMps = 25, kFlownTurn = 0.12;  // a second
 
@@ -161,17 +161,14 @@ void take_panels(Photographer& take, MainWindow& window) {
   Q_EMIT take.properties().wanted({"sky", "cloud_cover"}, "7");  // is refused
   take.panel("messages", "messages");
   take.panel("statistics", "statistics");
+  colours->setCurrentIndex(0);
+  Q_EMIT colours->activated(0);
   window.view().select(std::nullopt);
   auto* library = window.findChild<QDockWidget*>("library");
   library->show();
   library->raise();
-  auto* list = library->findChild<QListWidget*>();
-  wait_until([&] {
-    for (int i = 0; i < std::min(list->count(), 9); ++i) {
-      if (list->item(i)->icon().isNull()) return false;
-    }
-    return list->count() > 0;
-  });
+  auto* shown = library->findChild<LibraryPanel*>();
+  if (!wait_until([&] { return shown->awaited() == 0; })) take.fail("the library does not fill");
   take.panel("library", "library");
   window.findChild<QDockWidget*>("properties")->raise();
 }
