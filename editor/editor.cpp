@@ -29,6 +29,7 @@ struct Arguments {
   QString file;
   bool safe = false;
   QString pictures;  // a folder; empty: none are taken
+  bool only_window = false;
   app::SessionOptions session;
 };
 
@@ -49,7 +50,8 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
                      {"preset", "Light and detail: low, medium, high, ultra.", "preset"},
                      {"device", "Part of the name of the Vulkan device.", "name"},
                      {"validation", "Vulkan validation."},
-                     {"pictures", "Take the pictures of the manual and end.", "folder"}});
+                     {"pictures", "Take the pictures of the manual and end.", "folder"},
+                     {"only-window", "With --pictures: take that of the window alone."}});
   if (!parser.parse(app.arguments())) return usage(parser.errorText());
   if (parser.isSet("help")) parser.showHelp(0);
   if (parser.isSet("version")) parser.showVersion();
@@ -62,6 +64,7 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
   arguments.file = parser.positionalArguments().value(0);
   arguments.safe = parser.isSet("safe");
   arguments.pictures = parser.value("pictures");
+  arguments.only_window = parser.isSet("only-window");
   arguments.session.device_name = parser.value("device").toStdString();
   arguments.session.validation = parser.isSet("validation");
   return std::nullopt;
@@ -111,7 +114,10 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   if (!arguments.pictures.isEmpty()) {
     const QString suffix =
         QString("%1-%2").arg(QSettings().value("theme", "dark").toString()).arg(window.width());
-    return take_manual_pictures(window, arguments.pictures.toStdString(), suffix) ? 0 : 1;
+    return take_manual_pictures(window, arguments.pictures.toStdString(), suffix,
+                                arguments.only_window)
+               ? 0
+               : 1;
   }
   const int code = QApplication::exec();
   // The memory of a modeler that hangs must not be torn down.

@@ -17,32 +17,31 @@ finish() {
 }
 trap finish EXIT
 
-take() { # THEME WIDTHxHEIGHT DISPLAY FOLDER
-  local folder=$home/$1-$2
+take() { # THEME WIDTHxHEIGHT DISPLAY [OPTION]
+  local theme=$1 size=$2 screen=$3 folder=$home/$1-$2
+  shift 3
   mkdir -p "$folder"/{config/psygen,state,run,screen}
   chmod 700 "$folder/run"
-  printf '[General]\ntheme=%s\n' "$1" >"$folder/config/psygen/psygen-editor.conf"
-  Xvfb "$3" -screen 0 "${2}x24" -fbdir "$folder/screen" >"$folder/xvfb.log" 2>&1 &
+  printf '[General]\ntheme=%s\n' "$theme" >"$folder/config/psygen/psygen-editor.conf"
+  Xvfb "$screen" -screen 0 "${size}x24" -fbdir "$folder/screen" >"$folder/xvfb.log" 2>&1 &
   pids+=($!)
   sleep 1
-  DISPLAY=$3 openbox --sm-disable >"$folder/openbox.log" 2>&1 &
+  DISPLAY=$screen openbox --sm-disable >"$folder/openbox.log" 2>&1 &
   pids+=($!)
   sleep 2
-  DISPLAY=$3 QT_QPA_PLATFORM=xcb XDG_RUNTIME_DIR=$folder/run XDG_CONFIG_HOME=$folder/config \
-    XDG_STATE_HOME=$folder/state XDG_CACHE_HOME=$home/cache "$editor" --pictures "$4" \
+  DISPLAY=$screen QT_QPA_PLATFORM=xcb XDG_RUNTIME_DIR=$folder/run XDG_CONFIG_HOME=$folder/config \
+    XDG_STATE_HOME=$folder/state XDG_CACHE_HOME=$home/cache "$editor" --pictures "$out" "$@" \
     game/worlds/silver_combe.toml
 }
 
 display=77
 for size in 1280x800 1920x1080; do
   for theme in dark light; do
-    all=$home/$theme-$size.pictures
-    mkdir -p "$all"
-    take "$theme" "$size" ":$display" "$all"
     case $theme-$size in
-      dark-1280x800 | light-1920x1080) cp "$all"/*.jpg "$out" ;;
-      *) cp "$all"/window-*.jpg "$out" ;;
+      dark-1280x800 | light-1920x1080) what=() ;;
+      *) what=(--only-window) ;;
     esac
+    take "$theme" "$size" ":$display" "${what[@]}"
     display=$((display + 1))
   done
 done

@@ -26,7 +26,7 @@ struct CostLimits {
 };
 
 // The cost of a world. `learnt`: what a cost model of the same program knows (null: nothing). Asks
-// each model type for the sizes of some meshes; 0.1 ms for a usual world.
+// each model type for the sizes of some meshes.
 EditCost edit_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt);
 
 // A sentence if `after` is beyond a limit and more expensive than `before`, else empty.

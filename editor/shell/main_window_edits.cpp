@@ -35,7 +35,9 @@ void MainWindow::connect_document() {
     CostLimits limits = options_.limits;
     limits.cache_bytes =
         std::min(limits.cache_bytes, static_cast<double>(options_.session.scene.budget_bytes));
-    return cost_question(edit_cost(before, learnt_.get()), edit_cost(after, learnt_.get()), limits);
+    const EditCost cost = edit_cost(after, learnt_.get());
+    if (cost_question({}, cost, limits).isEmpty()) return QString();  // as nearly always
+    return cost_question(edit_cost(before, learnt_.get()), cost, limits);
   });
   ImpactBar& impact = properties_->impact();
   connect(&document_, &Document::asked, &impact, &ImpactBar::ask);

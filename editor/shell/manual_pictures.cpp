@@ -29,7 +29,7 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kLongestMs = 400'000, kRestMs = 700, kQuality = 78;
-constexpr int kFlownMs = 5000;
+constexpr int kFlownMs = 2500;
 constexpr double kFlownMps = 25, kFlownTurn = 0.12;  // a second
 
 // Lets everything go on until something is so. False: it did not come.
@@ -129,7 +129,8 @@ world::TextPath section_called(const Document& document, const std::string& tabl
   return {};
 }
 
-void take_fields(Photographer& take) {
+// A scatter with its costs, and what a change of it does.
+void take_window(Photographer& take) {
   const world::TextPath oaks = section_called(take.document(), "scatter", "oak");
   take.properties().go_to(oaks);
   rest(6000);  // curves of costs
@@ -139,7 +140,12 @@ void take_fields(Photographer& take) {
   wait_until([&] { return impact.findChild<QLabel*>()->text().contains("meshes change"); });
   rest(6000);
   take.window("window");
+}
+
+void take_fields(Photographer& take) {
   take.panel("properties", "properties");
+  const world::TextPath oaks = section_called(take.document(), "scatter", "oak");
+  ImpactBar& impact = take.properties().impact();
   take.set(oaks.with("count"), "400");
   if (!impact.asks()) take.fail("a costly value does not ask");
   take.widget("question", impact);
@@ -241,17 +247,17 @@ void take_sheet(Photographer& take, MainWindow& window) {
 }  // namespace
 
 bool take_manual_pictures(MainWindow& window, const std::filesystem::path& folder,
-                          const QString& suffix) {
+                          const QString& suffix, bool only_window) {
   Photographer take(window, folder, suffix);
   if (!wait_until([&] { return window.view().session() != nullptr; })) return false;
   take.settle([] {});
+  take_window(take);
+  if (only_window) return take.ok();
   take_fields(take);
   take_panels(take, window);
   take_model(take);
   take_sheet(take, window);
   take_timeline(take, window);
-  while (window.document().undo_stack().canUndo())
-    window.document().undo_stack().undo();
   return take.ok();
 }
 

@@ -1,0 +1,121 @@
+// How long the editor takes to answer: from a change to the first picture with something of it, and
+// to the last mesh, in the window as a person has it, on a display of its own. While a slider is
+// held meshes are coarse.
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include <QApplication>
+#include <QDeadlineTimer>
+#include <QThread>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "editor/panels/properties_panel.hpp"
+#include "editor/pictures/picture_server.hpp"
+#include "editor/shell/main_window.hpp"
+#include "engine/scene/scene.hpp"
+#include "tests/engine/platform/virtual_display.hpp"
+#include "tests/source_file.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kLongestMs = 300'000;
+
+bool wait_until(const std::function<bool()>& is_so) {
+  const QDeadlineTimer end(kLongestMs);
+  while (!is_so() && !end.hasExpired()) {
+    QApplication::processEvents(QEventLoop::AllEvents, 5);
+    QThread::usleep(200);
+  }
+  return is_so();
+}
+
+// Milliseconds of the last answer and of the last mesh; below 0: not yet.
+struct Answer {
+  double first_ms = -1, last_ms = -1;
+};
+
+std::unique_ptr<MainWindow> open_window(const std::filesystem::path& state, Answer& answer) {
+  MainWindowOptions options;
+  options.session.preset = render::Preset::kLow;
+  options.document.state_folder = state;
+  auto window = std::make_unique<MainWindow>(std::move(options));
+  QObject::connect(&window->view(), &WorldView::answered, window.get(),
+                   [&answer](double ms) { answer.first_ms = ms; });
+  QObject::connect(&window->view(), &WorldView::settled, window.get(),
+                   [&answer](double ms) { answer.last_ms = ms; });
+  window->show();
+  core::CameraPose pose{{{}, {-1257, 0, 3978}}, 1.92, -0.17};
+  window->set_first_place(pose, 24);
+  window->open_file(source_file("game/worlds/silver_combe.toml"));
+  wait_until([&] { return answer.last_ms >= 0; });
+  return window;
+}
+
+void steps(benchmark::State& state, bool held, const world::TextPath& path, const char* low,
+           const char* high) {
+  const std::filesystem::path home =
+      std::filesystem::temp_directory_path() / ("psygen_answer_" + std::to_string(::getpid()));
+  Answer answer;
+  const auto window = open_window(home, answer);
+  auto& properties = *window->findChild<PropertiesPanel*>();
+  bool first = true;
+  double last_ms = 0;
+  for (auto _ : state) {
+    answer = {};
+    if (held) Q_EMIT properties.drag_began();
+    Q_EMIT properties.wanted(path, std::exchange(first, !first) ? high : low);
+    if (!wait_until([&] { return answer.first_ms >= 0; })) state.SkipWithError("no answer");
+    state.SetIterationTime(answer.first_ms * 1e-3);
+    if (held) Q_EMIT properties.drag_ended();
+    if (!wait_until([&] { return answer.last_ms >= 0; })) state.SkipWithError("it does not settle");
+    last_ms += answer.last_ms;
+  }
+  state.counters["last_mesh_ms"] = benchmark::Counter(last_ms, benchmark::Counter::kAvgIterations);
+  std::error_code ignored;
+  std::filesystem::remove_all(home, ignored);
+}
+
+void trees(benchmark::State& state, bool held) {
+  steps(state, held, {"scatter", 0, "size_m"}, "[2.2, 3.4]", "[2.2, 3.3]");
+}
+void ground(benchmark::State& state, bool held) {
+  steps(state, held, {"terrain", "height"}, "1.15", "1.14");
+}
+void sky(benchmark::State& state, bool held) {
+  steps(state, held, {"sky", "exposure"}, "1", "1.1");
+}
+BENCHMARK_CAPTURE(trees, held, true)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(12);
+BENCHMARK_CAPTURE(trees, typed, false)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(12);
+BENCHMARK_CAPTURE(ground, held, true)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(12);
+BENCHMARK_CAPTURE(sky, held, true)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(12);
+
+}  // namespace
+}  // namespace psygen::editor
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], psygen::editor::kPicturesOption) == 0)
+    return psygen::editor::render_pictures({});
+  const auto display = psygen::platform::VirtualDisplay::start();
+  if (!display) return 1;
+  ::setenv("QT_QPA_PLATFORM", "xcb", 1);
+  const QApplication application(argc, argv);
+  QApplication::setOrganizationName("psygen");
+  QApplication::setApplicationName("psygen-editor-bench");
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
