@@ -112,12 +112,10 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   if (!window.open_file(*file) && !arguments.file.isEmpty())
     std::fprintf(stderr, "psygen-editor: the world could not be opened; the messages say why\n");
   if (!arguments.pictures.isEmpty()) {
-    const QString suffix =
-        QString("%1-%2").arg(QSettings().value("theme", "dark").toString()).arg(window.width());
-    return take_manual_pictures(window, arguments.pictures.toStdString(), suffix,
-                                arguments.only_window)
-               ? 0
-               : 1;
+    const QString theme = QSettings().value("theme", "dark").toString();
+    const bool taken = take_manual_pictures(window, arguments.pictures.toStdString(), theme,
+                                            arguments.only_window);
+    return taken ? 0 : 1;
   }
   const int code = QApplication::exec();
   // The memory of a modeler that hangs must not be torn down.

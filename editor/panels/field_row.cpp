@@ -166,7 +166,10 @@ void FieldRow::add_text(QHBoxLayout& layout) {
     const std::string text = line->text().toStdString();
     if (text != shown_text()) want(toml ? text : world::toml_string(text));
   });
-  refresh_ = [line, shown_text] { line->setText(QString::fromStdString(shown_text())); };
+  refresh_ = [line, shown_text] {
+    line->setText(QString::fromStdString(shown_text()));
+    if (!line->hasFocus()) line->setCursorPosition(0);  // its beginning is shown
+  };
 }
 
 void FieldRow::add_switch(QHBoxLayout& layout) {

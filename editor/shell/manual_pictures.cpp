@@ -50,8 +50,8 @@ void rest(int ms = kRestMs) {
 
 class Photographer {
  public:
-  Photographer(MainWindow& window, std::filesystem::path folder, QString suffix)
-      : window_(window), folder_(std::move(folder)), suffix_(std::move(suffix)) {
+  Photographer(MainWindow& window, std::filesystem::path folder, QString theme)
+      : window_(window), folder_(std::move(folder)), theme_(std::move(theme)) {
     QObject::connect(&window.view(), &WorldView::settled, &window, [this] { ++settled_; });
   }
   bool ok() const { return ok_; }
@@ -80,7 +80,8 @@ class Photographer {
   }
 
   void save(const QString& name, const QPixmap& picture) {
-    const auto file = folder_ / (name + "-" + suffix_ + ".jpg").toStdString();
+    const QString file_name = QString("%1-%2-%3.jpg").arg(name, theme_).arg(window_.width());
+    const auto file = folder_ / file_name.toStdString();
     if (!picture.save(QString::fromStdString(file.string()), "JPG", kQuality))
       fail("cannot write " + QString::fromStdString(file.string()));
   }
@@ -114,7 +115,7 @@ class Photographer {
  private:
   MainWindow& window_;
   std::filesystem::path folder_;
-  QString suffix_;
+  QString theme_;
   int settled_ = 0;
   bool ok_ = true;
 };
@@ -247,8 +248,8 @@ void take_sheet(Photographer& take, MainWindow& window) {
 }  // namespace
 
 bool take_manual_pictures(MainWindow& window, const std::filesystem::path& folder,
-                          const QString& suffix, bool only_window) {
-  Photographer take(window, folder, suffix);
+                          const QString& theme, bool only_window) {
+  Photographer take(window, folder, theme);
   if (!wait_until([&] { return window.view().session() != nullptr; })) return false;
   take.settle([] {});
   take_window(take);

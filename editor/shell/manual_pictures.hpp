@@ -10,9 +10,9 @@ namespace psygen::editor {
 
 class MainWindow;
 
-// Writes NAME-SUFFIX.jpg into a folder for each picture, or only for that of the window. Minutes.
-// False, with a sentence on stderr, for what cannot be taken.
+// Writes NAME-THEME-WIDTH.jpg into a folder for each picture, or only for that of the window.
+// Minutes. False, with a sentence on stderr, for what cannot be taken.
 bool take_manual_pictures(MainWindow& window, const std::filesystem::path& folder,
-                          const QString& suffix, bool only_window);
+                          const QString& theme, bool only_window);
 
 }  // namespace psygen::editor
