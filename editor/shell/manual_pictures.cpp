@@ -222,7 +222,7 @@ void take_sheet(Photographer& take, MainWindow& window) {
   const world::TextPath oak = section_called(take.document(), "species", "oak");
   take.properties().go_to(oak);
   Q_EMIT take.properties().attended(oak.with("spread"));
-  rest();
+  rest(3000);  // only then the sheet takes it for meant
   take.command("Contact sheet …");
   auto* sheet = window.findChild<ContactSheet*>();
   if (sheet == nullptr) return take.fail("there is no contact sheet");
