@@ -61,7 +61,7 @@ void steps(benchmark::State& state, bool held, const world::TextPath& path, cons
   const std::filesystem::path home =
       std::filesystem::temp_directory_path() / ("psygen_answer_" + std::to_string(::getpid()));
   Answer answer;
-  const auto window = open_window(home, answer);
+  auto window = open_window(home, answer);
   auto& properties = *window->findChild<PropertiesPanel*>();
   bool first = true;
   double last_ms = 0;
@@ -76,6 +76,7 @@ void steps(benchmark::State& state, bool held, const world::TextPath& path, cons
     last_ms += answer.last_ms;
   }
   state.counters["last_mesh_ms"] = benchmark::Counter(last_ms, benchmark::Counter::kAvgIterations);
+  window.reset();
   std::error_code ignored;
   std::filesystem::remove_all(home, ignored);
 }
