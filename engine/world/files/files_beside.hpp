@@ -31,6 +31,8 @@ struct Beside {
   std::string_view world_file;  // names are relative to its folder
   const FilesBeside* files;     // null: this program reads none
 
+  // The file of a name, and the picture in it. Without a reader of files that fails with
+  // kInvalidArgument.
   std::filesystem::path path_of(std::string_view name) const {
     return std::filesystem::path(world_file).parent_path() / name;
   }
