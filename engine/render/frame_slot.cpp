@@ -63,12 +63,12 @@ Result<void> FrameSlot::create(const Device& device) {
   return {};
 }
 
-void FrameSlot::use(const Device& device, const Pipelines& pipelines, std::size_t number) {
-  set_ = pipelines.set(number);
-  pipelines.write_set(device, set_, frame_, draws_, glyphs_, emitters_, shade_);
+void FrameSlot::use(const Device& device, const Bindings& bindings, std::size_t number) {
+  set_ = bindings.set(number);
+  bindings.write(device, set_, {frame_, draws_, glyphs_, emitters_, shade_});
 }
 
-Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,
+Result<void> FrameSlot::write(const Device& device, const Bindings& bindings,
                               const shaders::FrameData& frame,
                               std::span<const shaders::DrawData> draws,
                               std::span<const shaders::OverlayVertex> glyphs,
@@ -78,7 +78,7 @@ Result<void> FrameSlot::write(const Device& device, const Pipelines& pipelines,
     Result<Buffer> larger = storage_buffer(device, std::bit_ceil(bytes));
     if (!larger) return tl::unexpected(larger.error());
     buffer = std::move(*larger);
-    pipelines.write_set(device, set_, frame_, draws_, glyphs_, emitters_, shade_);
+    bindings.write(device, set_, {frame_, draws_, glyphs_, emitters_, shade_});
     return {};
   };
   if (Result<void> grown = grow(draws_, draws.size_bytes()); !grown) return grown;

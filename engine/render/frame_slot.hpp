@@ -5,10 +5,10 @@
 
 #include <span>
 
+#include "engine/render/bindings.hpp"
 #include "engine/render/draw_list.hpp"
 #include "engine/render/gpu_timer.hpp"
 #include "engine/render/memory.hpp"
-#include "engine/render/pipelines.hpp"
 #include "shaders/shared.h"
 
 namespace psygen::render {
@@ -18,12 +18,12 @@ class FrameSlot {
  public:
   // Creates all objects, once.
   core::Result<void> create(const Device& device);
-  // Records frames with these pipelines from now on. `number` is that of the slot, from 0.
-  void use(const Device& device, const Pipelines& pipelines, std::size_t number);
+  // Records frames with a set of these bindings from now on. `number` is that of the slot, from 0.
+  void use(const Device& device, const Bindings& bindings, std::size_t number);
 
   // Copies a frame's data into the slot's buffers. They grow if needed, which can fail with
   // kOutOfMemory. At most kMostEmitters emitters.
-  core::Result<void> write(const Device& device, const Pipelines& pipelines,
+  core::Result<void> write(const Device& device, const Bindings& bindings,
                            const shaders::FrameData& frame,
                            std::span<const shaders::DrawData> draws,
                            std::span<const shaders::OverlayVertex> glyphs,
@@ -39,9 +39,8 @@ class FrameSlot {
   VkCommandBuffer commands() const { return commands_; }
   VkDescriptorSet set() const { return set_; }
   // Binds `draws`, which the device writes, instead of the slot's own data of draws.
-  void read_draws_from(const Device& device, const Pipelines& pipelines,
-                       const Buffer& draws) const {
-    pipelines.write_set(device, set_, frame_, draws, glyphs_, emitters_, shade_);
+  void read_draws_from(const Device& device, const Bindings& bindings, const Buffer& draws) const {
+    bindings.write(device, set_, {frame_, draws, glyphs_, emitters_, shade_});
   }
   // The semaphore for the acquired image of the window, and the frame's timestamps.
   VkSemaphore acquired() const { return acquired_.get(); }

@@ -11,10 +11,38 @@ using core::Result;
 
 namespace {
 
-// Barriers for both images; layouts and stages are to be completed.
-std::array<VkImageMemoryBarrier2, 2> barriers_of(const Mirror& mirror) {
-  return {barrier_of(mirror.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT),
-          barrier_of(mirror.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT)};
+// How both images are used, one after the other.
+struct Use {
+  VkPipelineStageFlags2 stage;
+  VkAccessFlags2 access;
+  VkImageLayout colour, depth;
+};
+// What they had is not needed any more.
+constexpr Use kForgotten{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_NONE,
+                         VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED};
+// Attachments are resolved, depth too, in the stage and with the access of colours.
+constexpr Use kResolved{
+    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+    VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
+constexpr Use kRead{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+
+void change_use(const Device& device, VkCommandBuffer commands, const Mirror& mirror,
+                const Use& from, const Use& to) {
+  std::array barriers{barrier_of(mirror.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT),
+                      barrier_of(mirror.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT)};
+  for (VkImageMemoryBarrier2& barrier : barriers) {
+    barrier.srcStageMask = from.stage;
+    barrier.srcAccessMask = from.access;
+    barrier.dstStageMask = to.stage;
+    barrier.dstAccessMask = to.access;
+  }
+  barriers[0].oldLayout = from.colour;
+  barriers[0].newLayout = to.colour;
+  barriers[1].oldLayout = from.depth;
+  barriers[1].newLayout = to.depth;
+  image_barriers(device, commands, barriers);
 }
 
 }  // namespace
@@ -35,31 +63,12 @@ Result<Mirror> make_mirror(const Device& device, VkFormat format, core::Extent e
   return mirror;
 }
 
-// Attachments are resolved, depth too, in the stage and with the access of colours.
 void mirror_to_attachments(const Device& device, VkCommandBuffer commands, const Mirror& mirror) {
-  std::array<VkImageMemoryBarrier2, 2> barriers = barriers_of(mirror);
-  for (VkImageMemoryBarrier2& barrier : barriers) {
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  }
-  barriers[0].newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  barriers[1].newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-  image_barriers(device, commands, barriers);
+  change_use(device, commands, mirror, kForgotten, kResolved);
 }
 
 void mirror_to_textures(const Device& device, VkCommandBuffer commands, const Mirror& mirror) {
-  std::array<VkImageMemoryBarrier2, 2> barriers = barriers_of(mirror);
-  for (VkImageMemoryBarrier2& barrier : barriers) {
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-    barrier.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-    barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-  }
-  barriers[0].oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  barriers[1].oldLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-  image_barriers(device, commands, barriers);
+  change_use(device, commands, mirror, kResolved, kRead);
 }
 
 }  // namespace psygen::render

@@ -1,19 +1,14 @@
-// All graphics pipelines of a preset, the one descriptor set layout and the constant textures. They
-// are created before the first frame of the preset. Records no draws (scene_recorder.hpp). Main
-// thread. Private to engine/render.
+// All graphics pipelines of a preset, and what their shaders read (bindings.hpp). They are created
+// before the first frame of the preset. Records no draws (scene_recorder.hpp). Main thread. Private
+// to engine/render.
 #pragma once
 
 #include <vector>
 
+#include "engine/render/bindings.hpp"
 #include "engine/render/draw_list.hpp"
-#include "engine/render/ground_image.hpp"
-#include "engine/render/materials.hpp"
-#include "engine/render/mirror.hpp"
-#include "engine/render/model_pictures.hpp"
-#include "engine/render/overlay.hpp"
 #include "engine/render/pipeline_build.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/render/shadow_maps.hpp"
 
 namespace psygen::render {
 
@@ -42,8 +37,10 @@ class Pipelines {
   // The preset, the samples per pixel that the device supports, and the pipeline layout.
   const PresetTraits& traits() const { return traits_; }
   VkSampleCountFlagBits samples() const { return samples_; }
-  VkPipelineLayout layout() const { return layout_.get(); }
-  // Whether water mirrors the land: its pipelines need write_mirror().
+  VkPipelineLayout layout() const { return bindings_.layout(); }
+  // What their shaders read.
+  const Bindings& bindings() const { return bindings_; }
+  // Whether water mirrors the land: its pipelines need Bindings::write_mirror().
   bool mirrors() const { return traits_.waves && samples_ != VK_SAMPLE_COUNT_1_BIT; }
   // The pipeline for meshes. `pushed`: the data of a draw is in push constants, else in the buffer
   // of draws. `lamps`, after create_lamps(): with point lights.
@@ -59,11 +56,10 @@ class Pipelines {
   VkPipeline object_shadow(bool pushed, bool textured, bool fading) const {
     return objects_.shadow[index_of_object(pushed, textured, fading)].get();
   }
-  // Pipelines for water and lines, and the shadow maps.
+  // Pipelines for water, particles and lines.
   VkPipeline water(bool lamps) const { return lamps ? lamplit_water_.get() : water_.get(); }
   VkPipeline particles(bool textured) const { return particles_[textured ? 1 : 0].get(); }
   VkPipeline lines() const { return lines_.get(); }
-  const ShadowMaps& shadows() const { return shadows_; }
   // The sky. With light per pixel, sky() fills the whole picture and the others are null. With
   // light per vertex, sky_below() fills the part below the horizon, sky() is a dome, sun() comes
   // last.
@@ -75,20 +71,7 @@ class Pipelines {
     return (over_coarse ? overlay_over_coarse_ : overlay_).get();
   }
 
-  // The descriptor set of a slot.
-  VkDescriptorSet set(std::size_t number) const { return sets_[number]; }
-  // Binds these buffers and the textures to a set that no unfinished commands use.
-  void write_set(const Device& device, VkDescriptorSet set, const Buffer& frame,
-                 const Buffer& draws, const Buffer& glyphs, const Buffer& emitters,
-                 const Buffer& shade) const;
-  // The same with what water mirrors, if that exists.
-  void write_mirror(const Device& device, VkDescriptorSet set, const Mirror& mirror) const;
-
  private:
-  core::Result<void> create_layouts(const Device& device, std::uint32_t sets);
-  core::Result<void> create_sets(const Device& device, std::uint32_t count);
-  core::Result<void> create_textures(const Device& device, const Overlay& overlay,
-                                     std::span<const GroundPicture> ground);
   struct MeshPipelines {
     // Indexed by layout (terrain, model) and by whether the data is pushed.
     std::array<std::array<UniquePipeline, 2>, 2> whole;
@@ -139,18 +122,9 @@ class Pipelines {
   PresetTraits traits_;
   VkSampleCountFlagBits samples_ = VK_SAMPLE_COUNT_1_BIT;
   VkFormat colour_format_ = VK_FORMAT_UNDEFINED;
-  UniqueSampler cloud_sampler_, smooth_sampler_, depth_sampler_;
-  ShadowMaps shadows_;
-  Image clouds_, font_;
-  GroundImage ground_;
-  UniqueSetLayout set_layout_;
-  UniqueDescriptorPool descriptor_pool_;
-  std::vector<VkDescriptorSet> sets_;
-  UniquePipelineLayout layout_;
+  Bindings bindings_;
   MeshPipelines landscape_, lamplit_, coloured_, wireframe_, shadow_;
   ObjectPipelines objects_;
-  const MaterialTable* materials_ = nullptr;
-  const ModelPictures* pictures_ = nullptr;
   std::array<UniquePipeline, 2> particles_;  // indexed by whether they have a texture
   UniquePipeline water_, lamplit_water_, sky_, sky_below_, sun_, lines_;
   UniquePipeline overlay_, overlay_over_coarse_;

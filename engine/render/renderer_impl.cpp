@@ -230,11 +230,13 @@ void RendererImpl::list_particles(const FrameInput& input) {
 }
 
 Result<void> RendererImpl::write_frame(FrameSlot& slot) {
-  Result<void> written = slot.write(*device_, pipelines_, frame_, list_.data(), glyphs_, emitters_);
+  Result<void> written =
+      slot.write(*device_, pipelines_.bindings(), frame_, list_.data(), glyphs_, emitters_);
   if (written) slot.write_shade(shade_.words());
   if (!written || !culling_) return written;
   written = culling_->write(*device_, index_of(slot));
-  if (written) slot.read_draws_from(*device_, pipelines_, culling_->draw_data(index_of(slot)));
+  if (written)
+    slot.read_draws_from(*device_, pipelines_.bindings(), culling_->draw_data(index_of(slot)));
   return written;
 }
 

@@ -44,7 +44,7 @@ Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress)
 
 void RendererImpl::use_pipelines() {
   for (FrameSlot& slot : slots_)
-    slot.use(*device_, pipelines_, index_of(slot));
+    slot.use(*device_, pipelines_.bindings(), index_of(slot));
   use_mirrors();
 }
 
@@ -52,7 +52,7 @@ void RendererImpl::use_pipelines() {
 void RendererImpl::use_mirrors() {
   if (targets_.empty()) return;
   for (const FrameSlot& slot : slots_)
-    pipelines_.write_mirror(*device_, slot.set(), targets_of(slot).mirror);
+    pipelines_.bindings().write_mirror(*device_, slot.set(), targets_of(slot).mirror);
 }
 
 Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
@@ -95,7 +95,7 @@ Result<Targets> RendererImpl::make_small_targets() {
       make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples(), pipelines_.mirrors());
   if (!small) return small;
   for (const FrameSlot& slot : slots_)
-    pipelines_.write_mirror(*device_, slot.set(), small->mirror);
+    pipelines_.bindings().write_mirror(*device_, slot.set(), small->mirror);
   return small;
 }
 
@@ -109,7 +109,7 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
   const FrameInput nothing;
   for (int step = 0; step < kWarmUpSteps; ++step) {
     const Result<void> drawn =
-        slot.write(*device_, pipelines_, frame_data(nothing, small->extent),
+        slot.write(*device_, pipelines_.bindings(), frame_data(nothing, small->extent),
                    std::vector<shaders::DrawData>(1), std::vector<shaders::OverlayVertex>(3))
             .and_then([&] { return slot.begin(*device_); })
             .and_then([&] {
@@ -186,7 +186,7 @@ Result<void> RendererImpl::warm_up_later(int steps, const RecordStep& record) {
   Result<void> drawn;
   for (int step = 0; drawn && step < steps; ++step) {
     FrameSlot& slot = slot_of(frame_value_ + 1);
-    drawn = slot.write(*device_, pipelines_, frame_data({}, small->extent),
+    drawn = slot.write(*device_, pipelines_.bindings(), frame_data({}, small->extent),
                        std::vector<shaders::DrawData>(1), {}, emitters)
                 .and_then([&] { return slot.begin(*device_); })
                 .and_then([&] {
@@ -250,7 +250,7 @@ Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_sc
     if (*acquired == WindowState::kNotNow) return {};
   }
   const Result<void> drawn =
-      noted(slot.write(*device_, pipelines_, frame_data({}, size()), {}, glyphs_)
+      noted(slot.write(*device_, pipelines_.bindings(), frame_data({}, size()), {}, glyphs_)
                 .and_then([&] { return slot.begin(*device_); })
                 .and_then([&] {
                   targets_of(slot).drawn = size();

@@ -152,7 +152,7 @@ void draw_culled_passes(const Device& device, const Pipelines& pipelines, const 
 void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
                   const ScenePass& pass) {
   const VkCommandBuffer commands = slot.commands();
-  pipelines.shadows().record(device, commands, [&](std::uint32_t cascade) {
+  pipelines.bindings().shadows().record(device, commands, [&](std::uint32_t cascade) {
     bind_set(device, pipelines, slot);
     device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT,
                                  sizeof(shaders::DrawData), sizeof(cascade), &cascade);
