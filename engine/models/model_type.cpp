@@ -20,13 +20,6 @@ std::string allowed_text(const ParameterSpec& spec) {
                      spec.hard_min, spec.hard_max, has_unit ? " " : "", has_unit ? spec.unit : "");
 }
 
-bool is_allowed(const ParameterSpec& spec, const Parameters& p, std::size_t i) {
-  // A 64-bit integer converts to the nearest double. The only bounds beyond 2^53 are ±2^63.
-  const double value =
-      spec.type == ParameterType::kInteger ? static_cast<double>(p.integer(i)) : p.real(i);
-  return value >= spec.hard_min && value <= spec.hard_max;  // false for NaN
-}
-
 }  // namespace
 
 std::string predicted_cost_text(double log2_triangles) {
@@ -49,6 +42,11 @@ Parameters default_parameters(const ModelType& type) {
   return p;
 }
 
+double parameter_number(const ModelType& type, const Parameters& p, std::size_t i) {
+  return type.parameters()[i].type == ParameterType::kInteger ? static_cast<double>(p.integer(i))
+                                                              : p.real(i);
+}
+
 int parameter_index(const ModelType& type, std::string_view name) {
   const std::span<const ParameterSpec> specs = type.parameters();
   for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -60,7 +58,9 @@ int parameter_index(const ModelType& type, std::string_view name) {
 core::Result<void> validate(const ModelType& type, const Parameters& p, double max_log2_cost) {
   const std::span<const ParameterSpec> specs = type.parameters();
   for (std::size_t i = 0; i < specs.size(); ++i) {
-    if (is_allowed(specs[i], p, i)) continue;
+    // An integer converts to the nearest double. The only bounds beyond 2^53 are ±2^63.
+    const double value = parameter_number(type, p, i);
+    if (value >= specs[i].hard_min && value <= specs[i].hard_max) continue;  // false for NaN
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("{}: {} = {} is not allowed: it must be {} ({})", type.name(),
                                   specs[i].name, value_text(specs[i], p, i), allowed_text(specs[i]),

@@ -185,6 +185,9 @@ std::string predicted_cost_text(double log2_triangles);
 // All parameters at their defaults.
 Parameters default_parameters(const ModelType& type);
 
+// The value of parameter `i` as a number; integers beyond 2^53 are rounded.
+double parameter_number(const ModelType& type, const Parameters& p, std::size_t i);
+
 // Position of a parameter in the schema, or -1. Linear in the number of parameters.
 int parameter_index(const ModelType& type, std::string_view name);
 

@@ -205,13 +205,13 @@ double work_in(const Cell* cell, const Area& area, double block_m) {
   return sum;
 }
 
+// A piece stands in several cells, and is added for each.
 void add_roads(const Cell* cell, const Area& area, double block_m,
                std::vector<const GroundEdit*>& roads) {
-  if (cell == nullptr || !area_of(cell->place).touches(area)) return;
+  if (cell == nullptr || !cell->summary.has_roads || !area_of(cell->place).touches(area)) return;
   if (cell->value) {
     for (const EditPtr& edit : cell->value->edits) {
-      const bool listed = std::ranges::find(roads, edit.get()) != roads.end();
-      if (edit->road && !listed && area_of(*edit, edit->reach_m(), block_m).touches(area))
+      if (edit->road && area_of(*edit, edit->reach_m(), block_m).touches(area))
         roads.push_back(edit.get());
     }
   }
@@ -230,6 +230,7 @@ void GroundCell::Summary::add(const Summary& quarter) {
   below_change_m = std::max(below_change_m, quarter.change_m + quarter.below_change_m);
   below_steepness = std::max(below_steepness, quarter.steepness + quarter.below_steepness);
   work_m2 += quarter.work_m2;
+  has_roads = has_roads || quarter.has_roads;
 }
 
 std::uint64_t GroundCell::hash() const {
@@ -245,6 +246,7 @@ GroundCell::Summary GroundCell::summary() const {
     sum.change_m += edit->most_m;
     sum.steepness += steepness_of(*edit);
     sum.work_m2 += weight_of(*edit) * 4 * edit->reach_m() * edit->reach_m();
+    sum.has_roads = sum.has_roads || edit->road != nullptr;
   }
   return sum;
 }
@@ -300,6 +302,9 @@ std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadPlace& node, doub
   std::vector<const GroundEdit*> roads;
   for (const auto* cells : {&below_, &cells_})
     add_roads(cells->root(), area_of(node), block_m, roads);
+  std::ranges::sort(roads);
+  const auto again = std::ranges::unique(roads);
+  roads.erase(again.begin(), again.end());
   return roads;
 }
 

@@ -118,6 +118,7 @@ struct GroundCell {
     float change_m = 0, steepness = 0;              // of this square's own edits, added up
     float below_change_m = 0, below_steepness = 0;  // the most in one of its quarters
     double work_m2 = 0;  // of all edits in it: their areas, weighted by the time for a height
+    bool has_roads = false;
     void add(const Summary& quarter);
   };
   bool empty() const { return edits.empty(); }
@@ -160,7 +161,8 @@ class GroundEdits {
                       double margin);
   // Whether any edit may change heights within a node. May say yes although none does.
   bool reaches(const QuadPlace& node, double block_m) const;
-  // The pieces of roads that may keep models from places in a node. O(log n + pieces there).
+  // The pieces of roads that may reach a node, each once. Of p pieces there O(log n + p log p),
+  // however many other edits there are.
   std::vector<const GroundEdit*> roads_in(const QuadPlace& node, double block_m) const;
   // How far the ground may lie off a mesh of the node whose vertices are `spacing_m` apart, because
   // of edits between them. An upper bound in metres; 0: there are none.

@@ -5,11 +5,26 @@
 
 #include "engine/models/number_spec.hpp"
 #include "engine/world/files/table_reader.hpp"
+#include "engine/world/files/toml_values.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
 
 using FieldSpec = models::NumberSpec;
+
+// A visitor that writes every field as TOML.
+struct FieldWriter {
+  std::string& text;
+  void operator()(std::string_view key, double value, const FieldSpec&) const {
+    text.append(key).append(" = ").append(toml_number(value)).append("\n");
+  }
+  void operator()(std::string_view key, std::int64_t value, const FieldSpec&) const {
+    text.append(key).append(" = ").append(toml_number(value)).append("\n");
+  }
+  void operator()(std::string_view key, const glm::vec3& value, const FieldSpec&) const {
+    text.append(key).append(" = ").append(toml_vector(value)).append("\n");
+  }
+};
 
 constexpr FieldSpec radiance(double usual, std::string_view doc) {
   return {0, 1000, 0, usual, "", doc};

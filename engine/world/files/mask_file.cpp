@@ -79,14 +79,8 @@ void write_mask(const ScatterMask& mask, std::string& text) {
     fmt::format_to(out, "mask_image = {}\nmask_area_m = {}\n", toml_string(mask.image),
                    toml_vector(mask.area_m));
   const ScatterMask usual;
-  std::vector<double> defaults;
-  visit_mask(usual, [&](std::string_view, const auto& value, const FieldSpec&) {
-    defaults.push_back(static_cast<double>(value));
-  });
-  std::size_t i = 0;
-  visit_mask(mask, [&](std::string_view key, const auto& value, const FieldSpec&) {
-    if (static_cast<double>(value) != defaults[i++]) fmt::format_to(out, "{} = {}\n", key, value);
-  });
+  if (mask.noise_m != usual.noise_m || mask.share != usual.share || mask.patches != usual.patches)
+    visit_mask(mask, FieldWriter{text});
   if (mask.ground != 0) fmt::format_to(out, "on_ground = {}\n", toml_grounds(mask.ground));
 }
 

@@ -13,9 +13,7 @@ std::size_t culprit_of(const ModelFields& fields, const models::Parameters& p) {
   const auto specs = fields.type->parameters();
   std::size_t last = 0;
   for (std::size_t i = 0; i < specs.size(); ++i) {
-    const double value = specs[i].type == models::ParameterType::kInteger
-                             ? static_cast<double>(p.integer(i))
-                             : p.real(i);
+    const double value = models::parameter_number(*fields.type, p, i);
     if (!(value >= specs[i].hard_min && value <= specs[i].hard_max)) return i;
     if (fields.lines[i] > fields.lines[last]) last = i;
   }

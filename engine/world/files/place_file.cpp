@@ -75,14 +75,14 @@ void write_places(const World& world, const models::Registry& registry, std::str
     const models::ModelType& type = registry[place.model];
     fmt::format_to(out, "\n[[place]]\nmodel = {}\nat_m = [{}, {}]\n", toml_string(type.name()),
                    place.at_m.x, place.at_m.y);
-    if (place.above_m != 0) fmt::format_to(out, "above_m = {}\n", place.above_m);
+    visit_placed(place, FieldWriter{text});
     const auto specs = type.parameters();
     for (std::size_t i = 0; i < specs.size(); ++i) {
-      if (specs[i].source == models::ParameterSource::kPlaced) continue;
-      if (specs[i].type == models::ParameterType::kInteger)
-        fmt::format_to(out, "{} = {}\n", specs[i].name, place.parameters.integer(i));
-      else
-        fmt::format_to(out, "{} = {}\n", specs[i].name, place.parameters.real(i));
+      if (specs[i].source != models::ParameterSource::kPlaced)
+        fmt::format_to(out, "{} = {}\n", specs[i].name,
+                       specs[i].type == models::ParameterType::kInteger
+                           ? toml_number(place.parameters.integer(i))
+                           : toml_number(place.parameters.real(i)));
     }
   }
 }

@@ -96,19 +96,6 @@ Road read_road(const Node& node, std::size_t number, Problems& problems) {
   return road;
 }
 
-// Writes the numbers that are not the usual ones.
-template <class Shape, class VisitFields>
-void write_unusual(const Shape& shape, std::string& text, const VisitFields& visit_fields) {
-  std::vector<double> usual;
-  visit_fields(Shape{}, [&](std::string_view, const double& value, const FieldSpec&) {
-    usual.push_back(value);
-  });
-  std::size_t i = 0;
-  visit_fields(shape, [&](std::string_view key, const double& value, const FieldSpec&) {
-    if (value != usual[i++]) fmt::format_to(std::back_inserter(text), "{} = {}\n", key, value);
-  });
-}
-
 }  // namespace
 
 ShapedGround read_shaped(TableReader& root, const Beside& beside, Problems& problems) {
@@ -137,12 +124,12 @@ void write_shaped(const ShapedGround& shaped, std::string& text) {
   for (const Stamp& stamp : shaped.stamps) {
     fmt::format_to(out, "\n[[stamp]]\nimage = {}\ncentre_m = [{}, {}]\n", toml_string(stamp.image),
                    stamp.centre_m.x, stamp.centre_m.y);
-    write_unusual(stamp, text, [](const Stamp& s, const auto& visit) { visit_stamp(s, visit); });
+    visit_stamp(stamp, FieldWriter{text});
     fmt::format_to(out, "mode = {}\n", toml_string(stamp.mode));
   }
   for (const Road& road : shaped.roads) {
     fmt::format_to(out, "\n[[road]]\npoints_m = {}\n", toml_points(road.points_m));
-    write_unusual(road, text, [](const Road& r, const auto& visit) { visit_road(r, visit); });
+    visit_road(road, FieldWriter{text});
   }
 }
 

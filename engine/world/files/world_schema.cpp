@@ -153,11 +153,9 @@ class SchemaBuilder {
         {spec.hard_min, spec.hard_max, spec.soft_min, spec.soft_max, spec.unit, spec.doc});
   }
   void add_terrain_parameter(WorldSection& to, std::string_view key, std::size_t i) const {
-    const models::ParameterSpec& spec = registry_[world_.terrain_model].parameters()[i];
-    const double value = spec.type == models::ParameterType::kInteger
-                             ? static_cast<double>(world_.terrain.integer(i))
-                             : world_.terrain.real(i);
-    add_parameter(to, key, spec, {value, value}, false);
+    const models::ModelType& type = registry_[world_.terrain_model];
+    const double value = models::parameter_number(type, world_.terrain, i);
+    add_parameter(to, key, type.parameters()[i], {value, value}, false);
   }
 
   WorldSection world_section() const {
@@ -310,9 +308,7 @@ class SchemaBuilder {
     const auto specs = type.parameters();
     for (std::size_t i = 0; i < specs.size(); ++i) {
       if (specs[i].source != models::ParameterSource::kUser) continue;
-      const double now = specs[i].type == models::ParameterType::kInteger
-                             ? static_cast<double>(p.parameters.integer(i))
-                             : p.parameters.real(i);
+      const double now = models::parameter_number(type, p.parameters, i);
       add_parameter(made, specs[i].name, specs[i], {now, now}, false);
     }
     return made;

@@ -24,28 +24,12 @@ std::string number(double value, models::ParameterType type) {
                                                  : fmt::format("{}", value);
 }
 
-struct FieldWriter {
-  Text out;
-  void operator()(std::string_view key, double value, const FieldSpec&) const {
-    fmt::format_to(out, "{} = {}\n", key, value);
-  }
-  void operator()(std::string_view key, const glm::vec3& value, const FieldSpec&) const {
-    fmt::format_to(out, "{} = {}\n", key, toml_vector(value));
-  }
-};
-
-double terrain_value(const models::ModelType& type, const models::Parameters& p, std::size_t i) {
-  return type.parameters()[i].type == models::ParameterType::kInteger
-             ? static_cast<double>(p.integer(i))
-             : p.real(i);
-}
-
 void write_terrain(Text out, const World& world, const models::ModelType& type) {
   const auto specs = type.parameters();
   for (const TerrainAlias& alias : kWorldKeys) {
     const auto i = static_cast<std::size_t>(models::parameter_index(type, alias.parameter));
     fmt::format_to(out, "{} = {}\n", alias.key,
-                   number(terrain_value(type, world.terrain, i), specs[i].type));
+                   number(models::parameter_number(type, world.terrain, i), specs[i].type));
   }
   fmt::format_to(out, "\n[terrain]\n");
   for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -54,7 +38,7 @@ void write_terrain(Text out, const World& world, const models::ModelType& type) 
       elsewhere = elsewhere || alias.parameter == specs[i].name;
     if (!elsewhere)
       fmt::format_to(out, "{} = {}\n", specs[i].name,
-                     number(terrain_value(type, world.terrain, i), specs[i].type));
+                     number(models::parameter_number(type, world.terrain, i), specs[i].type));
   }
 }
 
@@ -98,11 +82,11 @@ std::string write_world(const World& world, const models::Registry& registry) {
   write_places(world, registry, text);
   write_shaped(world.shaped, text);
   fmt::format_to(out, "\n[sky]\n");
-  visit_sky(world.sky, FieldWriter{out});
+  visit_sky(world.sky, FieldWriter{text});
   fmt::format_to(out, "\n[water]\n");
-  visit_water(world.water, FieldWriter{out});
+  visit_water(world.water, FieldWriter{text});
   fmt::format_to(out, "\n[palette]\n");
-  visit_palette(world.palette, FieldWriter{out});
+  visit_palette(world.palette, FieldWriter{text});
   for (std::size_t i = 0; i < kPaletteImages.size(); ++i) {
     const std::string& name = world.palette.images[i];
     if (!name.empty()) fmt::format_to(out, "{} = {}\n", kPaletteImages[i], toml_string(name));

@@ -8,7 +8,7 @@
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/ground_blends.hpp"
 #include "engine/world/placement.hpp"
-#include "tests/engine/world/shipped.hpp"
+#include "tests/engine/world/shaped_worlds.hpp"
 
 namespace psygen::world {
 namespace {
@@ -19,12 +19,8 @@ using testing::registry;
 using testing::replaced;
 
 // Every picture is black on its left half and white on its right half.
-class HalfPictures final : public FilesBeside {
+class HalfPictures final : public testing::PicturesAlone {
  public:
-  core::Result<std::unique_ptr<models::ModelType>> read_model(const std::filesystem::path& file,
-                                                              const HandmadeModel&) const override {
-    return core::fail(core::ErrorCode::kIo, file.string() + ": no models");
-  }
   core::Result<std::shared_ptr<const GreyPicture>> read_grey(
       const std::filesystem::path& file) const override {
     if (file.filename() == "missing.png")

@@ -1,6 +1,7 @@
+// Stamps and roads as one layer of a world: in nodes, hashes, edits and merged models.
 #include "engine/world/shaped_ground.hpp"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,18 +12,15 @@
 #include "engine/world/edits/edit_bytes.hpp"
 #include "engine/world/far/merged_identity.hpp"
 #include "engine/world/far/merged_models.hpp"
-#include "engine/world/files/text_edit.hpp"
-#include "engine/world/files/world_schema.hpp"
 #include "engine/world/placement.hpp"
-#include "engine/world/road_line.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/world/shaped_worlds.hpp"
 
 namespace psygen::world {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using testing::height_at;
+using testing::kQuantumM;
 using testing::kShapes;
 using testing::kSmallWorld;
 using testing::parsed;
@@ -31,233 +29,6 @@ using testing::registry;
 using testing::replaced;
 using testing::shaped_world;
 
-constexpr double kQuantumM = 60.0 / 65535;  // of heights of kSmallWorld
-constexpr double kBlockM = 64;
-
-double height_at(const World& world, double x, double z) {
-  const core::WorldPosition at = core::normalised({{0, 0}, {x, 0, z}}, kBlockM);
-  return models::ground_height_m(terrain_parameters(world, at.block), at.block, at.local.x,
-                                 at.local.z);
-}
-
-// The finest ground has a vertex at every even metre.
-template <class Visit>
-void each_vertex(const Visit& visit) {
-  for (int z = 0; z < 256; z += 4) {
-    for (int x = 0; x < 512; x += 2)
-      visit(static_cast<double>(x), static_cast<double>(z));
-  }
-}
-
-TEST(Stamp, TheGroundHasTheHeightsOfThePictureAtItsPixels) {
-  const World world = shaped_world(
-      "[[stamp]]\nimage = \"ramp.png\"\ncentre_m = [128, 96]\nsize_m = 64\nbase_m = 5\n"
-      "height_m = 40\nborder_m = 0\nmode = \"set\"\n");
-  for (int row = 0; row < 17; ++row) {
-    for (int column = 0; column < 17; ++column) {
-      const double grey = (row * 17 + column) * 65'535 / 288;
-      EXPECT_NEAR(height_at(world, 96 + 4 * column, 64 + 4 * row), 5 + 40 * grey / 65'535,
-                  0.51 * kQuantumM)
-          << column << ' ' << row;
-    }
-  }
-  // Half-way between two pixels it is their mean.
-  EXPECT_NEAR(height_at(world, 98, 64), 5 + 40 * 0.5 / 288, 2 * kQuantumM);
-}
-
-TEST(Stamp, IsAddedToTheGroundAndChangesNothingElse) {
-  const World base = parsed(kSmallWorld);
-  const World world = shaped_world(
-      "[[stamp]]\nimage = \"white.png\"\ncentre_m = [100, 100]\nsize_m = 40\nheight_m = -2\n"
-      "border_m = 0\n");
-  each_vertex([&](double x, double z) {
-    const bool inside = std::abs(x - 100) <= 20 && std::abs(z - 100) <= 20;
-    const double change = height_at(world, x, z) - height_at(base, x, z);
-    if (inside)
-      EXPECT_NEAR(change, std::max(-2.0, -height_at(base, x, z)), 1.01 * kQuantumM)
-          << x << ' ' << z;
-    else
-      EXPECT_EQ(change, 0) << x << ' ' << z;
-  });
-}
-
-TEST(Stamp, ItsBorderIsMonotone) {
-  const World base = parsed(kSmallWorld);
-  const World world = shaped_world(
-      "[[stamp]]\nimage = \"white.png\"\ncentre_m = [200, 128]\nsize_m = 160\nheight_m = 8\n"
-      "border_m = 50\n");
-  double before = 0;
-  for (double x = 120; x <= 200; x += 2) {
-    const double change = height_at(world, x, 128) - height_at(base, x, 128);
-    EXPECT_GE(change, before - 1.01 * kQuantumM) << x;
-    EXPECT_LE(change, 8 + kQuantumM);
-    before = change;
-  }
-  EXPECT_NEAR(before, 8, 1.01 * kQuantumM);
-  EXPECT_LT(height_at(world, 122, 128) - height_at(base, 122, 128), 0.1);
-}
-
-TEST(Stamp, IsTurnedLikeAModel) {
-  const std::string stamp =
-      "[[stamp]]\nimage = \"ramp.png\"\ncentre_m = [128, 128]\nsize_m = 64\nheight_m = 30\n"
-      "border_m = 0\nmode = \"set\"\n";
-  const World world = shaped_world(stamp), turned = shaped_world(stamp + "turn_deg = 90\n");
-  const World half = shaped_world(stamp + "turn_deg = 180\n");
-  for (int z = -30; z <= 30; z += 6) {
-    for (int x = -30; x <= 30; x += 6) {
-      const double height_m = height_at(world, 128 + x, 128 + z);
-      // About +Y by 90 degrees: x becomes -z, z becomes x.
-      EXPECT_NEAR(height_at(turned, 128 + z, 128 - x), height_m, 1.01 * kQuantumM);
-      EXPECT_NEAR(height_at(half, 128 - x, 128 - z), height_m, 1.01 * kQuantumM);
-    }
-  }
-  // A square that stands on its corner reaches further along the axes.
-  const World corner = shaped_world(stamp + "turn_deg = 45\n");
-  const World base = parsed(kSmallWorld);
-  EXPECT_NE(height_at(corner, 128 + 44, 128), height_at(base, 128 + 44, 128));
-  EXPECT_EQ(height_at(corner, 128 + 30, 128 + 30), height_at(base, 128 + 30, 128 + 30));
-}
-
-TEST(Road, IsFlatAcrossItsWidth) {
-  const World world =
-      shaped_world("[[road]]\npoints_m = [[40, 100], [440, 100]]\nwidth_m = 16\nborder_m = 12\n");
-  const World base = parsed(kSmallWorld);
-  double moved = 0;
-  for (double x = 42; x < 438; x += 2) {
-    const double middle = height_at(world, x, 100);
-    for (double across = -8; across <= 8; across += 2)
-      EXPECT_NEAR(height_at(world, x, 100 + across), middle, 1.01 * kQuantumM) << x << across;
-    EXPECT_EQ(height_at(world, x, 120.5), height_at(base, x, 120.5));
-    moved = std::max(moved, std::abs(height_at(world, x, 108) - height_at(base, x, 108)));
-  }
-  EXPECT_GT(moved, 0.3);
-}
-
-// Everywhere on a road that bends, crosses a stamp and comes near itself, the ground has the height
-// of the nearest part of its middle.
-TEST(Road, HasTheHeightOfItsMiddleAlsoInBends) {
-  const World world = shaped_world(kShapes);
-  const Road& road = world.shaped.roads[0];
-  const World stamped =
-      shaped_world(std::string(kShapes).substr(0, std::string(kShapes).find("[[road]]")));
-  const auto line =
-      road_line(road, 2 * 10.0 / 6, [&](glm::dvec2 at) { return height_at(stamped, at.x, at.y); });
-  int on_it = 0;
-  each_vertex([&](double x, double z) {
-    double nearest = 1e9, height_m = 0;
-    for (std::size_t i = 1; i < line.size(); ++i) {
-      const glm::dvec2 along = line[i].at_m - line[i - 1].at_m;
-      const glm::dvec2 to = glm::dvec2(x, z) - line[i - 1].at_m;
-      const double share = std::clamp(
-          (to.x * along.x + to.y * along.y) / (along.x * along.x + along.y * along.y), 0.0, 1.0);
-      const double away = std::hypot(to.x - share * along.x, to.y - share * along.y);
-      if (away >= nearest) continue;
-      nearest = away;
-      height_m = line[i - 1].height_m + share * (line[i].height_m - line[i - 1].height_m);
-    }
-    if (nearest > 5) return;
-    ++on_it;
-    EXPECT_NEAR(height_at(world, x, z), height_m, 0.02) << x << ' ' << z;
-  });
-  EXPECT_GT(on_it, 500);
-}
-
-TEST(Road, FollowsTheGroundCalmlyAndMeetsItAtItsEnds) {
-  Road road{{{0, 0}, {100, 0}, {200, 40}}, 6, 6, 30, 1};
-  const auto ground = [](glm::dvec2 at) { return 10 + std::sin(at.x / 3); };
-  const auto line = road_line(road, 2, ground);
-  EXPECT_EQ(line.front().height_m, ground(line.front().at_m));
-  EXPECT_EQ(line.back().height_m, ground(line.back().at_m));
-  EXPECT_EQ(line.front().at_m, road.points_m.front());
-  EXPECT_EQ(line.back().at_m, road.points_m.back());
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    EXPECT_LT(line[i].along_m - line[i - 1].along_m, 2.5);
-    EXPECT_GT(line[i].along_m, line[i - 1].along_m);
-    if (line[i].along_m > 40 && line.back().along_m - line[i].along_m > 40) {
-      EXPECT_NEAR(line[i].height_m, 10, 0.15);
-    }
-  }
-  road.smoothing_m = 0;
-  for (const RoadPoint& point : road_line(road, 2, ground))
-    EXPECT_EQ(point.height_m, ground(point.at_m));
-}
-
-TEST(Road, NothingStandsOnItAndWhatStandsBesideItStaysThere) {
-  const std::string many = replaced(kSmallWorld, "count = 5", "count = 400");
-  const World base = parsed(many);
-  const World world = *read_shaped_world(
-      "[[road]]\npoints_m = [[40, 100], [440, 100]]\nwidth_m = 16\nclear_m = 3\n", many);
-  std::size_t cleared = 0;
-  for (std::int32_t i = 0; i < 32; ++i) {
-    const core::BlockCoord block{i % 8, i / 8};
-    std::vector<Placement> before, now;
-    place_models(base, registry(), block, before);
-    place_models(world, registry(), block, now);
-    for (const Placement& was : before) {
-      const double x = block.x * kBlockM + static_cast<double>(was.position.x);
-      const double z = block.z * kBlockM + static_cast<double>(was.position.z);
-      const double ahead = std::max({40 - x, x - 440, 0.0});
-      const bool clear = std::hypot(ahead, z - 100) <= 11;
-      const auto same = std::ranges::find(now, was.index, &Placement::index);
-      EXPECT_EQ(same == now.end(), clear) << x << ' ' << z;
-      cleared += clear ? 1 : 0;
-      if (same == now.end()) continue;
-      EXPECT_EQ(same->position.x, was.position.x);
-      EXPECT_EQ(same->position.z, was.position.z);
-      EXPECT_NEAR(static_cast<double>(same->position.y), height_at(world, x, z), 1e-4);
-    }
-  }
-  EXPECT_GT(cleared, 500U);
-  EXPECT_LT(world_size(world, registry()).models, world_size(base, registry()).models);
-}
-
-// Vertices know the share of a road, in meshes of all levels, as queries do.
-TEST(Road, IsMarkedInTheGround) {
-  const World world =
-      shaped_world("[[road]]\npoints_m = [[40, 100], [440, 100]]\nwidth_m = 16\nborder_m = 12\n");
-  const models::ModelType& terrain = registry()[world.terrain_model];
-  for (int level = 0; level < 3; ++level) {
-    const auto vertices =
-        models::test::synthesize(terrain, terrain_parameters(world, {0, 0}, level), 0)
-            .vertices<core::TerrainVertex>();
-    const int step_m = 2 << level;
-    for (int k = 0; k < 33; ++k) {
-      for (int i = 0; i < 33; ++i) {
-        const int x = i * step_m, z = k * step_m;
-        const bool on_it = x >= 40 && x <= 440 && std::abs(z - 100) <= 7;
-        const bool off_it = x < 31 || x > 449 || std::abs(z - 100) >= 9;
-        const std::uint8_t road = vertices[static_cast<std::size_t>(k * 33 + i)].road;
-        if (on_it) {
-          EXPECT_EQ(road, 255) << x << ' ' << z;
-        }
-        if (off_it) {
-          EXPECT_EQ(road, 0) << x << ' ' << z;
-        }
-        const core::BlockCoord block{x / 64, z / 64};
-        EXPECT_NEAR(road_at(world, block, {x % 64, z % 64}), road / 255.0F, 0.003F);
-      }
-    }
-  }
-  const World base = parsed(kSmallWorld);
-  EXPECT_EQ(road_at(base, {1, 1}, {36, 36}), 0);
-}
-
-TEST(Road, RoadsAndStampsMayLieOnEachOther) {
-  std::string tables;
-  for (int i = 0; i < 20; ++i) {
-    tables +=
-        "[[stamp]]\nimage = \"ramp.png\"\ncentre_m = [200, 128]\nsize_m = 100\nheight_m = 9\n";
-    tables += "[[road]]\npoints_m = [[20, 128], [480, 128]]\n";
-    tables += "[[road]]\npoints_m = [[200, 20], [200, 240]]\n";
-  }
-  const World world = shaped_world(tables);
-  each_vertex([&](double x, double z) {
-    const double height_m = height_at(world, x, z);
-    EXPECT_TRUE(height_m >= 0 && height_m <= 60.001) << x << ' ' << z;
-  });
-}
-
-// Nodes of all levels agree at shared vertices.
 TEST(ShapedGround, IsTheSameInEveryNodeThatHasAVertex) {
   const World world = shaped_world(kShapes);
   const models::ModelType& terrain = registry()[world.terrain_model];
@@ -388,112 +159,6 @@ TEST(ShapedGround, MergedModelsAreOnItAndNotOnRoads) {
   EXPECT_LT(shaped.box.max.y, plain.box.max.y + 30);
   EXPECT_GT(shaped.box.max.y, plain.box.max.y + 5);
   EXPECT_NE(plain.vertex_bytes, shaped.vertex_bytes);
-}
-
-TEST(ShapedGround, ReadsBackAsItWasWritten) {
-  const World world = shaped_world(std::string(kShapes) + "smoothing_m = 12.5\n" +
-                                   "[[stamp]]\nimage = \"a b/white.png\"\ncentre_m = [3.25e-1, 7]\n"
-                                   "mode = \"set\"\n");
-  const std::string text = write_world(world, registry());
-  const auto again = read_shaped_world("", text);
-  ASSERT_TRUE(again) << again.error().message;
-  EXPECT_EQ(*again, world);
-  EXPECT_EQ(shape_hash(*again), shape_hash(world));
-}
-
-TEST(ShapedGround, EditorsSeeItsFields) {
-  const std::string text = std::string(kSmallWorld) + kShapes;
-  const auto sections = world_schema(text, shaped_world(kShapes), registry());
-  ASSERT_TRUE(sections) << sections.error().message;
-  const auto value = [&](const TextPath& path) {
-    const WorldField* field = find_field(*sections, path);
-    return field != nullptr ? field->value : "nothing";
-  };
-  EXPECT_EQ(value({"stamp", 0, "image"}), "\"ramp.png\"");
-  EXPECT_EQ(value({"stamp", 0, "centre_m"}), "[128, 128]");
-  EXPECT_EQ(value({"stamp", 0, "mode"}), "\"add\"");
-  EXPECT_EQ(value({"road", 0, "width_m"}), "10");
-  EXPECT_EQ(value({"road", 0, "smoothing_m"}), "30");
-  EXPECT_THAT(value({"road", 0, "points_m"}), ::testing::StartsWith("[[20, 30], [140, 140]"));
-  EXPECT_EQ(sections->back().title, "road 1");
-  // Values that are written as they are usual change nothing.
-  std::string all = text;
-  for (const WorldSection& section : *sections)
-    for (const WorldField& field : section.fields)
-      if (!field.is_set && !field.usual.empty())
-        all = with_value(all, field.path, field.usual).value();
-  const auto again = read_shaped_world("", all);
-  ASSERT_TRUE(again) << again.error().message;
-  EXPECT_EQ(*again, shaped_world(kShapes));
-  EXPECT_FALSE(world_schema(text, parsed(kSmallWorld), registry()));
-}
-
-std::string shape_error(const std::string& tables) {
-  const auto world = read_shaped_world(tables);
-  return world ? "" : world.error().message;
-}
-
-TEST(ShapedGround, BadStampsAreRefusedWithLineAndField) {
-  const std::string stamp = "[[stamp]]\nimage = \"white.png\"\ncentre_m = [100, 100]\n";
-  ASSERT_EQ(shape_error(stamp), "");
-  const auto with = [&](const std::string& from, const std::string& to) {
-    return shape_error(replaced(stamp, from, to));
-  };
-  EXPECT_THAT(with("white.png", "no.png"),
-              HasSubstr("maps/w.toml:25: stamp[0].image: maps/no.png: there is no such file"));
-  EXPECT_THAT(with("white.png", "dot.png"), HasSubstr("1 x 1; a stamp needs 2 x 2"));
-  EXPECT_THAT(with("white.png", "../white.png"), HasSubstr("without .."));
-  EXPECT_THAT(with("image = \"white.png\"\n", ""), HasSubstr("stamp[0].image"));
-  EXPECT_THAT(with("centre_m = [100, 100]\n", ""), HasSubstr("stamp[0].centre_m"));
-  for (const char* centre :
-       {"[100]", "[1, 2, 3]", "[nan, 1]", "[inf, 1]", "[1e9, 1]", "7", "[-1, 5]", "[512, 5]"})
-    EXPECT_THAT(with("[100, 100]", centre), HasSubstr("stamp[0].centre_m")) << centre;
-  for (const char* key : {"size_m = 0", "size_m = nan", "size_m = 30000", "border_m = -1",
-                          "border_m = 101", "turn_deg = 361", "height_m = 1e6", "height_m = 61",
-                          "mode = \"multiply\"", "mode = 1", "heights_m = 3"})
-    EXPECT_THAT(shape_error(stamp + key), HasSubstr("w.toml:27: stamp[0].")) << key;
-  EXPECT_THAT(shape_error(stamp + "mode = \"set\"\nbase_m = -1\nheight_m = 9"),
-              AllOf(HasSubstr("stamp[0].height_m"), HasSubstr("-1 m"), HasSubstr("0 to 60 m")));
-  std::string many;
-  for (int i = 0; i < 65; ++i)
-    many += stamp;
-  EXPECT_THAT(shape_error(many), HasSubstr("stamp: it must be at most 64 tables"));
-  const auto unread = parse_world(kSmallWorld + stamp, "w", registry());
-  ASSERT_FALSE(unread);
-  EXPECT_THAT(unread.error().message, HasSubstr("reads no files beside"));
-}
-
-TEST(ShapedGround, BadRoadsAreRefusedWithLineAndField) {
-  const auto with = [&](const std::string& points, const std::string& more = "") {
-    return shape_error("[[road]]\npoints_m = " + points + "\n" + more);
-  };
-  ASSERT_EQ(with("[[10, 10], [40.5, 40]]"), "");
-  for (const char* points :
-       {"[[10, 10]]", "[]", "7", "[10, 10]", "[[10, 10], [nan, 4]]", "[[10, 10], [inf, 4]]",
-        "[[10, 10], [10, 10.5]]", "[[10, 10], [40, 40, 40]]", "[[10, 10], [\"a\", 4]]",
-        "[[10, 10], [1e9, 4]]", "[[10, 10], [-20, 4]]", "[[10, 10], [40, 256.5]]"})
-    EXPECT_THAT(with(points), HasSubstr("maps/w.toml:25: road[0].points_m")) << points;
-  EXPECT_THAT(shape_error("[[road]]\nwidth_m = 4\n"), HasSubstr("road[0].points_m"));
-  for (const char* key : {"width_m = 0", "width_m = nan", "border_m = -1", "smoothing_m = 1e4",
-                          "clear_m = 101", "wide_m = 4"})
-    EXPECT_THAT(with("[[10, 10], [40, 40]]", key), HasSubstr("w.toml:26: road[0].")) << key;
-  std::string points = "[[0, 0]";
-  for (int i = 1; i < 1001; ++i)
-    points += i % 2 == 0 ? ", [0, 0]" : ", [500, 0]";
-  EXPECT_THAT(with(points + "]"), HasSubstr("2 to 1000 points"));
-  points = "[[0, 0]";
-  for (int i = 1; i < 300; ++i)
-    points += i % 2 == 0 ? ", [0, 0]" : ", [500, 200]";
-  EXPECT_THAT(with(points + "]"), HasSubstr("longer than 100000 m"));
-}
-
-TEST(ShapedGround, TooMuchOnTopOfEachOtherIsRefused) {
-  std::string points = "[[10, 10]";
-  for (int i = 1; i < 1000; ++i)
-    points += i % 2 == 0 ? ", [10, 10]" : ", [90, 60]";
-  std::string tables;
-  const std::string road = "[[road]]\npoints_m = " + points + "]\nwidth_m = 0.5\n";
-  EXPECT_THAT(shape_error(road), HasSubstr("on top of each other"));
 }
 
 }  // namespace

@@ -8,19 +8,26 @@
 #include <utility>
 
 #include "engine/core/hash.hpp"
+#include "engine/models/terrain/ground.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "engine/world/placement.hpp"
 #include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world::testing {
 
-// Pictures by name: "ramp.png" has 17 × 17 different values, "white.png" 3 × 3, "dot.png" one
-// pixel; others are missing.
-class MadePictures final : public FilesBeside {
+// Files beside a world of which only pictures can be read.
+class PicturesAlone : public FilesBeside {
  public:
   core::Result<std::unique_ptr<models::ModelType>> read_model(const std::filesystem::path& file,
-                                                              const HandmadeModel&) const override {
+                                                              const HandmadeModel&) const final {
     return core::fail(core::ErrorCode::kIo, file.string() + ": no models");
   }
+};
+
+// Pictures by name: "ramp.png" has 17 × 17 different values, "white.png" 3 × 3, "dot.png" one
+// pixel; others are missing.
+class MadePictures final : public PicturesAlone {
+ public:
   core::Result<std::shared_ptr<const GreyPicture>> read_grey(
       const std::filesystem::path& file) const override {
     const std::string name = file.filename().string();
@@ -54,6 +61,24 @@ inline World shaped_world(const std::string& tables) {
   if (!world) std::fprintf(stderr, "%s\n", world.error().message.c_str());
   PSYGEN_CHECK(world.has_value(), "the world of the test is sound");
   return std::move(*world);
+}
+
+inline constexpr double kQuantumM = 60.0 / 65535;  // of its heights
+inline constexpr double kShapedBlockM = 64;
+
+inline double height_at(const World& world, double x, double z) {
+  const core::WorldPosition at = core::normalised({{0, 0}, {x, 0, z}}, kShapedBlockM);
+  return models::ground_height_m(terrain_parameters(world, at.block), at.block, at.local.x,
+                                 at.local.z);
+}
+
+// Its finest ground has a vertex at every even metre.
+template <class Visit>
+void each_vertex(const Visit& visit) {
+  for (int z = 0; z < 256; z += 4) {
+    for (int x = 0; x < 512; x += 2)
+      visit(static_cast<double>(x), static_cast<double>(z));
+  }
 }
 
 // A road that bends and comes back near itself, and a stamp that it crosses.

@@ -1,0 +1,129 @@
+#include "engine/world/files/shaped_file.hpp"
+
+#include <gmock/gmock.h>
+
+#include "engine/world/files/text_edit.hpp"
+#include "engine/world/files/world_schema.hpp"
+#include "tests/engine/world/shaped_worlds.hpp"
+
+namespace psygen::world {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::kShapes;
+using testing::kSmallWorld;
+using testing::parsed;
+using testing::read_shaped_world;
+using testing::registry;
+using testing::replaced;
+using testing::shaped_world;
+
+TEST(ShapedFile, ReadsBackAsItWasWritten) {
+  const World world = shaped_world(std::string(kShapes) + "smoothing_m = 12.5\n" +
+                                   "[[stamp]]\nimage = \"a b/white.png\"\ncentre_m = [3.25e-1, 7]\n"
+                                   "mode = \"set\"\n");
+  const std::string text = write_world(world, registry());
+  const auto again = read_shaped_world("", text);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(*again, world);
+  EXPECT_EQ(shape_hash(*again), shape_hash(world));
+}
+
+TEST(ShapedFile, EditorsSeeItsFields) {
+  const std::string text = std::string(kSmallWorld) + kShapes;
+  const auto sections = world_schema(text, shaped_world(kShapes), registry());
+  ASSERT_TRUE(sections) << sections.error().message;
+  const auto value = [&](const TextPath& path) {
+    const WorldField* field = find_field(*sections, path);
+    return field != nullptr ? field->value : "nothing";
+  };
+  EXPECT_EQ(value({"stamp", 0, "image"}), "\"ramp.png\"");
+  EXPECT_EQ(value({"stamp", 0, "centre_m"}), "[128, 128]");
+  EXPECT_EQ(value({"stamp", 0, "mode"}), "\"add\"");
+  EXPECT_EQ(value({"road", 0, "width_m"}), "10");
+  EXPECT_EQ(value({"road", 0, "smoothing_m"}), "30");
+  EXPECT_THAT(value({"road", 0, "points_m"}), ::testing::StartsWith("[[20, 30], [140, 140]"));
+  EXPECT_EQ(sections->back().title, "road 1");
+  // Values that are written as they are usual change nothing.
+  std::string all = text;
+  for (const WorldSection& section : *sections)
+    for (const WorldField& field : section.fields)
+      if (!field.is_set && !field.usual.empty())
+        all = with_value(all, field.path, field.usual).value();
+  const auto again = read_shaped_world("", all);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(*again, shaped_world(kShapes));
+  EXPECT_FALSE(world_schema(text, parsed(kSmallWorld), registry()));
+}
+
+std::string shape_error(const std::string& tables) {
+  const auto world = read_shaped_world(tables);
+  return world ? "" : world.error().message;
+}
+
+TEST(ShapedFile, BadStampsAreRefusedWithLineAndField) {
+  const std::string stamp = "[[stamp]]\nimage = \"white.png\"\ncentre_m = [100, 100]\n";
+  ASSERT_EQ(shape_error(stamp), "");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    return shape_error(replaced(stamp, from, to));
+  };
+  EXPECT_THAT(with("white.png", "no.png"),
+              HasSubstr("maps/w.toml:25: stamp[0].image: maps/no.png: there is no such file"));
+  EXPECT_THAT(with("white.png", "dot.png"), HasSubstr("1 x 1; a stamp needs 2 x 2"));
+  EXPECT_THAT(with("white.png", "../white.png"), HasSubstr("without .."));
+  EXPECT_THAT(with("image = \"white.png\"\n", ""), HasSubstr("stamp[0].image"));
+  EXPECT_THAT(with("centre_m = [100, 100]\n", ""), HasSubstr("stamp[0].centre_m"));
+  for (const char* centre :
+       {"[100]", "[1, 2, 3]", "[nan, 1]", "[inf, 1]", "[1e9, 1]", "7", "[-1, 5]", "[512, 5]"})
+    EXPECT_THAT(with("[100, 100]", centre), HasSubstr("stamp[0].centre_m")) << centre;
+  for (const char* key : {"size_m = 0", "size_m = nan", "size_m = 30000", "border_m = -1",
+                          "border_m = 101", "turn_deg = 361", "height_m = 1e6", "height_m = 61",
+                          "mode = \"multiply\"", "mode = 1", "heights_m = 3"})
+    EXPECT_THAT(shape_error(stamp + key), HasSubstr("w.toml:27: stamp[0].")) << key;
+  EXPECT_THAT(shape_error(stamp + "mode = \"set\"\nbase_m = -1\nheight_m = 9"),
+              AllOf(HasSubstr("stamp[0].height_m"), HasSubstr("-1 m"), HasSubstr("0 to 60 m")));
+  std::string many;
+  for (int i = 0; i < 65; ++i)
+    many += stamp;
+  EXPECT_THAT(shape_error(many), HasSubstr("stamp: it must be at most 64 tables"));
+  const auto unread = parse_world(kSmallWorld + stamp, "w", registry());
+  ASSERT_FALSE(unread);
+  EXPECT_THAT(unread.error().message, HasSubstr("reads no files beside"));
+}
+
+TEST(ShapedFile, BadRoadsAreRefusedWithLineAndField) {
+  const auto with = [&](const std::string& points, const std::string& more = "") {
+    return shape_error("[[road]]\npoints_m = " + points + "\n" + more);
+  };
+  ASSERT_EQ(with("[[10, 10], [40.5, 40]]"), "");
+  for (const char* points :
+       {"[[10, 10]]", "[]", "7", "[10, 10]", "[[10, 10], [nan, 4]]", "[[10, 10], [inf, 4]]",
+        "[[10, 10], [10, 10.5]]", "[[10, 10], [40, 40, 40]]", "[[10, 10], [\"a\", 4]]",
+        "[[10, 10], [1e9, 4]]", "[[10, 10], [-20, 4]]", "[[10, 10], [40, 256.5]]"})
+    EXPECT_THAT(with(points), HasSubstr("maps/w.toml:25: road[0].points_m")) << points;
+  EXPECT_THAT(shape_error("[[road]]\nwidth_m = 4\n"), HasSubstr("road[0].points_m"));
+  for (const char* key : {"width_m = 0", "width_m = nan", "border_m = -1", "smoothing_m = 1e4",
+                          "clear_m = 101", "wide_m = 4"})
+    EXPECT_THAT(with("[[10, 10], [40, 40]]", key), HasSubstr("w.toml:26: road[0].")) << key;
+  std::string points = "[[0, 0]";
+  for (int i = 1; i < 1001; ++i)
+    points += i % 2 == 0 ? ", [0, 0]" : ", [500, 0]";
+  EXPECT_THAT(with(points + "]"), HasSubstr("2 to 1000 points"));
+  points = "[[0, 0]";
+  for (int i = 1; i < 300; ++i)
+    points += i % 2 == 0 ? ", [0, 0]" : ", [500, 200]";
+  EXPECT_THAT(with(points + "]"), HasSubstr("longer than 100000 m"));
+}
+
+TEST(ShapedFile, TooMuchOnTopOfEachOtherIsRefused) {
+  std::string points = "[[10, 10]";
+  for (int i = 1; i < 1000; ++i)
+    points += i % 2 == 0 ? ", [10, 10]" : ", [90, 60]";
+  std::string tables;
+  const std::string road = "[[road]]\npoints_m = " + points + "]\nwidth_m = 0.5\n";
+  EXPECT_THAT(shape_error(road), HasSubstr("on top of each other"));
+}
+
+}  // namespace
+}  // namespace psygen::world
