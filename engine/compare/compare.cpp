@@ -113,7 +113,7 @@ std::vector<double> figures(Runs runs, const Field& field) {
   return values;
 }
 
-double mean(const std::vector<double>& values) {
+double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
@@ -221,7 +221,7 @@ std::vector<double> less(std::vector<double> figures, double share, double amoun
   return figures;
 }
 
-// What all pairs say together: how slow rare frames are, and whether B is known to show as much as
+// What all pairs say together: how slow few frames are, and whether B is known to show as much as
 // A.
 void judge_all(Runs a, Runs b, Comparison& comparison) {
   const std::vector<bool> left_out = left_out_of(a, b);
@@ -230,8 +230,7 @@ void judge_all(Runs a, Runs b, Comparison& comparison) {
   comparison.tail = tail_test(times, times_b);
   times.insert(times.end(), times_b.begin(), times_b.end());
   const std::vector<double> rare = rare_frames(times);
-  const std::vector<double> rare_a(rare.begin(), rare.begin() + static_cast<long>(a.size())),
-      rare_b(rare.begin() + static_cast<long>(a.size()), rare.end());
+  const auto rare_a = std::span(rare).first(a.size()), rare_b = std::span(rare).subspan(a.size());
   comparison.rare_a = std::exp(mean(rare_a));
   comparison.rare_b = std::exp(mean(rare_b));
   comparison.p_rare = swap_test(rare_a, rare_b);
@@ -280,19 +279,22 @@ void conclude(Comparison& comparison) {
   const bool faster = found[kFaster] || found[kLessCpu];
   if (worse && faster)
     comparison.reasons.push_back("faster with anything else worse is not better");
-  const bool narrow = is_narrow(last.minima) && (!last.cpu || is_narrow(*last.cpu));
   if (!confirmed && (worse || faster)) {
     comparison.reasons.push_back(
         fmt::format("no second batch confirms it: record {} pairs or more", 2 * kFewestPairs));
-  } else if (faster && !worse && !comparison.shows_as_much) {
+    return;
+  }
+  const bool narrow = is_narrow(last.minima) && (!last.cpu || is_narrow(*last.cpu));
+  const bool same = narrow && !once;
+  if (worse) {
+    comparison.verdict = Verdict::kWorse;
+  } else if ((faster || same) && !comparison.shows_as_much) {
     comparison.reasons.push_back(fmt::format(
         "missing geometry and its error vary too much from run to run to tell whether B "
         "shows as much: {:.3g} and {:.3g} % of the picture, error {:.3g} and {:.3g} pixels",
         last.missing_a, last.missing_b, last.error_a, last.error_b));
-  } else if (worse || faster) {
-    comparison.verdict = worse ? Verdict::kWorse : Verdict::kBetter;
-  } else if (narrow && !once) {
-    comparison.verdict = Verdict::kSame;
+  } else if (faster || same) {
+    comparison.verdict = faster ? Verdict::kBetter : Verdict::kSame;
   } else {
     comparison.reasons.push_back(
         once ? "one batch found a difference that the other did not confirm"

@@ -48,9 +48,9 @@ TEST(Compare, FasterWithMoreMissingOrALargerErrorIsNotBetter) {
   EXPECT_EQ(judged(make_sets(16, coarser, 0.8)).verdict, Verdict::kWorse);
 }
 
-TEST(Compare, FasterIsNotBetterWhereNoiseHidesWhetherAsMuchIsShown) {
-  const auto varies = [](double percent, double error) {
-    Sets sets = make_sets(16, kNothing, 0.8);
+TEST(Compare, FasterIsNotBetterNorTheSameTheSameWhereNoiseHidesWhetherAsMuchIsShown) {
+  const auto varies = [](double percent, double error, double factor = 0.8) {
+    Sets sets = make_sets(16, kNothing, factor);
     std::mt19937 random(3);
     for (Runs* runs : {&sets.a, &sets.b}) {
       for (RecordedRun& run : *runs) {
@@ -65,6 +65,8 @@ TEST(Compare, FasterIsNotBetterWhereNoiseHidesWhetherAsMuchIsShown) {
   EXPECT_EQ(hidden.verdict, Verdict::kInconclusive);
   EXPECT_THAT(hidden.reasons, testing::Contains(HasSubstr("whether B shows as much")));
   EXPECT_EQ(varies(0, 3).verdict, Verdict::kInconclusive);
+  EXPECT_EQ(varies(0, 0, 1).verdict, Verdict::kSame);
+  EXPECT_EQ(varies(10, 0, 1).verdict, Verdict::kInconclusive);
 }
 
 TEST(Compare, FindsMoreProcessorTimeOfTheMainThreadWhereFramesAreTooNoisy) {

@@ -12,6 +12,12 @@
 namespace psygen::compare {
 namespace {
 
+// Seven pairs of runs of four frames.
+const Times kRunsA{{10, 20, 30, 12}, {11, 19, 33, 12}, {10, 22, 31, 12}, {12, 20, 30, 14},
+                   {11, 21, 29, 12}, {10, 23, 35, 13}, {13, 20, 31, 12}};
+const Times kRunsB{{11, 22, 33, 13}, {12, 20, 35, 12}, {10, 24, 31, 15}, {14, 21, 33, 12},
+                   {11, 22, 30, 13}, {11, 26, 38, 12}, {13, 23, 33, 14}};
+
 TEST(FisherMore, IsTheHypergeometricTail) {
   EXPECT_NEAR(fisher_more(0, 8, 6, 8), 0.0034965034965034965, 1e-12);
   EXPECT_NEAR(fisher_more(1, 8, 6, 8), 0.02027972027972028, 1e-12);
@@ -29,11 +35,7 @@ TEST(SwapTest, CountsTheLabellingsThatAreAtLeastAsExtreme) {
 }
 
 TEST(MinimaTest, ComparesTheSumsOfTheMinimaOfWindows) {
-  const Times a{{10, 20, 30, 12}, {11, 19, 33, 12}, {10, 22, 31, 12}, {12, 20, 30, 14},
-                {11, 21, 29, 12}, {10, 23, 35, 13}, {13, 20, 31, 12}};
-  const Times b{{11, 22, 33, 13}, {12, 20, 35, 12}, {10, 24, 31, 15}, {14, 21, 33, 12},
-                {11, 22, 30, 13}, {11, 26, 38, 12}, {13, 23, 33, 14}};
-  const MinimaTest test = minima_test(a, b);
+  const MinimaTest test = minima_test(kRunsA, kRunsB);
   EXPECT_NEAR(test.ratio, 19.0 / 18, 1e-12) << "four frames are one window: 76 and 72";
   EXPECT_EQ(test.p_slower, 8.0 / 128);
   EXPECT_EQ(test.p_faster, 128.0 / 128);
@@ -42,11 +44,7 @@ TEST(MinimaTest, ComparesTheSumsOfTheMinimaOfWindows) {
 }
 
 TEST(TailTest, ComparesTheSecondLeastOfWindowsOfThreeFrames) {
-  const Times a{{10, 20, 30, 12}, {11, 19, 33, 12}, {10, 22, 31, 12}, {12, 20, 30, 14},
-                {11, 21, 29, 12}, {10, 23, 35, 13}, {13, 20, 31, 12}};
-  const Times b{{11, 22, 33, 13}, {12, 20, 35, 12}, {10, 24, 31, 15}, {14, 21, 33, 12},
-                {11, 22, 30, 13}, {11, 26, 38, 12}, {13, 23, 33, 14}};
-  const TailTest test = tail_test(a, b);
+  const TailTest test = tail_test(kRunsA, kRunsB);
   EXPECT_NEAR(test.ratio, 65.0 / 61, 1e-12) << "of the first of two windows";
   EXPECT_NEAR(test.p, 2.0 / 128, 0.006) << "of all labellings; three standard deviations of 4096";
 }
