@@ -58,9 +58,16 @@ core::BlockCoord block_near(const world::World& world, core::BlockCoord around, 
           place(around.z + (number / 2) * 5 - 2, world.blocks_z)};
 }
 
-double mesh_bytes(const models::MeshSize& size) {
-  return static_cast<double>(size.vertex_count) * core::vertex_stride_bytes(size.layout) +
-         (size.shared_indices != 0 ? 0.0 : 2.0 * size.index_count);
+MeshCost mesh_cost(const ParsedWorld& parsed, models::ModelIndex model, const models::Parameters& p,
+                   const synthesis::CostModel& costs) {
+  MeshCost cost;
+  cost.seconds = costs.predict(model, p, 0);
+  const auto size = synthesis::mesh_size_guarded(parsed.registry[model], p, 0);
+  if (!size) return cost;
+  cost.triangles = size->triangle_count();
+  cost.bytes = static_cast<double>(size->vertex_count) * core::vertex_stride_bytes(size->layout) +
+               (size->shared_indices != 0 ? 0.0 : 2.0 * size->index_count);
+  return cost;
 }
 
 bool has_cost_curve(const world::WorldField& field) {
@@ -88,12 +95,10 @@ BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
   }
   double measured_s = 0;
   for (const auto& [model, p] : meshes) {
-    const models::ModelType& type = parsed.registry[model];
-    if (const auto size = synthesis::mesh_size_guarded(type, p, 0)) {
-      sum.triangles += size->triangle_count();
-      sum.bytes += mesh_bytes(*size);
-    }
-    sum.seconds += costs.predict(model, p, 0);
+    const MeshCost cost = mesh_cost(parsed, model, p, costs);
+    sum.triangles += cost.triangles;
+    sum.bytes += cost.bytes;
+    sum.seconds += cost.seconds;
   }
   if (measure && sum.seconds <= kMostMeasuredS) {
     for (const auto& [model, p] : meshes)

@@ -29,8 +29,15 @@ BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
 // Blocks of which means are taken: number 0, 1, … around a block, a few hundred metres apart,
 // within the world.
 core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number);
-// Of vertices and of indices that are the mesh's own.
-double mesh_bytes(const models::MeshSize& size);
+
+// What a mesh takes at full detail. Bytes are those of its vertices and of the indices that are its
+// own; without a size, as of a type that fails, they are 0.
+struct MeshCost {
+  double triangles = 0, bytes = 0;
+  double seconds = 0;  // of one core, predicted
+};
+MeshCost mesh_cost(const ParsedWorld& parsed, models::ModelIndex model, const models::Parameters& p,
+                   const synthesis::CostModel& costs);
 
 // Whether numbers of a field change what is made, so that there is a curve of it.
 bool has_cost_curve(const world::WorldField& field);

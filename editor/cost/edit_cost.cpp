@@ -6,24 +6,13 @@
 #include <cmath>
 
 #include "editor/cost/block_cost.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "editor/cost/seconds_text.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::editor {
 namespace {
 
 constexpr std::uint32_t kInstances = 6;  // of each scatter, and one with the highest values
-
-struct MeshCost {
-  double seconds = 0, bytes = 0;
-};
-
-MeshCost mesh_cost(const models::ModelType& type, models::ModelIndex model,
-                   const models::Parameters& p, const synthesis::CostModel& costs) {
-  MeshCost cost{costs.predict(model, p, 0), 0};
-  if (const auto size = synthesis::mesh_size_guarded(type, p, 0)) cost.bytes = mesh_bytes(*size);
-  return cost;
-}
 
 models::Parameters highest(const ParsedWorld& parsed, const world::Scatter& scatter) {
   const models::ModelType& type = parsed.registry[scatter.model];
@@ -39,12 +28,11 @@ models::Parameters highest(const ParsedWorld& parsed, const world::Scatter& scat
 // `first`: the index of its first instance in a block.
 void add_scatter(const ParsedWorld& parsed, const world::Scatter& scatter, std::uint32_t first,
                  const synthesis::CostModel& costs, EditCost& sum) {
-  const models::ModelType& type = parsed.registry[scatter.model];
   const std::uint32_t drawn = std::min(scatter.count, kInstances);
-  MeshCost mean, most = mesh_cost(type, scatter.model, highest(parsed, scatter), costs);
+  MeshCost mean, most = mesh_cost(parsed, scatter.model, highest(parsed, scatter), costs);
   for (std::uint32_t i = 0; i < drawn; ++i) {
     const MeshCost one = mesh_cost(
-        type, scatter.model,
+        parsed, scatter.model,
         world::draw_parameters(parsed.world, parsed.registry, scatter, {0, 0}, first + i), costs);
     mean.seconds += one.seconds / drawn;
     mean.bytes += one.bytes / drawn;
@@ -54,13 +42,7 @@ void add_scatter(const ParsedWorld& parsed, const world::Scatter& scatter, std::
   sum.block_bytes += scatter.count * mean.bytes;
   if (scatter.count == 0 || most.seconds <= sum.model_seconds) return;
   sum.model_seconds = most.seconds;
-  sum.model = type.name();
-}
-
-QString seconds_text(double seconds) {
-  const QLocale english(QLocale::English);
-  return seconds < 0.0995 ? QObject::tr("%1 ms").arg(english.toString(seconds * 1e3, 'g', 2))
-                          : QObject::tr("%1 s").arg(english.toString(seconds, 'g', 2));
+  sum.model = parsed.registry[scatter.model].name();
 }
 
 }  // namespace
@@ -70,7 +52,7 @@ EditCost edit_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt
   if (learnt != nullptr) costs.learn_from(*learnt);
   EditCost sum;
   const models::ModelIndex ground = parsed.world.terrain_model;
-  const MeshCost terrain = mesh_cost(parsed.registry[ground], ground, parsed.world.terrain, costs);
+  const MeshCost terrain = mesh_cost(parsed, ground, parsed.world.terrain, costs);
   sum.block_seconds = terrain.seconds;
   sum.block_bytes = terrain.bytes;
   std::uint32_t first = 0;

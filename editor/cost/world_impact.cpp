@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "editor/cost/block_cost.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "editor/cost/seconds_text.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::editor {
@@ -19,27 +19,27 @@ constexpr std::size_t kCosted = 24;    // meshes of each type, whose cost is ask
 constexpr double kUsualDetail = 0.25;  // of full detail, where nothing is known
 
 // Means over some meshes of a type at full detail.
-struct CostMean {
-  double seconds = 0, bytes = 0;
+struct MeanCost {
+  MeshCost mean;
   std::size_t count = 0;
 
   void add(const ParsedWorld& parsed, models::ModelIndex model, const models::Parameters& p,
            const synthesis::CostModel& costs) {
     if (count == kCosted) return;
-    const auto size = synthesis::mesh_size_guarded(parsed.registry[model], p, 0);
+    const MeshCost one = mesh_cost(parsed, model, p, costs);
     const double share = 1.0 / static_cast<double>(++count);
-    seconds += (costs.predict(model, p, 0) - seconds) * share;
-    bytes += ((size ? mesh_bytes(*size) : 0) - bytes) * share;
+    mean.seconds += (one.seconds - mean.seconds) * share;
+    mean.bytes += (one.bytes - mean.bytes) * share;
   }
 };
 
 // What some blocks have of a type: before, of these what is the same afterwards, and what is new.
 struct TypeChange {
   double before = 0, same = 0, fresh = 0;
-  CostMean cost_before, cost_fresh;
+  MeanCost cost_before, cost_fresh;
 
-  double factor(double CostMean::*of) const {
-    const double was = cost_before.*of, is = cost_fresh.*of;
+  double factor(double MeshCost::*of) const {
+    const double was = cost_before.mean.*of, is = cost_fresh.mean.*of;
     return cost_before.count == 0 || cost_fresh.count == 0 || was <= 0 ? 1 : is / was;
   }
 };
@@ -122,8 +122,8 @@ void add_held(const HeldMeshes& held, const TypeChange& change, WorldImpact& imp
   }
   const double fresh = change.fresh / change.before, same = change.same / change.before;
   impact.changed += meshes * fresh;
-  impact.seconds += held.seconds * fresh * change.factor(&CostMean::seconds);
-  impact.bytes += held.bytes * (same + fresh * change.factor(&CostMean::bytes));
+  impact.seconds += held.seconds * fresh * change.factor(&MeshCost::seconds);
+  impact.bytes += held.bytes * (same + fresh * change.factor(&MeshCost::bytes));
 }
 
 // Adds types that the cache has no meshes of yet, at the detail that it has of others.
@@ -137,7 +137,7 @@ void add_new(const Comparison& comparison, const CacheContents& contents, WorldI
     meshes += static_cast<double>(held.meshes);
     placed += type->second.before;
     seconds += held.seconds;
-    full_seconds += static_cast<double>(held.meshes) * type->second.cost_before.seconds;
+    full_seconds += static_cast<double>(held.meshes) * type->second.cost_before.mean.seconds;
   }
   if (placed <= 0) return;
   const double detail = full_seconds > 0 ? std::min(seconds / full_seconds, 1.0) : kUsualDetail;
@@ -145,8 +145,8 @@ void add_new(const Comparison& comparison, const CacheContents& contents, WorldI
     if (known.contains(name) || type.fresh <= 0) continue;
     const double made = type.fresh * meshes / placed;
     impact.changed += made;
-    impact.seconds += made * detail * type.cost_fresh.seconds;
-    impact.bytes += made * detail * type.cost_fresh.bytes;
+    impact.seconds += made * detail * type.cost_fresh.mean.seconds;
+    impact.bytes += made * detail * type.cost_fresh.mean.bytes;
   }
 }
 
@@ -181,13 +181,10 @@ QString impact_text(const WorldImpact& impact) {
   const QLocale english(QLocale::English);
   if (impact.changed < 0.5 && impact.seconds <= 0) return QObject::tr("No mesh changes.");
   const auto whole = [&](double count) { return english.toString(std::llround(count)); };
-  const QString time = impact.seconds < 0.095
-                           ? QObject::tr("%1 ms").arg(std::ceil(impact.seconds * 1e3))
-                           : QObject::tr("%1 s").arg(impact.seconds, 0, 'f', 1);
   return QObject::tr(
              "About %1 meshes change of %2 in the cache; %3 to make them. Then the world takes %4 "
              "of %5.")
-      .arg(whole(impact.changed), whole(impact.held), time,
+      .arg(whole(impact.changed), whole(impact.held), seconds_text(impact.seconds),
            english.formattedDataSize(std::llround(impact.bytes), 1),
            english.formattedDataSize(std::llround(impact.budget_bytes), 0));
 }

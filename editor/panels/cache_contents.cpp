@@ -32,6 +32,19 @@ std::vector<double> mean_seconds(const scene::State& state) {
 
 }  // namespace
 
+std::vector<HeldOfType> held_by_type(const scene::State& state) {
+  std::vector<HeldOfType> held(state.facts.registry.size());
+  for (const synthesis::MeshRecord& record : state.meshes.records()) {
+    if (record.state != synthesis::MeshState::kReady || record.key.model >= held.size()) continue;
+    HeldOfType& of = held[record.key.model];
+    ++of.meshes;
+    of.triangles += record.size.triangle_count();
+    of.vertices += record.size.vertex_count;
+    of.bytes += record.range.bytes;
+  }
+  return held;
+}
+
 CacheContents contents_of(const scene::State& state) {
   using Kind = HeldMeshes::Kind;
   CacheContents contents;
@@ -39,21 +52,17 @@ CacheContents contents_of(const scene::State& state) {
   contents.modelers =
       std::max(static_cast<unsigned>(state.meshes.modeler_stats().modelers.size()), 1U);
   const scene::WorldFacts& facts = state.facts;
-  std::vector<HeldMeshes> of_type(facts.registry.size());
-  for (const synthesis::MeshRecord& record : state.meshes.records()) {
-    if (record.state != synthesis::MeshState::kReady || record.key.model >= of_type.size())
-      continue;
-    ++of_type[record.key.model].meshes;
-    of_type[record.key.model].bytes += static_cast<double>(record.range.bytes);
-  }
+  const std::vector<HeldOfType> of_type = held_by_type(state);
   const std::vector<double> seconds = mean_seconds(state);
   for (models::ModelIndex i = 0; i < of_type.size(); ++i) {
-    HeldMeshes& held = of_type[i];
-    if (held.meshes == 0) continue;
+    if (of_type[i].meshes == 0) continue;
+    HeldMeshes held;
     held.type = facts.registry[i].name();
     held.kind = i == facts.world.terrain_model ? Kind::kGround
                 : i >= facts.given_types       ? Kind::kDerived
                                                : Kind::kModel;
+    held.meshes = of_type[i].meshes;
+    held.bytes = static_cast<double>(of_type[i].bytes);
     held.seconds = seconds[i] * static_cast<double>(held.meshes);
     contents.held.push_back(std::move(held));
   }

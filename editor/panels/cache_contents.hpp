@@ -1,5 +1,4 @@
-// What the cache of a scene holds, by model type, for estimates (cost/world_impact.hpp). Reads the
-// scene. Main thread.
+// What the cache of a scene holds, by model type. Reads the scene. Main thread.
 #pragma once
 
 #include "editor/cost/world_impact.hpp"
@@ -10,7 +9,15 @@ struct State;
 
 namespace psygen::editor {
 
-// Counts all meshes; what they take to make is predicted of a sample. Some milliseconds.
+// The meshes of one type.
+struct HeldOfType {
+  std::uint64_t meshes = 0, triangles = 0, vertices = 0, bytes = 0;
+};
+// By type of the scene's registry. Counts all meshes.
+std::vector<HeldOfType> held_by_type(const scene::State& state);
+
+// For estimates (cost/world_impact.hpp): also what meshes take to make, predicted of a sample. Some
+// milliseconds.
 CacheContents contents_of(const scene::State& state);
 
 }  // namespace psygen::editor

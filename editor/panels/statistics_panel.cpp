@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/panels/cache_contents.hpp"
 #include "editor/panels/cost_strip.hpp"
 #include "engine/scene/state.hpp"
 
@@ -18,26 +19,12 @@ constexpr std::size_t kSamples = 512;
 
 const QLocale kEnglish(QLocale::English);
 
-// What the cache holds of one model.
-struct Held {
-  std::uint64_t meshes = 0, triangles = 0, vertices = 0, bytes = 0;
-};
-
-// By name; of some thousand records.
-std::map<std::string, Held> held_by(const scene::State& state) {
-  std::vector<Held> of_model(state.facts.registry.size());
-  for (const synthesis::MeshRecord& record : state.meshes.records()) {
-    if (record.state != synthesis::MeshState::kReady || record.key.model >= of_model.size())
-      continue;
-    Held& of = of_model[record.key.model];
-    ++of.meshes;
-    of.triangles += record.size.triangle_count();
-    of.vertices += record.size.vertex_count;
-    of.bytes += record.range.bytes;
-  }
-  std::map<std::string, Held> held;
-  for (models::ModelIndex i = 0; i < of_model.size(); ++i) {
-    if (of_model[i].meshes > 0) held[std::string(state.facts.registry[i].name())] = of_model[i];
+// Of types that have meshes, by name.
+std::map<std::string, HeldOfType> held_by_name(const scene::State& state) {
+  const std::vector<HeldOfType> of_type = held_by_type(state);
+  std::map<std::string, HeldOfType> held;
+  for (models::ModelIndex i = 0; i < of_type.size(); ++i) {
+    if (of_type[i].meshes > 0) held[std::string(state.facts.registry[i].name())] = of_type[i];
   }
   return held;
 }
@@ -47,11 +34,19 @@ QString percentile(std::vector<double> ms, double share) {
   return kEnglish.toString(synthesis::quantile(ms, share), 'g', 3);
 }
 
-QTableWidgetItem* cell(const QString& text, bool number = true) {
-  auto* item = new QTableWidgetItem(text);
-  item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable);
-  if (number) item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
-  return item;
+// Whether the cell had another text before.
+bool set_cell(QTableWidget& table, int row, int column, const QString& text) {
+  QTableWidgetItem* item = table.item(row, column);
+  if (item == nullptr) {
+    item = new QTableWidgetItem(text);
+    item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable);
+    if (column > 0) item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
+    table.setItem(row, column, item);
+    return true;
+  }
+  if (item->text() == text) return false;
+  item->setText(text);
+  return true;
 }
 
 QString parameters_text(const models::ModelType& type, const models::Parameters& p) {
@@ -79,7 +74,6 @@ StatisticsPanel::StatisticsPanel(QWidget* parent)
                             tr("bytes"), tr("share"),  tr("p50 ms"),    tr("p99 ms")};
   table_->setColumnCount(static_cast<int>(columns.size()));
   table_->setHorizontalHeaderLabels(columns);
-  table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
   table_->verticalHeader()->hide();
   table_->verticalHeader()->setDefaultSectionSize(table_->fontMetrics().height() + 4);
   table_->setAccessibleName(tr("Meshes in the cache, by model"));
@@ -112,9 +106,10 @@ void StatisticsPanel::show(const scene::State& state) {
                            kEnglish.formattedDataSize(static_cast<qint64>(stats.visible_bytes)),
                            kEnglish.toString(static_cast<qulonglong>(stats.evictions)),
                            kEnglish.toString(static_cast<qulonglong>(state.meshes.outstanding()))));
-  const auto held = held_by(state);
+  const auto held = held_by_name(state);
   table_->setRowCount(static_cast<int>(held.size()));
   int row = 0;
+  bool changed = false;
   for (const auto& [name, of] : held) {
     const auto made = made_.find(name);
     const std::vector<double> ms = made != made_.end() ? made->second.ms : std::vector<double>{};
@@ -129,9 +124,10 @@ void StatisticsPanel::show(const scene::State& state) {
                              percentile(ms, 0.5),
                              percentile(ms, 0.99)};
     for (int column = 0; column < 8; ++column)
-      table_->setItem(row, column, cell(cells[column], column > 0));
+      changed = set_cell(*table_, row, column, cells[column]) || changed;
     ++row;
   }
+  if (changed) table_->resizeColumnsToContents();
 }
 
 void StatisticsPanel::show_world_cost(const BlockCost& cost, double blocks) {

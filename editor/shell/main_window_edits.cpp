@@ -140,12 +140,9 @@ void MainWindow::look_at_scene() {
 
 // Of the fields that are shown.
 void MainWindow::ask_costs() {
-  std::shared_ptr<const synthesis::CostModel> learnt;
-  if (view_->session() != nullptr)
-    learnt =
-        std::make_shared<synthesis::CostModel>(view_->session()->scene().state().meshes.costs());
+  look_at_scene();
   costs_->ask(document_.text(), document_.file().string(), properties_->shown_fields(),
-              view_->camera().pose().position.block, std::move(learnt));
+              view_->camera().pose().position.block, learnt_);
 }
 
 // What is not locked of a section or field.
