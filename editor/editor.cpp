@@ -9,8 +9,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "editor/pictures/picture_server.hpp"
+#include "editor/shell/first_world.hpp"
 #include "editor/shell/main_window.hpp"
-#include "editor/shell/manual_pictures.hpp"
 #include "editor/shell/theme.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/core/log.hpp"
@@ -20,16 +20,9 @@
 namespace psygen::editor {
 namespace {
 
-// What is seen first: the valley of the README.
-constexpr const char* kFirstWorld = "silver_combe";
-constexpr glm::dvec3 kFirstPlaceM{-1257, 24, 3978};
-constexpr double kFirstYawDeg = 110, kFirstPitchDeg = -10;
-
 struct Arguments {
   QString file;
   bool safe = false;
-  QString pictures;  // a folder; empty: none are taken
-  bool only_window = false;
   app::SessionOptions session;
 };
 
@@ -49,9 +42,7 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
   parser.addOptions({{"safe", "Open with synthesis paused, for a world that hangs."},
                      {"preset", "Light and detail: low, medium, high, ultra.", "preset"},
                      {"device", "Part of the name of the Vulkan device.", "name"},
-                     {"validation", "Vulkan validation."},
-                     {"pictures", "Take the pictures of the manual and end.", "folder"},
-                     {"only-window", "With --pictures: take that of the window alone."}});
+                     {"validation", "Vulkan validation."}});
   if (!parser.parse(app.arguments())) return usage(parser.errorText());
   if (parser.isSet("help")) parser.showHelp(0);
   if (parser.isSet("version")) parser.showVersion();
@@ -63,8 +54,6 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
   }
   arguments.file = parser.positionalArguments().value(0);
   arguments.safe = parser.isSet("safe");
-  arguments.pictures = parser.value("pictures");
-  arguments.only_window = parser.isSet("only-window");
   arguments.session.device_name = parser.value("device").toStdString();
   arguments.session.validation = parser.isSet("validation");
   return std::nullopt;
@@ -88,10 +77,6 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   apply_scale(QSettings().value("scale", 100).toInt());
 
   MainWindowOptions options;
-  if (!arguments.pictures.isEmpty()) {  // as fine as they get, however long it takes
-    arguments.session.target_hz = 0;
-    if (!arguments.session.preset) arguments.session.preset = render::Preset::kMedium;
-  }
   options.session = std::move(arguments.session);
   options.safe = arguments.safe;
   options.document.register_models = [plugins](models::Registry& registry) {
@@ -99,24 +84,13 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   };
   options.session.plugins = std::move(plugins);
   MainWindow window(std::move(options));
-  arguments.pictures.isEmpty() ? window.show() : window.showFullScreen();
+  window.show();
   const auto file = cli::find_file(
       cli::Shipped::kWorld, arguments.file.isEmpty() ? kFirstWorld : arguments.file.toStdString());
-  if (arguments.file.isEmpty() || !arguments.pictures.isEmpty()) {
-    core::CameraPose pose{{{}, {kFirstPlaceM.x, 0, kFirstPlaceM.z}},
-                          glm::radians(kFirstYawDeg),
-                          glm::radians(kFirstPitchDeg)};
-    window.set_first_place(pose, kFirstPlaceM.y);
-  }
+  if (arguments.file.isEmpty()) window.set_first_place(first_pose(), kFirstHeightM);
   if (!file) return usage(QString::fromStdString(file.error().message));
   if (!window.open_file(*file) && !arguments.file.isEmpty())
     std::fprintf(stderr, "psygen-editor: the world could not be opened; the messages say why\n");
-  if (!arguments.pictures.isEmpty()) {
-    const QString theme = QSettings().value("theme", "dark").toString();
-    const bool taken = take_manual_pictures(window, arguments.pictures.toStdString(), theme,
-                                            arguments.only_window);
-    return taken ? 0 : 1;
-  }
   const int code = QApplication::exec();
   // The memory of a modeler that hangs must not be torn down.
   if (window.view().has_hung()) std::_Exit(code);

@@ -4,35 +4,22 @@
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
-#include <QApplication>
-#include <QDeadlineTimer>
-#include <QThread>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 #include <string>
 
 #include "editor/panels/properties_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
+#include "editor/shell/first_world.hpp"
 #include "editor/shell/main_window.hpp"
 #include "engine/scene/scene.hpp"
-#include "tests/engine/platform/virtual_display.hpp"
+#include "tests/editor/own_display.hpp"
 #include "tests/source_file.hpp"
 
 namespace psygen::editor {
 namespace {
 
 constexpr int kLongestMs = 300'000;
-
-bool wait_until(const std::function<bool()>& is_so) {
-  const QDeadlineTimer end(kLongestMs);
-  while (!is_so() && !end.hasExpired()) {
-    QApplication::processEvents(QEventLoop::AllEvents, 5);
-    QThread::usleep(200);
-  }
-  return is_so();
-}
 
 // Milliseconds of the last answer and of the last mesh; below 0: not yet.
 struct Answer {
@@ -49,10 +36,9 @@ std::unique_ptr<MainWindow> open_window(const std::filesystem::path& state, Answ
   QObject::connect(&window->view(), &WorldView::settled, window.get(),
                    [&answer](double ms) { answer.last_ms = ms; });
   window->show();
-  core::CameraPose pose{{{}, {-1257, 0, 3978}}, 1.92, -0.17};
-  window->set_first_place(pose, 24);
-  window->open_file(source_file("game/worlds/silver_combe.toml"));
-  wait_until([&] { return answer.last_ms >= 0; });
+  window->set_first_place(first_pose(), kFirstHeightM);
+  window->open_file(source_file(std::string("game/worlds/") + kFirstWorld + ".toml"));
+  wait_until([&] { return answer.last_ms >= 0; }, kLongestMs);
   return window;
 }
 
@@ -69,10 +55,12 @@ void steps(benchmark::State& state, bool held, const world::TextPath& path, cons
     answer = {};
     if (held) Q_EMIT properties.drag_began();
     Q_EMIT properties.wanted(path, std::exchange(first, !first) ? high : low);
-    if (!wait_until([&] { return answer.first_ms >= 0; })) state.SkipWithError("no answer");
+    if (!wait_until([&] { return answer.first_ms >= 0; }, kLongestMs))
+      state.SkipWithError("no answer");
     state.SetIterationTime(answer.first_ms * 1e-3);
     if (held) Q_EMIT properties.drag_ended();
-    if (!wait_until([&] { return answer.last_ms >= 0; })) state.SkipWithError("it does not settle");
+    if (!wait_until([&] { return answer.last_ms >= 0; }, kLongestMs))
+      state.SkipWithError("it does not settle");
     last_ms += answer.last_ms;
   }
   state.counters["last_mesh_ms"] = benchmark::Counter(last_ms, benchmark::Counter::kAvgIterations);
@@ -110,9 +98,8 @@ BENCHMARK_CAPTURE(sky, held, true)->Unit(benchmark::kMillisecond)->UseManualTime
 int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], psygen::editor::kPicturesOption) == 0)
     return psygen::editor::render_pictures({});
-  const auto display = psygen::platform::VirtualDisplay::start();
+  const auto display = psygen::editor::OwnDisplay::start();
   if (!display) return 1;
-  ::setenv("QT_QPA_PLATFORM", "xcb", 1);
   const QApplication application(argc, argv);
   QApplication::setOrganizationName("psygen");
   QApplication::setApplicationName("psygen-editor-bench");

@@ -67,13 +67,13 @@ std::string line_from(pid_t& child, const Start& start, const Wanted& wanted) {
 
 }  // namespace
 
-std::unique_ptr<VirtualDisplay> VirtualDisplay::start() {
+std::unique_ptr<VirtualDisplay> VirtualDisplay::start(const std::string& size) {
   std::unique_ptr<VirtualDisplay> display(new VirtualDisplay());
   if (const char* before = std::getenv("DISPLAY")) display->display_before_ = before;
   const std::string number = line_from(
       display->server_,
-      [](int writer) {
-        return spawn({"Xvfb", "-displayfd", std::to_string(writer), "-screen", "0", "1280x1024x24",
+      [&size](int writer) {
+        return spawn({"Xvfb", "-displayfd", std::to_string(writer), "-screen", "0", size + "x24",
                       "-nolisten", "tcp"});
       },
       [](const std::string& line) { return !line.empty(); });

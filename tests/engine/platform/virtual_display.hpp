@@ -14,8 +14,8 @@ namespace psygen::platform {
 // Owns the two processes.
 class VirtualDisplay {
  public:
-  // Starts the display; null when Xvfb or openbox cannot be started.
-  static std::unique_ptr<VirtualDisplay> start();
+  // Starts the display, of a size in pixels; null when Xvfb or openbox cannot be started.
+  static std::unique_ptr<VirtualDisplay> start(const std::string& size = "1280x1024");
   // Ends the processes and restores DISPLAY.
   ~VirtualDisplay();
   VirtualDisplay(const VirtualDisplay&) = delete;

@@ -1,5 +1,7 @@
-#include "editor/shell/manual_pictures.hpp"
-
+// Takes the pictures of the manual (docs/editor.md): goes through the panels of a window as a
+// person would and saves each as NAME-THEME-WIDTH.jpg. Run by tools/editor_pictures.sh. Minutes.
+//   psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window]     `window`: that alone
+// It edits the document and saves nothing of it.
 #include <QAction>
 #include <QApplication>
 #include <QComboBox>
@@ -10,42 +12,43 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPainter>
-#include <QPushButton>
 #include <QSpinBox>
-#include <QThread>
 #include <cstdio>
+#include <cstring>
 #include <functional>
+#include <string>
 
 #include "editor/flights/timeline_panel.hpp"
 #include "editor/gallery/contact_sheet.hpp"
 #include "editor/gallery/library_panel.hpp"
 #include "editor/panels/impact_bar.hpp"
 #include "editor/panels/properties_panel.hpp"
+#include "editor/pictures/picture_server.hpp"
 #include "editor/shell/command_palette.hpp"
+#include "editor/shell/first_world.hpp"
 #include "editor/shell/main_window.hpp"
+#include "editor/shell/theme.hpp"
 #include "engine/scene/scene.hpp"
+#include "tests/editor/own_display.hpp"
+#include "tests/source_file.hpp"
 
 namespace psygen::editor {
 namespace {
+
+struct Arguments {
+  std::filesystem::path folder;
+  QString theme;
+  std::string size;          // of the display
+  bool only_window = false;  // else all pictures
+};
 
 constexpr int kLongestMs = 400'000, kRestMs = 700, kQuality = 78;
 constexpr int kFlownMs = 2500;
 constexpr double kFlownMps = 25, kFlownTurn = 0.12;  // a second
 
-// Lets everything go on until something is so. False: it did not come.
-bool wait_until(const std::function<bool()>& is_so, int longest_ms = kLongestMs) {
-  const QDeadlineTimer end(longest_ms);
-  while (!is_so()) {
-    if (end.hasExpired()) return false;
-    QApplication::processEvents(QEventLoop::AllEvents, 20);
-    QThread::msleep(5);
-  }
-  return true;
-}
-
 void rest(int ms = kRestMs) {
   const QDeadlineTimer end(ms);
-  wait_until([&] { return end.hasExpired(); });
+  wait_until([&] { return end.hasExpired(); }, 2 * ms);
 }
 
 class Photographer {
@@ -72,7 +75,8 @@ class Photographer {
   void settle(const std::function<void()>& change) {
     const int before = settled_;
     change();
-    if (!wait_until([&] { return settled_ > before; })) fail("the view does not settle");
+    if (!wait_until([&] { return settled_ > before; }, kLongestMs))
+      fail("the view does not settle");
   }
   void set(const world::TextPath& path, const std::string& toml) {
     if (auto done = document().set_value(path, toml); !done)
@@ -138,7 +142,9 @@ void take_window(Photographer& take) {
   const world::TextPath size = oaks.with("size_m");
   take.settle([&] { take.set(size, "[2.4, 3.9]"); });
   ImpactBar& impact = take.properties().impact();
-  wait_until([&] { return impact.findChild<QLabel*>()->text().contains("meshes change"); });
+  if (!wait_until([&] { return impact.findChild<QLabel*>()->text().contains("meshes change"); },
+                  kLongestMs))
+    take.fail("the impact of a change does not come");
   rest(6000);
   take.window("window");
 }
@@ -175,7 +181,8 @@ void take_panels(Photographer& take, MainWindow& window) {
   library->show();
   library->raise();
   auto* shown = library->findChild<LibraryPanel*>();
-  if (!wait_until([&] { return shown->awaited() == 0; })) take.fail("the library does not fill");
+  if (!wait_until([&] { return shown->awaited() == 0; }, kLongestMs))
+    take.fail("the library does not fill");
   take.panel("library", "library");
   window.findChild<QDockWidget*>("properties")->raise();
 }
@@ -212,7 +219,7 @@ void take_timeline(Photographer& take, MainWindow& window) {
     }
     return false;
   };
-  if (!wait_until([&] { return tells("frames, half of them"); }))
+  if (!wait_until([&] { return tells("frames, half of them"); }, kLongestMs))
     take.fail("the flight does not end");
   take.panel("timeline", "timeline");
   window.view().camera().set_pose(start);
@@ -234,7 +241,7 @@ void take_sheet(Photographer& take, MainWindow& window) {
     }
     return false;
   };
-  if (!wait_until(is_filled)) take.fail("the contact sheet does not fill");
+  if (!wait_until(is_filled, kLongestMs)) take.fail("the contact sheet does not fill");
   sheet->resize(880, 640);
   take.widget("contact-sheet", *sheet);
   sheet->close();
@@ -245,15 +252,12 @@ void take_sheet(Photographer& take, MainWindow& window) {
   palette->reject();
 }
 
-}  // namespace
-
-bool take_manual_pictures(MainWindow& window, const std::filesystem::path& folder,
-                          const QString& theme, bool only_window) {
-  Photographer take(window, folder, theme);
-  if (!wait_until([&] { return window.view().session() != nullptr; })) return false;
+bool take_all(MainWindow& window, const Arguments& arguments) {
+  Photographer take(window, arguments.folder, arguments.theme);
+  if (!wait_until([&] { return window.view().session() != nullptr; }, kLongestMs)) return false;
   take.settle([] {});
   take_window(take);
-  if (only_window) return take.ok();
+  if (arguments.only_window) return take.ok();
   take_fields(take);
   take_panels(take, window);
   take_model(take);
@@ -262,4 +266,33 @@ bool take_manual_pictures(MainWindow& window, const std::filesystem::path& folde
   return take.ok();
 }
 
+int run(int argc, char** argv, const Arguments& arguments) {
+  const auto display = OwnDisplay::start(arguments.size);
+  if (!display) return 1;
+  const QApplication application(argc, argv);
+  QApplication::setOrganizationName("psygen");
+  QApplication::setApplicationName("psygen-editor");
+  apply_theme(arguments.theme);
+  MainWindowOptions options;
+  options.session.preset = render::Preset::kMedium;
+  options.session.target_hz = 0;  // as fine as it gets, however long it takes
+  options.document.state_folder = display->home();
+  MainWindow window(std::move(options));
+  window.showFullScreen();
+  window.set_first_place(first_pose(), kFirstHeightM);
+  window.open_file(source_file(std::string("game/worlds/") + kFirstWorld + ".toml"));
+  return take_all(window, arguments) ? 0 : 1;
+}
+
+}  // namespace
 }  // namespace psygen::editor
+
+int main(int argc, char** argv) {
+  using namespace psygen::editor;
+  if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0) return render_pictures({});
+  if (argc < 4 || argc > 5) {
+    std::fprintf(stderr, "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window]\n");
+    return 2;
+  }
+  return run(argc, argv, {argv[1], argv[2], argv[3], argc > 4});
+}

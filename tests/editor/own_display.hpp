@@ -1,0 +1,68 @@
+// For programs that open the editor's window: a display of their own, with settings and state of
+// their own, and waiting for what is to come. Main thread.
+#pragma once
+
+#include <unistd.h>
+
+#include <QApplication>
+#include <QDeadlineTimer>
+#include <QThread>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "tests/engine/platform/virtual_display.hpp"
+
+namespace psygen::editor {
+
+// Before the QApplication. Its folders are removed when it ends.
+class OwnDisplay {
+ public:
+  // `size` in pixels. Null, with a sentence on stderr, if there is none.
+  static std::unique_ptr<OwnDisplay> start(const std::string& size = "1280x1024") {
+    std::unique_ptr<OwnDisplay> own(new OwnDisplay());
+    own->display_ = platform::VirtualDisplay::start(size);
+    if (!own->display_) {
+      std::fprintf(stderr, "no display: Xvfb or openbox cannot be started (tools/setup.sh)\n");
+      return nullptr;
+    }
+    ::setenv("QT_QPA_PLATFORM", "xcb", 1);
+    return own;
+  }
+  ~OwnDisplay() {
+    std::error_code ignored;
+    std::filesystem::remove_all(home_, ignored);
+  }
+  OwnDisplay(const OwnDisplay&) = delete;
+  OwnDisplay& operator=(const OwnDisplay&) = delete;
+
+  const std::filesystem::path& home() const { return home_; }
+
+ private:
+  OwnDisplay()
+      : home_(std::filesystem::temp_directory_path() /
+              ("psygen_editor_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(home_);
+    for (const char* variable : {"XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"})
+      ::setenv(variable, home_.c_str(), 1);
+  }
+
+  std::filesystem::path home_;
+  std::unique_ptr<platform::VirtualDisplay> display_;
+};
+
+// Lets everything go on until something is so. False: it did not come.
+inline bool wait_until(const std::function<bool()>& is_so, int longest_ms) {
+  const QDeadlineTimer end(longest_ms);
+  while (!is_so()) {
+    if (end.hasExpired()) return false;
+    QApplication::processEvents(QEventLoop::AllEvents, 5);
+    QThread::usleep(200);
+  }
+  return true;
+}
+
+}  // namespace psygen::editor
