@@ -12,6 +12,7 @@ namespace psygen::physics {
 namespace {
 
 constexpr double kGroundAcceleration = 40, kAirAcceleration = 6;  // m/s²
+constexpr double kRiseAcceleration = 20;                          // m/s², of CharacterInput::rise
 constexpr double kMostSlide = 12;  // m/s down ground that is too steep
 constexpr double kPieceM = 0.2;    // a longer way is gone in pieces
 constexpr int kSlides = 4;
@@ -223,8 +224,8 @@ void Character::step(double dt, double gravity, const btVector3& carried) {
   follow_ground();
 
   const double length = std::max(glm::length(input.direction), 1.0);
-  const glm::dvec2 wanted =
-      input.direction * ((input.run ? settings_.run_speed : settings_.walk_speed) / length);
+  const double usual = input.run ? settings_.run_speed : settings_.walk_speed;
+  const glm::dvec2 wanted = input.direction * ((input.speed > 0 ? input.speed : usual) / length);
   btVector3 change = btVector3(wanted.x, 0, wanted.y) - btVector3(velocity.x(), 0, velocity.z());
   const double most = dt * (on_ground ? kGroundAcceleration : kAirAcceleration);
   if (change.length() > most) change *= most / change.length();
@@ -236,6 +237,11 @@ void Character::step(double dt, double gravity, const btVector3& carried) {
     leave_floor();
     rising_ = true;
     input.jump = false;
+  } else if (input.rise) {
+    const double most_change = kRiseAcceleration * dt;
+    velocity.setY(velocity.y() + std::clamp(*input.rise - velocity.y(), -most_change, most_change));
+    rising_ = velocity.y() > 0;
+    if (rising_) leave_floor();
   } else {
     velocity.setY(on_ground && velocity.y() <= 0 ? 0 : velocity.y() - gravity * dt);
     rising_ = velocity.y() > 0;

@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "engine/core/coordinates.hpp"
 #include "engine/models/collider.hpp"
@@ -69,6 +70,10 @@ struct CharacterInput {
   glm::dvec2 direction{0.0};  // x and z; longer than 1 counts as 1
   bool run = false;
   bool jump = false;  // when it next stands
+  double speed = 0;   // m/s in that direction; 0: as it walks or runs. 0 … kMostSpeed
+  // Its speed upwards, in m/s, in place of gravity: it swims, climbs or glides. Ground and models
+  // stop it as ever. −kMostSpeed … kMostSpeed.
+  std::optional<double> rise = std::nullopt;
 };
 
 // A character after a step.

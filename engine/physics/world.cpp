@@ -82,6 +82,10 @@ core::Result<void> World::tell(CharacterId id, const CharacterInput& input) {
   if (character == nullptr) return no_character(id);
   if (!is_within({input.direction.x, 0, input.direction.y}, 1e6))
     return refuse("the direction of a character is finite and at most 10^6 long");
+  if (!(input.speed >= 0 && input.speed <= kMostSpeed))
+    return refuse("the speed of a character is 0 to 1000 m/s");
+  if (input.rise && !(std::abs(*input.rise) <= kMostSpeed))
+    return refuse("a character rises or sinks at no more than 1000 m/s");
   character->input = input;
   return {};
 }

@@ -109,6 +109,11 @@ class Scene {
   // What prepare_world() needs.
   SceneSnapshot snapshot() const;
 
+  // Replaces the sky from the next tick on: weather, and the hour. O(1); may be called every frame.
+  // The ground's shadows follow a sun that has moved. Fails with kInvalidArgument for numbers that
+  // are not finite, and for visibility_m, haze_height_m or exposure not above 0.
+  core::Result<void> set_sky(const world::Sky& sky);
+
   // Fails with kInvalidArgument for settings that make no sense, and with kOverBudget for a budget
   // below kMinBudgetBytes or above kMaxBudgetBytes.
   static core::Result<void> check(const Settings& settings);

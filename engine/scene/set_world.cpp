@@ -2,6 +2,7 @@
 // every node and model what it is there. What is drawn stays until the new meshes are there; that
 // is synthesis like any other.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/scene/cost_samples.hpp"
@@ -88,14 +89,29 @@ bool same_but_looks(world::World a, const world::World& b) {
 }
 
 // Sun and shadows follow by themselves (daylight_system).
+void take_over_sky(const world::Sky& sky, State& s) {
+  s.facts.world.sky = sky;
+  s.facts.light = light_of(s.facts.world, s.settings.view_distance_m);
+}
+
 void take_over_looks(const world::World& world, State& s) {
   WorldFacts& facts = s.facts;
   facts.world.name = world.name;
-  facts.world.sky = world.sky;
   facts.world.water = world.water;
   facts.world.palette = world.palette;
-  facts.light = light_of(facts.world, s.settings.view_distance_m);
   facts.palette = palette_of(facts.world);
+  take_over_sky(world.sky, s);
+}
+
+bool is_usable(const world::Sky& sky) {
+  const double numbers[] = {sky.sun_azimuth_deg, sky.sun_elevation_deg, sky.cloud_cover,
+                            sky.day_length_s,    sky.start_hour,        sky.latitude_deg};
+  const double positive[] = {sky.visibility_m, sky.haze_height_m, sky.exposure};
+  const glm::vec3 colours[] = {sky.sun_colour, sky.zenith_colour, sky.horizon_colour,
+                               sky.ground_colour, sky.haze_colour};
+  return std::ranges::all_of(numbers, [](double v) { return std::isfinite(v); }) &&
+         std::ranges::all_of(positive, [](double v) { return std::isfinite(v) && v > 0; }) &&
+         std::ranges::all_of(colours, [](const glm::vec3& c) { return core::is_finite(c); });
 }
 
 void name_types(const models::Registry& registry, Tracing& trace) {
@@ -172,6 +188,14 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
   if (same) update_all_nodes(prepared, s);
   for (Foresight::Place& place : s.foresight.places)
     place.stale = true;
+  return {};
+}
+
+core::Result<void> Scene::set_sky(const world::Sky& sky) {
+  if (!is_usable(sky))
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "a sky has finite numbers, and visibility, haze height and exposure above 0");
+  take_over_sky(sky, state_);
   return {};
 }
 

@@ -55,6 +55,32 @@ struct Floor {
   }
 };
 
+TEST(Character, RisesAndSinksAsToldInPlaceOfFalling) {
+  Floor f;
+  ASSERT_TRUE(f.scene.physics.tell(f.character, {.rise = 2}));
+  f.scene.steps(60);
+  EXPECT_NEAR(f.state().velocity.y, 2, 1e-9);
+  EXPECT_NEAR(f.at().y, 2, 0.1);
+  ASSERT_TRUE(f.scene.physics.tell(f.character, {.direction = {1, 0}, .speed = 9, .rise = -0.5}));
+  f.scene.steps(120);
+  EXPECT_NEAR(f.state().velocity.x, 9, 1e-9);
+  EXPECT_NEAR(f.state().velocity.y, -0.5, 1e-9);
+  ASSERT_TRUE(f.scene.physics.tell(f.character, {.rise = -3}));
+  f.scene.steps(120);
+  EXPECT_TRUE(f.state().on_ground);  // the floor stops it
+  ASSERT_TRUE(f.scene.physics.tell(f.character, {}));
+  f.scene.steps(1);
+  EXPECT_TRUE(f.state().on_ground);
+}
+
+TEST(Character, RefusesSpeedsThatAreNone) {
+  Floor f;
+  for (const double speed : {-1.0, 1e4, testing::kNan})
+    EXPECT_FALSE(f.scene.physics.tell(f.character, {.speed = speed})) << speed;
+  for (const double rise : {-1e4, 1e4, testing::kNan})
+    EXPECT_FALSE(f.scene.physics.tell(f.character, {.rise = rise})) << rise;
+}
+
 TEST(Character, StandsOnABody) {
   Floor f;
   EXPECT_TRUE(f.state().on_ground);

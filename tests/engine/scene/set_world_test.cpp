@@ -1,5 +1,6 @@
 // A world that is replaced while it is drawn.
 #include <fstream>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -129,6 +130,25 @@ TEST_F(SetWorld, LooksOfAWorldWithARoadAreLooksOnly) {
       prepare_world(std::move(after.world), std::move(after.registry), scene->snapshot());
   ASSERT_TRUE(prepared);
   EXPECT_TRUE(prepared->looks_only);
+}
+
+TEST_F(SetWorld, ASkyIsTakenOverAtOnceAndNothingElseChanges) {
+  const auto scene = scene_of(paper_, settings_);
+  const WorldFacts& facts = scene->state().facts;
+  world::Sky sky = facts.world.sky;
+  sky.cloud_cover = 0.9;
+  sky.visibility_m = 40;
+  const render::Light before = facts.light;
+  ASSERT_TRUE(scene->set_sky(sky));
+  EXPECT_EQ(facts.world.sky, sky);
+  EXPECT_FLOAT_EQ(facts.light.cloud_cover, 0.9F);
+  EXPECT_GT(facts.light.haze_density, before.haze_density);
+  sky.exposure = 0;
+  EXPECT_FALSE(scene->set_sky(sky));
+  sky.exposure = 1;
+  sky.haze_colour.y = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(scene->set_sky(sky));
+  EXPECT_FLOAT_EQ(facts.light.cloud_cover, 0.9F);
 }
 
 // Where the palette decides what stands where, it is more than looks.
