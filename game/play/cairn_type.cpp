@@ -1,0 +1,192 @@
+#include "game/play/cairn_type.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "engine/core/hash.hpp"
+#include "engine/models/kit/packing.hpp"
+
+namespace cairns {
+namespace {
+
+constexpr models::ParameterSpec kSchema[] = {
+    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000, "which of all",
+     models::ParameterSource::kPlaced},
+    {"stones", models::ParameterType::kInteger, "1", 7, 1, 24, 3, 12, "on top of each other"},
+    {"width_m", models::ParameterType::kReal, "m", 1.1, 0.1, 6, 0.4, 2, "of the lowest stone"},
+};
+
+// Of each level: corners around a stone, and rings of them between its poles.
+constexpr std::array<std::uint32_t, 3> kStoneSides{11, 8, 5}, kStoneRings{5, 3, 2};
+constexpr float kFlatness = 0.42F;  // height of a stone over its width
+constexpr float kTopShare = 0.34F;  // width of the highest stone over that of the lowest
+constexpr float kSunkShare = 0.3F;  // of the lowest stone
+constexpr float kRough = 0.12F;
+
+struct Stone {
+  glm::vec3 middle;
+  float radius;  // half its width
+};
+
+std::uint32_t stones_of(const models::Parameters& p) {
+  return static_cast<std::uint32_t>(p.integer(kCairnStones));
+}
+
+// Stone `i`, and where the next one lies.
+Stone stone(const models::Parameters& p, std::uint32_t i, float& foot_m) {
+  core::RandomStream random(static_cast<std::uint64_t>(p.integer(kCairnSeed)), 0, 0, i,
+                            core::Purpose::kStructure);
+  const float share = static_cast<float>(i) / static_cast<float>(std::max(stones_of(p), 2U) - 1);
+  const auto wild = static_cast<float>(random.next_real(0.86, 1.06));
+  const float radius =
+      0.5F * static_cast<float>(p.real(kCairnWidthM)) * std::lerp(1.0F, kTopShare, share) * wild;
+  const float half_height = kFlatness * radius;
+  if (i == 0) foot_m = -2 * half_height * kSunkShare;
+  const auto aside = [&] { return static_cast<float>(random.next_real(-0.12, 0.12)) * radius; };
+  const Stone made{{aside(), foot_m + half_height, aside()}, radius};
+  foot_m += 1.86F * half_height;
+  return made;
+}
+
+// A point of a stone's surface; rough, the same in all levels at the same place.
+glm::vec3 surface_point(const Stone& s, std::uint32_t number, float around, float up) {
+  const float bump = kRough * std::sin(3 * around + 1.7F * static_cast<float>(number)) *
+                     std::cos(2.3F * up + static_cast<float>(number));
+  const float r = s.radius * (1 + bump);
+  // Flattened at its poles more than an ellipsoid.
+  const float c = std::pow(std::cos(up), 0.6F);
+  return s.middle + glm::vec3(r * c * std::cos(around), kFlatness * r * std::sin(up),
+                              r * c * std::sin(around));
+}
+
+// Writes one stone.
+class StoneWriter {
+ public:
+  StoneWriter(const core::Bounds& box, const models::MeshView& out, int level)
+      : packer_(box),
+        vertices_(reinterpret_cast<core::ModelVertex*>(out.vertices.data())),
+        indices_(out.indices.data()),
+        sides_(kStoneSides[static_cast<std::size_t>(level)]),
+        rings_(kStoneRings[static_cast<std::size_t>(level)]) {}
+
+  void write(const Stone& s, std::uint32_t number, float grey, core::Bounds& tight) {
+    const std::uint32_t first = vertex_;
+    for (std::uint32_t ring = 0; ring <= rings_ + 1; ++ring) {
+      const bool pole = ring == 0 || ring == rings_ + 1;
+      const float up = std::numbers::pi_v<float> *
+                       (static_cast<float>(ring) / static_cast<float>(rings_ + 1) - 0.5F);
+      for (std::uint32_t side = 0; side < (pole ? 1 : sides_); ++side) {
+        const float around =
+            2 * std::numbers::pi_v<float> * static_cast<float>(side) / static_cast<float>(sides_);
+        const glm::vec3 at = surface_point(s, number, around, up);
+        tight = {glm::min(tight.min, at), glm::max(tight.max, at)};
+        add_vertex(at, (at - s.middle) * glm::vec3(1, 1 / (kFlatness * kFlatness), 1), grey,
+                   std::sin(up));
+      }
+    }
+    for (std::uint32_t side = 0; side < sides_; ++side)
+      add_column(first, side, (side + 1) % sides_);
+  }
+
+ private:
+  void add_vertex(const glm::vec3& at, const glm::vec3& normal, float grey, float up) {
+    core::ModelVertex vertex{};
+    packer_.pack(at, vertex.position);
+    const glm::vec2 n = models::encode_octahedral(normal);
+    vertex.normal[0] = models::pack_snorm16(n.x);
+    vertex.normal[1] = models::pack_snorm16(n.y);
+    vertex.ambient = static_cast<std::uint8_t>(up < -0.3F ? 110 : up < 0.3F ? 190 : 250);
+    const glm::vec3 colour = grey * glm::vec3(1.0F, 0.95F, 0.87F);
+    for (int i = 0; i < 3; ++i)
+      vertex.colour[i] = models::pack_albedo(colour[i]);
+    vertices_[vertex_++] = vertex;
+  }
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    for (const std::uint32_t corner : {a, b, c})
+      indices_[index_++] = static_cast<std::uint16_t>(corner);
+  }
+  // From pole to pole between two neighbouring sides.
+  void add_column(std::uint32_t first, std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t ring0 = first + 1, top = first + 1 + rings_ * sides_;
+    add_triangle(first, ring0 + a, ring0 + b);
+    for (std::uint32_t ring = 0; ring + 1 < rings_; ++ring) {
+      const std::uint32_t low = ring0 + ring * sides_, high = low + sides_;
+      add_triangle(low + a, high + a, high + b);
+      add_triangle(low + a, high + b, low + b);
+    }
+    const std::uint32_t last = ring0 + (rings_ - 1) * sides_;
+    add_triangle(last + a, top, last + b);
+  }
+
+  models::BoxPacker packer_;
+  core::ModelVertex* vertices_;
+  std::uint16_t* indices_;
+  std::uint32_t sides_, rings_, vertex_ = 0;
+  std::size_t index_ = 0;
+};
+
+}  // namespace
+
+std::span<const models::ParameterSpec> CairnType::parameters() const {
+  return kSchema;
+}
+
+double CairnType::level_error_m(const models::Parameters& p, int level) const {
+  constexpr std::array<double, 3> kShares{0, 0.03, 0.09};
+  return kShares[static_cast<std::size_t>(level)] * p.real(kCairnWidthM);
+}
+
+core::Bounds CairnType::bounds(const models::Parameters& p) const {
+  const auto width = static_cast<float>(p.real(kCairnWidthM));
+  const float aside = 0.8F * width;
+  return {{-aside, -0.2F * width, -aside},
+          {aside, 0.5F * width * static_cast<float>(stones_of(p)), aside}};
+}
+
+models::MeshSize CairnType::mesh_size(const models::Parameters& p, int level) const {
+  const std::uint32_t sides = kStoneSides[static_cast<std::size_t>(level)];
+  const std::uint32_t rings = kStoneRings[static_cast<std::size_t>(level)];
+  return {stones_of(p) * (2 + rings * sides), stones_of(p) * 6 * rings * sides, 0,
+          core::VertexLayout::kModel};
+}
+
+double CairnType::complexity(const models::Parameters& p, int level) const {
+  return mesh_size(p, level).triangle_count();
+}
+
+double CairnType::log2_cost(const models::Parameters& p) const {
+  const double stones = std::max(1.0, static_cast<double>(p.integer(kCairnStones)));
+  return std::log2(2.0 * kStoneSides[0] * kStoneRings[0] * stones);
+}
+
+core::Bounds CairnType::synthesize(const models::Parameters& p, int level,
+                                   const models::MeshView& out) const {
+  StoneWriter writer(bounds(p), out, level);
+  core::Bounds tight{glm::vec3(1e9F), glm::vec3(-1e9F)};
+  float foot_m = 0;
+  for (std::uint32_t i = 0; i < stones_of(p); ++i) {
+    core::RandomStream random(static_cast<std::uint64_t>(p.integer(kCairnSeed)), 0, 0, i,
+                              core::Purpose::kColour);
+    writer.write(stone(p, i, foot_m), i, static_cast<float>(random.next_real(0.13, 0.27)), tight);
+  }
+  return tight;
+}
+
+models::Collider CairnType::collider(const models::Parameters& p) const {
+  models::Collider made;
+  float foot_m = 0;
+  Stone first{}, last{};
+  for (std::uint32_t i = 0; i < stones_of(p); ++i) {
+    last = stone(p, i, foot_m);
+    if (i == 0) first = last;
+  }
+  const float radius = 0.7F * first.radius;
+  made.shapes.emplace_back(models::Collider::Capsule{
+      {0, 0, 0}, {0, std::max(last.middle.y - radius, 0.05F), 0}, radius});
+  return made;
+}
+
+}  // namespace cairns

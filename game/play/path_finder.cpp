@@ -1,0 +1,219 @@
+#include "game/play/path_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <unordered_map>
+
+namespace cairns {
+namespace {
+
+constexpr double kDeepM = 0.9, kSteepest = 0.8;   // rise over run that is walked up
+constexpr double kSteepDown = 2.2;                // … or slid down
+constexpr float kLeastWalkUp = 0.72F;             // of the normal of ground that is walked on …
+constexpr double kGentle = 0.3;                   // … unless the way leads down
+constexpr float kAsideM = 0.45F, kStepM = 0.55F;  // room around what is higher than a step
+constexpr double kNarrow = 5;                     // how much more a cell with something in it costs
+
+struct Cell {
+  std::int32_t x = 0, z = 0;
+  friend bool operator==(const Cell&, const Cell&) = default;
+};
+
+std::uint64_t name_of(Cell c) {
+  return std::uint64_t{static_cast<std::uint32_t>(c.x)} << 32 | static_cast<std::uint32_t>(c.z);
+}
+
+Cell cell_at(const core::WorldPosition& at, double block_m) {
+  const glm::dvec3 m = way_m({}, at, block_m);
+  const auto number = [](double v) {
+    return static_cast<std::int32_t>(std::floor(v / PathFinder::kCellM));
+  };
+  return {number(m.x), number(m.z)};
+}
+
+// One search.
+class Search {
+ public:
+  Search(query::World& query, const std::unordered_set<std::uint64_t>& avoided, Cell from, Cell to,
+         double swim)
+      : query_(query), avoided_(avoided), to_(to), swim_(swim) {
+    open(from, 0, from);
+  }
+
+  // The cells of the way, first to last.
+  std::vector<Cell> run() {
+    while (!open_.empty() && nodes_.size() < PathFinder::kMostCells) {
+      const Open next = open_.top();
+      open_.pop();
+      Node& node = nodes_[name_of(next.cell)];
+      if (node.closed) continue;
+      node.closed = true;
+      const double rest = estimate(next.cell);
+      if (rest < best_rest_) {
+        best_rest_ = rest;
+        best_ = next.cell;
+      }
+      if (next.cell == to_) break;
+      visit_neighbours(next.cell);
+    }
+    return trace();
+  }
+
+  core::WorldPosition place(Cell c) {
+    core::WorldPosition at;
+    at.local = {(c.x + 0.5) * PathFinder::kCellM, 0, (c.z + 0.5) * PathFinder::kCellM};
+    at = core::normalised(at, query_.world().block_size_m());
+    at.local.y = ground(c).height_m;
+    return at;
+  }
+
+ private:
+  struct Node {
+    Cell from;
+    double cost = 1e300;
+    bool closed = false;
+  };
+  struct Ground {
+    double height_m = 0, depth_m = 0;
+    float up = 1;  // of the normal
+    bool exists = false;
+  };
+  struct Open {
+    double total;
+    Cell cell;
+    bool operator<(const Open& other) const {
+      if (total != other.total) return total > other.total;
+      return name_of(cell) > name_of(other.cell);
+    }
+  };
+
+  double estimate(Cell c) const {
+    return PathFinder::kCellM * std::hypot(c.x - to_.x, c.z - to_.z);
+  }
+
+  const Ground& ground(Cell c) {
+    const auto [it, is_new] = grounds_.try_emplace(name_of(c));
+    if (is_new) {
+      core::WorldPosition at;
+      at.local = {(c.x + 0.5) * PathFinder::kCellM, 0, (c.z + 0.5) * PathFinder::kCellM};
+      const auto found = query_.ground(core::normalised(at, query_.world().block_size_m()));
+      if (found) it->second = {found->height_m, found->water_depth_m, found->normal.y, true};
+    }
+    return it->second;
+  }
+
+  // Whether a tree or a boulder stands in a cell.
+  bool is_narrow(Cell c) {
+    const double block_m = query_.world().block_size_m();
+    const core::BlockCoord block =
+        core::normalised(
+            {{}, {(c.x + 0.5) * PathFinder::kCellM, 0, (c.z + 0.5) * PathFinder::kCellM}}, block_m)
+            .block;
+    if (blocks_.insert(name_of({block.x, block.z})).second) {
+      const glm::dvec3 corner = core::offset_m(block, {}, block_m);
+      for (const core::Bounds& box : query_.solids(block).boxes) {
+        if (box.max.y - box.min.y > kStepM) mark(box, corner);
+      }
+    }
+    return narrow_.contains(name_of(c));
+  }
+
+  void mark(const core::Bounds& box, const glm::dvec3& corner) {
+    const auto cell = [](double m) {
+      return static_cast<std::int32_t>(std::floor(m / PathFinder::kCellM));
+    };
+    for (std::int32_t z = cell(corner.z + box.min.z - kAsideM);
+         z <= cell(corner.z + box.max.z + kAsideM); ++z) {
+      for (std::int32_t x = cell(corner.x + box.min.x - kAsideM);
+           x <= cell(corner.x + box.max.x + kAsideM); ++x)
+        narrow_.insert(name_of({x, z}));
+    }
+  }
+
+  // Of a step between neighbours; infinite where there is no way.
+  double cost(Cell a, Cell b) {
+    const Ground from = ground(a), to = ground(b);
+    if (!to.exists || (avoided_.contains(name_of(b)) && b != to_)) return 1e300;
+    double run = PathFinder::kCellM * std::hypot(a.x - b.x, a.z - b.z);
+    if (to.depth_m > kDeepM) return run * swim_;
+    const double level_m = from.height_m + std::max(from.depth_m - kDeepM, 0.0);
+    const double slope = (to.height_m - level_m) / run;
+    if (slope > kSteepest || slope < -kSteepDown) return 1e300;
+    if (to.up < kLeastWalkUp && slope > -kGentle) return 1e300;
+    if (is_narrow(b)) run *= kNarrow;
+    return run * (1 + 3 * slope * slope + (slope > 0 ? slope : 0));
+  }
+
+  void open(Cell c, double cost, Cell from) {
+    Node& node = nodes_[name_of(c)];
+    if (cost >= node.cost) return;
+    node.cost = cost;
+    node.from = from;
+    open_.push({cost + estimate(c), c});
+  }
+
+  void visit_neighbours(Cell c) {
+    const double so_far = nodes_[name_of(c)].cost;
+    for (int z = -1; z <= 1; ++z) {
+      for (int x = -1; x <= 1; ++x) {
+        if (x == 0 && z == 0) continue;
+        const Cell there{c.x + x, c.z + z};
+        const double step = cost(c, there);
+        if (step < 1e300 && !nodes_[name_of(there)].closed) open(there, so_far + step, c);
+      }
+    }
+  }
+
+  std::vector<Cell> trace() {
+    std::vector<Cell> cells{best_};
+    while (true) {
+      const Cell from = nodes_[name_of(cells.back())].from;
+      if (from == cells.back()) break;
+      cells.push_back(from);
+    }
+    std::ranges::reverse(cells);
+    return cells;
+  }
+
+  query::World& query_;
+  const std::unordered_set<std::uint64_t>& avoided_;
+  Cell to_, best_;
+  double swim_, best_rest_ = 1e300;
+  std::unordered_map<std::uint64_t, Node> nodes_;
+  std::unordered_map<std::uint64_t, Ground> grounds_;
+  std::unordered_set<std::uint64_t> blocks_,
+      narrow_;  // whose solids were looked at; cells with some
+  std::priority_queue<Open> open_;
+};
+
+}  // namespace
+
+void PathFinder::avoid(const core::WorldPosition& at) {
+  const Cell middle = cell_at(at, query_->world().block_size_m());
+  for (std::int32_t z = -1; z <= 1; ++z) {
+    for (std::int32_t x = -1; x <= 1; ++x)
+      avoided_.insert(name_of({middle.x + x, middle.z + z}));
+  }
+}
+
+bool PathFinder::reaches(const core::WorldPosition& from, const core::WorldPosition& to,
+                         double swim) {
+  const double block_m = query_->world().block_size_m();
+  return Search(*query_, avoided_, cell_at(from, block_m), cell_at(to, block_m), swim)
+             .run()
+             .back() == cell_at(to, block_m);
+}
+
+std::vector<core::WorldPosition> PathFinder::find(const core::WorldPosition& from,
+                                                  const core::WorldPosition& to, double swim) {
+  const double block_m = query_->world().block_size_m();
+  Search search(*query_, avoided_, cell_at(from, block_m), cell_at(to, block_m), swim);
+  std::vector<core::WorldPosition> points;
+  for (const Cell cell : search.run())
+    points.push_back(search.place(cell));
+  if (distance_m(points.back(), to, block_m) < 2 * kCellM) points.push_back(to);
+  return points;
+}
+
+}  // namespace cairns

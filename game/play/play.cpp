@@ -1,0 +1,272 @@
+#include "game/play/play.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "game/play/cairn_type.hpp"
+
+namespace cairns {
+namespace {
+
+constexpr int kHiddenStones = 11;
+constexpr double kHiddenWidthM = 1.9, kBuiltWidthM = 0.9;
+constexpr double kFoundM = 4.5, kReachM = 2.6, kSeenM = 60;
+constexpr double kLargestStoneM = 0.65;  // radius of what can be carried
+constexpr double kFellS = 2.2, kAxeS = 0.7;
+constexpr double kFireS = 420, kFireReachM = 5, kAheadM = 1.8;
+constexpr double kMorningHour = 7;
+constexpr int kTargetSteps = 6, kSeenSteps = 30;
+
+}  // namespace
+
+std::uint64_t map_cell(std::int32_t x, std::int32_t z) {
+  return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(z);
+}
+
+Play::Play(const world::World& world, const models::Registry& registry)
+    : world_(world), registry_(&registry), query_(world_, registry), creatures_(query_) {
+  world::set_edits(world_, nullptr);
+}
+
+core::Result<std::unique_ptr<Play>> Play::create(const world::World& world,
+                                                 const models::Registry& registry) {
+  std::unique_ptr<Play> play(new Play(world, registry));
+  if (auto ok = play->begin(); !ok) return tl::unexpected(ok.error());
+  return play;
+}
+
+core::Result<void> Play::begin() {
+  const auto route = find_route(query_);
+  if (!route) return tl::unexpected(route.error());
+  route_ = *route;
+  for (const core::WorldPosition& at : route_.cairns) {
+    if (auto ok = place_cairn(at, kHiddenStones, kHiddenWidthM); !ok) return ok;
+  }
+  auto physics = physics::World::create(query_);
+  if (!physics) return tl::unexpected(physics.error());
+  physics_.emplace(std::move(*physics));
+  auto walker = Walker::create(*physics_, query_, route_.start);
+  if (!walker) return tl::unexpected(walker.error());
+  walker_.emplace(std::move(*walker));
+  const glm::dvec3 to_first = way_m(route_.start, route_.cairns[0], block_m());
+  progress_.feet = walker_->feet();
+  // Not quite towards the first cairn: it is to be looked for.
+  progress_.yaw = std::atan2(to_first.x, -to_first.z) + 0.35;
+  return walker_->put(progress_.feet, progress_.yaw);
+}
+
+core::Result<void> Play::resume(Progress progress, world::Edits edits) {
+  if (auto ok = walker_->put(progress.feet, progress.yaw); !ok) return ok;
+  progress_ = std::move(progress);
+  take_edits(std::move(edits));
+  return {};
+}
+
+void Play::take_edits(world::Edits edits) {
+  edits_ = std::move(edits);
+  world::set_edits(world_, edits_.layer());
+}
+
+core::Result<void> Play::place_cairn(const core::WorldPosition& at, int stones, double width_m) {
+  world::NewModel model;
+  const int type = registry_->find("cairn");
+  if (type < 0) return core::fail(core::ErrorCode::kInternal, "the land knows no cairns");
+  model.model = static_cast<models::ModelIndex>(type);
+  model.parameters = models::default_parameters((*registry_)[model.model]);
+  const auto mixed = core::combine(map_cell(at.block.x, at.block.z),
+                                   static_cast<std::uint64_t>(at.local.x * 1000));
+  model.parameters.set_integer(kCairnSeed, static_cast<std::int64_t>(mixed >> 1));
+  model.parameters.set_integer(kCairnStones, stones);
+  model.parameters.set_real(kCairnWidthM, width_m);
+  model.at = at;
+  world::Edits next = edits_;
+  const auto placed = next.place(world_, *registry_, model);
+  if (!placed) return tl::unexpected(placed.error());
+  take_edits(std::move(next));
+  return {};
+}
+
+void Play::step(const Intent& intent, double dt) {
+  progress_.time_s += dt;
+  walker_->decide(intent, abilities(), weather(), dt);
+  (void)physics_->step(dt);
+  walker_->follow();
+  progress_.feet = walker_->feet();
+  progress_.yaw = walker_->yaw();
+  const glm::dvec3& v = walker_->velocity();
+  creatures_.step(progress_.feet, std::hypot(v.x, v.z), hour(), dt);
+  tell_of_walker();
+  if (steps_ % kTargetSteps == 0) look_for_target();
+  if (steps_ % kSeenSteps == 0) see_around();
+  ++steps_;
+  act(intent, dt);
+  find_cairns();
+}
+
+void Play::tell_of_walker() {
+  if (walker_->stepped())
+    happenings_.push_back({.kind = Happening::Kind::kStepped, .at = progress_.feet});
+  if (walker_->landed())
+    happenings_.push_back({.kind = Happening::Kind::kLanded, .at = progress_.feet});
+  if (walker_->splashed())
+    happenings_.push_back({.kind = Happening::Kind::kSplashed, .at = progress_.feet});
+}
+
+double Play::hour() const {
+  const world::Sky& sky = world_.sky;
+  if (sky.day_length_s <= 0) return sky.start_hour;
+  return std::fmod(sky.start_hour + progress_.time_s / sky.day_length_s * 24, 24.0);
+}
+
+std::optional<std::size_t> Play::next_cairn() const {
+  for (std::size_t i = 0; i < kCairns; ++i) {
+    if (!progress_.found[i]) return i;
+  }
+  return std::nullopt;
+}
+
+const Fire* Play::fire_near(double reach_m) const {
+  for (const Fire& fire : progress_.fires) {
+    if (fire.until_s > progress_.time_s && distance_m(progress_.feet, fire.at, block_m()) < reach_m)
+      return &fire;
+  }
+  return nullptr;
+}
+
+// The nearest thing ahead that can be used.
+void Play::look_for_target() {
+  std::vector<query::NearModel> near;
+  const query::NearModel before = target_.model;
+  target_ = {};
+  if (!query_.models_within(progress_.feet, kReachM, near)) return;
+  const int rock = registry_->find("rock"), cairn = registry_->find("cairn");
+  for (const query::NearModel& model : near) {
+    const glm::dvec3 way = way_m(progress_.feet, model.position, block_m());
+    if (way.x * std::sin(walker_->yaw()) - way.z * std::cos(walker_->yaw()) < -0.3) continue;
+    const models::ModelType& type = (*registry_)[model.model];
+    if (model.model == cairn) {
+      target_.kind = Target::Kind::kCairn;
+    } else if (model.model == rock) {
+      const auto placed = query_.placement(model.block, model.index);
+      const int radius = models::parameter_index(type, "radius_m");
+      if (!placed || placed->parameters.real(static_cast<std::size_t>(radius)) > kLargestStoneM)
+        continue;
+      target_.kind = Target::Kind::kStone;
+    } else if (type.surface() == core::SurfaceKind::kBark) {
+      target_.kind = Target::Kind::kTree;
+    } else {
+      continue;
+    }
+    target_.model = model;
+    break;
+  }
+  if (target_.model.block != before.block || target_.model.index != before.index) felling_ = 0;
+}
+
+void Play::act(const Intent& intent, double dt) {
+  if (intent.use && target_.kind == Target::Kind::kStone) gather();
+  if (intent.use_held && target_.kind == Target::Kind::kTree) {
+    fell(dt);
+  } else {
+    felling_ = 0;
+  }
+  if (intent.build) build();
+  if (intent.fire) light_fire();
+  if (intent.sleep) sleep();
+  if (intent.lantern && has(abilities(), Ability::kLantern)) progress_.lantern = !progress_.lantern;
+}
+
+void Play::refuse(const char* why) {
+  happenings_.push_back({.kind = Happening::Kind::kRefused, .why = why, .at = progress_.feet});
+}
+
+void Play::gather() {
+  if (progress_.stock.stones >= most_stones()) return refuse("You cannot carry more stones.");
+  world::Edits next = edits_;
+  if (!next.remove(world_, {target_.model.block, target_.model.index})) return;
+  take_edits(std::move(next));
+  ++progress_.stock.stones;
+  happenings_.push_back({.kind = Happening::Kind::kGathered, .at = target_.model.position});
+  target_ = {};
+}
+
+void Play::fell(double dt) {
+  constexpr double kChopS = 0.45;
+  const double whole_s = has(abilities(), Ability::kAxe) ? kAxeS : kFellS;
+  const double before = std::exchange(felling_, felling_ + dt / whole_s);
+  if (std::floor(before * whole_s / kChopS) != std::floor(felling_ * whole_s / kChopS))
+    happenings_.push_back({.kind = Happening::Kind::kChopped, .at = target_.model.position});
+  if (felling_ < 1) return;
+  felling_ = 0;
+  const auto tree = query_.placement(target_.model.block, target_.model.index);
+  world::Edits next = edits_;
+  if (!tree || !next.remove(world_, {target_.model.block, target_.model.index})) return;
+  take_edits(std::move(next));
+  progress_.stock.wood += 2;
+  happenings_.push_back(
+      {.kind = Happening::Kind::kFelled, .at = target_.model.position, .tree = *tree});
+  target_ = {};
+}
+
+std::optional<core::WorldPosition> Play::dry_place_ahead() {
+  const double yaw = walker_->yaw();
+  core::WorldPosition at =
+      at_end_of(progress_.feet, kAheadM * glm::dvec3(std::sin(yaw), 0, -std::cos(yaw)), block_m());
+  const auto ground = query_.ground(at);
+  if (!ground || ground->water_depth_m > 0 || ground->normal.y < 0.7) return std::nullopt;
+  if (std::abs(ground->height_m - progress_.feet.local.y) > 2) return std::nullopt;
+  at.local.y = ground->height_m;
+  return at;
+}
+
+void Play::build() {
+  if (progress_.stock.stones < kStonesOfCairn) return refuse("A cairn takes five stones.");
+  const auto at = dry_place_ahead();
+  if (!at) return refuse("There is no firm ground here.");
+  if (!place_cairn(*at, kStonesOfCairn + 1, kBuiltWidthM)) return refuse("Nothing more fits here.");
+  progress_.stock.stones -= kStonesOfCairn;
+  progress_.waymarks.push_back(*at);
+  happenings_.push_back({.kind = Happening::Kind::kBuilt, .at = *at});
+}
+
+void Play::light_fire() {
+  const bool free = has(abilities(), Ability::kEmber);
+  if (!free && progress_.stock.wood < kWoodOfFire) return refuse("A fire takes wood: fell a tree.");
+  const auto at = dry_place_ahead();
+  if (!at) return refuse("There is no dry ground here.");
+  if (!free) progress_.stock.wood -= kWoodOfFire;
+  std::erase_if(progress_.fires, [&](const Fire& f) { return f.until_s < progress_.time_s; });
+  progress_.fires.push_back({*at, progress_.time_s + kFireS});
+  happenings_.push_back({.kind = Happening::Kind::kLit, .at = *at});
+}
+
+void Play::sleep() {
+  if (fire_near(kFireReachM) == nullptr) return refuse("One sleeps beside a fire.");
+  if (!is_night()) return refuse("It is day.");
+  const double hours = std::fmod(kMorningHour - hour() + 24, 24.0);
+  progress_.time_s += hours / 24 * world_.sky.day_length_s;
+  happenings_.push_back({.kind = Happening::Kind::kSlept, .at = progress_.feet});
+}
+
+void Play::find_cairns() {
+  for (std::size_t i = 0; i < kCairns; ++i) {
+    if (progress_.found[i]) continue;
+    const glm::dvec3 way = way_m(progress_.feet, route_.cairns[i], block_m());
+    if (std::hypot(way.x, way.z) > kFoundM || std::abs(way.y) > 2 * kFoundM) continue;
+    happenings_.push_back({.kind = Happening::Kind::kFound,
+                           .number = progress_.found.count(),
+                           .at = route_.cairns[i]});
+    progress_.found.set(i);
+  }
+}
+
+void Play::see_around() {
+  const glm::dvec3 at = way_m({}, progress_.feet, block_m());
+  const auto cell = [](double m) { return static_cast<std::int32_t>(std::floor(m / kMapCellM)); };
+  for (std::int32_t z = cell(at.z - kSeenM); z <= cell(at.z + kSeenM); ++z) {
+    for (std::int32_t x = cell(at.x - kSeenM); x <= cell(at.x + kSeenM); ++x)
+      progress_.seen.insert(map_cell(x, z));
+  }
+}
+
+}  // namespace cairns

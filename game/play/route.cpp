@@ -1,0 +1,124 @@
+#include "game/play/route.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "game/play/path_finder.hpp"
+
+namespace cairns {
+namespace {
+
+constexpr double kLeastSiteUp = 0.90, kStartUp = 0.966;  // of the normal: 26° and 15°
+constexpr double kHighestStartM = 110, kHighestM = 200, kDryM = 1.5;
+constexpr double kProminentM = 9;   // more is no better
+constexpr double kWaterCost = 2.5;  // the cost of water
+constexpr double kLeastWayM = 200, kMostWayM = 360;
+constexpr int kTries = 24, kMostTries = 192, kRings = 60, kTurns = 5;
+constexpr double kSeenFromM = 45;  // how far around a cairn is compared with its place
+constexpr core::Purpose kPurpose = core::Purpose::kStructure;
+
+// The ground of a place where one can stand; nothing elsewhere. Sets its height.
+std::optional<query::Ground> dry_ground(query::World& query, core::WorldPosition& at,
+                                        double least_up, double highest_m) {
+  at = core::normalised(at, query.world().block_size_m());
+  const auto ground = query.ground(at);
+  if (!ground || ground->normal.y < least_up || ground->height_m > highest_m) return std::nullopt;
+  if (ground->height_m < query.world().water.level_m + kDryM) return std::nullopt;
+  at.local.y = ground->height_m;
+  return *ground;
+}
+
+// By how much a place is higher than what is around it.
+double prominence_m(query::World& query, const core::WorldPosition& at) {
+  double sum_m = 0;
+  constexpr int kAround = 8;
+  for (int i = 0; i < kAround; ++i) {
+    const double angle = i * 2 * std::numbers::pi / kAround;
+    core::WorldPosition there = at;
+    there.local += kSeenFromM * glm::dvec3(std::cos(angle), 0, std::sin(angle));
+    if (const auto ground = query.ground(there)) sum_m += ground->height_m;
+  }
+  return at.local.y - sum_m / kAround;
+}
+
+// The first good place on growing circles around the middle of the land.
+std::optional<core::WorldPosition> find_start(query::World& query) {
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int i = 0; i <= 6 * ring; ++i) {
+      const double angle = i * 2 * std::numbers::pi / std::max(6 * ring, 1);
+      core::WorldPosition at;
+      at.local = 24.0 * ring * glm::dvec3(std::cos(angle), 0, std::sin(angle));
+      if (dry_ground(query, at, kStartUp, kHighestStartM)) return at;
+    }
+  }
+  return std::nullopt;
+}
+
+// A place for a cairn, and the heading that leads there.
+struct Candidate {
+  core::WorldPosition at;
+  double heading = 0, score = 0;
+};
+
+// Places ahead, the best first.
+std::vector<Candidate> candidates(query::World& query, const core::WorldPosition& from,
+                                  double heading, core::RandomStream& random) {
+  std::vector<Candidate> found;
+  for (int k = 0; k < kMostTries && (k < kTries || found.empty()); ++k) {
+    const double angle = heading + random.next_real(-0.6, 0.6) * (1 + 3.0 * k / kTries);
+    const double far_m = random.next_real(kLeastWayM, kMostWayM);
+    core::WorldPosition at = from;
+    at.local += far_m * glm::dvec3(std::sin(angle), 0, -std::cos(angle));
+    if (!dry_ground(query, at, kLeastSiteUp, kHighestM)) continue;
+    found.push_back({at, angle, std::min(prominence_m(query, at), kProminentM)});
+  }
+  std::ranges::stable_sort(found, std::greater(), &Candidate::score);
+  return found;
+}
+
+// The first of them that one can walk or swim to.
+const Candidate* first_reached(PathFinder& finder, const core::WorldPosition& from,
+                               const std::vector<Candidate>& found) {
+  for (const Candidate& candidate : found) {
+    if (finder.reaches(from, candidate.at, kWaterCost)) return &candidate;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+core::Result<Route> find_route(query::World& query) {
+  const auto fail = [] {
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "this land has no way for twelve cairns; take another seed");
+  };
+  const auto start = find_start(query);
+  if (!start) return fail();
+  Route route{*start, {}};
+  PathFinder finder(query);
+  core::WorldPosition from = *start;
+  core::RandomStream course(query.world().seed, 0, 0, 0, kPurpose);
+  double heading = course.next_real(0, 2 * std::numbers::pi);
+  for (std::size_t i = 0; i < kCairns; ++i) {
+    core::RandomStream random(query.world().seed, 0, 0, static_cast<std::uint32_t>(i + 1),
+                              kPurpose);
+    heading += random.next_real(-0.9, 0.9);
+    std::optional<Candidate> next;
+    // Where nothing ahead can be reached, the way turns.
+    for (int turn = 0; turn < kTurns && !next; ++turn) {
+      const double ahead = heading + turn * 2 * std::numbers::pi / kTurns;
+      const auto found = candidates(query, from, ahead, random);
+      if (const Candidate* best = first_reached(finder, from, found)) next = *best;
+    }
+    if (!next) return fail();
+    route.cairns[i] = from = next->at;
+    heading = next->heading;
+  }
+  return route;
+}
+
+}  // namespace cairns
