@@ -13,7 +13,7 @@ constexpr double kTurn = 4;  // rad/s
 constexpr double kBuildEveryS = 150, kFetchEveryS = 140, kGiveUpS = 12, kTreeM = 30;
 constexpr double kGlideAheadM = 22, kLandM = 30;  // looks so far ahead in the air; comes down here
 constexpr double kDropM = 5, kDropAheadM = 7, kGlideAtLeastS = 1.5;
-constexpr double kSwims = 2.5, kRaftSwims = 1.1;  // the cost of water
+constexpr double kRaftCost = 1.1;  // of water
 
 }  // namespace
 
@@ -21,9 +21,8 @@ void Pilot::plan() {
   const auto next = play_->next_cairn();
   if (!next) return;
   goal_ = *next;
-  const bool raft = has(play_->abilities(), Ability::kRaft);
-  path_ = finder_.find(play_->walker().feet(), play_->route().cairns[goal_],
-                       raft ? kRaftSwims : kSwims);
+  if (has(play_->abilities(), Ability::kRaft)) finder_.settings().swim_cost = kRaftCost;
+  path_ = finder_.find(play_->walker().feet(), play_->route().cairns[goal_]);
   next_ = 0;
   plan_s_ = 0;
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "game/play/path_finder.hpp"
+#include "engine/query/path_finder.hpp"
 #include "game/play/play.hpp"
 
 namespace cairns {
@@ -28,7 +28,7 @@ class Pilot {
   bool is_over_drop() const;
 
   Play* play_;
-  PathFinder finder_;
+  query::PathFinder finder_;
   std::vector<core::WorldPosition> path_;
   std::size_t next_ = 0, seen_next_ = 0;  // points of the path: that it goes to; the same before
   std::size_t goal_ = kCairns;

@@ -260,12 +260,22 @@ void Play::find_cairns() {
   }
 }
 
+void Play::see(std::int32_t x, std::int32_t z) {
+  const auto [cell, is_new] = progress_.seen.try_emplace(map_cell(x, z));
+  if (!is_new) return;
+  core::WorldPosition middle;
+  middle.local = {(x + 0.5) * kMapCellM, 0, (z + 0.5) * kMapCellM};
+  const auto ground = query_.ground(core::normalised(middle, block_m()));
+  if (ground)
+    cell->second = ground->water_depth_m > 0 ? kMapWater : static_cast<std::uint8_t>(ground->kind);
+}
+
 void Play::see_around() {
   const glm::dvec3 at = way_m({}, progress_.feet, block_m());
   const auto cell = [](double m) { return static_cast<std::int32_t>(std::floor(m / kMapCellM)); };
   for (std::int32_t z = cell(at.z - kSeenM); z <= cell(at.z + kSeenM); ++z) {
     for (std::int32_t x = cell(at.x - kSeenM); x <= cell(at.x + kSeenM); ++x)
-      progress_.seen.insert(map_cell(x, z));
+      see(x, z);
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include <memory>
 #include <optional>
-#include <unordered_set>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/physics/world.hpp"
@@ -69,11 +69,13 @@ struct Progress {
   bool lantern = false;
   std::vector<Fire> fires;
   std::vector<core::WorldPosition> waymarks;  // that the player has built
-  std::unordered_set<std::uint64_t> seen;     // cells of the map: map_cell()
+  // Cells of the map, by map_cell(), with what is there: a world::GroundKind, or kMapWater.
+  std::unordered_map<std::uint64_t, std::uint8_t> seen;
 };
 
 inline constexpr int kStonesOfCairn = 5, kWoodOfFire = 2;
 inline constexpr double kMapCellM = 24;
+inline constexpr std::uint8_t kMapWater = world::kGroundKinds;
 
 class Play {
  public:
@@ -128,6 +130,7 @@ class Play {
   void sleep();
   void find_cairns();
   void see_around();
+  void see(std::int32_t x, std::int32_t z);
   void tell_of_walker();
   void refuse(const char* why);
   std::optional<core::WorldPosition> dry_place_ahead();

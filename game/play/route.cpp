@@ -7,16 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include "game/play/path_finder.hpp"
+#include "engine/query/path_finder.hpp"
 
 namespace cairns {
 namespace {
 
 constexpr double kLeastSiteUp = 0.90, kStartUp = 0.966;  // of the normal: 26° and 15°
 constexpr double kHighestStartM = 110, kHighestM = 200, kDryM = 1.5;
-constexpr double kProminentM = 9;   // more is no better
-constexpr double kWaterCost = 2.5;  // the cost of water
+constexpr double kProminentM = 9;  // more is no better
 constexpr double kLeastWayM = 200, kMostWayM = 360;
+constexpr std::size_t kMostCells = 60'000;  // that a way of a few hundred metres needs
 constexpr int kTries = 24, kMostTries = 192, kRings = 60, kTurns = 5;
 constexpr double kSeenFromM = 45;  // how far around a cairn is compared with its place
 constexpr core::Purpose kPurpose = core::Purpose::kStructure;
@@ -81,10 +81,10 @@ std::vector<Candidate> candidates(query::World& query, const core::WorldPosition
 }
 
 // The first of them that one can walk or swim to.
-const Candidate* first_reached(PathFinder& finder, const core::WorldPosition& from,
+const Candidate* first_reached(query::PathFinder& finder, const core::WorldPosition& from,
                                const std::vector<Candidate>& found) {
   for (const Candidate& candidate : found) {
-    if (finder.reaches(from, candidate.at, kWaterCost)) return &candidate;
+    if (finder.reaches(from, candidate.at)) return &candidate;
   }
   return nullptr;
 }
@@ -99,7 +99,7 @@ core::Result<Route> find_route(query::World& query) {
   const auto start = find_start(query);
   if (!start) return fail();
   Route route{*start, {}};
-  PathFinder finder(query);
+  query::PathFinder finder(query, {.most_cells = kMostCells});
   core::WorldPosition from = *start;
   core::RandomStream course(query.world().seed, 0, 0, 0, kPurpose);
   double heading = course.next_real(0, 2 * std::numbers::pi);

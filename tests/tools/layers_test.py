@@ -42,7 +42,7 @@ MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["engine/inspect"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare"}
 MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
-MAY_KNOW["game"] = MAY_KNOW["engine/cli"] | {"engine/cli"}
+MAY_KNOW["game"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/audio", "engine/save"}
 MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world", "engine/handmade"}
 MAY_KNOW["editor/cost"] = MAY_KNOW["editor/document"] | {"engine/synthesis", "editor/document"}
 MAY_KNOW["editor/view"] = MAY_KNOW["engine/app"] | {"engine/app"}
@@ -82,7 +82,7 @@ ONLY_IN = {
     r"^GLFW/": {"engine/platform"},
     r"^imgui/": {"engine/render", "engine/app", "game"},
     r"^OpenImageIO/": {"engine/image"},
-    r"^toml\+\+/": {"engine/world"},
+    r"^toml\+\+/": {"engine/world", "game"},
     r"^nlohmann/": {"engine/telemetry", "engine/compare", "engine/inspect", "engine/cli"},
     r"^CLI/": {"engine/cli", "game"},
     r"^tiny_gltf": {"engine/exchange", "engine/gltf"},

@@ -1,19 +1,15 @@
-#include "game/play/path_finder.hpp"
+#include "engine/query/path_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <queue>
 #include <unordered_map>
 
-namespace cairns {
+namespace psygen::query {
 namespace {
 
-constexpr double kDeepM = 0.9, kSteepest = 0.8;   // rise over run that is walked up
-constexpr double kSteepDown = 2.2;                // … or slid down
-constexpr float kLeastWalkUp = 0.72F;             // of the normal of ground that is walked on …
-constexpr double kGentle = 0.3;                   // … unless the way leads down
-constexpr float kAsideM = 0.45F, kStepM = 0.55F;  // room around what is higher than a step
-constexpr double kNarrow = 5;                     // how much more a cell with something in it costs
+constexpr float kLeastUp = 0.72F;  // of the normal of ground that is walked on …
+constexpr double kGentle = 0.3;    // … unless the way leads down
 
 struct Cell {
   std::int32_t x = 0, z = 0;
@@ -25,7 +21,7 @@ std::uint64_t name_of(Cell c) {
 }
 
 Cell cell_at(const core::WorldPosition& at, double block_m) {
-  const glm::dvec3 m = way_m({}, at, block_m);
+  const glm::dvec3 m = core::offset_m(at.block, {}, block_m) + at.local;
   const auto number = [](double v) {
     return static_cast<std::int32_t>(std::floor(v / PathFinder::kCellM));
   };
@@ -35,15 +31,15 @@ Cell cell_at(const core::WorldPosition& at, double block_m) {
 // One search.
 class Search {
  public:
-  Search(query::World& query, const std::unordered_set<std::uint64_t>& avoided, Cell from, Cell to,
-         double swim)
-      : query_(query), avoided_(avoided), to_(to), swim_(swim) {
+  Search(World& query, const PathSettings& settings,
+         const std::unordered_set<std::uint64_t>& avoided, Cell from, Cell to, bool solids)
+      : query_(query), settings_(settings), avoided_(avoided), to_(to), solids_(solids) {
     open(from, 0, from);
   }
 
   // The cells of the way, first to last.
   std::vector<Cell> run() {
-    while (!open_.empty() && nodes_.size() < PathFinder::kMostCells) {
+    while (!open_.empty() && nodes_.size() < settings_.most_cells) {
       const Open next = open_.top();
       open_.pop();
       Node& node = nodes_[name_of(next.cell)];
@@ -113,7 +109,7 @@ class Search {
     if (blocks_.insert(name_of({block.x, block.z})).second) {
       const glm::dvec3 corner = core::offset_m(block, {}, block_m);
       for (const core::Bounds& box : query_.solids(block).boxes) {
-        if (box.max.y - box.min.y > kStepM) mark(box, corner);
+        if (box.max.y - box.min.y > settings_.step_m) mark(box, corner);
       }
     }
     return narrow_.contains(name_of(c));
@@ -123,10 +119,10 @@ class Search {
     const auto cell = [](double m) {
       return static_cast<std::int32_t>(std::floor(m / PathFinder::kCellM));
     };
-    for (std::int32_t z = cell(corner.z + box.min.z - kAsideM);
-         z <= cell(corner.z + box.max.z + kAsideM); ++z) {
-      for (std::int32_t x = cell(corner.x + box.min.x - kAsideM);
-           x <= cell(corner.x + box.max.x + kAsideM); ++x)
+    for (std::int32_t z = cell(corner.z + box.min.z - settings_.aside_m);
+         z <= cell(corner.z + box.max.z + settings_.aside_m); ++z) {
+      for (std::int32_t x = cell(corner.x + box.min.x - settings_.aside_m);
+           x <= cell(corner.x + box.max.x + settings_.aside_m); ++x)
         narrow_.insert(name_of({x, z}));
     }
   }
@@ -136,12 +132,12 @@ class Search {
     const Ground from = ground(a), to = ground(b);
     if (!to.exists || (avoided_.contains(name_of(b)) && b != to_)) return 1e300;
     double run = PathFinder::kCellM * std::hypot(a.x - b.x, a.z - b.z);
-    if (to.depth_m > kDeepM) return run * swim_;
-    const double level_m = from.height_m + std::max(from.depth_m - kDeepM, 0.0);
+    if (to.depth_m > settings_.wade_m) return run * settings_.swim_cost;
+    const double level_m = from.height_m + std::max(from.depth_m - settings_.wade_m, 0.0);
     const double slope = (to.height_m - level_m) / run;
-    if (slope > kSteepest || slope < -kSteepDown) return 1e300;
-    if (to.up < kLeastWalkUp && slope > -kGentle) return 1e300;
-    if (is_narrow(b)) run *= kNarrow;
+    if (slope > settings_.steepest_up || slope < -settings_.steepest_down) return 1e300;
+    if (to.up < kLeastUp && slope > -kGentle) return 1e300;
+    if (solids_ && is_narrow(b)) run *= settings_.narrow_cost;
     return run * (1 + 3 * slope * slope + (slope > 0 ? slope : 0));
   }
 
@@ -176,10 +172,12 @@ class Search {
     return cells;
   }
 
-  query::World& query_;
+  World& query_;
+  const PathSettings& settings_;
   const std::unordered_set<std::uint64_t>& avoided_;
   Cell to_, best_;
-  double swim_, best_rest_ = 1e300;
+  bool solids_;
+  double best_rest_ = 1e300;
   std::unordered_map<std::uint64_t, Node> nodes_;
   std::unordered_map<std::uint64_t, Ground> grounds_;
   std::unordered_set<std::uint64_t> blocks_,
@@ -197,23 +195,24 @@ void PathFinder::avoid(const core::WorldPosition& at) {
   }
 }
 
-bool PathFinder::reaches(const core::WorldPosition& from, const core::WorldPosition& to,
-                         double swim) {
+bool PathFinder::reaches(const core::WorldPosition& from, const core::WorldPosition& to) {
   const double block_m = query_->world().block_size_m();
-  return Search(*query_, avoided_, cell_at(from, block_m), cell_at(to, block_m), swim)
-             .run()
-             .back() == cell_at(to, block_m);
+  const Cell end = cell_at(to, block_m);
+  Search search(*query_, settings_, avoided_, cell_at(from, block_m), end, false);
+  return search.run().back() == end;
 }
 
 std::vector<core::WorldPosition> PathFinder::find(const core::WorldPosition& from,
-                                                  const core::WorldPosition& to, double swim) {
+                                                  const core::WorldPosition& to) {
   const double block_m = query_->world().block_size_m();
-  Search search(*query_, avoided_, cell_at(from, block_m), cell_at(to, block_m), swim);
-  std::vector<core::WorldPosition> points;
-  for (const Cell cell : search.run())
-    points.push_back(search.place(cell));
-  if (distance_m(points.back(), to, block_m) < 2 * kCellM) points.push_back(to);
+  const Cell end = cell_at(to, block_m);
+  Search search(*query_, settings_, avoided_, cell_at(from, block_m), end, true);
+  const std::vector<Cell> cells = search.run();
+  std::vector<core::WorldPosition> points{from};
+  for (std::size_t i = 1; i < cells.size(); ++i)
+    points.push_back(search.place(cells[i]));
+  if (cells.back() == end) points.push_back(to);
   return points;
 }
 
-}  // namespace cairns
+}  // namespace psygen::query

@@ -1,0 +1,222 @@
+#include "game/play/saved.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "engine/world/edits/edit_bytes.hpp"
+
+namespace cairns {
+namespace {
+
+constexpr std::int64_t kFormat = 1;  // of the values below
+constexpr const char* kSuffix = ".cairns";
+
+// Plain numbers as the bytes of one value.
+template <class T>
+save::Bytes bytes_of(const std::vector<T>& values) {
+  save::Bytes bytes(values.size() * sizeof(T));
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+struct Seen {
+  std::uint64_t cell, kind;
+};
+struct Place {
+  std::int32_t block_x, block_z;
+  double x, y, z, until_s;
+};
+static_assert(std::is_trivially_copyable_v<Place> && sizeof(Place) == 40);
+
+Place stored(const core::WorldPosition& at, double until_s = 0) {
+  return {at.block.x, at.block.z, at.local.x, at.local.y, at.local.z, until_s};
+}
+
+core::WorldPosition position(const Place& place) {
+  return {{place.block_x, place.block_z}, {place.x, place.y, place.z}};
+}
+
+// Reads values by name; the first that is wrong is kept.
+class Reader {
+ public:
+  explicit Reader(const save::SaveGame& save) : save_(save) {}
+  template <class T>
+  T get(const char* name) {
+    const auto value = save_.value(name);
+    if (!value) {
+      note(value.error());
+    } else if (const T* found = std::get_if<T>(&*value)) {
+      return *found;
+    } else {
+      note({core::ErrorCode::kParse, save_.file().string() + ": the save lacks \"" + name + "\""});
+    }
+    return {};
+  }
+  template <class T>
+  std::vector<T> list(const char* name) {
+    const auto bytes = get<save::Bytes>(name);
+    if (bytes.size() % sizeof(T) != 0)
+      note({core::ErrorCode::kParse, save_.file().string() + ": \"" + name + "\" is cut short"});
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    return values;
+  }
+  void note(core::Error error) {
+    if (!error_) error_ = std::move(error);
+  }
+  const std::optional<core::Error>& error() const { return error_; }
+
+ private:
+  const save::SaveGame& save_;
+  std::optional<core::Error> error_;
+};
+
+Progress read_progress(Reader& in, const save::SaveGame& save) {
+  Progress p;
+  if (in.get<std::int64_t>("format") > kFormat)
+    in.note({core::ErrorCode::kParse, save.file().string() + ": the save is of a newer version"});
+  const auto feet = in.list<Place>("feet"), fires = in.list<Place>("fires"),
+             waymarks = in.list<Place>("waymarks");
+  if (feet.size() != 1)
+    in.note({core::ErrorCode::kParse, save.file().string() + ": nobody stands anywhere"});
+  if (!feet.empty()) p.feet = position(feet[0]);
+  p.yaw = in.get<double>("yaw");
+  p.time_s = in.get<double>("time_s");
+  p.found = std::bitset<kCairns>(static_cast<std::uint64_t>(in.get<std::int64_t>("found")));
+  p.stock.stones = static_cast<int>(in.get<std::int64_t>("stones"));
+  p.stock.wood = static_cast<int>(in.get<std::int64_t>("wood"));
+  p.lantern = in.get<std::int64_t>("lantern") != 0;
+  for (const Place& fire : fires)
+    p.fires.push_back({position(fire), fire.until_s});
+  for (const Place& mark : waymarks)
+    p.waymarks.push_back(position(mark));
+  for (const Seen& seen : in.list<Seen>("seen"))
+    p.seen[seen.cell] = static_cast<std::uint8_t>(std::min<std::uint64_t>(seen.kind, kMapWater));
+  const bool usable = std::isfinite(p.yaw) && std::isfinite(p.time_s) && p.time_s >= 0 &&
+                      p.time_s < 1e9 && p.stock.stones >= 0 && p.stock.wood >= 0;
+  if (!usable)
+    in.note({core::ErrorCode::kParse, save.file().string() + ": the save has impossible numbers"});
+  return p;
+}
+
+core::Result<void> put_progress(save::SaveGame& save, const Progress& p) {
+  std::vector<Place> fires, waymarks;
+  for (const Fire& fire : p.fires)
+    fires.push_back(stored(fire.at, fire.until_s));
+  for (const core::WorldPosition& at : p.waymarks)
+    waymarks.push_back(stored(at));
+  std::vector<Seen> seen;
+  for (const auto& [cell, kind] : p.seen)
+    seen.push_back({cell, kind});
+  const std::pair<const char*, save::Value> values[] = {
+      {"format", kFormat},
+      {"feet", bytes_of(std::vector<Place>{stored(p.feet)})},
+      {"yaw", p.yaw},
+      {"time_s", p.time_s},
+      {"found", static_cast<std::int64_t>(p.found.to_ullong())},
+      {"stones", std::int64_t{p.stock.stones}},
+      {"wood", std::int64_t{p.stock.wood}},
+      {"lantern", std::int64_t{p.lantern}},
+      {"fires", bytes_of(fires)},
+      {"waymarks", bytes_of(waymarks)},
+      {"seen", bytes_of(seen)}};
+  for (const auto& [name, value] : values) {
+    if (auto ok = save.put_value(name, value); !ok) return ok;
+  }
+  return {};
+}
+
+}  // namespace
+
+core::Result<std::filesystem::path> save_folder(const std::filesystem::path& given) {
+  std::filesystem::path folder = given;
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  if (folder.empty() && data != nullptr && *data == '/')
+    folder = std::filesystem::path(data) / "cairns";
+  if (folder.empty() && home != nullptr)
+    folder = std::filesystem::path(home) / ".local/share/cairns";
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (folder.empty() || error)
+    return core::fail(
+        core::ErrorCode::kIo,
+        "no folder for saves: " +
+            (folder.empty() ? "HOME is not set" : folder.string() + ": " + error.message()));
+  return folder;
+}
+
+std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64_t seed) {
+  return folder / (std::to_string(seed) + kSuffix);
+}
+
+std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder) {
+  std::optional<std::uint64_t> last;
+  std::filesystem::file_time_type when;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() != kSuffix) continue;
+    const auto time = entry.last_write_time(error);
+    if (error || (last && time <= when)) continue;
+    when = time;
+    last = seed_of(entry.path().stem().string());
+  }
+  return last;
+}
+
+core::Result<Saved> Saved::open(const std::filesystem::path& file, Play& play) {
+  auto save = save::SaveGame::open(file, save::identity_of(play.world(), play.registry()));
+  if (!save) return tl::unexpected(save.error());
+  Saved saved(std::move(*save));
+  const auto format = saved.save_->value("format");
+  if (!format) return tl::unexpected(format.error());
+  if (std::holds_alternative<std::monostate>(*format)) return saved;  // a new one
+  if (auto ok = saved.resume(play); !ok) return tl::unexpected(ok.error());
+  return saved;
+}
+
+core::Result<void> Saved::resume(Play& play) {
+  Reader in(*save_);
+  Progress progress = read_progress(in, *save_);
+  if (in.error()) return tl::unexpected(*in.error());
+  world::Edits edits;
+  core::Result<void> loaded;
+  auto visited = save_->for_each_edits([&](core::BlockCoord block, std::uint32_t, auto bytes) {
+    if (loaded) loaded = world::load_block(edits, play.world(), play.registry(), block, bytes);
+  });
+  if (!visited) return visited;
+  if (!loaded) return loaded;
+  stored_ = edits;
+  return play.resume(std::move(progress), std::move(edits));
+}
+
+core::Result<void> Saved::put(const Play& play) {
+  if (auto before = wait(); !before) return before;
+  const world::Edits& now = play.edits();
+  for (const core::BlockCoord block : world::changed_blocks(stored_, now)) {
+    const auto bytes = world::encode_block(now, play.registry(), block);
+    if (bytes.empty()) {
+      save_->erase_edits(block);
+    } else if (auto ok = save_->put_edits(block, world::kEditFormat, bytes); !ok) {
+      return ok;
+    }
+  }
+  if (auto ok = put_progress(*save_, play.progress()); !ok) return ok;
+  stored_ = now;
+  writing_ = std::async(std::launch::async, [save = save_.get()] { return save->save(); });
+  return {};
+}
+
+core::Result<void> Saved::wait() {
+  return writing_.valid() ? writing_.get() : core::Result<void>();
+}
+
+std::optional<core::Result<void>> Saved::outcome() {
+  using namespace std::chrono_literals;
+  if (!writing_.valid() || writing_.wait_for(0s) != std::future_status::ready) return std::nullopt;
+  return writing_.get();
+}
+
+}  // namespace cairns

@@ -1,0 +1,102 @@
+#include "game/show/controls.hpp"
+
+#include <cmath>
+
+namespace cairns {
+namespace {
+
+using platform::Key;
+using platform::PadButton;
+using Way = input::MouseWay;
+using Pad = input::PadWay;
+
+constexpr float kMouseTurn = 0.0022F;  // radians for a step of the mouse
+constexpr double kStickTurn = 2.6;     // rad/s
+
+struct Named {
+  const char* name;
+  const char* label;
+  std::vector<input::Binding> keys;
+};
+
+const std::array<Named, kActs>& all() {
+  static const std::array<Named, kActs> kAll{{
+      {"ahead",
+       "ahead and back",
+       {{Key::kW},
+        {Key::kS, -1},
+        {Key::kUp},
+        {Key::kDown, -1},
+        {Pad::kLeftStickUp},
+        {Pad::kLeftStickDown, -1}}},
+      {"aside",
+       "aside",
+       {{Key::kD},
+        {Key::kA, -1},
+        {Key::kRight},
+        {Key::kLeft, -1},
+        {Pad::kLeftStickRight},
+        {Pad::kLeftStickLeft, -1}}},
+      {"look_x", "turn", {{Way::kRight, kMouseTurn}, {Way::kLeft, -kMouseTurn}}},
+      {"look_y", "look up", {{Way::kUp, kMouseTurn}, {Way::kDown, -kMouseTurn}}},
+      {"turn_x", "turn (pad)", {{Pad::kRightStickRight}, {Pad::kRightStickLeft, -1}}},
+      {"turn_y", "look up (pad)", {{Pad::kRightStickUp}, {Pad::kRightStickDown, -1}}},
+      {"run", "run", {{Key::kLeftShift}, {PadButton::kLeftThumb}, {Pad::kLeftTrigger}}},
+      {"jump", "jump, climb, glide", {{Key::kSpace}, {PadButton::kA}}},
+      {"use", "gather, fell", {{Key::kE}, {platform::MouseButton::kLeft}, {PadButton::kX}}},
+      {"build", "build a cairn", {{Key::kC}, {PadButton::kY}}},
+      {"fire", "light a fire", {{Key::kF}, {PadButton::kB}}},
+      {"sleep", "sleep until morning", {{Key::kR}, {PadButton::kDown}}},
+      {"lantern", "lantern", {{Key::kL}, {PadButton::kUp}}},
+      {"eye", "look far", {{Key::kZ}, {platform::MouseButton::kRight}, {Pad::kRightTrigger}}},
+      {"map", "map", {{Key::kM}, {Key::kTab}, {PadButton::kBack}}},
+      {"photo", "photo", {{Key::kP}, {PadButton::kRight}}},
+      {"menu", "menu", {{Key::kEscape}, {PadButton::kStart}}},
+      {"picture", "take a picture", {{Key::kF12}}},
+  }};
+  return kAll;
+}
+
+}  // namespace
+
+core::Result<void> add_actions(input::Actions& actions) {
+  for (const Named& named : all()) {
+    const auto added = actions.add(named.name, named.keys);
+    if (!added) return tl::unexpected(added.error());
+  }
+  return {};
+}
+
+Intent intent_of(const input::Actions& actions, double mouse, double dt) {
+  const auto value = [&](Act act) { return double{state_of(actions, act).value}; };
+  const auto pressed = [&](Act act) { return state_of(actions, act).pressed; };
+  Intent intent;
+  intent.move = {value(Act::kAside), value(Act::kAhead)};
+  intent.turn = value(Act::kLookX) * mouse + value(Act::kTurnX) * kStickTurn * dt;
+  intent.look = value(Act::kLookY) * mouse + value(Act::kTurnY) * kStickTurn * dt;
+  intent.run = state_of(actions, Act::kRun).held;
+  intent.jump = pressed(Act::kJump);
+  intent.jump_held = state_of(actions, Act::kJump).held;
+  intent.use = pressed(Act::kUse);
+  intent.use_held = state_of(actions, Act::kUse).held;
+  intent.build = pressed(Act::kBuild);
+  intent.fire = pressed(Act::kFire);
+  intent.sleep = pressed(Act::kSleep);
+  intent.lantern = pressed(Act::kLantern);
+  return intent;
+}
+
+std::string key_of(const input::Actions& actions, Act act, const platform::Window* window) {
+  const auto bindings = actions.bindings(static_cast<input::ActionId>(act));
+  if (bindings.empty()) return "–";
+  const input::Control control = bindings.front().control;
+  if (control.device == input::Device::kKey && window != nullptr)
+    return window->label_of(static_cast<Key>(control.code));
+  return std::string(input::name_of(control));
+}
+
+const char* label_of(Act act) {
+  return all()[static_cast<std::size_t>(act)].label;
+}
+
+}  // namespace cairns

@@ -1,0 +1,215 @@
+#include "game/show/menu.hpp"
+
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cairns {
+namespace {
+
+constexpr float kWidth = 340;
+constexpr std::array<const char*, 4> kQualities{"low", "medium", "high", "ultra"};
+constexpr int kMapCells = 25;  // on each side of the player
+
+// A window without a frame in the middle of the left third. False: it is not drawn.
+void begin(const char* title, float scale, float width = kWidth) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x * 0.08F, size.y * 0.5F}, ImGuiCond_Always, {0, 0.5F});
+  ImGui::SetNextWindowSize({width * scale, 0}, ImGuiCond_Always);
+  ImGui::SetNextWindowBgAlpha(0.72F);
+  ImGui::Begin(title, nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoCollapse);
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+}
+
+// Colours of the map, in the order of world::GroundKind; the last is water.
+constexpr std::array<ImU32, 7> kMapColours{
+    IM_COL32(98, 125, 62, 255),   IM_COL32(62, 92, 48, 255),    IM_COL32(166, 150, 96, 255),
+    IM_COL32(205, 188, 140, 255), IM_COL32(132, 126, 118, 255), IM_COL32(236, 240, 244, 255),
+    IM_COL32(66, 106, 128, 255)};
+
+}  // namespace
+
+void Menu::open(Page next) {
+  if (next == Page::kSettings || next == Page::kCredits) before_ = page;
+  page = next;
+  message.clear();
+}
+
+bool Menu::button(const char* label) {
+  return ImGui::Button(label, {-1, 0});
+}
+
+Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
+  if (page == Page::kNone) return Choice::kNothing;
+  ImGui::GetIO().ConfigFlags |=
+      ImGuiConfigFlags_NavEnableGamepad | ImGuiConfigFlags_NavEnableKeyboard;
+  const auto scale = ImGui::GetFontSize() / 16;
+  if (page == Page::kMap) {
+    if (play != nullptr) draw_map(*play, session);
+    return Choice::kNothing;
+  }
+  begin("cairns", scale, page == Page::kSettings ? 1.6F * kWidth : kWidth);
+  Choice choice = Choice::kNothing;
+  if (page == Page::kTitle) choice = draw_title();
+  if (page == Page::kPause) choice = draw_pause();
+  if (page == Page::kPhoto) choice = draw_photo();
+  if (page == Page::kSettings) draw_settings(session, settings);
+  if (page == Page::kCredits) draw_credits();
+  if (!message.empty()) ImGui::TextWrapped("%s", message.c_str());
+  ImGui::End();
+  return choice;
+}
+
+Choice Menu::draw_title() {
+  ImGui::SetWindowFontScale(2.6F);
+  ImGui::TextUnformatted("Cairns");
+  ImGui::SetWindowFontScale(1);
+  ImGui::Spacing();
+  if (busy) {
+    ImGui::TextUnformatted("The land is being found …");
+    return Choice::kNothing;
+  }
+  if (can_continue && button("Continue")) return Choice::kContinue;
+  char typed[64] = {};
+  seed.copy(typed, sizeof(typed) - 1);
+  ImGui::SetNextItemWidth(-1);
+  const bool entered =
+      ImGui::InputTextWithHint("##seed", "a word or number names a land", typed, sizeof(typed),
+                               ImGuiInputTextFlags_EnterReturnsTrue);
+  seed = typed;
+  if (button("New land") || entered) return Choice::kNew;
+  if (button("Settings")) open(Page::kSettings);
+  if (button("Credits")) open(Page::kCredits);
+  return button("Quit") ? Choice::kQuit : Choice::kNothing;
+}
+
+Choice Menu::draw_pause() {
+  ImGui::SetWindowFontScale(1.6F);
+  ImGui::TextUnformatted("Pause");
+  ImGui::SetWindowFontScale(1);
+  if (button("Go on")) open(Page::kNone);
+  if (button("Save")) return Choice::kSave;
+  if (button("Map")) open(Page::kMap);
+  if (button("Photo")) open(Page::kPhoto);
+  if (button("Settings")) open(Page::kSettings);
+  if (button("To the title")) return Choice::kToTitle;
+  return button("Save and quit") ? Choice::kQuit : Choice::kNothing;
+}
+
+void Menu::draw_settings(app::Session& session, Settings& settings) {
+  bool changed = ImGui::Combo("quality", &settings.quality, kQualities.data(), 4);
+  const auto slider = [&](const char* label, double& value, double low, double high) {
+    changed |= ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, "%.2f");
+  };
+  slider("field of view", settings.fov_deg, 45, 100);
+  slider("mouse", settings.mouse, 0.2, 5);
+  slider("text size", settings.text, 0.7, 2);
+  slider("sounds", settings.effects, 0, 1);
+  slider("music", settings.music, 0, 1);
+  changed |= ImGui::Checkbox("marks without colour", &settings.colour_blind);
+  changed |= ImGui::Checkbox("reduced motion", &settings.reduced_motion);
+  changed |= ImGui::Checkbox("full screen", &settings.fullscreen);
+  if (ImGui::CollapsingHeader("Keys and pad")) draw_keys(session);
+  settings_changed |= changed;
+  if (button("Back")) open(before_);
+}
+
+void Menu::draw_keys(app::Session& session) {
+  input::Actions& actions = session.actions();
+  if (capture_) {
+    ImGui::Text("Press a key or button for: %s", label_of(static_cast<Act>(captured_)));
+    if (const auto control = capture_->update(session.input())) {
+      capture_.reset();
+      const bool cancelled = *control == input::Control(platform::Key::kEscape);
+      if (!cancelled) settings_changed |= actions.set_bindings(captured_, {{*control}}).has_value();
+    }
+    return;
+  }
+  for (auto i = static_cast<std::size_t>(Act::kRun); i < kActs; ++i) {
+    const std::string key = key_of(actions, static_cast<Act>(i), session.window());
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::Button(key.c_str(), {ImGui::GetFontSize() * 9, 0})) {
+      captured_ = i;
+      capture_.emplace(session.input());
+    }
+    ImGui::SameLine();
+    ImGui::TextUnformatted(label_of(static_cast<Act>(i)));
+    ImGui::PopID();
+  }
+  if (button("Usual keys")) {
+    actions.reset_bindings();
+    settings_changed = true;
+  }
+}
+
+// Cells that were seen, from above, north upwards, with the player in the middle.
+void Menu::draw_map(const Play& play, const app::Session& session) {
+  const auto extent = const_cast<app::Session&>(session).picture_size();
+  const float cell = static_cast<float>(extent.height) * 0.86F / (2 * kMapCells + 1);
+  const glm::vec2 middle(static_cast<float>(extent.width) / 2,
+                         static_cast<float>(extent.height) / 2);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto place = [&](const core::WorldPosition& at) {
+    const glm::dvec3 way = way_m(play.progress().feet, at, play.block_m());
+    return middle + glm::vec2(static_cast<float>(way.x), static_cast<float>(way.z)) *
+                        (cell / static_cast<float>(kMapCellM));
+  };
+  const float half = cell * (kMapCells + 0.5F);
+  list.AddRectFilled({middle.x - half, middle.y - half}, {middle.x + half, middle.y + half},
+                     IM_COL32(24, 26, 30, 225), 6);
+  const glm::dvec3 at = way_m({}, play.progress().feet, play.block_m());
+  const auto number = [](double m) { return static_cast<std::int32_t>(std::floor(m / kMapCellM)); };
+  for (std::int32_t z = number(at.z) - kMapCells; z <= number(at.z) + kMapCells; ++z) {
+    for (std::int32_t x = number(at.x) - kMapCells; x <= number(at.x) + kMapCells; ++x) {
+      const auto seen = play.progress().seen.find(map_cell(x, z));
+      if (seen == play.progress().seen.end()) continue;
+      core::WorldPosition corner;
+      corner.local = {x * kMapCellM, 0, z * kMapCellM};
+      const glm::vec2 from = place(corner);
+      list.AddRectFilled({from.x, from.y}, {from.x + cell + 0.6F, from.y + cell + 0.6F},
+                         kMapColours[seen->second]);
+    }
+  }
+  const auto mark = [&](const core::WorldPosition& there, ImU32 colour) {
+    const glm::vec2 p = place(there);
+    if (std::abs(p.x - middle.x) > half || std::abs(p.y - middle.y) > half) return;
+    list.AddTriangleFilled({p.x, p.y - 8}, {p.x - 6, p.y + 5}, {p.x + 6, p.y + 5}, colour);
+  };
+  for (std::size_t i = 0; i < kCairns; ++i) {
+    if (play.progress().found[i]) mark(play.route().cairns[i], IM_COL32(255, 196, 92, 255));
+  }
+  for (const core::WorldPosition& waymark : play.progress().waymarks)
+    mark(waymark, IM_COL32(240, 240, 240, 255));
+  const double yaw = play.walker().yaw();
+  const ImVec2 tip(middle.x + 12 * static_cast<float>(std::sin(yaw)),
+                   middle.y - 12 * static_cast<float>(std::cos(yaw)));
+  list.AddCircleFilled({middle.x, middle.y}, 5, IM_COL32(220, 60, 48, 255));
+  list.AddLine({middle.x, middle.y}, tip, IM_COL32(220, 60, 48, 255), 3);
+  list.AddText({middle.x - 4, middle.y - half + 4}, IM_COL32(255, 255, 255, 220), "N");
+}
+
+Choice Menu::draw_photo() {
+  ImGui::SliderFloat("hour", &photo.hour, 0, 24, "%.1f");
+  ImGui::SliderFloat("field of view", &photo.fov_deg, 15, 100, "%.0f");
+  for (int i = 0; i < static_cast<int>(kFilters.size()); ++i) {
+    if (i > 0) ImGui::SameLine();
+    ImGui::RadioButton(kFilters[static_cast<std::size_t>(i)].name, &photo.filter, i);
+  }
+  if (button("Take the picture (F12)")) return Choice::kPicture;
+  if (button("Back")) open(Page::kNone);
+  return Choice::kNothing;
+}
+
+void Menu::draw_credits() {
+  ImGui::TextWrapped(
+      "Cairns is the game of psygen. The land, its trees, the creatures, all sounds and the music "
+      "are made by code while you play; nothing was recorded or drawn. The letters are DejaVu "
+      "Sans. "
+      "game/CREDITS lists the libraries.");
+  if (button("Back")) open(before_);
+}
+
+}  // namespace cairns

@@ -1,0 +1,224 @@
+#include "game/show/scenery.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "engine/scene/objects/effects.hpp"
+#include "engine/scene/objects/particle_kinds.hpp"
+
+namespace cairns {
+namespace {
+
+constexpr double kFallS = 1.7, kLiesS = 5;
+constexpr float kBeaconM = 3.2F;  // height of a hidden cairn
+constexpr glm::vec3 kEmber{1.0F, 0.50F, 0.18F};
+
+glm::quat turned(double yaw, double pitch = 0) {
+  return glm::angleAxis(static_cast<float>(-yaw), glm::vec3(0, 1, 0)) *
+         glm::angleAxis(static_cast<float>(pitch), glm::vec3(1, 0, 0));
+}
+
+std::uint64_t name_of_place(const core::WorldPosition& at) {
+  return core::combine(map_cell(at.block.x, at.block.z),
+                       static_cast<std::uint64_t>(at.local.x * 64) << 20 ^
+                           static_cast<std::uint64_t>(at.local.z * 64));
+}
+
+core::WorldPosition raised(core::WorldPosition at, double up_m) {
+  at.local.y += up_m;
+  return at;
+}
+
+// The smoke of a cairn is seen from far away.
+render::ParticleKind beacon_smoke() {
+  render::ParticleKind kind = scene::smoke({0.4F, 0, 0.2F});
+  kind.lifetime_s = 14;
+  kind.rate = 7;
+  kind.velocity = {0, 2.6F, 0};
+  kind.first_size_m = 0.7F;
+  kind.last_size_m = 6.5F;
+  kind.first_colour = {0.75F, 0.76F, 0.80F, 0.55F};
+  kind.last_colour = {0.8F, 0.8F, 0.84F, 0.0F};
+  return kind;
+}
+
+}  // namespace
+
+core::Result<void> Scenery::open(app::Session& session) {
+  scene::State& state = session.scene().state();
+  clear_sky_ = state.facts.world.sky;
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    shapes_[kind] = parts_of(static_cast<Kind>(kind));
+    for (std::size_t part = 0; part < kParts; ++part) {
+      if (shapes_[kind][part].mesh.indices.empty()) continue;
+      const auto mesh = state.assets.add_mesh(shapes_[kind][part].mesh, "creature");
+      if (!mesh) return tl::unexpected(mesh.error());
+      meshes_[kind][part] = *mesh;
+    }
+  }
+  ecs::World& world = state.entities;
+  smoke_ = scene::spawn_emitter(world, {.kind = beacon_smoke()}, {});
+  glow_ = scene::spawn_emitter(world, {.kind = scene::sparks()}, {});
+  beacon_light_ = scene::spawn_light(world, {.colour = kEmber, .intensity = 30, .range_m = 60}, {});
+  rain_ = scene::spawn_emitter(world, {.kind = scene::rain()}, {});
+  snow_ = scene::spawn_emitter(world, {.kind = scene::snow()}, {});
+  lantern_ = scene::spawn_light(
+      world, {.colour = {1.0F, 0.78F, 0.45F}, .intensity = 3, .range_m = 24, .visible = false}, {});
+  return {};
+}
+
+void Scenery::update(app::Session& session, const Play& play, double share) {
+  ++frame_;
+  scene::State& state = session.scene().state();
+  update_creatures(state, play, share);
+  update_fires(state, play);
+  update_beacon(state, play);
+  update_falling(state, play);
+  update_weather(session, play);
+  const core::CameraPose eyes = play.walker().eyes(share);
+  state.entities.get<scene::Transform>(lantern_)->position =
+      at_end_of(eyes.position, 0.6 * glm::dvec3(core::forward_of(eyes)), play.block_m());
+  state.entities.get<scene::PointLight>(lantern_)->visible = play.progress().lantern;
+}
+
+void Scenery::update_creatures(scene::State& state, const Play& play, double share) {
+  ecs::World& world = state.entities;
+  for (const Creature& c : play.creatures().all()) {
+    const auto kind = static_cast<std::size_t>(c.kind);
+    Shown& shown = shown_[c.seed];
+    const bool is_new = std::exchange(shown.frame, frame_) == 0;
+    const core::WorldPosition at =
+        at_end_of(c.before, way_m(c.before, c.at, play.block_m()) * share, play.block_m());
+    const glm::quat whole = turned(c.yaw, c.pitch);
+    for (std::size_t i = 0; i < kParts; ++i) {
+      const Part& part = shapes_[kind][i];
+      if (part.mesh.indices.empty()) continue;
+      const float calm = c.kind == Kind::kDeer ? static_cast<float>(std::min(c.pace / 2, 2.2)) : 1;
+      const float side = i == 1 ? 1.0F : -1.0F;
+      const float angle = calm * part.swing * side * std::sin(static_cast<float>(c.beat));
+      const glm::quat swung = whole * glm::angleAxis(angle, part.axis);
+      scene::Transform place{at_end_of(at, glm::dvec3(whole * part.joint), play.block_m()), swung,
+                             glm::vec3(1.0F)};
+      if (is_new) {
+        shown.parts[i] = scene::spawn(world, {.mesh = meshes_[kind][i]}, place);
+      } else if (auto* there = world.get<scene::Transform>(shown.parts[i])) {
+        *there = place;
+      }
+    }
+  }
+  std::erase_if(shown_, [&](const auto& entry) {
+    const bool gone = entry.second.frame != frame_;
+    if (gone) world.destroy(entry.second.parts);
+    return gone;
+  });
+}
+
+void Scenery::update_fires(scene::State& state, const Play& play) {
+  ecs::World& world = state.entities;
+  const double time_s = play.progress().time_s;
+  for (const Fire& fire : play.progress().fires) {
+    if (fire.until_s < time_s) continue;
+    Flame& flame = flames_[name_of_place(fire.at)];
+    if (std::exchange(flame.frame, frame_) == 0) {
+      flame.fire = scene::spawn_emitter(world, {.kind = scene::fire()}, {.position = fire.at});
+      flame.smoke =
+          scene::spawn_emitter(world, {.kind = scene::smoke()}, {.position = raised(fire.at, 0.6)});
+      flame.light = scene::spawn_light(world, {.colour = kEmber, .intensity = 5, .range_m = 22},
+                                       {.position = raised(fire.at, 0.7)});
+    }
+    // Flickers, and burns down in the end.
+    const auto left = static_cast<float>(std::clamp((fire.until_s - time_s) / 30, 0.2, 1.0));
+    const auto flicker =
+        static_cast<float>(0.85 + 0.15 * std::sin(time_s * 11) * std::sin(time_s * 7.3));
+    world.get<scene::PointLight>(flame.light)->intensity = 5 * left * flicker;
+  }
+  std::erase_if(flames_, [&](const auto& entry) {
+    const Flame& flame = entry.second;
+    const bool out = flame.frame != frame_;
+    if (out) world.destroy(std::array{flame.fire, flame.smoke, flame.light});
+    return out;
+  });
+}
+
+// Smoke by day and light by night where the next cairn stands.
+void Scenery::update_beacon(scene::State& state, const Play& play) {
+  const auto next = play.next_cairn();
+  const core::WorldPosition at =
+      next ? raised(play.route().cairns[*next], kBeaconM) : core::WorldPosition();
+  const bool night = play.is_night();
+  for (const ecs::Entity entity : {smoke_, glow_, beacon_light_})
+    state.entities.get<scene::Transform>(entity)->position = at;
+  state.entities.get<scene::ParticleEmitter>(smoke_)->visible = next && !night;
+  state.entities.get<scene::ParticleEmitter>(glow_)->visible = next && night;
+  state.entities.get<scene::PointLight>(beacon_light_)->visible = next && night;
+}
+
+void Scenery::update_falling(scene::State& state, const Play& play) {
+  std::erase_if(falling_, [&](const Falling& tree) {
+    const double age_s = play.progress().time_s - tree.since_s;
+    const double share = std::clamp(age_s / kFallS, 0.0, 1.0);
+    const auto angle = static_cast<float>(1.5 * share * share * share);
+    const glm::vec3 axis(static_cast<float>(std::cos(tree.yaw)), 0,
+                         static_cast<float>(std::sin(tree.yaw)));
+    if (auto* there = state.entities.get<scene::Transform>(tree.entity))
+      there->rotation = glm::angleAxis(-angle, axis) * tree.stands;
+    const bool gone = age_s > kFallS + kLiesS || age_s < 0;
+    if (gone) state.entities.destroy(std::array{tree.entity});
+    if (age_s > kFallS + kLiesS - 1 && !gone)
+      state.entities.get<scene::Object>(tree.entity)->visible = false;
+    return gone;
+  });
+}
+
+void Scenery::update_weather(app::Session& session, const Play& play) {
+  const Weather weather = play.weather();
+  world::Sky sky = clear_sky_;
+  sky.cloud_cover = weather.clouds;
+  sky.visibility_m =
+      std::exp(std::lerp(std::log(clear_sky_.visibility_m), std::log(150.0), weather.fog));
+  sky.sun_colour *= static_cast<float>(1 - 0.55 * std::max(weather.clouds - 0.5, 0.0));
+  (void)session.scene().set_sky(sky);
+  scene::State& state = session.scene().state();
+  const bool cold = play.progress().feet.local.y > kSnowLineM;
+  const auto wet = static_cast<float>(weather.wet);
+  const glm::vec3 wind(weather.wind);
+  const auto fall = [&](ecs::Entity entity, render::ParticleKind kind, bool here) {
+    auto* emitter = state.entities.get<scene::ParticleEmitter>(entity);
+    emitter->visible = here && wet > 0.02F;
+    kind.first_colour.w *= wet;
+    kind.last_colour.w *= wet;
+    emitter->kind = kind;
+  };
+  fall(rain_, scene::rain(0.3F * wind), !cold);
+  fall(snow_, scene::snow(0.3F * wind), cold);
+}
+
+void Scenery::tell(app::Session& session, const Happening& happening, const Play& play) {
+  if (happening.kind != Happening::Kind::kFelled || !happening.tree) return;
+  scene::State& state = session.scene().state();
+  const models::ModelType& type = play.registry()[happening.tree->model];
+  const auto mesh = state.assets.add_model(type.name(), happening.tree->parameters, 0, 2);
+  if (!mesh) return;
+  Falling tree;
+  tree.foot = happening.at;
+  tree.yaw = play.walker().yaw();
+  tree.since_s = play.progress().time_s;
+  tree.entity = scene::spawn(state.entities, {.mesh = *mesh}, {.position = happening.at});
+  falling_.push_back(tree);
+}
+
+void Scenery::clear(app::Session& session) {
+  ecs::World& world = session.scene().state().entities;
+  for (const auto& [seed, shown] : shown_)
+    world.destroy(shown.parts);
+  for (const auto& [place, flame] : flames_)
+    world.destroy(std::array{flame.fire, flame.smoke, flame.light});
+  for (const Falling& tree : falling_)
+    world.destroy(std::array{tree.entity});
+  shown_.clear();
+  flames_.clear();
+  falling_.clear();
+}
+
+}  // namespace cairns

@@ -1,0 +1,87 @@
+#include "game/show/settings.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+
+#include "engine/core/replace_file.hpp"
+#include "engine/input/bindings_file.hpp"
+
+namespace cairns {
+namespace {
+
+constexpr const char* kFile = "settings.toml";
+constexpr const char* kKeys = "keys.toml";
+
+struct Number {
+  const char* name;
+  double Settings::*value;
+  double low, high;
+};
+constexpr Number kNumbers[] = {{"fov_deg", &Settings::fov_deg, 45, 100},
+                               {"mouse", &Settings::mouse, 0.2, 5},
+                               {"text", &Settings::text, 0.7, 2},
+                               {"effects", &Settings::effects, 0, 1},
+                               {"music", &Settings::music, 0, 1}};
+struct Switch {
+  const char* name;
+  bool Settings::*value;
+};
+constexpr Switch kSwitches[] = {{"colour_blind", &Settings::colour_blind},
+                                {"reduced_motion", &Settings::reduced_motion},
+                                {"fullscreen", &Settings::fullscreen}};
+
+}  // namespace
+
+core::Result<std::filesystem::path> settings_folder(const std::filesystem::path& given) {
+  std::filesystem::path folder = given;
+  const char* config = std::getenv("XDG_CONFIG_HOME");
+  const char* home = std::getenv("HOME");
+  if (folder.empty() && config != nullptr && *config == '/')
+    folder = std::filesystem::path(config) / "cairns";
+  if (folder.empty() && home != nullptr) folder = std::filesystem::path(home) / ".config/cairns";
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return core::fail(core::ErrorCode::kIo, "no folder for settings: " + error.message());
+  return folder;
+}
+
+core::Result<Settings> load_settings(const std::filesystem::path& folder, input::Actions& actions) {
+  Settings settings;
+  std::error_code ignored;
+  if (std::filesystem::exists(folder / kKeys, ignored)) {
+    if (auto ok = input::load_bindings(folder / kKeys, actions); !ok)
+      return tl::unexpected(ok.error());
+  }
+  if (!std::filesystem::exists(folder / kFile, ignored)) return settings;
+  try {
+    const toml::table table = toml::parse_file((folder / kFile).string());
+    for (const Number& n : kNumbers)
+      settings.*n.value = std::clamp(table[n.name].value_or(settings.*n.value), n.low, n.high);
+    for (const Switch& s : kSwitches)
+      settings.*s.value = table[s.name].value_or(settings.*s.value);
+    settings.quality = std::clamp(table["quality"].value_or(0), 0, 3);
+  } catch (const toml::parse_error& error) {
+    return core::fail(core::ErrorCode::kParse,
+                      (folder / kFile).string() + ": " + std::string(error.description()));
+  }
+  return settings;
+}
+
+core::Result<void> save_settings(const std::filesystem::path& folder, const Settings& settings,
+                                 const input::Actions& actions) {
+  toml::table table;
+  for (const Number& n : kNumbers)
+    table.insert(n.name, settings.*n.value);
+  for (const Switch& s : kSwitches)
+    table.insert(s.name, settings.*s.value);
+  table.insert("quality", settings.quality);
+  std::ostringstream text;
+  text << table << '\n';
+  if (auto ok = core::replace_file(folder / kFile, text.str()); !ok) return ok;
+  return input::save_bindings(actions, folder / kKeys);
+}
+
+}  // namespace cairns

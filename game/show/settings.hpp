@@ -1,0 +1,31 @@
+// What the player chooses: kept in a TOML file in the user's configuration, bindings of keys in
+// another beside it. A file that cannot be read is told and left as it is; the usual values count.
+#pragma once
+
+#include <filesystem>
+
+#include "engine/input/actions.hpp"
+#include "engine/render/types.hpp"
+
+namespace cairns {
+
+using namespace psygen;
+
+struct Settings {
+  int quality = 0;                           // of render::Preset, from low to ultra
+  double fov_deg = 60, mouse = 1, text = 1;  // degrees; factors
+  double effects = 0.8, music = 0.5;         // volumes, 0 … 1
+  bool colour_blind = false;                 // marks differ by brightness, not by hue
+  bool reduced_motion = false;               // the view does not sway, and nothing flies past
+  bool fullscreen = false;
+};
+
+// The folder of both files, which is made; or `given`. Fails with kIo.
+core::Result<std::filesystem::path> settings_folder(const std::filesystem::path& given = {});
+// Fails with kParse for a file that is none, and kIo; a missing one has the usual values. Values
+// out of their ranges are moved into them.
+core::Result<Settings> load_settings(const std::filesystem::path& folder, input::Actions& actions);
+core::Result<void> save_settings(const std::filesystem::path& folder, const Settings& settings,
+                                 const input::Actions& actions);
+
+}  // namespace cairns

@@ -1,0 +1,23 @@
+// The meshes of what moves: deer, birds and fish, in parts that swing, made of a few ellipsoids
+// and fins. Pure functions. Metres; they look along −Z.
+#pragma once
+
+#include <array>
+
+#include "engine/core/mesh_data.hpp"
+#include "game/play/creatures.hpp"
+
+namespace cairns {
+
+// A creature is a body and up to two parts that swing against each other.
+inline constexpr std::size_t kParts = 3;
+struct Part {
+  core::MeshData mesh;
+  glm::vec3 joint{0.0F};  // about which it swings, from the creature's place
+  glm::vec3 axis{1, 0, 0};
+  float swing = 0;  // radians, either way
+};
+// Parts without triangles are not there.
+std::array<Part, kParts> parts_of(Kind kind);
+
+}  // namespace cairns

@@ -1,0 +1,42 @@
+// Plays the sounds of a game: wind by height, steps by ground, water, rain, fire, birds by the
+// hour, music. Without a device nothing is heard and nothing fails. Main thread.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "engine/audio/audio.hpp"
+#include "game/play/play.hpp"
+#include "game/show/synth.hpp"
+
+namespace cairns {
+
+class Sounds {
+ public:
+  explicit Sounds(double block_m, audio::Destination destination);
+
+  // 0 … 1 each.
+  void set_volumes(double effects, double music);
+  // Once a frame. `play` may be null: a title without a game.
+  void update(Play* play, const core::CameraPose& ears, double dt_s);
+  void tell(const Happening& happening, Play& play);
+
+ private:
+  struct Loop {
+    ClipPtr clip;
+    audio::SoundId sound = audio::SoundId::kNone;
+    double gain = 0;
+  };
+  void hold(Loop& loop, double gain, double dt_s,
+            const std::optional<core::WorldPosition>& at = {});
+  void sing(Play& play, double dt_s);
+
+  audio::Audio audio_;
+  Loop wind_, rain_, water_, fire_;
+  ClipPtr music_, splash_, chop_, fall_, stone_, chime_;
+  std::array<ClipPtr, 3> steps_, birds_;
+  double until_song_s_ = 4;
+  std::uint64_t songs_ = 0;
+};
+
+}  // namespace cairns
