@@ -13,7 +13,7 @@ namespace cairns {
 namespace {
 
 constexpr std::uint64_t kFirstSeed = 7;  // of the land behind the title, until a game was saved
-constexpr double kSaveEveryS = 60, kZoom = 0.28, kClockOffS = 0.5;
+constexpr double kSaveEveryS = 60, kZoom = 0.28;
 constexpr double kTitleHeightM = 26, kTitleRadiusM = 150, kTitleTurnS = 140;
 constexpr int kPictureFrames = 2;  // until the last one has no page over it
 constexpr std::uint64_t kBudgetBytes = 256ull << 20;
@@ -73,6 +73,10 @@ core::Result<void> Game::start(app::Session& session) {
       options_.sound ? audio::Destination::kDevice : audio::Destination::kNowhere;
   sounds_.emplace(session.scene().state().facts.world.block_size_m(), destination);
   apply_settings(session);
+  if (session.window() != nullptr) {
+    session.window()->set_title("Cairns");
+    session.window()->set_right_button_looks(false);
+  }
   const double step_s = session.scene().state().simulation.step.step_s;
   if (!options_.record.empty()) recording_.emplace(session.actions(), step_s);
   if (!options_.replay.empty()) {
@@ -116,9 +120,7 @@ core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
 
 void Game::open_page(app::Session& session, Page page) {
   menu_.page = shown_page_ = page;
-  session.set_paused(page != Page::kNone && page != Page::kTitle);
   if (session.window() == nullptr) return;
-  session.window()->set_right_button_looks(false);
   session.window()->capture_cursor(page == Page::kNone);
 }
 
@@ -250,7 +252,7 @@ core::CameraPose Game::title_camera(app::Session& session, double dt_s) {
 
 void Game::take_picture(app::Session& session) {
   for (int i = 1; i < 10'000; ++i) {
-    const std::filesystem::path file = config_ / ("picture-" + std::to_string(i) + ".png");
+    const std::filesystem::path file = saves_ / ("picture-" + std::to_string(i) + ".png");
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) continue;
     const auto saved = session.save_picture(file);
@@ -287,11 +289,7 @@ core::CameraPose Game::frame(app::Session& session, double dt_s) {
     pose = play.walker().eyes(share);
     const bool sways = !settings_.reduced_motion && play.walker().gait() == Gait::kGround;
     if (sways) pose.position.local.y += 0.025 * std::sin(play.walker().walked_m() * 3.6);
-    scenery_.update(session, play, share);
-    double time_s = play.progress().time_s;
-    if (photo) time_s += (menu_.photo.hour - play.hour()) / 24 * play.world().sky.day_length_s;
-    // The session's clock is the sky's. It runs by itself; sleep, photos and saves make it jump.
-    if (std::abs(session.now_s() - time_s) > kClockOffS) session.set_now(std::max(time_s, 0.0));
+    scenery_.update(session, play, share, photo ? menu_.photo.hour : play.hour());
     session.hud() = photo ? render::HudDrawing{} : hud_.draw(play, session, settings_, zoom_, dt_s);
     if (photo)
       session.hud().areas.push_back(

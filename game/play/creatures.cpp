@@ -114,6 +114,9 @@ void Creatures::add_group(Kind kind, int count, const core::WorldPosition& home,
     c.at = home;
     c.at.local += glm::dvec3(random.next_real(-9, 9), 0, random.next_real(-9, 9));
     c.at = core::normalised(c.at, query_->world().block_size_m());
+    const auto ground = query_->ground(c.at);
+    if (!ground) continue;
+    c.at.local.y = kind == Kind::kFish ? home.local.y : ground->height_m;
     if (kind == Kind::kBird) c.at.local.y += random.next_real(9, 26);
     c.before = c.at;
     all_.push_back(c);

@@ -58,24 +58,24 @@ core::Result<void> Scenery::open(app::Session& session) {
     }
   }
   ecs::World& world = state.entities;
-  smoke_ = scene::spawn_emitter(world, {.kind = beacon_smoke()}, {});
-  glow_ = scene::spawn_emitter(world, {.kind = scene::sparks()}, {});
-  beacon_light_ = scene::spawn_light(world, {.colour = kEmber, .intensity = 30, .range_m = 60}, {});
-  rain_ = scene::spawn_emitter(world, {.kind = scene::rain()}, {});
-  snow_ = scene::spawn_emitter(world, {.kind = scene::snow()}, {});
+  smoke_ = scene::spawn_emitter(world, {.kind = beacon_smoke(), .visible = false}, {});
+  glow_ = scene::spawn_emitter(world, {.kind = scene::sparks(), .visible = false}, {});
+  beacon_light_ = scene::spawn_light(world, {.colour = kEmber, .intensity = 30, .range_m = 60, .visible = false}, {});
+  rain_ = scene::spawn_emitter(world, {.kind = scene::rain(), .visible = false}, {});
+  snow_ = scene::spawn_emitter(world, {.kind = scene::snow(), .visible = false}, {});
   lantern_ = scene::spawn_light(
       world, {.colour = {1.0F, 0.78F, 0.45F}, .intensity = 3, .range_m = 24, .visible = false}, {});
   return {};
 }
 
-void Scenery::update(app::Session& session, const Play& play, double share) {
+void Scenery::update(app::Session& session, const Play& play, double share, double hour) {
   ++frame_;
   scene::State& state = session.scene().state();
   update_creatures(state, play, share);
   update_fires(state, play);
   update_beacon(state, play);
   update_falling(state, play);
-  update_weather(session, play);
+  update_weather(session, play, hour);
   const core::CameraPose eyes = play.walker().eyes(share);
   state.entities.get<scene::Transform>(lantern_)->position =
       at_end_of(eyes.position, 0.6 * glm::dvec3(core::forward_of(eyes)), play.block_m());
@@ -171,9 +171,11 @@ void Scenery::update_falling(scene::State& state, const Play& play) {
   });
 }
 
-void Scenery::update_weather(app::Session& session, const Play& play) {
+void Scenery::update_weather(app::Session& session, const Play& play, double hour) {
   const Weather weather = play.weather();
   world::Sky sky = clear_sky_;
+  sky.start_hour = std::fmod(hour - session.now_s() / sky.day_length_s * 24, 24.0) + 24;
+  sky.start_hour = std::fmod(sky.start_hour, 24.0);
   sky.cloud_cover = weather.clouds;
   sky.visibility_m =
       std::exp(std::lerp(std::log(clear_sky_.visibility_m), std::log(150.0), weather.fog));

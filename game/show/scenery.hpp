@@ -19,8 +19,9 @@ class Scenery {
   // Makes meshes and entities in a session, once. Fails as scene::Assets::add_mesh().
   core::Result<void> open(app::Session& session);
   // Before a tick: everything to where it is `share` of a step after the step before the last.
-  // Weather and hour go to the sky.
-  void update(app::Session& session, const Play& play, double share);
+  // The weather and `hour` of the day go to the sky, whose clock is not that of the game: it goes on
+  // while a game stands still.
+  void update(app::Session& session, const Play& play, double share, double hour);
   // What happened since.
   void tell(app::Session& session, const Happening& happening, const Play& play);
   // Of another game: forgets what belongs to this one.
@@ -44,7 +45,7 @@ class Scenery {
   void update_creatures(scene::State& state, const Play& play, double share);
   void update_fires(scene::State& state, const Play& play);
   void update_beacon(scene::State& state, const Play& play);
-  void update_weather(app::Session& session, const Play& play);
+  void update_weather(app::Session& session, const Play& play, double hour);
   void update_falling(scene::State& state, const Play& play);
 
   std::array<std::array<Part, kParts>, kKinds> shapes_;

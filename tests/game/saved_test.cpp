@@ -1,0 +1,181 @@
+// Saves of a game: what comes back, what is refused, and what a process that is killed leaves.
+#include "game/play/saved.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "engine/world/edits/edit_bytes.hpp"
+#include "game/pilot/pilot.hpp"
+
+namespace cairns {
+namespace {
+
+constexpr double kSavedStep = 1.0 / 60;
+
+class Saves : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::unique_ptr<Play> begin() { return *Play::create(land_->world, land_->registry); }
+  std::filesystem::path file() const { return save_file(folder_, land_->world.seed); }
+
+  std::unique_ptr<Land> land_ = *Land::load(3);
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                  ("psygen_game_" + std::to_string(::getpid()));
+};
+
+TEST_F(Saves, GiveBackTheWholeGame) {
+  auto play = begin();
+  {
+    auto saved = Saved::open(file(), *play);
+    ASSERT_TRUE(saved) << saved.error().message;
+    Pilot pilot(*play);
+    for (int k = 0; k < 240 * 60; ++k)
+      play->step(pilot.steer(kSavedStep), kSavedStep);
+    ASSERT_TRUE(saved->put(*play));
+    ASSERT_TRUE(saved->wait());
+  }
+  ASSERT_GT(play->progress().found.count(), 0U);
+  ASSERT_GT(play->edits().counts().removed, 0U);
+  auto again = begin();
+  auto saved = Saved::open(file(), *again);
+  ASSERT_TRUE(saved) << saved.error().message;
+  const Progress &a = play->progress(), &b = again->progress();
+  EXPECT_EQ(a.feet.block, b.feet.block);
+  EXPECT_EQ(a.feet.local, b.feet.local);
+  EXPECT_EQ(a.yaw, b.yaw);
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.found, b.found);
+  EXPECT_EQ(a.stock.stones, b.stock.stones);
+  EXPECT_EQ(a.stock.wood, b.stock.wood);
+  EXPECT_EQ(a.seen, b.seen);
+  EXPECT_EQ(a.waymarks.size(), b.waymarks.size());
+  const world::Edits none;
+  const auto blocks = world::changed_blocks(none, play->edits());
+  EXPECT_EQ(blocks.size(), world::changed_blocks(none, again->edits()).size());
+  for (const core::BlockCoord block : blocks)
+    EXPECT_EQ(world::encode_block(play->edits(), land_->registry, block),
+              world::encode_block(again->edits(), land_->registry, block));
+  EXPECT_EQ(last_seed(folder_), std::optional<std::uint64_t>(3));
+}
+
+// A game that was quit and resumed is finished as well.
+TEST_F(Saves, AGameThatIsQuitAndResumedEveryMinuteIsFinished) {
+  for (int minute = 0; minute < 40; ++minute) {
+    auto play = begin();
+    auto saved = Saved::open(file(), *play);
+    ASSERT_TRUE(saved) << saved.error().message;
+    Pilot pilot(*play);
+    for (int k = 0; k < 3600 && !play->is_finished(); ++k)
+      play->step(pilot.steer(kSavedStep), kSavedStep);
+    ASSERT_TRUE(saved->put(*play));
+    ASSERT_TRUE(saved->wait());
+    if (play->is_finished()) return;
+  }
+  FAIL() << "not finished in 40 minutes";
+}
+
+TEST_F(Saves, AreRefusedWithASentenceAndStayAsTheyAre) {
+  {
+    auto play = begin();
+    auto saved = Saved::open(file(), *play);
+    ASSERT_TRUE(saved);
+    ASSERT_TRUE(saved->put(*play));
+    ASSERT_TRUE(saved->wait());
+    // While it is open, nobody else gets it.
+    auto other = begin();
+    const auto second = Saved::open(file(), *other);
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().message.find(file().string()), std::string::npos);
+  }
+  const auto land = Land::load(4);
+  auto foreign = *Play::create((*land)->world, (*land)->registry);
+  const auto refused = Saved::open(file(), *foreign);
+  ASSERT_FALSE(refused);
+  const auto size = std::filesystem::file_size(file());
+  auto play = begin();
+  const core::WorldPosition feet = play->progress().feet;
+  for (const std::uintmax_t cut : {std::uintmax_t{0}, std::uintmax_t{1}, size / 2, size - 1}) {
+    const std::filesystem::path broken = folder_ / "broken.cairns";
+    std::filesystem::copy_file(file(), broken, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(broken, cut);
+    const auto opened = Saved::open(broken, *play);
+    EXPECT_FALSE(opened) << cut;
+    EXPECT_EQ(play->progress().feet.local, feet.local);
+  }
+}
+
+TEST_F(Saves, OfANewerFormatOrWithImpossibleNumbersAreRefused) {
+  const std::pair<const char*, save::Value> wrong[] = {
+      {"format", std::int64_t{2}}, {"time_s", -5.0},        {"stones", std::int64_t{-1}},
+      {"feet", save::Bytes(7)},    {"yaw", std::string("n")}, {"found", save::Value()}};
+  for (const auto& [name, value] : wrong) {
+    std::filesystem::remove(file());
+    {
+      auto play = begin();
+      auto saved = Saved::open(file(), *play);
+      ASSERT_TRUE(saved->put(*play));
+      ASSERT_TRUE(saved->wait());
+    }
+    {
+      auto raw = save::SaveGame::open(file(), save::identity_of(land_->world, land_->registry));
+      ASSERT_TRUE(raw);
+      ASSERT_TRUE(raw->put_value(name, value));
+      ASSERT_TRUE(raw->save());
+    }
+    auto play = begin();
+    const auto opened = Saved::open(file(), *play);
+    ASSERT_FALSE(opened) << name;
+    EXPECT_NE(opened.error().message.find(file().string()), std::string::npos);
+  }
+}
+
+// 100 times a process that saves again and again is killed in the middle of it: the save has the
+// state before or after, whole.
+TEST_F(Saves, AProcessThatIsKilledLeavesAWholeSave) {
+  auto play = begin();
+  core::RandomStream random(1, 0, 0, 0, core::Purpose::kStructure);
+  int stones = 0;
+  for (int kill = 0; kill < 100; ++kill) {
+    int ready[2];
+    ASSERT_EQ(::pipe(ready), 0);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      auto saved = Saved::open(file(), *play);
+      if (!saved) ::_exit(3);
+      Progress progress = play->progress();
+      for (;;) {
+        // Stones and wood grow together, so a mix of two saves would be seen.
+        progress.stock = {progress.stock.stones + 1, progress.stock.stones + 1};
+        progress.seen[map_cell(progress.stock.stones, 0)] = 1;
+        if (!play->resume(progress, play->edits()) || !saved->put(*play) || !saved->wait()) ::_exit(4);
+        if (::write(ready[1], "x", 1) != 1) ::_exit(5);
+      }
+    }
+    char byte;
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);  // it has saved once
+    ::usleep(static_cast<useconds_t>(random.next_integer(0, 9000)));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status)) << WEXITSTATUS(status);
+    ::close(ready[0]);
+    ::close(ready[1]);
+    auto saved = Saved::open(file(), *play);
+    ASSERT_TRUE(saved) << saved.error().message;
+    const Stock stock = play->progress().stock;
+    EXPECT_EQ(stock.stones, stock.wood);
+    EXPECT_GT(stock.stones, stones);
+    EXPECT_TRUE(play->progress().seen.contains(map_cell(stock.stones, 0)));
+    EXPECT_FALSE(play->progress().seen.contains(map_cell(stock.stones + 1, 0)));
+    stones = stock.stones;
+  }
+}
+
+}  // namespace
+}  // namespace cairns
