@@ -39,7 +39,11 @@ void Menu::open(Page next) {
 }
 
 bool Menu::button(const char* label) {
-  return ImGui::Button(label, {-1, 0});
+  const bool clicked = ImGui::Button(label, {-1, 0});
+  // ImGui itself takes only the space bar for a click.
+  const bool entered =
+      ImGui::IsItemFocused() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+  return clicked || entered;
 }
 
 Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {

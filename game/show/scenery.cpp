@@ -60,7 +60,8 @@ core::Result<void> Scenery::open(app::Session& session) {
   ecs::World& world = state.entities;
   smoke_ = scene::spawn_emitter(world, {.kind = beacon_smoke(), .visible = false}, {});
   glow_ = scene::spawn_emitter(world, {.kind = scene::sparks(), .visible = false}, {});
-  beacon_light_ = scene::spawn_light(world, {.colour = kEmber, .intensity = 30, .range_m = 60, .visible = false}, {});
+  beacon_light_ = scene::spawn_light(
+      world, {.colour = kEmber, .intensity = 30, .range_m = 60, .visible = false}, {});
   rain_ = scene::spawn_emitter(world, {.kind = scene::rain(), .visible = false}, {});
   snow_ = scene::spawn_emitter(world, {.kind = scene::snow(), .visible = false}, {});
   lantern_ = scene::spawn_light(

@@ -19,8 +19,8 @@ class Scenery {
   // Makes meshes and entities in a session, once. Fails as scene::Assets::add_mesh().
   core::Result<void> open(app::Session& session);
   // Before a tick: everything to where it is `share` of a step after the step before the last.
-  // The weather and `hour` of the day go to the sky, whose clock is not that of the game: it goes on
-  // while a game stands still.
+  // The weather and `hour` of the day go to the sky, whose clock is not that of the game: it goes
+  // on while a game stands still.
   void update(app::Session& session, const Play& play, double share, double hour);
   // What happened since.
   void tell(app::Session& session, const Happening& happening, const Play& play);

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <sstream>
 
@@ -58,8 +59,10 @@ core::Result<Settings> load_settings(const std::filesystem::path& folder, input:
   if (!std::filesystem::exists(folder / kFile, ignored)) return settings;
   try {
     const toml::table table = toml::parse_file((folder / kFile).string());
-    for (const Number& n : kNumbers)
-      settings.*n.value = std::clamp(table[n.name].value_or(settings.*n.value), n.low, n.high);
+    for (const Number& n : kNumbers) {
+      if (const double value = table[n.name].value_or(settings.*n.value); std::isfinite(value))
+        settings.*n.value = std::clamp(value, n.low, n.high);
+    }
     for (const Switch& s : kSwitches)
       settings.*s.value = table[s.name].value_or(settings.*s.value);
     settings.quality = std::clamp(table["quality"].value_or(0), 0, 3);

@@ -1,6 +1,7 @@
 #include "game/show/sounds.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace cairns {
@@ -11,22 +12,27 @@ constexpr double kFadePerS = 0.8;  // of the gain of a loop
 }  // namespace
 
 Sounds::Sounds(double block_m, audio::Destination destination)
-    : audio_({.destination = destination, .block_size_m = block_m}) {
-  wind_.clip = wind_sound();
-  rain_.clip = rain_sound();
-  water_.clip = water_sound();
-  fire_.clip = fire_sound();
-  music_ = music_sound(1);
-  splash_ = splash_sound();
-  chop_ = chop_sound();
-  fall_ = fall_sound();
-  stone_ = stone_sound();
-  chime_ = chime_sound();
+    : audio_({.destination = destination, .block_size_m = block_m}),
+      coming_(std::async(std::launch::async, make_clips)) {}
+
+Sounds::Clips Sounds::make_clips() {
+  Clips made{wind_sound(),
+             rain_sound(),
+             water_sound(),
+             fire_sound(),
+             music_sound(1),
+             splash_sound(),
+             chop_sound(),
+             fall_sound(),
+             stone_sound(),
+             chime_sound(),
+             {},
+             {}};
   for (int i = 0; i < 3; ++i) {
-    steps_[static_cast<std::size_t>(i)] = step_sound(0.5F * static_cast<float>(i));
-    birds_[static_cast<std::size_t>(i)] = bird_sound(i);
+    made.steps[static_cast<std::size_t>(i)] = step_sound(0.5F * static_cast<float>(i));
+    made.birds[static_cast<std::size_t>(i)] = bird_sound(i);
   }
-  (void)audio_.play(music_, {.gain = 0.9, .loop = true, .bus = audio::Bus::kMusic});
+  return made;
 }
 
 void Sounds::set_volumes(double effects, double music) {
@@ -35,13 +41,13 @@ void Sounds::set_volumes(double effects, double music) {
 }
 
 // Starts, changes or ends a loop, slowly.
-void Sounds::hold(Loop& loop, double gain, double dt_s,
+void Sounds::hold(Loop& loop, const ClipPtr& clip, double gain, double dt_s,
                   const std::optional<core::WorldPosition>& at) {
   const double most = kFadePerS * dt_s;
   loop.gain += std::clamp(gain - loop.gain, -most, most);
   const audio::Play how{.at = at, .range = {2, 30}, .gain = loop.gain, .loop = true};
   if (loop.sound == audio::SoundId::kNone && loop.gain > 0.01) {
-    if (const auto sound = audio_.play(loop.clip, how)) loop.sound = *sound;
+    if (const auto sound = audio_.play(clip, how)) loop.sound = *sound;
   } else if (loop.sound != audio::SoundId::kNone) {
     (void)audio_.change(loop.sound, how);
     if (loop.gain <= 0.01) {
@@ -52,18 +58,23 @@ void Sounds::hold(Loop& loop, double gain, double dt_s,
 }
 
 void Sounds::update(Play* play, const core::CameraPose& ears, double dt_s) {
-  if (play != nullptr) {
+  using namespace std::chrono_literals;
+  if (!clips_ && coming_.wait_for(0s) == std::future_status::ready) {
+    clips_ = coming_.get();
+    (void)audio_.play(clips_->music, {.gain = 0.9, .loop = true, .bus = audio::Bus::kMusic});
+  }
+  if (play != nullptr && clips_) {
     const Weather weather = play->weather();
     const core::WorldPosition& feet = play->progress().feet;
     const double height = std::clamp((feet.local.y - 40) / 150, 0.0, 1.0);
     const double speed = play->walker().gait() == Gait::kGlide ? 0.35 : 0;
-    hold(wind_, 0.12 + 0.35 * height + 0.03 * std::hypot(weather.wind.x, weather.wind.z) + speed,
-         dt_s);
-    hold(rain_, feet.local.y > kSnowLineM ? 0 : 0.5 * weather.wet, dt_s);
+    hold(wind_, clips_->wind,
+         0.12 + 0.35 * height + 0.03 * std::hypot(weather.wind.x, weather.wind.z) + speed, dt_s);
+    hold(rain_, clips_->rain, feet.local.y > kSnowLineM ? 0 : 0.5 * weather.wet, dt_s);
     const double above = feet.local.y - play->world().water.level_m;
-    hold(water_, 0.4 * std::clamp(1 - above / 6, 0.0, 1.0), dt_s);
+    hold(water_, clips_->water, 0.4 * std::clamp(1 - above / 6, 0.0, 1.0), dt_s);
     const Fire* fire = play->fire_near(30);
-    hold(fire_, fire != nullptr ? 0.9 : 0, dt_s,
+    hold(fire_, clips_->fire, fire != nullptr ? 0.9 : 0, dt_s,
          fire != nullptr ? std::optional(fire->at) : std::nullopt);
     sing(*play, dt_s);
   }
@@ -85,31 +96,32 @@ void Sounds::sing(Play& play, double dt_s) {
   const Creature& c = all[static_cast<std::size_t>(random.next_integer(0, last))];
   if (c.kind != Kind::kBird) return;
   (void)audio_.play(
-      birds_[songs_ % birds_.size()],
+      clips_->birds[songs_ % clips_->birds.size()],
       {.at = c.at, .range = {6, 120}, .gain = 0.6, .pitch = random.next_real(0.85, 1.2)});
 }
 
 void Sounds::tell(const Happening& happening, Play& play) {
+  if (!clips_) return;
   const auto here = [&](const ClipPtr& clip, double gain, double pitch = 1) {
     (void)audio_.play(clip, {.at = happening.at, .range = {3, 60}, .gain = gain, .pitch = pitch});
   };
   using enum Happening::Kind;
   switch (happening.kind) {
     case kFound:
-      (void)audio_.play(chime_, {.gain = 1});
+      (void)audio_.play(clips_->chime, {.gain = 1});
       break;
     case kGathered:
     case kBuilt:
-      here(stone_, 0.8);
+      here(clips_->stone, 0.8);
       break;
     case kChopped:
-      here(chop_, 0.8);
+      here(clips_->chop, 0.8);
       break;
     case kFelled:
-      here(fall_, 1);
+      here(clips_->fall, 1);
       break;
     case kSplashed:
-      here(splash_, 0.8);
+      here(clips_->splash, 0.8);
       break;
     case kLanded:
     case kStepped: {
@@ -118,10 +130,10 @@ void Sounds::tell(const Happening& happening, Play& play) {
       const bool soft = ground->kind == world::GroundKind::kSnow;
       const bool hard = ground->kind == world::GroundKind::kRock;
       const double pitch = 0.92 + 0.16 * std::fmod(play.walker().walked_m() * 0.731, 1.0);
-      here(ground->water_depth_m > 0 ? splash_
-                                     : steps_[soft   ? 0
-                                              : hard ? 2
-                                                     : 1],
+      here(ground->water_depth_m > 0 ? clips_->splash
+                                     : clips_->steps[soft   ? 0
+                                                     : hard ? 2
+                                                            : 1],
            happening.kind == kLanded ? 0.9 : 0.35, pitch);
       break;
     }

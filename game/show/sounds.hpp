@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <future>
 #include <optional>
 
 #include "engine/audio/audio.hpp"
@@ -22,19 +23,24 @@ class Sounds {
   void tell(const Happening& happening, Play& play);
 
  private:
+  // All that can be heard. Made in a thread of its own, as the music takes a while.
+  struct Clips {
+    ClipPtr wind, rain, water, fire, music, splash, chop, fall, stone, chime;
+    std::array<ClipPtr, 3> steps, birds;
+  };
+  static Clips make_clips();
   struct Loop {
-    ClipPtr clip;
     audio::SoundId sound = audio::SoundId::kNone;
     double gain = 0;
   };
-  void hold(Loop& loop, double gain, double dt_s,
+  void hold(Loop& loop, const ClipPtr& clip, double gain, double dt_s,
             const std::optional<core::WorldPosition>& at = {});
   void sing(Play& play, double dt_s);
 
   audio::Audio audio_;
   Loop wind_, rain_, water_, fire_;
-  ClipPtr music_, splash_, chop_, fall_, stone_, chime_;
-  std::array<ClipPtr, 3> steps_, birds_;
+  std::future<Clips> coming_;
+  std::optional<Clips> clips_;  // until then nothing is heard
   double until_song_s_ = 4;
   std::uint64_t songs_ = 0;
 };

@@ -154,13 +154,13 @@ ClipPtr step_sound(float hardness) {
 
 ClipPtr splash_sound() {
   Samples out = noise(0.9, 250, 3500, 8);
-  shape(out, [](float t) { return 2.0F * std::min(t * 40, 1.0F) * std::exp(-4 * t); });
+  shape(out, [](float t) { return 1.4F * std::min(t * 40, 1.0F) * std::exp(-4 * t); });
   return clip(out);
 }
 
 ClipPtr chop_sound() {
   Samples out = noise(0.22, 200, 2500, 9);
-  shape(out, [](float t) { return 2.0F * std::exp(-38 * t); });
+  shape(out, [](float t) { return 1.1F * std::exp(-38 * t); });
   add_tone(out, 0, 190, 0.7F, 0.035, {0.5F, 0.3F});
   return clip(out);
 }

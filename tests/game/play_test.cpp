@@ -42,8 +42,9 @@ struct Begun {
   core::WorldPosition water(double depth_m) {
     for (int i = 0; i < 400'000; ++i) {
       const double angle = i * 0.13, far_m = 0.05 * i;
-      core::WorldPosition at = at_end_of(play->route().start, far_m * glm::dvec3(std::cos(angle), 0, std::sin(angle)),
-                                         play->block_m());
+      core::WorldPosition at =
+          at_end_of(play->route().start, far_m * glm::dvec3(std::cos(angle), 0, std::sin(angle)),
+                    play->block_m());
       const auto ground = play->query().ground(at);
       if (!ground || ground->water_depth_m < depth_m) continue;
       at.local.y = land->world.water.level_m;
@@ -64,7 +65,8 @@ TEST(Route, IsOfTheSeedAloneAndOnDryGround) {
     ASSERT_TRUE(ground);
     EXPECT_EQ(ground->water_depth_m, 0);
     blocks.insert({at.block.x, at.block.z});
-    const core::WorldPosition& before = i == 0 ? a.play->route().start : a.play->route().cairns[i - 1];
+    const core::WorldPosition& before =
+        i == 0 ? a.play->route().start : a.play->route().cairns[i - 1];
     EXPECT_GE(distance_m(before, at, a.play->block_m()), 199);
     EXPECT_LE(distance_m(before, at, a.play->block_m()), 361);
   }
@@ -177,7 +179,8 @@ TEST(Walker, TheCameraIsNeverInsideAnything) {
     const auto ground = game.play->query().ground(eyes.position);
     ASSERT_TRUE(ground);
     ASSERT_GT(eyes.position.local.y, ground->height_m + 0.2) << "step " << k;
-    const auto hit = game.play->query().cast({.origin = eyes.position, .direction = {0, 1, 0}, .longest_m = 0.1, .ground = false});
+    const auto hit = game.play->query().cast(
+        {.origin = eyes.position, .direction = {0, 1, 0}, .longest_m = 0.1, .ground = false});
     ASSERT_TRUE(hit);
     ASSERT_FALSE(hit->from_inside) << "step " << k;
   }

@@ -24,8 +24,8 @@ class Saves : public ::testing::Test {
   std::filesystem::path file() const { return save_file(folder_, land_->world.seed); }
 
   std::unique_ptr<Land> land_ = *Land::load(3);
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                  ("psygen_game_" + std::to_string(::getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("psygen_game_" + std::to_string(::getpid()));
 };
 
 TEST_F(Saves, GiveBackTheWholeGame) {
@@ -111,7 +111,7 @@ TEST_F(Saves, AreRefusedWithASentenceAndStayAsTheyAre) {
 
 TEST_F(Saves, OfANewerFormatOrWithImpossibleNumbersAreRefused) {
   const std::pair<const char*, save::Value> wrong[] = {
-      {"format", std::int64_t{2}}, {"time_s", -5.0},        {"stones", std::int64_t{-1}},
+      {"format", std::int64_t{2}}, {"time_s", -5.0},          {"stones", std::int64_t{-1}},
       {"feet", save::Bytes(7)},    {"yaw", std::string("n")}, {"found", save::Value()}};
   for (const auto& [name, value] : wrong) {
     std::filesystem::remove(file());
@@ -153,7 +153,8 @@ TEST_F(Saves, AProcessThatIsKilledLeavesAWholeSave) {
         // Stones and wood grow together, so a mix of two saves would be seen.
         progress.stock = {progress.stock.stones + 1, progress.stock.stones + 1};
         progress.seen[map_cell(progress.stock.stones, 0)] = 1;
-        if (!play->resume(progress, play->edits()) || !saved->put(*play) || !saved->wait()) ::_exit(4);
+        if (!play->resume(progress, play->edits()) || !saved->put(*play) || !saved->wait())
+          ::_exit(4);
         if (::write(ready[1], "x", 1) != 1) ::_exit(5);
       }
     }

@@ -1,0 +1,97 @@
+// The game in its window, with the keyboard and mouse of a person: title, a land by its name,
+// walking, pages, saving, going on.
+#include "tests/engine/platform/virtual_display.hpp"
+#include "tests/game/game_fixture.hpp"
+
+namespace cairns {
+namespace {
+
+class GameWindow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    display_ = platform::VirtualDisplay::start("1000x640");
+    ASSERT_NE(display_, nullptr) << "Xvfb, openbox or xdotool is missing (tools/setup.sh)";
+    std::filesystem::remove_all(folder_);
+    options_.folder = folder_;
+    options_.size = {640, 360};
+    options_.sound = false;
+    options_.preset = render::Preset::kLow;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  bool key(const char* name) const { return display_->xdotool({"key", name}); }
+
+  std::unique_ptr<platform::VirtualDisplay> display_;
+  std::filesystem::path folder_ = test_folder("game_window");
+  GameOptions options_;
+};
+
+// How much of two pictures differs, 0 … 1.
+double difference(const image::Image& a, const image::Image& b) {
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < a.rgba.size() && i < b.rgba.size(); i += 4)
+    differ += std::abs(int{a.rgba[i]} - int{b.rgba[i]}) > 24 ? 1 : 0;
+  return static_cast<double>(differ) / static_cast<double>(a.rgba.size() / 4);
+}
+
+TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
+  core::WorldPosition at;
+  {
+    Running run(options_);
+    ASSERT_TRUE(run.open());
+    run.frames(30);
+    const image::Image title = *run.session->picture();
+    // A land by its name.
+    ASSERT_TRUE(display_->xdotool({"type", "heather"}));
+    run.frames(20);
+    ASSERT_TRUE(key("Return"));
+    ASSERT_TRUE(run.frames_until([&] { return run.game.play() != nullptr; }));
+    EXPECT_EQ(run.game.play()->world().seed, seed_of("heather"));
+    EXPECT_TRUE(run.session->window()->cursor_captured());
+    run.frames(30);
+    EXPECT_GT(difference(title, *run.session->picture()), 0.2);
+    // Steps ahead, without a word of help.
+    const Walker& walker = run.game.play()->walker();
+    ASSERT_TRUE(display_->xdotool({"keydown", "w"}));
+    EXPECT_TRUE(run.frames_until([&] { return walker.walked_m() > 4; }));
+    ASSERT_TRUE(display_->xdotool({"keyup", "w"}));
+    const double yaw = walker.yaw();
+    ASSERT_TRUE(display_->xdotool({"mousemove_relative", "--", "120", "0"}));
+    EXPECT_TRUE(run.frames_until([&] { return walker.yaw() > yaw + 0.05; }));
+    ASSERT_TRUE(key("space"));
+    EXPECT_TRUE(run.frames_until([&] { return walker.gait() == Gait::kAir; }));
+    EXPECT_TRUE(run.frames_until([&] { return walker.gait() == Gait::kGround; }));
+    // The map, and back.
+    run.frames(10);
+    const image::Image play = *run.session->picture();
+    ASSERT_TRUE(key("m"));
+    EXPECT_TRUE(
+        run.frames_until([&] { return difference(play, *run.session->picture()) > 0.2; }, 600));
+    ASSERT_TRUE(key("m"));
+    run.frames(20);
+    // A pause: no time passes in the game.
+    ASSERT_TRUE(key("Escape"));
+    EXPECT_TRUE(run.frames_until([&] { return !run.session->window()->cursor_captured(); }));
+    const double time_s = run.game.play()->progress().time_s;
+    run.frames(30);
+    EXPECT_EQ(run.game.play()->progress().time_s, time_s);
+    // "Save and quit" is the last button.
+    for (int i = 0; i < 6; ++i) {
+      ASSERT_TRUE(key("Down"));
+      run.frames(6);
+    }
+    ASSERT_TRUE(key("Return"));
+    EXPECT_TRUE(run.frames_until([&] { return run.session->over(); }));
+    at = run.game.play()->progress().feet;
+    ASSERT_TRUE(run.game.end(*run.session));
+  }
+  EXPECT_TRUE(std::filesystem::exists(save_file(folder_, seed_of("heather"))));
+  Running again(options_);
+  ASSERT_TRUE(again.open());
+  again.frames(20);
+  ASSERT_TRUE(key("Return"));  // "Continue" is the first button
+  ASSERT_TRUE(again.frames_until([&] { return again.game.play() != nullptr; }));
+  EXPECT_EQ(again.game.play()->progress().feet.local, at.local);
+}
+
+}  // namespace
+}  // namespace cairns
