@@ -24,6 +24,7 @@
 #include "editor/panels/statistics_panel.hpp"
 #include "editor/shell/command_palette.hpp"
 #include "editor/shell/docks.hpp"
+#include "editor/tools/view_tools.hpp"
 #include "engine/core/log.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/surface.hpp"
@@ -62,8 +63,9 @@ MainWindow::MainWindow(MainWindowOptions options)
   palette_ = new CommandPalette(this);
   add_docks();
   add_tool_docks();
-  add_menus();
   add_toolbar();
+  add_view_tools();
+  add_menus();
   figures_ = new QLabel;
   statusBar()->addPermanentWidget(figures_);
   connect_document();
@@ -75,7 +77,10 @@ MainWindow::MainWindow(MainWindowOptions options)
   fit_title();
 }
 
-MainWindow::~MainWindow() = default;
+// The document goes before the view.
+MainWindow::~MainWindow() {
+  tools_->leave();
+}
 
 void MainWindow::add_docks() {
   properties_ = new PropertiesPanel;

@@ -27,6 +27,7 @@ class PropertiesPanel;
 class RemoteSession;
 class StatisticsPanel;
 class TimelinePanel;
+class ViewTools;
 
 struct MainWindowOptions {
   app::SessionOptions session;
@@ -63,6 +64,8 @@ class MainWindow final : public QMainWindow {
   void add_edit_menu();
   void add_view_menu();
   void add_world_menu();
+  void add_view_tools();
+  void add_tools_menu();
   void add_flight_menu();
   void add_attach_action(QMenu* menu);
   void add_help_menu();
@@ -121,6 +124,7 @@ class MainWindow final : public QMainWindow {
   PictureTools* pictures_ = nullptr;
   RemoteSession* remote_ = nullptr;
   TimelinePanel* timeline_ = nullptr;
+  ViewTools* tools_ = nullptr;
   std::string remote_has_;  // the world of the attached program
   bool remote_follows_ = false;
   QLabel* figures_ = nullptr;

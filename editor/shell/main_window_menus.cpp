@@ -34,6 +34,7 @@ void MainWindow::add_menus() {
   add_edit_menu();
   add_view_menu();
   add_world_menu();
+  add_tools_menu();
   add_flight_menu();
   add_help_menu();
 }

@@ -1,4 +1,5 @@
-// Docks and menus of what runs beside the document: attached programs, recorded flights.
+// Docks and menus of what works beside the panels: tools of the view, attached programs, recorded
+// flights.
 #include <QDockWidget>
 #include <QMenu>
 #include <QMenuBar>
@@ -8,8 +9,10 @@
 #include "editor/attach/remote_session.hpp"
 #include "editor/flights/timeline_panel.hpp"
 #include "editor/gallery/model_view.hpp"
+#include "editor/panels/properties_panel.hpp"
 #include "editor/shell/docks.hpp"
 #include "editor/shell/main_window.hpp"
+#include "editor/tools/view_tools.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 
@@ -103,6 +106,20 @@ void MainWindow::add_tool_docks() {
     timeline_->picture_drawn();
     if (remote_follows_) remote_->set_pose(model_->world_pose());
   });
+}
+
+void MainWindow::add_view_tools() {
+  tools_ = new ViewTools(*this, document_, *view_, [this](bool on) { set_dragging(on); });
+  connect(tools_, &ViewTools::told, this, &MainWindow::say);
+  connect(tools_, &ViewTools::started, model_, &ModelView::close);
+  connect(tools_, &ViewTools::chosen, properties_, &PropertiesPanel::go_to);
+  connect(model_, &ModelView::switched, this, [this] {
+    if (model_->is_on()) tools_->leave();
+  });
+}
+
+void MainWindow::add_tools_menu() {
+  tools_->add_to_menu(*menuBar()->addMenu(tr("&Tools")));
 }
 
 void MainWindow::add_attach_action(QMenu* menu) {

@@ -102,6 +102,20 @@ std::optional<Selection> pick(const scene::State& state, const core::CameraPose&
   return found_again(selection, state);
 }
 
+std::optional<glm::dvec2> ground_at(query::World& queries, const core::CameraPose& pose,
+                                    const glm::dvec3& direction) {
+  query::Ray ray;
+  ray.origin = pose.position;
+  ray.direction = direction;
+  ray.longest_m = kFarM;
+  ray.models = ray.objects = false;
+  const auto hit = queries.cast(ray);
+  if (!hit || hit->kind != query::HitKind::kGround) return std::nullopt;
+  const double block_m = queries.world().block_size_m();
+  const core::WorldPosition& at = hit->position;
+  return glm::dvec2(at.block.x * block_m + at.local.x, at.block.z * block_m + at.local.z);
+}
+
 std::optional<Selection> found_again(const Selection& before, const scene::State& state) {
   const world::World& world = state.facts.world;
   Selection selection = before;

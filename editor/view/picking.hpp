@@ -35,6 +35,11 @@ glm::dvec3 direction_of(QPointF pixel, core::Extent size, const core::CameraPose
 std::optional<Selection> pick(const scene::State& state, const core::CameraPose& pose,
                               const glm::dvec3& direction);
 
+// The ground from the camera in a direction, as x and z in metres of the world; nothing: the sky,
+// or more than 20 km away. Models are in nobody's way.
+std::optional<glm::dvec2> ground_at(query::World& queries, const core::CameraPose& pose,
+                                    const glm::dvec3& direction);
+
 // The same model, or the same place of the ground, in the present world; nothing if it is gone.
 std::optional<Selection> found_again(const Selection& selection, const scene::State& state);
 

@@ -14,6 +14,8 @@ class ViewInput {
   // Takes a key, mouse or wheel event; false for others. A click with the left button that did not
   // move is kept until take_click().
   bool take(const QEvent& event, double pixel_ratio);
+  // A wheel event that was somebody else's at first.
+  void turn_wheel(double steps) { input_.wheel += steps; }
   // The input since the last call.
   platform::InputState take_frame();
   // Where the left button was clicked, in device pixels; nothing if it was not.

@@ -64,12 +64,14 @@ void WorldView::close() {
   timer_.stop();
   if (prepared_.valid()) prepared_.wait();  // it uses the session
   prepared_ = {};
+  ground_.reset();
   has_hung_ = has_hung();
   if (session_ && session_->has_hung_modelers()) (void)session_.release();
   session_.reset();
 }
 
 bool WorldView::event(QEvent* event) {
+  if (tool_ != nullptr && tool_input_.take(*event, devicePixelRatio())) return true;
   if (input_.take(*event, devicePixelRatio())) return true;
   switch (event->type()) {
     case QEvent::Expose:
@@ -136,10 +138,11 @@ void WorldView::tick() {
         seen, camera_.pose(),
         direction_of(*click, session_->picture_size(), camera_.pose(), seen.camera.projection)));
   }
+  serve_tool();
   write_over_picture();
   scene::State& state = session_->scene().state();
   state.input.draft = draft_;
-  state.input.lines = grid_.lines(state.facts.world, camera_.pose().position);
+  state.input.lines = lines_;
   QElapsedTimer spent;
   spent.start();
   const bool over = !session_->poll();
@@ -154,15 +157,18 @@ void WorldView::tick() {
   note_answered();
   note_settled();
   const bool in_front = QGuiApplication::applicationState() == Qt::ApplicationActive;
-  const bool yields = beside_.any() && !moved && !input_.busy() && !since_text_.isValid();
-  timer_.setInterval(yields                                               ? kYieldMs
-                     : in_front || input_.busy() || since_text_.isValid() ? kBusyMs
-                                                                          : kIdleMs);
+  const bool busy = input_.busy() || tool_input_.held();
+  const bool yields = beside_.any() && !moved && !busy && !since_text_.isValid();
+  timer_.setInterval(yields                                      ? kYieldMs
+                     : in_front || busy || since_text_.isValid() ? kBusyMs
+                                                                 : kIdleMs);
 }
 
 // In the world that is shown from now on.
 void WorldView::take_stand() {
   grid_.forget();
+  overlay_.forget();
+  ground_.reset();
   const scene::State& state = session_->scene().state();
   camera_.set_block_size(state.facts.world.block_size_m());
   const FindStand find = std::exchange(find_stand_, nullptr);
@@ -191,35 +197,40 @@ void WorldView::note_settled() {
   since_text_.invalidate();
 }
 
-// A frame around what is selected.
 void WorldView::write_over_picture() {
   render::HudDrawing& hud = session_->hud();
   hud = {};
-  if (!selection_ || selection_->kind != query::HitKind::kModel) return;
   const scene::State& state = session_->scene().state();
-  const core::Extent size = session_->picture_size();
-  const glm::mat4 to_clip =
-      core::projection_matrix(state.camera.projection) * core::view_rotation(camera_.pose());
-  const glm::dvec3 foot = core::offset_m(selection_->at.block, camera_.pose().position,
-                                         state.facts.world.block_size_m()) +
-                          selection_->at.local;
+  const auto grid = grid_.lines(state.facts.world, camera_.pose().position);
+  lines_.assign(grid.begin(), grid.end());
+  const Lens seen = lens();
+  write_frame(seen);
+  if (tool_ == nullptr) return;
+  overlay_.set(tool_->marks(), state.facts.world);
+  overlay_.add_lines(seen.pose.position, seen.block_m, lines_);
+  overlay_.add_handles(seen, hud);
+}
+
+// A frame around what is selected.
+void WorldView::write_frame(const Lens& seen) {
+  if (!selection_ || selection_->kind != query::HitKind::kModel) return;
+  const glm::dvec3 foot =
+      core::offset_m(selection_->at.block, seen.pose.position, seen.block_m) + selection_->at.local;
   glm::vec2 low{1e9F}, high{-1e9F};
   for (int corner = 0; corner < 8; ++corner) {
     const core::Bounds& box = selection_->box;
     const glm::vec3 at{(corner & 1) != 0 ? box.max.x : box.min.x,
                        (corner & 2) != 0 ? box.max.y : box.min.y,
                        (corner & 4) != 0 ? box.max.z : box.min.z};
-    const glm::vec4 clip = to_clip * glm::vec4(glm::vec3(foot) + at, 1);
-    if (clip.w <= state.camera.projection.near_m) return;
-    const glm::vec2 px{(clip.x / clip.w + 1) * 0.5F * static_cast<float>(size.width),
-                       (clip.y / clip.w + 1) * 0.5F * static_cast<float>(size.height)};
-    low = glm::min(low, px);
-    high = glm::max(high, px);
+    const auto px = seen.pixel_of(glm::vec3(foot) + at);
+    if (!px) return;
+    low = glm::min(low, *px);
+    high = glm::max(high, *px);
   }
   const glm::vec4 colour{1.0F, 0.78F, 0.25F, 0.9F};
   const glm::vec2 extent = high - low;
   const auto bar = [&](glm::vec2 at, glm::vec2 of) {
-    hud.areas.push_back({{{}, at}, {{}, of}, colour});
+    session_->hud().areas.push_back({{{}, at}, {{}, of}, colour});
   };
   bar(low, {extent.x, 2});
   bar({low.x, high.y}, {extent.x + 2, 2});

@@ -18,8 +18,11 @@
 
 #include "editor/view/ground_grid.hpp"
 #include "editor/view/picking.hpp"
+#include "editor/view/tool_input.hpp"
+#include "editor/view/tool_overlay.hpp"
 #include "editor/view/view_camera.hpp"
 #include "editor/view/view_input.hpp"
+#include "editor/view/view_tool.hpp"
 #include "editor/view/window_surface.hpp"
 #include "engine/app/session.hpp"
 #include "engine/scene/scene.hpp"
@@ -54,6 +57,13 @@ class WorldView final : public QWindow {
   void set_draft(bool draft) { draft_ = draft; }
   // The lines on the ground.
   GroundGrid& grid() { return grid_; }
+  // What the left button is for from now on, and draws its marks; null: selecting. The tool before
+  // takes back what is only begun. A tool must live as long as it is here.
+  void set_tool(ViewTool* tool);
+  ViewTool* tool() { return tool_; }
+  // The pixel of a place on the ground (x and z in the world), in units of the window; nothing
+  // behind the camera, or without a picture.
+  std::optional<QPointF> pixel_of(glm::dvec2 at_m) const;
   // Where the camera stands, turning around the pivot.
   struct Stand {
     core::CameraPose pose;
@@ -93,6 +103,10 @@ class WorldView final : public QWindow {
   void take_prepared();
   void take_stand();
   void write_over_picture();
+  void write_frame(const Lens& lens);
+  Lens lens() const;
+  void serve_tool();
+  ToolPoint point_at(const ToolEvent& event);
   void note_answered();
   void note_settled();
 
@@ -104,6 +118,11 @@ class WorldView final : public QWindow {
   std::bitset<2> beside_;  // by Beside
   ViewCamera camera_;
   ViewInput input_;
+  ViewTool* tool_ = nullptr;
+  ToolInput tool_input_;
+  ToolOverlay overlay_;
+  std::unique_ptr<query::World> ground_;  // of the world that is shown; null: not asked yet
+  std::vector<render::Line> lines_;       // over the picture
   std::optional<Selection> selection_;
   // What another thread makes of the newest text that it has got; invalid: it rests.
   std::future<core::Result<scene::PreparedWorld>> prepared_;

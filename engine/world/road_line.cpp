@@ -68,7 +68,7 @@ std::vector<RoadPoint> road_line(const Road& road, double step_m,
       const double at = k < steps ? chords[i - 1] + chord_m * k / steps : chords[i];
       const glm::dvec2 place_m{east.value(at), south.value(at)};
       const double along_m = line.back().along_m + apart_m(line.back().at_m, place_m);
-      line.push_back({place_m, along_m, 0});
+      line.push_back({place_m, along_m, 0, k < steps ? i - 1 : i});
     }
   }
   for (RoadPoint& point : line)

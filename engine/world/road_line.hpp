@@ -1,6 +1,5 @@
 // The middle of a road as short straight segments: a natural cubic spline through its points, with
-// heights that follow the ground calmly. The same bits on every machine. Internal to world; any
-// thread.
+// heights that follow the ground calmly. The same bits on every machine. Any thread.
 #pragma once
 
 #include <functional>
@@ -16,6 +15,7 @@ struct RoadPoint {
   glm::dvec2 at_m{0.0};  // x and z in the world
   double along_m = 0;    // from the road's begin
   double height_m = 0;
+  std::size_t after = 0;  // the last of the road's own points up to here
 };
 
 // The length of the straight lines between a road's points.

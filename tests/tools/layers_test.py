@@ -47,12 +47,13 @@ MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world", "
 MAY_KNOW["editor/cost"] = MAY_KNOW["editor/document"] | {"engine/synthesis", "editor/document"}
 MAY_KNOW["editor/view"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["editor/panels"] = MAY_KNOW["editor/view"] | {"editor/document", "editor/cost", "editor/view"}
+MAY_KNOW["editor/tools"] = MAY_KNOW["editor/view"] | {"editor/document", "editor/view"}
 MAY_KNOW["editor/attach"] = MAY_KNOW["editor/panels"] | {"engine/inspect", "editor/panels"}
 MAY_KNOW["editor/flights"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/compare", "editor/document"}
 MAY_KNOW["editor/pictures"] = MAY_KNOW["engine/cli"] | {"engine/cli", "editor/document", "editor/cost"}
 MAY_KNOW["editor/gallery"] = MAY_KNOW["editor/panels"] | {"editor/panels", "editor/pictures"}
 MAY_KNOW["editor/shell"] = (MAY_KNOW["editor/pictures"] | MAY_KNOW["editor/gallery"] | MAY_KNOW["editor/attach"] |
-                            {"editor/gallery", "editor/attach", "editor/flights"})
+                            {"editor/gallery", "editor/attach", "editor/flights", "editor/tools"})
 MAY_KNOW["editor"] = MAY_KNOW["editor/shell"] | {"editor/shell"}
 
 # folder inside a layer -> its neighbours that it may include. The layer's own headers, one folder up,

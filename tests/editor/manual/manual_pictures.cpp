@@ -1,6 +1,6 @@
 // Takes the pictures of the manual (docs/editor.md): goes through the panels of a window as a
 // person would and saves each as NAME-THEME-WIDTH.jpg. Run by tools/editor_pictures.sh. Minutes.
-//   psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window]     `window`: that alone
+//   psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools]     one of them alone
 // It edits the document and saves nothing of it.
 #include <QAction>
 #include <QApplication>
@@ -13,9 +13,11 @@
 #include <QLineEdit>
 #include <QPainter>
 #include <QSpinBox>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <string>
 
 #include "editor/flights/timeline_panel.hpp"
@@ -28,6 +30,7 @@
 #include "editor/shell/first_world.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
+#include "editor/tools/view_tools.hpp"
 #include "engine/scene/scene.hpp"
 #include "tests/editor/own_display.hpp"
 #include "tests/source_file.hpp"
@@ -38,8 +41,8 @@ namespace {
 struct Arguments {
   std::filesystem::path folder;
   QString theme;
-  std::string size;          // of the display
-  bool only_window = false;  // else all pictures
+  std::string size;  // of the display
+  std::string only;  // "window" or "tools"; empty: all pictures
 };
 
 constexpr int kLongestMs = 400'000, kRestMs = 700, kQuality = 78;
@@ -197,6 +200,59 @@ void take_model(Photographer& take) {
   take.settle([&] { take.command("Model alone"); });
 }
 
+// Points of the ground, east and south of what the camera looks at from above.
+class Ground {
+ public:
+  explicit Ground(MainWindow& window) : before_(window.view().camera().pose()), window_(window) {
+    const double block_m = window.document().world().block_size_m();
+    const auto& at = before_.position;
+    const glm::dvec2 eye_m{at.block.x * block_m + at.local.x, at.block.z * block_m + at.local.z};
+    const glm::vec3 ahead = core::forward_of(before_);
+    middle_m_ = eye_m + glm::normalize(glm::dvec2(ahead.x, ahead.z)) * kAheadM;
+    core::CameraPose pose = before_;
+    pose.position.local.y += kUpM;
+    pose.pitch = -std::atan2(kUpM, kAheadM);
+    window.view().camera().set_pose(pose);
+  }
+  ~Ground() { window_.view().camera().set_pose(before_); }
+  // Right of and beyond the middle, as the camera sees it.
+  ToolPoint at(double right_m, double beyond_m) const {
+    const double c = std::cos(before_.yaw), s = std::sin(before_.yaw);
+    ToolPoint point;
+    point.ground_m = middle_m_ + right_m * glm::dvec2(c, s) + beyond_m * glm::dvec2(s, -c);
+    return point;
+  }
+
+ private:
+  static constexpr double kAheadM = 90, kUpM = 45;
+  core::CameraPose before_;
+  MainWindow& window_;
+  glm::dvec2 middle_m_{0.0};
+};
+
+void click(ViewTool& tool, const ToolPoint& at) {
+  tool.press(at);
+  tool.release();
+}
+
+// What the tools draw is taken back.
+void take_tools(Photographer& take, MainWindow& window) {
+  const std::string before = take.document().text();
+  auto* tools = window.findChild<ViewTools*>();
+  const Ground ground(window);
+  take.command("Draw roads");
+  take.settle([&] {
+    click(tools->road(), ground.at(-45, -12));
+    for (const auto& [right_m, beyond_m] :
+         {std::pair{-22, -14}, std::pair{-4, 2}, std::pair{6, 24}, std::pair{30, 40}})
+      click(tools->road(), ground.at(right_m, beyond_m));
+  });
+  rest(3000);
+  take.window("road");
+  tools->leave();
+  take.settle([&] { (void)take.document().set_text(before, "Take back"); });
+}
+
 // A few seconds straight ahead are recorded and flown.
 void take_timeline(Photographer& take, MainWindow& window) {
   auto* timeline = window.findChild<TimelinePanel*>();
@@ -256,11 +312,13 @@ bool take_all(MainWindow& window, const Arguments& arguments) {
   Photographer take(window, arguments.folder, arguments.theme);
   if (!wait_until([&] { return window.view().session() != nullptr; }, kLongestMs)) return false;
   take.settle([] {});
+  if (arguments.only == "tools") return take_tools(take, window), take.ok();
   take_window(take);
-  if (arguments.only_window) return take.ok();
+  if (arguments.only == "window") return take.ok();
   take_fields(take);
   take_panels(take, window);
   take_model(take);
+  take_tools(take, window);
   take_sheet(take, window);
   take_timeline(take, window);
   return take.ok();
@@ -291,8 +349,9 @@ int main(int argc, char** argv) {
   using namespace psygen::editor;
   if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0) return render_pictures({});
   if (argc < 4 || argc > 5) {
-    std::fprintf(stderr, "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window]\n");
+    std::fprintf(stderr,
+                 "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools]\n");
     return 2;
   }
-  return run(argc, argv, {argv[1], argv[2], argv[3], argc > 4});
+  return run(argc, argv, {argv[1], argv[2], argv[3], argc > 4 ? argv[4] : ""});
 }

@@ -1,0 +1,194 @@
+#include "editor/tools/road_tool.hpp"
+
+#include <QCoreApplication>
+#include <algorithm>
+#include <utility>
+
+#include "engine/world/files/text_edit.hpp"
+#include "engine/world/files/toml_values.hpp"
+#include "engine/world/road_line.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr double kLeastStepM = 2, kStepShare = 1.0 / 2000;  // of a road, for its line
+const glm::vec3 kRoadColour{0.75F, 0.78F, 0.85F}, kChosenRoadColour{1.0F, 0.62F, 0.1F};
+
+QString words(const char* text) {
+  return QCoreApplication::translate("RoadTool", text);
+}
+
+std::string toml_points_of(const std::vector<glm::dvec2>& points) {
+  std::string text;
+  for (const glm::dvec2& point : points) {
+    const double pair[] = {point.x, point.y};
+    text += (text.empty() ? "" : ", ") + world::toml_vector(pair);
+  }
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+void RoadTool::choose(std::optional<std::size_t> road) {
+  cancel();
+  road_ = road;
+  point_.reset();
+  begun_.reset();
+  host_.chosen(this->road() ? world::TextPath{"road", *road_} : world::TextPath{});
+}
+
+std::optional<std::size_t> RoadTool::road() const {
+  const bool there = road_ && *road_ < host_.document.world().shaped.roads.size();
+  return there ? road_ : std::nullopt;
+}
+
+std::optional<std::size_t> RoadTool::chosen_point() const {
+  const bool there = road() && point_ && *point_ < points().size();
+  return there ? point_ : std::nullopt;
+}
+
+const RoadTool::Points& RoadTool::points() const {
+  return host_.document.world().shaped.roads[*road_].points_m;
+}
+
+bool RoadTool::set_points(const Points& points, const QString& step) {
+  const world::TextPath path{"road", *road_, "points_m"};
+  return host_.tell(host_.document.edit(step.arg(*road_ + 1), [&](std::string_view text) {
+    return world::with_value(text, path, toml_points_of(points));
+  }));
+}
+
+void RoadTool::begin_drag() {
+  dragging_ = true;
+  refused_.clear();
+  before_drag_ = host_.document.text();
+  host_.set_dragging(true);
+}
+
+void RoadTool::press(const ToolPoint& at) {
+  if (at.handle) {
+    if (!road()) return;  // the begin of a new road
+    point_ = *at.handle;
+    return begin_drag();
+  }
+  if (at.line && !road() && !begun_) return choose(at.line->line);
+  if (!at.ground_m)
+    return host_.say(words("There is no ground under the mouse: click on the ground."));
+  const glm::dvec2 at_m = to_decimetres(*at.ground_m);
+  if (road()) {
+    begin_drag();
+    return add_point(at_m, at.line && at.line->line == *road_ ? at.line : std::nullopt);
+  }
+  if (!begun_) {
+    begun_ = at_m;
+    return host_.say(words("Click where the road goes on."));
+  }
+  begin_drag();
+  add_road(*begun_, at_m);
+}
+
+void RoadTool::add_point(glm::dvec2 at_m, const std::optional<ToolPoint::OnLine>& on_line) {
+  Points now = points();
+  // Between two points, before the first where that is the chosen one, or behind the last.
+  std::size_t place = chosen_point() == std::size_t{0} ? 0 : now.size();
+  if (on_line) place = parts_[on_line->line][on_line->part] + 1;
+  now.insert(now.begin() + static_cast<std::ptrdiff_t>(place), at_m);
+  if (set_points(now, words("Add a point to road %1")))
+    point_ = place;
+  else
+    take_back_drag();
+}
+
+void RoadTool::add_road(glm::dvec2 from_m, glm::dvec2 to_m) {
+  const std::size_t count = host_.document.world().shaped.roads.size();
+  const QString step = words("Add road %1").arg(count + 1);
+  const bool added = host_.tell(host_.document.edit(step, [&](std::string_view text) {
+    return world::with_table_appended(text, {"road"},
+                                      "points_m = " + toml_points_of({from_m, to_m}) + "\n");
+  }));
+  if (!added) {
+    take_back_drag();
+    return;
+  }
+  begun_.reset();
+  road_ = count;
+  point_ = 1;
+  if (road()) host_.chosen({"road", *road_});
+}
+
+void RoadTool::drag(const ToolPoint& at) {
+  if (!dragging_ || !chosen_point() || !at.ground_m) return;
+  Points now = points();
+  now[*point_] = to_decimetres(*at.ground_m);
+  // Told once, when it is let go: on its way the mouse may be anywhere.
+  const auto say = std::exchange(host_.say, [this](const QString& why) { refused_ = why; });
+  if (set_points(now, words("Move a point of road %1"))) refused_.clear();
+  host_.say = say;
+}
+
+void RoadTool::release() {
+  if (!std::exchange(dragging_, false)) return;
+  host_.set_dragging(false);
+  if (!refused_.isEmpty()) host_.say(refused_);
+}
+
+bool RoadTool::cancel() {
+  const bool begun = std::exchange(begun_, std::nullopt).has_value();
+  return take_back_drag() || begun;
+}
+
+bool RoadTool::take_back_drag() {
+  if (!std::exchange(dragging_, false)) return false;
+  host_.tell(host_.document.set_text(before_drag_, words("Take back")));
+  host_.set_dragging(false);
+  return true;
+}
+
+void RoadTool::click_right(const ToolPoint& at) {
+  if (!at.handle || dragging_) return;
+  if (road()) point_ = *at.handle;
+  remove();
+}
+
+void RoadTool::remove() {
+  if (dragging_) return;
+  if (begun_) return begun_.reset();
+  if (!chosen_point()) return host_.say(words("Click on a point of a road first."));
+  if (points().size() > 2) {
+    Points now = points();
+    now.erase(now.begin() + static_cast<std::ptrdiff_t>(*point_));
+    if (set_points(now, words("Remove a point of road %1")) && *point_ > 0) --*point_;
+    return;
+  }
+  if (!host_.tell(host_.document.remove_table({"road", *road_}))) return;
+  choose(std::nullopt);
+  host_.say(words("A road has two points or more, so this one is gone. Undo brings it back."));
+}
+
+const ToolMarks& RoadTool::marks() {
+  Shown now{host_.document.parsed(), road(), chosen_point(), begun_};
+  if (now == shown_) return marks_;
+  shown_ = std::move(now);
+  marks_ = {};
+  parts_.clear();
+  const std::vector<world::Road>& roads = shown_.world->world.shaped.roads;
+  for (std::size_t i = 0; i < roads.size(); ++i) {
+    ToolMarks::Line& line = marks_.lines.emplace_back();
+    std::vector<std::size_t>& parts = parts_.emplace_back();
+    line.colour = shown_.road == i ? kChosenRoadColour : kRoadColour;
+    const double step_m = std::max(kLeastStepM, world::chords_m(roads[i]) * kStepShare);
+    for (const world::RoadPoint& point :
+         world::road_line(roads[i], step_m, [](glm::dvec2) { return 0.0; })) {
+      line.points_m.push_back(point.at_m);
+      parts.push_back(point.after);
+    }
+  }
+  if (begun_) marks_.handles.push_back({*begun_, true});
+  if (shown_.road && !begun_) {
+    for (const glm::dvec2& point : points())
+      marks_.handles.push_back({point, shown_.point == marks_.handles.size()});
+  }
+  return marks_;
+}
+
+}  // namespace psygen::editor

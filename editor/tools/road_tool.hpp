@@ -1,0 +1,61 @@
+// Roads, drawn on the ground: a click adds a point to the chosen road, dragging moves one, and a
+// click on the road itself puts one between. Each click and each drag is one undo step. It changes
+// points only: width and borders are fields of the road's section. Main thread.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "editor/tools/tool_host.hpp"
+#include "editor/view/view_tool.hpp"
+
+namespace psygen::editor {
+
+class RoadTool final : public ViewTool {
+ public:
+  explicit RoadTool(ToolHost host) : host_(std::move(host)) {}
+
+  // The road that clicks go on with; nothing: the next two clicks make a new one.
+  void choose(std::optional<std::size_t> road);
+  // Nothing too where the road is gone, by undo for example.
+  std::optional<std::size_t> road() const;
+  std::optional<std::size_t> chosen_point() const;
+  // Removes the chosen point, and the road with it where only one would be left.
+  void remove();
+
+  void press(const ToolPoint& at) override;
+  void drag(const ToolPoint& at) override;
+  void release() override;
+  // Removes the point under the mouse.
+  void click_right(const ToolPoint& at) override;
+  bool cancel() override;
+  // The lines of all roads, and handles of the chosen one.
+  const ToolMarks& marks() override;
+
+ private:
+  using Points = std::vector<glm::dvec2>;
+  const Points& points() const;  // of the chosen road
+  bool set_points(const Points& points, const QString& step);
+  void add_point(glm::dvec2 at_m, const std::optional<ToolPoint::OnLine>& on_line);
+  void add_road(glm::dvec2 from_m, glm::dvec2 to_m);
+  void begin_drag();
+  bool take_back_drag();
+
+  ToolHost host_;
+  std::optional<std::size_t> road_, point_;
+  std::optional<glm::dvec2> begun_;  // the first point of a new road
+  bool dragging_ = false;
+  std::string before_drag_;  // the text
+  QString refused_;          // why the drag is not where the mouse is
+  // What the marks were made of.
+  struct Shown {
+    ParsedWorldPtr world;
+    std::optional<std::size_t> road, point;
+    std::optional<glm::dvec2> begun;
+    friend bool operator==(const Shown&, const Shown&) = default;
+  } shown_;
+  ToolMarks marks_;
+  std::vector<std::vector<std::size_t>> parts_;  // of each line: the point of its road before
+};
+
+}  // namespace psygen::editor

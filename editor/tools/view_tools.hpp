@@ -1,0 +1,73 @@
+// The tools of the view and the way to them: a bar with buttons and what the chosen tool needs, a
+// menu, shortcuts. One tool at most is on; Esc leaves it. What a tool does is its own (road_tool).
+// Main thread.
+#pragma once
+
+#include <QObject>
+#include <functional>
+#include <vector>
+
+#include "editor/document/document.hpp"
+#include "editor/tools/road_tool.hpp"
+#include "editor/view/world_view.hpp"
+
+class QAction;
+class QActionGroup;
+class QComboBox;
+class QLabel;
+class QMainWindow;
+class QMenu;
+class QToolBar;
+
+namespace psygen::editor {
+
+class ViewTools final : public QObject {
+  Q_OBJECT
+
+ public:
+  // `set_dragging` begins and ends a drag of the document.
+  ViewTools(QMainWindow& window, Document& document, WorldView& view,
+            std::function<void(bool)> set_dragging);
+
+  void add_to_menu(QMenu& menu);
+  // The left button selects again. Call it before view or document end.
+  void leave();
+  RoadTool& road() { return road_; }
+
+ Q_SIGNALS:
+  void told(const QString& sentence);
+  // A tool is on: the view must show the world.
+  void started();
+  // What a tool has chosen, to be shown.
+  void chosen(const psygen::world::TextPath& table);
+
+ private:
+  ToolHost host();
+  // A button and command for a tool; what is added to the bar until the next one is its own.
+  void add_tool(ViewTool& tool, const QString& name, const QString& key, const QString& help);
+  void add_of_tool(QWidget* widget);
+  void add_roads();
+  void add_commands(QMainWindow& window);
+  void turn_on(ViewTool* tool);
+  void escape();
+  void remove();
+  void fill_roads();
+
+  Document& document_;
+  WorldView& view_;
+  std::function<void(bool)> set_dragging_;
+  QToolBar* bar_;
+  QActionGroup* group_;
+  QAction* leave_ = nullptr;
+  QAction* remove_ = nullptr;
+  struct OfTool {
+    ViewTool* tool;
+    QAction* action;  // of the bar
+  };
+  std::vector<OfTool> of_tools_;
+  std::vector<OfTool> buttons_;
+  RoadTool road_;
+  QComboBox* roads_ = nullptr;
+};
+
+}  // namespace psygen::editor

@@ -1,0 +1,124 @@
+#include "editor/view/tool_overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "engine/world/surface.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr double kPieceM = 3;    // of a line, so that it follows the ground
+constexpr int kMostPieces = 64;  // between two points
+constexpr float kHandlePx = 9, kChosenPx = 13, kBorderPx = 2;
+constexpr float kReachHandlePx = 12, kReachLinePx = 7;  // of the mouse
+// Above the ground, so that it does not cover them: more of it where it is seen from afar.
+constexpr double kMarkLiftM = 0.06, kMarkLiftShare = 0.005;
+const glm::vec4 kHandleColour{0.95F, 0.96F, 1.0F, 1.0F}, kChosenColour{1.0F, 0.62F, 0.1F, 1.0F},
+    kBorderColour{0.05F, 0.06F, 0.08F, 0.9F};
+
+glm::vec3 lifted(const core::WorldPosition& at, const core::WorldPosition& eye, double block_m) {
+  glm::dvec3 from_eye = core::offset_m(at.block, eye, block_m) + at.local;
+  from_eye.y += kMarkLiftM + kMarkLiftShare * glm::length(from_eye);
+  return from_eye;
+}
+
+float to_segment(glm::vec2 p, glm::vec2 a, glm::vec2 b) {
+  const glm::vec2 along = b - a;
+  const float length2 = glm::dot(along, along);
+  const float t = length2 > 0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0F, 1.0F) : 0.0F;
+  return glm::length(p - (a + t * along));
+}
+
+}  // namespace
+
+core::WorldPosition on_surface(glm::dvec2 at_m, const world::World& world) {
+  core::WorldPosition at = core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, world.block_size_m());
+  at.local.y = world::surface_height_m(world, at);
+  return at;
+}
+
+std::optional<glm::vec2> Lens::pixel_of(const glm::vec3& from_eye) const {
+  const glm::vec4 clip =
+      core::projection_matrix(projection) * core::view_rotation(pose) * glm::vec4(from_eye, 1);
+  if (clip.w <= projection.near_m) return std::nullopt;
+  return glm::vec2{(clip.x / clip.w + 1) * 0.5F * static_cast<float>(size.width),
+                   (clip.y / clip.w + 1) * 0.5F * static_cast<float>(size.height)};
+}
+
+std::optional<glm::vec2> Lens::pixel_of(const core::WorldPosition& at) const {
+  return pixel_of(lifted(at, pose.position, block_m));
+}
+
+void ToolOverlay::set(const ToolMarks& marks, const world::World& world) {
+  if (!stale_ && marks == marks_) return;
+  stale_ = false;
+  marks_ = marks;
+  handles_.clear();
+  for (const ToolMarks::Handle& handle : marks_.handles)
+    handles_.push_back(on_surface(handle.at_m, world));
+  lines_.clear();
+  for (const ToolMarks::Line& line : marks_.lines) {
+    std::vector<OnGround>& drawn = lines_.emplace_back();
+    for (std::size_t i = 0; i < line.points_m.size(); ++i) {
+      const glm::dvec2 from = line.points_m[i];
+      const glm::dvec2 to = i + 1 < line.points_m.size() ? line.points_m[i + 1] : from;
+      const int pieces =
+          std::clamp(static_cast<int>(std::ceil(glm::length(to - from) / kPieceM)), 1, kMostPieces);
+      for (int k = 0; k < pieces; ++k)
+        drawn.push_back(
+            {on_surface(from + (to - from) * (static_cast<double>(k) / pieces), world), i});
+    }
+  }
+}
+
+void ToolOverlay::add_lines(const core::WorldPosition& eye, double block_m,
+                            std::vector<render::Line>& lines) const {
+  for (std::size_t l = 0; l < lines_.size(); ++l) {
+    for (std::size_t i = 1; i < lines_[l].size(); ++i)
+      lines.push_back({lifted(lines_[l][i - 1].at, eye, block_m),
+                       lifted(lines_[l][i].at, eye, block_m), marks_.lines[l].colour});
+  }
+}
+
+void ToolOverlay::add_handles(const Lens& lens, render::HudDrawing& hud) const {
+  const auto square = [&](glm::vec2 middle, float side, const glm::vec4& colour) {
+    hud.areas.push_back({{{}, middle - side / 2}, {{}, {side, side}}, colour});
+  };
+  // What is chosen lies over the others.
+  for (const bool chosen : {false, true}) {
+    for (std::size_t i = 0; i < handles_.size(); ++i) {
+      if (marks_.handles[i].chosen != chosen) continue;
+      const auto pixel = lens.pixel_of(handles_[i]);
+      if (!pixel) continue;
+      const float side = chosen ? kChosenPx : kHandlePx;
+      square(*pixel, side + 2 * kBorderPx, kBorderColour);
+      square(*pixel, side, chosen ? kChosenColour : kHandleColour);
+    }
+  }
+}
+
+void ToolOverlay::hit(QPointF pixel, const Lens& lens, ToolPoint& point) const {
+  const glm::vec2 mouse(pixel.x(), pixel.y());
+  float nearest = kReachHandlePx;
+  for (std::size_t i = 0; i < handles_.size(); ++i) {
+    const auto at = lens.pixel_of(handles_[i]);
+    const float away = at ? glm::length(*at - mouse) : nearest;
+    if (away < nearest) nearest = away, point.handle = i;
+  }
+  if (point.handle) return;
+  nearest = kReachLinePx;
+  for (std::size_t l = 0; l < lines_.size(); ++l) {
+    std::optional<glm::vec2> before;
+    for (std::size_t i = 0; i < lines_[l].size(); ++i) {
+      const auto at = lens.pixel_of(lines_[l][i].at);
+      const float away = before && at ? to_segment(mouse, *before, *at) : nearest;
+      if (away < nearest) nearest = away, point.line = {l, lines_[l][i - 1].part};
+      before = at;
+    }
+  }
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,63 @@
+// A tool's marks in a picture: lines that follow the ground and handles of constant size, and which
+// of them is under the mouse. Looks up heights only when marks or ground change. Knows no renderer:
+// lines and areas are values. Main thread.
+#pragma once
+
+#include <QPointF>
+#include <span>
+#include <vector>
+
+#include "editor/view/view_tool.hpp"
+#include "engine/core/camera.hpp"
+#include "engine/core/surface_provider.hpp"
+#include "engine/render/hud_drawing.hpp"
+#include "engine/render/types.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::editor {
+
+// Through what a picture is seen.
+struct Lens {
+  core::CameraPose pose;
+  core::Projection projection;
+  core::Extent size;  // pixels
+  double block_m = 1;
+
+  // The pixel of a place; nothing behind the camera.
+  std::optional<glm::vec2> pixel_of(const core::WorldPosition& at) const;
+  // The same for a place relative to the camera.
+  std::optional<glm::vec2> pixel_of(const glm::vec3& from_eye) const;
+};
+
+// A place of the world (x and z in metres) on the ground, or on the water over it.
+core::WorldPosition on_surface(glm::dvec2 at_m, const world::World& world);
+
+class ToolOverlay {
+ public:
+  // What is drawn from now on, on the ground of this world.
+  void set(const ToolMarks& marks, const world::World& world);
+  // The ground is another one.
+  void forget() { stale_ = true; }
+
+  // The lines from a camera, at the end of `lines`.
+  void add_lines(const core::WorldPosition& eye, double block_m,
+                 std::vector<render::Line>& lines) const;
+  // The handles.
+  void add_handles(const Lens& lens, render::HudDrawing& hud) const;
+  // Completes a point: what is under a pixel.
+  void hit(QPointF pixel, const Lens& lens, ToolPoint& point) const;
+
+ private:
+  // A point of a line as it is drawn, and the point of the tool's line that it lies behind.
+  struct OnGround {
+    core::WorldPosition at;
+    std::size_t part = 0;
+  };
+
+  ToolMarks marks_;
+  bool stale_ = true;
+  std::vector<core::WorldPosition> handles_;  // of marks_.handles
+  std::vector<std::vector<OnGround>> lines_;  // of marks_.lines
+};
+
+}  // namespace psygen::editor

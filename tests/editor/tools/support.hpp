@@ -1,0 +1,57 @@
+// A document with a world of the tests, a host for tools, and mice that point where they are told.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "editor/tools/tool_host.hpp"
+#include "editor/view/view_tool.hpp"
+#include "tests/editor/document/support.hpp"
+
+namespace psygen::editor::testing {
+
+struct Toolbench {
+  Place place;
+  Document document;
+  std::vector<std::string> said;
+  std::string chosen;  // table of the file
+
+  explicit Toolbench(const std::string& text = kWorld) : place(text), document(place.options()) {
+    EXPECT_TRUE(good(document.open(place.file)));
+  }
+  ToolHost host() {
+    return {document, [this](bool on) { on ? document.begin_drag() : document.end_drag(); },
+            [this](const QString& sentence) { said.push_back(sentence.toStdString()); },
+            [this](const world::TextPath& table) { chosen = table.text(); }};
+  }
+  int steps() { return document.undo_stack().count(); }
+  std::string last_step() { return document.undo_stack().undoText().toStdString(); }
+};
+
+inline ToolPoint ground(double x, double z) {
+  ToolPoint point;
+  point.ground_m = glm::dvec2(x, z);
+  return point;
+}
+inline ToolPoint sky() {
+  return {};
+}
+// The handle that a tool shows at a place.
+inline ToolPoint handle(ViewTool& tool, double x, double z) {
+  ToolPoint point = ground(x, z);
+  const auto& handles = tool.marks().handles;
+  const auto at = std::ranges::find(handles, glm::dvec2(x, z), &ToolMarks::Handle::at_m);
+  EXPECT_NE(at, handles.end()) << x << ", " << z;
+  if (at != handles.end()) point.handle = static_cast<std::size_t>(at - handles.begin());
+  return point;
+}
+
+inline void click(ViewTool& tool, const ToolPoint& at) {
+  tool.press(at);
+  tool.release();
+}
+
+}  // namespace psygen::editor::testing
