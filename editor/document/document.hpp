@@ -125,6 +125,8 @@ class Document : public QObject {
   // Edits between these two are one step: a drag, or several values at once.
   void begin_drag();
   void end_drag() { drag_ = 0; }
+  // Goes on with the last drag: its step grows, if nothing was done since.
+  void resume_drag() { drag_ = last_drag_; }
   QUndoStack& undo_stack() { return undo_; }
 
   // --- Copies, presets and variations.

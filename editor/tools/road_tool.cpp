@@ -51,39 +51,32 @@ const RoadTool::Points& RoadTool::points() const {
   return host_.document.world().shaped.roads[*road_].points_m;
 }
 
-bool RoadTool::set_points(const Points& points, const QString& step) {
+core::Result<void> RoadTool::set_points(const Points& points, const QString& step) {
   const world::TextPath path{"road", *road_, "points_m"};
-  return host_.tell(host_.document.edit(step.arg(*road_ + 1), [&](std::string_view text) {
+  return host_.document.edit(step.arg(*road_ + 1), [&](std::string_view text) {
     return world::with_value(text, path, toml_points_of(points));
-  }));
-}
-
-void RoadTool::begin_drag() {
-  dragging_ = true;
-  refused_.clear();
-  before_drag_ = host_.document.text();
-  host_.set_dragging(true);
+  });
 }
 
 void RoadTool::press(const ToolPoint& at) {
   if (at.handle) {
     if (!road()) return;  // the begin of a new road
     point_ = *at.handle;
-    return begin_drag();
+    return drag_.begin();
   }
   if (at.line && !road() && !begun_) return choose(at.line->line);
   if (!at.ground_m)
     return host_.say(words("There is no ground under the mouse: click on the ground."));
   const glm::dvec2 at_m = to_decimetres(*at.ground_m);
   if (road()) {
-    begin_drag();
+    drag_.begin();
     return add_point(at_m, at.line && at.line->line == *road_ ? at.line : std::nullopt);
   }
   if (!begun_) {
     begun_ = at_m;
     return host_.say(words("Click where the road goes on."));
   }
-  begin_drag();
+  drag_.begin();
   add_road(*begun_, at_m);
 }
 
@@ -93,10 +86,10 @@ void RoadTool::add_point(glm::dvec2 at_m, const std::optional<ToolPoint::OnLine>
   std::size_t place = chosen_point() == std::size_t{0} ? 0 : now.size();
   if (on_line) place = parts_[on_line->line][on_line->part] + 1;
   now.insert(now.begin() + static_cast<std::ptrdiff_t>(place), at_m);
-  if (set_points(now, words("Add a point to road %1")))
+  if (host_.tell(set_points(now, words("Add a point to road %1"))))
     point_ = place;
   else
-    take_back_drag();
+    drag_.take_back();
 }
 
 void RoadTool::add_road(glm::dvec2 from_m, glm::dvec2 to_m) {
@@ -107,7 +100,7 @@ void RoadTool::add_road(glm::dvec2 from_m, glm::dvec2 to_m) {
                                       "points_m = " + toml_points_of({from_m, to_m}) + "\n");
   }));
   if (!added) {
-    take_back_drag();
+    drag_.take_back();
     return;
   }
   begun_.reset();
@@ -117,47 +110,35 @@ void RoadTool::add_road(glm::dvec2 from_m, glm::dvec2 to_m) {
 }
 
 void RoadTool::drag(const ToolPoint& at) {
-  if (!dragging_ || !chosen_point() || !at.ground_m) return;
+  if (!drag_.active() || !chosen_point() || !at.ground_m) return;
   Points now = points();
   now[*point_] = to_decimetres(*at.ground_m);
-  // Told once, when it is let go: on its way the mouse may be anywhere.
-  const auto say = std::exchange(host_.say, [this](const QString& why) { refused_ = why; });
-  if (set_points(now, words("Move a point of road %1"))) refused_.clear();
-  host_.say = say;
+  drag_.note(set_points(now, words("Move a point of road %1")));
 }
 
 void RoadTool::release() {
-  if (!std::exchange(dragging_, false)) return;
-  host_.set_dragging(false);
-  if (!refused_.isEmpty()) host_.say(refused_);
+  drag_.end();
 }
 
 bool RoadTool::cancel() {
   const bool begun = std::exchange(begun_, std::nullopt).has_value();
-  return take_back_drag() || begun;
-}
-
-bool RoadTool::take_back_drag() {
-  if (!std::exchange(dragging_, false)) return false;
-  host_.tell(host_.document.set_text(before_drag_, words("Take back")));
-  host_.set_dragging(false);
-  return true;
+  return drag_.take_back() || begun;
 }
 
 void RoadTool::click_right(const ToolPoint& at) {
-  if (!at.handle || dragging_) return;
+  if (!at.handle || drag_.active()) return;
   if (road()) point_ = *at.handle;
   remove();
 }
 
 void RoadTool::remove() {
-  if (dragging_) return;
+  if (drag_.active()) return;
   if (begun_) return begun_.reset();
   if (!chosen_point()) return host_.say(words("Click on a point of a road first."));
   if (points().size() > 2) {
     Points now = points();
     now.erase(now.begin() + static_cast<std::ptrdiff_t>(*point_));
-    if (set_points(now, words("Remove a point of road %1")) && *point_ > 0) --*point_;
+    if (host_.tell(set_points(now, words("Remove a point of road %1"))) && *point_ > 0) --*point_;
     return;
   }
   if (!host_.tell(host_.document.remove_table({"road", *road_}))) return;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "editor/tools/tool_drag.hpp"
 #include "editor/tools/tool_host.hpp"
 #include "editor/view/view_tool.hpp"
 
@@ -35,18 +36,14 @@ class RoadTool final : public ViewTool {
  private:
   using Points = std::vector<glm::dvec2>;
   const Points& points() const;  // of the chosen road
-  bool set_points(const Points& points, const QString& step);
+  core::Result<void> set_points(const Points& points, const QString& step);
   void add_point(glm::dvec2 at_m, const std::optional<ToolPoint::OnLine>& on_line);
   void add_road(glm::dvec2 from_m, glm::dvec2 to_m);
-  void begin_drag();
-  bool take_back_drag();
 
   ToolHost host_;
   std::optional<std::size_t> road_, point_;
   std::optional<glm::dvec2> begun_;  // the first point of a new road
-  bool dragging_ = false;
-  std::string before_drag_;  // the text
-  QString refused_;          // why the drag is not where the mouse is
+  ToolDrag drag_{host_};
   // What the marks were made of.
   struct Shown {
     ParsedWorldPtr world;

@@ -1,5 +1,6 @@
 // The tools of the view and the way to them: a bar with buttons and what the chosen tool needs, a
-// menu, shortcuts. One tool at most is on; Esc leaves it. What a tool does is its own (road_tool).
+// menu, shortcuts. One tool at most is on; Esc leaves it. What a tool does is its own (road_tool,
+// place_tool).
 // Main thread.
 #pragma once
 
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "editor/document/document.hpp"
+#include "editor/tools/place_tool.hpp"
 #include "editor/tools/road_tool.hpp"
 #include "editor/view/world_view.hpp"
 
@@ -33,6 +35,7 @@ class ViewTools final : public QObject {
   // The left button selects again. Call it before view or document end.
   void leave();
   RoadTool& road() { return road_; }
+  PlaceTool& place() { return place_; }
 
  Q_SIGNALS:
   void told(const QString& sentence);
@@ -47,11 +50,14 @@ class ViewTools final : public QObject {
   void add_tool(ViewTool& tool, const QString& name, const QString& key, const QString& help);
   void add_of_tool(QWidget* widget);
   void add_roads();
+  void add_places();
   void add_commands(QMainWindow& window);
   void turn_on(ViewTool* tool);
   void escape();
   void remove();
+  void fill_lists();
   void fill_roads();
+  void fill_types();
 
   Document& document_;
   WorldView& view_;
@@ -67,7 +73,10 @@ class ViewTools final : public QObject {
   std::vector<OfTool> of_tools_;
   std::vector<OfTool> buttons_;
   RoadTool road_;
+  PlaceTool place_;
   QComboBox* roads_ = nullptr;
+  QComboBox* types_ = nullptr;
+  std::vector<QAction*> turns_;
 };
 
 }  // namespace psygen::editor

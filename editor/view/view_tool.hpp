@@ -45,6 +45,9 @@ struct ToolPoint {
 
 class ViewTool {
  public:
+  ViewTool() = default;
+  ViewTool(const ViewTool&) = delete;
+  ViewTool& operator=(const ViewTool&) = delete;
   virtual ~ViewTool() = default;
   // The left button goes down, the mouse moves while it is held, and it goes up.
   virtual void press(const ToolPoint& at) = 0;

@@ -235,22 +235,33 @@ void click(ViewTool& tool, const ToolPoint& at) {
   tool.release();
 }
 
-// What the tools draw is taken back.
-void take_tools(Photographer& take, MainWindow& window) {
+// Takes a picture of one tool; what it does is taken back.
+void take_tool(Photographer& take, const QString& command, const QString& name,
+               const std::function<void()>& use) {
   const std::string before = take.document().text();
+  take.command(command);
+  take.settle(use);
+  rest(3000);
+  take.window(name);
+  take.command("Leave the tool");
+  take.settle([&] { (void)take.document().set_text(before, "Take back"); });
+}
+
+void take_tools(Photographer& take, MainWindow& window) {
   auto* tools = window.findChild<ViewTools*>();
   const Ground ground(window);
-  take.command("Draw roads");
-  take.settle([&] {
+  take_tool(take, "Draw roads", "road", [&] {
     click(tools->road(), ground.at(-45, -12));
     for (const auto& [right_m, beyond_m] :
          {std::pair{-22, -14}, std::pair{-4, 2}, std::pair{6, 24}, std::pair{30, 40}})
       click(tools->road(), ground.at(right_m, beyond_m));
   });
-  rest(3000);
-  take.window("road");
-  tools->leave();
-  take.settle([&] { (void)take.document().set_text(before, "Take back"); });
+  take_tool(take, "Place models", "place", [&] {
+    tools->place().set_type("oak");
+    for (int i = 0; i < 5; ++i)
+      click(tools->place(), ground.at(24 * i - 60, 6 * (i % 2) + 8 * i - 20));
+    tools->place().hover(ground.at(4, -22));
+  });
 }
 
 // A few seconds straight ahead are recorded and flown.
